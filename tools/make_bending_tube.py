@@ -6,22 +6,12 @@
 
 import json
 import math
-import struct
 import sys
 
 from gltf_buffer import GltfBuffer
 
 JOINTS, HEIGHT, RADIUS = 8, 4.0, 0.5
 STEP = HEIGHT / (JOINTS - 1)
-COMPONENTS = {"f": 5126, "H": 5123, "I": 5125}
-COUNTS = {"SCALAR": 1, "VEC3": 3, "VEC4": 4, "MAT4": 16}
-
-
-class Binary(GltfBuffer):
-    def add(self, values, component, kind, **bounds):
-        return super().add(struct.pack(f"<{len(values)}{component}", *values),
-                           {"componentType": COMPONENTS[component], "type": kind,
-                            "count": len(values) // COUNTS[kind], **bounds})
 
 
 def tube(binary, rings, segments):
@@ -41,8 +31,7 @@ def tube(binary, rings, segments):
         for segment in range(segments):
             a, b = ring * segments + segment, ring * segments + (segment + 1) % segments
             indices += [a, a + segments, b, b, a + segments, b + segments]
-    box = {"min": [-RADIUS, 0, -RADIUS], "max": [RADIUS, HEIGHT, RADIUS]}
-    return {"attributes": {"POSITION": binary.add(positions, "f", "VEC3", **box),
+    return {"attributes": {"POSITION": binary.add(positions, "f", "VEC3", has_bounds=True),
                            "NORMAL": binary.add(normals, "f", "VEC3"),
                            "JOINTS_0": binary.add(joints, "H", "VEC4"),
                            "WEIGHTS_0": binary.add(weights, "f", "VEC4")},
@@ -51,7 +40,7 @@ def tube(binary, rings, segments):
 
 def floor(binary):
     corners = [-4, 0, -4, 4, 0, -4, 4, 0, 4, -4, 0, 4]
-    return {"attributes": {"POSITION": binary.add(corners, "f", "VEC3", min=[-4, 0, -4], max=[4, 0, 4])},
+    return {"attributes": {"POSITION": binary.add(corners, "f", "VEC3", has_bounds=True)},
             "indices": binary.add([0, 2, 1, 0, 3, 2], "I", "SCALAR"), "material": 1}
 
 
@@ -61,7 +50,7 @@ def turn(angle_deg):
 
 
 def make(rings, segments):
-    binary = Binary()
+    binary = GltfBuffer()
     meshes = [{"name": "tube", "primitives": [tube(binary, rings, segments)]},
               {"name": "floor", "primitives": [floor(binary)]}]
     first = 3  # node of the first joint
@@ -73,7 +62,7 @@ def make(rings, segments):
         if joint + 1 < JOINTS:
             nodes[-1]["children"] = [first + joint + 1]
         inverse += [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -joint * STEP, 0, 1]
-    sampler = {"input": binary.add([0, 1, 2, 3], "f", "SCALAR", min=[0], max=[3]),
+    sampler = {"input": binary.add([0, 1, 2, 3], "f", "SCALAR", has_bounds=True),
                "output": binary.add(turn(0) + turn(18) + turn(-14) + turn(0), "f", "VEC4")}
     channels = [{"sampler": 0, "target": {"node": first + joint, "path": "rotation"}} for joint in range(1, JOINTS)]
     skin = {"joints": list(range(first, first + JOINTS)), "inverseBindMatrices": binary.add(inverse, "f", "MAT4")}

@@ -11,14 +11,12 @@ its coordinates are kept; the camera looks along +z and sees +x on its left.
 `make_cornell_box.py --check` writes nothing and fails when the file is not what this script would write.
 """
 
-import argparse
 import json
 import math
 import pathlib
-import struct
-import sys
 
 from gltf_buffer import GltfBuffer
+from written_scenes import write_or_check
 
 TARGET = pathlib.Path(__file__).resolve().parent.parent / "scenes/cornell-box/cornell-box.gltf"
 
@@ -180,13 +178,8 @@ def make_gltf():
     buffer, meshes, nodes = GltfBuffer(), [], []
     for name, material_name, triangles in OBJECTS:
         vertices = sorted({v for t in triangles for v in t})
-        points = [tuple(struct.unpack("<f", struct.pack("<f", c / 1000))[0] for c in v) for v in vertices]
-        indices = [vertices.index(v) for t in triangles for v in t]
-        positions = buffer.add(b"".join(struct.pack("<3f", *p) for p in points), {
-            "componentType": 5126, "type": "VEC3", "count": len(points),
-            "min": [min(c) for c in zip(*points)], "max": [max(c) for c in zip(*points)]}, target=34962)
-        corners = buffer.add(struct.pack(f"<{len(indices)}H", *indices),
-                             {"componentType": 5123, "type": "SCALAR", "count": len(indices)}, target=34963)
+        positions = buffer.add([[c / 1000 for c in v] for v in vertices], "f", "VEC3", has_bounds=True, target=34962)
+        corners = buffer.add([vertices.index(v) for t in triangles for v in t], "H", "SCALAR", target=34963)
         meshes.append({"name": name, "primitives": [
             {"attributes": {"POSITION": positions}, "indices": corners, "material": index_of[material_name]}]})
         nodes.append({"name": name, "mesh": len(meshes) - 1})
@@ -211,18 +204,5 @@ def make_gltf():
     }
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--check", action="store_true", help="compare with the file instead of writing it")
-    check = parser.parse_args().check
-    text = json.dumps(make_gltf(), indent=1) + "\n"
-    if check:
-        if not TARGET.is_file() or TARGET.read_text() != text:
-            sys.exit(f"{TARGET} is not what tools/make_cornell_box.py writes; run it and commit the result")
-        return
-    TARGET.parent.mkdir(parents=True, exist_ok=True)
-    TARGET.write_text(text)
-
-
 if __name__ == "__main__":
-    main()
+    write_or_check(__doc__, {TARGET: json.dumps(make_gltf(), indent=1) + "\n"})

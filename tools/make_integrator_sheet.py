@@ -11,7 +11,6 @@ import argparse
 import json
 import math
 import pathlib
-import struct
 import sys
 import tempfile
 
@@ -41,10 +40,7 @@ def make_scene(path):
     scene = json.loads((ROOT / "scenes/cornell-box/cornell-box.gltf").read_text(encoding="utf-8"))
     buffer = GltfBuffer(scene["bufferViews"], scene["accessors"], len(scene["buffers"]))
     points, corners = ball()
-    normals = b"".join(struct.pack("<3f", *p) for p in points)
-    low, high = [-1.0] * 3, [1.0] * 3
-    positions = buffer.add(normals, {"componentType": 5126, "count": len(points), "type": "VEC3", "min": low, "max": high})
-    indices = buffer.add(struct.pack(f"<{len(corners)}I", *corners), {"componentType": 5125, "count": len(corners), "type": "SCALAR"})
+    positions, indices = buffer.add(points, "f", "VEC3", has_bounds=True), buffer.add(corners, "I", "SCALAR")
     scene["buffers"].append(buffer.describe())
     scene["bufferViews"], scene["accessors"] = buffer.views, buffer.accessors
     scene["materials"].append({"name": "glass", "pbrMetallicRoughness": {"roughnessFactor": 0, "metallicFactor": 0},

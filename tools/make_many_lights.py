@@ -7,16 +7,14 @@ boxes stand in their light. The floor is glossy, the rest is nearly diffuse. Met
 `make_many_lights.py --check` writes nothing and fails when the file is not what this script would write.
 """
 
-import argparse
 import colorsys
 import json
 import math
 import pathlib
 import random
-import struct
-import sys
 
 from gltf_buffer import GltfBuffer
+from written_scenes import write_or_check
 
 TARGET = pathlib.Path(__file__).resolve().parent.parent / "scenes/many-lights/many-lights.gltf"
 SWARMS, TRIANGLES = 100, 100
@@ -72,12 +70,7 @@ class Document:
         self.buffer, self.meshes, self.materials, self.nodes = GltfBuffer(), [], [], []
 
     def positions(self, corners):
-        data = b"".join(struct.pack("<3f", *corner) for corner in corners)
-        rounded = [struct.unpack("<3f", struct.pack("<3f", *corner)) for corner in corners]
-        return self.buffer.add(data, {
-            "componentType": 5126, "count": len(corners), "type": "VEC3",
-            "min": [min(c[k] for c in rounded) for k in range(3)],
-            "max": [max(c[k] for c in rounded) for k in range(3)]})
+        return self.buffer.add(corners, "f", "VEC3", has_bounds=True)
 
     def mesh(self, name, accessor, material):
         self.materials.append({"name": name, **material})
@@ -145,18 +138,5 @@ def make():
     return document.text()
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--check", action="store_true")
-    text = make()
-    if not parser.parse_args().check:
-        TARGET.parent.mkdir(parents=True, exist_ok=True)
-        TARGET.write_text(text, encoding="utf-8")
-        return
-    if TARGET.read_text(encoding="utf-8") != text:
-        sys.exit(f"{TARGET} is not what this script writes: run it")
-    print("the scene is what this script writes")
-
-
 if __name__ == "__main__":
-    main()
+    write_or_check(__doc__, {TARGET: make()})

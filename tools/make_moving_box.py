@@ -9,7 +9,6 @@ the short block slides away from its wall and back. With --mirror the tall block
 import json
 import math
 import pathlib
-import struct
 import sys
 
 from gltf_buffer import GltfBuffer
@@ -26,15 +25,8 @@ def main(out, has_mirror):
     lamp = [(0.12 * math.sin(a), -0.05 * (1 - math.cos(a)) - 0.001, 0.0) for a in turn]
     slide = [(0.06 * (1 - math.cos(a)), 0.0, -0.05 * math.sin(a)) for a in turn]
     buffer = GltfBuffer(box["bufferViews"], box["accessors"], len(box["buffers"]))
-
-    def add(kind, rows):
-        accessor = {"componentType": 5126, "count": len(rows), "type": kind}
-        if kind == "SCALAR":
-            accessor |= {"min": [rows[0][0]], "max": [rows[-1][0]]}
-        return buffer.add(b"".join(struct.pack(f"<{len(row)}f", *row) for row in rows), accessor)
-
-    clock = add("SCALAR", [(t,) for t in times])
-    moves = [(names.index("light"), add("VEC3", lamp)), (names.index("short block"), add("VEC3", slide))]
+    clock = buffer.add(times, "f", "SCALAR", has_bounds=True)
+    moves = [(names.index("light"), buffer.add(lamp, "f", "VEC3")), (names.index("short block"), buffer.add(slide, "f", "VEC3"))]
     box["animations"] = [{
         "name": "lamp and block",
         "samplers": [{"input": clock, "output": output} for _, output in moves],

@@ -6,8 +6,8 @@
     tools/make_tables.py --self-test
 
 A document has `<!-- table: results/FILE.json NAME -->` ... `<!-- end -->`. After the name may stand `columns=KEY,KEY` and
-`where=KEY:VALUE|VALUE`, which select columns and rows. Numbers keep the digits that the JSON has. A unit that all columns of
-figures share stands once, in the head of the first column.
+`where=KEY:VALUE|VALUE`, which select columns and rows. `<!-- figures -->` ... `<!-- end -->` holds the rows of bench/figures.json.
+Numbers keep the digits that the JSON has. A unit that all columns of figures share stands once, in the head of the first column.
 
 `date` is when a file was measured; a day alone is that on which the commit `recorded` brought the last of its figures. `program`
 names the version. `command` is what makes them today, several between semicolons; words in capitals stand for files, NAME or SCENE
@@ -18,6 +18,7 @@ import datetime
 import json
 import pathlib
 import re
+import statistics
 import subprocess
 import sys
 
@@ -25,6 +26,7 @@ import check_documents
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 MARKER = re.compile(r"(<!-- table: (results/\S+\.json) (\S+)([^>]*?) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
+FIGURES = re.compile(r"(<!-- figures -->\n)(.*?)(<!-- end -->)", re.DOTALL)
 KEYS = {"format", "version", "program", "date", "command", "processor", "threads", "device", "driver", "title", "tables"}
 
 
@@ -154,20 +156,31 @@ def render(path, measured, name, options):
     return "\n" + "\n".join(lines) + "\n\n" + source_of(path, measured)
 
 
+def figures(rows, read):
+    """The table of bench/figures.json. In its texts {KEY} stands for a value of the row whose first cell is `row`, and {KEY / OTHER} for a
+    ratio of two; without `row` a value is the geometric mean of the column."""
+    lines = ["| what | Pertev | beside | ratio | data |", "| --- | ---: | ---: | ---: | --- |"]
+    for one in rows:
+        table = next(t for t in read(one["file"])["tables"] if t["name"] == one["table"])
+        keys = [column["key"] for column in table["columns"]]
+
+        def value(key):
+            cells = [row[keys.index(key)] for row in table["rows"] if row[0] == one.get("row", row[0])]
+            if not cells or len(cells) > 1 and "row" in one:
+                raise ValueError(f"{one['file']} has not one row {one.get('row')}")
+            return cells[0] if len(cells) == 1 else statistics.geometric_mean(cells)
+
+        def said(match):
+            return f"{value(match[1]) / value(match[2]):#.3g}" if match[2] else str(value(match[1])) if "row" in one else f"{value(match[1]):#.3g}"
+
+        cells = [re.sub(r"\{(\w+)(?: / (\w+))?\}", said, one[key]) for key in ("what", "pertev", "beside", "ratio")]
+        lines.append(f"| {' | '.join(cells)} | [{pathlib.PurePath(one['file']).stem}](../bench/{one['file']}) |")
+    return "\n" + "\n".join(lines) + "\n\n"
+
+
 def remade(text, read):
-    return MARKER.sub(lambda m: m[1] + render(m[2], read(m[2]), m[3], m[4]) + m[6], text)
-
-
-def strays(text, read):
-    """Figures in rows that link a file of results but do not stand in it: those of the second cell, and of the third after its
-    colon."""
-    for line in text.splitlines():
-        if match := re.match(r"\|.*\(\.\./bench/(results/\S+\.json)\) \|$", line):
-            cells = line.split("|")
-            known = {str(cell) for table in read(match[1])["tables"] for row in table["rows"] for cell in row}
-            for figure in re.findall(r"[\d.]+", cells[2] + " " + cells[3].partition(":")[2]):
-                if figure not in known:
-                    yield f"{figure} does not stand in {match[1]}"
+    text = MARKER.sub(lambda m: m[1] + render(m[2], read(m[2]), m[3], m[4]) + m[6], text)
+    return FIGURES.sub(lambda m: m[1] + figures(json.loads((ROOT / "bench/figures.json").read_text(encoding="utf-8")), read) + m[3], text)
 
 
 def self_test():
@@ -195,8 +208,10 @@ def self_test():
     assert "| scene | rays, Mrays/s | seconds, s |" in text and "| Sponza | 1.10 |  |" in text and "3e-5" in text, text
     chosen = render("results/x.json", good, "a", "columns=k,r where=k:two_words")
     assert "1.10" not in chosen and "| two words | 2 |" in chosen, chosen
-    row = "| what | 1.10 | Other 3: 3e-5 | 2 | [x](../bench/results/x.json) |"
-    assert not list(strays(row.replace("3e-5", "2"), lambda _: good)) and list(strays(row.replace("1.10", "1.1"), lambda _: good))
+    chosen = {"what": "w", "pertev": "{r}", "beside": "O: {s}", "ratio": "{r / s}", "file": "results/x.json", "table": "a", "row": "two words"}
+    assert "| w | 2 | O: 3e-5 | 6.67e+04 | [x](../bench/results/x.json) |" in figures([chosen], lambda _: good)
+    del chosen["row"]
+    assert "| 1.48 | O |" in figures([{**chosen, "pertev": "{r}", "beside": "O", "ratio": ""}], lambda _: good)
     document = "before\n<!-- table: results/x.json a -->\nold 1.2\n<!-- end -->\nafter\n"
     once = remade(document, lambda _: good)
     assert "old" not in once and once == remade(once, lambda _: good) and once.endswith("after\n")
@@ -226,7 +241,6 @@ def main(arguments):
         except (KeyError, ValueError) as error:
             faults.append(f"{document.name}: {error}")
             continue
-        faults += [f"{document.name}: {stray}" for stray in strays(text, lambda name: seen[name])]
         if new != text and check:
             faults.append(f"{document.name}: a table differs from its JSON; run tools/make_tables.py")
         elif new != text:

@@ -12,10 +12,10 @@ OBJ and MTL in metres, +y up; all faces are flat, so that no normal is interpola
 `make_transport_scenes.py --check` writes nothing and fails when a file is not what this script would write.
 """
 
-import argparse
 import math
 import pathlib
-import sys
+
+from written_scenes import write_or_check
 
 TARGET = pathlib.Path(__file__).resolve().parent.parent / "scenes/transport"
 MATERIALS = {
@@ -27,6 +27,21 @@ MATERIALS = {
     "glass": "Kd 0 0 0\nillum 6\nNi 1.5\nTf 1 1 1",
     "lamp": "Kd 0 0 0\nKe 60 54 45",
 }
+
+
+def sphere(centre, radius, sides=48):
+    """Quads (triangles at the poles) of a sphere, counter-clockwise seen from outside."""
+    rows = sides // 2
+
+    def corner(i, j):
+        theta, phi = math.pi * i / rows, 2 * math.pi * j / sides
+        return [c + radius * d for c, d in zip(centre, (
+            math.sin(theta) * math.cos(phi), math.cos(theta), -math.sin(theta) * math.sin(phi)))]
+
+    for i in range(rows):
+        for j in range(sides):
+            quad = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)]
+            yield [p for k, p in enumerate(quad) if not (i == 0 and k == 3) and not (i == rows - 1 and k == 2)]
 
 
 class Obj:
@@ -61,19 +76,9 @@ class Obj:
                     x, y = y, x
                 self.sheet(material, at, x, y)
 
-    def ball(self, material, centre, radius, sides=48):
-        rows = sides // 2
-
-        def corner(i, j):
-            theta, phi = math.pi * i / rows, 2 * math.pi * j / sides
-            return [c + radius * d for c, d in zip(centre, (
-                math.sin(theta) * math.cos(phi), math.cos(theta), -math.sin(theta) * math.sin(phi)))]
-
-        for i in range(rows):
-            for j in range(sides):
-                quad = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)]
-                self.face(material, *[p for k, p in enumerate(quad)
-                                      if not (i == 0 and k == 3) and not (i == rows - 1 and k == 2)])
+    def ball(self, material, centre, radius):
+        for polygon in sphere(centre, radius):
+            self.face(material, *polygon)
 
     def write(self, name):
         mtl = "".join(f"newmtl {m}\n{MATERIALS[m]}\n" for m in self.used)
@@ -162,22 +167,5 @@ def cove():
     return obj.write("cove")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--check", action="store_true")
-    check = parser.parse_args().check
-    stale = []
-    for scene in (blind, caustic, uplight, door, cove):
-        for name, text in scene().items():
-            path = TARGET / name
-            if not check:
-                TARGET.mkdir(parents=True, exist_ok=True)
-                path.write_text(text, encoding="utf-8")
-            elif not path.is_file() or path.read_text(encoding="utf-8") != text:
-                stale.append(str(path))
-    if stale:
-        sys.exit(f"not what tools/make_transport_scenes.py writes: {', '.join(stale)}")
-
-
 if __name__ == "__main__":
-    main()
+    write_or_check(__doc__, {TARGET / name: text for scene in (blind, caustic, uplight, door, cove) for name, text in scene().items()})

@@ -14,25 +14,8 @@ import sys
 import xml.etree.ElementTree as ElementTree
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "tests" / "images"))
+from make_transport_scenes import sphere  # noqa: E402
 from mitsuba_to_gltf import CUBE, RECTANGLE, matrix_of, transformed  # noqa: E402
-
-SPHERE_SIDES = 48  # around; half as many from pole to pole
-
-
-def sphere(centre, radius):
-    """Quads (triangles at the poles) of a sphere, counter-clockwise seen from outside."""
-    rows = SPHERE_SIDES // 2
-
-    def corner(i, j):
-        theta, phi = math.pi * i / rows, 2 * math.pi * j / SPHERE_SIDES
-        return tuple(c + radius * d for c, d in zip(centre, (
-            math.sin(theta) * math.cos(phi), math.cos(theta), -math.sin(theta) * math.sin(phi))))
-
-    for i in range(rows):
-        for j in range(SPHERE_SIDES):
-            quad = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)]
-            yield [p for k, p in enumerate(quad) if not (i == 0 and k == 3) and not (i == rows - 1 and k == 2)]
-
 
 def material_lines(bsdf):
     inner = bsdf.find("bsdf")

@@ -12,6 +12,7 @@ it, did not apply or did not build.
 """
 
 import argparse
+import collections
 import os
 import pathlib
 import re
@@ -21,8 +22,10 @@ import sys
 import time
 import xml.etree.ElementTree as ElementTree
 
-from mutations import MUTATIONS
+import mutations
 
+Mutation = collections.namedtuple("Mutation", "name tests edits")
+MUTATIONS = [Mutation(name, tests.split(), edits) for name, tests, *edits in mutations.MUTATIONS]
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 WORK = ROOT / "build-mutations"
 TREE, BUILD = WORK / "tree", WORK / "tree/build"  # paths like in a checkout, so that ccache finds earlier results
@@ -35,8 +38,8 @@ def tracked_files():
     return [name for name in listed if name and (ROOT / name).is_file()]
 
 
-def test_names(mutations):
-    return sorted({test for mutation in mutations for test in mutation.tests})
+def test_names(chosen):
+    return sorted({test for mutation in chosen for test in mutation.tests})
 
 
 def wanted(name, tests):
@@ -140,13 +143,13 @@ def main():
     unknown = set(arguments.names) - {mutation.name for mutation in MUTATIONS}
     if unknown:
         sys.exit(f"no mutation is named {', '.join(map(repr, sorted(unknown)))}; --list names them")
-    mutations = [m for m in MUTATIONS if not arguments.names or m.name in arguments.names]
+    chosen = [m for m in MUTATIONS if not arguments.names or m.name in arguments.names]
     if arguments.list:
-        for mutation in mutations:
+        for mutation in chosen:
             print(f"{mutation.name}: {', '.join(mutation.tests)}")
         return
 
-    all_tests, tests = test_names(MUTATIONS), test_names(mutations)
+    all_tests, tests = test_names(MUTATIONS), test_names(chosen)
     write_tree([], all_tests)
     problem = build(arguments.jobs, tests)
     if problem:
@@ -156,8 +159,8 @@ def main():
         sys.exit("these tests fail without a mutation: " + ", ".join(failed))
 
     good = True
-    width = max(len(mutation.name) for mutation in mutations)
-    for mutation in mutations:
+    width = max(len(mutation.name) for mutation in chosen)
+    for mutation in chosen:
         start = time.monotonic()
         ok, text = try_mutation(mutation, all_tests, arguments.jobs)
         good &= ok

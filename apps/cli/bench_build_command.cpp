@@ -32,35 +32,38 @@ struct BuildFlags : PictureOptions {
     ReportFlags report;
 };
 
-/// All triangles that do not move, in one world; where there are none, those of the first mesh.
+/// Returns the triangles that do not move, in world space; if there are none, the first mesh's.
 std::vector<BvhTriangle> read_triangles(const std::string& name, Messages& messages) {
     const Scene scene = read_record_scene(name, messages);
     std::vector<BvhTriangle> triangles = baked_triangles(scene, place_meshes(scene));
     return triangles.empty() && !scene.meshes.empty() ? mesh_triangles(scene.meshes.front()) : triangles;
 }
 
-/// `ratio`: of the tree's cost to that of the SBVH; 0: not known. `scene` may be one of the record.
+Fields head_of(const std::string& scene, const char* title, std::string_view tree, const std::string& device,
+               uint64_t triangles) {
+    return {{"scene", "scene", scene},
+            {"tree", title, tree},
+            {"device", "", device},
+            {"triangles", "triangles", triangles}};
+}
+
+/// Reports a build. `ratio` is the tree's cost relative to the SBVH's; 0 if unknown.
 void add_build(const std::string& scene, std::string_view tree, const std::string& device, uint64_t triangles,
                const RunTimes& times, std::size_t nodes, int depth, float cost, double ratio, BenchReport& report) {
-    Fields fields = {{"scene", "scene", scene},
-                     {"tree", "tree", tree},
-                     {"device", "", device},
-                     {"triangles", "triangles", triangles}};
-    for (const ResultField& time : time_fields(times)) fields.push_back(time);
-    fields.insert(fields.end(),
-                  {{"triangles_per_second", "Mtri/s", millions_a_second(triangles, times.median) * 1e6, "", "{:.3g}"},
+    const RecordScene* const record = find_named(the_record().scenes, scene);
+    const bool is_known = is_on_record(device, record, triangles);
+    report.add(
+        "build",
+        head_of(scene, "tree", tree, device, triangles) + time_fields(times) +
+            Fields{{"triangles_per_second", "Mtri/s", millions_a_second(triangles, times.median) * 1e6, "", "{:.3g}"},
                    {"nodes", "nodes", nodes},
                    {"depth", "depth", depth},
                    {"sah_cost", "cost", static_cast<double>(cost), "", "{:.3f}"},
-                   {"ratio_to_sbvh", "of sbvh", if_timed(ratio), "", "{:.3f}"}});
-    const RecordScene* const record = find_named(the_record().scenes, scene);
-    const bool is_known = is_on_record(device, record, triangles);
-    fields.push_back(ratio_field("ratio_to_optix_fast_trace", "to trace", is_known,
-                                 is_known ? record->optix_fast_trace_s / times.median : 0));
-    fields.push_back(ratio_field("ratio_to_optix_fast_build", "to build", is_known,
-                                 is_known ? record->optix_fast_build_s / times.median : 0));
-    report.add(
-        "build", fields,
+                   {"ratio_to_sbvh", "of sbvh", if_timed(ratio), "", "{:.3f}"},
+                   ratio_field("ratio_to_optix_fast_trace", "to trace", is_known,
+                               is_known ? record->optix_fast_trace_s / times.median : 0),
+                   ratio_field("ratio_to_optix_fast_build", "to build", is_known,
+                               is_known ? record->optix_fast_build_s / times.median : 0)},
         fmt::format("from triangles on the device to compressed nodes and triangles there; others on the CPU; cost of "
                     "a ray by the\nsurface area heuristic, and its ratio to the SBVH's; at the right, on an {} "
                     "alone, our rate in times OptiX's\n",
@@ -107,12 +110,7 @@ void bench_scene(const std::string& name, Queue& queue, const BuildFlags& flags,
         throw Error(ErrorCode::DeviceFault,
                     fmt::format("{}: a tree fitted to its own triangles has other bounds", name));
     }
-    Fields refit = {{"scene", "scene", name},
-                    {"tree", "refitted", "hploc"},
-                    {"device", "", queue.device_name()},
-                    {"triangles", "triangles", count}};
-    for (const ResultField& field : time_fields(refits)) refit.push_back(field);
-    report.add("refit", refit);
+    report.add("refit", head_of(name, "refitted", "hploc", queue.device_name(), count) + time_fields(refits));
 }
 
 int bench_build(BuildFlags& flags) {

@@ -24,12 +24,7 @@
 namespace pertev {
 namespace {
 
-struct SceneFigures {
-    std::string scene, device;
-    double load_s = 0, build_s = 0, cached_s = 0, first_pixel_s = 0, render_s = 0;
-    double camera_mrays = 0, bounce_mrays = 0, shadow_mrays = 0, msamples = 0;
-    uint64_t triangles = 0;
-};
+constexpr const char* kSize = "1920x1080";
 
 /// A cache folder of its own, gone afterwards.
 class ScratchCache {
@@ -47,13 +42,12 @@ private:
     std::filesystem::path path_;
 };
 
-SceneFigures measure(const std::string& file, Queue& queue, RenderSettings settings) {
-    SceneFigures figures{.scene = std::filesystem::path(file).stem().string(), .device = queue.device_name()};
+/// Returns the row of a scene on a device.
+Fields measure(const std::string& file, Queue& queue, RenderSettings settings) {
     Messages messages;
     const Stopwatch watch;
     const Scene scene = open_scene(file, messages, SceneUse::Benchmark);
-    figures.load_s = watch.seconds();
-
+    const double load_s = watch.seconds();
     const ScratchCache cache;
     PrepareOptions options = trees_for(settings, queue);
     const PrepareOptions uncached = options;
@@ -62,9 +56,7 @@ SceneFigures measure(const std::string& file, Queue& queue, RenderSettings setti
     const PreparedScene prepared = prepare_scene(scene, options, messages); // also fills the cache
     throw_if_interrupted();
     const PreparedScene cached = prepare_scene(scene, options, messages);
-    figures.cached_s = cached.build_seconds;
-    figures.build_s = prepare_scene(scene, uncached, messages).build_seconds;
-    figures.triangles = prepared.triangles;
+    const double build_s = prepare_scene(scene, uncached, messages).build_seconds;
 
     const Camera camera = choose_camera(CameraChoice{}, scene, aspect_of(settings.width, settings.height), messages);
     {
@@ -74,35 +66,28 @@ SceneFigures measure(const std::string& file, Queue& queue, RenderSettings setti
     Session session(queue, prepared, camera, settings);
     render_again(session, settings.samples);
     const RenderStats whole = session.stats();
-    figures.first_pixel_s = whole.upload_seconds + whole.first_pixel_seconds;
-    figures.render_s = whole.render_seconds;
-    figures.msamples =
-        millions_a_second(uint64_t(settings.width) * settings.height * whole.samples, whole.render_seconds);
 
     settings.time_kinds = true; // once more, each kind of ray on its own
     settings.body = PathBody::Wavefront;
     session.set_settings(settings);
     render_again(session, settings.samples);
     const RenderStats staged = session.stats();
-    figures.camera_mrays = millions_a_second(staged.rays.camera, staged.kind_seconds.camera);
-    figures.bounce_mrays = millions_a_second(staged.rays.bounce, staged.kind_seconds.bounce);
-    figures.shadow_mrays = millions_a_second(staged.rays.shadow, staged.kind_seconds.shadow);
-    return figures;
-}
-
-Fields fields_of(const SceneFigures& f) {
-    return {{"scene", "scene", f.scene},
-            {"device", "device", f.device},
-            {"triangles", "triangles", f.triangles},
-            {"load_seconds", "load", f.load_s, "s", "{:.3f}"},
-            {"build_seconds", "build", f.build_s, "s", "{:.3f}"},
-            {"cached_seconds", "cached", f.cached_s, "s", "{:.3f}"},
-            {"first_pixel_seconds", "first", f.first_pixel_s, "s", "{:.3f}"},
-            {"render_seconds", "render", f.render_s, "s", "{:.3f}"},
-            {"samples_per_second", "samples/s", f.msamples * 1e6, "", "{:.4g}"},
-            {"camera_rays_per_second", "camera rays/s", f.camera_mrays * 1e6, "", "{:.4g}"},
-            {"bounce_rays_per_second", "bounce rays/s", f.bounce_mrays * 1e6, "", "{:.4g}"},
-            {"shadow_rays_per_second", "shadow rays/s", f.shadow_mrays * 1e6, "", "{:.4g}"}};
+    const auto rate = [](uint64_t count, double seconds) { return 1e6 * millions_a_second(count, seconds); };
+    const uint64_t samples = uint64_t(settings.width) * settings.height * whole.samples;
+    return {
+        {"scene", "scene", std::filesystem::path(file).stem().string()},
+        {"device", "device", queue.device_name()},
+        {"triangles", "triangles", prepared.triangles},
+        {"load_seconds", "load", load_s, "s", "{:.3f}"},
+        {"build_seconds", "build", build_s, "s", "{:.3f}"},
+        {"cached_seconds", "cached", cached.build_seconds, "s", "{:.3f}"},
+        {"first_pixel_seconds", "first", whole.upload_seconds + whole.first_pixel_seconds, "s", "{:.3f}"},
+        {"render_seconds", "render", whole.render_seconds, "s", "{:.3f}"},
+        {"samples_per_second", "samples/s", rate(samples, whole.render_seconds), "", "{:.4g}"},
+        {"camera_rays_per_second", "camera rays/s", rate(staged.rays.camera, staged.kind_seconds.camera), "", "{:.4g}"},
+        {"bounce_rays_per_second", "bounce rays/s", rate(staged.rays.bounce, staged.kind_seconds.bounce), "", "{:.4g}"},
+        {"shadow_rays_per_second", "shadow rays/s", rate(staged.rays.shadow, staged.kind_seconds.shadow), "",
+         "{:.4g}"}};
 }
 
 /// Sponza and Sibenik of the test scenes, where PERTEV_SCENES says they are.
@@ -140,7 +125,7 @@ int bench_scenes(PictureFlags& flags) {
             reporter.set_work(fmt::format("measuring {} on {}", scene, queue->device_name()));
             settings.tracers = tracer_choice(flags.tracer, queue->is_cuda());
             settings.samples = flags.is_given("spp") ? flags.render.samples : (queue->is_cuda() ? 64 : 4);
-            report.add("bench", fields_of(measure(scene, *queue, settings)));
+            report.add("bench", measure(scene, *queue, settings));
         }
     }
     report.write();

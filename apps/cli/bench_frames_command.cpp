@@ -32,27 +32,32 @@ Camera camera_of(const Camera& first, uint32_t frame, float scene_size) {
     return moved(first, 0.35f * sin(k * 0.05f), {0, 0, -0.001f * scene_size * k});
 }
 
-struct FrameFigures {
-    RunTimes whole, reconstruction, copy; // `copy`: of what is shown, to the host
-    RayCounts rays;                       // rays of all frames
-    double seconds = 0;
-};
-
-FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, float scene_size, float exposure,
-                     ToneMap tone_map, Reporter& reporter) {
-    const ReconstructionSettings settings = flags.render.reconstruction.used();
-    const RestirSettings& restir = flags.render.reconstruction.sharing;
+int bench_frames(FramesFlags& flags) {
+    Reporter reporter(flags.render.report);
+    const std::unique_ptr<BenchedScene> benched = read_benched_scene(flags.render, kBenchFrames, reporter);
+    const auto& [queue, scene, settings, camera, prepared] = *benched;
+    refuse(!makes_frames(settings.integrator) && flags.render.reconstruction.has_frame_options(),
+           {"integrator", std::string(integrator_name(settings)),
+            "its frames are plain samples; `restir` and `resolution_scale` are for path and hybrid"});
+    BenchReport report(reporter, flags.render.report, *queue, "Frames in real time");
+    Session session(*queue, prepared, camera, settings);
+    const ToneMap tone_map = ToneMap::Agx;
+    const float exposure = session.meter(tone_map);
+    session.cut();
+    const ReconstructionOptions& options = flags.render.reconstruction;
     const Camera first = session.camera();
-    std::vector<double> whole, reconstruction, copy;
-    FrameFigures figures;
-    DeviceTimer timer(queue);
-    const bool reconstructs = makes_frames(session.settings().integrator);
+    const float size = length(bounds_of(scene).size());
+    const bool reconstructs = makes_frames(settings.integrator);
+    std::vector<double> whole, reconstruction, copy; // `copy`: what is shown, to the host
+    RayCounts rays;
+    double seconds = 0;
+    DeviceTimer timer(*queue);
     for (uint32_t frame = 0; frame < flags.frames; ++frame) {
         throw_if_interrupted();
         timer.start();
-        if (!flags.still) session.set_camera(camera_of(first, frame, scene_size));
+        if (!flags.still) session.set_camera(camera_of(first, frame, size));
         if (reconstructs) {
-            session.render_frame(frame, settings, restir);
+            session.render_frame(frame, options.used(), options.sharing);
             session.frame().display(tone_map, exposure);
         } else {
             if (flags.still) session.cut();
@@ -65,38 +70,12 @@ FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, f
         whole.push_back(timer.seconds());
         reconstruction.push_back(reconstructs ? session.frame().seconds() : 0);
         copy.push_back(reconstructs ? session.frame().copy_seconds() : 0);
-        figures.rays = figures.rays + (reconstructs ? session.frames().rays() : session.stats().rays);
-        figures.seconds += whole.back();
+        rays = rays + (reconstructs ? session.frames().rays() : session.stats().rays);
+        seconds += whole.back();
     }
-    figures.whole = summarize_runs(whole);
-    figures.reconstruction = summarize_runs(reconstruction);
-    figures.copy = summarize_runs(copy);
-    return figures;
-}
-
-/// Returns the picture of the last frame.
-Image last_picture(Session& session) {
-    return makes_frames(session.settings().integrator) ? session.frame().picture() : session.picture();
-}
-
-int bench_frames(FramesFlags& flags) {
-    Reporter reporter(flags.render.report);
-    const std::unique_ptr<BenchedScene> benched = read_benched_scene(flags.render, kBenchFrames, reporter);
-    const auto& [queue, scene, settings, camera, prepared] = *benched;
-    if (!makes_frames(settings.integrator) && flags.render.reconstruction.has_frame_options()) {
-        throw Error(ErrorCode::BadInput, "integrator", std::string(integrator_name(settings)),
-                    "its frames are samples as they are; `restir` and `resolution_scale` are for path and hybrid");
-    }
-    BenchReport report(reporter, flags.render.report, *queue, "Frames in real time");
-    Session session(*queue, prepared, camera, settings);
-    const ToneMap tone_map = ToneMap::Agx;
-    const float exposure = session.meter(tone_map);
-    session.cut();
-    const FrameFigures figures =
-        measure(session, *queue, flags, length(bounds_of(scene).size()), exposure, tone_map, reporter);
-    const std::string hash = picture_hash(last_picture(session)).hex();
+    const RunTimes times = summarize_runs(whole);
+    const Image last = reconstructs ? session.frame().picture() : session.picture();
     reporter.end_progress();
-    const double rays_a_second = millions_a_second(figures.rays.total(), figures.seconds);
     report.add_alone(
         "frames",
         {{"scene", "scene", flags.render.scene.scene},
@@ -107,15 +86,15 @@ int bench_frames(FramesFlags& flags) {
          {"max_depth", "scatterings", settings.path.max_depth},
          {"frames", "frames", flags.frames},
          {"still", "camera stands still", flags.still},
-         {"reconstruction", "reconstruction", ResultCell::raw(reconstruction_json(flags.render.reconstruction))},
-         {"median_seconds", "a frame, median", figures.whole.median, "s", "{:.6f}"},
-         {"least_seconds", "least", figures.whole.least, "s", "{:.6f}"},
-         {"greatest_seconds", "greatest", figures.whole.greatest, "s", "{:.6f}"},
-         {"frames_per_second", "frames a second", 1 / figures.whole.median, "", "{:.1f}"},
-         {"reconstruction_seconds", "of it reconstruction", figures.reconstruction.median, "s", "{:.6f}"},
-         {"copy_seconds", "of it copying to the host", figures.copy.median, "s", "{:.6f}"},
-         {"mrays_per_s", "Mrays/s", rays_a_second, "", "{:.1f}"},
-         {"picture", "last frame", hash}});
+         {"reconstruction", "reconstruction", ResultCell::raw(reconstruction_json(options))},
+         {"median_seconds", "a frame, median", times.median, "s", "{:.6f}"},
+         {"least_seconds", "least", times.least, "s", "{:.6f}"},
+         {"greatest_seconds", "greatest", times.greatest, "s", "{:.6f}"},
+         {"frames_per_second", "frames a second", 1 / times.median, "", "{:.1f}"},
+         {"reconstruction_seconds", "of it reconstruction", summarize_runs(reconstruction).median, "s", "{:.6f}"},
+         {"copy_seconds", "of it copying to the host", summarize_runs(copy).median, "s", "{:.6f}"},
+         {"mrays_per_s", "Mrays/s", millions_a_second(rays.total(), seconds), "", "{:.1f}"},
+         {"picture", "last frame", picture_hash(last).hex()}});
     report.write();
     return 0;
 }

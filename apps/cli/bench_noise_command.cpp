@@ -28,21 +28,6 @@ struct Pictures {
     uint64_t invalid_samples = 0;
 };
 
-struct NoiseFigures {
-    TrimmedVariance variance;
-    double seconds = 0; // a picture
-    double efficiency() const { return variance.rel_mse > 0 && seconds > 0 ? 1 / (variance.rel_mse * seconds) : 0; }
-};
-
-struct Comparison {
-    NoiseFigures sobol, independent; // over the same pixels
-    std::size_t pixels = 0;
-    uint64_t invalid_samples = 0;
-    double ratio() const {
-        return sobol.variance.rel_mse > 0 ? independent.variance.rel_mse / sobol.variance.rel_mse : 0;
-    }
-};
-
 /// `done` pictures of both samplers are there already.
 Pictures render_pictures(Session& session, SamplerKind sampler, const NoiseFlags& flags, uint32_t done,
                          Reporter& reporter) {
@@ -72,19 +57,16 @@ Pictures render_pictures(Session& session, SamplerKind sampler, const NoiseFlags
     return pictures;
 }
 
-/// Both over the pixels that the low-discrepancy sampler is best at: figures of different pixels tell nothing of each
-/// other. The choice looks at its own pictures, so a small part of few seeds flatters it.
-Comparison compare(const Pictures& sobol, const Pictures& independent, double keep) {
-    const std::vector<std::size_t> pixels = sobol.variance.best_pixels(keep);
-    return {.sobol = {sobol.variance.over(pixels), sobol.seconds},
-            .independent = {independent.variance.over(pixels), independent.seconds},
-            .pixels = pixels.size(),
-            .invalid_samples = sobol.invalid_samples + independent.invalid_samples};
-}
-
-Fields fields_of(const NoiseFlags& flags, const RenderSettings& settings, const Queue& queue,
-                 const Comparison& figures) {
-    const NoiseFigures &sobol = figures.sobol, &independent = figures.independent;
+/// Figures of both samplers are taken over the pixels that the low-discrepancy sampler is best at, because those of
+/// different pixels cannot be compared. The choice is made on its own pictures, so a small part of few seeds flatters
+/// it.
+Fields fields_of(const NoiseFlags& flags, const RenderSettings& settings, const Queue& queue, const Pictures& sobol,
+                 const Pictures& independent) {
+    const auto pixels = sobol.variance.best_pixels(static_cast<double>(flags.keep_percent) / 100);
+    const TrimmedVariance low = sobol.variance.over(pixels), other = independent.variance.over(pixels);
+    const auto efficiency = [](const TrimmedVariance& variance, double seconds) {
+        return variance.rel_mse > 0 && seconds > 0 ? 1 / (variance.rel_mse * seconds) : 0;
+    };
     return {{"scene", "scene", flags.render.scene.scene},
             {"device", "device", queue.device_name()},
             {"width", "width", settings.width},
@@ -92,17 +74,17 @@ Fields fields_of(const NoiseFlags& flags, const RenderSettings& settings, const 
             {"samples", "samples per pixel", settings.samples},
             {"seeds", "seeds", flags.seeds},
             {"keep_percent", "of the pixels", static_cast<double>(flags.keep_percent), "%"},
-            {"pixels", "pixels", figures.pixels},
-            {"rel_mse", "relMSE", sobol.variance.rel_mse, "", "{:.3e}"},
-            {"rel_mse_independent", "relMSE of independent samples", independent.variance.rel_mse, "", "{:.3e}"},
-            {"ratio", "times less", figures.ratio(), "", "{:.2f}"},
+            {"pixels", "pixels", pixels.size()},
+            {"rel_mse", "relMSE", low.rel_mse, "", "{:.3e}"},
+            {"rel_mse_independent", "relMSE of independent samples", other.rel_mse, "", "{:.3e}"},
+            {"ratio", "times less", low.rel_mse > 0 ? other.rel_mse / low.rel_mse : 0, "", "{:.2f}"},
             {"seconds", "a picture", sobol.seconds, "s", "{:.4f}"},
             {"seconds_independent", "a picture of independent samples", independent.seconds, "s", "{:.4f}"},
-            {"efficiency", "1 / (relMSE x s)", sobol.efficiency()},
-            {"efficiency_independent", "of independent samples", independent.efficiency()},
-            {"mean", "mean", sobol.variance.mean, "", "{:.5f}"},
-            {"mean_independent", "mean of independent samples", independent.variance.mean, "", "{:.5f}"},
-            {"invalid_samples", "invalid samples", figures.invalid_samples}};
+            {"efficiency", "1 / (relMSE x s)", efficiency(low, sobol.seconds)},
+            {"efficiency_independent", "of independent samples", efficiency(other, independent.seconds)},
+            {"mean", "mean", low.mean, "", "{:.5f}"},
+            {"mean_independent", "mean of independent samples", other.mean, "", "{:.5f}"},
+            {"invalid_samples", "invalid samples", sobol.invalid_samples + independent.invalid_samples}};
 }
 
 int bench_noise(NoiseFlags& flags) {
@@ -115,14 +97,10 @@ int bench_noise(NoiseFlags& flags) {
     reporter.set_work("warming up"); // clocks, caches, the driver's first launch
     Session session(*queue, prepared, camera, settings);
     session.render(1);
-    const auto render = [&](SamplerKind sampler, uint32_t done) {
-        return render_pictures(session, sampler, flags, done, reporter);
-    };
-    const Pictures sobol = render(SamplerKind::Sobol, 0);
-    const Pictures independent = render(SamplerKind::Independent, flags.seeds);
+    const Pictures sobol = render_pictures(session, SamplerKind::Sobol, flags, 0, reporter);
+    const Pictures independent = render_pictures(session, SamplerKind::Independent, flags, flags.seeds, reporter);
     reporter.end_progress();
-    report.add_alone("noise", fields_of(flags, settings, *queue,
-                                        compare(sobol, independent, static_cast<double>(flags.keep_percent) / 100)));
+    report.add_alone("noise", fields_of(flags, settings, *queue, sobol, independent));
     report.write();
     return 0;
 }

@@ -53,7 +53,7 @@ std::vector<std::string> check_record_scenes(std::vector<std::string> names) {
     for (const std::string& name : names) {
         const RecordScene* const record = find_named(the_record().scenes, name);
         if (record == nullptr) check_bench_scene(name, "sponza, bunny or forest nor ");
-        if (record != nullptr && !record->file.empty()) record_file(*record, public_scenes_folder());
+        if (record != nullptr) record_file(*record, public_scenes_folder());
     }
     return names;
 }

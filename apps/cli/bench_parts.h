@@ -25,24 +25,24 @@ class App;
 
 namespace pertev {
 
-/// 0 where no time was taken.
+/// The rate in millions per second; 0 if no time was taken.
 inline double millions_a_second(uint64_t count, double seconds) {
     return seconds > 0 ? static_cast<double>(count) / seconds * 1e-6 : 0.0;
 }
 
-/// The folder of public scenes that PERTEV_SCENES names (docs/scenes.md); empty where it is not set.
+/// The folder of public scenes that PERTEV_SCENES names (docs/scenes.md); empty if it is not set.
 inline std::filesystem::path public_scenes_folder() {
     const char* const folder = std::getenv("PERTEV_SCENES");
     return folder != nullptr ? folder : "";
 }
 
-/// Throws Error(BadInput) where there is no such scene; `others` are names that are taken beside it. Asked of all
-/// scenes before the first is measured.
+/// Throws Error(BadInput) if there is no such scene; `others` names further valid names. Call it for all scenes before
+/// the first one is measured.
 void check_bench_scene(const std::string& name, std::string_view others = "");
 
 /// Adds --scene where scenes of the record may be named too (lab/record_scenes.h).
 void add_record_scenes(CLI::App& verb, std::vector<std::string>& names);
-/// Checks each as check_bench_scene does, and returns them: all of the record where none is named.
+/// Checks each name like check_bench_scene and returns them; without names returns all scenes of the record.
 std::vector<std::string> check_record_scenes(std::vector<std::string> names);
 /// Reads a scene of the record by its name, else the geometry of a built-in scene or a file.
 Scene read_record_scene(const std::string& name, Messages& messages);
@@ -64,11 +64,11 @@ struct BenchedScene {
     PreparedScene prepared; // points to `scene`
 };
 
-/// The device, then the scene that flags name, seen and lit as they say, with its trees. Says what there is to say on
-/// the way, and listens for Ctrl-C from then on. Throws Error: of the line before anything is read.
+/// Takes the device and reads the scene of the flags with its camera, light and trees. Reports messages, and handles
+/// Ctrl-C from then on. Throws Error; for wrong flags before anything is read.
 std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, SettingVerbs verb, Reporter& reporter);
 
-/// Returns how frames in real time are made, as JSON.
+/// Returns the settings of real-time frames as JSON.
 std::string reconstruction_json(const ReconstructionOptions& options);
 
 /// Flags of benchmarks of whole pictures.
@@ -78,32 +78,32 @@ struct PictureFlags : PictureOptions {
     ReportFlags report;
 };
 
-/// Adds all but --scene. `sizes` and `samples` say what they are where none are named, for people.
+/// Adds all flags but --scene. `sizes` and `samples` describe the defaults in the help.
 void add_picture_flags(CLI::App& verb, SettingVerbs verbs, PictureFlags& flags, const std::string& sizes,
                        const std::string& samples);
 
-/// The binary trees that pictures with these settings need; what they are turned into is made by the session.
+/// Options for the binary trees that pictures with these settings need. The session converts the trees.
 PrepareOptions trees_for(const RenderSettings& settings, const Queue& queue);
 
 /// Adds --report, the file of the measurement, beside -q and --json.
 void add_bench_report_flags(CLI::App& verb, ReportFlags& flags);
 
-/// Results of a benchmark: printed as they come, and written as a measurement (lab/measurement.h) into the file of
+/// Prints the results of a benchmark as they come, and writes them as a measurement (lab/measurement.h) to the file of
 /// --report.
 class BenchReport {
 public:
     BenchReport(Reporter& reporter, const ReportFlags& flags, const Queue& queue, std::string title);
 
-    /// A row of the table of this event. With --json it is an object; for people a line under the table's head, with
-    /// `above` over that.
+    /// Adds a row to the table of this event and prints it: with --json as an object, otherwise as a line below the
+    /// table's head, which `above` precedes.
     void add(const char* event, const Fields& fields, const std::string& above = "");
-    /// A row that is all there is, for people a line a field.
+    /// Adds the only row of a table and prints it, without --json as a line per field.
     void add_alone(const char* event, const Fields& fields);
-    /// A row that nobody is told: it stands in the file alone.
+    /// Adds a row that is written to the file and not printed.
     void keep(const char* name, const Fields& fields);
-    /// A picture for the page.
+    /// Adds a picture to the page.
     void add_picture(ResultPicture picture) { measurement_.pictures.push_back(std::move(picture)); }
-    /// Writes the file, where one is wanted.
+    /// Writes the file of --report, if there is one.
     void write() const;
 
 private:
@@ -114,23 +114,22 @@ private:
     Measurement measurement_;
 };
 
-/// Median, least and greatest seconds, and how many runs these are of.
+/// Fields for the median, least and greatest seconds and the number of runs.
 Fields time_fields(const RunTimes& times);
 
-/// Turned by `yaw` radians about +y, and moved by `step`, metres, of its own space.
+/// The camera turned by `yaw` radians about +y, then moved by `step` (metres, in its own space).
 Camera moved(const Camera& camera, float yaw, Vec3 step);
 
-/// The session's picture from its first sample on. Throws Error(Interrupted) where it is asked to end before.
+/// Renders the session's picture from its first sample on. Throws Error(Interrupted) after Ctrl-C.
 void render_again(Session& session, uint32_t samples);
 
-/// Adds a verb of `bench` that calls `run` with its flags. A flag of `bench` itself before the verb's name, which the
-/// verb would not see, is refused.
+/// Adds a verb of `bench` that calls `run`. Refuses a flag of `bench` itself before the verb's name, which the verb
+/// would ignore.
 CLI::App& add_bench_verb(CLI::App& bench, const char* name, const char* help, std::function<void()> run);
 
-/// `bench rays`, a verb of `bench`.
+// Each adds one verb of `bench`.
 void add_bench_rays_command(CLI::App& bench, int& status);
 void add_bench_page_command(CLI::App& bench, int& status);
-/// `bench build`, `bench frames`, `bench noise`, `bench render` and `bench sequence`, likewise.
 void add_bench_build_command(CLI::App& bench, int& status);
 void add_bench_frames_command(CLI::App& bench, int& status);
 void add_bench_noise_command(CLI::App& bench, int& status);

@@ -38,27 +38,18 @@ struct RaysFlags : PictureOptions {
     ReportFlags report;
 };
 
-struct SetFigures {
-    std::string scene, set, device, tracer;
-    uint64_t rays = 0;
-    RunTimes times;
-    WorkSummary work;
-    double hit_share = 0;
-    const RecordScene* record = nullptr; // seen by its own camera; null: none of the record
-    std::size_t number = 0;              // index of the set
-    uint64_t triangles = 0;              // triangles of the scene
-
-    double rays_per_second() const { return times.median > 0 ? static_cast<double>(rays) / times.median : 0.0; }
-    bool is_known() const { return is_on_record(device, record, triangles, number, rays, hit_share); }
-    double ratio() const {
-        return record != nullptr ? rays_per_second() / record->sets[number].best_rays_per_second : 0;
-    }
+/// A set of rays of a scene: `number` is its index, `record` the record's scene seen by its own camera, or null.
+struct SetOfScene {
+    std::string scene;
+    const RecordScene* record;
+    std::size_t number;
+    const PreparedScene& prepared;
 };
 
 std::string describe(const RayHit& hit) { return fmt::format("({}, {}, {})", hit.t, hit.instance, hit.primitive); }
 
-/// Throws Error(DeviceFault) that names the first ray where the tracer of pictures on this device and the binary
-/// traversal on the host differ.
+/// Compares hits with the binary traversal's on the host. Throws Error(DeviceFault) that names the first ray that
+/// differs.
 void check_hits(const std::vector<RayHit>& hits, const RaySet& set, const PreparedScene& prepared) {
     Queue cpu = Queue::make_cpu();
     RaysOnDevice rays(cpu, set);
@@ -71,58 +62,59 @@ void check_hits(const std::vector<RayHit>& hits, const RaySet& set, const Prepar
                             found - hits.begin(), hits.size(), describe(*found), describe(*want)));
 }
 
-SetFigures measure(Queue& queue, const RaySet& set, const RaysFlags& flags, const TracerChoice& choice,
-                   const PreparedScene& prepared) {
+/// Returns the set's row. Its ratio to the best public tracer, if it is on the record, goes to `ratios`.
+Fields measure(Queue& queue, const RaySet& set, const SetOfScene& of, const RaysFlags& flags,
+               const TracerChoice& choice, std::vector<double>& ratios) {
     const Combination& combination = tracer_of_pictures(set, choice);
-    SetFigures figures{
-        .set = set.name, .device = queue.device_name(), .tracer = name_of(combination), .rays = set.rays.size()};
-    if (set.rays.empty()) return figures;
-    throw_if_interrupted();
-    const Tracer tracer = make_tracer(queue, combination, prepared);
-    RaysOnDevice rays(queue, set);
-    rays.trace(tracer);
-    const std::vector<RayHit> hits = rays.hits();
-    if (flags.check) check_hits(hits, set, prepared);
-    figures.hit_share = hit_share(hits);
-    throw_if_interrupted();
-    Combination counted = kBinaryTracer;
-    counted.options.near_first = !set.any_hit; // the record's choice
-    figures.work = summarize_work(rays.count_work(make_tracer(queue, counted, prepared)));
-    const int runs = flags.runs > 0 ? static_cast<int>(flags.runs) : (queue.is_cuda() ? 25 : 5);
-    figures.times = time_runs(queue, queue.is_cuda() ? 3 : 1, runs, [&] {
-        throw_if_interrupted(); // a run of millions of rays takes seconds on a CPU
+    const std::string device = queue.device_name(), name = name_of(combination);
+    const bool any = !set.rays.empty();
+    RunTimes times;
+    WorkSummary work;
+    double share = 0;
+    if (any) {
+        throw_if_interrupted();
+        const Tracer tracer = make_tracer(queue, combination, of.prepared);
+        RaysOnDevice rays(queue, set);
         rays.trace(tracer);
-    });
-    return figures;
-}
-
-Fields fields_of(const SetFigures& f, bool is_checked) {
-    const bool has = f.record != nullptr, any = f.rays > 0;
-    const RecordedSet r = has ? f.record->sets[f.number] : RecordedSet{};
-    const auto recorded = [has](double value) { return has ? ResultCell(value) : ResultCell(); };
+        const std::vector<RayHit> hits = rays.hits();
+        if (flags.check) check_hits(hits, set, of.prepared);
+        share = hit_share(hits);
+        throw_if_interrupted();
+        Combination counted = kBinaryTracer;
+        counted.options.near_first = !set.any_hit; // the record's choice
+        work = summarize_work(rays.count_work(make_tracer(queue, counted, of.prepared)));
+        const int runs = flags.runs > 0 ? static_cast<int>(flags.runs) : (queue.is_cuda() ? 25 : 5);
+        times = time_runs(queue, queue.is_cuda() ? 3 : 1, runs, [&] {
+            throw_if_interrupted(); // a run of millions of rays takes seconds on a CPU
+            rays.trace(tracer);
+        });
+    }
+    const double rate = times.median > 0 ? static_cast<double>(set.rays.size()) / times.median : 0.0;
+    const bool is_known = is_on_record(device, of.record, of.prepared.triangles, of.number, set.rays.size(), share);
+    const RecordedSet r = of.record != nullptr ? of.record->sets[of.number] : RecordedSet{};
+    if (is_known) ratios.push_back(rate / r.best_rays_per_second);
+    const auto recorded = [&](double value) { return of.record != nullptr ? ResultCell(value) : ResultCell(); };
     const auto traced = [any](auto value) { return any ? ResultCell(value) : ResultCell(); };
-    Fields fields = {{"scene", "scene", f.scene},
-                     {"set", "set", f.set},
-                     {"device", "", f.device},
-                     {"tracer", "", f.tracer},
-                     {"rays", "rays", f.rays},
-                     {"rays_per_second", "", traced(f.rays_per_second())},
-                     {"mrays", "Mrays/s", traced(f.rays_per_second() * 1e-6), "", "{:.2f}"}};
-    for (const ResultField& time : time_fields(f.times)) fields.push_back(time);
-    fields.insert(fields.end(),
-                  {{"hit_share", "hits", f.hit_share, "", "{:.3f}"},
-                   {"nodes", "nodes", f.work.nodes, "", "{:.1f}"},
-                   {"triangles", "tri", f.work.triangles, "", "{:.1f}"},
-                   {"most_nodes", "most", f.work.max_nodes},
-                   {"most_triangles", "", f.work.max_triangles},
-                   {"checked", "", is_checked},
-                   {"best_mrays", "best", recorded(has ? r.best_rays_per_second * 1e-6 : 0), "", "{:.0f}"},
-                   ratio_field("ratio_to_best", "ratio", f.is_known(), f.ratio()),
-                   {"recorded_hit_share", "its hits", recorded(r.hit_share), "", "{:.3f}"},
-                   {"recorded_nodes", "its nodes", recorded(r.nodes), "", "{:.1f}"},
-                   {"recorded_triangles", "its tri", recorded(r.triangles), "", "{:.1f}"},
-                   {"traced_by", "traced by", any ? f.tracer : "empty: no ray before it hit anything"}});
-    return fields;
+    return Fields{{"scene", "scene", of.scene},
+                  {"set", "set", set.name},
+                  {"device", "", device},
+                  {"tracer", "", name},
+                  {"rays", "rays", set.rays.size()},
+                  {"rays_per_second", "", traced(rate)},
+                  {"mrays", "Mrays/s", traced(rate * 1e-6), "", "{:.2f}"}} +
+           time_fields(times) +
+           Fields{{"hit_share", "hits", share, "", "{:.3f}"},
+                  {"nodes", "nodes", work.nodes, "", "{:.1f}"},
+                  {"triangles", "tri", work.triangles, "", "{:.1f}"},
+                  {"most_nodes", "most", work.max_nodes},
+                  {"most_triangles", "", work.max_triangles},
+                  {"checked", "", flags.check},
+                  {"best_mrays", "best", recorded(r.best_rays_per_second * 1e-6), "", "{:.0f}"},
+                  ratio_field("ratio_to_best", "ratio", is_known, is_known ? ratios.back() : 0),
+                  {"recorded_hit_share", "its hits", recorded(r.hit_share), "", "{:.3f}"},
+                  {"recorded_nodes", "its nodes", recorded(r.nodes), "", "{:.1f}"},
+                  {"recorded_triangles", "its tri", recorded(r.triangles), "", "{:.1f}"},
+                  {"traced_by", "traced by", any ? name : "empty: no ray before it hit anything"}};
 }
 
 /// Prints the summary of ratios to the best public tracers, if there are any; `scene` is "" of all scenes together.
@@ -164,17 +156,14 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
     std::vector<double> ratios;
     for (std::size_t i = 0; i < sets.size(); ++i) {
         reporter.set_work(fmt::format("{}: measuring {}", name, sets[i].name));
-        SetFigures figures = measure(queue, sets[i], flags, choice, prepared);
-        figures.scene = record != nullptr ? name : std::filesystem::path(name).stem().string();
-        figures.record = is_moved || i >= recorded ? nullptr : record, figures.number = i,
-        figures.triangles = prepared.triangles;
+        const SetOfScene of = {record != nullptr ? name : std::filesystem::path(name).stem().string(),
+                               is_moved || i >= recorded ? nullptr : record, i, prepared};
         report.add(
-            "rays", fields_of(figures, flags.check),
+            "rays", measure(queue, sets[i], of, flags, choice, ratios),
             fmt::format("share of hits, nodes and triangles a ray in the binary tree, nodes of the dearest ray; at the "
                         "right the best\npublic tracer on one {}, the ratio to it where ours is on one too, and what "
                         "the record says of the same rays\n",
                         the_record().device));
-        if (figures.is_known()) ratios.push_back(figures.ratio());
         sets[i].rays = {}; // a quarter of a gigabyte on the record
     }
     print_summary(name, ratios, reporter);

@@ -34,17 +34,9 @@ struct JobFlags {
     bool isolated = false;
 };
 
-RenderSettings settings_of(const RecordJob& job, const JobFlags& flags) {
-    RenderSettings settings = job_settings(job);
-    if (const auto& size = flags.picture.size) settings.width = size->width, settings.height = size->height;
-    if (flags.picture.is_given("spp")) settings.samples = flags.picture.render.samples;
-    settings.path.seed = flags.picture.render.path.seed;
-    return settings;
-}
-
-/// Seconds that one sample of every pixel takes after the camera has moved, from the call that moves it until the film
-/// has the sample: the median of so many moves. They turn the camera to and fro by a thousandth of a radian, so that
-/// what is seen stays about the same.
+/// Returns the median time of one sample per pixel after a move of the camera, from the call that moves it until the
+/// film has the sample. The moves alternate between two directions a thousandth of a radian apart, so the view stays
+/// about the same.
 double seconds_after_moves(Session& session, uint32_t moves) {
     const Camera camera = session.camera();
     std::vector<double> seconds;
@@ -58,7 +50,7 @@ double seconds_after_moves(Session& session, uint32_t moves) {
     return summarize_runs(seconds).median;
 }
 
-/// Rays a second of each kind by themselves, in the job's scene and by what the job traces them by.
+/// Measures the isolated rays of each kind in the job's scene, by the job's tracers.
 IsolatedRates isolated_rates(Queue& queue, const RecordJob& job, const Scene& scene, const TracerChoice& choice,
                              Reporter& reporter) {
     reporter.set_work("measuring rays by themselves");
@@ -75,7 +67,10 @@ int bench_job(JobFlags& flags) {
     flags.picture.settings.read(flags.picture, messages);
     const RecordJob& job = *find_named(the_record().jobs, flags.job);
     const std::string& file = flags.picture.scenes.front();
-    RenderSettings settings = settings_of(job, flags);
+    RenderSettings settings = job_settings(job);
+    if (const auto& size = flags.picture.size) settings.width = size->width, settings.height = size->height;
+    if (flags.picture.is_given("spp")) settings.samples = flags.picture.render.samples;
+    settings.path.seed = flags.picture.render.path.seed;
     if (!flags.output.empty()) {
         refuse_list(flags.output);
         note_number_signs(flags.output, messages);

@@ -36,7 +36,7 @@ struct Score {
     uint32_t frames = 0;
     std::vector<float> error; // error of the previous frame, as a display shows it
 
-    /// `shown` and `shown_reference`: both as a display shows them. `hdr_flip`: of the picture.
+    /// Adds a frame: its HDR-FLIP, and the frame and its reference after tone mapping.
     void add(double hdr_flip, const Rgba8Image& shown, const Rgba8Image& shown_reference) {
         flip_of_last = hdr_flip;
         if (frames == 0) flip_of_first = flip_of_last;
@@ -149,12 +149,8 @@ Fields fields_of(const Score& score) {
 int bench_sequence(SequenceFlags& flags) {
     Reporter reporter(flags.render.report);
     flags.render.settings.read(flags.render, reporter.messages());
-    if (!frame_range(flags.render)) {
-        throw Error(ErrorCode::BadInput, "frames", "", "the frames are missing; set `frames` or `turntable`");
-    }
-    if (flags.reference == 0 && !flags.peer.empty()) {
-        throw Error(ErrorCode::BadInput, "peer", "", "the reference is missing; add --reference SPP");
-    }
+    refuse(!frame_range(flags.render), {"frames", "", "the frames are missing; set `frames` or `turntable`"});
+    refuse(flags.reference == 0 && !flags.peer.empty(), {"peer", "", "the reference is missing; add --reference SPP"});
     const std::unique_ptr<RenderSetup> ready =
         prepare_render(flags.render, kBenchSequence, reporter, report_solving(reporter));
     reporter.report_messages();
@@ -187,8 +183,7 @@ int bench_sequence(SequenceFlags& flags) {
     if (flags.reference > 0) {
         ResultTable table;
         const auto add = [&](const char* name, const Score& of) {
-            Fields fields = {{"way", "frames by", name}};
-            for (const ResultField& field : fields_of(of)) fields.push_back(field);
+            const Fields fields = Fields{{"way", "frames by", name}} + fields_of(of);
             report.keep("scores", fields);
             table.add(fields);
         };

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>

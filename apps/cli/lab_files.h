@@ -10,11 +10,11 @@
 
 namespace pertev {
 
-/// Makes the folder where it is missing. Throws Error(FileWrite) where nothing can be written there: asked before an
-/// hour of measuring.
+/// Makes the folder if it is missing. Throws Error(FileWrite) if nothing can be written there. Call it before an hour
+/// of measuring.
 void check_lab_folder(const std::filesystem::path& folder);
 
-/// Writes NAME.csv, which is the named table, NAME.json, and NAME.html with the pictures inside.
+/// Writes NAME.csv with the named table, NAME.json, and NAME.html with the pictures inside.
 void write_measurement(const std::filesystem::path& folder, const std::string& name, const Measurement& measurement,
                        std::string_view csv_table);
 void write_text(const std::filesystem::path& path, const std::string& text);

@@ -34,7 +34,7 @@ MeterPoint point_of(const MeasureFlags& flags) {
     return point;
 }
 
-/// A vector of the command line, which is one.
+/// Returns a valid vector of the command line as JSON.
 std::string json_of(const std::string& vector) { return json_vector(vector).value_or(json_string(vector)); }
 
 std::string in_json(const Measured& m, double scale = 1) {
@@ -42,7 +42,7 @@ std::string in_json(const Measured& m, double scale = 1) {
                        json_number(scale * m.standard_error));
 }
 
-/// Both as far as the error leaves digits to tell.
+/// Returns the value and its standard error with their significant digits.
 std::string in_words(const Measured& m, double scale = 1) {
     return fmt::format("{:.6g} ± {:.2g}", scale * m.value, scale * m.standard_error);
 }

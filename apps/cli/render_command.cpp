@@ -43,11 +43,11 @@ void report_start(const RenderFlags& flags, const RenderSetup& ready, Reporter& 
     const uint64_t triangles = prepared.triangles - (has_more ? scene.meshes.back().triangle_count() : 0);
     const uint64_t instances = scene.instances.size() - (has_more ? 1 : 0);
     reporter.print(fmt::format("{}: {}, {}, {}; loaded in {:.2f} s, trees in {:.2f} s; "
-                               "rendering {}x{}, {} spp{} on {}, which takes {:.0f} MiB there",
+                               "rendering {}x{}, {} spp{} on {}, using {:.0f} MiB",
                                flags.scene.scene, counted(triangles, "triangle"), counted(instances, "instance"),
                                counted(prepared.lights.count(), "light"), ready.load_s, prepared.build_seconds,
                                settings.width, settings.height, settings.samples,
-                               flags.real_time ? " a frame, reconstructed," : "", device, mebibytes(ready.bytes)));
+                               flags.real_time ? " per frame, reconstructed," : "", device, mebibytes(ready.bytes)));
     reporter.event(fmt::format(
         R"({{"event":"scene","scene":{},"triangles":{},"instances":{},"lights":{},"load_seconds":{:.6f},"build_seconds":{:.6f}}})",
         json_string(flags.scene.scene), triangles, instances, prepared.lights.count(), ready.load_s,

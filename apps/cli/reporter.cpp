@@ -24,7 +24,7 @@ void write_now(std::FILE* file, const std::string& text) {
     std::fflush(file);
 }
 
-/// Returns whether stderr is a terminal that moves its cursor when told so.
+/// Returns whether stderr is a terminal that obeys escape sequences.
 bool is_drawn_on() {
     const char* const kind = std::getenv("TERM");
     return ::isatty(STDERR_FILENO) == 1 && kind != nullptr && std::string_view(kind) != "dumb";
@@ -76,7 +76,7 @@ void Reporter::print(const std::string& line) {
 void Reporter::progress(const Progress& now) {
     constexpr double often_s = 0.1; // enough for eyes
     const bool is_soon = now.seconds >= shown_at_s_ && now.seconds - shown_at_s_ < often_s;
-    if (now.samples == 0 && now.doing == shown_step_ && is_soon && now.share < 1) return; // a render tells seldom
+    if (now.samples == 0 && now.doing == shown_step_ && is_soon && now.share < 1) return; // a render reports seldom
     shown_step_ = now.doing, shown_at_s_ = now.seconds;
     const bool is_render = now.samples > 0, is_made = now.made_share >= 1;
     std::string detail = !is_render ? now.doing

@@ -28,7 +28,7 @@ namespace {
 
 constexpr uint32_t kPictureSamples = 32, kPictureSamplesCuda = 512;
 
-/// None where it is not there.
+/// Returns the file, if PERTEV_SCENES has it.
 std::optional<std::string> find_sibenik() {
     const char* root = std::getenv("PERTEV_SCENES");
     const std::filesystem::path path = std::filesystem::path(root != nullptr ? root : "") / "sibenik/sibenik.obj";
@@ -42,11 +42,11 @@ constexpr const char* kLacksSibenik =
 struct MeasuredScene {
     std::string name;
     Scene scene;
-    bool default_light = false; // it brought none of its own
+    bool default_light = false; // the file has no light
     Camera camera;
 };
 
-/// Light is for pictures alone.
+/// Reads a scene. Light is added only if pictures are made.
 MeasuredScene load(SceneOptions options, const std::string& scene, const LabSettings& settings, bool has_pictures,
                    Messages& messages) {
     options.scene = scene;
@@ -65,7 +65,7 @@ RenderResult render(Session& session, PathLight light) {
     return session.result();
 }
 
-/// Local and global illumination, at one exposure: they are compared.
+/// Adds pictures of local and global illumination at one exposure, so that they can be compared.
 void add_pictures(Queue& queue, const MeasuredScene& scene, const LabSettings& settings, Messages& messages, int figure,
                   ThesisReport& thesis) {
     const PreparedScene prepared = prepare_scene(scene.scene, {}, messages);
@@ -88,7 +88,7 @@ void add_pictures(Queue& queue, const MeasuredScene& scene, const LabSettings& s
     }
 }
 
-/// Makes parts of the report one by one. An error in one is told in the report, and the others are made nevertheless.
+/// Makes the parts of the report one by one. An error in one is noted in the report and does not prevent the others.
 class Attempts {
 public:
     explicit Attempts(ThesisReport& thesis) : thesis_(thesis) {}
@@ -104,7 +104,7 @@ public:
         }
     }
 
-    /// False after Ctrl-C, or if the device is dead.
+    /// Returns false after Ctrl-C or if the device is lost.
     bool may_go_on() const { return !interrupted() && !(first_ && first_->code() == ErrorCode::DeviceFault); }
     void throw_first() const {
         if (first_) throw Error(*first_);
@@ -152,7 +152,7 @@ void add_pictures_by_chapter(Queue& queue, const LabSettings& settings, const st
     reporter.end_progress();
 }
 
-/// Writes all but the pictures by chapter, which are already there.
+/// Writes everything but the pictures by chapter, which are written already.
 void write_files(const std::filesystem::path& folder, const ThesisReport& thesis, const Measurement& head) {
     for (std::size_t i = 0; i < thesis.scenes.size(); ++i) {
         // Numbered, because names of scenes may be equal, or too long for a file.

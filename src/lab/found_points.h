@@ -18,7 +18,7 @@ struct FoundPoints {
     Vec3 at;                         // the query point
     float radius_squared = 0;        // the circle about `at` that encloses the found points
     std::vector<uint32_t> found;     // indices of `points`, ascending
-    std::vector<uint32_t> looked_at; // indices of the points whose distance was computed, ascending
+    std::vector<uint32_t> tested;    // indices of the points whose distance was computed, ascending
     uint32_t nodes = 0, visited = 0; // number of nodes in the tree, and how many of these the search visited
     struct Line {
         Vec3 from, to;
@@ -39,7 +39,7 @@ FoundPoints found_in_kd_tree();
 /// Finds all points within the circle of found_in_kd_tree(), which are the same points.
 FoundPoints found_in_octree();
 
-/// Returns, for example, "16 of 240 nodes are visited and 16 of 240 points looked at: orange; found are 12: green."
+/// Returns, for example, "The search visits 16 of 240 nodes and tests 16 of 240 points (orange); 12 of them ..."
 std::string describe(const FoundPoints& found);
 /// Returns a complete SVG file.
 std::string svg_of(const FoundPoints& found);

@@ -82,8 +82,6 @@ struct LabReport {
 inline double mrays(const LabReport& report, const RunFigures& run, double seconds) {
     return seconds > 0 ? static_cast<double>(report.sets[run.set].rays) / seconds * 1e-6 : 0;
 }
-/// Million rays per second at the run's median time.
-inline double mrays(const LabReport& report, const RunFigures& run) { return mrays(report, run, run.median_s); }
 
 /// Refused combinations grouped by reason, in order of first appearance. Wrong combinations are not included.
 struct Refusal {

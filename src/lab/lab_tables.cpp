@@ -47,46 +47,44 @@ Fields run_fields(const LabReport& report, const CombinationFigures& c, const Ru
     const auto rate = [&](double RunFigures::*member) {
         return run != nullptr ? if_timed(mrays(report, *run, run->*member)) : std::nullopt;
     };
-    Fields fields = {{"combination", "combination", c.name},
-                     {"structure", "structure", name_of(c.combination.structure)},
-                     {"traversal", "traversal", name_of(c.combination.traversal)},
-                     {"rta", "RTA", name_of_rta(o)},
-                     {"near_first", "near first", o.near_first},
-                     {"tests", "tests", name_of(o.tests)},
-                     {"distribution", "distribution", name_of(c.combination.distribution)},
-                     {"refused", "not run because", if_not_empty(c.refused)},
-                     {"wrong", "wrong", c.wrong},
-                     {"registers", "registers", of_kernel ? ResultCell(c.registers) : ResultCell()},
-                     {"local_bytes", "local bytes", of_kernel ? ResultCell(c.local_bytes) : ResultCell()},
-                     {"occupancy", "occupancy", of_kernel ? ResultCell(c.occupancy) : ResultCell(), "", "{:.2f}"}};
-    for (const ResultField& field : structure_fields(report, structure_of(report, c))) fields.push_back(field);
-    const Fields measured = {
-        {"set", "rays of", set != nullptr ? ResultCell(set->name) : ResultCell()},
-        {"rays", "rays", set != nullptr ? ResultCell(set->rays) : ResultCell()},
-        {"hit_share", "", set != nullptr ? ResultCell(set->hit_share) : ResultCell()},
-        {"rays_per_second", "",
-         rate(&RunFigures::median_s) ? ResultCell(*rate(&RunFigures::median_s) * 1e6) : ResultCell()},
-        {"mrays", "Mrays/s", rate(&RunFigures::median_s), "", "{:.2f}"},
-        {"mrays_slowest", "slowest", rate(&RunFigures::largest_s), "", "{:.2f}"},
-        {"mrays_fastest", "fastest", rate(&RunFigures::min_s), "", "{:.2f}"},
-        {"median_seconds", "", time(&RunFigures::median_s)},
-        {"least_seconds", "", time(&RunFigures::min_s)},
-        {"greatest_seconds", "", time(&RunFigures::largest_s)},
-        {"frame_depth", "depth", frame_s ? ResultCell(set->depth) : ResultCell()},
-        {"frames_per_second", "frames/s", frame_s ? ResultCell(1 / *frame_s) : ResultCell(), "", "{:.2f}"},
-        {"seconds_per_frame", "frame", frame_s, "s", "{:.5f}"},
-        {"frame_mrays", "",
-         frame_s ? ResultCell(static_cast<double>(frame_rays(report, set->depth)) / *frame_s * 1e-6) : ResultCell()},
-        {"nodes_per_ray", "nodes a ray", of(&RunFigures::nodes), "", "{:.1f}"},
-        {"triangles_per_ray", "triangles a ray", of(&RunFigures::triangles), "", "{:.1f}"},
-        {"node_lanes", "lanes, nodes", of(&RunFigures::node_lanes), "", "{:.1f}"},
-        {"triangle_lanes", "lanes, triangles", of(&RunFigures::triangle_lanes), "", "{:.1f}"},
-        {"node_sectors", "sectors, nodes", of(&RunFigures::node_sectors), "", "{:.1f}"},
-        {"triangle_sectors", "sectors, triangles", of(&RunFigures::triangle_sectors), "", "{:.1f}"},
-        {"different_rays", "rays that differ", of(&RunFigures::different)},
-        {"is_copy", "is copy", of(&RunFigures::is_copy)}};
-    fields.insert(fields.end(), measured.begin(), measured.end());
-    return fields;
+    return Fields{{"combination", "combination", c.name},
+                  {"structure", "structure", name_of(c.combination.structure)},
+                  {"traversal", "traversal", name_of(c.combination.traversal)},
+                  {"rta", "RTA", name_of_rta(o)},
+                  {"near_first", "near first", o.near_first},
+                  {"tests", "tests", name_of(o.tests)},
+                  {"distribution", "distribution", name_of(c.combination.distribution)},
+                  {"refused", "not run because", if_not_empty(c.refused)},
+                  {"wrong", "wrong", c.wrong},
+                  {"registers", "registers", of_kernel ? ResultCell(c.registers) : ResultCell()},
+                  {"local_bytes", "local bytes", of_kernel ? ResultCell(c.local_bytes) : ResultCell()},
+                  {"occupancy", "occupancy", of_kernel ? ResultCell(c.occupancy) : ResultCell(), "", "{:.2f}"}} +
+           structure_fields(report, structure_of(report, c)) +
+           Fields{{"set", "rays of", set != nullptr ? ResultCell(set->name) : ResultCell()},
+                  {"rays", "rays", set != nullptr ? ResultCell(set->rays) : ResultCell()},
+                  {"hit_share", "", set != nullptr ? ResultCell(set->hit_share) : ResultCell()},
+                  {"rays_per_second", "",
+                   rate(&RunFigures::median_s) ? ResultCell(*rate(&RunFigures::median_s) * 1e6) : ResultCell()},
+                  {"mrays", "Mrays/s", rate(&RunFigures::median_s), "", "{:.2f}"},
+                  {"mrays_slowest", "slowest", rate(&RunFigures::largest_s), "", "{:.2f}"},
+                  {"mrays_fastest", "fastest", rate(&RunFigures::min_s), "", "{:.2f}"},
+                  {"median_seconds", "", time(&RunFigures::median_s)},
+                  {"least_seconds", "", time(&RunFigures::min_s)},
+                  {"greatest_seconds", "", time(&RunFigures::largest_s)},
+                  {"frame_depth", "depth", frame_s ? ResultCell(set->depth) : ResultCell()},
+                  {"frames_per_second", "frames/s", frame_s ? ResultCell(1 / *frame_s) : ResultCell(), "", "{:.2f}"},
+                  {"seconds_per_frame", "frame", frame_s, "s", "{:.5f}"},
+                  {"frame_mrays", "",
+                   frame_s ? ResultCell(static_cast<double>(frame_rays(report, set->depth)) / *frame_s * 1e-6)
+                           : ResultCell()},
+                  {"nodes_per_ray", "nodes a ray", of(&RunFigures::nodes), "", "{:.1f}"},
+                  {"triangles_per_ray", "triangles a ray", of(&RunFigures::triangles), "", "{:.1f}"},
+                  {"node_lanes", "lanes, nodes", of(&RunFigures::node_lanes), "", "{:.1f}"},
+                  {"triangle_lanes", "lanes, triangles", of(&RunFigures::triangle_lanes), "", "{:.1f}"},
+                  {"node_sectors", "sectors, nodes", of(&RunFigures::node_sectors), "", "{:.1f}"},
+                  {"triangle_sectors", "sectors, triangles", of(&RunFigures::triangle_sectors), "", "{:.1f}"},
+                  {"different_rays", "rays that differ", of(&RunFigures::different)},
+                  {"is_copy", "is copy", of(&RunFigures::is_copy)}};
 }
 
 ResultTable sets_of(const LabReport& report) {
@@ -105,9 +103,8 @@ ResultTable sets_of(const LabReport& report) {
 ResultTable structures_of(const LabReport& report) {
     ResultTable table = {"structures", "Structures"};
     for (const StructureFigures& s : report.structures) {
-        Fields row = {{"name", "structure", s.name}, {"failed", "", if_not_empty(s.failed)}};
-        for (const ResultField& field : structure_fields(report, s.failed.empty() ? &s : nullptr)) row.push_back(field);
-        table.add(row);
+        table.add(Fields{{"name", "structure", s.name}, {"failed", "", if_not_empty(s.failed)}} +
+                  structure_fields(report, s.failed.empty() ? &s : nullptr));
     }
     return table;
 }

@@ -78,6 +78,11 @@ struct ResultField {
     const char* format = ""; // fmt's format for numbers on a terminal
 };
 using Fields = std::vector<ResultField>;
+/// Returns the fields of both, one after the other.
+inline Fields operator+(Fields first, const Fields& second) {
+    first.insert(first.end(), second.begin(), second.end());
+    return first;
+}
 
 struct ResultTable {
     struct Column {

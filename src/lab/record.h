@@ -30,7 +30,7 @@ struct RecordedSet {
 
 struct RecordScene {
     std::string name;
-    std::string file;       // under the folder of public scenes; empty: generated
+    std::string file;       // under the folder of public scenes
     uint32_t triangles = 0; // number of triangles with an area
     RecordView view;
     std::vector<RecordedSet> sets; // in the order in which they are made

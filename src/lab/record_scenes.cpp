@@ -4,8 +4,6 @@
 
 #include "base/error.h"
 #include "formats/read_scene.h"
-#include "lab/make_bunny_box.h"
-#include "lab/make_forest.h"
 #include "session/opening/open_scene.h"
 
 namespace pertev {
@@ -50,7 +48,7 @@ std::filesystem::path record_file(const RecordScene& scene, const std::filesyste
     if (folder.empty() || !std::filesystem::exists(path)) {
         throw Error(ErrorCode::BadInput, FileLocation{path.string()},
                     fmt::format("the scene {} needs this file under the folder that PERTEV_SCENES names "
-                                "(docs/scenes.md){}",
+                                "(docs/ray_sets.md says how to get it){}",
                                 scene.name, folder.empty() ? "; it is not set" : ""));
     }
     return path;
@@ -66,12 +64,7 @@ Camera record_camera(const RecordScene& scene) {
 
 Scene make_record_scene(const RecordScene& record, const std::filesystem::path& folder, Messages& messages) {
     Scene scene;
-    if (record.file.empty()) {
-        scene.meshes.push_back(make_forest());
-    } else {
-        scene.meshes.push_back(read_one_mesh(record_file(record, folder), messages));
-        if (record.name == "bunny") scene.meshes[0] = make_bunny_box(scene.meshes[0]);
-    }
+    scene.meshes.push_back(read_one_mesh(record_file(record, folder), messages));
     scene.materials.push_back({{}, "grey"});
     scene.instances.push_back({.name = record.name});
     scene.cameras.push_back(record_camera(record));

@@ -24,12 +24,11 @@ inline constexpr uint32_t kRecordRays = 8294400; // four frames of 1920 x 1080
 
 Camera record_camera(const RecordScene& scene);
 
-/// Returns the file of a scene that has one, below the folder of public scenes (docs/scenes.md). Throws Error(BadInput)
-/// if it does not exist.
+/// Returns the scene's file, below the folder of public scenes (docs/scenes.md). Throws Error(BadInput) if it does not
+/// exist.
 std::filesystem::path record_file(const RecordScene& scene, const std::filesystem::path& folder);
 
-/// Makes the scene of the record: geometry in one mesh, grey, with the camera. The forest needs no folder. Throws as
-/// record_file.
+/// Reads a scene of the record: geometry in one mesh, grey, with the camera. Throws like record_file.
 Scene make_record_scene(const RecordScene& scene, const std::filesystem::path& folder, Messages& messages);
 
 /// Returns the settings of a job: size, samples, filter and depth.

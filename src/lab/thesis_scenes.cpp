@@ -40,9 +40,6 @@ void replace_emitter(Scene& scene) {
     scene.instances[emitter].is_hidden = true;
 }
 
-/// Moves the light under the ceiling near the open front, so that the camera sees the surfaces that it lights.
-void move_light_forward(Scene& scene) { scene.lights.back().position.z = 0.06f; }
-
 /// Makes a ball by longitude and latitude, with `down` rings of twice as many quads, and smooth normals.
 Mesh make_ball(Vec3 centre, float radius, uint32_t down) {
     const uint32_t around = 2 * down;
@@ -105,28 +102,14 @@ constexpr uint32_t kSmoothRings = 48, kCoarseRings = 10;
 Scene make_thesis_scene(ThesisScene which) {
     Messages messages;
     Scene scene = read_scene(which == ThesisScene::Caustic ? "caustic" : "cornell-box", {}, messages);
-    switch (which) {
-    case ThesisScene::Box:
-    case ThesisScene::Caustic:
-        break;
-    case ThesisScene::PointLight:
-        replace_emitter(scene);
-        break;
-    case ThesisScene::MirrorBall:
-        replace_block(scene, "short block", mirror(), kSmoothRings);
-        break;
-    case ThesisScene::PlasticBall:
-        replace_emitter(scene);
-        move_light_forward(scene);
-        replace_block(scene, "short block", plastic(), kCoarseRings);
-        break;
-    case ThesisScene::TwoBalls:
-        replace_emitter(scene);
-        move_light_forward(scene);
-        replace_block(scene, "short block", mirror(), kSmoothRings);
-        replace_block(scene, "tall block", glass(), kSmoothRings);
-        break;
-    }
+    using enum ThesisScene;
+    const auto is_one_of = [which](auto... scenes) { return ((which == scenes) || ...); };
+    if (is_one_of(PointLight, PlasticBall, TwoBalls)) replace_emitter(scene);
+    if (is_one_of(PlasticBall, TwoBalls))
+        scene.lights.back().position.z = 0.06f; // so that the camera sees lit surfaces
+    if (is_one_of(MirrorBall, TwoBalls)) replace_block(scene, "short block", mirror(), kSmoothRings);
+    if (is_one_of(PlasticBall)) replace_block(scene, "short block", plastic(), kCoarseRings);
+    if (is_one_of(TwoBalls)) replace_block(scene, "tall block", glass(), kSmoothRings);
     return scene;
 }
 

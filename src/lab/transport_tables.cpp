@@ -54,8 +54,6 @@ Fields point_fields(const TableLine& line, const std::optional<double>& of_path)
         {"of_path", "of path's", own && of_path ? ResultCell(*own / *of_path) : ResultCell(), "", "{:.3g}"}};
 }
 
-void append(Fields& to, const Fields& fields) { to.insert(to.end(), fields.begin(), fields.end()); }
-
 Fields scene_fields(const TransportScene& s) {
     const TransportReference& r = s.reference;
     const bool is_made = r.file.empty();
@@ -70,20 +68,18 @@ Fields scene_fields(const TransportScene& s) {
 ResultTable scenes_of(const TransportReport& report) {
     ResultTable table = {"scenes", "Scenes"};
     for (const TransportScene& s : report.scenes) {
-        Fields fields = scene_fields(s);
-        append(fields, {{"reference_hdr_flip_of_halves", "HDR-FLIP of its halves", s.reference.flip},
-                        {"reference_lacks", "it lacks", if_not_empty(s.reference.lacks)},
-                        {"equal_seconds", "equal time", equal_seconds(s), "s"},
-                        {"triangles", "triangles", s.triangles},
-                        {"width", "width", report.width},
-                        {"height", "height", report.height},
-                        {"max_depth", "scatterings", report.max_depth},
-                        {"repetitions", "repetitions", report.repetitions},
-                        {"seed", "seed", report.seed},
-                        {"budget_seconds", "time of each integrator", report.seconds, "s"},
-                        {"camera", "camera", s.camera},
-                        {"shows", "shows", if_not_empty(s.shows)}});
-        table.add(fields);
+        table.add(scene_fields(s) + Fields{{"reference_hdr_flip_of_halves", "HDR-FLIP of its halves", s.reference.flip},
+                                           {"reference_lacks", "it lacks", if_not_empty(s.reference.lacks)},
+                                           {"equal_seconds", "equal time", equal_seconds(s), "s"},
+                                           {"triangles", "triangles", s.triangles},
+                                           {"width", "width", report.width},
+                                           {"height", "height", report.height},
+                                           {"max_depth", "scatterings", report.max_depth},
+                                           {"repetitions", "repetitions", report.repetitions},
+                                           {"seed", "seed", report.seed},
+                                           {"budget_seconds", "time of each integrator", report.seconds, "s"},
+                                           {"camera", "camera", s.camera},
+                                           {"shows", "shows", if_not_empty(s.shows)}});
     }
     return table;
 }
@@ -121,28 +117,27 @@ ResultTable repetitions_of(const TransportReport& report) {
     for (const TransportScene& scene : report.scenes) {
         for (const TransportRow& row : scene.rows) {
             const bool has_figures = !row.repetitions.empty();
-            Fields first = scene_fields(scene);
-            append(
-                first,
-                {{"integrator", "integrator", row.name},
-                 {"light", "light that it finds", row.light},
-                 {"finds_all", "finds all", row.finds_all},
-                 {"is_solved", "is solved", row.is_solved},
-                 {"refused", "not run because", if_not_empty(row.refused)},
-                 {"device_bytes", "device memory", has_figures ? ResultCell(row.bytes) : ResultCell(), "bytes"},
-                 {"host_bytes", "host memory", has_figures ? ResultCell(row.host_bytes) : ResultCell(), "bytes"},
-                 {"invalid_samples", "invalid samples", has_figures ? ResultCell(row.invalid_samples) : ResultCell()}});
+            const Fields first =
+                scene_fields(scene) +
+                Fields{{"integrator", "integrator", row.name},
+                       {"light", "light that it finds", row.light},
+                       {"finds_all", "finds all", row.finds_all},
+                       {"is_solved", "is solved", row.is_solved},
+                       {"refused", "not run because", if_not_empty(row.refused)},
+                       {"device_bytes", "device memory", has_figures ? ResultCell(row.bytes) : ResultCell(), "bytes"},
+                       {"host_bytes", "host memory", has_figures ? ResultCell(row.host_bytes) : ResultCell(), "bytes"},
+                       {"invalid_samples", "invalid samples",
+                        has_figures ? ResultCell(row.invalid_samples) : ResultCell()}};
             const auto add = [&](std::optional<std::size_t> repetition, const std::optional<TransportFigures>& f) {
                 const auto figure = [&](auto member) { return f ? ResultCell((*f).*member) : ResultCell(); };
-                Fields fields = first;
-                append(fields, {{"repetition", "repetition", repetition},
-                                {"samples", "samples", figure(&TransportFigures::samples)},
-                                {"seconds", "rendering", figure(&TransportFigures::seconds), "s"},
-                                {"rel_mse", "relMSE", figure(&TransportFigures::rel_mse)},
-                                {"hdr_flip", "HDR-FLIP", figure(&TransportFigures::flip)},
-                                {"patches", "patches", f && f->patches > 0 ? ResultCell(f->patches) : ResultCell()},
-                                {"made_seconds", "before samples", figure(&TransportFigures::made_seconds), "s"}});
-                table.add(fields);
+                table.add(first +
+                          Fields{{"repetition", "repetition", repetition},
+                                 {"samples", "samples", figure(&TransportFigures::samples)},
+                                 {"seconds", "rendering", figure(&TransportFigures::seconds), "s"},
+                                 {"rel_mse", "relMSE", figure(&TransportFigures::rel_mse)},
+                                 {"hdr_flip", "HDR-FLIP", figure(&TransportFigures::flip)},
+                                 {"patches", "patches", f && f->patches > 0 ? ResultCell(f->patches) : ResultCell()},
+                                 {"made_seconds", "before samples", figure(&TransportFigures::made_seconds), "s"}});
             };
             if (!has_figures) add({}, {});
             for (std::size_t i = 0; i < row.repetitions.size(); ++i) {
@@ -185,18 +180,16 @@ ResultTable equal_time_table(const TransportScene& scene) {
     for (const TableLine& line : lines) {
         const TransportRow& row = *line.row;
         const auto& p = line.point;
-        Fields fields = {{"integrator", "integrator", row.name}};
-        append(fields, point_fields(line, of_path));
-        append(fields,
-               {{"samples", "samples", value_at(p, [](const auto& at) { return at.samples; }), "", "{:.4g}"},
-                {"patches", "patches", p && row.is_solved ? ResultCell(p->patches) : ResultCell(), "", "{:.0f}"},
-                {"first_seconds", "first takes", p ? ResultCell() : ResultCell(points_of(row).front().seconds.mean),
-                 "s", "{:.3g}"},
-                {"device_mebibytes", "device", mebibytes(row.bytes), "MiB", "{:.1f}"},
-                {"host_mebibytes", "host", row.host_bytes > 0 ? ResultCell(mebibytes(row.host_bytes)) : ResultCell(),
-                 "MiB", "{:.1f}"},
-                {"light", "light that it finds", row.light}});
-        table.add(fields);
+        table.add(
+            Fields{{"integrator", "integrator", row.name}} + point_fields(line, of_path) +
+            Fields{{"samples", "samples", value_at(p, [](const auto& at) { return at.samples; }), "", "{:.4g}"},
+                   {"patches", "patches", p && row.is_solved ? ResultCell(p->patches) : ResultCell(), "", "{:.0f}"},
+                   {"first_seconds", "first takes", p ? ResultCell() : ResultCell(points_of(row).front().seconds.mean),
+                    "s", "{:.3g}"},
+                   {"device_mebibytes", "device", mebibytes(row.bytes), "MiB", "{:.1f}"},
+                   {"host_mebibytes", "host", row.host_bytes > 0 ? ResultCell(mebibytes(row.host_bytes)) : ResultCell(),
+                    "MiB", "{:.1f}"},
+                   {"light", "light that it finds", row.light}});
     }
     return table;
 }

@@ -134,7 +134,7 @@ bool is_near(const PlacedBox& thing, const Motion& fitted, uint32_t segments, do
 } // namespace
 
 FittedMotions fit_motions(std::span<const PlacedBox> things, const TransformsAt& transforms_at,
-                          std::span<const double> looks) {
+                          std::span<const double> check_times) {
     std::map<double, std::vector<std::optional<Transform>>> known; // by time: keys of few segments are keys of many
     const auto transforms_then = [&](double time) -> const std::vector<std::optional<Transform>>& {
         const auto [at, is_new] = known.try_emplace(time);
@@ -161,7 +161,7 @@ FittedMotions fit_motions(std::span<const PlacedBox> things, const TransformsAt&
             fitted.motions.push_back(motion_through(things[i], of_thing[i]));
         }
         if (segments == kMaxMotionSegments) return fitted;
-        bool is_good = std::ranges::all_of(looks, is_good_at);
+        bool is_good = std::ranges::all_of(check_times, is_good_at);
         for (uint32_t k = 0; k < segments && is_good; ++k) {
             // No even parts of a segment: what comes back in such parts would be visible only at its ends.
             for (const double part : {0.21, 0.5, 0.83}) is_good = is_good && is_good_at((k + part) / segments);

@@ -38,10 +38,10 @@ using TransformsAt = std::function<std::vector<std::optional<Transform>>(double 
 
 /// Fits the rigid motions that move each object from its position at rest to its position at a time. Non-rigid
 /// changes (scale, shear) are ignored: the nearest rotation is used. The number of segments is the least power of two
-/// that keeps all corners within 2^-11 of the box's size, at several times between the keys and at the times `looks`,
-/// but at most kMaxMotionSegments.
+/// that keeps all corners within 2^-11 of the box's size, at several times between the keys and at the times
+/// `check_times`, but at most kMaxMotionSegments.
 FittedMotions fit_motions(std::span<const PlacedBox> things, const TransformsAt& transforms_at,
-                          std::span<const double> looks = {});
+                          std::span<const double> check_times = {});
 
 /// The motions of a scene's instances.
 struct MotionKeys {

@@ -19,11 +19,11 @@ double hidden_back_share(Queue& queue, SceneTracer& tracer, const PictureView& p
         rays.push_back(make_camera_ray(picture.camera.view, position, {0.5f, 0.5f})); // through the middle of the lens
         keys.push_back(hash_words(i, 0, 0, 0).x);
     }
-    const Buffer<Ray> rays_there(queue, std::span<const Ray>(rays), "rays of a look at backs");
-    const Buffer<uint32_t> keys_there(queue, std::span<const uint32_t>(keys), "keys of a look at backs");
-    const Buffer<Float4> records(queue, kRays, "hits of a look at backs");
+    const Buffer<Ray> rays_there(queue, std::span<const Ray>(rays), "rays that count backs");
+    const Buffer<uint32_t> keys_there(queue, std::span<const uint32_t>(keys), "keys that count backs");
+    const Buffer<Float4> records(queue, kRays, "hits that count backs");
     const auto find = [&](RayKind kind) {
-        const Buffer<uint32_t> instances(queue, kRays, "hits of a look at backs");
+        const Buffer<uint32_t> instances(queue, kRays, "hits that count backs");
         tracer.find_hits(kind, {.rays = rays_there.data(), .keys = keys_there.data()}, kRays,
                          {records.data(), instances.data()});
         return std::pair(records.download(), instances.download());

@@ -37,9 +37,9 @@ bool has_any_light(const Scene& scene) {
     return has_punctual_light(scene) || has_emitter(scene) || is_all_unlit(scene) ||
            (scene.environment && gives_light(*scene.environment));
 }
-/// A list such as "no lamp, no point, spot or directional light, no environment".
+/// A list such as "no emitter, no point, spot or directional light, no environment".
 std::string no_lights_of(const Scene& scene) {
-    return fmt::format("no lamp, no point, spot or directional light, {}",
+    return fmt::format("no emitter, no point, spot or directional light, {}",
                        scene.environment ? "and the environment is black" : "no environment");
 }
 
@@ -58,12 +58,12 @@ bool has_own_ambient(const RenderSettings& settings, const Scene& scene) {
     return describe(settings.integrator).has_mean_ambient && scene.environment && gives_light(*scene.environment);
 }
 
-/// A phrase such as "this scene has only lamps".
+/// A phrase such as "this scene has only emitters".
 std::string lights_of(const Scene& scene) {
     const bool has_environment = scene.environment && gives_light(*scene.environment);
     const std::string others =
-        fmt::format("{}{}{}", has_emitter(scene) ? "lamps" : "", has_emitter(scene) && has_environment ? " and " : "",
-                    has_environment ? "an environment" : "");
+        fmt::format("{}{}{}", has_emitter(scene) ? "emitters" : "",
+                    has_emitter(scene) && has_environment ? " and " : "", has_environment ? "an environment" : "");
     return others.empty() ? "this scene has none" : fmt::format("this scene has only {}", others);
 }
 

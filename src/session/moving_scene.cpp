@@ -42,9 +42,9 @@ std::vector<double> keys_within(const Scene& scene, double time_s, const Shutter
             }
         }
     }
-    std::vector<double> looks(shares.begin(), shares.end());
-    for (std::size_t i = 0; i + 1 < shares.size(); ++i) looks.push_back(0.5 * (looks[i] + looks[i + 1]));
-    return looks;
+    std::vector<double> times(shares.begin(), shares.end());
+    for (std::size_t i = 0; i + 1 < shares.size(); ++i) times.push_back(0.5 * (times[i] + times[i + 1]));
+    return times;
 }
 
 } // namespace

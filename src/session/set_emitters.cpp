@@ -91,7 +91,7 @@ void set_surface(const EmitterStrength& emitter, double lumens_per_watt, Scene& 
     const Material& before = scene.materials[instance.material];
     double nits = emitter.value;
     if (emitter.unit == EmitterUnit::Lux)
-        refuse(emitter, "a lamp with an area needs W, lm, cd or nits; lx are for directional lights");
+        refuse(emitter, "an emitter with an area needs W, lm, cd or nits; lx are for directional lights");
     if (emitter.unit != EmitterUnit::Nit) {
         if (instance.is_hidden) return; // it emits nothing, and has no size now
         const EmitterSurface size = emitter_surface(scene, instance);
@@ -169,7 +169,7 @@ void set_emitters(Scene& scene, std::span<const EmitterStrength> emitters, doubl
         if (scene.environment && is_called_so({kEnvironmentName})) {
             set_environment(emitter, lumens_per_watt, *scene.environment);
         }
-        if (!is_found) refuse(emitter, "there is no lamp of the scene with this name; " + some_names(all));
+        if (!is_found) refuse(emitter, "the scene has no light with this name; " + some_names(all));
     }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Sets emitters of a scene to stated amounts of light, in the units in which lamps are sold and measured. An emitter
+// Sets emitters of a scene to stated amounts of light, in the units in which lights are sold and measured. An emitter
 // keeps its colour.
 
 #include <span>

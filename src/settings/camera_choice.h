@@ -16,7 +16,7 @@ struct CameraChoice {
     std::string camera;                    // name or number, from 0, of a camera of the scene; "": the first
     std::optional<DoubleVec3> eye, target; // metres, in the coordinates of the file
     std::optional<Vec3> up;
-    bool is_aimed = false;         // whether aim_eye() has set the target
+    bool is_aimed = false;         // whether aim_camera() has set the target
     std::optional<float> fov_deg;  // full vertical field of view, degrees
     std::optional<float> aperture; // radius of the lens, metres
     std::optional<float> focus;    // focus distance, metres

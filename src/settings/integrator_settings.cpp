@@ -128,7 +128,7 @@ std::vector<Setting> frame_settings() {
             "The number of passes of the wavelet filter.", Range{0, 8}),
         row("restir", "Frames", "NAME", FIELD(reconstruction.sharing.light),
             "Resampling of light between pixels: di for direct light at the first surface, gi for indirect light as "
-            "well. It helps with many lamps and takes time."),
+            "well. It helps with many emitters and takes time."),
         row("restir_history", "Frames", "N", FIELD(reconstruction.sharing.history),
             "The maximum number of samples that a reservoir of earlier frames counts as. Fewer follow moving light and "
             "shadows sooner, with more noise.",

@@ -64,7 +64,7 @@ std::vector<Setting> picture_settings() {
             "The number of samples per pixel; four times as many halve the noise.", Range{1, kMaxSamplesPerPixel},
             On{kShown | kMeasure | kBenchNoise | kBenchPictures}, Mark::Common),
         row("integrator", "Quality", "NAME", integrator_field, "The light transport algorithm (docs/transport.md).",
-            More{"path finds all light; direct and indirect are its parts straight from lamps and sky and by way of "
+            More{"path finds all light; direct and indirect are its parts straight from emitters and sky and by way of "
                  "other surfaces. hybrid is path with rasterised primary visibility. cast, whitted and distributed are "
                  "ray trees without most indirect light. raster and reyes (micropolygons) trace no rays. light traces "
                  "particles from the lights and misses what mirrors and glass show. bidirectional finds all light by "

@@ -65,7 +65,7 @@ std::vector<Setting> scene_settings() {
             Choices{{"on", "off", "auto"}}, On{kRender | kView}, Mark::OpensScene, Recorded::AsUsed),
 
         row("lamp", "Lamps", "NAME=AMOUNT", FIELD(scene.emitters),
-            "The amount of light of all lamps with this name (* and ? are wildcards) in W, lm, cd, lx or nits, for "
+            "The amount of light of all lights with this name (* and ? are wildcards) in W, lm, cd, lx or nits, for "
             "example bulb=800lm. It may be given again.",
             On{kScenes}, Mark::OpensScene, Recorded::AsUsed),
         row("efficacy", "Lamps", "LM_PER_W", FIELD(scene.efficacy), "The number of lumens per watt.", Above{0, 1e6},
@@ -73,7 +73,7 @@ std::vector<Setting> scene_settings() {
             Mark::OpensScene),
 
         row("two_sided_lights", "Faces", "", FIELD(scene.two_sided_lights),
-            "Lamps emit from both faces, whatever the file says.", On{kScenes}, Mark::OpensScene, Recorded::AsUsed),
+            "Emitters emit from both faces, whatever the file says.", On{kScenes}, Mark::OpensScene, Recorded::AsUsed),
         row("show_back_faces", "Faces", "", FIELD(scene.show_back_faces),
             "The camera sees back faces that a glTF file hides (doubleSided: false).", On{kLooking}, Mark::OpensScene,
             Recorded::AsUsed),

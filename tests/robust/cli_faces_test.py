@@ -46,7 +46,7 @@ class FacesTest(CliTest):
 
     def test_lamps_of_an_obj_are_named_with_the_flag_that_lights_their_backs(self):
         said = self.said("lamp.obj")
-        self.assertRegex(said, r"note: lamp\.obj: 1 lamp with light on the front only: bulb; .*--two-sided-lights")
+        self.assertRegex(said, r"note: lamp\.obj: 1 emitter with light on the front only: bulb; .*--two-sided-lights")
         self.assertNotIn("turn its faces round", said)
         self.assertNotIn("bulb", self.said("lamp.obj", "--two-sided-lights"))
         self.assertNotIn("on the front only", self.said("cornell-box"))

@@ -99,7 +99,7 @@ class WhatIsRefused(LabTest):
     def test_a_scene_of_the_record_without_its_file_says_where_that_belongs(self):
         for folder in [None, self.path("nowhere")]:
             environment = dict(self.environment, **({"PERTEV_SCENES": folder} if folder else {}))
-            for name, file in [("sponza", "crytek-sponza/sponza.obj"), ("bunny", "stanford/bunny.obj")]:
+            for name, file in [("sponza", "crytek-sponza/sponza.obj"), ("bunny", "record/bunny.ply"), ("forest", "record/forest.ply")]:
                 self.refuse_unmeasured(2, name, env=environment, says=["PERTEV_SCENES", file])
 
     def test_an_output_folder_that_cannot_be_made_ends_with_6_before_anything_is_measured(self):

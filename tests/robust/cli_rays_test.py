@@ -26,7 +26,7 @@ class RaysOnTheRecord(CliTest):
             environment = {key: value for key, value in self.environment.items() if key != "PERTEV_SCENES"}
             if folder:
                 environment["PERTEV_SCENES"] = self.path(folder)
-            for name, file in [("sponza", "crytek-sponza/sponza.obj"), ("bunny", "stanford/bunny.obj")]:
+            for name, file in [("sponza", "crytek-sponza/sponza.obj"), ("bunny", "record/bunny.ply"), ("forest", "record/forest.ply")]:
                 self.refuse(2, "bench", "rays", "--device", "cpu", "--scene", name, env=environment,
                             says=["PERTEV_SCENES", file])
 

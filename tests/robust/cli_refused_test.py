@@ -107,7 +107,7 @@ class WhatIsRefused(CliTest):
                 ("--integrator cast --ambient 1 --wireframe", 2, "--wireframe: applies to --integrator raster"),
                 ("--integrator raster --ambient 1 --wireframe --shading flat", 2, "--wireframe: cannot be combined with --shading"),
                 ("--integrator reyes --ambient 1 --aperture 0.1 --focus 1", 2, "--integrator reyes: rasterisation does not support this camera's lens"),
-                ("--integrator reyes", 2, "this scene has only lamps"),
+                ("--integrator reyes", 2, "this scene has only emitters"),
                 ("--integrator reyes --denoise svgf", 2, "--denoise svgf: supports --integrator path, direct, indirect, hybrid, not reyes"),
                 ("--integrator raster --ambient 1 --shading-rate 2", 2, "--shading-rate: applies to --integrator reyes"),
                 ("--displacement white=x.png,1", 2, "--displacement: applies to --integrator reyes, not to path"),
@@ -115,7 +115,7 @@ class WhatIsRefused(CliTest):
                 ("--integrator reyes --ambient 1 --displacement nobody=x.png,1", 2, "there is no material of the scene with this name"),
                 ("--integrator reyes --ambient 1 --displacement white=nothere.png,1", 2, "nothere.png: cannot read: No such file"),
                 ("--integrator reyes --ambient 1 --displacement *=heights.png,1", 2, "without texture coordinates"),
-                ("--integrator cast", 2, "this scene has only lamps: --integrator distributed and path support all lights")]:
+                ("--integrator cast", 2, "this scene has only emitters: --integrator distributed and path support all lights")]:
             with self.subTest(flags=flags):
                 outcome = self.refuse(code, "render", "cornell-box", "-o", "x.png", *flags.split(), says=[says])
                 self.assertEqual(len(outcome.stderr.strip().splitlines()), 1, outcome)

@@ -272,7 +272,7 @@ class Page(unittest.TestCase):
         page.until(f"document.querySelector('#readings').innerText.includes('{float(fixed):+.2f} stops')")
         self.choose("exposed", "auto")
         page.until("document.querySelector('#setting-exposure').value == '0'")
-        self.assertIn("lamps", page.value("document.querySelector('#setting-restir').closest('.row').title"))
+        self.assertIn("emitters", page.value("document.querySelector('#setting-restir').closest('.row').title"))
         for restir in ("gi", "off"):
             self.choose("restir", restir)
             self.moved(lambda: page.drag("left", 40, 0))

@@ -226,7 +226,7 @@ class Pictures(CliTest):
             client.set("layer", "motion")
             self.assertIn("distributed", client.text("notice")["text"])
             client.set("integrator", "whitted")
-            self.assertIn("lamps", client.text("notice")["text"])
+            self.assertIn("emitters", client.text("notice")["text"])
             client.set("integrator", "path")
             for name, value, flag in [("max_depth", 1, "--max-depth"), ("integrator", "direct", "--integrator"),
                                       ("spp", 7, "--spp")]:

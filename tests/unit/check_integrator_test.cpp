@@ -39,7 +39,7 @@ TEST_CASE("a scene that cast or whitted would render black is refused with alter
         const Remark dark = message(kind, scene);
         CHECK(dark.setting == "integrator");
         CHECK(dark.value == name);
-        CHECK(names(dark, "only lamps"));
+        CHECK(names(dark, "only emitters"));
         CHECK((names(dark, "`integrator=distributed`") && names(dark, "`ambient=0.5`")));
         CHECK(is_fine(message(kind, scene, Rgb{0, 0, 0}))); // asked for
         CHECK(is_fine(message(kind, scene, {}, 0)));        // emission alone
@@ -48,7 +48,7 @@ TEST_CASE("a scene that cast or whitted would render black is refused with alter
     CHECK(is_fine(message(IntegratorKind::Path, scene)));
 
     scene.environment = Environment{};
-    CHECK(names(message(IntegratorKind::Cast, scene), "only lamps and an environment"));
+    CHECK(names(message(IntegratorKind::Cast, scene), "only emitters and an environment"));
     CHECK(names(message(IntegratorKind::Whitted, scene), "surfaces show the environment's mean as ambient light"));
 
     scene.lights.push_back(test::point_light({0, 2, 0}, {1, 1, 1}));
@@ -62,7 +62,7 @@ TEST_CASE(
     "a black environment is no light: integrators that need light refuse the scene, and others warn that it is dark") {
     Scene scene;
     test::add(scene, test::floor_at(0, 1), test::white());
-    const std::string none = "no lamp, no point, spot or directional light, and the environment is black";
+    const std::string none = "no emitter, no point, spot or directional light, and the environment is black";
     const auto check_dark = [&] {
         CHECK(message(IntegratorKind::PhotonMap, scene).value == "photon_map");
         CHECK(names(message(IntegratorKind::PhotonMap, scene), none));

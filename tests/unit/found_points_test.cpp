@@ -29,8 +29,8 @@ TEST_CASE("a search in a point tree finds the nearest points and visits few node
     CHECK(kd.radius_squared == by_distance[kPointsRequested - 1].first);
     for (const FoundPoints* found : {&kd, &octree}) {
         CAPTURE(found->tree);
-        CHECK(std::ranges::includes(found->looked_at, found->found));
-        CHECK(found->looked_at.size() < found->points.size() / 3);
+        CHECK(std::ranges::includes(found->tested, found->found));
+        CHECK(found->tested.size() < found->points.size() / 3);
         CHECK(found->visited < found->nodes / 2);
         const std::string svg = svg_of(*found);
         // A circle a point, and the one about them.
@@ -39,7 +39,7 @@ TEST_CASE("a search in a point tree finds the nearest points and visits few node
         CHECK(circles == found->points.size() + 1);
     }
     CHECK(kd.nodes == kd.points.size());
-    CHECK(kd.visited == kd.looked_at.size());
+    CHECK(kd.visited == kd.tested.size());
     // Each plane of a kd-tree lies within the square and has its node's point on it.
     CHECK(kd.lines.size() == kd.points.size() / 2);
     for (const FoundPoints::Line& line : kd.lines) {

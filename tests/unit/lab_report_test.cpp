@@ -21,7 +21,7 @@ TEST_CASE("a frame of depth d is the sets of depths 1 to d, and needs all of the
     CHECK(!frame_seconds(report, report.combinations[1], 1));
     CHECK(frame_rays(report, 2) == 10'000'000);
     CHECK(largest_depth(report) == 2);
-    CHECK(mrays(report, c.runs[0]) == doctest::Approx(4));
+    CHECK(mrays(report, c.runs[0], c.runs[0].median_s) == doctest::Approx(4));
 }
 
 TEST_CASE("the laboratory's table of runs has each figure and empty cells where nothing was measured") {

@@ -13,7 +13,6 @@
 #include <set>
 
 #include "base/parallel_for.h"
-#include "lab/make_bunny_box.h"
 #include "lab/measure_rays.h"
 #include "lab/record_scenes.h"
 #include "math/frame.h"
@@ -68,11 +67,18 @@ Camera looking(Vec3 eye, Vec3 target, float fov_y) {
 
 /// A sphere of radius 1 in an open box; about half of what leaves it is lost.
 Scene allocate() {
-    const TriangleMesh ball = make_sphere(3, {0, 0, 0}, 1);
+    const TriangleMesh ball = make_sphere(5, {0, 1, 0}, 1);
     Mesh mesh;
     mesh.positions = ball.positions;
     mesh.indices = ball.indices;
-    return scene_of_mesh(make_bunny_box(mesh), looking({0.3f, 1.5f, 3.6f}, {0, 0.95f, 0}, 0.8f));
+    const Vec3 corners[] = {{-3, 0, 3}, {3, 0, 3}, {-3, 0, -3}, {3, 0, -3},
+                            {-3, 4, 3}, {3, 4, 3}, {-3, 4, -3}, {3, 4, -3}};
+    const auto first = static_cast<uint32_t>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), std::begin(corners), std::end(corners));
+    for (const uint32_t corner : {0, 1, 3, 0, 3, 2, 2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4, 3, 1, 5, 3, 5, 7}) {
+        mesh.indices.push_back(first + corner); // floor, back, left, right
+    }
+    return scene_of_mesh(std::move(mesh), looking({0.3f, 1.5f, 3.6f}, {0, 0.95f, 0}, 0.8f));
 }
 
 bool same_bits(const std::vector<RaySet>& a, const std::vector<RaySet>& b) {

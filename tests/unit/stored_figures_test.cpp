@@ -82,7 +82,7 @@ TEST_CASE("the table of jobs has the record's scenes and jobs and the presets of
     CHECK(record.device == "NVIDIA H200");
     REQUIRE(record.scenes.size() == 3);
     CHECK(record.scenes[0].view.eye == Vec3{-110, 18, -2});
-    CHECK(record.scenes[2].file.empty()); // generated
+    CHECK(record.scenes[2].file == "record/forest.ply"); // generated
     for (const RecordScene& scene : record.scenes) CHECK(scene.sets.size() == 5);
     CHECK(record.jobs.size() == 4);
     REQUIRE(record.presets.size() == 6);

@@ -108,11 +108,15 @@ double distance_of(const Rgba8Image& a, const Rgba8Image& b) {
 
 TEST_CASE("pictures of the thesis differ, none is black, and each has a description") {
     const std::vector<ThesisPicture>& pictures = pictures_in_loop();
-    CHECK(pictures.size() == thesis_picture_names().size());
+    const std::vector<std::string> names = thesis_picture_names();
+    REQUIRE(pictures.size() == names.size());
     std::set<std::vector<uint8_t>> seen;
     std::set<std::string> places;
-    for (const ThesisPicture& picture : pictures) {
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+        const ThesisPicture& picture = pictures[i];
         CAPTURE(picture.name);
+        CHECK(picture.name == names[i]);
+        CHECK(picture.file() == names[i] + (names[i].starts_with("figure-4.1") ? ".svg" : ".png"));
         CHECK(picture.shows.ends_with('.'));
         CHECK_FALSE(picture.interrupted);
         places.insert(picture.place);

@@ -278,7 +278,7 @@ private:
         if (value >= 0 && value < static_cast<double>(vertex_count_) && value == static_cast<uint32_t>(value)) {
             return static_cast<uint32_t>(value);
         }
-        if (std::isnan(value)) return std::nullopt; // told where it was read
+        if (std::isnan(value)) return std::nullopt; // the reader has warned
         if (bad_indices_++ == 0) {
             first_bad_index_ =
                 body_

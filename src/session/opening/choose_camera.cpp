@@ -116,7 +116,7 @@ const Camera* scene_camera(const std::string& name, const Scene& scene) {
                 fmt::format("the scene has no such camera; it has:{}", known.empty() ? "\n  none" : known));
 }
 
-void aim_eye(CameraChoice& choice, const Scene& scene, Messages& messages) {
+void aim_camera(CameraChoice& choice, const Scene& scene, Messages& messages) {
     if (!choice.eye || choice.target) return;
     const Target target = target_from(scene, in_scene(scene, *choice.eye));
     choice.target = stated_position(scene, target.position, 6);
@@ -128,7 +128,7 @@ void aim_eye(CameraChoice& choice, const Scene& scene, Messages& messages) {
 }
 
 Camera choose_camera(CameraChoice choice, const Scene& scene, float aspect, Messages& messages) {
-    aim_eye(choice, scene, messages);
+    aim_camera(choice, scene, messages);
     Camera camera;
     if (const Camera* given = scene_camera(choice.camera, scene)) {
         camera = *given;

@@ -17,7 +17,7 @@ const Camera* scene_camera(const std::string& name, const Scene& scene);
 
 /// Gives an eye without a target the middle of the scene as its target, with a notice. choose_camera() does so too;
 /// this is for those who record the target.
-void aim_eye(CameraChoice& choice, const Scene& scene, Messages& messages);
+void aim_camera(CameraChoice& choice, const Scene& scene, Messages& messages);
 
 /// The camera from the choice, the scene or the defaults, for a picture with the aspect ratio width / height. A part
 /// of the choice without effect on this camera gives a warning. The scene has passed validate(). Throws

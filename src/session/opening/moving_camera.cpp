@@ -21,7 +21,7 @@ MovingCamera::MovingCamera(CameraChoice choice, std::optional<CameraPath> path, 
                            Messages& messages)
     : choice_(std::move(choice)), path_(std::move(path)), aspect_(aspect) {
     const bool makes_it_up = !path_ && !choice_.eye && !has_own_camera(choice_, rest);
-    aim_eye(choice_, rest, messages);
+    aim_camera(choice_, rest, messages);
     const Camera at_rest = choose_camera(choice_at(std::nullopt), rest, aspect, messages);
     if (makes_it_up) made_up_ = at_rest;
     const bool is_focused = choice_.focus || (choice_.target && !choice_.is_aimed) || path_;
@@ -30,8 +30,8 @@ MovingCamera::MovingCamera(CameraChoice choice, std::optional<CameraPath> path, 
     const Vec3 eye = at_rest.world_from_camera.translation;
     const Vec3 seen = eye - at_rest.focus_distance * column(at_rest.world_from_camera, 2);
     const Bounds3 bounds = bounds_of(rest);
-    const Vec3 looked_at = made_up_ || bounds.is_empty() ? seen : bounds.centre();
-    middle_ = choice_.target ? in_scene(rest, *choice_.target) : looked_at;
+    const Vec3 target = made_up_ || bounds.is_empty() ? seen : bounds.centre();
+    middle_ = choice_.target ? in_scene(rest, *choice_.target) : target;
 }
 
 CameraChoice MovingCamera::choice_at(std::optional<double> time_s) const {

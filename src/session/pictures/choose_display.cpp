@@ -79,10 +79,10 @@ Display choose_display(const PictureOptions& options, Session& session, Sink& si
         sink.set_work("metering");
         stops = session.meter(display.tone_map);
         const std::string_view name = name_of(display.tone_map);
-        sink.messages().note(
-            fmt::format("exposed by {:+.2f} stops, shown by {} (`exposure={:.2f}` `tone_map={}` fixes that; "
-                        "`exposure=0` `tone_map=srgb` shows plain values)",
-                        stops, name, stops, name));
+        sink.messages().note(fmt::format(
+            "metered exposure: {:+.2f} stops, tone mapping by {} (`exposure={:.2f}` `tone_map={}` fixes both; "
+            "`exposure=0` `tone_map=srgb` writes linear light in sRGB)",
+            stops, name, stops, name));
     }
     return display;
 }

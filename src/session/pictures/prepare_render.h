@@ -32,8 +32,8 @@ struct RenderSetup {
 
 /// Checks the options (check_options), prepares everything and reports progress to `sink`. Adds to `options` what the
 /// scene's file suggests for the settings of `verbs`. If the integrator is radiosity, the scene is solved, of which
-/// `report` tells more. Throws Error, especially Error(OutOfMemory) if there is no room for the picture, or less than
-/// the options allow, and Error(Interrupted) if the sink stops it.
+/// `report` shows the progress of solving. Throws Error, especially Error(OutOfMemory) if there is no room for the
+/// picture, or less than the options allow, and Error(Interrupted) if the sink stops it.
 std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t verbs, Sink& sink,
                                             const SolveReport& report = {});
 

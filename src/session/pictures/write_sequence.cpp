@@ -29,7 +29,7 @@ SequenceRecord::Settings settings_of(const PictureOptions& options, const FrameR
         if (setting.is_kept && (setting.verbs & kRender) != 0 && setting.name != std::string_view("frames"))
             put(setting.name, fmt::format("{}", fmt::join(texts_of(options, setting), " ")));
     }
-    put("animation", record.scene.animation); // a file with only one may be told to play it
+    put("animation", record.scene.animation); // even if the file has only one
     put("file_scene", record.scene.file_scene);
     constexpr std::string_view kPrefix = "pertev.";
     for (const auto& [name, value] : settings_metadata(record))

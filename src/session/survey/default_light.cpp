@@ -72,7 +72,7 @@ void add_emitters(Scene& scene, const Surroundings& room) {
         const Vec3 below = aisle.middle + at * aisle.along;
         const float up = distance_along(scene, below, {0, 1, 0}, 0.5f * aisle.height);
         Light emitter;
-        emitter.name = fmt::format("default lamp {}", i);
+        emitter.name = fmt::format("default emitter {}", i);
         emitter.position = below + Vec3{0, 0.6f * up, 0};
         // About 1 W/(sr m2) from a white floor below one.
         emitter.intensity = (kPi * square(0.6f * up)) * Rgb{1.0f, 0.93f, 0.82f};
@@ -97,7 +97,7 @@ DefaultLight add_default_light(Scene& scene, SceneUse use, Messages& messages, S
     if (seen != nullptr) *seen = around;
     if (around.is_dark) {
         add_emitters(scene, around);
-        messages.make_up(fmt::format("{}, a closed room: it gets a row of lamps", why));
+        messages.make_up(fmt::format("{}, a closed room: it gets a row of emitters", why));
         return DefaultLight::Emitters;
     }
     // Through the openings of a room, the clear sky's narrow sun shows more than soft boxes do.

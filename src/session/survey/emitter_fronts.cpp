@@ -23,9 +23,9 @@ bool is_one_sided_emitter(const Material& material) { return material.is_emitter
 std::vector<SurveyRay> rays_from(const Scene& scene, const Instance& emitter) {
     const Mesh& mesh = scene.meshes[emitter.mesh];
     std::vector<SurveyRay> rays;
-    const std::size_t count = mesh.triangle_count(), looked_at = std::min(count, kMaxOfEmitter);
-    for (std::size_t k = 0; k < looked_at; ++k) {
-        const uint32_t* index = mesh.indices.data() + 3 * (k * count / looked_at);
+    const std::size_t count = mesh.triangle_count(), tested = std::min(count, kMaxOfEmitter);
+    for (std::size_t k = 0; k < tested; ++k) {
+        const uint32_t* index = mesh.indices.data() + 3 * (k * count / tested);
         const auto corner = [&](int i) { return transform_point(emitter.world_from_local, mesh.positions[index[i]]); };
         const Vec3 a = corner(0), ab = corner(1) - a, ac = corner(2) - a;
         const float size = max(max_component(abs(ab)), max_component(abs(ac)));
@@ -72,7 +72,7 @@ void warn_of_turned_emitters(const Scene& scene, const std::vector<const Instanc
         if (2 * turned <= hits.size() / 2) continue; // most of the tested triangles
         const std::string distance_text = behind < kInfinity ? fmt::format("{:.3g} m", behind) : "most of the scene";
         messages.warn(
-            {FileLocation{file}, fmt::format("the lamp {} shines at a surface {:.3g} m before its front and has {} "
+            {FileLocation{file}, fmt::format("the emitter {} shines at a surface {:.3g} m before its front and has {} "
                                              "behind it: flip its faces, or use `two_sided_lights`",
                                              shortened(emitters[i]->name), before, distance_text)});
     }
@@ -93,7 +93,7 @@ void report_emitter_fronts(const Scene& scene, const std::string& file, Messages
     messages.note({FileLocation{file},
                    fmt::format("{} with light on the front only: {}; the front is where normals point or, without any, "
                                "from where corners run counter-clockwise (`two_sided_lights`: both faces)",
-                               counted(emitters.size(), "lamp"), names)});
+                               counted(emitters.size(), "emitter"), names)});
     warn_of_turned_emitters(scene, emitters, file, messages);
 }
 

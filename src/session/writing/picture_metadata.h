@@ -80,7 +80,7 @@ ExrMetadata recorded_settings(const PictureOptions& options, std::span<const Set
 
 /// Describes a scene that open_scene() made of these options, without seconds.
 SceneSource source_of(const SceneOptions& options, const Scene& scene);
-/// Describes a camera that choose_camera() made of this choice, after aim_eye(). `origin` is the scene's.
+/// Describes a camera that choose_camera() made of this choice, after aim_camera(). `origin` is the scene's.
 CameraSource source_of(const CameraChoice& choice, const Camera& camera, DoubleVec3 origin = {0, 0, 0});
 
 /// Returns the settings that place this camera again: to the bit if its text placed it or it has none, else with the
