@@ -2,8 +2,8 @@
 # Everything that touches device code, on a machine with a GPU, in one go:
 #   tools/check_gpu.sh BIN SCENES [PART ...]
 # BIN is the folder of pertev and pertev_tests (build/bin, or a bundle of tools/make_portable.sh), SCENES the folder of the
-# public test scenes (docs/scenes.md). Parts: tests, long, pictures, sanitizers, references, bench, viewer; all without any. Exits
-# 1 when something failed.
+# public test scenes (docs/scenes.md), with those of tools/make_record_scenes.py, without which bench leaves out rays. Parts: tests,
+# long, pictures, sanitizers, references, bench, viewer; all without any. Exits 1 when something failed.
 set -uo pipefail
 bin=$1 scenes=$2
 shift 2

@@ -24,12 +24,8 @@
 namespace pertev {
 namespace {
 
-struct BuildFlags : PictureOptions {
-    std::vector<std::string> scenes;
-    uint32_t runs = 0;
+struct BuildFlags : RecordFlags {
     bool compare = false;
-    SettingFlags settings;
-    ReportFlags report;
 };
 
 /// Returns the triangles that do not move, in world space; if there are none, the first mesh's.
@@ -131,12 +127,9 @@ void add_bench_build_command(CLI::App& bench, int& status) {
     const auto flags = std::make_shared<BuildFlags>();
     CLI::App& verb = add_bench_verb(bench, "build", "Trees that are built on the device",
                                     [flags, &status] { status = bench_build(*flags); });
-    add_record_scenes(verb, flags->scenes);
-    add_whole(verb, "--runs", flags->runs, "number of timed builds (3 on the CPU, 25 in CUDA)", 1, 10000);
+    add_record_flags(verb, *flags, kBenchBuild, "number of timed builds (3 on the CPU, 25 in CUDA)");
     verb.add_flag("--compare", flags->compare,
                   "also build sbvh, sbvh-reinsertion, reinsertion, binned and\nploc on the CPU");
-    flags->settings.add(verb, kBenchBuild, *flags);
-    add_bench_report_flags(verb, flags->report);
 }
 
 } // namespace pertev

@@ -27,23 +27,30 @@
 
 namespace pertev {
 
-void check_bench_scene(const std::string& name, std::string_view others) {
-    if (!is_scene_name(name)) {
-        throw Error(ErrorCode::BadInput, FileLocation{name}, fmt::format("neither {}{}", others, scene_kinds()));
-    }
+namespace {
+
+bool is_there(const std::string& scene) {
     std::error_code no_such_name; // a name may be too long for a file
-    if (!builtin_scene(name) && !std::filesystem::exists(name, no_such_name)) {
-        throw Error(ErrorCode::BadInput, FileLocation{name}, "there is no such file");
-    }
+    return builtin_scene(scene) || std::filesystem::exists(scene, no_such_name);
 }
 
-void add_record_scenes(CLI::App& verb, std::vector<std::string>& names) {
-    verb.add_option("--scene", names,
+} // namespace
+
+void check_bench_scene(const std::string& name, std::string_view others) {
+    refuse(!is_scene_name(name), {FileLocation{name}, fmt::format("neither {}{}", others, scene_kinds())});
+    refuse(!is_there(name), {FileLocation{name}, "there is no such file"});
+}
+
+void add_record_flags(CLI::App& verb, RecordFlags& flags, SettingVerbs verbs, const char* runs) {
+    verb.add_option("--scene", flags.scenes,
                     "sponza, bunny, forest, a scene file or a built-in scene;\nmay be given again (the first three, "
                     "the files under PERTEV_SCENES)")
         ->type_name("NAME|FILE")
         ->check(file_name())
         ->allow_extra_args(false);
+    add_whole(verb, "--runs", flags.runs, runs, 1, 10000);
+    flags.settings.add(verb, verbs, flags);
+    add_bench_report_flags(verb, flags.report);
 }
 
 std::vector<std::string> check_record_scenes(std::vector<std::string> names) {
@@ -62,9 +69,7 @@ Scene read_record_scene(const std::string& name, Messages& messages) {
     if (const RecordScene* record = find_named(the_record().scenes, name)) {
         return make_record_scene(*record, public_scenes_folder(), messages);
     }
-    ReadOptions options;
-    options.geometry_only = true;
-    return read_scene(name, options, messages);
+    return read_scene(name, {.geometry_only = true}, messages);
 }
 
 Scene read_lab_scene(const SceneOptions& options, Messages& messages) {
@@ -74,8 +79,7 @@ Scene read_lab_scene(const SceneOptions& options, Messages& messages) {
                {"file_scene", options.file_scene, fmt::format("{} has no scenes of its own to choose from", name)});
         return make_record_scene(*record, public_scenes_folder(), messages);
     }
-    std::error_code no_such_name; // a name may be too long for a file
-    if (!builtin_scene(name) && !std::filesystem::exists(name, no_such_name)) {
+    if (!is_there(name)) {
         std::vector<std::string_view> known = builtin_scene_names();
         for (const RecordScene& record : the_record().scenes) known.emplace_back(record.name);
         throw Error(ErrorCode::BadInput, "scene", name,

@@ -40,8 +40,16 @@ inline std::filesystem::path public_scenes_folder() {
 /// the first one is measured.
 void check_bench_scene(const std::string& name, std::string_view others = "");
 
-/// Adds --scene where scenes of the record may be named too (lab/record_scenes.h).
-void add_record_scenes(CLI::App& verb, std::vector<std::string>& names);
+/// Flags of benchmarks over scenes of the record (lab/record_scenes.h).
+struct RecordFlags : PictureOptions {
+    std::vector<std::string> scenes;
+    uint32_t runs = 0; // 0: the benchmark's own
+    SettingFlags settings;
+    ReportFlags report;
+};
+
+/// Adds --scene, --runs, --report and the settings of `verbs`.
+void add_record_flags(CLI::App& verb, RecordFlags& flags, SettingVerbs verbs, const char* runs);
 /// Checks each name like check_bench_scene and returns them; without names returns all scenes of the record.
 std::vector<std::string> check_record_scenes(std::vector<std::string> names);
 /// Reads a scene of the record by its name, else the geometry of a built-in scene or a file.

@@ -30,12 +30,9 @@
 namespace pertev {
 namespace {
 
-struct RaysFlags : PictureOptions {
-    std::vector<std::string> scenes;
-    uint32_t count = kRecordRays, runs = 0;
+struct RaysFlags : RecordFlags {
+    uint32_t count = kRecordRays;
     bool check = false, axes = false;
-    SettingFlags settings;
-    ReportFlags report;
 };
 
 /// A set of rays of a scene: `number` is its index, `record` the record's scene seen by its own camera, or null.
@@ -195,15 +192,12 @@ void add_bench_rays_command(CLI::App& bench, int& status) {
     const auto flags = std::make_shared<RaysFlags>();
     CLI::App& verb = add_bench_verb(bench, "rays", "Sets of rays that other tracers can be timed on",
                                     [flags, &status] { status = bench_rays(*flags); });
-    add_record_scenes(verb, flags->scenes);
     add_whole(verb, "--count", flags->count, "rays per set; the record's is four frames of 1920x1080", 1, 1u << 30)
         ->capture_default_str();
-    add_whole(verb, "--runs", flags->runs, "timed runs per set (5 on the CPU, 25 in CUDA)", 1, 10000);
     verb.add_flag("--check", flags->check, "compare every hit with the binary traversal's on the CPU, bit for bit");
     verb.add_flag("--axes", flags->axes, "two more sets: diffuse1 turned along axes, and a thousandth beside them");
     flags->tracer.default_build = TreeBuild::Best; // no tree's making is timed
-    flags->settings.add(verb, kBenchRays, *flags);
-    add_bench_report_flags(verb, flags->report);
+    add_record_flags(verb, *flags, kBenchRays, "timed runs per set (5 on the CPU, 25 in CUDA)");
 }
 
 } // namespace pertev

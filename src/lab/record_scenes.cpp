@@ -11,9 +11,7 @@ namespace {
 
 /// Returns only the file's triangles, in one mesh in the file's order, without normals.
 Mesh read_one_mesh(const std::filesystem::path& path, Messages& messages) {
-    ReadOptions options;
-    options.geometry_only = true;
-    const Scene scene = read_scene(path, options, messages);
+    const Scene scene = read_scene(path, {.geometry_only = true}, messages);
     Mesh mesh;
     for (const Instance& instance : scene.instances) {
         const Mesh& part = scene.meshes[instance.mesh];
@@ -25,9 +23,7 @@ Mesh read_one_mesh(const std::filesystem::path& path, Messages& messages) {
 }
 
 Scene make_grey_scene(const std::string& file, Messages& messages) {
-    ReadOptions options;
-    options.geometry_only = true;
-    Scene scene = read_scene(file, options, messages);
+    Scene scene = read_scene(file, {.geometry_only = true}, messages);
     scene.materials.assign(1, Material{{.base_color = {0.7f, 0.7f, 0.7f}}, "grey"});
     for (Instance& instance : scene.instances) instance.material = 0;
     for (Mesh& mesh : scene.meshes) {
