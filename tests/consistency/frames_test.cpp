@@ -54,7 +54,17 @@ Scenes diffuse_scene() {
     return result;
 }
 
-std::vector<Scenes> scenes() { return {{make_mixed_scene(), mixed_scene_camera()}}; }
+/// A scene whose bounces the CPU's loop shades in lanes.
+Scenes plain_scene() {
+    Scenes result = diffuse_scene();
+    for (Material& material : result.scene.materials) {
+        material.alpha_mode = AlphaMode::Opaque;
+        material.base_color_texture = material.normal_texture = material.emission_texture = {};
+    }
+    return result;
+}
+
+std::vector<Scenes> scenes() { return {{make_mixed_scene(), mixed_scene_camera()}, plain_scene()}; }
 
 } // namespace
 

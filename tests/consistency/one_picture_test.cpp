@@ -110,9 +110,15 @@ ShadingVariant variant_of(const Scene& scene) {
 
 TEST_CASE("vertices that are shaded in lanes give the bytes of those that are shaded one by one") {
     const Scene scene = scene_with(ShadingVariant::PlainDiffuse);
-    Scene alone = scene;
-    alone.materials.push_back({{.kind = MaterialKind::Conductor}, "unused"});
     Queue queue = Queue::make_cpu();
+    const auto check_lanes = [&](const Scene& in_lanes, const RenderSettings& settings) {
+        Scene alone = in_lanes;
+        alone.materials.push_back({{.kind = MaterialKind::Conductor}, "unused"});
+        const auto hash = [&](const Scene& of) {
+            return test::render_hash(test::render(queue, of, test::mixed_scene_camera(), settings));
+        };
+        CHECK(hash(in_lanes) == hash(alone));
+    };
     std::vector<RenderSettings> cases(6, odd_settings());
     cases[0].aovs = 0;
     cases[1].path.max_depth = 1;
@@ -122,10 +128,15 @@ TEST_CASE("vertices that are shaded in lanes give the bytes of those that are sh
     cases[5].path.max_depth = 0;
     for (const RenderSettings& settings : cases) {
         CAPTURE(&settings - cases.data());
-        const auto hash = [&](const Scene& of) {
-            return test::render_hash(test::render(queue, of, test::mixed_scene_camera(), settings));
-        };
-        CHECK(hash(scene) == hash(alone));
+        check_lanes(scene, settings);
+    }
+    for (const Rgb sky : {Rgb{0.3f, 0.4f, 0.6f}, Rgb{0, 0, 0}}) {
+        Scene under_sky = scene;
+        under_sky.environment = Environment{{}, sky, 1.0f};
+        check_lanes(under_sky, odd_settings());
+        under_sky.lights.clear();
+        for (Material& material : under_sky.materials) material.emission = {0, 0, 0};
+        check_lanes(under_sky, odd_settings());
     }
 }
 
