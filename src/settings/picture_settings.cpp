@@ -100,7 +100,7 @@ std::vector<Setting> picture_settings() {
             "No setting of this group changes the picture.",
             Otherwise{"balanced"}, Choices{names_of<TreeBuild>()}, On{kTracing}, Mark::NotKept),
         row("structure", "Tracing", "[KIND=]NAME", FIELD(tracer.structures),
-            "The acceleration structure, which overrules build.", More{"KIND, of rays, is camera, bounce or shadow."},
+            "The acceleration structure, which overrules build.", More{"KIND is camera, bounce or shadow."},
             Choices{names_of<StructureKind>()}, On{kTracing}, Mark::ByRay, Mark::NotKept),
         row("traversal", "Tracing", "[KIND=]NAME", FIELD(tracer.traversals), "The traversal algorithm.",
             Choices{names_of<TraversalKind>()}, On{kTracing}, Mark::ByRay, Mark::NotKept, OldName{"walk"}),
