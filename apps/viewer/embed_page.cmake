@@ -29,7 +29,7 @@ foreach(file IN LISTS FILES)
 endforeach()
 
 file(WRITE ${OUTPUT}.new "// Written by apps/viewer/embed_page.cmake.
-#include \"apps/viewer/page_files.h\"
+#include \"apps/viewer/web_server.h\"
 
 namespace pertev {
 namespace {

@@ -7,7 +7,6 @@
 
 #include "apps/viewer/access_token.h"
 #include "apps/viewer/packer.h"
-#include "apps/viewer/page_files.h"
 #include "apps/viewer/panel_text.h"
 #include "apps/viewer/render_loop.h"
 

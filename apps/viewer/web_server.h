@@ -22,6 +22,8 @@ struct PageFile {
     std::string_view type; // "text/javascript"
     std::string_view text;
 };
+/// Returns the files of the page, which embed_page.cmake embeds in the program.
+std::vector<PageFile> page_files();
 
 class WebEvents {
 public:

@@ -122,8 +122,8 @@ std::string why_no_value(const Setting& setting, const std::string& text) {
     if (const std::vector<std::string> choices = choices_of(setting); !choices.empty()) {
         const std::size_t equals = setting.is_by_ray ? text.find('=') : std::string::npos;
         if (equals == std::string::npos) return why_no_choice(text, choices);
-        const std::string why_no_kind = why_no_choice(text.substr(0, equals), names_of<RayKind>());
-        return why_no_kind.empty() ? why_no_choice(text.substr(equals + 1), choices) : why_no_kind;
+        if (!value_named<RayKind>(text.substr(0, equals))) return "expected a kind of ray: camera, bounce or shadow";
+        return why_no_choice(text.substr(equals + 1), choices);
     }
     if (setting.is_name) return text.empty() ? "the name is empty" : "";
     return std::visit(

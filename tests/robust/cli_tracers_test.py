@@ -28,7 +28,7 @@ class HowRaysAreTraced(CliTest):
                           ("--traversal skip-links --order off", "this traversal has no order of children"),
                           ("--traversal if-if --rta nodes", "for the compressed traversal"),
                           ("--traversal compressed --distribution dynamic-fetch", "a CPU's threads"),
-                          ("--traversal camera=wide9", "expected one of if-if"),
+                          ("--traversal camera=wide9", "not one of if-if"),
                           ("--traversal eye=kd", "camera, bounce or shadow")]:
             with self.subTest(line=line):
                 self.refuse(2, "render", "cornell-box", "-o", "x.png", "--device", "cpu", *line.split(), says=[why])

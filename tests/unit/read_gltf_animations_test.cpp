@@ -5,7 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "base/error.h"
-#include "scene/validate/validate_nodes.h"
+#include "scene/validate/validate_parts.h"
 #include "tests/support/gltf_builder.h"
 
 using namespace pertev;

@@ -8,7 +8,7 @@
 #include "math/scalar.h"
 #include "scene/pose/sample_channel.h"
 #include "scene/scene.h"
-#include "scene/validate/validate_nodes.h"
+#include "scene/validate/validate_parts.h"
 #include "tests/support/gltf_builder.h"
 
 using namespace pertev;

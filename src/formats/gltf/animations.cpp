@@ -8,7 +8,7 @@
 #include "formats/files/parse_number.h"
 #include "formats/gltf/leave_out.h"
 #include "formats/gltf/repair_keys.h"
-#include "scene/validate/validate_nodes.h"
+#include "scene/validate/validate_parts.h"
 
 namespace pertev::gltf {
 namespace {

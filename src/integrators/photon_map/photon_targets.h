@@ -126,26 +126,21 @@ struct AimFromKind {
     HD bool punctual(uint32_t number, float pmf) const {
         const PunctualLight& light = freely.scene.lights.punctual[number];
         Particle& particle = freely.particle;
-        switch (light.kind) {
-        case LightKind::Point:
-        case LightKind::Spot: {
-            if (!(depth_of_cones(targets, light.position) < depth_of_beam(light))) break;
-            if (!(pmf > 0)) return false;
+        const bool has_position = parts_of(light.kind).position;
+        const bool is_aimed =
+            has_position ? depth_of_cones(targets, light.position) < depth_of_beam(light) : are_narrow();
+        if (!is_aimed) return freely.punctual(number, pmf);
+        if (!(pmf > 0)) return false;
+        if (has_position) {
             const Direction direction = draw_direction(targets, light.position, freely.u);
             particle.ray = {light.position, 0, direction.to, light.range > 0 ? light.range : kInfinity};
             particle.power = (punctual_falloff(light, -direction.to, 0) / (pmf * direction.pdf)) * light.intensity;
-            return true;
-        }
-        case LightKind::Directional: {
-            if (!are_narrow()) break;
-            if (!(pmf > 0)) return false;
+        } else {
             const Start start = draw_start(targets, freely.world, light.direction, freely.u);
             particle.ray = {start.from, 0, light.direction, kInfinity};
             particle.power = (1.0f / (pmf * start.pdf)) * light.intensity;
-            return true;
         }
-        }
-        return freely.punctual(number, pmf);
+        return true;
     }
     HD bool environment(float pmf, SampleBits bits) const {
         if (!are_narrow()) return freely.environment(pmf, bits);

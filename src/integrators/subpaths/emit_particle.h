@@ -104,21 +104,16 @@ struct EmitFromKind {
         if (!(pmf > 0)) return false;
         const PunctualLight& light = scene.lights.punctual[number];
         float pdf = 0;
-        switch (light.kind) {
-        case LightKind::Point:
-        case LightKind::Spot: {
+        if (parts_of(light.kind).position) {
             pdf = pdf_beam(light);
             if (!(pdf > 0) || !is_finite(pdf)) return false;
             const Vec3 direction = draw_beam(light, u);
             particle.ray = {light.position, 0, direction, light.range > 0 ? light.range : kInfinity};
             particle.power = (punctual_falloff(light, -direction, 0) / (pmf * pdf)) * light.intensity;
-            break;
-        }
-        case LightKind::Directional:
+        } else {
             pdf = pdf_disc(world);
             from_disc(light.direction);
             particle.power = (1.0f / (pmf * pdf)) * light.intensity;
-            break;
         }
         particle.mis = {square(1.0f / pdf), 0};
         return true;

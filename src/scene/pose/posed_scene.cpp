@@ -15,7 +15,7 @@
 #include "scene/pose/sample_channel.h"
 #include "scene/scene_origin.h"
 #include "scene/shape_mesh.h"
-#include "scene/validate/validate_nodes.h"
+#include "scene/validate/validate_parts.h"
 
 namespace pertev {
 namespace {

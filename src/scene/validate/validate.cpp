@@ -12,9 +12,8 @@
 #include "math/double_vec3.h"
 #include "scene/shape_mesh.h"
 #include "scene/tangents/make_tangents.h"
-#include "scene/validate/validate_materials.h"
 #include "scene/validate/validate_mesh.h"
-#include "scene/validate/validate_nodes.h"
+#include "scene/validate/validate_parts.h"
 
 namespace pertev {
 namespace {

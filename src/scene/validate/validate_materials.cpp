@@ -1,4 +1,4 @@
-#include "scene/validate/validate_materials.h"
+#include "scene/validate/validate_parts.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "scene/validate/validate_nodes.h"
+#include "scene/validate/validate_parts.h"
 
 #include <algorithm>
 #include <utility>

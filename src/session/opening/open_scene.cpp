@@ -13,7 +13,6 @@
 #include "scene/names.h"
 #include "session/degrees.h"
 #include "session/photometry.h"
-#include "session/survey/default_light.h"
 #include "session/survey/emitter_fronts.h"
 #include "session/survey/ground.h"
 #include "settings/parse_values.h"

@@ -12,8 +12,8 @@
 #include "base/messages.h"
 #include "formats/read_scene.h"
 #include "scene/scene.h"
-#include "session/scene_use.h"
 #include "session/set_emitters.h"
+#include "session/survey/default_light.h"
 #include "settings/picture_options.h"
 
 namespace pertev {

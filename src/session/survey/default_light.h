@@ -4,10 +4,16 @@
 
 #include "base/messages.h"
 #include "scene/scene.h"
-#include "session/scene_use.h"
 #include "session/survey/surroundings.h"
 
 namespace pertev {
+
+/// Purpose for which a scene is opened. It decides which light is added if a file lacks it.
+enum class SceneUse {
+    Picture,     // `render`, `view`: adds a sky if the file has too little light to see by
+    Measurement, // `measure`, `solve` and pictures of solutions: adds a sky if the file has no light at all
+    Benchmark,   // `bench` and `lab`: like Measurement, with the sky under which recorded figures were measured
+};
 
 enum class DefaultLight { None, Sky, Emitters }; // None: the scene has light, or nothing to be lit
 
