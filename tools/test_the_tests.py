@@ -94,7 +94,8 @@ def build(jobs, tests):
     launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
     steps = [["cmake", "-G", "Ninja", "-S", TREE, "-B", BUILD, "-DPERTEV_CUDA=OFF", *launcher]]
     if any(not test.startswith("sources/") for test in tests):
-        steps.append(["cmake", "--build", BUILD, "-j", str(jobs), "--target", "pertev_tests"])
+        program = ["pertev"] if any((ROOT / f"tests/{test}_test.py").is_file() for test in tests) else []
+        steps.append(["cmake", "--build", BUILD, "-j", str(jobs), "--target", "pertev_tests", *program])
     for step in steps:
         done = subprocess.run(step, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
         if done.returncode != 0:
