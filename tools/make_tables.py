@@ -118,8 +118,11 @@ def pick(table, options):
             columns = [keys.index(key) for key in value.split(",")]
         elif what == "where":
             key, values = value.split(":", 1)
-            wanted = [v.replace("_", " ") for v in values.split("|")]
-            rows = [row for row in rows if str(row[keys.index(key)]) in wanted]
+            wanted = {v.replace("_", " ") for v in values.split("|")}
+            rows = [row for row in rows if str(row[keys.index(key)]).replace("_", " ") in wanted]
+            unmet = wanted - {str(row[keys.index(key)]).replace("_", " ") for row in rows}
+            if unmet:
+                raise ValueError(f"{word} names {', '.join(sorted(unmet))}, which no row is")
         else:
             raise ValueError(f"{word} is neither columns= nor where=")
     return columns, rows
