@@ -91,10 +91,16 @@ void FilmRender::restart_for_scene() {
     restart();
 }
 
+void FilmRender::give_targets(GiveTargets give) {
+    give_targets_ = std::move(give);
+    film_.reset(), pass_film_.reset();
+    restart();
+}
+
 Film& FilmRender::film() {
     if (film_ && film_is_old_) film_->clear();
     film_is_old_ = false;
-    return fit_film(pictures_.queue(), film_, settings_);
+    return fit_film(pictures_.queue(), film_, settings_, give_targets_);
 }
 
 uint32_t FilmRender::render(SampleRange range, Sink& sink) {
@@ -113,7 +119,7 @@ uint32_t FilmRender::render(SampleRange range, Sink& sink) {
     const Stopwatch watch;
     const bool is_apart = leaves_passes_ && on_cpu && before > 0 && !has_steps;
     if (!is_apart) pass_film_.reset();
-    Film& into = is_apart ? fit_film(pictures_.queue(), pass_film_, settings_) : into_film;
+    Film& into = is_apart ? fit_film(pictures_.queue(), pass_film_, settings_, give_targets_) : into_film;
     bool makes = false;
     const auto goes_on = [&](double made_share) {
         makes = true;

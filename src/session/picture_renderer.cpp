@@ -10,10 +10,12 @@ bool is_film_of(const Film& film, const RenderSettings& settings) {
            film.light_layers() == light_layers_of(settings);
 }
 
-Film& fit_film(Queue& queue, std::optional<Film>& film, const RenderSettings& settings) {
+Film& fit_film(Queue& queue, std::optional<Film>& film, const RenderSettings& settings, const GiveTargets& give) {
     if (film && is_film_of(*film, settings)) return *film;
     film.reset(); // freed before the new one, so that two need not fit
-    return film.emplace(queue, settings.width, settings.height, settings.aovs, light_layers_of(settings));
+    Film made(queue, settings.width, settings.height, settings.aovs, light_layers_of(settings));
+    if (give) give(made);
+    return film.emplace(std::move(made));
 }
 
 NoisyFrame& fit_frame(const DeviceScene& scene, std::optional<NoisyFrame>& frame, uint32_t width, uint32_t height) {

@@ -3,6 +3,7 @@
 // Takes samples of any picture of a scene on a device, by the integrator of the picture's settings. The integrator
 // keeps its queues from one picture to the next, so films, frames and the meter share one PictureRenderer.
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -13,8 +14,12 @@
 
 namespace pertev {
 
-/// Returns `film` if it fits a picture of these settings, else replaces it by a new one without samples.
-Film& fit_film(Queue& queue, std::optional<Film>& film, const RenderSettings& settings);
+/// Gives a new film further targets, by Film::hold.
+using GiveTargets = std::function<void(Film&)>;
+
+/// Returns `film` if it fits a picture of these settings, else replaces it by a new one without samples, for which
+/// `give` is called.
+Film& fit_film(Queue& queue, std::optional<Film>& film, const RenderSettings& settings, const GiveTargets& give = {});
 /// Returns `frame` if it fits single samples of the scene at this size, else replaces it by a new one.
 NoisyFrame& fit_frame(const DeviceScene& scene, std::optional<NoisyFrame>& frame, uint32_t width, uint32_t height);
 bool is_film_of(const Film& film, const RenderSettings& settings);

@@ -42,6 +42,11 @@ void Session::set_settings(const RenderSettings& settings) {
     scene_.set_tracer(settings);
 }
 
+void Session::give_targets(GiveTargets give) {
+    film_.give_targets(std::move(give));
+    cut();
+}
+
 void Session::cut() {
     previous_camera_.reset();
     ++cuts_;

@@ -15,22 +15,14 @@ struct Overloaded : Cases... {
     using Cases::operator()...;
 };
 
-/// Returns the field in default options, because its kind does not depend on the options.
-SettingField some_field(const Setting& setting) {
-    static PictureOptions any;
-    return setting.field(any);
-}
-
-/// Returns the field, which must not be written.
-SettingField field_in(const PictureOptions& options, const Setting& setting) {
-    return setting.field(const_cast<PictureOptions&>(options));
-}
-
 template <class Field, class Value>
 constexpr bool is_field_of = std::is_same_v<Field, Value*> || std::is_same_v<Field, std::optional<Value>*>;
 
 template <class Field>
 constexpr bool is_number = is_field_of<Field, float> || is_field_of<Field, double>;
+
+template <class Field>
+constexpr bool is_on_off = std::is_same_v<Field, bool*> || std::is_same_v<Field, InverseSwitch>;
 
 double max_of(const Setting& setting) {
     return setting.high > 0 ? setting.high : double(std::numeric_limits<float>::max());
@@ -98,18 +90,19 @@ std::vector<std::string> words_of(std::string_view text) {
 }
 
 bool is_switch(const Setting& setting) {
-    const SettingField field = some_field(setting);
-    return std::holds_alternative<bool*>(field) || std::holds_alternative<InverseSwitch>(field);
+    return read_field({}, setting, []<class Field>(Field) { return is_on_off<Field>; });
 }
 
 bool is_list(const Setting& setting) {
-    const SettingField field = some_field(setting);
-    return std::holds_alternative<std::vector<std::string>*>(field) ||
-           std::holds_alternative<std::vector<std::filesystem::path>*>(field);
+    return read_field({}, setting, []<class Field>(Field) {
+        return std::is_same_v<Field, std::vector<std::string>*> ||
+               std::is_same_v<Field, std::vector<std::filesystem::path>*>;
+    });
 }
 
 std::vector<std::string> choices_of(const Setting& setting) {
-    const SettingField field = some_field(setting);
+    PictureOptions any;
+    const SettingField field = setting.field(any);
     const NamedField* const named = std::get_if<NamedField>(&field);
     return named != nullptr ? named->names() : setting.choices;
 }
@@ -126,20 +119,18 @@ std::string why_no_value(const Setting& setting, const std::string& text) {
         return why_no_choice(text.substr(equals + 1), choices);
     }
     if (setting.is_name) return text.empty() ? "the name is empty" : "";
-    return std::visit(
-        [&]<class Field>(Field) -> std::string {
-            if constexpr (is_field_of<Field, uint32_t>) {
-                const auto most = setting.high > 0 ? static_cast<uint32_t>(setting.high) : UINT32_MAX;
-                return why_not_whole(text, static_cast<uint32_t>(setting.low), most);
-            } else if constexpr (is_number<Field>) {
-                return why_no_number_for(setting, text);
-            } else if constexpr (std::is_same_v<Field, bool*> || std::is_same_v<Field, InverseSwitch>) {
-                return why_no_choice(text, {"true", "false"});
-            } else {
-                return "";
-            }
-        },
-        some_field(setting));
+    return read_field({}, setting, [&]<class Field>(Field) -> std::string {
+        if constexpr (is_field_of<Field, uint32_t>) {
+            const auto most = setting.high > 0 ? static_cast<uint32_t>(setting.high) : UINT32_MAX;
+            return why_not_whole(text, static_cast<uint32_t>(setting.low), most);
+        } else if constexpr (is_number<Field>) {
+            return why_no_number_for(setting, text);
+        } else if constexpr (is_on_off<Field>) {
+            return why_no_choice(text, {"true", "false"});
+        } else {
+            return "";
+        }
+    });
 }
 
 void set_value(PictureOptions& options, const Setting& setting, std::span<const std::string> texts,
@@ -154,7 +145,8 @@ void set_value(PictureOptions& options, const Setting& setting, std::span<const 
 }
 
 std::vector<std::string> texts_of(const PictureOptions& options, const Setting& setting) {
-    return std::visit(Overloaded{[](InverseSwitch f) { return std::vector{text_of(!*f.field)}; },
+    return read_field(options, setting,
+                      Overloaded{[](InverseSwitch f) { return std::vector{text_of(!*f.field)}; },
                                  [](NamedField f) {
                                      const std::string_view name = f.get(f.field);
                                      return name.empty() ? std::vector<std::string>() : std::vector{std::string(name)};
@@ -167,28 +159,24 @@ std::vector<std::string> texts_of(const PictureOptions& options, const Setting& 
                                  []<class Value>(std::optional<Value>* f) {
                                      return *f ? std::vector{text_of(**f)} : std::vector<std::string>();
                                  },
-                                 []<class Value>(Value* f) { return std::vector{text_of(*f)}; }},
-                      field_in(options, setting));
+                                 []<class Value>(Value* f) { return std::vector{text_of(*f)}; }});
 }
 
 std::string json_of(const PictureOptions& options, const Setting& setting) {
     const std::vector<std::string> texts = texts_of(options, setting);
     if (is_list(setting)) return json_strings(texts);
     if (texts.empty()) return "null";
-    return std::visit(
-        [&]<class Field>(Field) {
-            constexpr bool is_bare = is_number<Field> || is_field_of<Field, uint32_t> || std::is_same_v<Field, bool*> ||
-                                     std::is_same_v<Field, InverseSwitch>;
-            constexpr bool is_vector =
-                is_field_of<Field, Vec3> || is_field_of<Field, DoubleVec3> || is_field_of<Field, Rgb>;
-            if constexpr (is_bare)
-                return texts.front();
-            else if constexpr (is_vector)
-                return json_vector(texts.front()).value();
-            else
-                return json_string(texts.front());
-        },
-        some_field(setting));
+    return read_field({}, setting, [&]<class Field>(Field) {
+        constexpr bool is_bare = is_number<Field> || is_field_of<Field, uint32_t> || is_on_off<Field>;
+        constexpr bool is_vector =
+            is_field_of<Field, Vec3> || is_field_of<Field, DoubleVec3> || is_field_of<Field, Rgb>;
+        if constexpr (is_bare)
+            return texts.front();
+        else if constexpr (is_vector)
+            return json_vector(texts.front()).value();
+        else
+            return json_string(texts.front());
+    });
 }
 
 } // namespace pertev

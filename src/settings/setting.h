@@ -95,6 +95,7 @@ struct Setting {
     const char* name;      // name in C++, JSON and metadata, from which the flag is made
     const char* group;     // a heading, one word
     const char* form = ""; // format of a value, such as N or X,Y,Z; empty: a switch
+    /// Returns the place of the value, which these options no longer share with copies (SharedValue::edit).
     SettingField (*field)(PictureOptions&);
     const char* sentence;       // describes the setting
     const char* more = "";      // further sentences for longer help
@@ -118,6 +119,12 @@ struct Setting {
     bool opens_scene = false; // takes effect before the scene's file is read, which thus cannot suggest it
     bool is_common = false;   // used by most people
 };
+
+/// Returns what `visit` returns for the field of a copy of the options, so that these stay as they are.
+template <class Visit>
+auto read_field(PictureOptions options, const Setting& setting, Visit visit) {
+    return std::visit(visit, setting.field(options));
+}
 
 /// Returns the words of a list such as `needs`.
 std::vector<std::string> words_of(std::string_view list);

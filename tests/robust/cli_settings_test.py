@@ -130,6 +130,17 @@ class Documents(CliTest):
         told = {key for row in table.splitlines() for key in re.findall(r"`([a-z_]+)`", row.split("|")[1])}
         self.assertEqual(keys - settings, told - settings)
 
+    def test_every_event_stands_in_the_document(self):
+        events = set()
+        for folder in ["src", "apps"]:
+            for path in pathlib.Path(ROOT, folder).rglob("*.cpp"):
+                events |= set(re.findall(r'"event":"([a-z_]+)"', path.read_text(encoding="utf-8")))
+        self.assertGreater(len(events), 10)
+        conventions = pathlib.Path(ROOT, "docs/conventions.md").read_text(encoding="utf-8")
+        table = conventions.partition("\n| event |")[2].partition("\n\n")[0]
+        told = {event for row in table.splitlines()[2:] for event in re.findall(r"`([a-z_]+)`", row.split("|")[1])}
+        self.assertEqual(events - told, set())
+
     def test_bash_completes_verbs_flags_and_values(self):
         write(self.path("complete.bash"), self.succeed("--completion", "bash").stdout)
         for line, expected in [("pertev re", "render"), ("pertev render --max-d", "--max-depth"),

@@ -7,6 +7,7 @@
 #include "image/tone_map_image.h"
 #include "render/film.h"
 #include "render/noisy_frame.h"
+#include "session/session.h"
 #include "tests/support/options.h"
 #include "tests/support/random.h"
 #include "tests/support/render_scenes.h"
@@ -100,6 +101,8 @@ TEST_CASE("a film is restored from the bytes of its targets on any device") {
     check_equal(again, whole);
 }
 
+namespace {
+
 /// Counts of a test alone: a kind of target that the film knows nothing of.
 class CountTarget : public ElementTarget<uint64_t, AddCounts, 0> {
 public:
@@ -112,6 +115,10 @@ public:
     }
 };
 
+CountTarget& counts_of(const Film& film) { return dynamic_cast<CountTarget&>(*film.targets().back()); }
+
+} // namespace
+
 TEST_CASE("targets given to a film are added and cleared with its own, and those of another kind are refused") {
     Queue cpu = Queue::make_cpu(), requested = test::requested_queue();
     const auto with_counts = [](Queue& queue, std::size_t count, const char* name) {
@@ -121,9 +128,6 @@ TEST_CASE("targets given to a film are added and cleared with its own, and those
     };
     Film a = with_counts(requested, 5, "counts");
     const Film b = with_counts(cpu, 5, "counts");
-    const auto counts_of = [](const Film& film) -> CountTarget& {
-        return dynamic_cast<CountTarget&>(*film.targets().back());
-    };
     counts_of(a).count(3), counts_of(b).count(4);
     a.add(b);
     CHECK(counts_of(a).elements().download() == std::vector<uint64_t>(5, 7));
@@ -138,6 +142,27 @@ TEST_CASE("targets given to a film are added and cleared with its own, and those
     CHECK(counts_of(a).elements().download() == std::vector<uint64_t>(5, 7)); // unchanged
     a.clear();
     CHECK(counts_of(a).elements().download() == std::vector<uint64_t>(5, 0));
+}
+
+TEST_CASE("all films of a session have the targets that it was given, also those of passes that may be left") {
+    Queue cpu = Queue::make_cpu(); // a GPU's passes are short
+    Messages messages;
+    const Scene scene = test::make_mixed_scene();
+    RenderSettings settings;
+    settings.width = kWidth, settings.height = kHeight;
+    settings.pass_samples = 1;
+    Session session(cpu, prepare_scene(scene, {}, messages), test::mixed_scene_camera(), settings);
+    session.give_targets([&](Film& film) { film.hold(std::make_unique<CountTarget>(cpu, 5, "counts")); });
+    session.leave_passes(true);
+    for (const uint32_t width : {kWidth, kWidth + 1}) {
+        settings.width = width;
+        session.set_settings(settings);
+        CHECK(session.render(1) == 1);
+        CHECK(counts_of(session.film()).elements().download() == std::vector<uint64_t>(5, 0));
+        counts_of(session.film()).count(3);
+        CHECK(session.render(2) == 2); // from films of one pass each
+        CHECK(counts_of(session.film()).elements().download() == std::vector<uint64_t>(5, 3));
+    }
 }
 
 TEST_CASE("a film of another size or of other layers is refused") {

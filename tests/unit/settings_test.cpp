@@ -5,6 +5,8 @@
 #include <doctest/doctest.h>
 
 #include "base/error.h"
+#include "integrators/photon_map/photon_map_settings.h"
+#include "integrators/raster/raster_settings.h"
 #include "session/writing/picture_metadata.h"
 #include "settings/check_settings.h"
 #include "settings/settings_file.h"
@@ -87,6 +89,22 @@ TEST_CASE("a setting's text parses back to its value") {
             CHECK(texts_of(options, setting) == std::vector{choice});
         }
     }
+}
+
+TEST_CASE("reading settings leaves the options as they are, so that threads may read them at once") {
+    PictureOptions options;
+    options.render.photon_map.edit().photons = 7;
+    const PictureOptions copy = options;
+    const auto* const shared = &*copy.render.photon_map;
+    const auto* const none = &*copy.render.display;
+    for (const Setting& setting : all_settings()) {
+        INFO(setting.name);
+        json_of(copy, setting);
+        recorded_settings(copy, {&setting, 1});
+        CHECK(&*copy.render.photon_map == shared);
+        CHECK(&*copy.render.display == none);
+    }
+    CHECK(json_of(copy, *find_setting("photons")) == "7");
 }
 
 TEST_CASE("invalid values are refused, and too large ones exceed a limit") {

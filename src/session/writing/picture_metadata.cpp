@@ -41,21 +41,19 @@ std::string names_as_json(const std::set<uint32_t>& ids, const std::vector<std::
 MetadataValue metadata_value(const PictureOptions& options, const Setting& setting) {
     const std::string text = fmt::format("{}", fmt::join(texts_of(options, setting), "\n"));
     const bool is_text = setting.high > double(INT32_MAX);
-    return std::visit(
-        [&]<class Field>(Field field) -> MetadataValue {
-            if constexpr (std::is_same_v<Field, bool*>)
-                return static_cast<int32_t>(*field);
-            else if constexpr (std::is_same_v<Field, float*>)
-                return *field;
-            else if constexpr (std::is_same_v<Field, std::optional<float>*> ||
-                               std::is_same_v<Field, std::optional<double>*>)
-                return field->value();
-            else if constexpr (std::is_same_v<Field, uint32_t*>)
-                return is_text ? MetadataValue(text) : static_cast<int32_t>(*field);
-            else
-                return text;
-        },
-        setting.field(const_cast<PictureOptions&>(options)));
+    return read_field(options, setting, [&]<class Field>(Field field) -> MetadataValue {
+        if constexpr (std::is_same_v<Field, bool*>)
+            return static_cast<int32_t>(*field);
+        else if constexpr (std::is_same_v<Field, float*>)
+            return *field;
+        else if constexpr (std::is_same_v<Field, std::optional<float>*> ||
+                           std::is_same_v<Field, std::optional<double>*>)
+            return field->value();
+        else if constexpr (std::is_same_v<Field, uint32_t*>)
+            return is_text ? MetadataValue(text) : static_cast<int32_t>(*field);
+        else
+            return text;
+    });
 }
 
 /// Returns the settings of cameras, or all others.
