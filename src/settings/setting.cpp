@@ -108,6 +108,14 @@ bool is_list(const Setting& setting) {
            std::holds_alternative<std::vector<std::filesystem::path>*>(field);
 }
 
+bool is_vector(const Setting& setting) {
+    return std::visit(
+        []<class Field>(Field) {
+            return is_field_of<Field, Vec3> || is_field_of<Field, DoubleVec3> || is_field_of<Field, Rgb>;
+        },
+        some_field(setting));
+}
+
 std::vector<std::string> choices_of(const Setting& setting) {
     const SettingField field = some_field(setting);
     const NamedField* const named = std::get_if<NamedField>(&field);
@@ -175,18 +183,12 @@ std::string json_of(const PictureOptions& options, const Setting& setting) {
     const std::vector<std::string> texts = texts_of(options, setting);
     if (is_list(setting)) return json_strings(texts);
     if (texts.empty()) return "null";
+    if (is_vector(setting)) return json_vector(texts.front()).value();
     return std::visit(
         [&]<class Field>(Field) {
             constexpr bool is_bare = is_number<Field> || is_field_of<Field, uint32_t> || std::is_same_v<Field, bool*> ||
                                      std::is_same_v<Field, InverseSwitch>;
-            constexpr bool is_vector =
-                is_field_of<Field, Vec3> || is_field_of<Field, DoubleVec3> || is_field_of<Field, Rgb>;
-            if constexpr (is_bare)
-                return texts.front();
-            else if constexpr (is_vector)
-                return json_vector(texts.front()).value();
-            else
-                return json_string(texts.front());
+            return is_bare ? texts.front() : json_string(texts.front());
         },
         some_field(setting));
 }
