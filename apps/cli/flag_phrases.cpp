@@ -8,20 +8,13 @@
 
 #include "base/json_text.h"
 #include "base/phrase_settings.h"
+#include "base/shell_word.h"
 
 namespace pertev {
 namespace {
 
 /// Settings whose flags are not made of their names.
 constexpr std::pair<std::string_view, std::string_view> kOtherFlags[] = {{"output", "-o"}, {"scene", "SCENE"}};
-
-/// `value` as one word of a shell.
-std::string shell_word(std::string_view value) {
-    if (value.find_first_of(" \t\n\"'`\\$&|;<>()[]{}*?!#~") == std::string_view::npos) return std::string(value);
-    std::string word = "'";
-    for (const char c : value) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return word + '\'';
-}
 
 std::string flag_and_value(std::string_view setting, std::string_view value) {
     return flag_of(setting) + (value.empty() ? "" : ' ' + shell_word(value));

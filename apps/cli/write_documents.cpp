@@ -78,10 +78,33 @@ _pertev() {
 complete -o filenames -F _pertev pertev
 )bash";
 
-std::string bash_completion(const CLI::App& app) {
-    std::string paths, values, verbs;
+constexpr const char* kFish = R"fish(# Completion of pertev for fish: pertev --completion fish | source
+function __pertev_verb_is
+  set -l verb ''
+  for word in (commandline -opc)[2..-1]
+    set -l longer (string trim -- "$verb $word")
+    contains -- "$longer" @PATHS@; and set verb "$longer"
+  end
+  test "$verb" = "$argv[1]"
+end
+)fish";
+
+/// The words of all verbs, quoted.
+std::string paths_of(const CLI::App& app, const char* separator) {
+    std::string paths;
     for (const VerbWords& verb : all_verbs(app)) {
-        if (!verb.path.empty()) paths += fmt::format("{}\"{}\"", paths.empty() ? "" : "|", verb.path);
+        if (!verb.path.empty()) paths += fmt::format("{}\"{}\"", paths.empty() ? "" : separator, verb.path);
+    }
+    return paths;
+}
+
+void replace_mark(std::string& script, std::string_view mark, const std::string& text) {
+    script.replace(script.find(mark), mark.size(), text);
+}
+
+std::string bash_completion(const CLI::App& app) {
+    std::string values, verbs;
+    for (const VerbWords& verb : all_verbs(app)) {
         std::vector<std::string> words = long_names(*verb.app);
         const std::vector<std::string> below = verbs_below(*verb.app);
         words.insert(words.end(), below.begin(), below.end());
@@ -93,17 +116,17 @@ std::string bash_completion(const CLI::App& app) {
             values += fmt::format("    {}) words=\"{}\" ;;\n", flag_of(setting.name), fmt::join(choices, " "));
     }
     std::string script = kBash;
-    for (const auto& [mark, text] : {std::pair("@PATHS@", &paths), {"@VALUES@", &values}, {"@VERBS@", &verbs}}) {
-        script.replace(script.find(mark), std::string_view(mark).size(), *text);
-    }
+    replace_mark(script, "@PATHS@", paths_of(app, "|"));
+    replace_mark(script, "@VALUES@", values);
+    replace_mark(script, "@VERBS@", verbs);
     return script;
 }
 
 std::string fish_completion(const CLI::App& app) {
-    std::string script = "# Completion of pertev for fish: pertev --completion fish | source\n";
+    std::string script = kFish;
+    replace_mark(script, "@PATHS@", paths_of(app, " "));
     for (const VerbWords& verb : all_verbs(app)) {
-        std::string condition =
-            verb.path.empty() ? "__fish_use_subcommand" : "__fish_seen_subcommand_from " + verb.app->get_name();
+        const std::string condition = fmt::format("__pertev_verb_is \"{}\"", verb.path);
         for (const std::string& below : verbs_below(*verb.app)) {
             script += fmt::format("complete -c pertev -n '{}' -a {}\n", condition, below);
         }
@@ -120,23 +143,9 @@ std::string fish_completion(const CLI::App& app) {
 }
 
 std::string verbs_with(const Setting& setting) {
-    constexpr std::pair<uint32_t, const char*> kVerbs[] = {{kRender, "render"},
-                                                           {kView, "view"},
-                                                           {kMeasure, "measure"},
-                                                           {kSolve, "solve"},
-                                                           {kLab, "lab"},
-                                                           {kInfo, "info"},
-                                                           {kBench, "bench"},
-                                                           {kBenchRender, "bench render"},
-                                                           {kBenchRays, "bench rays"},
-                                                           {kBenchBuild, "bench build"},
-                                                           {kBenchNoise, "bench noise"},
-                                                           {kBenchFrames, "bench frames"},
-                                                           {kBenchSequence, "bench sequence"}};
     std::string names;
-    for (const auto& [bit, name] : kVerbs) {
+    for (const auto& [bit, verb] : kVerbNames) {
         if ((setting.verbs & bit) == 0) continue;
-        const std::string_view verb = name;
         if (verb.starts_with("bench ") && names.find("bench ") != std::string::npos) {
             names += fmt::format("/{}", verb.substr(6)); // bench noise/frames/sequence
         } else {

@@ -67,7 +67,7 @@ constexpr NumberRow kRows[] = {
     {"Now", "film hash", [](const ViewState&, const ViewNumbers& n) { return n.frame->hash; }},
     {"Now", "exposed by",
      [](const ViewState&, const ViewNumbers& n) { return fmt::format("{:+.2f} stops", n.frame->exposure_stops); }},
-    {"Now", "flags that make it", [](const ViewState&, const ViewNumbers& n) { return n.flags; }},
+    {"Now", "flags that make it", [](const ViewState&, const ViewNumbers& n) { return n.picture_flags; }},
     {"Now", "scene", [](const ViewState&, const ViewNumbers& n) { return n.why_still; }},
     {"Now", "colours", [](const ViewState&, const ViewNumbers& n) { return n.frame->caption; }},
     {"Frames", "rendered",

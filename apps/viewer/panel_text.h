@@ -22,6 +22,7 @@ struct ViewNumbers {
     const char* encoder = "";         // the encoder that made them
     std::string phase;                // "moving", "gathering", "done"
     std::string flags;                // flags of the camera and the time
+    std::string picture_flags;        // flags of the whole picture; empty before the first
     uint32_t input = 0, steerer = 0;  // the last input that is included, and its client
     SceneClock clock;                 // end_s is 0 if time changes nothing
     const CameraPath* path = nullptr; // the recorded path; null: none

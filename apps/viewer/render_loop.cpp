@@ -8,6 +8,7 @@
 #include "apps/viewer/file_name.h"
 #include "apps/viewer/panel_phrases.h"
 #include "apps/viewer/panel_text.h"
+#include "apps/viewer/picture_flags.h"
 #include "base/error.h"
 #include "scene/scene_origin.h"
 #include "session/pictures/prepare_render.h"
@@ -390,6 +391,15 @@ void RenderLoop::report_state() {
         numbers.flags += fmt::format(" --size {}x{}", view_.picture.width, view_.picture.height);
     }
     if (!start_.record.scene.ground.empty()) numbers.flags += " --ground on"; // an --eye alone removes it
+    if (last_) {
+        PictureRecord made; // without the scene's names, which may be many
+        made.scene.time_s = start_.is_animated ? clock_.time_s : start_.record.scene.time_s;
+        made.scene.ground = start_.record.scene.ground;
+        made.display = view_.display;
+        made.display->exposure_stops = last_->exposure_stops;
+        numbers.picture_flags =
+            without_folders(picture_flags(options_for(made), numbers.flags), start_.record.scene.scene);
+    }
     numbers.why_still = start_.why_still;
     numbers.input = input_;
     numbers.steerer = steerer_;

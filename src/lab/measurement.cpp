@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/json_text.h"
 #include "base/parallel_for.h"
+#include "base/shell_word.h"
 #include "base/version.h"
 #include "image/write_png.h"
 
@@ -113,11 +114,7 @@ std::string command_line() {
             word += c;
             continue;
         }
-        const bool is_plain = !word.empty() && word.find_first_of(" \t\n\"'$&|<>;*?()`\\") == std::string::npos;
-        std::string quoted = word;
-        for (std::size_t at = 0; (at = quoted.find('\'', at)) != std::string::npos; at += 4)
-            quoted.replace(at, 1, "'\\''");
-        line += (line.empty() ? "" : " ") + (is_plain ? word : '\'' + quoted + '\'');
+        line += (line.empty() ? "" : " ") + shell_word(word);
         word.clear();
     }
     return line;

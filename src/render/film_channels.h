@@ -29,7 +29,7 @@ inline constexpr uint32_t kFilmHits = 3; // index of the channel that counts hit
 
 struct AovGroup {
     AovBits bit;
-    const char* name;        // name on the command line
+    const char* name;        // name as text
     const char* layer;       // layer name in files
     const char* channels[3]; // channel names in files; null if there are fewer
     bool is_summed;          // its channels are sums in the film
@@ -94,7 +94,7 @@ HD constexpr uint32_t film_channel_count(uint32_t aovs) {
 const AovGroup& aov_group(AovBits aov);
 std::vector<std::string> channel_names(const AovGroup& group);
 
-/// Finds a group by its name on the command line.
+/// Finds a group by its name.
 std::optional<AovBits> aov_named(std::string_view name);
 /// Names of all groups in the order of their bits.
 std::vector<std::string> aov_names();

@@ -100,6 +100,12 @@ bool is_list(const Setting& setting) {
     });
 }
 
+bool is_vector(const Setting& setting) {
+    return read_field({}, setting, []<class Field>(Field) {
+        return is_field_of<Field, Vec3> || is_field_of<Field, DoubleVec3> || is_field_of<Field, Rgb>;
+    });
+}
+
 std::vector<std::string> choices_of(const Setting& setting) {
     PictureOptions any;
     const SettingField field = setting.field(any);
@@ -166,16 +172,10 @@ std::string json_of(const PictureOptions& options, const Setting& setting) {
     const std::vector<std::string> texts = texts_of(options, setting);
     if (is_list(setting)) return json_strings(texts);
     if (texts.empty()) return "null";
+    if (is_vector(setting)) return json_vector(texts.front()).value();
     return read_field({}, setting, [&]<class Field>(Field) {
         constexpr bool is_bare = is_number<Field> || is_field_of<Field, uint32_t> || is_on_off<Field>;
-        constexpr bool is_vector =
-            is_field_of<Field, Vec3> || is_field_of<Field, DoubleVec3> || is_field_of<Field, Rgb>;
-        if constexpr (is_bare)
-            return texts.front();
-        else if constexpr (is_vector)
-            return json_vector(texts.front()).value();
-        else
-            return json_string(texts.front());
+        return is_bare ? texts.front() : json_string(texts.front());
     });
 }
 

@@ -71,16 +71,30 @@ enum SettingVerbs : uint32_t {
     kView = 2,
     kMeasure = 4,
     kSolve = 8,
-    kBenchNoise = 16,
-    kBenchFrames = 32,
-    kBenchSequence = 64,
-    kLab = 128,
-    kInfo = 256,
-    kBench = 512,
-    kBenchBuild = 1024,
-    kBenchRays = 2048,
-    kBenchRender = 4096,
+    kLab = 16,
+    kInfo = 32,
+    kBench = 64,
+    kBenchRender = 128,
+    kBenchRays = 256,
+    kBenchBuild = 512,
+    kBenchNoise = 1024,
+    kBenchFrames = 2048,
+    kBenchSequence = 4096,
 };
+/// Names of verbs in the order of documents.
+inline constexpr ValueName<SettingVerbs> kVerbNames[] = {{kRender, "render"},
+                                                         {kView, "view"},
+                                                         {kMeasure, "measure"},
+                                                         {kSolve, "solve"},
+                                                         {kLab, "lab"},
+                                                         {kInfo, "info"},
+                                                         {kBench, "bench"},
+                                                         {kBenchRender, "bench render"},
+                                                         {kBenchRays, "bench rays"},
+                                                         {kBenchBuild, "bench build"},
+                                                         {kBenchNoise, "bench noise"},
+                                                         {kBenchFrames, "bench frames"},
+                                                         {kBenchSequence, "bench sequence"}};
 
 /// Form in which a picture's file records a setting under its name.
 enum class Recorded : uint8_t {
@@ -132,6 +146,8 @@ std::vector<std::string> words_of(std::string_view list);
 bool is_switch(const Setting& setting);
 /// Returns whether the setting accepts any number of values.
 bool is_list(const Setting& setting);
+/// Returns whether a value is one vector or colour.
+bool is_vector(const Setting& setting);
 /// Returns all possible values; empty if they are not listed.
 std::vector<std::string> choices_of(const Setting& setting);
 /// Returns whether the integrator has the setting.

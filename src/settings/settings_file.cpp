@@ -19,16 +19,6 @@ constexpr uint64_t kVersion = 1;
 
 using gltf::JsonValue;
 
-/// Returns whether the value can be given again, which a value that means "not given" cannot.
-bool is_written(const PictureOptions& options, const Setting& setting) {
-    const bool is_recorded = setting.recorded != Recorded::No && setting.recorded != Recorded::AsUsed &&
-                             has_setting(options.render.integrator, setting);
-    if (!setting.is_kept || !(is_recorded || options.is_given(setting.name))) return false;
-    const std::vector<std::string> texts = texts_of(options, setting);
-    return !texts.empty() &&
-           std::ranges::all_of(texts, [&](const std::string& text) { return why_no_value(setting, text).empty(); });
-}
-
 /// Returns the value as text: a number as it is written, an array of numbers as "1,2,3".
 std::string text_of(const JsonValue& value) {
     const std::string json = value.to_json();
@@ -70,6 +60,15 @@ std::string scene_hash(const std::string& scene) {
     Hasher hasher;
     hasher.add(*text);
     return hasher.result().hex();
+}
+
+bool is_written(const PictureOptions& options, const Setting& setting) {
+    const bool is_recorded = setting.recorded != Recorded::No && setting.recorded != Recorded::AsUsed &&
+                             has_setting(options.render.integrator, setting);
+    if (!setting.is_kept || !(is_recorded || options.is_given(setting.name))) return false;
+    const std::vector<std::string> texts = texts_of(options, setting);
+    return !texts.empty() && // which a value that means "not given" has
+           std::ranges::all_of(texts, [&](const std::string& text) { return why_no_value(setting, text).empty(); });
 }
 
 std::string settings_json(const PictureOptions& options, const std::string& hash_of_scene,

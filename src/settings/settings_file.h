@@ -18,8 +18,12 @@ namespace pertev {
 /// The hash of a built-in scene is that of its text. Empty if there is no such file.
 std::string scene_hash(const std::string& scene);
 
-/// Returns an object {"version":1,"scene":{"name":...,"hash":...},"settings":{...}} with the settings that were
-/// given, and those that every file of a picture records.
+/// Returns whether settings_json contains the setting: it was given or every file of a picture records it, and it has
+/// a value that can be given again.
+bool is_written(const PictureOptions& options, const Setting& setting);
+
+/// Returns an object {"version":1,"scene":{"name":...,"hash":...},"settings":{...}} with the settings
+/// that is_written() names.
 std::string settings_json(const PictureOptions& options, const std::string& hash_of_scene,
                           std::span<const Setting> table = all_settings());
 

@@ -357,7 +357,6 @@ private:
 /// Converts a material's perceptual roughness, [0, 1], to a GGX width.
 HD inline float alpha_from_roughness(float roughness) { return square(clamp(roughness, 0.0f, 1.0f)); }
 
-HD inline Bsdf make_absorber() { return {}; }
 /// Makes a diffuse BSDF with `albedo` in [0, 1].
 HD inline Bsdf make_diffuse(Rgb albedo) { return Bsdf(DiffuseLobe{albedo, 1}); }
 /// Makes a conductor with the complex index eta + i k, both >= 0; roughness in [0, 1].

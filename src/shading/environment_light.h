@@ -165,11 +165,6 @@ HD inline Rgb environment_radiance(const EnvironmentView& view, Vec3 direction) 
     return find_environment(view, direction, false).radiance;
 }
 
-/// Density of sample_environment at `direction`, 1/sr; 0 if black, and everywhere for a black environment.
-HD inline float environment_pdf(const EnvironmentView& view, Vec3 direction) {
-    return find_environment(view, direction, true).pdf;
-}
-
 struct EnvironmentSample {
     Vec3 wi;      // unit, towards the light
     Rgb radiance; // W/(sr m2)

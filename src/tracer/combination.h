@@ -1,8 +1,8 @@
 #pragma once
 
 // How rays find what they hit: a structure, its traversal, the switches of both, and how rays are distributed to
-// threads. Rendering chooses from these combinations, and the laboratory compares them. Names are those of the
-// command line. An invalid combination is refused with a reason.
+// threads. Rendering chooses from these combinations, and the laboratory compares them. An invalid
+// combination is refused with a reason.
 
 #include <cstdint>
 #include <optional>
@@ -56,7 +56,7 @@ enum class Distribution {
     DynamicFetch, // persistent warps in which finished lanes fetch new rays while the others go on
 };
 
-// Names are those of the command line. Binary hierarchies have the names of their builders.
+// Names of structures as text. Binary hierarchies have the names of their builders.
 inline constexpr ValueName<StructureKind> kStructureNames[] = {
     {StructureKind::Binned, name_of(BvhBuilder::Binned)},
     {StructureKind::Sweep, name_of(BvhBuilder::Sweep)},

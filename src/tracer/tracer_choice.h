@@ -9,7 +9,7 @@
 namespace pertev {
 
 enum class RayKind : uint8_t { Camera, Bounce, Shadow };
-/// Names of ray kinds on the command line.
+/// Names of ray kinds as text.
 inline constexpr ValueName<RayKind> kRayKinds[] = {
     {RayKind::Camera, "camera"}, {RayKind::Bounce, "bounce"}, {RayKind::Shadow, "shadow"}};
 constexpr const auto& names_of_all(RayKind) { return kRayKinds; }
@@ -32,7 +32,7 @@ enum class TreeBuild : uint8_t {
     Balanced, // pays off within the first picture
     Best,     // pays off over many pictures
 };
-/// Names of build efforts on the command line, from the fastest build to the best tree.
+/// Names of build efforts as text, from the fastest build to the best tree.
 inline constexpr ValueName<TreeBuild> kTreeBuilds[] = {
     {TreeBuild::Fast, "fast"}, {TreeBuild::Balanced, "balanced"}, {TreeBuild::Best, "best"}};
 constexpr const auto& names_of_all(TreeBuild) { return kTreeBuilds; }

@@ -152,7 +152,17 @@ class Documents(CliTest):
             self.assertEqual(outcome.stdout.split(), [expected], line)
         self.refuse(2, "--completion", "tcsh", says=["tcsh"])
         self.assertIn("--max-depth", self.succeed("--completion", "zsh").stdout)
-        self.assertIn("-l max-depth", self.succeed("--completion", "fish").stdout)
+
+    def test_fish_completes_the_flags_of_the_whole_verb(self):
+        flags = {}
+        for verb, flag in re.findall(r"""(?m)^complete -c pertev -n '__pertev_verb_is "([a-z ]*)"' -l ([a-z-]+)""",
+                                     self.succeed("--completion", "fish").stdout):
+            flags.setdefault(verb, set()).add(flag)
+        for verb in ["render", "bench", "bench render"]:
+            shown = self.succeed(*verb.split(), "--help", "all").stdout
+            self.assertEqual(flags[verb], set(re.findall(r"(?m)^  (?:-\w,)?--([a-z-]+)", shown)), verb)
+        self.assertIn("isolated", flags["bench render"] - flags["render"])
+        self.assertIn("max-depth", flags["render"] - flags["bench render"])
 
     def test_the_page_for_man_names_every_flag_of_render(self):
         page = self.succeed("--man").stdout.replace("\\-", "-")

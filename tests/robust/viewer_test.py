@@ -5,6 +5,7 @@ import json
 import os
 import random
 import re
+import shlex
 import signal
 import socket
 import time
@@ -236,6 +237,10 @@ class Pictures(CliTest):
                 kept = ["--max-depth", "1"] if name != "max_depth" else []
                 kept += ["--integrator", "direct"] if name == "spp" else []
                 self.assertEqual(state["hash"], self.rendered(*kept, *arguments, spp=state["spp"])[0], name)
+            # The flags that are shown for the picture make it, without any others.
+            words = shlex.split(dict(row[1:] for row in state["rows"])["flags that make it"])
+            again = self.succeed("render", "cornell-box", "-o", "again.png", "--device", "cpu", "--json", *words)
+            self.assertEqual(again.events("done")[0]["hash"], state["hash"])
             client.set("spp", -1)
             self.assertIn("whole number", client.text("notice")["text"])
             for tone_map in ["srgb", "aces"]:

@@ -42,7 +42,7 @@ inline std::vector<BsdfCase> layered_bsdf_cases() {
             {"varnished glass", make_coated(glass, 1, 0.6f, 1.5f)},
             {"half metal under a mirror of varnish", make_coated(half_metal, 0.8f, 0, 1.5f)},
             {"velvet", make_sheen(make_diffuse({0.8f, 0.2f, 0.3f}), {0.6f, 0.7f, 1.0f}, 0.5f)},
-            {"sheen alone", make_sheen(make_absorber(), {1.0f, 0.7f, 0.4f}, 0.35f)},
+            {"sheen alone", make_sheen(Bsdf{}, {1.0f, 0.7f, 0.4f}, 0.35f)},
             {"dust on varnished half metal",
              make_sheen(make_coated(half_metal, 0.5f, 0.3f, 1.5f), {0.5f, 0.4f, 0.3f}, 0.3f)}};
 }

@@ -169,7 +169,7 @@ TEST_CASE("bases beneath layers lose little light, and sheen alone reflects at m
     const MeanWeight on_velvet = furnace_range(velvet, 1, points);
     INFO("white velvet: from " << on_velvet.least() << " to " << on_velvet.largest());
     CHECK(on_velvet.b < 1.001);
-    const auto sheen = [](float r) { return make_sheen(make_absorber(), grey(1), r); };
+    const auto sheen = [](float r) { return make_sheen(Bsdf{}, grey(1), r); };
     const MeanWeight alone = furnace_range(sheen, 1, points);
     INFO("sheen alone: from " << alone.least() << " to " << alone.largest());
     CHECK(alone.largest() > 0.4);

@@ -51,6 +51,11 @@ EnvironmentData build(const Environment& environment) {
     return data;
 }
 
+/// Density of sample_environment at `direction`, 1/sr.
+float environment_pdf(const EnvironmentView& view, Vec3 direction) {
+    return find_environment(view, direction, true).pdf;
+}
+
 /// Direction at longitude and polar angle by the convention of scene/light.h, in double.
 Vec3 direction_at(double longitude, double theta) {
     return {static_cast<float>(std::sin(theta) * std::sin(longitude)), static_cast<float>(std::cos(theta)),

@@ -22,6 +22,8 @@ TEST_CASE("numbers between commas are a JSON array, to all their digits") {
 
 TEST_CASE("vectors in an EXR's metadata become arrays, and all other texts stay texts") {
     CHECK(metadata_json({"pertev.eye", "0,0.5,4"}) == "[0,0.5,4]");
+    CHECK(metadata_json({"pertev.ambient", "0.1,0.2,0.3"}) == "[0.1,0.2,0.3]");
+    CHECK(metadata_json({"pertev.position_origin", "4000000.5,5,0"}) == "[4000000.5,5,0]");
     CHECK(metadata_json({"pertev.shutter", "-0.25,0.1"}) == "[-0.25,0.1]");
     CHECK(metadata_json({"pertev.environment", "1,2,0.5"}) == "[1,2,0.5]");
     CHECK(metadata_json({"pertev.environment", "sky.hdr"}) == "\"sky.hdr\"");

@@ -12,8 +12,10 @@
 #include "apps/viewer/layer_colors.h"
 #include "apps/viewer/packer.h"
 #include "apps/viewer/panel_text.h"
+#include "apps/viewer/picture_flags.h"
 #include "apps/viewer/view_state.h"
 #include "device_scene/ray_queue.h"
+#include "settings/setting_table.h"
 #include "tests/support/options.h"
 
 using namespace pertev;
@@ -138,6 +140,28 @@ TEST_CASE("messages to the page are JSON") {
         CHECK_MESSAGE(parser.parse(text)["type"].get_string().get(type) == simdjson::SUCCESS, text);
         CHECK_MESSAGE(text.find("a user") == std::string::npos, text); // nobody is told where the file lies
     }
+}
+
+TEST_CASE("the flags of a picture are its settings that differ from the defaults, and those of the view") {
+    PictureOptions options;
+    CHECK(picture_flags(options, "--eye 0,1,2") == "--eye 0,1,2");
+    for (const auto& [name, text] : {std::pair("environment", "a b.hdr"),
+                                     {"eye", "3,4,5"},
+                                     {"exposure", "1.5"},
+                                     {"transparent", "true"},
+                                     {"size", "64x48"},
+                                     {"threads", "2"},
+                                     {"integrator", "path"},
+                                     {"max_depth", "3"}}) {
+        const std::string value = text;
+        set_value(options, *find_setting(name), {&value, 1});
+    }
+    const std::string flags = picture_flags(options, "--eye 0,1,2 --size 32x32");
+    CHECK(flags.ends_with(" --eye 0,1,2 --size 32x32")); // the view's own are not repeated
+    for (const char* shown : {"--environment 'a b.hdr' ", "--exposure 1.5 ", "--transparent --", "--max-depth 3 "})
+        CHECK_MESSAGE(flags.find(shown) != std::string::npos, flags);
+    for (const char* hidden : {"3,4,5", "64x48", "--threads", "--integrator"}) // a default, and what is not kept
+        CHECK_MESSAGE(flags.find(hidden) == std::string::npos, flags);
 }
 
 TEST_CASE("clients get file names, never paths") {

@@ -25,7 +25,7 @@ enum class BvhBuilder {
     Reinsertion,        // Binned, then optimized by reinsertion of subtrees
     SpatialReinsertion, // SpatialSplits, then optimized by reinsertion
 };
-/// Names of builders on the command line.
+/// Names of builders as text.
 inline constexpr ValueName<BvhBuilder> kBvhBuilders[] = {{BvhBuilder::Binned, "binned"},
                                                          {BvhBuilder::Sweep, "sweep"},
                                                          {BvhBuilder::Median, "median"},

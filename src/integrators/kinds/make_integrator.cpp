@@ -37,7 +37,7 @@ RadiosityIntegrator::Settings radiosity_settings(const IntegratorSettings& setti
     return {tree_settings(settings), *settings.radiosity};
 }
 
-SubpathSettings traversal_settings(const IntegratorSettings& settings) {
+SubpathSettings subpath_settings(const IntegratorSettings& settings) {
     return {.max_depth = settings.path.max_depth,
             .roulette_depth = settings.path.roulette_depth,
             .sampler = settings.path.sampler,
@@ -45,11 +45,11 @@ SubpathSettings traversal_settings(const IntegratorSettings& settings) {
 }
 
 PhotonMapRequest photon_map_request(const IntegratorSettings& settings) {
-    return {traversal_settings(settings), *settings.photon_map};
+    return {subpath_settings(settings), *settings.photon_map};
 }
 
 IrradianceCacheRequest irradiance_cache_request(const IntegratorSettings& settings) {
-    return {traversal_settings(settings), *settings.irradiance_cache};
+    return {subpath_settings(settings), *settings.irradiance_cache};
 }
 
 RasterSettings raster_settings(const IntegratorSettings& settings) {
@@ -109,7 +109,7 @@ MemoryUse memory_of_records(const IntegratorSettings& settings, const WorkSize& 
 
 constexpr const char* kAll = "all";
 constexpr const char* kNoCaustics = "all but LS+D of point lights";
-constexpr const char* kNoShadows = "L(D|G)E of point lights, no shadows; lamps seen";
+constexpr const char* kNoShadows = "L(D|G)E of point lights, no shadows; emitters seen";
 
 using Kind = IntegratorKind;
 constexpr std::array kIntegrators = {
@@ -135,14 +135,14 @@ constexpr std::array kIntegrators = {
                                        .rasterises_camera = true}),
     row<RayTreeIntegrator<Cast>, tree_settings>({.value = Kind::Cast,
                                                  .name = "cast",
-                                                 .light = "L(D|G)E of point lights; lamps seen",
+                                                 .light = "L(D|G)E of point lights; emitters seen",
                                                  .settings = "ambient",
                                                  .has_shutter = true,
                                                  .needs_punctual_lights = true,
                                                  .max_depth = kMaxTreeDepth}),
     row<RayTreeIntegrator<Whitted>, tree_settings>({.value = Kind::Whitted,
                                                     .name = "whitted",
-                                                    .light = "L(D|G)S*E of point lights; lamps seen",
+                                                    .light = "L(D|G)S*E of point lights; emitters seen",
                                                     .settings = "ambient",
                                                     .has_shutter = true,
                                                     .needs_punctual_lights = true,
@@ -168,9 +168,9 @@ constexpr std::array kIntegrators = {
                                           .needs_punctual_lights = true,
                                           .has_mean_ambient = true,
                                           .samples_at_once = ReyesIntegrator::samples_at_once}),
-    row<SubpathIntegrator<ParticlesAlone>, traversal_settings>(
+    row<SubpathIntegrator<ParticlesAlone>, subpath_settings>(
         {.value = Kind::Light, .name = "light", .light = "L((D|G|S)*(D|G))?E: nothing in mirrors or clear glass"}),
-    row<SubpathIntegrator<BothDirections>, traversal_settings>(
+    row<SubpathIntegrator<BothDirections>, subpath_settings>(
         {.value = Kind::Bidirectional,
          .name = "bidirectional",
          .light = kAll,

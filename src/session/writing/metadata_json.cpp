@@ -6,14 +6,21 @@
 #include <type_traits>
 
 #include "base/json_text.h"
+#include "settings/setting_table.h"
 
 namespace pertev {
 namespace {
 
-/// Entries whose text is a list of numbers. Other texts may look like one by chance, such as the name of a camera.
-constexpr std::string_view kVectors[] = {
-    "pertev.eye",     "pertev.target",  "pertev.up",          "pertev.world_from_camera",
-    "pertev.ambient", "pertev.shutter", "pertev.environment", "pertev.position_origin"};
+/// Entries that may be lists of numbers beside settings that are vectors.
+constexpr std::string_view kLists[] = {"pertev.world_from_camera", "pertev.position_origin", "pertev.shutter",
+                                       "pertev.environment"};
+
+/// Returns whether the text may be a list of numbers. Others may look like one by chance, such as a camera's name.
+bool may_be_list(std::string_view name) {
+    constexpr std::string_view kPrefix = "pertev.";
+    const Setting* const setting = name.starts_with(kPrefix) ? find_setting(name.substr(kPrefix.size())) : nullptr;
+    return (setting != nullptr && is_vector(*setting)) || std::ranges::find(kLists, name) != std::end(kLists);
+}
 
 } // namespace
 
@@ -22,9 +29,8 @@ std::string metadata_json(const ExrMetadata::value_type& entry) {
     return std::visit(
         [&](const auto& value) {
             if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::string>) {
-                const bool is_vector = std::ranges::find(kVectors, name) != std::end(kVectors);
-                const std::optional<std::string> vector = is_vector ? json_vector(value) : std::nullopt;
-                return vector ? *vector : json_string(value);
+                const std::optional<std::string> list = may_be_list(name) ? json_vector(value) : std::nullopt;
+                return list ? *list : json_string(value);
             } else {
                 return json_number(static_cast<double>(value));
             }
