@@ -23,7 +23,8 @@ FOLDERS = ["src", "apps", "tests", "tools", "bench", "cmake", ".ci"]
 C_SUFFIXES = {".h", ".cpp", ".cu", ".inl", ".js"}
 SCRIPT_SUFFIXES = {".cmake", ".sh"}
 FRAGMENTS = re.compile(r"[/*!<#\s]*(?:of|what|those|the same|likewise|as|beside)\b", re.IGNORECASE)
-CLAUSES = re.compile(r"/// *(?:whether|why|how|where|when)\b", re.IGNORECASE)
+CLAUSES = re.compile(r"/// *(?:whether|why|how|where|when|that|these|it|they|then|and|so|to|from|by|without|with the)\b",
+                     re.IGNORECASE)
 LONGEST_SUBJECT = 72
 
 # Strings are matched so that a "//" in one begins no comment; a ' between digits separates them.
@@ -134,6 +135,9 @@ CASES = [
     (".py", "a = '# of'\n# A list\n# of names.\n", 0),
     (".h", "/// Whether it is.\nbool a();\n", 1),
     (".h", "// Why it is so\nbool a();\n", 0),
+    (".h", "/// That ray, unbounded.\nint a();\n", 1),
+    (".h", "/// With the slash.\nint a();\n", 1),
+    (".h", "/// With --json, writes an object\n/// to the output.\nint a();\n", 0),
     (".cmake", "set(a b) # of c\n", 1),
     ("/CMakeLists.txt", "# A list\n# of names\nset(a [[#]] \"# of\")\n", 0),
     (".sh", "a=$#\n# What it is\n", 2),

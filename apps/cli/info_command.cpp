@@ -140,7 +140,7 @@ std::string settings_of(const std::string& picture) {
            json.substr(std::min(json.find_first_of(",}", begin), json.size()));
 }
 
-/// Which animations and scenes the file has, and which of them a render plays and shows unless flags say otherwise.
+/// Lists the file's animations and scenes, and those that a render plays and shows by default.
 void describe_choices(const Scene& scene, Facts& facts) {
     std::vector<std::string> animations = list_clips(scene.clips); // values of --animation
     for (std::size_t i = 0; i < animations.size(); ++i) {

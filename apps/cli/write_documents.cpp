@@ -179,7 +179,7 @@ std::string default_of(const Setting& setting) {
     return is_switch(setting) ? "off" : fmt::format("{}", fmt::join(texts, ", "));
 }
 
-/// In a table of Markdown.
+/// Escapes text for a Markdown cell.
 std::string cell(std::string text) {
     for (std::size_t at = 0; (at = text.find_first_of("|*<", at)) != std::string::npos; at += 2)
         text.insert(at, 1, '\\');

@@ -49,7 +49,7 @@ public:
     /// `inbox` outlives it. `welcome` is the first text that each client gets.
     Audience(Inbox& inbox, std::string welcome) : inbox_(inbox), welcome_(std::move(welcome)) {}
 
-    // For the network's thread. Times are seconds of a steady clock.
+    // The network's thread calls these. Times are seconds of a steady clock.
 
     /// Returns false if there are too many clients.
     bool open(uint32_t client, double now_s);
@@ -60,7 +60,7 @@ public:
     /// Must be called regularly. Returns the clients that have not said hello in time.
     std::vector<uint32_t> tick(double now_s);
 
-    // For the render's thread.
+    // The render's thread calls these.
 
     void publish(ShownFrame frame, uint32_t input);
     /// Sends the panel's state to all clients; a queued one is replaced.
@@ -71,7 +71,7 @@ public:
     /// Returns whether some client is ready but has not got the last picture.
     bool is_behind(double now_s) const;
 
-    // For the thread that packs pictures.
+    // The thread that packs pictures calls these.
 
     /// Waits for something to send until the timeout. The result counts as in flight. `now_s` is the clock of the
     /// other functions' times.

@@ -48,7 +48,7 @@ bool is_below_root(std::string_view rest) {
     return rest.starts_with('/') && is_folder(std::string(rest.substr(0, rest.find_first_of(ends))));
 }
 
-/// With the slash; empty without one.
+/// Folder of a path, with its trailing slash; empty if it has none.
 std::string folder_of(const std::string& path) { return path.substr(0, path.size() - file_name(path).size()); }
 
 } // namespace

@@ -121,7 +121,7 @@ std::string rows_json(const ViewState& view, const ViewNumbers& numbers) {
     return rows;
 }
 
-/// With all digits, because positions may be far from the origin.
+/// A vector as JSON. It has all digits, because positions may be far from the origin.
 std::string json_of(DoubleVec3 v) {
     const auto number = [](double x) { return std::isfinite(x) ? fmt::format("{}", x) : "null"; };
     return fmt::format("[{},{},{}]", number(v.x), number(v.y), number(v.z));
@@ -132,7 +132,7 @@ std::string clock_json(const SceneClock& clock) {
                        json_number(clock.end_s), clock.plays, clock.loops, json_number(clock.speed));
 }
 
-/// In the format of formats/read_camera_path.h.
+/// The camera path's keys in the format of formats/read_camera_path.h.
 std::string keys_json(const CameraPath* path) {
     std::string list;
     if (path == nullptr) return list;

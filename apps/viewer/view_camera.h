@@ -35,7 +35,7 @@ class ViewCamera {
 public:
     static constexpr std::size_t kMaxKeys = 100;
 
-    /// Both outlive it. `scene` is at the clock's time whenever go_to() is called.
+    /// `start` and `scene` outlive the camera. `scene` is at the clock's time whenever go_to() is called.
     ViewCamera(const StartCamera& start, const Scene& scene);
 
     /// The camera with this lens at its position.

@@ -61,7 +61,7 @@ public:
 
     uint16_t port() const;
 
-    // From any thread. Does nothing for a client that is gone.
+    // Any thread may call these. They do nothing for a client that is gone.
     void send_text(uint32_t client, std::string text);
     void send_picture(uint32_t client, std::shared_ptr<const std::vector<uint8_t>> message);
 

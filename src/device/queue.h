@@ -60,8 +60,8 @@ public:
     void let_wait(int waiting, int other) { backend_->let_wait(waiting, other); }
     /// Number of concurrent streams.
     int streams() const { return streams_; }
-    /// While it exists, launches, fills and waits use stream `index`. Of copies only a Readback may be used; uploads
-    /// and downloads belong before the fork or after the join.
+    /// While it exists, launches, fills and waits use stream `index`. The only copy allowed is a Readback; uploads and
+    /// downloads belong before the fork or after the join.
     class OnStream {
     public:
         OnStream(Queue& queue, int index) : queue_(queue) { queue.use_stream(index); }

@@ -220,7 +220,7 @@ Perceived perceive(const std::vector<Vec3>& linear, Size size, float pixels_per_
 // The largest colour difference there is: between the display's green and blue.
 float largest_colour_difference() { return pow(hyab(hunt_lab_of({0, 1, 0}), hunt_lab_of({0, 0, 1})), kColourExponent); }
 
-// To [0, 1], with most of the range for the differences below p_c times the largest.
+// Maps a colour difference to [0, 1], with most of the range for the differences below p_c times the largest.
 float redistribute(float difference, float largest) {
     const float error = pow(difference, kColourExponent), knee = kColourKnee * largest;
     if (error < knee) return kColourKneeValue / knee * error;
@@ -269,7 +269,7 @@ struct ExposureRange {
     float first = 0, last = 0; // stops
 };
 
-// From where the brightest pixel, to where the median one reaches 85 % of the display.
+// The exposures that show the brightest pixel and the median one at 85 % of the display.
 ExposureRange exposures_for(const std::vector<Vec3>& reference) {
     constexpr float kTarget = 0.85f;
     const float a = kCurve[0] - kTarget * kCurve[3], b = kCurve[1] - kTarget * kCurve[4],

@@ -111,7 +111,7 @@ private:
     void gather(std::span<const Link> links);
     double pass_on();
     void receive(NodeCode receiver, std::span<const Link> links);
-    /// For a patch or its tree of parts: radiosity, W/m2, and the leaving light and its change, W.
+    /// Radiosity of a patch or its tree of parts, W/m2, and the leaving light and its change, W.
     struct Pushed {
         Rgb sent;
         double changed = 0, all = 0;

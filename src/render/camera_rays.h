@@ -35,7 +35,7 @@ struct CameraRays {
         const Vec2Of<T> offset = sample_filter(filter, in_filter);
         return make_camera_line(view, Vec2Of<T>{corner.x + 0.5f + offset.x, corner.y + 0.5f + offset.y}, on_lens);
     }
-    /// That ray at `time`, as time() draws it. Its direction is unit.
+    /// The ray of `line` at `time`, as time() draws it. Its direction is unit.
     HD Ray ray(const RayLine& line, float time) const {
         const Ray still = {line.origin, 0.0f, line.direction, kInfinity};
         return motion.moves() ? moved(still, time) : still;
@@ -52,8 +52,8 @@ struct CameraRays {
     }
     /// The axis at a ray's time.
     HD Vec3 axis_at(float time) const { return motion.moves() ? motion.at(time).turn(axis) : axis; }
-    /// For a light meter, whose rays count as scattered by a white surface, the density of the direction in 1/sr;
-    /// otherwise 0.
+    /// Density of the direction in 1/sr for a light meter, whose rays count as scattered by a white surface; otherwise
+    /// 0.
     HD float pdf_of_surface(Vec3 direction) const {
         return is_meter() ? pdf_cosine_hemisphere(dot(direction, axis)) : 0.0f;
     }

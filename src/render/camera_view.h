@@ -74,7 +74,7 @@ HD inline RayLineOf<T> make_camera_line(const CameraView& camera, Vec2Of<T> pixe
     return {transform_point(world_from_camera, origin), normalize(transform_vector(world_from_camera, direction))};
 }
 
-/// That ray, without an end.
+/// The camera ray through `pixel`, unbounded.
 HD inline Ray make_camera_ray(const CameraView& camera, Vec2 pixel, Vec2 lens) {
     const RayLine line = make_camera_line(camera, pixel, lens);
     return {line.origin, 0.0f, line.direction, kInfinity};

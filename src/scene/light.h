@@ -44,7 +44,7 @@ HD constexpr LightParts parts_of(LightKind kind) {
     return {.position = false, .direction = true, .cone = false};
 }
 
-/// For a light with a position: its flux divided by 2 pi times its intensity. The edge of a cone is the square of a
+/// Flux of a light with a position, divided by 2 pi times its intensity. The edge of a cone is the square of a
 /// ramp in the cosine (shading/punctual_light.h), which contributes a third of its width.
 inline double breadth_of_beam(const LightParts& parts, float cos_inner, float cos_outer) {
     if (!parts.cone) return 2;

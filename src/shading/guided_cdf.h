@@ -69,8 +69,8 @@ HD inline float rest_of(const CdfDraw& draw) {
     return rest_of(static_cast<float>(draw.rest), static_cast<float>(draw.owned), draw.more);
 }
 
-/// That position as 32 bits, with exactly the same probability for each of the 2^32 values, to select from another
-/// table.
+/// Position within the drawn interval as 32 bits, to select from another table. All 2^32 values have exactly the same
+/// probability.
 HD inline uint32_t number_of_rest(const CdfDraw& draw) {
     if (draw.owned == 1u << 31) return draw.rest << 1 | draw.more >> 31;
     return static_cast<uint32_t>((uint64_t(draw.rest) << 32 | draw.more) / draw.owned);

@@ -38,7 +38,7 @@ public:
         trace(*any_, query, count, hits, pool);
     }
 
-    // For measurements.
+    // Measurements.
 
     /// Counts the nodes and triangles that each ray tests. Returns false if the counts depend on the other rays of
     /// its warp.

@@ -88,7 +88,7 @@ Camera camera_of_bending() {
     return camera;
 }
 
-/// With the vertices made on the host.
+/// Hash of a picture whose vertices are computed on the host.
 Hash128 hash_by_host(const Scene& rest, double time_s, const RenderSettings& settings) {
     Messages messages;
     PosedScene posed(rest);

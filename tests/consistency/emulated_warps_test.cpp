@@ -151,7 +151,7 @@ TEST_CASE("on warps, every traversal with every distribution of rays finds each 
             const std::vector<Ray> rays = stress_rays(kRays, c, 7 + round);
             const HostHits host(trees, rays);
             for (const EmulatedTraversal& traversal : emulated_traversals()) {
-                // By tests that leak what is hit at a tie depends on what was skipped before.
+                // With tests that leak, the hit at a tie depends on the nodes that were skipped before.
                 if (traversal.run == nullptr || traversal.counts_lanes ||
                     (traversal.tests != std::string("exact") && has_ties))
                     continue;

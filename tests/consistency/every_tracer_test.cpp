@@ -51,8 +51,8 @@ struct Tally {
     int pictures = 0, refused = 0, wrong = 0;
 };
 
-/// One session that goes from tracer to tracer. Without `all_switches_everywhere` trees of most builders
-/// are traversed with all switches on alone.
+/// Checks every tracer in one session. Unless `all_switches_everywhere`, trees of most builders are traversed only with
+/// all switches on.
 Tally check_all(const Scene& scene, bool all_switches_everywhere) {
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

@@ -13,7 +13,7 @@ using namespace pertev::test;
 
 namespace {
 
-/// On a grid so coarse that coordinates 8 km away are exact.
+/// Rounds a point to a grid so coarse that coordinates 8 km away are exact.
 Vec3 snapped(Vec3 p) {
     const auto snap = [](float x) { return std::round(x * 64) / 64; };
     return {snap(p.x), snap(p.y), snap(p.z)};

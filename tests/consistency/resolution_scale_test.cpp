@@ -55,7 +55,7 @@ Image mean_of_still(Session& session, const ReconstructionSettings& settings) {
     return mean;
 }
 
-/// To twice the size, by straight lines.
+/// Doubles an image's size by linear interpolation.
 Image doubled(const Image& small) {
     Image large{2 * small.width, 2 * small.height, 3, {}};
     const auto at = [&](int x, int y, uint32_t c) {

@@ -54,7 +54,7 @@ RenderSettings changing_settings() {
     return settings;
 }
 
-/// One setting changed, the picture's or the machine's.
+/// Changes a random setting of the picture or of the machine.
 void change_a_setting(RenderSettings& settings, test::Random& random) {
     switch (random.below(9)) {
     case 0:

@@ -62,7 +62,7 @@ struct BatchOnDevice {
     BatchOnDevice(Queue& queue, const std::vector<Ray>& values)
         : rays(queue, std::span<const Ray>(values), "rays"), hits(queue, values.size(), "hits"),
           pool(queue, 1, "pool") {}
-    /// For one launch.
+    /// The batch for one launch. It resets the pool.
     TraversalBatch view() {
         pool.zero();
         return {rays.data(), hits.data(), static_cast<uint32_t>(rays.size()), pool.data()};

@@ -119,7 +119,8 @@ TEST_CASE("a picture whose samples are split between two queues equals that of o
         CHECK(first.hash() != alone);
         first.add(second);
         CHECK(first.hash() == alone);
-        // And the other way round: photons' radius, and what is told of records, go by the sample's number alone.
+        // The order of the samples does not matter: photons' radius and the accuracy of records depend on a sample's
+        // number alone.
         Render late(first_queue, subject(0), settings), early(second_queue, subject(0), settings);
         for (uint32_t sample = kSamples; sample-- > 0;) (sample >= 2 ? late : early).add_sample(sample);
         late.add(early);

@@ -52,7 +52,7 @@ class Page(unittest.TestCase):
     def values(self, script):
         return json.loads(self.browser.value(f"JSON.stringify({script})"))
 
-    def test_every_result_has_its_tables_and_those_with_figures_a_plot_or_shades(self):
+    def test_every_result_has_its_tables_and_figures_have_a_plot_or_shading(self):
         self.show(*RESULTS)
         drawn = self.values("[...document.querySelectorAll('main')].map((m) => [m.querySelectorAll('table').length, m.querySelectorAll('.plot').length, "
                             "m.querySelectorAll('td[style]').length])")
@@ -66,7 +66,7 @@ class Page(unittest.TestCase):
                                   for i, column in enumerate(table["columns"]) if i > 0 and column["unit"])
                 self.assertTrue(plots + shades > 0 or not has_figures)
 
-    def test_curves_have_fitted_slopes_and_dots_stand_where_the_axis_says(self):
+    def test_curves_have_fitted_slopes_and_dots_match_the_axis(self):
         self.show(measurement([("samples a pixel", None), ("relMSE", None)], [[n, 8 / n] for n in (1, 2, 4, 8)]))
         self.assertEqual(self.values("[...document.querySelectorAll('.key text')].map((t) => t.textContent)"), ["relMSE  (slope -1.00)"])
         self.assertEqual(self.values("document.querySelectorAll('line.guide').length"), 1)
@@ -76,14 +76,14 @@ class Page(unittest.TestCase):
         self.assertAlmostEqual((b - a) / 3, c - a, 3)
         self.assertAlmostEqual((b - a) / 3 * 2, d - a, 3)
 
-    def test_a_head_sorts_by_numbers_and_back(self):
+    def test_a_column_header_sorts_numerically_in_both_directions(self):
         self.show(measurement([("job", None), ("ours", "s")], [["a", 9], ["b", 10], ["c", None]]))
         names = "[...document.querySelectorAll('tbody tr td:first-child')].map((t) => t.textContent)"
         for wanted in (["b", "a", "c"], ["a", "b", "c"]):
             self.browser.value("document.querySelectorAll('th')[1].click()")
             self.assertEqual(self.values(names), wanted)
 
-    def test_pictures_and_their_errors_are_magnified_at_one_place(self):
+    def test_pictures_and_their_errors_are_magnified_at_the_same_point(self):
         self.show(measurement([("job", None)], [["a"]], kind="transport",
                               pictures=[{"group": "g", "title": "p", "image": PIXELS, "error": PIXELS}] * 2))
         self.browser.until("[...document.querySelectorAll('.inset')].every((i) => i.style.backgroundPosition)")

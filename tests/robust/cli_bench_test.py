@@ -18,7 +18,7 @@ SMALL = ["--device", "cpu", "--size", "16x16", "--spp", "1"]
 
 
 class Bench(CliTest):
-    def test_scenes_are_measured_as_a_user_meets_them(self):
+    def test_bench_reports_the_rates_of_each_scene(self):
         made = self.succeed("bench", *SMALL, "--scene", "cornell-box", "--json").events("bench")
         self.assertEqual([(of["scene"], of["triangles"]) for of in made], [("cornell-box", 38)])
         for key in ["samples_per_second", "camera_rays_per_second", "bounce_rays_per_second"]:
@@ -26,7 +26,7 @@ class Bench(CliTest):
         text = self.succeed("bench", *SMALL, "--scene", "cornell-box", "--scene", "cornell-box").stdout
         self.assertRegex(text, r"(?s)^scene +device .*\ncornell-box .*\ncornell-box .*\n$")
 
-    def test_a_job_renders_what_its_settings_say_and_has_ratios_on_one_card_alone(self):
+    def test_a_job_has_the_hash_of_render_and_has_ratios_only_on_the_reference_gpu(self):
         line = ["--scene", "cornell-box", *SMALL]
         for job, depth in [("cornell-box-65", 64), ("cornell-box-8", 7)]:
             made = self.succeed("bench", "render", "--job", job, *line, "--json").events("job")[0]
@@ -47,7 +47,7 @@ class Bench(CliTest):
         self.refuse(2, "bench", "render", "--job", "S6", *line, says=["--job", "S5", "cornell-box-8"])
         self.refuse(2, "bench", "render", "--size", "", "--scene", "cornell-box", says=["--size"])
 
-    def test_builds_have_ratios_on_one_card_alone(self):
+    def test_builds_have_ratios_only_on_the_reference_gpu(self):
         line = ["bench", "build", "--scene", "cornell-box", "--device", "cpu", "--runs", "1"]
         made = self.succeed(*line, "--compare", "--json").events("build")
         trees = ["sbvh", "sbvh-reinsertion", "reinsertion", "binned", "ploc", "hploc"]
@@ -61,7 +61,7 @@ class Bench(CliTest):
         self.assertGreater(refits[0]["median_seconds"], 0)
         self.assertRegex(self.succeed(*line).stdout, r"(?m)^cornell-box +hploc +38 ")
 
-    def test_a_report_has_machine_command_and_rows_and_files_of_them_become_one_page(self):
+    def test_reports_hold_device_command_and_rows_and_are_joined_to_a_page(self):
         line = ["bench", "rays", "--scene", "cornell-box", "--device", "cpu", "--count", "500", "--runs", "1"]
         said = self.succeed(*line, "--report", "rays.json", "--json").events("rays")
         with open(self.path("rays.json"), encoding="utf-8") as file:
@@ -83,7 +83,7 @@ class Bench(CliTest):
         self.refuse(2, *line, "--report", "rays.txt", says=["rays.txt", ".json"])
         self.refuse(6, *line, "--report", "nowhere/x.json", says=["nowhere/x.json"])
 
-    def test_a_flag_before_a_verb_of_bench_ends_with_2_and_says_where_it_belongs(self):
+    def test_a_flag_before_a_verb_of_bench_ends_with_2_and_names_its_verb(self):
         for flag in ["--device cuda", "--scene nowhere.obj", "--size 8x8", "--spp 1", "--threads 1", "--json", "-q"]:
             for verb in [["rays", "--count", "100"], ["render"]]:
                 with self.subTest(flag=flag, verb=verb[0]):
@@ -92,7 +92,7 @@ class Bench(CliTest):
                     self.assertEqual(len(outcome.stdout.splitlines()), flag == "--json")
         self.refuse(2, "bench", "rays", "render", "--scene", "cornell-box", says=["render"])
 
-    def test_errors_of_the_line_come_before_anything_is_measured_or_printed(self):
+    def test_errors_of_the_command_line_come_before_anything_is_measured_or_printed(self):
         rays = ["bench", "rays", "--count", "100", "--device", "cpu"]
         lines = [(["bench", "--scene", "cornell-box", "--size", "0x0"], "--size 0x0"),
                  (["bench", "--scene", "cornell-box", "--scene", "nowhere.obj"], "nowhere.obj: there is no such file"),
@@ -110,7 +110,7 @@ class Bench(CliTest):
         for verb in [["bench"], rays]:  # detectable only by its content
             self.assertEqual(self.refuse(2, *verb, "--scene", "flat.obj", says=["no visible triangle"]).stdout, "")
 
-    def test_an_interrupt_ends_each_of_them_with_75_and_keeps_what_is_printed(self):
+    def test_an_interrupt_ends_every_benchmark_with_75_and_leaves_no_files(self):
         endless = {"bench": ["--size", "512x512", "--spp", "1000000"],
                    "bench render": ["--size", "512x512", "--spp", "1000000", "-o", "x.exr"],
                    "bench rays": ["--count", "400000", "--runs", "10000"]}
@@ -177,7 +177,7 @@ class Bench(CliTest):
         self.assertGreater(fine["ratio"], 1.5)
         self.assertLess(abs(fine["mean"] / fine["mean_independent"] - 1), 0.05)
 
-    def test_frames_are_the_same_again_and_as_their_flags_say(self):
+    def test_frames_are_deterministic_and_follow_their_flags(self):
         line = ["bench", "frames", "cornell-box", "--device", "cpu", "--size", "48x36", "--frames", "6"]
         made = [self.succeed(*line, "--json").events("frames")[0] for _ in range(2)]
         self.assertEqual(made[0]["picture"], made[1]["picture"])
@@ -193,7 +193,7 @@ class Bench(CliTest):
         self.refuse(2, *line, "--restir", "all", says=["--restir", "off", "di", "gi"])
         self.refuse(2, *line, "--spp", "4", says=["--spp"])
 
-    def test_a_sequence_is_measured_beside_what_another_program_made_of_its_samples(self):
+    def test_a_sequence_is_compared_with_another_denoiser_on_the_same_samples(self):
         line = ["bench", "sequence", "cornell-box", "--device", "cpu", "--size", "32x24", "--turntable", "90", "--frames", "0-2"]
         with tempfile.TemporaryDirectory() as folder:
             self.succeed(*line, "--write-samples", folder)
@@ -217,7 +217,7 @@ class Bench(CliTest):
         self.refuse(2, *line, "--peer", "x", says=["--reference"])
         self.refuse(2, "bench", "sequence", "cornell-box", says=["--frames"])
 
-    def test_noise_refuses_what_it_cannot_measure_before_it_reads(self):
+    def test_noise_refuses_invalid_values_before_it_reads_the_scene(self):
         for flags, says in [("--seeds 1", "--seeds"), ("--seeds 1025", "--seeds"), ("--keep 0", "--keep"),
                             ("--keep 101", "--keep"), ("--size 0x0", "--size 0x0"), ("--spp 0", "--spp")]:
             for json_flag in [[], ["--json"]]:
@@ -239,7 +239,7 @@ class Bench(CliTest):
         last = json.loads(stdout.splitlines()[-1])
         self.assertEqual((last["event"], last["status"], last["interrupted"]), ("error", 75, True))
 
-    def test_the_seed_of_a_job_changes_its_picture_and_little_of_its_light(self):
+    def test_the_seed_of_a_job_changes_its_hash_but_hardly_its_mean(self):
         # Five sides of a hall around the job's camera, which stands at (-110, 18, -2) and looks along +x; the roof is open.
         corners = [f"v {x} {y} {z}\n" for x in (-120, 70) for y in (-2, 60) for z in (-20, 20)]
         sides = ["1 2 4 3", "1 5 6 2", "1 3 7 5", "2 6 8 4", "5 7 8 6"]

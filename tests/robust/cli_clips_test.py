@@ -65,7 +65,7 @@ class Clips(CliTest):
     def hash_at(self, *arguments, scene="m.gltf"):
         return self.succeed("render", scene, "-o", "one.png", *TINY, "--json", *arguments).events("done")[0]["hash"]
 
-    def test_one_animation_plays_and_the_first_without_a_flag(self):
+    def test_the_chosen_animation_plays_or_the_first_by_default(self):
         alone = [self.hash_at("--time", "0.5", scene=f"alone-{number}.gltf") for number in range(len(CLIPS))]
         self.assertEqual(len(set(alone)), len(CLIPS))
         self.assertEqual(self.hash_at("--time", "0.5"), alone[0])
@@ -77,7 +77,7 @@ class Clips(CliTest):
         self.assertEqual(self.hash_at("--time", "0.5", "--animation", "all", scene="last.gltf"), together)
         self.assertEqual(self.hash_at("--animation", "all"), self.hash_at())  # at rest nothing plays
 
-    def test_an_animation_that_the_file_lacks_is_refused_with_a_list_of_those_it_has(self):
+    def test_the_error_for_an_unknown_animation_lists_the_known_ones(self):
         write(self.path("still.gltf"), gltf([]))
         write(self.path("floor.obj"), "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n")
         for words, says in [("jump", ["--animation jump: no such",  "go", "rise", "2 (twin)", "3 (twin)", "4"]), ("7", ["--animation 7: no such"]),
@@ -106,7 +106,7 @@ class Clips(CliTest):
         alone = self.info("alone-1.gltf")
         self.assertEqual((alone["animations"], "plays" in alone), (["rise (1 s)"], False))
 
-    def test_metadata_name_the_animation_so_that_a_picture_can_be_made_again(self):
+    def test_metadata_name_the_animation_to_reproduce_the_picture(self):
         def made(*arguments):
             end = self.succeed("render", "m.gltf", "-o", "x.exr", *TINY[:-2], "--time", "0.5", "--json", *arguments).events("done")[0]
             return end["hash"], self.info("x.exr").get("pertev.animation")
@@ -119,7 +119,7 @@ class Clips(CliTest):
         self.succeed("render", "alone-0.gltf", "-o", "y.exr", *TINY[:-2], "--time", "1")
         self.assertNotIn("pertev.animation", self.info("y.exr"))
 
-    def test_frames_go_on_only_by_the_same_animation(self):
+    def test_frames_continue_only_with_the_same_animation(self):
         frames = ["render", "m.gltf", "-o", "f-#.png", *TINY, "--fps", "2"]
         first = self.succeed(*frames, "--frames", "0-1", "--json").events("frame")
         self.assertEqual(first[1]["hash"], self.hash_at("--time", "0.5", scene="alone-0.gltf"))
@@ -129,7 +129,7 @@ class Clips(CliTest):
             end = self.succeed(*frames, "--frames", "0-2", "--continue", "--json", *words).events("sequence")[0]
             self.assertEqual(end["written"] + end["kept"], 3)
 
-    def test_light_is_measured_and_solved_under_the_animation_that_plays(self):
+    def test_measure_and_solve_use_the_chosen_animation(self):
         at = ["--at", "0,0,-1", "--normal", "0,0,1", "--spp", "4", "--device", "cpu", "--json"]
 
         def measured(scene, *arguments):
@@ -149,7 +149,7 @@ class Clips(CliTest):
         self.assertEqual(solved("m.gltf", *lit, "--animation", "rise"), alone[1])
         self.assertNotEqual(*alone)
 
-    def test_benchmarks_of_frames_take_the_animation_too(self):
+    def test_benchmarks_of_frames_use_the_chosen_animation(self):
         bench = ["bench", "sequence", "m.gltf", "--frames", "0-2", "--fps", "4", "--size", "24x16", "--device", "cpu", "--json"]
         plain, first, other = [self.succeed(*bench, *words).events("sequence_errors")[0]["last_frame"]
                                for words in [[], ["--animation", "go"], ["--animation", "rise"]]]
@@ -189,7 +189,7 @@ class FileScenes(CliTest):
         self.refuse(2, "info", "floor.obj", "--file-scene", "0", says=["floor.obj", "has no scenes"])
         self.refuse(2, "info", "x.png", "--file-scene", "0", says=["--file-scene", "x.png"])
 
-    def test_info_and_the_laboratory_choose_it_too(self):
+    def test_info_and_lab_use_the_chosen_scene_of_the_file(self):
         told = self.info("second.gltf")
         self.assertEqual((told["file_scenes"], told["shows"]), (["one", "two", "2"], "two"))
         self.assertEqual(told["bounds_high"], [0.5, 1, 0])
@@ -202,7 +202,7 @@ class FileScenes(CliTest):
         self.assertLess(*shares)
         self.refuse(2, "lab", "forest", "--file-scene", "one", "--device", "cpu", says=["--file-scene"])
 
-    def test_frames_go_on_only_by_the_same_scene_of_the_file(self):
+    def test_frames_continue_only_with_the_same_scene_of_the_file(self):
         frames = ["render", "m.gltf", "-o", "f-#.png", *TINY, "--turntable", "2"]
         self.succeed(*frames)
         self.refuse(2, *frames, "--continue", "--file-scene", "two", says=["--file-scene", '"one"', '"two"'])

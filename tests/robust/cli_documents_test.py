@@ -119,12 +119,12 @@ class Commands(CliTest):
                 found += 1
         self.assertGreater(found, 80)
 
-    def test_an_unknown_flag_of_a_document_is_noticed(self):
+    def test_an_unknown_flag_in_a_document_is_found(self):
         self.assertNotIn("--no-such-flag", self.flags_of("view"))
         self.assertIn("--restir", self.flags_of("view"))
         self.assertEqual(self.run_pertev(*made_small(shlex.split("render cornell-box -o a.png --no-such-flag"))).status, 2)
 
-    def test_scripts_of_tools_say_how_they_are_used(self):
+    def test_scripts_in_tools_state_their_usage(self):
         named = {word for document in check_documents.documents(ROOT)
                  for command in check_documents.commands(document.read_text(encoding="utf-8"))
                  for word in command.split() if word.startswith("tools/")}

@@ -18,7 +18,7 @@ class WhenItEnds(CliTest):
         self.addCleanup(program.kill)
         return program
 
-    def test_an_interrupt_writes_the_whole_samples_so_far_and_ends_with_75(self):
+    def test_an_interrupt_writes_the_complete_samples_and_ends_with_75(self):
         for kind in [signal.SIGINT, signal.SIGTERM]:
             program = self.start("-o", "part.exr", "-o", "part.png", "--size", "48x48", "--spp", "8388607", "--json")
             seen = 0
@@ -37,7 +37,7 @@ class WhenItEnds(CliTest):
             self.assertEqual(self.render(size="48x48", spp=done["samples"], output="whole.exr")["hash"], done["hash"])
             self.assertEqual(self.files(), ["part.exr", "part.png", "whole.exr"])
 
-    def test_a_second_interrupt_kills_and_nothing_is_left_behind(self):
+    def test_a_second_interrupt_ends_at_once_and_leaves_no_file(self):
         leader, follower = pty.openpty()
         listener, said = listen_to(leader)
         program = subprocess.Popen([PROGRAM, "render", "cornell-box", "-o", "x.exr", "--size", "2000x2000", "--spp", "640",

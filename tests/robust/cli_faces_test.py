@@ -38,13 +38,13 @@ class FacesTest(CliTest):
                          ("--two-sided-lights" in arguments, "--show-back-faces" in arguments))
         return made["mean"][0]
 
-    def test_an_emitter_of_an_obj_shines_from_its_front_unless_both_sides_are_requested(self):
+    def test_an_emitter_of_an_obj_emits_from_its_front_unless_both_sides_are_requested(self):
         front = self.mean(*FROM_ABOVE, scene="lamp.obj")
         both = self.mean(*FROM_ABOVE, "--two-sided-lights", scene="lamp.obj")
         self.assertGreater(front, 0)  # the floor
         self.assertGreater(both, front + 0.1)
 
-    def test_lamps_of_an_obj_are_named_with_the_flag_that_lights_their_backs(self):
+    def test_one_sided_emitters_of_an_obj_are_reported_with_the_flag_for_two_sides(self):
         said = self.said("lamp.obj")
         self.assertRegex(said, r"note: lamp\.obj: 1 emitter with light on the front only: bulb; .*--two-sided-lights")
         self.assertNotIn("turn its faces round", said)
@@ -58,7 +58,7 @@ class FacesTest(CliTest):
         self.assertEqual(len({hidden, shown, empty}), 3)
         self.mean(*FROM_BEHIND, "--show-back-faces", scene="sheet.gltf")
 
-    def test_a_picture_that_is_seen_through_backs_says_so_and_names_the_flag(self):
+    def test_a_view_through_back_faces_is_reported_with_the_flag_that_shows_them(self):
         said = self.said("sheet.gltf", *FROM_BEHIND)
         self.assertRegex(said, r"note: the camera looks through the backs of surfaces at \d+ % of the picture.*"
                                r"--show-back-faces")
@@ -69,7 +69,7 @@ class FacesTest(CliTest):
                   for threads in [1, 2]}
         self.assertEqual(len(shares), 1)
 
-    def test_flags_of_faces_that_a_scene_makes_useless_are_warnings(self):
+    def test_face_flags_without_effect_on_a_scene_cause_a_warning(self):
         self.assertIn("warning: --two-sided-lights: ", self.said("sheet.gltf", "--two-sided-lights"))
         self.assertIn("warning: --show-back-faces: ", self.said("lamp.obj", "--show-back-faces"))
 

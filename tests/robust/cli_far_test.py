@@ -33,7 +33,7 @@ class Far(CliTest):
                            "--target", f"{x + .5!r},{y + .4375!r},0", "--environment", "1,1,1", "--transparent",
                            "--aov", "position", scene=scene, size="48x48", output=output)
 
-    def test_a_far_fence_is_seen_as_a_near_one(self):
+    def test_a_fence_far_from_the_origin_looks_like_one_near_it(self):
         pictures = []
         for scene, x, y in [("near.obj", 0, 0), ("far.obj", EAST, NORTH)]:
             self.see(scene, x, y, f"{scene}.exr")
@@ -63,7 +63,7 @@ class Far(CliTest):
         self.see("near.obj", 0, 0, "near.exr")
         self.assertNotIn("pertev.position_origin", self.info("near.exr"))
 
-    def test_the_flags_in_a_made_up_view_s_notice_reproduce_it(self):
+    def test_the_flags_in_the_notice_of_a_default_view_reproduce_it(self):
         outcome = self.succeed("render", "far.obj", "-o", "a.exr", "--size", "16x16", "--spp", "1", "--device", "cpu")
         flags = outcome.stderr.split("(--eye ")[1].split(")")[0].split(" --target ")
         eye, target = ([float(x) for x in flag.split(",")] for flag in flags)
@@ -72,7 +72,7 @@ class Far(CliTest):
             self.assertAlmostEqual(float(got), wanted, delta=1e-3)
         self.assertLess(math.dist(target, [EAST + 0.5, NORTH + 0.4375, 0]), 0.01)
 
-    def test_numbers_of_a_far_scene_are_in_the_coordinates_of_its_file(self):
+    def test_info_and_measure_use_the_coordinates_of_the_file(self):
         told = self.info("far.obj")
         for got, wanted in zip(told["bounds_low"] + told["bounds_high"], [EAST, NORTH, 0, EAST + 1, NORTH + 0.875, 0]):
             self.assertAlmostEqual(got, wanted, delta=1e-6)

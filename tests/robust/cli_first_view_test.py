@@ -87,7 +87,7 @@ class FirstView(CliTest):
         dark = [all(layers[c][y][x] < 1e-4 for c in "RGB") for y in range(48) for x in range(48)]
         return sum(dark) / len(dark)
 
-    def test_a_lamp_that_glows_by_a_texture_lights_a_scene_by_itself(self):
+    def test_a_textured_emitter_lights_a_scene_without_a_default_sky(self):
         floor = quad([(-3, 0, 3), (3, 0, 3), (3, 0, -3), (-3, 0, -3)])
         # Radiance 1 times the form factor of a square of 2 m, 1 m above its middle.
         right = 4 * math.sqrt(0.5) * math.atan(math.sqrt(0.5))
@@ -95,7 +95,7 @@ class FirstView(CliTest):
             write(self.path(name), gltf([(floor, GREY), (lamp_above(1, 1), lamp)]))
             self.assertAlmostEqual(self.measured(name), right, delta=0.01)
 
-    def test_a_lamp_too_small_to_see_by_gets_a_sky_in_pictures_whatever_the_camera(self):
+    def test_a_scene_with_too_weak_an_emitter_gets_a_default_sky_from_any_camera(self):
         lamp = [x for corner in (0, 2, 1) for x in ((-.01, .501, -.01), (.01, .501, -.01), (.01, .501, .01))[corner]]
         write(self.path("body.gltf"), gltf([(box(0.5, (0, 0, 0)), GREY), (lamp, LAMP)]))
         for more in ([], ["--eye", "3,2,1", "--target", "0,0,0"], ["--seed", "7", "--max-depth", "1"]):
@@ -110,7 +110,7 @@ class FirstView(CliTest):
         self.seen("body.gltf", "--environment", "0,0,0")
         self.assertEqual(self.info("x.exr")["pertev.environment"], [0, 0, 0])
 
-    def test_a_ground_is_the_background_in_all_layers(self):
+    def test_the_default_ground_counts_as_background_in_all_layers(self):
         write(self.path("body.gltf"), gltf([(box(0.5, (7, 9, 0)), GREY)]))
         aovs = ["--aov", "ids,depth,normal,position,albedo"]
         on, off = self.seen("body.gltf", *aovs), self.seen("body.gltf", *aovs, "--ground", "off", output="off.exr")
@@ -126,7 +126,7 @@ class FirstView(CliTest):
                      if on["id.instance"][y][x] == BACKGROUND)
         self.assertGreater(darker, 20)
 
-    def test_a_ground_is_made_up_only_if_camera_and_light_are(self):
+    def test_a_default_ground_is_added_only_with_a_default_camera_and_light(self):
         write(self.path("body.gltf"), gltf([(box(0.5, (0, 0, 0)), GREY)]))
         write(self.path("seen.gltf"), gltf([(box(0.5, (0, 0, 0)), GREY)], cameras=[(0, 0, 3)]))
         for scene, more, has_ground in (("body.gltf", [], True), ("body.gltf", ["--environment", "1,1,1"], False),

@@ -55,7 +55,7 @@ class MovingPictures(CliTest):
     def frames(self, *arguments, scene="m.gltf", output="f-###.png"):
         return self.succeed("render", scene, "-o", output, *TINY, "--json", *arguments)
 
-    def test_a_time_moves_the_scene_and_its_camera(self):
+    def test_time_moves_the_scene_and_its_camera(self):
         self.assertEqual(self.hash_at("--time", "0"), self.hash_at())  # it rests as it begins
         self.assertNotEqual(self.hash_at("--time", "1"), self.hash_at())
         self.assertEqual(self.hash_at("--time", "2"), self.hash_at("--time", "1000"))
@@ -65,7 +65,7 @@ class MovingPictures(CliTest):
         self.assertEqual(info["pertev.time"], 1)
         self.assertEqual(info["pertev.eye"], [0, 0.5, 4])
 
-    def test_what_moves_is_said_where_it_is_not_shown_and_the_other_way_round(self):
+    def test_an_unused_animation_and_a_time_without_animation_are_reported(self):
         said = self.succeed("render", "m.gltf", "-o", "x.png", *TINY, "--json").events("notice")
         (still,) = [notice for notice in said if notice.get("place") == {"file": "m.gltf"} and "time" in notice.get("settings", {})]
         self.assertIn("0 to 2 s", still["reason"])
@@ -86,7 +86,7 @@ class MovingPictures(CliTest):
         end = said.events("sequence")[0]
         self.assertEqual((end["frames"], end["written"], end["kept"], end["interrupted"]), (4, 4, 0, False))
 
-    def test_a_frame_is_rendered_again_by_its_own_settings(self):
+    def test_a_frame_is_reproduced_from_its_metadata(self):
         small = ["--size", "24x16", "--spp", "2", "--device", "cpu"]
         for motion, output in [(["--frames", "3-4", "--fps", "7", "--shutter", "0.1"], "one.exr"),
                                (["--frames", "3-4", "--fps", "7", "--turntable", "90"], "one-#.exr"),
@@ -101,7 +101,7 @@ class MovingPictures(CliTest):
                     last = [made for made in again.events() if made["event"] in ("done", "frame")][-1]
                     self.assertEqual(last["hash"], event["hash"])
 
-    def test_motion_and_names_of_ids_are_layers_of_frames(self):
+    def test_frames_have_motion_layers_and_names_of_ids(self):
         def render(frames, *more):
             return self.succeed("render", "m.gltf", "-o", "f-#.exr", "--size", "24x16", "--spp", "1", "--device", "cpu",
                                 "--aov", "motion,ids", "--frames", frames, "--fps", "4", *more)
@@ -128,7 +128,7 @@ class MovingPictures(CliTest):
             for i in told:
                 self.assertNotEqual(frames[0][names[i]], frames[1][names[i]])
 
-    def test_a_shutter_blurs_what_moves(self):
+    def test_a_shutter_blurs_motion(self):
         sharp = self.hash_at("--time", "1")
         blurred = self.hash_at("--time", "1", "--shutter", "0.5")
         self.assertNotEqual(blurred, sharp)
@@ -171,7 +171,7 @@ class MovingPictures(CliTest):
                      "2", "--exposure", stops)
         self.assertEqual(self.read("one.png"), self.read("f-2.png"))
 
-    def test_complete_frames_are_kept_and_the_others_rendered_again(self):
+    def test_continuing_keeps_complete_frames_and_renders_the_others(self):
         self.frames("--frames", "0-3", "--fps", "2")
         files = ["f-000.png", "f-001.png", "f-002.png", "f-003.png"]
         whole = [self.read(name) for name in files]
@@ -200,7 +200,7 @@ class MovingPictures(CliTest):
         self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-4", "--fps", "2", "--continue",
                     says=["f-###.json: "])
 
-    def test_ctrl_c_ends_after_a_whole_frame_and_continuing_gives_the_same_bytes(self):
+    def test_an_interrupt_ends_after_a_whole_frame_and_continuing_gives_the_same_bytes(self):
         arguments = ["render", "m.gltf", "-o", "f-##.png", "--size", "64x64", "--spp", "64", "--device", "cpu",
                      "--exposure", "0", "--frames", "0-39", "--fps", "20"]
         program = subprocess.Popen([PROGRAM, *arguments], cwd=self.folder, env=self.environment,
@@ -232,7 +232,7 @@ class MovingPictures(CliTest):
         self.assertEqual((outcome.status, outcome.events()[-1]["event"]), (6, "error"), outcome)
         return outcome, outcome.events("sequence")[0]
 
-    def test_a_disk_that_fills_up_counts_the_frames_that_are_whole(self):
+    def test_a_full_disk_counts_only_complete_frames(self):
         sequence = ["--frames", "0-2", "--fps", "1"]
         outcome, end = self.run_on_a_full_disk(1024, "-o", "g-#.exr", "--size", "24x16", "--spp", "2", "--device", "cpu", *sequence)
         self.assertEqual((end["frames"], end["written"], end["kept"], end["interrupted"]), (3, 0, 0, False))
@@ -243,7 +243,7 @@ class MovingPictures(CliTest):
         self.assertEqual([event["written"] for event in outcome.events("output")], [True, False])
         self.assertEqual((end["written"], self.files()), (0, ["g-0.png", "m.gltf"]))
 
-    def test_frames_count_even_if_their_record_cannot_be_written(self):
+    def test_frames_count_even_if_their_list_cannot_be_written(self):
         names = ["-o", "f-##.png", *TINY]
         self.frames("--frames", "0-0", "--fps", "20", output="f-##.png")
         limit = os.path.getsize(self.path("f-##.json")) + 500  # some frames' hashes
@@ -261,7 +261,7 @@ class MovingPictures(CliTest):
                                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
         self.assertIn(f"1 of 40 frames written, {kept} kept in", said.stderr)
 
-    def test_a_path_leads_the_camera_through_its_keys(self):
+    def test_the_camera_follows_the_keys_of_a_path(self):
         keys = [{"time": 0, "eye": [0, 0, 5], "target": [0, 0, 0], "fov": 50},
                 {"time": 1, "eye": [3, 0, 4], "target": [0, 1, 0], "fov": 40},
                 {"time": 3, "eye": [0, 2, 6], "target": [0, 0, 0], "up": [0.1, 1, 0], "fov": 60}]

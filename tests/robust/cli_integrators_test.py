@@ -34,7 +34,7 @@ def lit_triangle():
 
 
 class Integrators(CliTest):
-    def test_a_render_that_a_time_limit_ended_has_the_hash_of_one_of_as_many_samples(self):
+    def test_a_time_limited_render_has_the_hash_of_a_render_with_as_many_samples(self):
         write(self.path("lit.gltf"), lit_triangle())
         for integrator in INTEGRATORS:
             flags = ["--integrator", integrator, *VIEW]
@@ -42,7 +42,7 @@ class Integrators(CliTest):
             again = self.render(*flags, scene="lit.gltf", size="24x24", spp=done["samples"])
             self.assertEqual(again["hash"], done["hash"], integrator)
 
-    def test_a_render_that_ctrl_c_ended_has_the_hash_of_one_of_as_many_samples(self):
+    def test_an_interrupted_render_has_the_hash_of_a_render_with_as_many_samples(self):
         write(self.path("lit.gltf"), lit_triangle())
         for integrator in INTEGRATORS:
             flags = ["--integrator", integrator, *VIEW, "--threads", "2"]
@@ -73,7 +73,7 @@ class Integrators(CliTest):
         self.assertEqual((program.returncode, last["code"], last["interrupted"]), (75, "interrupted", True))
         self.assertEqual((last["text"], stderr), ("interrupted before there was anything to keep", b""))
 
-    def test_an_interrupt_while_records_are_made_leaves_nothing_and_is_reported(self):
+    def test_an_interrupt_while_irradiance_records_are_computed_leaves_no_file(self):
         long = ["render", "cornell-box", "-o", "x.exr", "--size", "320x240", "--spp", "4", "--device", DEVICE, "--integrator",
                 "irradiance_cache", "--accuracy", "0.02", "--hemisphere-rays", "4096"]  # hours of records
         for flags in [[], ["--json"]]:
@@ -84,7 +84,7 @@ class Integrators(CliTest):
                 self.check_nothing_is_kept(kind, *long)
                 self.assertEqual(self.files(), [])
 
-    def test_the_time_before_the_first_sample_of_irradiance_caching_has_a_share_and_an_end(self):
+    def test_irradiance_caching_reports_progress_before_the_first_sample(self):
         flags = ["render", "cornell-box", "-o", "x.exr", "--size", "96x96", "--spp", "2", "--device", DEVICE, "--integrator",
                  "irradiance_cache", "--hemisphere-rays", "64"]
         told = self.succeed(*flags, "--json").events("progress")
@@ -104,7 +104,7 @@ class Integrators(CliTest):
                          r"\r\[=* *\] +\d+ %  before the first sample  [\d.]+ Mrays/s  \d+ s left\x1b\[K")
 
     @unittest.skipIf(DEVICE != "cpu", "a GPU may have samples, or be at the limit of work, before the signal comes")
-    def test_reyes_hears_an_interrupt_while_it_dices(self):
+    def test_reyes_can_be_interrupted_while_it_dices(self):
         self.render(output="heights.png", size="64x64")
         write(self.path("lit.gltf"), lit_triangle())
         fine = ["cornell-box", "--ambient", "1", "--shading-rate", "0.125"]  # minutes of micropolygons before a sample
@@ -114,7 +114,7 @@ class Integrators(CliTest):
                                        "--spp", "64", "--device", DEVICE)
             self.assertEqual(self.files(), ["heights.png", "lit.gltf"])
 
-    def test_heights_that_fold_a_surface_without_end_are_refused(self):
+    def test_too_large_displacements_are_refused(self):
         self.render(output="heights.png", size="64x64")
         write(self.path("lit.gltf"), lit_triangle())
         flags = ["render", "lit.gltf", *VIEW, "-o", "x.exr", "--integrator", "reyes", "--size", "32x24", "--spp", "1", "--device",
@@ -122,7 +122,7 @@ class Integrators(CliTest):
         self.refuse(3, *flags, "--displacement", "skin=heights.png,1000", says=["--displacement", "smaller SCALE"], timeout=120)
         self.succeed(*flags, "--displacement", "skin=heights.png,0.2")
 
-    def test_each_layer_has_a_part_in_the_hash_of_layers(self):
+    def test_each_layer_changes_the_hash_of_layers(self):
         flags = ["--aov", "depth,albedo", "--lpe", "seen=LE", "--lpe", "others=L.+E"]
         one = self.render(*flags, output="x.exr")
         self.assertRegex(one["layers_hash"], "^[0-9a-f]{32}$")
@@ -133,7 +133,7 @@ class Integrators(CliTest):
         bare = self.render(output="x.exr")
         self.assertEqual((bare["layers_hash"], bare["hash"]), (None, one["hash"]))
 
-    def test_where_light_is_evaluated_changes_the_hash(self):
+    def test_the_shading_rate_and_interpolation_change_the_hash(self):
         write(self.path("lit.gltf"), lit_triangle())
         hashes = [self.render(*VIEW, "--ambient", "0", "--integrator", *flags, scene="lit.gltf")["hash"]
                   for flags in [["raster"], ["raster", "--shading", "flat"], ["raster", "--shading", "gouraud"], ["reyes"],

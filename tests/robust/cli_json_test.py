@@ -30,7 +30,7 @@ class Errors(CliTest):
         self.assertEqual(self.run_pertev(*(a for a in arguments if a != "--json"), **options).status, status)
         return last
 
-    def test_an_error_of_the_line_is_an_object_for_every_verb_and_without_one(self):
+    def test_errors_of_the_command_line_are_json_objects_for_every_verb(self):
         for verb in ["", "render", "measure", "solve radiosity", "info", "compare", "bench", "bench rays", "bench build", "bench render", "lab",
                      "lab --thesis"]:
             for rest, says in [("--foo --json", "--foo"), ("--json --foo", "--foo"), ("--json --threads", "--threads")]:
@@ -40,7 +40,7 @@ class Errors(CliTest):
                     self.assertIn(("pertev " + verb.replace(" --thesis", "")).strip() + " --help", last["help"])
         self.assertIn("render", self.fail_in_json(2, "--json")["text"])
 
-    def test_an_error_of_a_verb_is_an_object(self):
+    def test_errors_while_a_verb_runs_are_json_objects(self):
         for line in ["render nowhere.obj -o x.png", "solve radiosity nowhere.obj -o x.rad", "info nowhere.obj", "compare nowhere.exr nowhere.exr",
                      "bench --scene nowhere.obj", "bench rays --scene nowhere.obj", "bench render --scene nowhere.obj",
                      "lab nowhere.obj", "lab --thesis nowhere.obj"]:
@@ -49,7 +49,7 @@ class Errors(CliTest):
         self.fail_in_json(3, "render", "--json", "cornell-box", "-o", "x.png", "--size", "70000x70000")
         self.fail_in_json(6, "render", "cornell-box", "-o", "nowhere/x.png", "--json", "-q")
 
-    def test_messages_have_parts_with_names_of_settings_and_a_text_with_flags(self):
+    def test_messages_have_setting_names_as_fields_and_flags_in_the_text(self):
         last = self.fail_in_json(3, *"render cornell-box -o x.png --integrator whitted --max-depth 256 --json".split())
         self.assertEqual((last["setting"], last["value"], last["settings"]), ("max_depth", "256", {"integrator": "whitted"}))
         self.assertTrue(last["text"].startswith("--max-depth 256: "), last)
@@ -69,7 +69,7 @@ class Errors(CliTest):
         self.assertEqual((last["setting"], last["value"]), ("camera", "it's no camera"))
         self.assertIn("--camera 'it'\\''s no camera': ", last["text"]) # quoted for a shell
 
-    def test_a_value_or_a_name_is_not_the_flag(self):
+    def test_json_as_a_value_or_file_name_does_not_switch_json_on(self):
         for arguments in [["info", "--", "--json"], ["render", "cornell-box", "-o", "x.png", "--camera=--json"]]:
             outcome = self.refuse_in_words(*arguments)
             self.assertEqual(outcome.stdout, "")
@@ -87,7 +87,7 @@ class Errors(CliTest):
         self.assertIn("nowhere.obj", outcome.stderr)
         self.assertIn("standard output", outcome.stderr)
 
-    def test_an_interrupt_while_the_scene_loads_ends_with_75_and_says_so(self):
+    def test_an_interrupt_while_the_scene_loads_ends_with_75_and_is_reported(self):
         n = 500
         mesh = "".join(f"v {x} {(x * y) % 7} {y}\n" for y in range(n) for x in range(n))
         mesh += "".join(f"f {x + n * y} {x + 1 + n * y} {x + n + n * y}\n" for y in range(n - 1) for x in range(1, n))
@@ -112,7 +112,7 @@ class Errors(CliTest):
                             self.assertEqual(stdout, b"")
                         self.assertEqual(self.files(), ["hills.obj"])
 
-    def test_an_interrupted_benchmark_says_so_in_its_last_object(self):
+    def test_the_last_object_of_an_interrupted_benchmark_is_marked_interrupted(self):
         program = subprocess.Popen([PROGRAM, "bench", "rays", "--device", "cpu", "--json", "--runs", "10000", "--count",
                                     "400000", "--scene", "cornell-box"], cwd=self.folder, env=self.environment,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE)
@@ -125,7 +125,7 @@ class Errors(CliTest):
 
 
 class Objects(CliTest):
-    def test_scene_picture_camera_exposure_and_outputs_have_objects_of_their_own(self):
+    def test_render_writes_an_object_each_for_scene_picture_camera_exposure_and_outputs(self):
         write(self.path("floor.obj"), FLOOR)
         view = ["--eye", "0.3,2.1,4.7", "--target", "0.1,0.2,0", "--fov", "33", "--aperture", "0.1"]
         outcome = self.succeed("render", "floor.obj", *view, "-o", "a.png", "-o", "b.exr", "--size", "16x8", "--spp", "2",
@@ -152,7 +152,7 @@ class Objects(CliTest):
         self.assertEqual(again["hash"], done["hash"])
         self.assertEqual(self.info("picture.png")["hash"], self.info("a.png")["hash"])
 
-    def test_vectors_are_arrays_of_numbers_wherever_they_stand(self):
+    def test_all_vectors_are_arrays_of_numbers(self):
         told = self.succeed("measure", "cornell-box", "--at", "0.3,1e-3,-0.25", "--normal", "0,3,1e-400", "--spp", "1",
                             "--max-depth", "0", "--json").events("measure")[0]
         self.assertEqual((told["at"], told["normal"][:2], len(told["irradiance_rgb"])), ([0.3, 1e-3, -0.25], [0, 3], 3))
@@ -169,7 +169,7 @@ class Objects(CliTest):
         self.assertFalse([text for text in texts if text.replace(",", " ").split() and
                           all(is_number(word) for word in text.replace(",", " ").split()) and "," in text])
 
-    def test_a_picture_without_tones_has_no_exposure(self):
+    def test_an_exr_alone_reports_no_exposure(self):
         outcome = self.succeed("render", "cornell-box", "-o", "b.exr", "--size", "8x8", "--spp", "1", "--json")
         self.assertEqual(outcome.events("exposure"), [])
 

@@ -82,11 +82,11 @@ class WhatIsWritten(LabTest):
             self.assertCountEqual([picture["title"] for picture in page["pictures"] if picture["group"].endswith(kind)], titles)
         self.assertEqual(sorted(os.listdir(self.path("new/out"))), ["report.csv", "report.html", "report.json"])
 
-    def test_no_heat_maps_means_no_pictures(self):
+    def test_no_heat_maps_omits_the_pictures(self):
         self.report("cornell-box", *SMALL, "--no-heat-maps", "-o", "out")
         self.assertEqual(self.check_html(self.path("out/report.html"))["pictures"], [])
 
-    def test_heat_maps_are_of_the_first_combination_of_each_structure_and_traversal(self):
+    def test_heat_maps_show_the_first_combination_of_each_structure_and_traversal(self):
         for flags, switches in [("--rta off", "no-rta near"), ("--order off", "rta unordered"),
                                 ("--tests fast --rta on", "rta near fast-tests"), ("--order both", "rta near"),
                                 ("--tests fast,exact --rta off,nodes,on", "rta near"),
@@ -100,7 +100,7 @@ class WhatIsWritten(LabTest):
                 self.report("cornell-box", *SMALL, *flags.split(), "-o", "none")
                 self.assertEqual(self.check_html(self.path("none/report.html"))["pictures"], [])
 
-    def test_a_name_of_any_bytes_is_no_trouble(self):
+    def test_scene_names_may_contain_invalid_utf_8(self):
         odd = b"odd\xff\xc3"
         with open(os.path.join(self.folder.encode(), odd + b".obj"), "w", encoding="utf-8") as file:
             file.write(BOX)
@@ -112,12 +112,12 @@ class WhatIsWritten(LabTest):
         self.assertEqual({row["scene"] for row in self.read_csv(self.path("out/report.csv"))}, {report["scene"]})
         self.assertIn(report["scene"], self.check_html(self.path("out/report.html"))["title"])
 
-    def test_a_thesis_without_pictures_gives_no_light_and_names_its_tree(self):
+    def test_a_thesis_without_pictures_adds_no_light_and_names_its_tree(self):
         outcome = self.succeed(*self.lab("--thesis", "box.obj", *INSIDE, "--depths", "1"))
         self.assertNotIn("light", outcome.stderr)
         self.assertIn("the same tree: binned", outcome.stdout)
 
-    def test_a_scenes_name_is_text_in_every_file(self):
+    def test_scene_names_are_escaped_in_every_file(self):
         name = 'a,"b" <i>&amp;'
         write(self.path(name + ".obj"), BOX)
         report = self.report(name + ".obj", *INSIDE, *SMALL, "-o", "out")
@@ -125,7 +125,7 @@ class WhatIsWritten(LabTest):
         self.assertEqual({row["scene"] for row in self.read_csv(self.path("out/report.csv"))}, {name})
         self.assertEqual(rows_of(self.check_html(self.path("out/report.html")), "scene")[0]["scene"], name)
 
-    def test_the_thesis_writes_all_for_scenes_of_one_name_or_the_longest_and_commands_beneath_pictures_make_their_bytes(self):
+    def test_the_thesis_handles_equal_and_long_scene_names_and_its_commands_reproduce_the_pictures(self):
         os.mkdir(self.path("mine"))
         longest = "x" * 246 + ".obj"
         for scene in ["mine/cornell-box.obj", longest]:
@@ -165,7 +165,7 @@ class WhatIsWritten(LabTest):
         self.check_interrupt_leaves_all("--thesis", "box.obj", *INSIDE)
         self.check_commands_beneath_pictures(outcome)
 
-    def test_the_thesis_without_its_second_scene_or_a_picture_makes_what_it_can_and_names_the_rest(self):
+    def test_the_thesis_lists_what_it_could_not_make(self):
         os.makedirs(self.path("out/figure-3.6.png"))  # a picture of this name cannot be written
         line = self.lab("--thesis", "--depths", "1-2", "-o", "out", "--json")
         outcome = self.refuse(6, *line, says=["figure-3.6.png"],
@@ -290,7 +290,7 @@ class WhatIsWritten(LabTest):
                                 "--json", runs=1000), "^binned .*: diffuse1")
         self.check_html(self.path("out/thesis.html"))
 
-    def test_an_interrupt_while_pictures_of_the_thesis_are_made_keeps_those_that_are_done(self):
+    def test_an_interrupted_thesis_keeps_its_finished_pictures(self):
         line = self.lab("--thesis", "box.obj", *INSIDE, "--depths", "1", "--size", "64x48", "-o", "out", "--json")
         with subprocess.Popen([PROGRAM, *line], cwd=self.folder, env=self.environment, stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE) as program:
@@ -319,7 +319,7 @@ class WhatIsWritten(LabTest):
         self.succeed(*self.lab("cornell-box", *SMALL, "-o", "out"))
         self.check_interrupt_leaves_all("cornell-box", *SMALL)
 
-    def test_an_interrupt_is_heard_while_rays_are_held_against_brute_force(self):
+    def test_the_check_against_brute_force_can_be_interrupted(self):
         side = 100 if SANITIZED else 600
         write_grid(self.path("grid.ply"), side)
         line = self.lab("grid.ply", "--eye", "0.5,0.5,1", "--target", "0.5,0.4,0", *SMALL, "--threads", "1", "--json")

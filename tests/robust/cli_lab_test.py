@@ -29,7 +29,7 @@ def gltf_of_nested_boxes():
 
 
 class WhatIsRefused(LabTest):
-    def test_a_bad_flag_or_value_ends_with_2_and_shows_what_would_be_right(self):
+    def test_a_bad_flag_or_value_ends_with_2_and_lists_valid_ones(self):
         wanted = {"--structures sah": "binned", "--structures binned,sah": "octree", "--traversals x": "while-while",
                   "--rays x": "diffuse", "--rta x": "both", "--order x": "both", "--tests x": "exact",
                   "--persistent x": "both", "--runs 0": "whole number from 1", "--runs 1.5": "whole number from 1",
@@ -43,16 +43,16 @@ class WhatIsRefused(LabTest):
         for size in ["70000x1", "65536x65536"]:
             self.refuse(3, *self.lab("cornell-box", "--size", size), says=["--size", "limit"])
 
-    def test_the_environments_flags_are_not_labs(self):
+    def test_lab_refuses_environment_flags(self):
         for flag in ["--environment 1,1,1", "--environment-rotation 90", "--environment-scale 2"]:
             with self.subTest(flag=flag):
                 self.refuse(2, *self.lab("cornell-box", *flag.split()), says=[flag.split()[0]])
 
-    def test_the_lens_is_not_labs_for_rays_go_through_its_middle(self):
+    def test_lab_refuses_lens_flags(self):
         for flag in ["--aperture 0.1", "--focus 2"]:
             self.refuse(2, *self.lab("cornell-box", *flag.split()), says=[flag.split()[0]])
 
-    def test_an_empty_name_of_a_folder_is_refused_before_anything_is_read(self):
+    def test_an_empty_folder_name_is_refused_before_anything_is_read(self):
         for scene in [["nowhere.obj"], ["--thesis", "nowhere.obj"]]:
             outcome = self.refuse(2, *self.lab(*scene, "-o", ""), says=["-o", "empty"])
             self.assertNotIn("nowhere", outcome.stderr)
@@ -63,7 +63,7 @@ class WhatIsRefused(LabTest):
         # The record's scenes are scenes of --thesis too, where their files are.
         self.refuse_unmeasured(2, "--thesis", "sponza", says=["PERTEV_SCENES", "crytek-sponza/sponza.obj"])
 
-    def test_a_run_that_can_measure_nothing_exits_with_2_and_the_reasons(self):
+    def test_combinations_that_cannot_be_measured_end_with_2_and_the_reasons(self):
         for line, reason in [("--structures octree --traversals while-while", "octree needs the traversal octree"),
                              ("--structures binned --traversals kd", "kd-sah"), ("--structures kd-sah --traversals if-if", "kd"),
                              ("--structures sbvh --traversals octree", "octree"),
@@ -96,7 +96,7 @@ class WhatIsRefused(LabTest):
             self.refuse(2, *self.lab(name), says=[name, "triangle"])
         self.refuse(2, *self.lab("nowhere.obj"), says=["nowhere.obj"])
 
-    def test_a_scene_of_the_record_without_its_file_says_where_that_belongs(self):
+    def test_the_error_for_a_missing_record_scene_names_its_path(self):
         for folder in [None, self.path("nowhere")]:
             environment = dict(self.environment, **({"PERTEV_SCENES": folder} if folder else {}))
             for name, file in [("sponza", "crytek-sponza/sponza.obj"), ("bunny", "record/bunny.ply"), ("forest", "record/forest.ply")]:
@@ -129,7 +129,7 @@ class WhatIsRefused(LabTest):
         self.assertRegex(outcome.stderr, "CPU|CUDA")
         self.assertNotRegex(outcome.stdout, r"(?m)^binned (if-if|wide8) .*\d\.\d", "measured as something else")
 
-    def test_choices_of_combinations_or_rays_are_refused_with_the_thesis(self):
+    def test_the_thesis_refuses_flags_that_choose_combinations_or_rays(self):
         for flag in ["--structures binned", "--traversals packet", "--rta on", "--order off", "--tests fast",
                      "--rays primary", "--rta both", "--no-heat-maps"]:
             with self.subTest(flag=flag):
@@ -148,11 +148,11 @@ class WhatIsMeasured(LabTest):
                 self.assertRegex(rates, rf"(?m)^[a-z-]+ {name} (no-)?rta.* \d+\.\d")
         self.assertNotIn("brute-force", rates)
 
-    def test_quiet_says_nothing(self):
+    def test_quiet_prints_nothing(self):
         outcome = self.succeed(*self.lab("cornell-box", *SMALL, "-q"))
         self.assertEqual((outcome.stdout, outcome.stderr), ("", ""))
 
-    def test_json_ends_with_the_report_and_nothing_there_is_wrong(self):
+    def test_json_ends_with_one_report_of_all_structures_and_correct_hits(self):
         events = self.succeed(*self.lab("cornell-box", "--json")).events()
         self.assertEqual([event["event"] for event in events].count("lab"), 1)
         report = lab_report(events[-1])
@@ -166,7 +166,7 @@ class WhatIsMeasured(LabTest):
         for structure in self.names_of("--structures"):
             self.assertIn(structure, [of["structure"] for of in report["combinations"]])
 
-    def test_the_rays_and_the_work_do_not_depend_on_the_number_of_threads(self):
+    def test_rays_and_work_do_not_depend_on_the_number_of_threads(self):
         reports = [self.report("cornell-box", *SMALL, "--threads", threads) for threads in [1, 3]]
         for report in reports:
             self.check_hits(report)
@@ -184,7 +184,7 @@ class WhatIsMeasured(LabTest):
         brute = next(of for of in report["combinations"] if of["traversal"] == "brute-force")
         self.assertEqual([run["triangles_per_ray"] for run in brute["runs"]], [12] * len(brute["runs"]))
 
-    def test_depths_and_kinds_of_rays_are_those_requested(self):
+    def test_depths_and_kinds_of_rays_follow_their_flags(self):
         report = self.report("box.obj", *INSIDE, *SMALL, "--depths", "2-4", "--rays", "primary,diffuse")
         self.assertEqual([rays["name"] for rays in report["sets"]], ["primary", "diffuse1", "diffuse2", "diffuse3"])
         for of in report["combinations"]:
@@ -194,7 +194,7 @@ class WhatIsMeasured(LabTest):
         report = self.report("box.obj", *INSIDE, *SMALL, "--rays", "primary", "--depths", "1")
         self.assertEqual([rays["name"] for rays in report["sets"]], ["primary"])
 
-    def test_the_records_five_sets_can_be_traced_in_a_small_file(self):
+    def test_record_rays_are_five_sets_of_the_requested_size(self):
         report = self.report("box.obj", *INSIDE, *SMALL, "--rays", "record", "--count", "500")
         self.check_hits(report)
         self.assertEqual([(rays["name"], rays["rays"], rays["hit_share"]) for rays in report["sets"]],
@@ -214,7 +214,7 @@ class WhatIsMeasured(LabTest):
                          {"primary": 1, "diffuse1": 1, "diffuse2": 1})
         self.assertEqual({of["traversal"] for of in report["combinations"] if of["runs"]}, set(traversals))
 
-    def test_pairs_that_make_no_sense_are_listed_with_the_reason_beside_what_was_measured(self):
+    def test_impossible_combinations_are_listed_with_the_reason(self):
         pair = ["box.obj", *INSIDE, "--structures", "octree,binned", "--traversals", "while-while,kd"]
         outcome = self.succeed(*self.lab(*pair))
         self.assertRegex(outcome.stdout, r"(?m)^Not run: .*octree needs the traversal octree.*: octree while-while ")
@@ -225,7 +225,7 @@ class WhatIsMeasured(LabTest):
         self.assertEqual({of["name"] for of in report["combinations"] if of["runs"]},
                          {"binned while-while rta near", "binned while-while no-rta near"})
 
-    def test_every_combination_has_a_name_of_its_own_refused_ones_included(self):
+    def test_names_of_combinations_are_unique_including_refused_ones(self):
         report = self.report("box.obj", *INSIDE, "--structures", "binned,octree", "--traversals",
                              ",".join(self.names_of("--traversals")), "--order", "both", "--tests", "exact,fast,woop")
         names = [of["name"] for of in report["combinations"]]
@@ -244,7 +244,7 @@ class WhatIsMeasured(LabTest):
         for name in ["shadow", "diffuse1", "diffuse2", "diffuse3"]:
             self.assertIn(f"{name}: no rays", outcome.stdout)
 
-    def test_one_triangle_has_a_cost_in_every_tree_and_an_array_has_none(self):
+    def test_every_tree_has_a_cost_and_a_depth_but_an_array_has_neither(self):
         write(self.path("one.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
         report = self.report("one.obj", "--structures", "binned,kd-sah,octree", "--traversals",
                              "brute-force,if-if,skip-links,wide4,kd,octree")

@@ -22,7 +22,7 @@ class Layers(CliTest):
         width, height, layers = read_exr(self.path("x.exr"))
         return [{name: rows[y][x] for name, rows in layers.items()} for y in range(height) for x in range(width)]
 
-    def test_at_an_edge_normal_depth_and_position_are_of_what_was_hit_and_albedo_fades(self):
+    def test_at_an_edge_only_hits_count_for_normal_depth_and_position(self):
         write(self.path("floor.obj"), FLOOR)
         first = self.pixels("floor.obj", 1, "--transparent")
         pixels = self.pixels("floor.obj", 64, "--transparent")
@@ -45,7 +45,7 @@ class Layers(CliTest):
         self.assertTrue(any(pixel["id.instance"] == NONE and pixel["A"] > 0 for pixel in pixels))
         self.assertTrue(any(pixel["id.instance"] != NONE and pixel["A"] < 1 for pixel in pixels))
 
-    def test_two_surfaces_in_a_pixel_give_a_depth_and_a_place_between_them(self):
+    def test_two_surfaces_in_a_pixel_give_a_mean_depth_and_position(self):
         write(self.path("two.obj"), FLOOR + BELOW)
         depths = []
         for pixel in self.pixels("two.obj", 64):
@@ -56,7 +56,7 @@ class Layers(CliTest):
 
 
 class Denoised(CliTest):
-    def test_a_denoised_exr_keeps_the_undenoised_picture_beside_it_and_names_that_by_its_hash(self):
+    def test_a_denoised_exr_keeps_the_noisy_picture_and_its_hash(self):
         flags = ["--spp", "2", "--size", "40x30", "--aov", "depth"]
         plain = self.succeed("render", "cornell-box", "-o", "plain.exr", "--json", *flags).events("done")[0]
         done = self.succeed("render", "cornell-box", "-o", "x.exr", "--json", "--denoise", "svgf", *flags).events("done")[0]
@@ -73,7 +73,7 @@ class Denoised(CliTest):
             self.assertNotEqual(layers[name], before[name])
         self.assertEqual(layers["depth.Z"], before["depth.Z"])
 
-    def test_each_frame_of_a_sequence_is_denoised_by_itself(self):
+    def test_each_frame_of_a_sequence_is_denoised_independently(self):
         flags = ["--spp", "2", "--size", "40x30", "--denoise", "svgf", "--turntable", "3"]
         told = self.succeed("render", "cornell-box", "-o", "a-#.exr", "--json", *flags).events("frame")
         self.assertEqual([event["denoised_hash"] for event in told], [self.info(f"a-{frame}.exr")["hash"] for frame in range(3)])
@@ -88,7 +88,7 @@ class Denoised(CliTest):
 
 
 class Metadata(CliTest):
-    def test_names_are_those_of_flags(self):
+    def test_metadata_keys_are_names_of_flags(self):
         write(self.path("floor.obj"), FLOOR)
         flags = set(re.findall(r"(?<![\w-])--([a-z][a-z-]*)", self.succeed("render", "--help", "all").stdout))
         for more in [["--aperture", "0.1"], ["--projection", "orthographic"]]:

@@ -15,7 +15,7 @@ class LeftOut(CliTest):
         write(self.path(name), json.dumps({**json.loads(gltf_with_cameras()), **members}))
         return name
 
-    def test_an_unknown_extension_that_is_required_is_left_out_and_strict_refuses(self):
+    def test_an_unknown_required_extension_is_skipped_but_refused_with_strict(self):
         scene = self.model(extensionsUsed=["EXT_new"], extensionsRequired=["EXT_new"])
         outcome = self.succeed("render", scene, "-o", "x.png", "--json", *SMALL)
         done = outcome.events("done")[0]
@@ -25,7 +25,7 @@ class LeftOut(CliTest):
         self.refuse(2, "render", scene, "-o", "y.png", "--strict", *SMALL,
                     says=["--strict: ", "/extensionsRequired/0", "EXT_new", "nothing is rendered"])
 
-    def test_strict_is_a_flag_of_every_verb_that_reads_a_scene_to_render_or_measure(self):
+    def test_every_verb_that_renders_or_measures_a_scene_has_strict(self):
         scene = self.model(extensionsUsed=["EXT_new"])
         lines = [["measure", scene, "--at", "0,0,-1", "--normal", "0,0,1", "--spp", "1", "--device", "cpu"],
                  ["solve", "radiosity", scene, "-o", "x.rad", "--patch-rays", "16"],
@@ -40,12 +40,12 @@ class LeftOut(CliTest):
         self.succeed(*lines[0])
         self.succeed("measure", self.model("whole.gltf"), *lines[0][2:], "--strict")
 
-    def test_of_several_things_left_out_strict_names_the_first_and_their_number(self):
+    def test_strict_names_the_first_skipped_part_and_the_number_of_parts(self):
         scene = self.model(extensionsUsed=["EXT_new", "EXT_newer", "EXT_newest"])
         self.refuse(2, "render", scene, "-o", "y.png", "--strict", "--json", *SMALL,
                     says=["EXT_new, ", "and 2 warnings like it"])
 
-    def test_a_file_that_leaves_no_picture_is_an_error_that_lists_what_is_left_out(self):
+    def test_the_error_for_a_scene_without_triangles_lists_the_skipped_parts(self):
         accessors = [{"componentType": 5126, "count": 3, "type": "VEC3"}]
         meshes = [{"primitives": [{"attributes": {"POSITION": 0},
                                    "extensions": {"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {}}}}]}]
@@ -54,7 +54,7 @@ class LeftOut(CliTest):
         for flags in [[], ["-q"], ["--json"], ["--strict"]]:
             self.refuse(2, "render", scene, "-o", "x.png", *flags, *SMALL, says=["KHR_draco_mesh_compression", command])
 
-    def test_a_whole_scene_leaves_nothing_out_and_makes_up_what_it_lacks(self):
+    def test_a_complete_scene_skips_no_part_and_missing_light_and_camera_are_added(self):
         done = self.succeed("render", self.model(), "-o", "x.png", "--json", "--strict", *SMALL).events("done")[0]
         self.assertEqual(done["left_out"], [])
         self.assertEqual(len(done["made_up"]), 1, done)  # the light
@@ -65,7 +65,7 @@ class LeftOut(CliTest):
         self.assertEqual(self.succeed("render", "cornell-box", "-o", "z.png", "--json", *SMALL).events("done")[0]["made_up"],
                          [])
 
-    def test_metadata_and_info_have_the_lists(self):
+    def test_metadata_and_info_list_skipped_and_added_parts(self):
         scene = self.model(extensionsUsed=["EXT_new"])
         done = self.succeed("render", scene, "-o", "x.exr", "--json", *SMALL_EXR).events("done")[0]
         info = self.succeed("info", "x.exr", "--json").events("info")[0]
@@ -74,14 +74,14 @@ class LeftOut(CliTest):
         info = self.succeed("info", scene, "--json").events("info")[0]
         self.assertEqual(info["left_out"], done["left_out"])
 
-    def test_measure_and_sequences_have_the_lists(self):
+    def test_measure_and_sequences_list_skipped_parts(self):
         scene = self.model(extensionsUsed=["EXT_new"])
         at = ["--at", "0,0,1", "--normal", "0,0,1", "--spp", "1", "--device", "cpu"]
         self.assertEqual(len(self.succeed("measure", scene, "--json", *at).events("measure")[0]["left_out"]), 1)
         outcome = self.succeed("render", scene, "-o", "f###.png", "--turntable", "2", "--json", *SMALL)
         self.assertEqual(len(outcome.events("sequence")[0]["left_out"]), 1)
 
-    def test_faces_and_lines_that_cannot_be_read_are_left_out(self):
+    def test_unreadable_faces_and_lines_are_skipped(self):
         good = SQUARE + "f 4 3 2 1\n"
         write(self.path("m.mtl"), "newmtl m\nKd 1 oops 0\nKe 1 1 1\n")
         write(self.path("bad.mtl.obj"), "mtllib m.mtl\nusemtl m\n" + good)

@@ -11,7 +11,7 @@ def lpe(expressions):
 
 
 class Layers(CliTest):
-    def test_layers_stand_in_the_exr_beside_the_same_picture(self):
+    def test_the_exr_holds_the_layers_and_an_unchanged_picture(self):
         flags = ["--size", "24x24", "--spp", "4", "--device", "cpu", "--json"]
         plain = self.succeed("render", "cornell-box", "-o", "plain.exr", *flags).events("done")[0]
         expressions = ["seen=LE", "direct=LDE", "bounced=LD{2,}E"]
@@ -36,7 +36,7 @@ class Layers(CliTest):
         self.refuse(2, "render", "cornell-box", "-o", "f-#.exr", "--turntable", "2", "--size", "8x8", "--spp", "1",
                     "--continue", "--lpe", "direct=LDDE", says=["--continue"])
 
-    def test_a_hundred_layers_are_each_what_it_is_alone(self):
+    def test_each_of_a_hundred_layers_equals_the_layer_rendered_alone(self):
         flags = ["--size", "12x9", "--spp", "2", "--device", "cpu", "--json"]
         many = {f"n{i}": f"L{'D' if i % 2 else ''}.{{{i // 2 % 7}}}{['', 'D', '[^S]', '.*'][i // 14 % 4]}E" for i in range(100)}
         run = self.succeed("render", "cornell-box", "-o", "x.exr", *flags, *lpe(many))
@@ -51,7 +51,7 @@ class Layers(CliTest):
                 self.assertEqual(channels[f"{name}.{channel}"], alone[f"{name}.{channel}"], name)
             self.assertGreater(sum(map(sum, alone[f"{name}.G"])), 0, name)
 
-    def test_a_render_that_takes_more_memory_than_it_may_is_refused(self):
+    def test_a_render_over_the_memory_limit_is_refused(self):
         flags = ["--size", "64x48", "--spp", "1", "--device", "cpu", *lpe({f"n{i}": "LE" for i in range(100)})]
         bytes = self.succeed("render", "cornell-box", "-o", "x.exr", "--json", *flags).events("picture")[0]["predicted_bytes"]
         self.succeed("render", "cornell-box", "-o", "x.exr", *flags, "--max-memory", repr(bytes / 2**20))

@@ -109,7 +109,7 @@ class FilesDamagedHere(MalformedTest):
             file.write(content)
         return self.path(name)
 
-    def test_a_whole_picture_serves_everywhere(self):
+    def test_intact_pictures_are_accepted_in_every_use(self):
         for name in ["whole.png", "whole.jpg"]:
             self.assertEqual(self.use_image(self.put(name, self.whole(name)), warns=False), [0, 0, 0, 0], name)
         for name in ["whole.exr", "whole.hdr"]:
@@ -133,13 +133,13 @@ class FilesDamagedHere(MalformedTest):
                     # Only PNG has checksums: elsewhere other bytes may be another picture.
                     self.use_image(self.put(f"damaged{name[5:]}", bytes(damaged)), warns=name.endswith(".png"))
 
-    def test_files_that_are_no_pictures_are_refused(self):
+    def test_other_files_with_a_picture_extension_are_refused(self):
         for extension in IMAGES:
             for content in [b"v 0 0 0\n", b"\0" * 4096, b"<html>not here</html>"]:
                 with self.subTest(extension=extension, content=content[:8]):
                     self.assertEqual(self.use_image(self.put("fake" + extension, content), warns=True)[:2], [2, 2])
 
-    def test_files_that_are_no_scenes_are_refused(self):
+    def test_other_files_with_a_scene_extension_are_refused(self):
         for extension in (".obj", ".ply", ".gltf", ".glb"):
             for content in [b"", b"\0" * 4096, b"<html>not here</html>", b"{}", b"[" * 50000, b"ply\n", b"\xff\xfe\n" * 99]:
                 name = "fake" + extension
@@ -148,7 +148,7 @@ class FilesDamagedHere(MalformedTest):
                     self.assertEqual(self.survive(name, "info", name), 2)
                     self.assertEqual(self.survive_render(name, name), 2)
 
-    def test_meshes_without_anything_to_see_or_with_numbers_that_are_none_are_refused_or_repaired(self):
+    def test_meshes_without_area_are_refused_and_invalid_faces_are_skipped(self):
         whole = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
         for text, status in [("v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n", 2), ("v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", 2),
                              (whole + "v inf 0 0\nf 1 2 4\n", 0), (whole + "v 1e39 0 0\nf 1 2 4\n", 0),
@@ -158,7 +158,7 @@ class FilesDamagedHere(MalformedTest):
                 self.assertEqual(self.survive("mesh.obj", "info", "mesh.obj"), status)
                 self.assertEqual(self.survive_render("mesh.obj", "mesh.obj"), status)
 
-    def test_a_texture_outside_the_scenes_folder_needs_leave(self):
+    def test_a_texture_outside_the_scenes_folder_needs_allow_path(self):
         inner = self.path("inner")
         os.mkdir(inner)
         self.put("whole.png", self.whole("whole.png"))
@@ -188,7 +188,7 @@ class SmallFilesThatUnfold(MalformedTest):
             file.write(content)
         return self.path(name)
 
-    def test_a_picture_of_one_colour_serves_at_the_size_of_textures(self):
+    def test_a_large_picture_of_one_colour_is_accepted(self):
         wall = self.put("wall.png", picture_of_one_colour(2048 if SANITIZED else 4096, 8))
         self.assertEqual(self.use_image(wall, warns=False), [0, 0, 0, 0])
         self.put("model.png", picture_of_one_colour(8192, 1))
@@ -196,7 +196,7 @@ class SmallFilesThatUnfold(MalformedTest):
             file.write(gltf_with_texture("model.png"))
         self.assertNotIn("model.png", self.succeed("info", "model.gltf").stderr)
 
-    def test_a_picture_far_larger_than_its_file_justifies_is_refused(self):
+    def test_a_picture_far_too_large_for_its_file_size_is_refused(self):
         bomb = picture_of_one_colour(16384, 1)
         self.assertLess(len(bomb), 40000)
         self.assertEqual(self.use_image(self.put("bomb.png", bomb), warns=True), [3, 3, 0, 0])
@@ -205,7 +205,7 @@ class SmallFilesThatUnfold(MalformedTest):
         self.assertEqual(self.survive_render("8k.png", "cornell-box", "--environment",
                                              self.put("8k.png", picture_of_one_colour(8192, 1))), 3)
 
-    def test_many_pictures_share_what_their_files_justify(self):
+    def test_the_limit_by_file_size_covers_all_pictures_of_a_scene_together(self):
         picture = picture_of_one_colour(8192, 1)
         model = json.loads(gltf_with_texture(""))
         model["images"] = [{"bufferView": 1 + i, "mimeType": "image/png"} for i in range(8)]
@@ -228,7 +228,7 @@ class SmallFilesThatUnfold(MalformedTest):
 
 
 class ThePublicCollection(MalformedTest):
-    def test_every_scene_ends_in_an_error_that_names_it_or_in_a_picture(self):
+    def test_every_public_scene_gives_a_picture_or_an_error_that_names_it(self):
         for path in public_files(SCENES):
             name = os.path.basename(path)
             legal = name.startswith("issue-295-")
@@ -236,7 +236,7 @@ class ThePublicCollection(MalformedTest):
                 self.assertEqual(self.survive(name, "info", path, warns=not legal),
                                  self.survive_render(name, path, warns=not legal))
 
-    def test_every_image_ends_so_as_a_picture_a_texture_and_an_environment(self):
+    def test_every_public_image_is_read_or_refused_in_every_use(self):
         for path in public_files(IMAGES):
             with self.subTest(image=path):
                 self.use_image(path, warns=True)

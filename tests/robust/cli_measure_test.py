@@ -34,7 +34,7 @@ class Light(CliTest):
         words = self.succeed("measure", "floor.obj", "--at", "0,0,0", "--normal", "0,1,0", "--device", "cpu", "--spp", "1")
         self.assertRegex(words.stdout, r"irradiance +[0-9.]+ ± [0-9.e-]+ W/m2[^\n]*\nilluminance +[0-9.]+ ± [0-9.e-]+ lx")
 
-    def test_lamps_count_as_they_are_set_and_no_sky_is_added(self):
+    def test_measuring_uses_the_set_lamp_intensities_and_adds_no_sky(self):
         gltf = json.loads(gltf_with_cameras())
         gltf["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 0, "name": "L"}]}}
         gltf["nodes"].append({"translation": [5, 2, 5], "extensions": {"KHR_lights_punctual": {"light": 0}}})
@@ -50,7 +50,7 @@ class Light(CliTest):
         told = self.measure("lit.gltf", *dark[1:], "--lamp", "L=0cd")
         self.assertEqual((told["made_up"], told["illuminance"]["value"]), ([], 0))
 
-    def test_a_meter_that_faces_nowhere_is_refused_before_the_scene_is_read(self):
+    def test_an_invalid_meter_normal_is_refused_before_the_scene_is_read(self):
         for normal in ["0,0,0", "up", "nan,0,1", "1e-30,0,0"]:
             self.refuse(2, "measure", "nowhere.obj", "--at", "0,0,0", "--normal", normal, says=["--normal", normal])
         self.refuse(2, "measure", "cornell-box", "--normal", "0,1,0", says=["--at"])

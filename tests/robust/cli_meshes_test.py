@@ -40,7 +40,7 @@ class Meshes(CliTest):
     def said(self, scene, *flags):
         return self.succeed("render", scene, "-o", "x.exr", "--size", "8x8", "--spp", "1", *VIEW, *flags).stderr
 
-    def test_flags_convert_a_file_to_metres_with_y_up_and_metadata_have_them(self):
+    def test_unit_and_up_axis_convert_a_file_and_are_in_the_metadata(self):
         pictures = set()
         for axis, vertices in STEPS.items():
             write(self.path(f"{axis}.obj"), vertices + STEP)
@@ -59,7 +59,7 @@ class Meshes(CliTest):
         self.assertIn(metres["hash"], pictures)
         self.assertNotIn("pertev.up_axis", self.info("x.exr"))
 
-    def test_frames_of_another_unit_are_refused_and_gltf_keeps_its_own(self):
+    def test_continuing_with_another_unit_is_refused_and_gltf_ignores_the_unit(self):
         write(self.path("y.obj"), STEPS["y"] + STEP)
         frames = ["render", "y.obj", "-o", "f-#.png", "--size", "8x8", "--spp", "1", "--exposure", "0", "--turntable", "2",
                   "--frames", "0-1", "--device", "cpu", "--eye", "0.5,1.5,9", "--target", "0.5,1.5,0"]
@@ -70,7 +70,7 @@ class Meshes(CliTest):
         said = self.said("cornell-box", "--unit", "mm")
         self.assertIn("cornell-box: the file is in metres with y up", said)
 
-    def test_files_are_found_in_another_case_and_by_the_end_of_their_path(self):
+    def test_files_are_found_with_another_case_or_in_another_folder(self):
         write_png(self.path("Plain.PNG"), (255, 0, 0))
         write(self.path("My Model.mtl"), "newmtl a\nKd 1 1 1\nmap_Kd C:\\Users\\someone\\plain.png -bm 1\n")
         write(self.path("a.obj"), "mtllib my model.MTL\n" + SQUARE.format("") + TEXTURED)
@@ -90,7 +90,7 @@ class Meshes(CliTest):
               "end_header\n-1 -1 0\n1 -1 0\n1 1 0\n-1 1 0\n4 0 1 2 3 8 0 0 1 0 1 1 0 1\n")
         self.assert_near(self.mean("a.ply"), RED)
 
-    def test_a_material_that_nobody_can_see_is_named(self):
+    def test_invisible_materials_are_reported(self):
         for statement in ["Tr 1", "d 0"]:
             write(self.path("a.mtl"), f"newmtl ghost\nKd 1 0 0\n{statement}\n")
             write(self.path("a.obj"), "mtllib a.mtl\n" + SQUARE.format("") + "usemtl ghost\nf 1 2 3 4\n")
@@ -99,7 +99,7 @@ class Meshes(CliTest):
         self.assertNotIn("invisible", self.said("a.obj"))
         self.assert_near(self.mean("a.obj"), RED)
 
-    def test_objects_have_names_in_pictures(self):
+    def test_exr_metadata_map_ids_to_object_names(self):
         write(self.path("a.obj"), SQUARE.format("") + "o left door\nf 1 2 3\no right door\nf 1 3 4\n")
         self.render(*VIEW, "--aov", "ids", scene="a.obj", output="x.exr")
         self.assertEqual(self.info("x.exr")["pertev.instances"], '{"0":"left door","1":"right door"}')

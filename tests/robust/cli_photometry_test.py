@@ -5,7 +5,7 @@ from cli_run import CliTest, main, read_exr, read_png
 
 
 class Photometry(CliTest):
-    def test_a_lamp_of_twice_the_lumens_gives_twice_the_light(self):
+    def test_twice_the_lumens_of_a_lamp_give_twice_the_light(self):
         pictures = []
         for amount in ["400lm", "800lm"]:
             self.render("--lamp", f"light={amount}", output="x.exr")
@@ -18,7 +18,7 @@ class Photometry(CliTest):
                     for amount in ["400lm", "800lm"]]
         self.assertAlmostEqual(2 * measured[0], measured[1], delta=1e-4 * measured[1])
 
-    def test_false_colours_stand_over_their_scale(self):
+    def test_a_false_colour_picture_has_a_scale_and_leaves_the_film_unchanged(self):
         def shown(what, output, size, *flags):
             return self.succeed("render", "cornell-box", "-o", output, "--size", size, "--spp", "1", "--json",
                                 "--false-color", what, *flags).events("done")[0]["hash"]
@@ -30,7 +30,7 @@ class Photometry(CliTest):
         self.assertNotEqual(shown("illuminance", "z.exr", "16x16"), plain)
         self.assertEqual(self.info("z.exr")["pertev.quantity"], "irradiance")
 
-    def test_a_camera_s_exposure_counts_in_stops(self):
+    def test_f_number_shutter_time_and_iso_set_the_exposure_in_stops(self):
         def exposure(*flags):
             return self.succeed("render", "cornell-box", "-o", "x.png", "--size", "8x8", "--spp", "1", "--json",
                                 *flags).events("exposure")[0]["stops"]

@@ -38,7 +38,7 @@ class HowPicturesAreShown(CliTest):
     def flags_in(self, notice):
         return re.search(r"\((--exposure \S+ --tone-map \S+) ", notice).group(1).split()
 
-    def test_the_flags_of_the_notice_make_the_very_same_file(self):
+    def test_the_flags_in_the_exposure_notice_reproduce_the_file(self):
         for name in ["x.png", "x.jpg"]:
             for flags in [[], ["--tone-map", "srgb"], ["--exposure", "auto"]]:
                 with self.subTest(name=name, flags=flags):
@@ -58,13 +58,13 @@ class HowPicturesAreShown(CliTest):
                        for notice in self.show(*flags, "--seed", seed, scene=scene, size=size, spp=spp)}
             self.assertEqual(len(notices), 1, notices)
 
-    def test_ten_times_the_light_makes_the_same_picture(self):
+    def test_ten_times_the_light_lowers_the_exposure_by_log2_of_10(self):
         write(self.path("sheet.obj"), SHEET)
         stops = [float(self.flags_in(self.show(*VIEW, "--environment", light, scene="sheet.obj")[0])[1])
                  for light in ["0.5,0.5,0.5", "5,5,5"]]
         self.assertAlmostEqual(stops[0] - stops[1], math.log2(10), delta=0.011)
 
-    def test_plain_values_are_those_of_the_exr_and_an_exr_alone_is_not_metered(self):
+    def test_png_without_tone_mapping_matches_the_exr_and_an_exr_alone_is_not_metered(self):
         write(self.path("floor.obj"), FLOOR)
         away = ["--eye", "0,1,5", "--target", "0,1,9", "--environment", "0.5,0.25,0.125"]
         self.assertEqual(self.show(*away, *PLAIN, scene="floor.obj"), [])
@@ -74,7 +74,7 @@ class HowPicturesAreShown(CliTest):
         _, _, layers = read_exr(self.path("x.exr"))
         self.assertEqual([layers[channel][3][3] for channel in "RGB"], [0.5, 0.25, 0.125])
 
-    def test_an_exr_beside_a_png_is_linear_and_its_metadata_say_how_the_png_was_shown(self):
+    def test_an_exr_beside_a_png_is_linear_and_records_the_tone_map_of_the_png(self):
         exposure = self.flags_in(self.show(outputs=["x.exr", "x.png"])[0])[1]
         told = self.info("x.exr")
         self.assertEqual((told["pertev.tone_map"], round(told["pertev.exposure"], 2)), ("agx", float(exposure)))
@@ -83,7 +83,7 @@ class HowPicturesAreShown(CliTest):
         self.assertEqual(self.info("x.exr")["hash"], beside)
         self.assertNotIn("pertev.exposure", self.info("x.exr"))
 
-    def test_few_pixels_burn_out_and_the_box_is_neither_dark_nor_pale(self):
+    def test_auto_exposure_of_the_cornell_box_burns_out_few_pixels_and_is_medium_bright(self):
         self.show(size="64x64", spp=64)
         pixels = read_png(self.path("x.png"))
         self.render("--max-depth", 0, size="64x64", spp=64, output="lamp.exr")
@@ -98,7 +98,7 @@ class HowPicturesAreShown(CliTest):
 class RecordedPictures(CliTest):
     """Whoever changes one of them says why, and records it anew (bench/results/one_picture.json has the second one)."""
 
-    def test_the_cornell_box_has_the_bytes_that_were_recorded(self):
+    def test_the_cornell_box_has_the_recorded_hashes(self):
         recorded = {("320x240", 4): "ac245b79834309455f77746a055129b2",
                     ("640x360", 1): "222529ebdf8a58d54f8155a0322d65c5"}
         for (size, spp), picture in recorded.items():
@@ -117,7 +117,7 @@ class WhatHalfACameraSees(CliTest):
     def hash_again(self, flags, scene):
         return self.notices(*flags, scene=scene)[1]
 
-    def test_an_eye_alone_looks_at_the_middle_of_the_scene_and_says_so(self):
+    def test_an_eye_alone_looks_at_the_centre_of_the_scene_with_a_notice(self):
         write(self.path("sheet.obj"), SHEET)
         write(self.path("two.gltf"), gltf_with_cameras())
         for scene, middle in [("sheet.obj", (0, 1, 0)), ("two.gltf", (0, 0, 0))]:
@@ -142,14 +142,14 @@ class WhatHalfACameraSees(CliTest):
                             "1", "--device", "cpu", "--size", "16x12", "--json")
         self.assertEqual(len([event for event in said.events("notice") if "--target 0,1,0)" in event["text"]]), 1)
 
-    def test_a_target_alone_names_the_eye_that_looks_at_it(self):
+    def test_the_notice_for_a_target_alone_has_the_chosen_eye(self):
         write(self.path("sheet.obj"), SHEET)
         notices, _ = self.notices("--target", "0,2,0", scene="sheet.obj")
         told = [text for text in notices if "--target" in text]
         self.assertEqual(len(told), 1, notices)
         self.assertIn("--target 0,2,0", told[0])
 
-    def test_an_aperture_alone_focuses_on_what_is_in_the_middle_and_says_how_far_that_is(self):
+    def test_an_aperture_alone_focuses_on_the_centre_of_the_picture_with_a_notice(self):
         cameras = json.loads(gltf_with_cameras())  # the first is 4 m before a triangle in the picture's middle
         write(self.path("two.gltf"), json.dumps(cameras))
         notices, made = self.notices("--aperture", "0.2", scene="two.gltf")
@@ -161,14 +161,14 @@ class WhatHalfACameraSees(CliTest):
         self.assertNotEqual(self.hash_again(["--aperture", "0.2", "--focus", "1"], "two.gltf"), made)
         self.assertEqual(self.notices(scene="two.gltf")[0][-1].count("--focus"), 0)
 
-    def test_where_nothing_is_in_the_middle_the_focus_is_as_far_as_the_scenes_middle(self):
+    def test_without_a_surface_in_the_centre_the_focus_is_at_the_centre_of_the_scene(self):
         cameras = json.loads(gltf_with_cameras())
         cameras["nodes"][1]["translation"] = [3, 0, 4]  # looks past the triangle
         write(self.path("two.gltf"), json.dumps(cameras))
         notices, _ = self.notices("--aperture", "0.2", scene="two.gltf")
         self.assertEqual(len([text for text in notices if "(--focus 5)" in text]), 1, notices)
 
-    def test_an_eye_alone_with_an_aperture_focuses_on_the_surface_it_sees_and_a_target_given_is_in_focus(self):
+    def test_a_given_target_is_in_focus_or_else_the_surface_in_the_centre(self):
         write(self.path("sheet.obj"), SHEET)
         notices, _ = self.notices("--eye", "0,1,5", "--aperture", "0.1", scene="sheet.obj")
         self.assertEqual(len([text for text in notices if "(--focus 6)" in text]), 1, notices)

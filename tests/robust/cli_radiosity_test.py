@@ -30,7 +30,7 @@ class Radiosity(CliTest):
             given += [] if flag in flags else [flag, value]
         return self.succeed("render", "cornell-box", *given, "-o", "x.png", "--json").events("done")[0]["hash"]
 
-    def test_a_solution_serves_every_picture_as_if_the_scene_were_solved_for_it(self):
+    def test_a_solution_file_gives_the_same_picture_as_solving_within_render(self):
         told, before = self.solve(*COARSE)
         self.assertLessEqual(told["patches"], before["most_patches"])
         self.assertLessEqual(told["bytes"], before["predicted_bytes"])
@@ -52,7 +52,7 @@ class Radiosity(CliTest):
             self.assertIn(flags[1] if flags else "gauss-seidel", facts["made_by"])
         self.assertEqual(self.solve(*COARSE, "--threads", "1")[0]["hash"], told["hash"])
 
-    def test_a_solution_is_taken_for_any_view_and_refused_under_any_other_light(self):
+    def test_a_solution_is_accepted_for_any_view_and_refused_under_other_light(self):
         self.solve(*COARSE)
         solved = self.hash_of(*COARSE)
         for view in [["--eye", "0.3,0.2,2", "--fov", "50"], ["--size", "9x7"], ["--spp", "2"], ["--max-depth", "2"]]:
@@ -76,7 +76,7 @@ class Radiosity(CliTest):
         write(self.path("floor.mtl"), "newmtl a\nKd 0.5 0.5 0.6\n")
         self.refuse(2, "render", "floor.obj", *SMALL, "-o", "x.png", "--solution", "floor.rad", says=["floor.rad: "])
 
-    def test_a_scene_of_weak_emitters_is_solved_without_a_sky_and_its_pictures_have_none(self):
+    def test_weak_emitters_are_solved_and_shown_without_a_default_sky(self):
         cube = "".join(f"v {x} {y} {z}\n" for x in (-1, 1) for y in (-1, 1) for z in (-1, 1))
         body = "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n"
         lamp = "".join(f"v {x} 1.01 {z}\n" for x in (0, 0.02) for z in (0, 0.02))
@@ -87,7 +87,7 @@ class Radiosity(CliTest):
         self.assertEqual(shown, self.picture(*COARSE, "--environment", "0,0,0", scene="weak.obj"))
         self.assertNotEqual(shown, self.picture(*COARSE, scene="weak.obj"))
 
-    def test_a_solution_is_of_one_time(self):
+    def test_a_solution_is_refused_at_another_time(self):
         scene = json.loads(moving_gltf())
         scene["materials"] = [{"pbrMetallicRoughness": {"metallicFactor": 0}}]
         scene["meshes"][0]["primitives"][0]["material"] = 0
@@ -122,7 +122,7 @@ class Radiosity(CliTest):
             fields = file.read().rsplit(")", 1)[1].split()
         return [int(fields[i]) / os.sysconf("SC_CLK_TCK") for i in (11, 12)]
 
-    def test_a_picture_of_a_solution_that_ctrl_c_ended_has_the_hash_of_one_of_as_many_samples(self):
+    def test_an_interrupted_render_has_the_hash_of_a_render_with_as_many_samples(self):
         self.solve(*COARSE)
         flags = ["render", "cornell-box", "--integrator", "radiosity", "--solution", "box.rad", "--size", "16x16",
                  "--device", "cpu", "-o", "x.exr"]
@@ -133,7 +133,7 @@ class Radiosity(CliTest):
         again = self.succeed(*flags, "--spp", done["samples"], "--threads", "1", "--json").events("done")[0]
         self.assertEqual(again["hash"], done["hash"])
 
-    def test_ctrl_c_is_heard_while_rows_are_made_and_leaves_no_picture_of_half_a_solution(self):
+    def test_an_interrupt_while_rows_are_computed_leaves_no_file(self):
         long = ["--patch-size", "0.1", "--patch-rays", "1048576"]
         for arguments in [["solve", "radiosity", "cornell-box", "-o", "long.rad", *long],
                           ["render", "cornell-box", *SMALL, "-o", "long.png", *long]]:
@@ -148,7 +148,7 @@ class Radiosity(CliTest):
             self.assertEqual(events[-1]["code"], "interrupted")
         self.assertEqual([name for name in self.files() if name.startswith("long")], [])
 
-    def test_an_interrupt_while_links_are_made_keeps_an_unfinished_solution_that_renders_with_a_warning(self):
+    def test_an_interrupt_while_links_are_made_keeps_an_unfinished_solution(self):
         program = self.start("solve", "radiosity", "cornell-box", "-o", "ended.rad", "--solver", "hierarchical",
                              "--patch-size", "0.01", "--link-error", "0.001")
         next(line for line in program.stdout if json.loads(line)["event"] == "radiosity")
@@ -175,7 +175,7 @@ class Radiosity(CliTest):
         outcome = self.succeed("render", "cornell-box", *SMALL, "-o", "x.png", "--solution", "ended.rad")
         self.assertIn("ended.rad: it is unfinished and holds " + solved["holds"], outcome.stderr)
 
-    def test_progress_says_each_step_and_the_last_object_what_came_of_it(self):
+    def test_progress_names_each_step_and_the_last_event_has_the_result(self):
         keys = ["event", "seconds", "step", "share", "seconds_left"]
         for solver, steps in [("gauss-seidel", ["form factors", "solving", "dividing patches"]),
                               ("matrix", ["form factors", "solving", "dividing patches"]),
@@ -201,7 +201,7 @@ class Radiosity(CliTest):
         self.assertIn("form factors", [event["step"] for event in outcome.events("progress")])
         self.assertEqual(outcome.events("progress")[-1]["step"], "samples")
 
-    def test_a_solution_is_not_written_under_the_name_of_a_picture(self):
+    def test_a_solution_file_with_a_picture_extension_is_refused(self):
         for name in ["box.png", "box.EXR"]:
             self.refuse(2, "solve", "radiosity", "cornell-box", "-o", name, *COARSE, says=["box.rad"])
 
@@ -221,12 +221,12 @@ class Radiosity(CliTest):
                         predicted / 2**20 - 0.01, says=["--max-memory",
                                                         "--solver gauss-seidel" if "hierarchical" in flags else "--patch-rays"])
 
-    def test_a_picture_for_which_there_is_no_room_is_refused_before_its_scene_is_solved(self):
+    def test_a_picture_too_large_for_memory_is_refused_before_the_scene_is_solved(self):
         outcome = self.refuse(4, "render", "cornell-box", "-o", "x.png", "--integrator", "radiosity", "--size", "4096x4096",
                               "--max-memory", "200", "--json", says=["--max-memory"])
         self.assertEqual(outcome.events("radiosity"), [])
 
-    def test_light_without_end_is_refused(self):
+    def test_a_closed_scene_without_absorption_is_refused(self):
         box = "".join(f"v {x} {y} {z}\n" for x in (0, 1) for y in (0, 1) for z in (0, 1))
         for a, b, c, d in [(1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4)]:
             box += f"f {a} {d} {c} {b}\n"  # inwards
@@ -234,7 +234,7 @@ class Radiosity(CliTest):
         write(self.path("white.obj"), "mtllib white.mtl\nusemtl a\n" + box)
         self.refuse(2, "solve", "radiosity", "white.obj", "-o", "w.rad", "--patch-size", "0.5", says=["radiosity: "])
 
-    def test_an_impossible_request_takes_one_line(self):
+    def test_errors_of_invalid_requests_take_one_line(self):
         write(self.path("mirror.mtl"), MIRROR)
         write(self.path("mirror.obj"), "mtllib mirror.mtl\nusemtl a\n" + FLOOR)
         write(self.path("text.rad"), "no solution at all")
@@ -271,7 +271,7 @@ class Radiosity(CliTest):
                 self.assertFalse(os.path.exists(self.path("m.rad")))
         self.assertNotIn("x.png", self.files())
 
-    def test_a_picture_says_how_its_light_was_solved(self):
+    def test_metadata_record_how_the_radiosity_was_solved(self):
         self.solve(*COARSE, "--solver", "southwell")
         self.succeed("render", "cornell-box", *SMALL[:-2], "-o", "x.exr", "--solution", "box.rad")
         told = self.info("x.exr")

@@ -15,13 +15,13 @@ class RaysOnTheRecord(CliTest):
             with self.subTest(flag=flag):
                 self.refuse(2, "bench", "rays", "--scene", "cornell-box", *flag.split(), says=[flag.split()[0]])
 
-    def test_a_scene_that_is_not_there_ends_with_2_and_is_named(self):
+    def test_a_missing_scene_ends_with_2_and_is_named(self):
         for name in ["spnza", "nowhere.obj", "", "a" * 300 + ".obj"]:
             self.refuse(2, "bench", "rays", "--device", "cpu", "--scene", name, says=[name or "--scene"])
         write(self.path("flat.obj"), "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
         self.refuse(2, "bench", "rays", "--device", "cpu", "--scene", "flat.obj", says=["flat.obj", "no visible triangle"])
 
-    def test_a_scene_of_the_record_without_its_file_ends_with_2_and_says_where_that_belongs(self):
+    def test_a_missing_record_scene_ends_with_2_and_its_path_is_named(self):
         for folder in [None, "nowhere"]:
             environment = {key: value for key, value in self.environment.items() if key != "PERTEV_SCENES"}
             if folder:
@@ -52,7 +52,7 @@ class RaysOnTheRecord(CliTest):
         for key in ["hit_share", "nodes", "triangles", "most_nodes"]:
             self.assertEqual([of[key] for of in sets], [of[key] for of in again])
 
-    def test_rays_along_axes_are_two_more_sets(self):
+    def test_axes_adds_two_sets_of_rays(self):
         sets = self.rays("--scene", "cornell-box", "--count", "3000", "--check", "--axes")
         self.assertEqual([of["set"] for of in sets[5:]], ["along_axes", "beside_axes"])
         along, beside = sets[5:]
@@ -67,7 +67,7 @@ class RaysOnTheRecord(CliTest):
                 sets = self.rays("--scene", "cornell-box", "--count", "500", "--check", *flags.split())
                 self.assertEqual([(of["tracer"][:len(tracer)], of["checked"]) for of in sets], [(tracer, True)] * 5)
 
-    def test_the_camera_given_is_the_one_used(self):
+    def test_rays_start_at_the_given_camera(self):
         write(self.path("floor.obj"), FLOOR)
         down = self.rays("--scene", "floor.obj", "--count", "1000", "--eye", "0,1,0.01", "--target", "0,0,0", "--fov", "20")
         self.assertEqual([of["hit_share"] for of in down][0], 1)
@@ -84,12 +84,12 @@ class RaysOnTheRecord(CliTest):
         for name in ["shadow", "diffuse1", "diffuse2", "diffuse3"]:
             self.assertRegex(text, rf"(?m)^floor +{name} +0 .* empty: no ray ")
 
-    def test_an_error_of_the_camera_names_no_flag_that_is_not_there(self):
+    def test_camera_errors_name_only_flags_that_bench_rays_has(self):
         outcome = self.refuse(2, "bench", "rays", "--scene", "cornell-box", "--eye", "1,2,3", "--target", "1,2,3",
                               says=["--eye 1,2,3"])
         self.assertNotIn("--up", outcome.stderr)
 
-    def test_people_get_a_table(self):
+    def test_without_json_a_table_is_printed(self):
         text = self.succeed("bench", "rays", "--device", "cpu", "--runs", "1", "--scene", "cornell-box", "--count",
                             "1000").stdout
         self.assertRegex(text, r"Mrays/s")

@@ -33,7 +33,7 @@ class RealTime(CliTest):
     def refuse_to_render(self, folder, *arguments, says):
         return self.refuse(2, "render", "m.gltf", "-o", f"{folder}/f-##.png", *LINE, *arguments, says=says)
 
-    def test_frames_are_those_of_bench_sequence(self):
+    def test_frames_have_the_hashes_of_bench_sequence(self):
         for number, flags in enumerate([[], ["--restir", "gi", "--no-temporal-gradients"],
                                         ["--resolution-scale", "0.5", "--passes", "2"], ["--integrator", "hybrid"]]):
             for scene, motion in [("m.gltf", ["--frames", "0-3", "--fps", "4"]), ("cornell-box", ["--turntable", "90", "--frames", "0-3"])]:
@@ -45,7 +45,7 @@ class RealTime(CliTest):
                     self.assertEqual([event["samples"] for event in frames], [1] * 4)
                     self.assertEqual(len({event["hash"] for event in frames}), 4)
 
-    def test_a_frame_knows_those_before_it_back_to_the_first_and_has_a_sample_of_its_own(self):
+    def test_a_frame_uses_all_frames_since_the_first_and_a_new_sample(self):
         def hashes(*arguments, **options):
             return [event["hash"] for event in self.render("x", *arguments, **options).events("frame")]
 
@@ -59,7 +59,7 @@ class RealTime(CliTest):
         self.assertEqual(len(set(still)), 3)
         self.assertNotEqual(hashes("--frames", "2-2", scene="cornell-box")[0], still[0])
 
-    def test_one_exposure_of_the_first_frame_serves_all(self):
+    def test_all_frames_have_the_exposure_of_the_first(self):
         said = self.render("auto", "--frames", "0-3", "--fps", "1")
         self.assertEqual(len(said.events("exposure")), 1)
         stops = said.events("exposure")[0]["stops"]
@@ -68,7 +68,7 @@ class RealTime(CliTest):
         single = self.succeed("render", "m.gltf", "-o", "x.png", *SMALL, "--spp", "1", "--time", "0", "--json")
         self.assertEqual(single.events("exposure")[0]["stops"], stops)
 
-    def test_existing_frames_are_kept_and_rendered_again_for_the_history_of_missing_ones(self):
+    def test_continuing_renders_existing_frames_again_only_for_the_history(self):
         motion = ["--fps", "4", "--restir", "gi"]
         self.render("whole", "--frames", "0-5", *motion)
         expected = self.pictures("whole")
@@ -113,7 +113,7 @@ class RealTime(CliTest):
                     says=['made with --real-time "true"'])
         self.refuse_to_render("x", "--fps", "4", "--frames", "1-2", "--continue", says=['made with first frame "0"'])
 
-    def test_ctrl_c_ends_after_a_whole_frame_and_continuing_gives_the_same_bytes(self):
+    def test_an_interrupt_ends_after_a_whole_frame_and_continuing_gives_the_same_bytes(self):
         os.mkdir(self.path("x")), os.mkdir(self.path("anew"))
         arguments = ["render", "m.gltf", "-o", "x/f-##.png", "--real-time", "--size", "320x240", "--device", "cpu",
                      "--exposure", "0", "--frames", "0-29", "--fps", "20"]
@@ -135,7 +135,7 @@ class RealTime(CliTest):
         self.succeed(*arguments)
         self.assertEqual(self.pictures("x"), self.pictures("anew"))
 
-    def test_an_exr_holds_the_frame_its_sample_s_layers_and_how_it_was_made(self):
+    def test_an_exr_holds_the_frame_its_layers_and_its_settings(self):
         said = self.render("x", "--frames", "3-4", "--fps", "4", "--restir", "di", "--passes", "2", "--aov", "albedo,ids",
                            output="f-#.exr")
         info = self.info("x/f-4.exr")
@@ -149,7 +149,7 @@ class RealTime(CliTest):
         self.succeed("render", "m.gltf", "-o", "x.exr", *SMALL, "--spp", "1")
         self.assertNotIn("pertev.reconstruction", self.info("x.exr"))
 
-    def test_settings_that_real_time_frames_lack_are_refused(self):
+    def test_settings_that_real_time_frames_do_not_support_are_refused(self):
         motion = "--frames 0-1 --real-time"
         for line, says in [("--real-time", "--frames or --turntable"), ("--real-time --time 1", "--frames"),
                            (f"{motion} --spp 4", "--spp 4: a frame of --real-time has one sample"),

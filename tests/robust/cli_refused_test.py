@@ -33,11 +33,11 @@ class WhatIsRefused(CliTest):
                      "bench rays --count 5 --count 5", "bench render --scene a.obj --scene b.obj"]:
             self.refuse(2, *line.split(), says=[f"{line.split()[-2]}: "])
 
-    def test_errors_of_the_line_point_to_the_help_of_the_verb_they_are_of(self):
+    def test_errors_of_the_command_line_point_to_the_help_of_their_verb(self):
         for verb in ["render", "info", "bench", "bench rays", "bench render", "compare"]:
             self.refuse(2, *verb.split(), "--foo", says=[f"(pertev {verb} --help"])
 
-    def test_an_invalid_exposure_is_refused_and_auto_is_named(self):
+    def test_an_invalid_exposure_is_refused(self):
         for exposure in ["AUTO", "bright"]:
             self.refuse(2, "render", "cornell-box", "-o", "x.png", "--exposure", exposure,
                         says=[f"--exposure {exposure}: "])
@@ -62,7 +62,7 @@ class WhatIsRefused(CliTest):
                           for number in ["0", "1e-46", "1e-5000"]]
                 self.assertEqual(len(set(hashes)), 1)
 
-    def test_a_flag_that_the_others_make_useless_ends_with_2_before_the_scene_is_read(self):
+    def test_a_flag_without_effect_ends_with_2_before_the_scene_is_read(self):
         for flag, output in [("--transparent", "x.jpg"), ("--transparent", "x.hdr"), ("--aov albedo", "x.png"),
                              ("--exposure 1", "x.exr"), ("--exposure auto", "x.hdr"), ("--tone-map agx", "x.exr"),
                              ("--view-height 2 --projection perspective", "x.png"),
@@ -72,7 +72,7 @@ class WhatIsRefused(CliTest):
             with self.subTest(flag=flag, output=output):
                 self.refuse(2, "render", "nowhere.obj", "-o", output, *flag.split(), says=[flag.split()[0]])
 
-    def test_a_refused_setting_of_an_integrator_takes_one_line(self):
+    def test_errors_of_integrator_settings_take_one_line(self):
         self.render(output="heights.png")
         for flags, code, says in [
                 ("--integrator whitted --denoise svgf", 2, "--denoise svgf: supports --integrator path, direct, indirect, hybrid, not whitted"),
@@ -121,7 +121,7 @@ class WhatIsRefused(CliTest):
                 self.assertEqual(len(outcome.stderr.strip().splitlines()), 1, outcome)
         self.refuse(2, "bench", "frames", "cornell-box", "--integrator", "distributed", "--restir", "di", says=["are for path"])
 
-    def test_a_render_for_which_there_is_no_room_says_which_limit_that_is_and_what_weighs(self):
+    def test_the_error_for_too_little_memory_names_the_limit_and_the_settings_to_reduce(self):
         with open("/proc/meminfo", encoding="ascii") as file:
             machine_mib = int(re.search(r"MemTotal:\s*(\d+) kB", file.read()).group(1)) / 1024
         self.assertLess(machine_mib, 1e6)
@@ -139,7 +139,7 @@ class WhatIsRefused(CliTest):
                 told = float(re.search(r"(?:this machine|service) has ([\d.]+) MiB", last).group(1))
                 self.assertLessEqual(told, machine_mib + 1)
 
-    def test_a_flag_that_the_scene_makes_useless_is_a_warning(self):
+    def test_a_flag_without_effect_on_the_scene_causes_a_warning(self):
         write(self.path("floor.obj"), FLOOR)
         ortho = json.loads(gltf_with_cameras())
         ortho["cameras"][0] = {"type": "orthographic", "orthographic": {"xmag": 2, "ymag": 1, "znear": 0, "zfar": 9}}
@@ -171,7 +171,7 @@ class WhatIsRefused(CliTest):
         self.refuse(2, "compare", "x.png")
         self.refuse(2, "info")
 
-    def test_a_missing_or_foreign_file_ends_with_2_and_is_named(self):
+    def test_a_missing_or_unsupported_file_ends_with_2_and_is_named(self):
         os.mkdir(self.path("folder.obj"))
         os.mkfifo(self.path("pipe.obj"))
         os.symlink("/dev/zero", self.path("endless.png"))
@@ -188,7 +188,7 @@ class WhatIsRefused(CliTest):
             self.refuse(2, "compare", name, name, says=[name])
             self.refuse(2, "render", "cornell-box", "-o", "x.png", "--environment", name, says=[name])
 
-    def test_more_than_a_limit_ends_with_3(self):
+    def test_a_value_over_a_limit_ends_with_3(self):
         for flag in ["--size 70000x70000", "--size 70000x1", "--size 65536x65536", "--size 99999999999x1",
                      "--eye 1e30,0,0", "--target 0,2e12,0"]:
             with self.subTest(flag=flag):
@@ -204,7 +204,7 @@ class WhatIsRefused(CliTest):
         outcome = self.refuse(2, "render", "cornell-box", "-o", "x.png", "--device", "cuda", says=["--device cuda: "])
         self.assertGreater(len(outcome.stderr.split("--device cuda: ")[1]), 20)
 
-    def test_an_eye_in_its_own_target_or_up_along_the_view_is_refused(self):
+    def test_an_eye_at_its_target_or_an_up_vector_along_the_view_is_refused(self):
         self.refuse(2, "render", "cornell-box", "-o", "x.png", "--eye", "1,2,3", "--target", "1,2,3", says=["--eye"])
         self.refuse(2, "render", "cornell-box", "-o", "x.png", "--eye", "0,3,0", "--target", "0,0,0", "--up", "0,1,0",
                     says=["--up"])
@@ -221,12 +221,12 @@ class WhatIsRefused(CliTest):
             kinds = {event["event"] for event in outcome.events()}
             self.assertLessEqual(kinds, {"error", *(["notice"] if flags == ["--json"] else [])} if "--json" in flags else set())
 
-    def test_parts_that_are_left_out_are_reported_before_the_error_that_follows(self):
+    def test_skipped_parts_are_reported_before_the_error_that_follows(self):
         write(self.path("flat.obj"), "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
         outcome = self.refuse(2, "info", "flat.obj", says=["flat.obj: "])
         self.assertLess(outcome.stderr.index("without area"), outcome.stderr.index("no visible triangle"))
 
-    def test_a_sample_that_is_not_finite_fails_only_a_strict_render_and_is_always_counted(self):
+    def test_non_finite_samples_are_counted_and_fail_only_a_strict_render(self):
         light = ["--environment", "1e13,1e13,1e13", "--eye", "0,0,-3", "--target", "0,0,-9"]
         self.assertEqual(self.render(*light)["invalid_samples"], 256)
         outcome = self.run_pertev("render", "cornell-box", "-o", "strict.png", "--size", "16x16", "--spp", "1",

@@ -19,7 +19,7 @@ class SettingsFiles(CliTest):
         write(self.path(name), text)
         return json.loads(text)
 
-    def test_a_picture_is_made_again_from_itself(self):
+    def test_a_picture_is_reproduced_from_the_settings_in_its_metadata(self):
         for flags in [["--aov", "normal,ids", "--seed", "7", "--max-depth", "3", "--eye", "0.1,0.3,1.2", "--fov", "50"],
                       ["--integrator", "whitted", "--ambient", "0.1,0.2,0.3", "--filter", "box"],
                       ["--integrator", "photon_map", "--photons", "200", "--transparent", "--radius", "0.05"],
@@ -37,7 +37,7 @@ class SettingsFiles(CliTest):
                     self.assertEqual(a[name], b[name], name)
                 self.assertEqual(read_exr(self.path("a.exr")), read_exr(self.path("b.exr")))  # each number of each layer
 
-    def test_flags_overrule_a_file_and_info_says_what_came_from_where(self):
+    def test_flags_override_a_settings_file_and_info_shows_the_origin_of_each_setting(self):
         write(self.path("s.json"), '{"version": 1, "settings": {"spp": 3, "seed": 5, "size": "8x8"}}')
         self.succeed("render", "cornell-box", "-o", "a.exr", "--settings", "s.json", "--seed", "6", "--device", "cpu")
         info = self.info("a.exr")
@@ -50,7 +50,7 @@ class SettingsFiles(CliTest):
         self.assertEqual(len({origins["seed"], origins["camera"], origins["projection"]}), 3, origins)
         self.assertEqual(origins["projection"], "")  # the scene's camera has it
 
-    def test_info_says_what_a_scene_suggests_and_what_is_made_up_for_it(self):
+    def test_info_lists_the_settings_a_scene_suggests_and_the_defaults_it_needs(self):
         write(self.path("f.obj"), FLOOR)
         for scene, suggests, makes_up in [("cornell-box", "camera size", []), ("f.obj", "", ["camera", "light"])]:
             info = self.info(scene)
@@ -62,7 +62,7 @@ class SettingsFiles(CliTest):
             self.assertEqual("environment" in info.get("pertev.by_default", "").split(), info["pertev.environment"] == "made up")
         self.assertIn("environment", info["pertev.by_default"].split())
 
-    def test_the_file_of_every_integrator_is_read_back_and_yields_to_flags(self):
+    def test_settings_files_of_every_integrator_reproduce_the_picture_and_flags_override_them(self):
         for flags in [["--integrator", "photon_map", "--photons", "100"], ["--integrator", "irradiance_cache"],
                       ["--integrator", "raster", "--ambient", "0.5", "--wireframe"], ["--aov", "depth"],
                       ["--integrator", "raster", "--ambient", "0.5", "--shading", "flat"],
@@ -78,14 +78,14 @@ class SettingsFiles(CliTest):
         self.settings_of("a.exr")
         self.succeed("render", "cornell-box", "-o", "f-#.exr", "--settings", "s.json", "--frames", "0-0")
 
-    def test_an_unknown_setting_is_left_out_and_strict_refuses_it(self):
+    def test_an_unknown_setting_is_ignored_with_a_warning_but_refused_with_strict(self):
         write(self.path("s.json"), '{"version": 1, "settings": {"sppp": 3}, "scene": {"name": "x", "hash": "0"}}')
         outcome = self.succeed("render", "cornell-box", "-o", "a.exr", "--settings", "s.json", *SMALL)
         self.assertIn("/settings/sppp", outcome.stderr)
         self.assertIn("a different scene", outcome.stderr)
         self.refuse(2, "render", "cornell-box", "-o", "b.exr", "--settings", "s.json", "--strict", *SMALL, says=["sppp"])
 
-    def test_an_invalid_file_is_refused(self):
+    def test_an_invalid_settings_file_is_refused(self):
         for text in ["", "[]", '{"version": 2, "settings": {}}', '{"version": 1, "settings": {"spp": "x"}}',
                      '{"version": 1, "settings": {"photons": 5}}']:
             write(self.path("s.json"), text)
@@ -117,7 +117,7 @@ class Documents(CliTest):
             self.assertEqual(file.read(), self.succeed("--settings-document").stdout,
                              "pertev --settings-document > docs/settings.md")
 
-    def test_every_key_of_metadata_is_a_setting_or_stands_in_the_document(self):
+    def test_every_metadata_key_is_a_setting_or_documented(self):
         keys = set()
         for folder in ["src", "apps"]:
             for path in pathlib.Path(ROOT, folder).rglob("*.cpp"):
@@ -164,7 +164,7 @@ class Documents(CliTest):
         self.assertIn("isolated", flags["bench render"] - flags["render"])
         self.assertIn("max-depth", flags["render"] - flags["bench render"])
 
-    def test_the_page_for_man_names_every_flag_of_render(self):
+    def test_the_man_page_names_every_flag_of_render(self):
         page = self.succeed("--man").stdout.replace("\\-", "-")
         for flag in re.findall(r"(?m)^  (?:-\w,)?(--[a-z-]+)", self.succeed("render", "--help", "all").stdout):
             self.assertIn(flag, page)

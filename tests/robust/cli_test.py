@@ -58,7 +58,7 @@ class WhatIsWritten(CliTest):
                         says=["late.jpg", "65500"])
             self.render(output="whole.png", size=size)
 
-    def test_an_unknown_extension_ends_with_2_and_lists_those_known(self):
+    def test_an_unknown_file_extension_ends_with_2_and_lists_the_known_ones(self):
         for name in ["x.bmp", "x", "x.png.", ".png"]:
             self.refuse(2, "render", "cornell-box", "-o", name, says=[name, ".exr"])
 
@@ -72,7 +72,7 @@ class WhatIsWritten(CliTest):
         with open(self.path("x.hdr"), "rb") as file:
             self.assertEqual(file.read(), old)
 
-    def test_an_output_that_fails_late_does_not_cost_the_others(self):
+    def test_one_failed_output_leaves_the_other_outputs_intact(self):
         outcome = self.run_pertev("render", "cornell-box", "-o", "large.hdr", "-o", "small.jpg", "-o", "large.exr",
                                   "--size", "36x36", "--spp", "1", "--device", "cpu", "--json", *UNMETERED,
                                   preexec_fn=limit_files)
@@ -98,7 +98,7 @@ class WhatIsWritten(CliTest):
         self.succeed(*arguments[:3], "y.png", *arguments[4:], umask=0o002)
         self.assertEqual(mode("y.png"), 0o664)
 
-    def test_one_render_writes_every_output_that_is_named_wherever_it_stands(self):
+    def test_one_render_writes_every_output_wherever_its_flag_stands(self):
         self.succeed("render", "-o", "a.png", "cornell-box", "-o", "b.EXR", "--size", "16x8", "--spp", "1", "-o",
                      "c.jpg", "--aov", "normal", "-o", "d.hdr")
         self.assertEqual(self.files(), ["a.png", "b.EXR", "c.jpg", "d.hdr"])
@@ -121,7 +121,7 @@ class WhatIsWritten(CliTest):
                 self.assertEqual(outcome.status, 6, outcome)
                 self.assertIn("standard output", outcome.stderr)
 
-    def test_a_reader_of_the_standard_output_that_goes_away_does_not_cost_the_picture(self):
+    def test_a_closed_pipe_at_standard_output_does_not_lose_the_picture(self):
         whole = self.render(output="whole.png")["hash"]
         reading, writing = os.pipe()
         os.close(reading)
@@ -131,7 +131,7 @@ class WhatIsWritten(CliTest):
         self.assertEqual((outcome.status, outcome.stderr), (0, ""), outcome)
         self.assertEqual(self.info("x.exr")["hash"], whole)
 
-    def test_closed_or_full_standard_error_does_not_end_up_in_a_picture(self):
+    def test_a_closed_or_full_standard_error_does_not_damage_a_picture(self):
         whole = self.render(output="whole.png")["hash"]
         arguments = ["render", "cornell-box", "-o", "x.exr", "--size", "16x16", "--spp", "1", "--device", "cpu"]
         self.succeed(*arguments, preexec_fn=lambda: os.closerange(0, 3))
@@ -176,14 +176,14 @@ class WhatIsSaid(CliTest):
         self.assertEqual(len(self.succeed("info", "x.exr", "--json").events()), 1)
         self.assertEqual(len(self.succeed("compare", "x.exr", "x.exr", "--json").events()), 1)
 
-    def test_json_is_json_for_any_file_name(self):
+    def test_json_is_valid_for_any_file_name(self):
         for name in [b"\xff\xfe.obj", b'"quotes\\".obj', "käfer\u2028\x7f.obj".encode(), b"line\nbreak.obj"]:
             name = os.fsdecode(name)
             write(self.path(name), FLOOR)
             self.succeed("info", name, "--json").events("info")
             self.render(scene=name)
 
-    def test_quiet_says_nothing_on_success(self):
+    def test_quiet_prints_nothing_on_success(self):
         write(self.path("floor.obj"), FLOOR)
         for arguments in [["render", "floor.obj", "-o", "x.exr", "--size", "8x8", "--spp", "1"],
                           ["info", "floor.obj"], ["info", "x.exr"], ["compare", "x.exr", "x.exr"]]:
@@ -230,13 +230,13 @@ class WhatIsRendered(CliTest):
         hashes = {self.render("--threads", count, size="40x30", spp=4)["hash"] for count in [1, 2, 5]}
         self.assertEqual(len(hashes), 1)
 
-    def test_info_prints_the_hash_of_the_last_line(self):
+    def test_info_prints_the_same_hash_as_render(self):
         for flags in [[], ["--transparent"], ["--aov", "albedo,ids"]]:
             done = self.render(*flags, output="x.exr")
             self.assertEqual(self.info("x.exr")["hash"], done["hash"])
             self.assertEqual(self.info("x.exr")["pertev.hash"], done["hash"])
 
-    def test_the_metadata_of_an_exr_tell_how_it_was_made(self):
+    def test_exr_metadata_record_how_the_picture_was_rendered(self):
         self.render("--seed", "7", "--max-depth", "3", spp=5, output="x.exr")
         made = self.info("x.exr")
         self.assertEqual((made["pertev.spp"], made["pertev.seed"], made["pertev.max_depth"]), (5, "7", 3))
@@ -244,7 +244,7 @@ class WhatIsRendered(CliTest):
                      "load_seconds", "build_seconds", "invalid_samples"]:
             self.assertIn(f"pertev.{name}", made)
 
-    def test_the_metadata_of_an_exr_are_the_flags_that_make_the_same_picture_again(self):
+    def test_exr_metadata_as_flags_reproduce_the_picture(self):
         write(self.path("floor.obj"), FLOOR)
         view = ["--eye", "0.3,2.1,4.7", "--target", "0.1,0.2,0"]
         for scene, flags in [("cornell-box", view), ("floor.obj", view), ("floor.obj", ["--eye", "0,3,0", "--target", "0,0,0"]),
@@ -273,7 +273,7 @@ class WhatIsRendered(CliTest):
         self.assertGreater(near["samples"], 0)
         self.assertLess(self.succeed("compare", "x.exr", "y.exr", "--json").events("compare")[0]["flip"], 0.01)
 
-    def test_info_and_render_count_the_same_lights_and_one_thing_is_one(self):
+    def test_info_and_render_count_the_same_lights_and_use_the_singular_for_one(self):
         said = self.succeed("render", "cornell-box", "-o", "x.png", "--size", "8x8", "--spp", "1").stderr
         self.assertIn("38 triangles, 8 instances, 2 lights; ", said)
         told = self.info("cornell-box")
@@ -309,7 +309,7 @@ class WhatIsRendered(CliTest):
             self.assertLess(pixel["id.material"], 4)
         self.assertGreater(len({pixel["id.instance"] for pixel in hits}), 5)
 
-    def test_transparent_keeps_coverage_and_leaves_what_is_covered_alone(self):
+    def test_transparent_stores_coverage_and_does_not_change_covered_pixels(self):
         write(self.path("floor.obj"), FLOOR)
         view = ["--eye", "0,2,4", "--target", "0,0,0", "--environment", "1,1,1"]
         self.render(*view, "--transparent", scene="floor.obj", output="x.exr", spp=4)
@@ -331,14 +331,14 @@ class WhatIsRendered(CliTest):
         with open(self.path("x.png"), "rb") as file:
             self.assertEqual(file.read()[25], 6)  # PNG's colour type with alpha
 
-    def test_tone_maps_and_exposure_change_pngs_and_leave_the_picture_alone(self):
+    def test_tone_maps_and_exposure_change_pngs_but_not_the_hash_of_the_film(self):
         pictures, hashes = set(), set()
         for flags in [["--tone-map", name] for name in ["srgb", "agx", "aces", "neutral"]] + [["--exposure", "-2"]]:
             hashes.add(self.render(*flags)["hash"])
             pictures.add(self.info("picture.png")["hash"])
         self.assertEqual((len(hashes), len(pictures)), (1, 5))
 
-    def test_every_choice_that_changes_the_light_changes_the_hash(self):
+    def test_every_setting_that_changes_the_light_changes_the_hash(self):
         choices = [[], ["--seed", "1"], ["--sampler", "independent"], ["--filter", "box"], ["--filter", "tent"],
                    ["--filter", "gaussian"], ["--filter-radius", "3"], ["--integrator", "direct"],
                    ["--integrator", "indirect"], ["--integrator", "distributed"], ["--integrator", "light"],
@@ -362,7 +362,7 @@ class WhatIsRendered(CliTest):
         for flags in [["--aperture", "0"], ["--integrator", "hybrid"]]:
             self.assertEqual(self.render(*flags, size="32x32", spp=2)["hash"], hashes[0])
 
-    def test_a_made_up_sky_is_an_environment_too(self):
+    def test_environment_flags_apply_to_the_default_sky(self):
         write(self.path("floor.obj"), FLOOR)
         look = ["--eye", "0,2,4", "--target", "0,0,0"]
         hashes = {self.render(*look, *flags, scene="floor.obj")["hash"]

@@ -11,7 +11,7 @@ class HowRaysAreTraced(CliTest):
         done = self.succeed("render", scene, "-o", "x.exr", *SMALL, "--json", *arguments).events("done")
         return done[0]["hash"]
 
-    def test_every_way_gives_one_picture(self):
+    def test_every_structure_and_traversal_gives_the_same_picture(self):
         wanted = self.hash_of()
         for line in ["--structure sbvh --traversal restart-trail --rta off", "--traversal brute-force", "--structure kd-sah",
                      "--traversal octree", "--structure ploc --traversal compressed --rta nodes",
@@ -33,7 +33,7 @@ class HowRaysAreTraced(CliTest):
             with self.subTest(line=line):
                 self.refuse(2, "render", "cornell-box", "-o", "x.png", "--device", "cpu", *line.split(), says=[why])
 
-    def test_brute_force_is_for_small_scenes(self):
+    def test_brute_force_is_refused_for_large_scenes(self):
         side = 200  # 80,000 triangles
         vertices = "".join(f"v {i % (side + 1)} 0 {i // (side + 1)}\n" for i in range((side + 1) ** 2))
         faces = "".join(f"f {a} {a + side + 1} {a + side + 2} {a + 1}\n"
@@ -43,7 +43,7 @@ class HowRaysAreTraced(CliTest):
         write(self.path("floor.obj"), FLOOR)
         self.assertEqual(self.hash_of("--traversal", "brute-force", scene="floor.obj"), self.hash_of(scene="floor.obj"))
 
-    def test_the_last_line_has_the_measures_of_frames(self):
+    def test_the_last_event_has_the_number_of_frames_and_seconds_per_frame(self):
         done = self.succeed("render", "cornell-box", "-o", "x.exr", *SMALL, "--json").events("done")[0]
         self.assertEqual(done["frames"], 2)
         self.assertAlmostEqual(done["seconds_per_frame"] * 2, done["seconds"], places=4)

@@ -67,7 +67,7 @@ class Transport(CliTest):
         last = [row for row in repetitions if row["integrator"] == "path" and row["repetition"] == 0][-1]
         self.assertAlmostEqual(made.events("compare")[0]["rel_mse"] / last["rel_mse"], 1, 2)
 
-    def test_radiosity_takes_part_by_solutions(self):
+    def test_radiosity_repetitions_have_finer_and_finer_solutions(self):
         outcome = self.succeed(*self.transport("--integrators", "path,radiosity", "--seconds", "3", "-o", "out", "--json"))
         report = outcome.events("transport")[-1]
         path, solved = ([row for row in rows_of(report, "repetitions") if row["integrator"] == name]
@@ -84,7 +84,7 @@ class Transport(CliTest):
                 if row["integrator"] == "radiosity"]
         self.assertEqual(len(rows), len(solved))
 
-    def test_errors_are_a_function_of_the_seeds_and_those_of_compare(self):
+    def test_errors_depend_only_on_the_seed_and_equal_those_of_compare(self):
         first, again, other = (
             [row["rel_mse"] for row in self.repetitions("--integrators", "path", *seed)] for seed in ([], [], ["--seed", 7]))
         self.assertEqual(first, again)

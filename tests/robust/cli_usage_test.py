@@ -19,7 +19,7 @@ class Flags(CliTest):
         text = self.succeed(*verb, "--help", "all").stdout
         return sorted(set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", re.sub(r" {3,}.*", "", text))))
 
-    def test_unknown_flags_are_listed_in_order_with_what_was_perhaps_meant(self):
+    def test_unknown_flags_are_listed_in_order_with_suggestions(self):
         self.refuse(2, "render", "cornell-box", "--sppp", "4", "-o", "x.png", "--qwertz", "--max_depth=3", "-Q", says=[
             "pertev: --sppp: no such flag (did you mean --spp?); --qwertz: no such flag; --max_depth: no such flag "
             "(did you mean --max-depth?); -Q: no such flag (did you mean -q?)\n"])
@@ -36,7 +36,7 @@ class Flags(CliTest):
                 outcome = self.refuse(2, *line.split(), says=[f"no such flag (did you mean {meant}?)"])
                 self.assertNotIn("required:", outcome.stderr.replace("a verb is required:", ""))
 
-    def test_every_flag_is_found_again_with_two_letters_swapped(self):
+    def test_a_flag_with_two_swapped_letters_gets_the_right_suggestion(self):
         for verb in [["render"], ["lab"], ["bench", "rays"]]:
             for flag in self.long_flags(*verb):
                 if len(flag) < 6:
@@ -63,7 +63,7 @@ class Flags(CliTest):
                            (["lab", ""], "SCENE")]:
             self.refuse(2, *line, says=[f"pertev: {what}: the name is empty\n"])
 
-    def test_the_error_for_a_flag_before_its_verb_says_where_it_belongs(self):
+    def test_the_error_for_a_flag_before_its_verb_names_the_verb(self):
         self.refuse(2, "--spp", "4", "render", "cornell-box", "-o", "x.png", says=["--spp: is a flag of render"])
         self.refuse(2, "--json", "info", "cornell-box", says=[])
 
@@ -78,19 +78,19 @@ class Flags(CliTest):
             self.assertEqual((outcome.stderr, outcome.events("error")[0]["status"]), ("", 2), outcome)
         self.refuse(2, "--quiet", "bench", "rays", says=["--quiet: is a flag of bench"])
 
-    def test_a_list_of_outputs_is_refused_with_the_way_to_request_several(self):
+    def test_a_comma_separated_list_of_outputs_is_refused_with_the_right_flags(self):
         for given, meant in [("a.png,b.exr", "-o a.png -o b.exr\n"), ("a.png,b", "-o a.png -o b\n"),
                              ("x/a.png,b.exr,c.jpg", "-o x/a.png -o b.exr -o c.jpg\n")]:
             self.refuse(2, "render", "nowhere.obj", "-o", given, says=[f"-o {given}: ", meant])
         self.assertNotIn("-o", self.succeed("render", "cornell-box", "-o", "one,two.png", *SMALL).stderr)
 
-    def test_every_verb_that_writes_one_file_refuses_a_list_and_explains_number_signs(self):
+    def test_verbs_with_one_output_refuse_lists_and_explain_number_signs(self):
         self.refuse(2, "solve", "radiosity", "nowhere.obj", "-o", "x.rad,y.rad", says=["-o x.rad -o y.rad"])
         self.refuse(2, "bench", "render", "--scene", "nowhere.obj", "-o", "a.png,b.exr", says=["-o a.png -o b.exr"])
         for line in [["solve", "radiosity", "nowhere.obj", "-o", "x-##.rad"], ["bench", "render", "--scene", "nowhere.obj", "-o", "a-##.png"]]:
             self.assertIn("# stands for", self.refuse(2, *line, says=["nowhere.obj"]).stderr)
 
-    def test_one_file_named_twice_is_refused_before_the_scene_is_read(self):
+    def test_an_output_named_twice_is_refused_before_the_scene_is_read(self):
         os.mkdir(self.path("f"))
         os.symlink("b.png", self.path("link.png"))
         for first, second in [("a.png", "a.png"), ("a.png", "./a.png"), ("f/../a.png", "a.png"), ("b.png", "link.png"),
@@ -171,7 +171,7 @@ class Strictness(CliTest):
 
 
 class Pipes(CliTest):
-    def test_a_pipe_that_was_closed_is_no_error(self):
+    def test_a_closed_pipe_is_not_an_error(self):
         self.succeed("render", "cornell-box", "-o", "a.exr", *SMALL)
         for arguments in [["--help"], ["--version"], ["render", "--help"], ["info", "cornell-box"], ["info", "a.exr", "--json"],
                           ["compare", "a.exr", "a.exr"], ["measure", "cornell-box", "--at", "0.3,0,0.3", "--normal", "0,1,0", "--spp", "1"]]:
@@ -208,7 +208,7 @@ class SignsOfLife(CliTest):
         os.close(follower)
         return program, *listen_to(leader)
 
-    def test_a_line_every_10_s_reports_progress_where_no_bar_can_be_drawn(self):
+    def test_without_a_progress_bar_a_line_every_10_s_reports_progress(self):
         enough = ["--time-limit", "10.4", "--exposure", "0"]
         to_a_file = self.start(*enough)
         quiet = self.start(*enough, "-q")
@@ -237,7 +237,7 @@ class SignsOfLife(CliTest):
             self.assertRegex(beats[0][1], r"^\d+ %  \d+/8388607 spp  [\d.]+ Mrays/s  \d+ s left$")
             self.assertNotRegex(text, r"[\x1b\r]")
 
-    def test_a_terminal_of_no_known_kind_gets_no_escapes(self):
+    def test_an_unknown_terminal_gets_no_escape_sequences(self):
         for terms, draws in [({"TERM": "dumb"}, False), ({}, False), ({"TERM": "xterm"}, True)]:
             program, listener, said = self.on_a_terminal("--time-limit", "0.3", **terms)
             program.communicate(timeout=300)

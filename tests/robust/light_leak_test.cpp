@@ -124,8 +124,8 @@ uint64_t lit_pixels(const PreparedScene& scene, const Placement& place, const Vi
     return lit;
 }
 
-/// So narrow a view of an edge that one sample of thousands starts within rounding of it, where in a picture of the
-/// whole it is one of millions; but as wide as the file's own coordinates let a camera aim.
+/// Size of a view so narrow that one sample of thousands starts within rounding of an edge; in a picture of the whole
+/// scene it is one of millions. It is as wide as the precision of the file's coordinates requires to aim the camera.
 float narrow(const Placement& place) {
     return min(0.3f, max(2e-4f, 2e-6f * max_component(abs(place.at)) / place.size_m));
 }

@@ -21,7 +21,7 @@ using namespace pertev;
 
 namespace {
 
-/// At some times of a valid scene every number that is rendered is finite, or there is an Error.
+/// Checks that every number is finite at some times of a valid scene, or that there is an Error.
 void play(Scene scene) {
     PosedScene posed(std::move(scene));
     for (const double time_s : {-1.0, 0.25, 1.0, 1e300}) {

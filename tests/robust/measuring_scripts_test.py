@@ -17,7 +17,7 @@ class Scripts(CliTest):
         return subprocess.run([sys.executable, ROOT / "tools" / name, PROGRAM, self.path("no-scenes"), *arguments], cwd=self.path("."),
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
 
-    def test_jobs_leave_measurements_and_a_page_of_them(self):
+    def test_measuring_jobs_writes_measurements_and_a_page(self):
         small = ["--", "--size", "24x16", "--spp", "1", "--device", "cpu"]
         done = self.run_script("measure.py", "out", "transport/cornell-box, path", "noise/bunny", *small)
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -28,7 +28,7 @@ class Scripts(CliTest):
         self.assertEqual(len(measured["tables"][-1]["rows"]), 1)
         self.assertTrue(pathlib.Path(self.path("out/page.html")).exists())
 
-    def test_devices_that_differ_or_fail_end_with_1(self):
+    def test_comparing_devices_that_differ_or_fail_ends_with_1(self):
         same = self.run_script("compare_devices.py", "1", "--only", "cornell-box", "--devices", "cpu", "cpu")
         self.assertEqual(same.returncode, 0, same.stdout + same.stderr)
         self.assertEqual(same.stdout.count(" same\n"), 2)  # a picture, and light at a place

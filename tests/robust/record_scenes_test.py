@@ -28,7 +28,7 @@ class Made(CliTest):
         done = self.succeed("bench", "rays", "--scene", name, "--count", "2000", "--runs", "1", "--check", "--device", "cpu", "--json", env=environment)
         return {rays["set"]: rays for rays in done.events("rays")}
 
-    def test_a_small_forest(self):
+    def test_a_small_forest_has_the_recorded_digest_and_hit_share(self):
         from make_record_scenes import make_forest
         mesh = make_forest(40, 30, 200)
         self.assertEqual(len(mesh[1]), 2 * 40 * 40 + 30 * (36 + 2 * 200))
@@ -36,7 +36,7 @@ class Made(CliTest):
         self.assertAlmostEqual(self.rays_in("forest", mesh)["primary"]["hit_share"], 0.492, delta=0.001)
 
     @unittest.skipUnless((SCENES / "stanford/bunny.obj").exists(), "PERTEV_SCENES has no stanford/bunny.obj (docs/scenes.md)")
-    def test_the_bunny(self):
+    def test_the_bunny_has_the_recorded_digest_and_hit_share(self):
         from make_record_scenes import make_bunny
         mesh = make_bunny(SCENES / "stanford/bunny.obj")
         self.assertEqual(digest(*mesh), "0e067601ebd6621b")

@@ -16,7 +16,7 @@ class Together(WithViewer):
     arguments = ["--threads", "1"]  # it renders all the while
     options = {"size": "160x120", "spp": 100000}
 
-    def test_one_steers_the_others_watch_and_the_wheel_is_handed_over_and_found_again(self):
+    def test_one_client_steers_hands_over_control_and_keeps_it_after_reconnecting(self):
         with Client(self.viewer, key="first") as first, Client(self.viewer, key="second") as second:
             first.say(type="ask")  # a test before this one may have left a wheel that waits
             people = second.text("people", lambda p: len(p["people"]) == 2 and p["steers"] == p["you"] - 1)
@@ -52,7 +52,7 @@ class Together(WithViewer):
             count += 1
         return count
 
-    def test_clients_that_do_not_read_do_not_acknowledge_or_flood_do_not_stop_the_others(self):
+    def test_clients_that_are_silent_or_flood_do_not_stop_the_others(self):
         with Client(self.viewer, key="good") as good:
             good.text("people", lambda p: p["steers"] in (p["you"], 0))
             good.say(type="ask")
@@ -93,7 +93,7 @@ class Together(WithViewer):
             for client in clients:
                 client.socket.close()
 
-    def test_messages_that_are_too_large_or_none_close_their_connection_alone(self):
+    def test_messages_that_are_too_large_or_invalid_close_only_their_own_connection(self):
         for spoil, code in [(lambda c: c.say_text("x" * 5000), 1009), (lambda c: c.say_text("{}"), 1008),
                             (lambda c: c.send_frame(2, b"abc"), 1008)]:
             with Client(self.viewer, key="bad") as client:
@@ -141,7 +141,7 @@ class SlowLink(WithViewer):
 
 
 class Paths(CliTest):
-    def test_no_client_learns_where_a_file_lies_however_the_scene_was_named(self):
+    def test_no_client_gets_a_file_path_however_the_scene_was_named(self):
         home = os.path.realpath(self.path("home of a user"))
         os.makedirs(os.path.join(home, "scene", "textures"))
         write(os.path.join(home, "red.png"), "no picture")

@@ -74,7 +74,7 @@ class Page(unittest.TestCase):
     def set_to(self, name, value, timeout=20):
         self.eye.text("state", lambda s: s["values"][name] == value, timeout)
 
-    def test_it_shows_the_picture_and_keeps_the_key_out_of_the_address(self):
+    def test_initially_the_page_shows_the_picture_and_removes_the_token_from_the_address(self):
         page = self.browser
         self.assertNotIn("token", page.value("location.href"))
         self.assertEqual(page.value("document.cookie"), "")  # scripts do not see it
@@ -90,7 +90,7 @@ class Page(unittest.TestCase):
         rendered = self.eye.done()["hash"]
         self.assertEqual(page.value("document.body.dataset.hash"), rendered)
 
-    def test_keys_of_movement_go_by_their_place(self):
+    def test_keys_of_movement_go_by_their_position_on_the_keyboard(self):
         # The scene's camera looks along +z with +y up: its right is -x. Three keys at once, one for each axis.
         for signs in [{"KeyD": -1, "KeyE": 1, "KeyW": 1}, {"KeyA": 1, "KeyQ": -1, "KeyS": -1}]:
 
@@ -105,7 +105,7 @@ class Page(unittest.TestCase):
             for (code, sign), was, at in zip(signs.items(), before["eye"], after["eye"]):
                 self.assertGreater(sign * (at - was), 0.002, code)
 
-    def test_keys_with_ctrl_belong_to_the_browser(self):
+    def test_keys_with_ctrl_are_left_to_the_browser(self):
         page = self.browser
         depth = page.value("document.querySelector('#setting-max_depth').value")
         for code in ["KeyS", "KeyD", "KeyT", "KeyH", "Digit7"]:
@@ -159,7 +159,7 @@ class Page(unittest.TestCase):
         self.assertAlmostEqual(fast / normal, 1.25 ** 10, 1)  # but for the digits that are told
         self.assertGreater(ways[0], 2 * ways[1])
 
-    def test_clicks_pick_turn_about_and_focus(self):
+    def test_clicks_pick_set_the_orbit_centre_and_focus(self):
         page = self.browser
         page.click(640, 690)
         page.until("document.querySelector('#picked').innerText.includes('floor')")
@@ -248,7 +248,7 @@ class Page(unittest.TestCase):
                    "f.dispatchEvent(new Event('change'))")
         self.set_to("traversal", "while-while")
 
-    def test_a_number_is_typed_and_taken_by_enter_and_keys_then_steer(self):
+    def test_a_typed_number_is_accepted_by_enter_and_keys_then_steer_again(self):
         page = self.browser
         for name, typed, enter in [("max_depth", "5", "Enter"), ("max_depth", "6", "NumpadEnter")]:
             page.value(f"(() => {{ const f = document.querySelector('#setting-{name}'); f.focus(); f.select(); }})()")
@@ -264,7 +264,7 @@ class Page(unittest.TestCase):
                            "f.dispatchEvent(new Event('change')); })()")
         self.set_to(name, value)
 
-    def test_the_exposure_is_found_or_fixed_and_layers_of_the_reconstruction_show(self):
+    def test_the_exposure_mode_restir_and_reconstruction_layers_can_be_chosen(self):
         page = self.browser
         self.choose("exposed", "fixed")
         page.until("document.querySelector('#setting-exposure').value != '0'")
@@ -283,7 +283,7 @@ class Page(unittest.TestCase):
         self.choose("layer", "picture")
         self.flags = self.eye.done()["flags"]
 
-    def test_where_nothing_moves_there_is_no_time_line_until_a_path_is_played(self):
+    def test_without_animation_the_time_line_is_shown_only_while_a_path_plays(self):
         page = self.browser
         self.assertTrue(page.value("document.querySelector('#time').hidden"))
         self.moved(lambda: page.drag("left", 60, 20))
@@ -331,7 +331,7 @@ class Page(unittest.TestCase):
         page.until("document.querySelector('#notice').innerText.startsWith('copied: --')")
         self.assertEqual(page.clipboard(), self.flags)
 
-    def test_f12_saves_the_picture_that_render_writes_as_png_and_exr(self):
+    def test_f12_saves_the_png_and_exr_that_render_writes(self):
         page = self.browser
         state = self.eye.done()
         page.key("F12", "F12")
@@ -345,7 +345,7 @@ class Page(unittest.TestCase):
                 self.assertEqual(saved.read(), file.read())
             self.assertEqual(read_exr(os.path.join(page.downloads, "pertev.exr")), read_exr(made["exr"]))
 
-    def test_steering_for_long_grows_nothing_and_answers_soon(self):
+    def test_steering_for_long_does_not_leak_memory_and_stays_responsive(self):
         page = self.browser
         end, resident, heap, waits = time.monotonic() + STEERING_S, 0, 0, []
 
@@ -370,7 +370,7 @@ class Page(unittest.TestCase):
 
 
 class Moving(unittest.TestCase):
-    def test_the_time_line_and_space_steer_time_and_r_gives_the_camera_back(self):
+    def test_the_time_line_and_space_control_time_and_r_resets_the_camera(self):
         with tempfile.TemporaryDirectory() as folder:
             scene = os.path.join(folder, "m.gltf")
             write(scene, moving_gltf())
@@ -404,7 +404,7 @@ class Moving(unittest.TestCase):
 
 
 class Cameras(unittest.TestCase):
-    def test_the_list_takes_a_camera_of_the_scene_by_its_name(self):
+    def test_the_camera_list_selects_a_camera_of_the_scene(self):
         with tempfile.TemporaryDirectory() as folder:
             scene = os.path.join(folder, "c.gltf")
             write(scene, gltf_with_cameras())
@@ -440,7 +440,7 @@ class Comings(unittest.TestCase):
             page.until("!document.querySelector('#gone').hidden")
             self.assertIn("pertev view has ended", page.value("document.querySelector('#gone').innerText"))
 
-    def test_of_two_windows_one_steers(self):
+    def test_only_one_of_two_windows_steers_until_it_hands_over(self):
         with Viewer(size="64x48", spp=2) as viewer, BROWSER.visit(viewer.address) as first, Chromium() as second:
             first.until("document.body.dataset.steers == 'true'")
             second.go(viewer.address)

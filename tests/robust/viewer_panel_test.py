@@ -41,7 +41,7 @@ class Panel(unittest.TestCase):
     def setUp(self):
         window(BROWSER, 1280, 720)
 
-    def test_settings_stand_before_numbers_in_groups_that_fold_and_stay_as_they_were_left(self):
+    def test_settings_precede_readings_and_groups_stay_folded_after_a_reload(self):
         with Viewer(spp=1) as viewer, BROWSER.visit(viewer.address) as page:
             page.until(READY + " && document.querySelectorAll('#readings details').length > 1")
             names = page.value("[...document.querySelectorAll('#panel details')].map((d) => d.dataset.group)")
@@ -61,7 +61,7 @@ class Panel(unittest.TestCase):
                 page.value(f"document.querySelector('#settings details[data-group={group}] summary').click()")
             self.assertEqual(page.errors, [])
 
-    def test_a_phone_shows_the_picture_first_in_its_shape_and_opens_and_closes_the_panel(self):
+    def test_on_a_phone_the_panel_is_closed_at_first_and_opens_by_a_button(self):
         with Viewer(size="", spp=1) as viewer, BROWSER.visit("about:blank") as page:
             window(page, 390, 844, 2)
             page.go(viewer.address)
@@ -95,7 +95,7 @@ class Panel(unittest.TestCase):
 
 
 class TwoWindows(unittest.TestCase):
-    def test_a_drag_without_effect_is_explained_and_the_steering_client_sees_the_request_and_hands_over(self):
+    def test_a_client_that_may_not_steer_is_told_why_and_control_can_be_handed_over(self):
         with Viewer(spp=1) as viewer, BROWSER.visit(viewer.address) as first, Chromium() as second:
             window(first, 1280, 720)
             first.until(READY)
@@ -118,7 +118,7 @@ class TwoWindows(unittest.TestCase):
 
 
 class Ended(unittest.TestCase):
-    def test_a_page_does_not_wait_for_a_viewer_that_has_ended(self):
+    def test_the_page_does_not_reconnect_to_a_viewer_that_has_ended(self):
         with Viewer(spp=1) as viewer, BROWSER.visit(viewer.address) as page:
             page.until(READY)
             self.assertEqual(viewer.end()[0], 0)
@@ -129,7 +129,7 @@ class Ended(unittest.TestCase):
             self.assertFalse(shown(page, "#gone-again"))
             self.assertEqual(page.errors, [])  # it does not even try
 
-    def test_where_nobody_answers_the_page_gives_up_and_says_how_to_start_a_viewer(self):
+    def test_the_page_stops_reconnecting_to_a_killed_viewer_and_shows_how_to_start_one(self):
         with Viewer(spp=1) as viewer, BROWSER.visit(viewer.address) as page:
             page.until(READY)
             # The page waits for half a minute in all between its tries; here an eighth of it.

@@ -26,7 +26,7 @@ def tearDownModule():  # pylint: disable=invalid-name
 
 
 class Shape(CliTest):
-    def test_the_picture_takes_the_window_s_shape_and_the_flags_that_are_shown_make_it(self):
+    def test_the_picture_takes_the_shape_of_the_window_and_the_shown_flags_reproduce_it(self):
         with Viewer(size="", spp=2) as viewer, Client(viewer) as client:
             for width, height in [(120, 80), (64, 100)]:
                 client.say(type="shape", width=width, height=height)
@@ -71,7 +71,7 @@ class Keeps(CliTest):
 
 
 class Grows(CliTest):
-    def test_on_a_slow_machine_the_picture_grows_and_a_new_setting_is_soon_seen_small(self):
+    def test_on_a_slow_machine_resolution_grows_and_restarts_small_after_a_change(self):
         with Viewer("--threads", "1", size="1280x960", spp=64) as viewer, Client(viewer) as client:
             end, widths = time.monotonic() + 60, []
             while time.monotonic() < end and (not widths or widths[-1] < 640):
@@ -89,7 +89,7 @@ class Grows(CliTest):
 
 
 class Together(CliTest):
-    def test_a_second_client_learns_why_it_does_not_steer_and_the_first_sees_its_request(self):
+    def test_a_second_client_is_told_why_it_cannot_steer_and_the_first_sees_its_request(self):
         with Viewer() as viewer, Client(viewer, key="first") as first:
             before = first.done()["flags"]
             with Client(viewer, key="second") as second:
@@ -110,7 +110,7 @@ class Together(CliTest):
 
 
 class Secrets(CliTest):
-    def test_no_client_learns_where_the_scene_lies(self):
+    def test_no_client_gets_the_path_of_the_scene(self):
         os.mkdir(self.path("a-secret"))
         write(self.path("a-secret/m.gltf"), moving_gltf())
         with Viewer("--time", "0", scene=self.path("a-secret/m.gltf"), spp=1) as viewer, Client(viewer) as client:
@@ -128,7 +128,7 @@ class Secrets(CliTest):
 
 
 class Waits(CliTest):  # the last by its name, as its viewer waits beside all others
-    def test_the_log_of_a_viewer_that_waits_says_nothing_twice(self):
+    def test_the_log_of_an_idle_viewer_has_no_line_twice(self):
         heard, end = b"", WAITING_SINCE + 11  # a log is written to every 10 s while there is news
         while (left := end - time.monotonic()) > 0 or select.select([WAITING.process.stderr], [], [], 0)[0]:
             if select.select([WAITING.process.stderr], [], [], max(left, 0))[0]:

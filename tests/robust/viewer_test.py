@@ -45,7 +45,7 @@ class Access(WithViewer):
         headers = {**self.viewer.own_headers(), **changes}
         return self.viewer.get(target, {name: value for name, value in headers.items() if value is not None})
 
-    def test_the_printed_address_lets_in_and_gives_a_cookie_that_scripts_cannot_read(self):
+    def test_the_printed_address_sets_an_http_only_cookie(self):
         status, headers, body = self.get(f"/?token={self.viewer.token}", Cookie=None)
         self.assertEqual(status, 200)
         self.assertIn(b"<canvas", body)
@@ -69,7 +69,7 @@ class Access(WithViewer):
         self.assertNotRegex(page, r"<script(?![^>]* src=)", "no script stands in the page itself")
         self.assertNotRegex(page, r"\son\w+=|style=|https?://")
 
-    def test_requests_without_the_right_cookie_get_nothing(self):
+    def test_requests_without_the_right_cookie_are_refused(self):
         wrong = self.viewer.let_in()[:-1] + "x"
         for target in ["/", "/main.js", "/save?format=png", "/socket", "/nothing", "/?token=", "/?token=00",
                        f"/main.js?token={self.viewer.token}", f"/?token={self.viewer.token}&token={self.viewer.token}"]:
@@ -79,7 +79,7 @@ class Access(WithViewer):
                 self.assertNotIn("set-cookie", headers)
                 self.assertLess(len(body), 200)
 
-    def test_only_the_server_s_own_names_are_answered(self):
+    def test_only_local_host_names_are_accepted(self):
         port = self.viewer.port
         for host in ["localhost", "localhost:1", f"127.0.0.1:{port}", "[::1]:99", "LocalHost:8080"]:
             self.assertEqual(self.get("/", Host=host)[0], 200, host)
@@ -123,7 +123,7 @@ class Access(WithViewer):
 
 
 class Fuzzed(WithViewer):
-    def test_requests_and_messages_of_any_shape_end_in_an_answer_or_a_closed_connection(self):
+    def test_malformed_requests_and_messages_get_an_answer_or_a_closed_connection(self):
         """Half of them requests, half messages; spoiled good ones, so that many get far."""
         chance = random.Random(7)
 
@@ -194,7 +194,7 @@ class Pictures(CliTest):
         with open(self.path("picture.png"), "rb") as file:
             return done["hash"], file.read()
 
-    def test_the_film_at_rest_is_the_one_of_a_render_and_the_still_picture_is_its_png(self):
+    def test_the_still_picture_equals_that_of_render(self):
         with Viewer() as viewer, Client(viewer) as client:
             png = client.png()
             state = client.done()
@@ -249,7 +249,7 @@ class Pictures(CliTest):
                 self.assertEqual(header["total"], len(png))
                 self.assertEqual(png, self.rendered("--max-depth", "1", "--integrator", "direct", "--tone-map", tone_map, spp=7)[1])
 
-    def test_each_layer_shows_and_the_picture_comes_back(self):
+    def test_every_layer_can_be_shown_and_the_picture_again(self):
         with Viewer() as viewer, Client(viewer) as client:
             whole = client.done()
             seen = set()
@@ -263,7 +263,7 @@ class Pictures(CliTest):
             client.set("layer", "picture")
             self.assertEqual(client.done(lambda s: s["values"]["layer"] == "picture")["hash"], whole["hash"])
 
-    def test_the_exposure_follows_while_moving_and_the_still_picture_is_exposed_as_a_render_is(self):
+    def test_exposure_adapts_to_the_view_and_the_still_picture_is_exposed_as_by_render(self):
         def stops(state):
             return next(value for _, label, value in state["rows"] if label == "exposed by")
 
@@ -294,7 +294,7 @@ class Pictures(CliTest):
             state = client.done()
             self.assertEqual((stops(state), state["values"]["exposed"]), ("+1.00 stops", "fixed"))
 
-    def test_light_that_pixels_share_and_its_resolution_are_switched_live_and_leave_the_picture_at_rest(self):
+    def test_restir_and_its_resolution_can_change_and_do_not_affect_the_still_picture(self):
         with Viewer("--restir", "di", "--restir-history", "7", "--resolution-scale", "0.5") as viewer, Client(viewer) as client:
             home = client.done()
             self.assertEqual([home["values"][name] for name in ("restir", "restir_history", "resolution_scale")], ["di", 7, 0.5])
@@ -313,7 +313,7 @@ class Pictures(CliTest):
             client.set("resolution_scale", 0.05)
             self.assertIn("Light resolution", client.text("notice")["text"])
 
-    def test_saved_files_are_those_of_a_render(self):
+    def test_saved_files_equal_those_of_render(self):
         with Viewer() as viewer:
             status, headers, png = viewer.get("/save?format=png")  # nobody need look
             self.assertEqual(status, 200)
@@ -327,7 +327,7 @@ class Pictures(CliTest):
             info = self.info("saved.exr")
             self.assertEqual(info["hash"], state["hash"])
 
-    def test_render_makes_a_saved_exr_again_from_the_settings_in_it(self):
+    def test_render_reproduces_a_saved_exr_from_its_settings(self):
         with Viewer("--seed", "7", "--restir", "di", "--exposure", "1.5", "--environment", "0.1,0.2,0.3") as viewer, \
                 Client(viewer) as client:
             client.done()
@@ -368,7 +368,7 @@ class Pictures(CliTest):
             self.assertIn("in focus", client.text("notice")["text"])
             self.assertIn("--aperture 0.01", client.done(lambda s: "--aperture" in s["flags"])["flags"])
 
-    def test_the_first_picture_is_there_long_before_a_sample_of_a_large_one(self):
+    def test_the_first_picture_is_small_and_comes_before_a_full_size_sample(self):
         with Viewer(size="2560x1440", spp=64) as viewer, Client(viewer) as client:
             header, _ = client.picture()
             self.assertLess(header["width"], 2560)
@@ -379,7 +379,7 @@ class Pictures(CliTest):
             client.picture(lambda h: h["input"] >= last)
             self.assertLess(time.monotonic() - began, 3 if SANITIZED else 1.5)
 
-    def test_while_the_camera_moves_pictures_are_small_and_soon_and_say_which_input_they_show(self):
+    def test_pictures_of_a_moving_camera_are_small_and_carry_their_input_number(self):
         with Viewer(size="640x480", spp=1000) as viewer, Client(viewer) as client:
             client.picture()
             for _ in range(12):
@@ -420,7 +420,7 @@ class Pictures(CliTest):
 
 
 class Ends(CliTest):
-    def test_on_a_desktop_it_opens_the_browser_with_the_address_unless_a_flag_forbids_it(self):
+    def test_view_opens_the_browser_on_a_desktop_unless_a_flag_forbids_it(self):
         opened = self.path("opened")
         write(self.path("xdg-open"), f'#!/bin/sh\nprintf "%s" "$*" > {opened}.part && mv {opened}.part {opened}\n')
         os.chmod(self.path("xdg-open"), 0o755)
@@ -435,7 +435,7 @@ class Ends(CliTest):
                         self.assertEqual(file.read(), viewer.address)
                 self.assertEqual(viewer.end()[0], 0)
 
-    def test_ctrl_c_ends_it_within_a_second_with_status_0_whatever_it_does(self):
+    def test_an_interrupt_ends_the_viewer_within_a_second_with_status_0(self):
         for how, size, flags, depth in [(signal.SIGINT, "64x48", ["--max-depth", "7"], 7),
                                         (signal.SIGTERM, "1600x1200", ["--max-depth", "7", "--moving-depth", "3"], 3)]:
             with Viewer(*flags, size=size, spp=100000) as viewer, Client(viewer) as client:
@@ -446,7 +446,7 @@ class Ends(CliTest):
                 self.assertLess(seconds, 1.5)  # a second, and what a machine under load adds
                 self.assertIn(client.close_reason(5)[0], (0, 1001))
 
-    def test_a_port_in_use_and_a_host_that_is_none_are_refused(self):
+    def test_a_used_port_and_an_invalid_host_are_refused(self):
         with socket.create_server(("127.0.0.1", 0)) as taken:
             port = taken.getsockname()[1]
             self.refuse(2, "view", "cornell-box", "--size", "16x16", "--port", port, "--device", "cpu",
@@ -458,7 +458,7 @@ class Ends(CliTest):
         self.refuse(3, "view", "cornell-box", "--size", "65501x1", "--device", "cpu", says=["--size"])
         self.refuse(2, "view", "cornell-box", "-o", "x.png", says=["-o"])
 
-    def test_it_takes_all_flags_of_render_but_those_that_the_documents_name(self):
+    def test_view_takes_all_flags_of_render_but_the_documented_ones(self):
         def flags_of(verb):
             return set(re.findall(r"(?m)^  (?:-\w,)?(--[a-z][a-z-]+)", self.succeed(verb, "--help", "all").stdout))
 

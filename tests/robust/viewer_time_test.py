@@ -37,7 +37,7 @@ class Times(CliTest):
         """The state once all samples are there that are asked for by this input."""
         return client.done(lambda s: s["input"] >= number)
 
-    def test_a_scene_with_animations_plays_and_where_it_stands_the_film_is_that_of_render_at_the_time(self):
+    def test_paused_animation_has_the_hash_of_render_at_that_time(self):
         with self.view() as viewer, Client(viewer) as client:
             first = client.text("state", lambda s: s["clock"]["at"] > 0)
             self.assertEqual((first["clock"]["end"], first["clock"]["on"], first["phase"]), (2, True, "moving"))
@@ -117,7 +117,7 @@ class Times(CliTest):
                 viewer.end()
                 self.assertIn(f"the scene {said}", viewer.process.stderr.read().decode())
 
-    def test_at_its_end_time_begins_anew_or_stops_there(self):
+    def test_time_loops_or_stops_at_its_end(self):
         with self.view("--time", "1.5") as viewer, Client(viewer) as client:
             client.done()
             self.play(client, True, loops=False, speed=4)
@@ -131,7 +131,7 @@ class Times(CliTest):
             self.assertLess(max(seen), 2)
             self.assertTrue(any(b < a for a, b in zip(seen, seen[1:])), seen)
 
-    def test_somebody_s_own_steps_take_the_camera_over_and_home_gives_it_back_to_time(self):
+    def test_moving_the_camera_overrides_its_animation_until_home_restores_it(self):
         with self.view("--time", "0.5") as viewer, Client(viewer) as client:
             home = client.done()
             own = self.still(client, client.steer(type="move", right=1, up=0, forward=0, ms=100, pace="normal"))
@@ -144,7 +144,7 @@ class Times(CliTest):
             again = self.still(client, client.steer(type="time", at=0.5))
             self.assertEqual(again["hash"], home["hash"])
 
-    def test_where_nothing_moves_there_is_no_time(self):
+    def test_a_scene_without_animation_has_no_time_line(self):
         with self.view(scene="cornell-box") as viewer, Client(viewer) as client:
             state = client.done()
             self.assertEqual(state["clock"]["end"], 0)
@@ -162,7 +162,7 @@ class Times(CliTest):
             near = self.still(client, client.steer(type="time", at=0.0001))
             self.assertEqual(near["hash"], self.rendered("--time", near["flags"].split()[-1], scene="far.gltf"))
 
-    def test_a_centre_that_was_set_stays_while_the_camera_does(self):
+    def test_the_orbit_centre_stays_when_another_setting_changes(self):
         with self.view("--time", "0.5") as viewer, Client(viewer) as client:
             client.done()
             client.steer(type="pick", x=0.6, y=0.6, use="show")
@@ -175,14 +175,14 @@ class Times(CliTest):
             self.assertGreater(abs(eye[0]), 1)
             self.assertAlmostEqual(math.hypot(eye[0] - centre[0], eye[2] - centre[2]), math.hypot(centre[0], 4), 3)
 
-    def test_one_steers_time_and_the_others_see_it(self):
+    def test_only_the_steering_client_sets_the_time_and_all_see_it(self):
         with self.view("--time", "0") as viewer, Client(viewer) as client, Client(viewer, key="second") as other:
             client.done()
             other.steer(type="time", at=2)  # is not heard
             client.steer(type="time", at=1)
             self.assertEqual(other.done(lambda s: s["clock"]["at"] > 0)["clock"]["at"], 1)
 
-    def test_keys_that_are_recorded_make_the_path_that_render_reads(self):
+    def test_recorded_keys_form_a_camera_path_for_render(self):
         with self.view(scene="cornell-box") as viewer, Client(viewer) as client:
             client.done()
             client.steer(type="orbit", dx=0.1, dy=0)
@@ -218,7 +218,7 @@ class Times(CliTest):
             back = self.still(client, client.steer(type="home"))
             self.assertEqual(back["hash"], state["hash"])
 
-    def test_a_turntable_turns_until_somebody_takes_over(self):
+    def test_a_turntable_turns_until_the_camera_is_moved(self):
         with self.view("--turntable", "96", "--time", "0", scene="cornell-box") as viewer, Client(viewer) as client:
             first = client.done()
             self.assertEqual((first["clock"]["end"], first["hash"]), (4, self.rendered("--time", "0", scene="cornell-box")))

@@ -71,7 +71,7 @@ struct ClosedInstance {
         : prepared(prepare_scene(scene, {.bvh = {}, .bvh_cache = {}, .keep_coordinates = true}, messages)),
           world(std::move(in_world)), centre(about) {}
 
-    /// Which of the rays do not hit it.
+    /// The rays that miss the mesh.
     std::vector<Ray> lost(const Tracer& tracer, const RaySet& set) {
         RaysOnDevice rays(queue, set);
         rays.trace(tracer);

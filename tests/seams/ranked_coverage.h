@@ -3,7 +3,7 @@
 // A target of a film that counts for each pixel how many samples show which instance, as mattes need it: the ids of
 // most coverage come first when it is resolved. The film knows nothing of it.
 //
-// Of more ids than a pixel has room for it keeps the least. That is a function of the set of samples, so that parts of
+// If a pixel has more ids than room, it keeps the least. That is a function of the set of samples, so that parts of
 // a film add up exactly: who is among the least of all is so in each part, and was never left out there.
 //
 // Source: Friedman, Jones, "Fully Automatic ID Mattes with Support for Motion Blur and Transparency", SIGGRAPH 2015

@@ -36,7 +36,7 @@ typedef struct {
     size_t pitch[4];
 } nvjpegImage_t;
 
-// For the test.
+// The test calls these.
 void stand_in_fail(const char* name) { failing = name; }
 int stand_in_objects() { return made; }
 

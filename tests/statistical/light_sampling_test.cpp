@@ -73,7 +73,7 @@ double rectangle_irradiance(double a, double b, double h, double radiance) {
     return 2 * radiance * (x / p * std::atan(y / p) + y / q * std::atan(x / q));
 }
 
-/// Which of the four triangles that its edges' midpoints cut a triangle into.
+/// Number of the quarter that holds a point; the midpoints of a triangle's edges cut it into four.
 uint32_t quarter(float b1, float b2) { return b1 > 0.5f ? 1 : b2 > 0.5f ? 2 : b1 + b2 < 0.5f ? 3 : 0; }
 
 uint32_t octant(Vec3 w) { return (w.x > 0 ? 1u : 0u) + (w.y > 0 ? 2u : 0u) + (w.z > 0 ? 4u : 0u); }

@@ -150,7 +150,7 @@ TEST_CASE("a moving disc is blurred by the share of time in which it covers a po
     const MovingScene moving(scene, 0, {}, messages, kASecond);
     check_shares(picture_of(moving, flat_camera()), share_of_disc);
 
-    // And where the camera goes the other way instead.
+    // A camera that moves the other way sees the same.
     MovingScene still(scene, 0.5, {}, messages, Shutter{0, 0});
     Camera camera = flat_camera();
     camera.motion = {{{0, 0, 0, 1}, {1, 0, 5}}, {{0, 0, 0, 1}, {-1, 0, 5}}};

@@ -206,7 +206,8 @@ TEST_CASE("raising loses no light: every BSDF sample leaves its triangle on the 
     }
 }
 
-// So a particle's weight, value |wo . Ng| / |wi . Ng| (docs/conventions.md), is bounded. Without the raise it is not.
+// A bounded ratio bounds a particle's weight, value |wo . Ng| / |wi . Ng| (docs/conventions.md). Without the raise the
+// ratio is unbounded.
 TEST_CASE("the value over the geometric cosine stays bounded down to the horizon") {
     for (const float tilt : kTilts) {
         CAPTURE(tilt);

@@ -132,7 +132,7 @@ std::string run_threads(const EmulatedBatch& batch, bool one_a_thread, const Run
                      [&] { run(rays, batch.pool); });
 }
 
-/// That one of EmulatedTrees or EmulatedScenes which the traversal is for.
+/// The member of EmulatedTrees or EmulatedScenes that the traversal reads.
 template <class Traversal>
 const auto* pick(const auto& trees) {
     if constexpr (std::is_same_v<typename Traversal::Tree, device::CompressedBvhView>) {

@@ -50,7 +50,7 @@ struct EmulatedTraversal {
     bool rta, near_first, any;
     bool cut_outs = false; // AcceptSome of tests/support/check_traversal.h
     bool counts_lanes = false;
-    // One of them; what went wrong.
+    // One of the two is set. It returns an error, or an empty text.
     std::string (*run)(const EmulatedTrees&, const EmulatedBatch&) = nullptr;
     std::string (*run_scene)(const EmulatedScenes&, const EmulatedBatch&) = nullptr;
 };

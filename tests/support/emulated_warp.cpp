@@ -35,9 +35,11 @@ constexpr std::size_t kStackBytes = 128 << 10, kGuardBytes = 4 << 10;
 constexpr uint32_t kMaxWarps = 8; // at once
 
 #if defined(__SANITIZE_ADDRESS__)
-/// From the fiber that runs, whose fake stack is kept, or not (null) where it never goes on.
+/// Announces to the sanitizer a switch from the running fiber to `to`. `kept` receives its fake stack; null if it never
+/// resumes.
 void about_to_go(void** kept, const Fiber& to) { __sanitizer_start_switch_fiber(kept, to.stack, to.stack_bytes); }
-/// To the fiber that runs now. The first one of all is reached from `main`, whose stack is learnt there.
+/// Reports to the sanitizer that the switch is complete. The first fiber comes from `main`, whose stack is recorded
+/// then.
 void came_from(void* kept, Fiber& main) {
     const void* bottom;
     std::size_t bytes;
@@ -147,7 +149,7 @@ void Machine::start_warp(EmulatedWarp& warp) {
     warps_.push_back(&warp);
 }
 
-/// From whoever runs to a lane.
+/// Switches from the running fiber to a lane.
 void Machine::switch_to(EmulatedLane& to) {
     Fiber& from = lane_ == nullptr ? main_ : lane_->fiber;
     lane_ = &to;
@@ -158,7 +160,7 @@ void Machine::switch_to(EmulatedLane& to) {
     came_from(from.fake_stack, main_);
 }
 
-/// From a lane back to run().
+/// Switches from a lane back to run().
 void Machine::leave_lane(bool for_good) {
     Fiber& from = lane_->fiber;
     about_to_go(for_good ? nullptr : &from.fake_stack, main_);
@@ -302,7 +304,7 @@ uint32_t Machine::wait_for_active_mask(const Meeting& meeting) {
     return static_cast<uint32_t>(lane.result);
 }
 
-/// To lanes that wait at the same call.
+/// Returns the active mask to lanes that wait at the same call.
 void Machine::answer_active_mask(EmulatedWarp& warp) {
     const uint32_t rank = random_.below(static_cast<uint32_t>(__builtin_popcount(warp.pending)));
     const uint32_t first = _pdep_u32(1u << rank, warp.pending);

@@ -62,7 +62,7 @@ std::vector<BvhTriangle> slivers(uint32_t count) {
     return triangles;
 }
 
-/// One behind the other, so that a cut at a median of space takes few off.
+/// Triangles one behind the other, so that a split at the spatial median separates few.
 std::vector<BvhTriangle> in_a_line(uint32_t count) {
     std::vector<BvhTriangle> triangles;
     for (uint32_t i = 0; i < count; ++i) {

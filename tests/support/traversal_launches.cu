@@ -50,7 +50,7 @@ struct BatchRays {
     HD void store(uint32_t i, const Hit& hit) const { batch.hits[i] = hit; }
 };
 
-/// From a pool on a GPU, or one ray a thread.
+/// Launches a stage with persistent threads on a GPU, or with one ray per thread.
 template <bool kPersistent, class Stage>
 void run_stage_of(Queue& queue, const Stage& stage, const TraversalBatch& batch) {
 #if defined(__CUDACC__)

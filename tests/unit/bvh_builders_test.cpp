@@ -195,7 +195,7 @@ TEST_CASE("spatial splits separate a grating of long diagonal strips, which boxe
 
 namespace {
 
-/// In double, where a point of a triangle is at most some 2^-52 of the coordinates off.
+/// A point in double precision. On a triangle its error is at most some 2^-52 of the coordinates.
 struct ExactPoint {
     double at[3];
 

@@ -36,7 +36,7 @@ std::optional<Error> refusal_of_outputs(const Values& values, const std::vector<
 
 } // namespace
 
-TEST_CASE("options that do not go together are refused by the setting that is in the way") {
+TEST_CASE("incompatible options are refused with the name of one of them") {
     struct Case {
         Values values;
         const char* setting;
@@ -72,7 +72,7 @@ TEST_CASE("options that do not go together are refused by the setting that is in
     }
 }
 
-TEST_CASE("options that go together are accepted") {
+TEST_CASE("compatible options are accepted") {
     for (const Values& values :
          std::vector<Values>{{},
                              {{"integrator", "radiosity"}, {"solver", "hierarchical"}, {"form_factors", "rays"}},
@@ -91,7 +91,7 @@ TEST_CASE("options that go together are accepted") {
                    SettingVerbs::kView)); // the panel may choose another integrator
 }
 
-TEST_CASE("an output that cannot be, or that does not show a setting of the caller, is refused") {
+TEST_CASE("outputs that coincide, need a frame number or ignore a given setting are refused") {
     using Names = std::vector<std::string>;
     const auto is_refused = [](const Values& values, const Names& names, const char* setting) {
         return test::is_about(refusal_of_outputs(values, names), ErrorCode::BadInput, setting);

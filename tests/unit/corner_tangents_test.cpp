@@ -36,7 +36,7 @@ const std::vector<Case> kStored = {
 
 std::vector<Vec4> tangents_of(const TangentMesh& mesh) { return corner_tangents(mesh, make_tangent_groups(mesh)); }
 
-/// For each corner a number of its vertex and tangent, so that corners which stay one vertex have equal numbers.
+/// Numbers each corner's vertex and tangent, so that corners which stay one vertex have equal numbers.
 std::vector<uint32_t> numbers_of(const Case& made, const std::vector<Vec4>& tangents) {
     KeyNumbers<std::array<uint32_t, 5>> known(tangents.size());
     std::vector<uint32_t> numbers;

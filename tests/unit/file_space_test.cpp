@@ -14,7 +14,7 @@ namespace file_space_test { // tests are compiled several files at once
 
 const std::string kCorner = "v 0 0 0\nv 1000 0 0\nv 0 2000 0\nv 0 0 4000\nf 1 2 3\nf 1 3 4\n";
 
-/// In the file's coordinates, turned and scaled.
+/// Bounds of a file that is read in this space.
 Bounds3 bounds_in(const FileSpace& space, const std::string& name = "a.obj", const std::string& text = kCorner) {
     Messages messages;
     ReadOptions options;

@@ -11,8 +11,8 @@ using namespace pertev;
 
 namespace {
 
-/// From a square of side 1 to one of the same size at distance `c`, face to face (Howell, "A Catalog of Radiation Heat
-/// Transfer Configuration Factors", C-11).
+/// Form factor from a square of side 1 to one of the same size at distance `c`, face to face (Howell, "A Catalog of
+/// Radiation Heat Transfer Configuration Factors", C-11).
 double parallel_squares(double c) {
     const double x = 1 / c, r = std::sqrt(1 + x * x);
     return 2 / (std::numbers::pi * x * x) *
@@ -20,7 +20,7 @@ double parallel_squares(double c) {
             2 * x * std::atan(x));
 }
 
-/// From a square to one that stands on its edge (Howell, C-14).
+/// Form factor from a square to one that stands on its edge (Howell, C-14).
 double standing_squares() {
     const double root = std::sqrt(2.0);
     return (2 * std::atan(1.0) - root * std::atan(1 / root) + 0.25 * std::log(4.0 / 3 * 0.75 * 0.75)) /

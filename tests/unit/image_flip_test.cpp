@@ -52,7 +52,7 @@ Colour ycxcz(const Colour& rgb) {
     return {116 * v[1] - 16, 500 * (v[0] - v[1]), 200 * (v[1] - v[2])};
 }
 
-// By Cramer's rule on the matrix above.
+// Solves for RGB by Cramer's rule on the matrix above.
 Colour rgb_of_relative_xyz(const Colour& v) {
     double m[3][3], right[3];
     for (std::size_t i = 0; i < 3; ++i) {

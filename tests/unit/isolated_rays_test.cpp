@@ -17,7 +17,7 @@ TEST_CASE("a mix of rays has the rate of its kinds traced one after the other") 
     CHECK(IsolatedRates{.camera = 4}.of_mix({.camera = 4, .bounce = 1, .shadow = 0}) == 0.0); // no rate, no mix
 }
 
-TEST_CASE("rays of each kind have a rate, and the sink is asked during the measurement") {
+TEST_CASE("rays of each kind have a rate, and the sink can stop the measurement") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();

@@ -52,7 +52,7 @@ uint32_t layers_of_word(const LightPathAutomaton& automaton, const std::string& 
     return automaton.layers_of(state_after(automaton, word), 0)[0];
 }
 
-/// In the letters of the standard library.
+/// Translates an expression to the syntax of the standard library.
 std::regex as_regex(const std::string& text) {
     return std::regex(
         std::regex_replace(std::regex_replace(text, std::regex("\\."), "[DGS]"), std::regex("\\[\\^S\\]"), "[DG]"));

@@ -45,7 +45,7 @@ LightPathLayers put_layers(std::initializer_list<const char*> texts, const Scene
     return put_to_scene(std::move(expressions), scene);
 }
 
-/// Which of wall, lamp, floor a scattering of LD<filter>E may be at.
+/// Returns for wall, lamp and floor whether LD<filter>E lets light scatter there.
 std::vector<bool> surfaces_of_filter(const char* expression) {
     const LightPathLayers layers = put_layers({expression}, make_named_scene());
     std::vector<bool> are;
@@ -56,7 +56,7 @@ std::vector<bool> surfaces_of_filter(const char* expression) {
     return are;
 }
 
-/// Which of lamp, bulb, sun, environment an LE may begin at.
+/// Returns for lamp, bulb, sun and environment whether the expression accepts light that goes from it to the eye.
 std::vector<bool> lights_of_filter(const char* expression) {
     const LightPathLayers layers = put_layers({expression}, make_named_scene());
     const LightPathAutomaton& automaton = layers.automaton;

@@ -69,7 +69,7 @@ Mesh disc(float radius, float height) {
     return mesh;
 }
 
-/// Over a floor on which the meter lies.
+/// A disc light over a floor on which the meter lies.
 Scene disc_over_floor() {
     Scene scene;
     test::add(scene, disc(0.5f, 2), black_emitter(10));

@@ -41,7 +41,7 @@ TextureImage of_numbers(uint32_t width, uint32_t height, test::Random& random) {
     return image;
 }
 
-/// Its instances are each of one mesh and one material of their own.
+/// A scene in which each instance has its own mesh and material.
 struct CutOuts {
     Scene scene;
     test::Random random{7};

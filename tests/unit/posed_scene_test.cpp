@@ -249,7 +249,7 @@ TEST_CASE("a skin's vertices follow its joints, with normals and tangents") {
     CHECK(close({turned.tangents[0].x, turned.tangents[0].y, turned.tangents[0].z}, {0, 0, -1}));
     CHECK(turned.tangents[0].w == -1);
     CHECK(posed.scene().instances[1].world_from_local == Transform());
-    // At time 0 as at rest, by the same bits.
+    // Time 0 gives the same bits as the scene at rest.
     posed.set_time(0);
     CHECK(turned.positions[0] == Vec3{-1, 0, 0});
 }

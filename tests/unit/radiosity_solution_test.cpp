@@ -164,7 +164,7 @@ TEST_CASE("a solution is read back from its file, and another scene's or a damag
 
 namespace {
 
-/// With lights and surfaces of every kind that a solution knows, and of those that it does not.
+/// A scene with every kind of light and surface, those that a solution supports and the others.
 Scene scene_of_all_light() {
     Scene scene = lit_box();
     test::add(scene, test::sheet({0.4f, -0.5f, 0}, {0.2f, 0, 0}, {0, 0, 0.2f}), test::mirror());

@@ -122,7 +122,7 @@ TEST_CASE("a sample on an edge belongs to the triangle to its right or below it"
         return camera;
     }();
     const Pinhole seen = pinhole(flat, 4, 4);
-    // From sample to sample: of the rows and columns on its border it has the upper and the left ones.
+    // Its edges go through samples. It covers those on its upper and left edge, not those on the others.
     const std::vector<int> times =
         times_drawn(test::sheet({0, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}), seen, {kSubpixels / 2, kSubpixels / 2});
     std::vector<int> expected(16);

@@ -21,7 +21,7 @@ using namespace pertev::test;
 
 namespace {
 
-/// By the code of the ray's own octant and by that of any; both or neither.
+/// Returns whether the ray enters the box. The code for the ray's own octant and that for any octant must agree.
 bool enters_octant_box(const RayOctantBoxes& boxes, const Bounds3& box) {
     BvhNode node{};
     set_child(node, 1, box, 0);

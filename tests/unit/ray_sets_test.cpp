@@ -271,7 +271,7 @@ TEST_CASE("ray sets are the same for any number of threads") {
 }
 
 TEST_CASE("ray sets, hits and work are the same on the GPU") {
-    // On the CPU twice where no GPU was asked for.
+    // Both run on the CPU if no GPU was requested.
     Traced here(allocate()), there(allocate(), requested_queue());
     const uint32_t count = cuda_requested() ? 1000000 : 20000;
     const auto sets = make_record_ray_sets(here.job(256, 144), count);

@@ -166,7 +166,7 @@ TEST_CASE("the flux of a textured emitter equals the path tracer's") {
     }
     set_emitter(scene, "small=500lm", 1);
     const Material& lit = scene.materials[scene.instances[0].material];
-    // By places drawn evenly on the surface, as a lamp's are.
+    // The mean over points that are distributed evenly on the surface.
     const TextureImageView view = view_of(scene.images[0]);
     test::Random random(5);
     double sum = 0, area = 0;

@@ -45,7 +45,7 @@ TEST_CASE("a renamed flag is also taken by its old name, which help and completi
     }
 }
 
-TEST_CASE("a verb says what holds without a flag, in place of the table") {
+TEST_CASE("a verb's own defaults replace those of the table in its help") {
     CLI::App app("A program", "program");
     SettingFlags flags;
     flags.add(app, kLab, PictureOptions(), all_settings(), {{"size", "7x5"}});

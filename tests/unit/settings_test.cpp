@@ -69,7 +69,7 @@ TEST_CASE("an error about a value names the setting, the value and what would be
     CHECK(thrown("eye", "1e30,0,0").code() == ErrorCode::OverLimit);
 }
 
-TEST_CASE("a setting that a program sets is in the picture's settings, as one of a flag is") {
+TEST_CASE("the recorded settings of a picture include those set by a program") {
     PictureOptions options;
     set(options, "eye", {"1,2,3"});
     CHECK(options.given.at("eye") == SettingOrigin::Caller);
@@ -185,7 +185,7 @@ TEST_CASE("a conflict is an error about the setting, whose reason names the othe
     CHECK(error->reason() == "needs `frames`");
 }
 
-TEST_CASE("settings of a file give way to others that do not go with them") {
+TEST_CASE("settings of a file are dropped if given ones conflict with them") {
     const std::filesystem::path file = std::filesystem::temp_directory_path() / "pertev-settings-to-combine.json";
     test::write_text(file, R"({"version":1,"settings":{"integrator":"photon_map","photons":5,"spp":3,"time":1}})");
     const auto combine = [&](const SetOthers& others) {

@@ -33,7 +33,7 @@ bool is_job_known(const char* name, double times_mean = 1, const char* device = 
 
 } // namespace
 
-TEST_CASE("scenes and jobs of the record are on it, on its card alone") {
+TEST_CASE("stored figures apply to the scenes and jobs of the record, on its GPU only") {
     for (const RecordScene& scene : the_record().scenes) {
         CHECK(is_on_record(kH200, &scene, scene.triangles));
         CHECK(!is_on_record(kH200, &scene, scene.triangles + 1));
@@ -50,7 +50,7 @@ TEST_CASE("scenes and jobs of the record are on it, on its card alone") {
     }
 }
 
-TEST_CASE("other rays and pictures are not on the record") {
+TEST_CASE("stored figures do not apply to other rays, settings or pictures") {
     CHECK(!are_rays_known("sponza", 0, kH200, 1));
     CHECK(are_rays_known("sponza", 0.0009));
     CHECK(!are_rays_known("sponza", 0.002));

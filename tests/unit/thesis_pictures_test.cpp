@@ -74,7 +74,7 @@ std::vector<ThesisPicture> all_pictures(Queue& queue, PathBody body) {
     return made;
 }
 
-/// By the CPU's loop, made once.
+/// The pictures that the CPU's loop makes, computed once.
 const std::vector<ThesisPicture>& pictures_in_loop() {
     static const std::vector<ThesisPicture> made = [] {
         Queue cpu = Queue::make_cpu();
@@ -220,7 +220,7 @@ TEST_CASE("the caustic of figure 3.10 is more than three times as bright as its 
     for (const double shade : {light_in(0.33, 0.68, 0.37, 0.72), light_in(0.40, 0.72, 0.46, 0.75)}) {
         CHECK(spot > 3 * shade);
     }
-    // And photons lie close together there.
+    // Photons lie close together in the caustic.
     CHECK(mean_green(dots.image, 0.42, 0.64, 0.49, 0.70) > 2 * mean_green(dots.image, 0.05, 0.75, 0.35, 0.95));
 }
 

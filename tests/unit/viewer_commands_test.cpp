@@ -126,7 +126,7 @@ TEST_CASE("clients that do not steer are informed, and the steering one sees the
     CHECK(texts_for(audience, 1).find(R"("wish":"set \"Stops\" to 2")") != std::string::npos);
     audience.tick(40); // it is an old wish now
     CHECK(texts_for(audience, 1).find(R"("wish":"")") != std::string::npos);
-    // To look at a place is free, and the page's screen is no wish.
+    // A pick that only shows, the rate and the shape need no steering, so they record no wish.
     CHECK(audience.received(2, R"({"type":"pick","n":1,"x":0,"y":0,"use":"show"})", 41) == "");
     CHECK(audience.received(2, R"({"type":"rate","hz":60})", 41) == "");
     CHECK(audience.received(2, R"({"type":"shape","width":64,"height":48})", 41) == "");

@@ -168,7 +168,7 @@ TEST_CASE("metadata records how scene and camera were chosen") {
     CHECK(source_of(choice, {}).fov_deg == 40);
 }
 
-TEST_CASE("metadata of settings have the names and types of earlier versions, also of settings that nobody gave") {
+TEST_CASE("metadata of settings have the names and types of earlier versions, defaults included") {
     PictureRecord record;
     SceneSource& scene = record.scene;
     scene.scene = "mixed";

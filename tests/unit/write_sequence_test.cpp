@@ -86,7 +86,7 @@ TEST_CASE("an ended sequence continues where it stopped, and is refused with oth
     }
 }
 
-TEST_CASE("a frame has the settings that make it alone") {
+TEST_CASE("the settings of a frame reproduce it without its sequence") {
     PictureRecord record;
     record.settings.width = 8, record.settings.height = 6;
     const auto settings_of = [&](const Values& values, uint32_t frame) {

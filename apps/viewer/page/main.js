@@ -178,12 +178,12 @@ function buildButtons(cameras) {
 
 let screenRate = 0; // pictures a second; 0: not known yet
 
-/** The viewer follows the screen of who steers. */
+/** Sends the screen's rate if this page steers, because the viewer follows it. */
 function tellRate() {
   if (screenRate > 0 && people.steers()) link.send({ type: "rate", hz: Math.min(Math.max(screenRate, 1), 1000) });
 }
 
-/** So does the picture's shape, which is that of the window. */
+/** Sends the window's shape if this page steers, because the picture takes it. */
 function tellShape() {
   if (people.steers()) link.send({ type: "shape", ...windowShape() });
 }

@@ -36,8 +36,8 @@ void store_cached_bvh(const Hash128& key, const std::filesystem::path& folder, c
 
 /// Loads a tree from the cache, or builds it with builders.front() and stores it. A cached tree of the other builders
 /// is equally valid, and the last that exists is preferred, because those are better but take longer to build.
-/// Without a folder, and for fewer than kMinCachedTriangles, which build faster than a file is read, the tree is
-/// built. `taken` is set to the builder of the returned tree.
+/// The tree is always built if there is no folder or there are fewer than kMinCachedTriangles, which build faster than
+/// a file is read. `taken` is set to the builder of the returned tree.
 inline constexpr std::size_t kMinCachedTriangles = 1 << 14;
 Bvh load_or_build_bvh(const std::vector<BvhTriangle>& triangles, std::span<const BvhBuilder> builders,
                       const BvhBuildSettings& settings, const std::optional<std::filesystem::path>& folder,

@@ -93,7 +93,7 @@ HD inline uint64_t preference(float area, uint32_t i, uint32_t k) {
     return static_cast<uint64_t>(bits_of(area)) << 32 | (i ^ k);
 }
 
-/// Cluster `slot` of those that the node with leaves [first, end) left; kNone past the last.
+/// Cluster `slot` of the node over leaves [first, end); kNone past the last.
 HD inline Cluster cluster_left(const Climb& climb, uint32_t first, uint32_t end, uint32_t slot) {
     if (end - first <= climb.kept()) return {first + slot, first + slot}; // its leaves
     return load_fresh(climb.clusters + first + slot);

@@ -9,7 +9,7 @@
 namespace pertev::gltf {
 namespace {
 
-// Also what every property of a material is where the file says nothing.
+// The default material of glTF. Properties that a file's material lacks have its values.
 Material make_default_material() {
     Material material;
     material.kind = MaterialKind::MetallicRoughness;

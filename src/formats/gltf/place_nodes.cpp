@@ -14,7 +14,7 @@
 namespace pertev::gltf {
 namespace {
 
-// One transform an instance that EXT_mesh_gpu_instancing places within the node.
+// The transforms of the instances that EXT_mesh_gpu_instancing places within the node.
 std::vector<Transform> read_placements(const Document& document, Buffers& buffers, const JsonValue& instancing) {
     const JsonValue attributes = instancing.at("attributes");
     std::optional<uint64_t> count;

@@ -57,7 +57,7 @@ struct GatherView {
         const Float4 s = gather_states[subpath];
         return {{s.x, s.y, s.z}, s.w};
     }
-    /// For a photon: square of the refractive index of its medium, over that of its light's medium.
+    /// Square of the refractive index of a photon's medium, over that of its light's medium.
     HD float index_squared(uint32_t subpath) const { return gather_states[subpath].w; }
     HD void store_index(uint32_t subpath, float squared) const { gather_states[subpath] = {0, 0, 0, squared}; }
     HD void store(uint32_t at, const Lookup& lookup) const {

@@ -39,7 +39,7 @@ Scene open_scene(const SceneOptions& options, Messages& messages, SceneUse use =
 Scene open_scene(const std::string& scene, Messages& messages, SceneUse use = SceneUse::Picture);
 
 /// Reads a scene with `formats/read_scene.h` and adds nothing. A notice names the shown scene of a file with several.
-/// For files that cannot say which faces of an emitter emit, others report its emitters
+/// If the format cannot say which faces of an emitter emit, a notice names the emitters that emit on one side
 /// (session/survey/emitter_fronts.h). Throws Error.
 Scene read_scene_and_emitters(const std::filesystem::path& path, const ReadOptions& options, Messages& messages);
 
