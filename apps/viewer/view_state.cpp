@@ -27,7 +27,7 @@ using Kind = ViewSetting::Kind;
 constexpr const char* kLayers[] = {"picture",   "albedo",      "normal",          "depth",  "instances", "triangles",
                                    "materials", "heat: nodes", "heat: triangles", "motion", "deviation"};
 
-constexpr const char* kScales[] = {"automatic", "1", "1/2", "1/4", "1/8"};
+constexpr const char* kScaleNames[] = {"automatic", "1", "1/2", "1/4", "1/8"};
 constexpr float kScaleValues[] = {0, 1, 0.5f, 0.25f, 0.125f};
 constexpr double kMinShown = 1e-6; // minimum of settings that must be above 0
 
@@ -258,12 +258,12 @@ std::vector<ViewSetting> make_settings() {
     shared("restir_history", "ReSTIR max history, frames", "Frames");
     shared("resolution_scale", "Light resolution, per side", "Frames", 0.05);
     choice(
-        "moving_scale", "Size in motion", "Frames", "automatic: as large as the frame rate permits", strings(kScales),
+        "moving_scale", "Size in motion", "Frames", "automatic: as large as the frame rate permits", strings(kScaleNames),
         [](const ViewState& s) {
-            return kScales[std::ranges::find(kScaleValues, s.moving_scale) - std::begin(kScaleValues)];
+            return kScaleNames[std::ranges::find(kScaleValues, s.moving_scale) - std::begin(kScaleValues)];
         },
         [](ViewState& s, const std::string& name) {
-            s.moving_scale = kScaleValues[std::ranges::find(kScales, name) - std::begin(kScales)];
+            s.moving_scale = kScaleValues[std::ranges::find(kScaleNames, name) - std::begin(kScaleNames)];
         });
     shared("fov", "Field of view, degrees", "Camera");
     shared("aperture", "Lens radius, m", "Camera", 0.005);
