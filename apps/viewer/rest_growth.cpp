@@ -5,7 +5,7 @@
 namespace pertev {
 namespace {
 
-constexpr float kScales[] = {0.03125f, 0.0625f, 0.125f, 0.25f, 0.5f, 1.0f};
+constexpr float kGrowthScales[] = {0.03125f, 0.0625f, 0.125f, 0.25f, 0.5f, 1.0f};
 
 } // namespace
 
@@ -21,7 +21,7 @@ void RestGrowth::took(float scale, double seconds) {
 std::optional<float> RestGrowth::next(bool has_whole) const {
     if (!is_slow()) return std::nullopt;
     std::optional<float> chosen;
-    for (const float scale : kScales) {
+    for (const float scale : kGrowthScales) {
         if (scale <= shown_ || (scale == 1 && !has_whole)) continue;
         const double seconds = full_s_ * static_cast<double>(scale) * static_cast<double>(scale);
         if (!chosen || seconds <= kFirst) chosen = scale;
