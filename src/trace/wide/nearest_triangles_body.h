@@ -9,6 +9,11 @@
 
 namespace pertev {
 
+/// Returns whether both are one triangle, which the leaves of a tree may hold more than once.
+inline bool is_same_triangle(const BvhTriangle& a, const BvhTriangle& b) {
+    return a.instance == b.instance && a.primitive == b.primitive;
+}
+
 template <class F>
 void find_nearest(const TriangleList& list, const Ray* rays, int kz, unsigned active, bool any,
                   NearestTriangles& nearest) {
@@ -28,7 +33,11 @@ void find_nearest(const TriangleList& list, const Ray* rays, int kz, unsigned ac
         if (any) {
             active &= ~hits.hit;
         } else {
-            alone |= bit_mask(hit && hits.t == t && hits.t < t_max);
+            for (unsigned rest = bit_mask(hit && hits.t == t && hits.t < t_max); rest != 0; rest &= rest - 1) {
+                const auto lane = static_cast<uint32_t>(__builtin_ctz(rest));
+                const bool is_other = !is_same_triangle(list.triangles[found[lane]], list.triangles[i]);
+                alone |= (is_other ? 1u : 0u) << lane;
+            }
         }
         t = select(hit, hits.t, t);
         u = select(hit, hits.u, u);
