@@ -93,7 +93,7 @@ protected:
     uint32_t shadows_ = 0;
     PathState paths_[kPaths];
     Hit hits_[kPaths];
-    ShadowRay shadow_rays_[kPaths + kMaxLanes]; // more, because elements are written before they are known to be needed
+    ShadowRay shadow_rays_[kPaths]; // a path has at most one
     uint32_t shadow_keys_[kPaths], shadow_paths_[kPaths];
     bool occluded_[kPaths];
 
@@ -212,10 +212,10 @@ private:
     const ShadeOnHost<Listener> shade_ = shading_for<Listener>(job_);
     const uint32_t depth_of_lanes_ = can_shade_lanes(job_) ? Listener::depth_of_lanes(job_) : kNoLaneDepth;
     const VertexShading& lanes_ = vertex_shading();
-    uint32_t together_[kPaths], alone_[kPaths], missed_[kPaths]; // paths that are shaded in lanes, and one by one
+    uint32_t together_[kPaths], alone_[kPaths], missed_[kPaths]; // paths in lanes, one by one, and without a hit
     bool goes_on_[kPaths];
     typename Listener::Kept kept_[kPaths];
-    typename Listener::ShadowData shadow_data_[kPaths + 1]; // one more, as of the rays
+    typename Listener::ShadowData shadow_data_[kPaths]; // the listener's data of shadow_rays_
 };
 
 template <class Listener>
