@@ -38,24 +38,18 @@ template <class F>
     return {kx, ky, kz, columns[4 + kx] / dz, columns[4 + ky] / dz, 1.0f / dz, columns[kx], columns[ky], columns[kz]};
 }
 
-/// Rays of a packet, and how far a hit may be: t_min < t < t_max and t <= t_limit.
+/// A triangle as rays see it: its edge functions, the depths of its corners, and what the edges say. Rays that pass
+/// neither inside nor outside for sure are to be tested alone, by intersect_alone, because an edge function is nearly 0
+/// or not a number.
 template <class F>
-struct RayRangeOf {
-    F t_min, t_max, t_limit;
+struct TriangleEdgesOf {
+    F a, b, c;
+    F depth_a, depth_b, depth_c;
+    MaskOf<F> is_inside, is_outside;
 };
 
-/// Results of intersect_rays; one bit for each lane, that of lane 0 first.
 template <class F>
-struct TriangleHitsOf {
-    F t, u, v; // valid in lanes that are hit
-    unsigned hit = 0;
-    unsigned slow = 0; // to be tested alone, by intersect_alone, because an edge function is nearly 0
-};
-
-/// Tests the rays of `requested`.
-template <class F>
-[[gnu::always_inline]] inline TriangleHitsOf<F> intersect_rays(const RayShearOf<F>& ray, const RayRangeOf<F>& range,
-                                                               const BvhTriangle& triangle, unsigned requested) {
+[[gnu::always_inline]] inline TriangleEdgesOf<F> edges_of(const RayShearOf<F>& ray, const BvhTriangle& triangle) {
     const auto sheared = [&](const Vec3& corner) __attribute__((always_inline)) {
         const float* const p = &corner.x;
         const F z = F(p[ray.kz]) - ray.oz;
@@ -70,16 +64,47 @@ template <class F>
     const F eb = difference(pa.x, pc.y, pa.y, pc.x);
     const F ec = difference(pb.x, pa.y, pb.y, pa.x);
     const F below = min(ea, min(eb, ec)), above = max(ea, max(eb, ec));
+    return {ea, eb, ec, pa.z, pb.z, pc.z, max(below, -above) >= kSureEdge, min(-below, above) >= kSureEdge};
+}
+
+/// Where rays that pass inside meet the triangle's plane.
+template <class F>
+struct PlaneHitOf {
+    F t, u, v;
+};
+template <class F>
+[[gnu::always_inline]] inline PlaneHitOf<F> hit_plane(const RayShearOf<F>& ray, const TriangleEdgesOf<F>& edges) {
+    const F inv = 1.0f / (edges.a + edges.b + edges.c); // the sum is not 0, because all have one sign and none is 0
+    const F u = edges.b * inv, v = edges.c * inv;
+    return {(edges.a * inv * edges.depth_a + u * edges.depth_b + v * edges.depth_c) * ray.sz, u, v};
+}
+
+/// Rays of a packet, and how far a hit may be: t_min < t < t_max and t <= t_limit.
+template <class F>
+struct RayRangeOf {
+    F t_min, t_max, t_limit;
+    MaskOf<F> holds(F t) const { return t > t_min && t < t_max && t <= t_limit; }
+};
+
+/// Results of intersect_rays; one bit for each lane, that of lane 0 first.
+template <class F>
+struct TriangleHitsOf {
+    PlaneHitOf<F> at; // valid in lanes that are hit
+    unsigned hit = 0;
+    unsigned slow = 0; // to be tested alone
+};
+
+/// Tests the rays of `requested`.
+template <class F>
+[[gnu::always_inline]] inline TriangleHitsOf<F> intersect_rays(const RayShearOf<F>& ray, const RayRangeOf<F>& range,
+                                                               const BvhTriangle& triangle, unsigned requested) {
+    const TriangleEdgesOf<F> edges = edges_of(ray, triangle);
     TriangleHitsOf<F> hits;
-    requested &= ~bit_mask(min(-below, above) >= kSureEdge);
+    requested &= ~bit_mask(edges.is_outside);
     if (requested == 0) return hits;
-    // Not "less than", so that NaN takes the slow path too, where it is a miss.
-    hits.slow = requested & bit_mask(!(min(abs(ea), min(abs(eb), abs(ec))) >= kSureEdge));
-    const F inv = 1.0f / (ea + eb + ec); // the sum is not 0, because all have one sign and none is 0
-    hits.u = eb * inv, hits.v = ec * inv;
-    hits.t = (ea * inv * pa.z + hits.u * pb.z + hits.v * pc.z) * ray.sz;
-    hits.hit =
-        requested & ~hits.slow & bit_mask(hits.t > range.t_min && hits.t < range.t_max && hits.t <= range.t_limit);
+    hits.slow = requested & ~bit_mask(edges.is_inside);
+    hits.at = hit_plane(ray, edges);
+    hits.hit = requested & ~hits.slow & bit_mask(range.holds(hits.at.t));
     return hits;
 }
 

@@ -20,28 +20,35 @@ void find_nearest(const TriangleList& list, const Ray* rays, int kz, unsigned ac
     F columns[8];
     load_rays(rays, columns);
     const RayShearOf<F> shear = make_shear_of_rays(columns, kz);
-    const F t_min = columns[3], t_max = columns[7];
+    const F t_max = columns[7];
     F t = t_max, u = 0.0f, v = 0.0f;
     WordOf<F> found = WordOf<F>{} + kNoTriangle;
+    MaskOf<F> going = MaskOf<F>::of_bits(active);
     unsigned alone = 0;
-    for (uint32_t i = 0; i < list.count && active != 0; ++i) {
-        const TriangleHitsOf<F> hits = intersect_rays<F>(shear, {t_min, t_max, t}, list.triangles[i], active);
-        alone |= hits.slow;
-        active &= ~hits.slow;
-        if (hits.hit == 0) continue;
-        const MaskOf<F> hit = MaskOf<F>::of_bits(hits.hit);
+    for (uint32_t i = 0; i < list.count; ++i) {
+        const TriangleEdgesOf<F> edges = edges_of(shear, list.triangles[i]);
+        const MaskOf<F> wanted = going && !edges.is_outside;
+        if (bit_mask(wanted) == 0) continue;
+        const PlaneHitOf<F> at = hit_plane(shear, edges);
+        const MaskOf<F> slow = wanted && !edges.is_inside;
+        const MaskOf<F> hit = going && edges.is_inside && RayRangeOf<F>{columns[3], t_max, t}.holds(at.t);
+        if (bit_mask(slow) != 0) {
+            alone |= bit_mask(slow);
+            going = going && !slow;
+        }
         if (any) {
-            active &= ~hits.hit;
+            going = going && !hit;
+            if (bit_mask(going) == 0) i = list.count;
         } else {
-            for (unsigned rest = bit_mask(hit && hits.t == t && hits.t < t_max); rest != 0; rest &= rest - 1) {
+            for (unsigned rest = bit_mask(hit && at.t == t); rest != 0; rest &= rest - 1) {
                 const auto lane = static_cast<uint32_t>(__builtin_ctz(rest));
                 const bool is_other = !is_same_triangle(list.triangles[found[lane]], list.triangles[i]);
                 alone |= (is_other ? 1u : 0u) << lane;
             }
         }
-        t = select(hit, hits.t, t);
-        u = select(hit, hits.u, u);
-        v = select(hit, hits.v, v);
+        t = select(hit, at.t, t);
+        u = select(hit, at.u, u);
+        v = select(hit, at.v, v);
         found = select(hit, WordOf<F>{} + i, found);
     }
     t.store(nearest.t), u.store(nearest.u), v.store(nearest.v);

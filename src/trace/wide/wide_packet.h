@@ -227,7 +227,7 @@ private:
                     eight.shear, {eight.t_min, eight.t_max, _mm256_load_ps(eight.limits)}, triangle, requested);
                 for (unsigned rest = hits.hit | hits.slow; rest != 0; rest &= rest - 1) {
                     const auto k = static_cast<uint32_t>(__builtin_ctz(rest));
-                    TriangleHit hit = {hits.t[k], hits.u[k], hits.v[k]};
+                    TriangleHit hit = {hits.at.t[k], hits.at.u[k], hits.at.v[k]};
                     if ((hits.slow >> k & 1) != 0 &&
                         !intersect_alone(rays_[8 * g + k], eight.limits[k], triangle, hit)) {
                         continue;
