@@ -171,7 +171,7 @@ int bench_sequence(SequenceFlags& flags) {
                       {"width", "width", ready->settings.width},
                       {"height", "height", ready->settings.height},
                       {"frames", "frames", ready->sequence.count()},
-                      {"max_depth", "scatterings", ready->settings.path.max_depth},
+                      {"max_depth", "max depth", ready->settings.path.max_depth},
                       {"reconstruction", "", ResultCell::raw(reconstruction_json(flags.render.reconstruction))},
                       {"reference_spp", "samples of the references", flags.reference},
                       {"reference_noise", "HDR-FLIP of their halves", scores.noise, "", "{:.4f}"},
@@ -200,9 +200,10 @@ int bench_sequence(SequenceFlags& flags) {
 
 void add_bench_sequence_command(CLI::App& bench, int& status) {
     const auto flags = std::make_shared<SequenceFlags>();
-    CLI::App& verb = add_bench_verb(
-        bench, "sequence", "Frames of a moving picture against pictures of many samples, and another denoiser's frames",
-        [flags, &status] { status = bench_sequence(*flags); });
+    CLI::App& verb =
+        add_bench_verb(bench, "sequence",
+                       "Compare frames of a sequence with pictures of many samples, and with another denoiser's frames",
+                       [flags, &status] { status = bench_sequence(*flags); });
     flags->render.size = PictureSize{1280, 720};
     flags->render.render.path.max_depth = 4;
     add_scene_name(verb, flags->render.scene);

@@ -217,8 +217,8 @@ void ThesisPictures::count_work(const Job& job, ThesisPicture& picture) {
     const double rays = std::max(1.0, static_cast<double>(work.size()));
     picture.image = draw_heat_map(tests, job.settings.width, job.settings.height, scale_end(tests));
     picture.shows +=
-        fmt::format(" Dark is few tests of nodes and triangles together, pale is many; the scale is beneath. A "
-                    "ray tests {:.1f} nodes and {:.1f} triangles in the mean, of {}.",
+        fmt::format(" Dark pixels take few tests of nodes and triangles, pale ones many; the scale is below. A ray "
+                    "tests {:.1f} nodes and {:.1f} triangles of {} on average.",
                     nodes / rays, triangles / rays, job.prepared.triangles);
 }
 
@@ -231,7 +231,7 @@ void ThesisPictures::show_radiosity(const Job& job, ThesisPicture& picture) {
     const SolveStats& stats = solved.stats;
     picture.solve_seconds = stats.factor_seconds + stats.solve_seconds + stats.divide_seconds;
     const std::string steps = panel.is_early ? fmt::format(" {} steps;", requested.steps) : "";
-    picture.shows += fmt::format("{} {} patches send, {} are shown.", steps, stats.patches, stats.shown);
+    picture.shows += fmt::format("{} {} patches that shoot, {} that are shown.", steps, stats.patches, stats.shown);
     RenderSettings settings = job.settings;
     auto solution = std::make_shared<RadiositySolution>(solved.solution);
     if (!panel.has_ambient) solution->ambient = {};

@@ -238,8 +238,7 @@ class WhatIsMeasured(LabTest):
         away = ["--eye", "0,0,9", "--target", "0,0,10"]
         report = self.report("box.obj", *away, *SMALL)
         self.assertEqual([rays["name"] for rays in report["sets"]], ["primary"])
-        self.assertEqual(report["notes"], [f"{name}: no rays, since none of primary meets the scene"
-                                           for name in ["shadow", "diffuse1", "diffuse2"]])
+        self.assertEqual([note.split(":")[0] for note in report["notes"]], ["shadow", "diffuse1", "diffuse2"])
         outcome = self.succeed(*self.lab("box.obj", *away, *SMALL, "--rays", "record", "--count", "3"))
         for name in ["shadow", "diffuse1", "diffuse2", "diffuse3"]:
             self.assertIn(f"{name}: no rays", outcome.stdout)

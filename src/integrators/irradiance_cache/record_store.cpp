@@ -117,7 +117,7 @@ std::size_t RecordStore::max_host_bytes(uint64_t pixels) {
 
 void RecordStore::allocate(uint64_t pixels) {
     const std::size_t most = max_records(pixels);
-    sites_.grow(queue_, pixels, "places of the overture");
+    sites_.grow(queue_, pixels, "sites of the overture");
     records_.grow(queue_, most, "irradiance records");
     reaches_.grow(queue_, most, "irradiance records");
     nodes_.grow(queue_, 2 * most, "octree over irradiance records");
