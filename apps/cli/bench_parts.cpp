@@ -92,12 +92,6 @@ std::string lab_scene_title(const std::string& scene) {
     return utf8_text(std::filesystem::path(scene).stem().string());
 }
 
-double mean_of(const Image& image) {
-    double sum = 0;
-    for (const float value : image.pixels) sum += static_cast<double>(value);
-    return sum / static_cast<double>(image.pixels.size());
-}
-
 std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, SettingVerbs verb, Reporter& reporter) {
     Messages& messages = reporter.messages();
     flags.settings.read(flags, messages); // before anything is read

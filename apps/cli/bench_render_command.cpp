@@ -15,6 +15,7 @@
 #include "apps/cli/interrupt.h"
 #include "base/stopwatch.h"
 #include "device/device_timer.h"
+#include "image/metrics.h"
 #include "image/picture_hash.h"
 #include "image/write_image.h"
 #include "lab/isolated_rays.h"

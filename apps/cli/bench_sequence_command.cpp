@@ -14,6 +14,7 @@
 #include "apps/cli/report_radiosity.h"
 #include "base/limits.h"
 #include "image/flip.h"
+#include "image/metrics.h"
 #include "image/picture_hash.h"
 #include "image/tone_map_image.h"
 #include "session/opening/strictness.h"
@@ -79,12 +80,6 @@ RenderResult sample_of(Session& session, const RenderSettings& settings, uint32_
     return session.render_separately(session.camera(), one);
 }
 
-Image mean_of_both(const Image& a, const Image& b) {
-    Image mean = a;
-    for (std::size_t i = 0; i < mean.pixels.size(); ++i) mean.pixels[i] = 0.5f * (a.pixels[i] + b.pixels[i]);
-    return mean;
-}
-
 constexpr const char* kWays[] = {"samples", "frames", "peer"};
 
 Scores measure(RenderSetup& ready, Session& session, PictureRecord& record, const SequenceFlags& flags, float exposure,
@@ -113,7 +108,7 @@ Scores measure(RenderSetup& ready, Session& session, PictureRecord& record, cons
         const uint32_t half = (flags.reference + 1) / 2;
         const Image first = sample_of(session, ready.settings, 0x40000000u + number, half, 0).picture,
                     second = sample_of(session, ready.settings, 0x80000000u + number, half, 0).picture,
-                    reference = mean_of_both(first, second);
+                    reference = mean_of(first, second);
         std::optional<Image> peer;
         if (scores.peer) peer = read_pfm(file_of(flags.peer, number, "-denoised"), ours.width, ours.height);
         std::vector<const Image*> pictures = {&sample.picture, &ours};

@@ -1,7 +1,5 @@
 #include "lab/run_lab.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <functional>
 #include <map>
@@ -12,6 +10,7 @@
 
 #include "base/byte_units.h"
 #include "base/error.h"
+#include "base/machine_memory.h"
 #include "base/stopwatch.h"
 #include "device/device_timer.h"
 #include "device_scene/place_meshes.h"
@@ -35,10 +34,6 @@ constexpr Combination kProven = {.structure = StructureKind::Binned, .traversal 
 /// too.
 Tlas tlas_over(const Scene& scene, const BinaryTrees& trees) {
     return build_tlas(placed_trees(scene, place_meshes(scene), trees.mesh_bounds()));
-}
-
-uint64_t host_memory_bytes() {
-    return static_cast<uint64_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
 class Lab {
@@ -183,9 +178,9 @@ private:
             return Error(ErrorCode::OutOfMemory, record ? "count" : "size", "",
                          fmt::format("out of memory{}: {} rays and their hits take {:.1f} GiB per set, for up to {} "
                                      "sets, and this machine has {:.1f} GiB; a smaller value gives fewer rays",
-                                     what, rays, gibibytes(bytes), sets, gibibytes(host_memory_bytes())));
+                                     what, rays, gibibytes(bytes), sets, gibibytes(machine_memory_bytes())));
         };
-        if (bytes > host_memory_bytes()) throw complain("");
+        if (bytes > machine_memory_bytes()) throw complain("");
         try {
             f();
         } catch (const std::bad_alloc&) {
