@@ -5,7 +5,7 @@ ALLOWED is the "may know" column of docs/architecture.md: a module may include i
 of which come before it. Beyond that table: only device/cuda and .cu files include CUDA's headers, no integrator includes
 another, but for the machines that several are made of (integrators/ray_tree, subpaths), other modules include of an
 integrator only its settings (*_settings.h), and neither files nor folders include each other in a circle: the files that
-lie in a folder itself are one room, each folder below it is another.
+lie in a folder itself count as one, each folder below it as another.
 
 `check_includes.py [ROOT]` checks ROOT/src; `--self-test` makes trees that break each rule and must be caught.
 """

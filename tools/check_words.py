@@ -6,12 +6,10 @@ begins with a word of FRAGMENTS leans on another one, and the comment of a decla
 half a sentence. Subjects are checked for the commits that follow the one that added
 this file; where there is no git or no history, they are not checked.
 
-`check_words.py [ROOT]` checks the tree, `--count [ROOT]` prints how many faults each folder has, `--self-test` checks this
-tool on text that it must refuse or accept.
+`check_words.py [ROOT]` checks the tree, `--self-test` checks this tool on text that it must refuse or accept.
 """
 
 import ast
-import collections
 import pathlib
 import re
 import subprocess
@@ -183,14 +181,8 @@ def main():
         failures = self_test()
         print("\n".join(failures) or "the check refuses and accepts what it should")
         sys.exit(1 if failures else 0)
-    arguments = [argument for argument in sys.argv[1:] if argument != "--count"]
-    root = pathlib.Path(arguments[0]) if arguments else pathlib.Path(__file__).resolve().parent.parent
+    root = pathlib.Path(sys.argv[1]) if sys.argv[1:] else pathlib.Path(__file__).resolve().parent.parent
     faults = list(comment_faults(root)) + list(subject_faults(root))
-    if len(arguments) < len(sys.argv[1:]):
-        folders = collections.Counter("/".join(fault.split(":")[0].split("/")[:-1]) for fault in faults)
-        print("\n".join(f"{count:5} {folder}" for folder, count in sorted(folders.items())))
-        print(f"{len(faults):5} in all")
-        return
     print("\n".join(faults) or "no comment begins as a fragment and no subject is too long")
     sys.exit(1 if faults else 0)
 

@@ -57,25 +57,19 @@ def main():
     parser.add_argument('pertev')
     parser.add_argument('scenes', nargs='+', help='folders, or single files')
     parser.add_argument('sheet', help='the picture to write')
-    parser.add_argument('--columns', type=int, default=8)
     parser.add_argument('--size', default='200x150', help='of each view, WIDTHxHEIGHT')
     parser.add_argument('--spp', type=int, default=64)
-    parser.add_argument('--quality', type=int, default=80)
-    parser.add_argument('--only', default='', help='words, comma-separated, one of which a path must hold')
-    parser.add_argument('--more', default='', help='further flags of each render, separated by blanks')
     args = parser.parse_args()
 
     width, height = (int(part) for part in args.size.split('x'))
     paths = []
     for scene in map(pathlib.Path, args.scenes):
         paths += models(scene) if scene.is_dir() else [scene]
-    if args.only:
-        paths = [path for path in paths if any(word in str(path) for word in args.only.split(','))]
-    views = [(path.stem, render(args.pertev, path, (width, height), args.spp, args.more.split())) for path in paths]
+    views = [(path.stem, render(args.pertev, path, (width, height), args.spp, [])) for path in paths]
     failed = sum(view is None for _, view in views)
     views = [(name, view) for name, view in views if view is not None]
     if views:
-        write_sheet(args.sheet, views, args.columns, args.quality)
+        write_sheet(args.sheet, views, 8, 80)
     print('%s: %d views, %d failed' % (args.sheet, len(views), failed))
     return 1 if failed else 0
 

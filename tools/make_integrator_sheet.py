@@ -4,7 +4,7 @@
     tools/make_integrator_sheet.py build/bin/pertev docs/pictures/integrators.jpg
 
 The scene is the Cornell box with a ball of glass in place of the short block, and a point light below the lamp, because some
-integrators know lights without size alone. `--keep FILE.gltf` keeps it. Needs Pillow.
+integrators know only lights without size. Needs Pillow.
 """
 
 import argparse
@@ -63,17 +63,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("pertev")
     parser.add_argument("sheet")
-    parser.add_argument("--keep", type=pathlib.Path)
-    parser.add_argument("--side", type=int, default=180)
     parser.add_argument("--spp", type=int, default=128)
-    parser.add_argument("--columns", type=int, default=5)
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        scene = arguments.keep or pathlib.Path(folder) / "box.gltf"
+        scene = pathlib.Path(folder) / "box.gltf"
         make_scene(scene)
-        size = (arguments.side, arguments.side)
-        views = [(name, render(arguments.pertev, scene, size, arguments.spp, ["--integrator", name, "--exposure", "-0.5"])) for name in INTEGRATORS]
-        write_sheet(arguments.sheet, views, arguments.columns, 85)
+        views = [(name, render(arguments.pertev, scene, (180, 180), arguments.spp, ["--integrator", name, "--exposure", "-0.5"])) for name in INTEGRATORS]
+        write_sheet(arguments.sheet, views, 5, 85)
 
 
 if __name__ == "__main__":

@@ -60,9 +60,9 @@ void add_build(const std::string& scene, std::string_view tree, const std::strin
                                is_known ? record->optix_fast_trace_s / times.median : 0),
                    ratio_field("ratio_to_optix_fast_build", "to build", is_known,
                                is_known ? record->optix_fast_build_s / times.median : 0)},
-        fmt::format("from triangles on the device to compressed nodes and triangles there; others on the CPU; cost of "
-                    "a ray by the\nsurface area heuristic, and its ratio to the SBVH's; at the right, on an {} "
-                    "alone, our rate in times OptiX's\n",
+        fmt::format("hploc starts from triangles on the device and ends with compressed nodes and triangles there;\n"
+                    "others run on the CPU. cost: of a ray, by the surface area heuristic; to trace, to build: ratio\n"
+                    "of rates to OptiX's, only on an {}\n",
                     the_record().device));
 }
 
@@ -91,7 +91,7 @@ void bench_scene(const std::string& name, Queue& queue, const BuildFlags& flags,
         }
     }
     reporter.set_work(fmt::format("{}: building on the device", name));
-    const Buffer<BvhTriangle> there(queue, std::span(triangles), "triangles to build of");
+    const Buffer<BvhTriangle> there(queue, std::span(triangles), "triangles to build over");
     DeviceBuilder builder(queue, count);
     const int runs = flags.runs > 0 ? static_cast<int>(flags.runs) : (queue.is_cuda() ? 25 : 3);
     const auto time = [&](const auto& run) {
@@ -125,7 +125,7 @@ int bench_build(BuildFlags& flags) {
 
 void add_bench_build_command(CLI::App& bench, int& status) {
     const auto flags = std::make_shared<BuildFlags>();
-    CLI::App& verb = add_bench_verb(bench, "build", "Trees that are built on the device",
+    CLI::App& verb = add_bench_verb(bench, "build", "Measure trees that are built on the device",
                                     [flags, &status] { status = bench_build(*flags); });
     add_record_flags(verb, *flags, kBenchBuild, "number of timed builds (3 on the CPU, 25 in CUDA)");
     verb.add_flag("--compare", flags->compare,

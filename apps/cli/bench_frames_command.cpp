@@ -76,25 +76,24 @@ int bench_frames(FramesFlags& flags) {
     const RunTimes times = summarize_runs(whole);
     const Image last = reconstructs ? session.frame().picture() : session.picture();
     reporter.end_progress();
-    report.add_alone(
-        "frames",
-        {{"scene", "scene", flags.render.scene.scene},
-         {"device", "device", queue->device_name()},
-         {"integrator", "integrator", integrator_name(settings)},
-         {"width", "width", settings.width},
-         {"height", "height", settings.height},
-         {"max_depth", "scatterings", settings.path.max_depth},
-         {"frames", "frames", flags.frames},
-         {"still", "camera stands still", flags.still},
-         {"reconstruction", "reconstruction", ResultCell::raw(reconstruction_json(options))},
-         {"median_seconds", "a frame, median", times.median, "s", "{:.6f}"},
-         {"least_seconds", "least", times.least, "s", "{:.6f}"},
-         {"greatest_seconds", "greatest", times.greatest, "s", "{:.6f}"},
-         {"frames_per_second", "frames a second", 1 / times.median, "", "{:.1f}"},
-         {"reconstruction_seconds", "of it reconstruction", summarize_runs(reconstruction).median, "s", "{:.6f}"},
-         {"copy_seconds", "of it copying to the host", summarize_runs(copy).median, "s", "{:.6f}"},
-         {"mrays_per_s", "Mrays/s", millions_a_second(rays.total(), seconds), "", "{:.1f}"},
-         {"picture", "last frame", picture_hash(last).hex()}});
+    report.add_alone("frames", {{"scene", "scene", flags.render.scene.scene},
+                                {"device", "device", queue->device_name()},
+                                {"integrator", "integrator", integrator_name(settings)},
+                                {"width", "width", settings.width},
+                                {"height", "height", settings.height},
+                                {"max_depth", "max depth", settings.path.max_depth},
+                                {"frames", "frames", flags.frames},
+                                {"still", "camera stands still", flags.still},
+                                {"reconstruction", "reconstruction", ResultCell::raw(reconstruction_json(options))},
+                                {"median_seconds", "frame, median", times.median, "s", "{:.6f}"},
+                                {"least_seconds", "least", times.least, "s", "{:.6f}"},
+                                {"greatest_seconds", "greatest", times.greatest, "s", "{:.6f}"},
+                                {"frames_per_second", "frames per second", 1 / times.median, "", "{:.1f}"},
+                                {"reconstruction_seconds", "reconstruction time", summarize_runs(reconstruction).median,
+                                 "s", "{:.6f}"},
+                                {"copy_seconds", "copy to the host", summarize_runs(copy).median, "s", "{:.6f}"},
+                                {"mrays_per_s", "Mrays/s", millions_a_second(rays.total(), seconds), "", "{:.1f}"},
+                                {"picture", "last frame", picture_hash(last).hex()}});
     report.write();
     return 0;
 }
@@ -103,7 +102,7 @@ int bench_frames(FramesFlags& flags) {
 
 void add_bench_frames_command(CLI::App& bench, int& status) {
     const auto flags = std::make_shared<FramesFlags>();
-    CLI::App& verb = add_bench_verb(bench, "frames", "Frames in real time, each of one sample a pixel, reconstructed",
+    CLI::App& verb = add_bench_verb(bench, "frames", "Time real-time frames of one sample per pixel, reconstructed",
                                     [flags, &status] { status = bench_frames(*flags); });
     flags->render.size = PictureSize{1920, 1080};
     flags->render.render.path.max_depth = 4;

@@ -109,7 +109,7 @@ int bench_noise(NoiseFlags& flags) {
 
 void add_bench_noise_command(CLI::App& bench, int& status) {
     const auto flags = std::make_shared<NoiseFlags>();
-    CLI::App& verb = add_bench_verb(bench, "noise", "The variance of a picture, beside that of independent samples",
+    CLI::App& verb = add_bench_verb(bench, "noise", "Measure a picture's variance relative to independent samples",
                                     [flags, &status] { status = bench_noise(*flags); });
     flags->render.size = PictureSize{640, 360};
     add_scene_name(verb, flags->render.scene);

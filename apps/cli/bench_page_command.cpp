@@ -44,7 +44,7 @@ int make_page(const PageFlags& flags) {
 
 void add_bench_page_command(CLI::App& bench, int& status) {
     const auto flags = std::make_shared<PageFlags>();
-    CLI::App& verb = add_bench_verb(bench, "page", "A page that draws measurements: tables, plots, pictures",
+    CLI::App& verb = add_bench_verb(bench, "page", "Write a page of measurements: tables, plots, pictures",
                                     [flags, &status] { status = make_page(*flags); });
     verb.add_option("measurements", flags->files, "JSON files of bench --report, of lab -o, or bench/results")
         ->type_name("FILE...")

@@ -92,12 +92,6 @@ std::string lab_scene_title(const std::string& scene) {
     return utf8_text(std::filesystem::path(scene).stem().string());
 }
 
-double mean_of(const Image& image) {
-    double sum = 0;
-    for (const float value : image.pixels) sum += static_cast<double>(value);
-    return sum / static_cast<double>(image.pixels.size());
-}
-
 std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, SettingVerbs verb, Reporter& reporter) {
     Messages& messages = reporter.messages();
     flags.settings.read(flags, messages); // before anything is read
@@ -156,7 +150,7 @@ BenchReport::BenchReport(Reporter& reporter, const ReportFlags& flags, const Que
     if (file_.empty()) return;
     const std::string extension = std::filesystem::path(file_).extension().string();
     refuse(extension != ".json" && extension != ".html" && extension != ".csv",
-           {"report", file_, "wants a name that ends in .json, .html or .csv"});
+           {"report", file_, "expected a name that ends in .json, .html or .csv"});
     check_writable(file_);
 }
 
@@ -225,9 +219,8 @@ CLI::App& add_bench_verb(CLI::App& bench, const char* name, const char* help, st
     verb.callback([&bench, &verb, run = std::move(run)] {
         for (const CLI::Option* flag : bench.get_options()) {
             if (flag->count() == 0) continue;
-            throw Error(ErrorCode::BadInput,
-                        fmt::format("{}: stands before {}; flags of `bench {}` stand behind that name",
-                                    flag->get_name(), verb.get_name(), verb.get_name()));
+            throw Error(ErrorCode::BadInput, fmt::format("{}: is a flag of `bench {}` and must come after that name",
+                                                         flag->get_name(), verb.get_name()));
         }
         run();
     });

@@ -60,9 +60,6 @@ Scene read_lab_scene(const SceneOptions& options, Messages& messages);
 /// The scene's title in reports: its file's name without folder and extension, in UTF-8 whatever its bytes are.
 std::string lab_scene_title(const std::string& scene);
 
-/// Returns the mean over all channels and pixels.
-double mean_of(const Image& image);
-
 /// The start of a benchmark of one scene.
 struct BenchedScene {
     std::unique_ptr<Queue> queue;

@@ -1,7 +1,7 @@
 // pertev bench rays: how many rays a second the traversal of pictures traces, on sets of rays that other tracers can be
 // timed on (docs/ray_sets.md). What the record says of the same sets stands beside, and our rate over the best public
 // tracer's where both are of the same rays on the same card (lab/stored_figures.h). The tree is the best one unless
-// --build asks for another. On a CPU it is traversed with one ray after the other, where pictures go by packets and
+// --build names another. On a CPU it is traversed with one ray after the other, where pictures go by packets and
 // flights of rays (trace/wide/trace_many.h).
 
 #include <algorithm>
@@ -155,19 +155,19 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
         reporter.set_work(fmt::format("{}: measuring {}", name, sets[i].name));
         const SetOfScene of = {record != nullptr ? name : std::filesystem::path(name).stem().string(),
                                is_moved || i >= recorded ? nullptr : record, i, prepared};
-        report.add(
-            "rays", measure(queue, sets[i], of, flags, choice, ratios),
-            fmt::format("share of hits, nodes and triangles a ray in the binary tree, nodes of the dearest ray; at the "
-                        "right the best\npublic tracer on one {}, the ratio to it where ours is on one too, and what "
-                        "the record says of the same rays\n",
-                        the_record().device));
+        report.add("rays", measure(queue, sets[i], of, flags, choice, ratios),
+                   fmt::format(
+                       "share of hits; nodes and triangles per ray in the binary tree, and nodes of the costliest ray; "
+                       "at the right\nthe best public tracer on an {}, the ratio to it on the same device, and what "
+                       "the record has for these rays\n",
+                       the_record().device));
         sets[i].rays = {}; // a quarter of a gigabyte on the record
     }
     print_summary(name, ratios, reporter);
     all.insert(all.end(), ratios.begin(), ratios.end());
     if (flags.check) {
         reporter.answer(
-            fmt::format("{}: checked, each hit is that of the binary traversal on the CPU, to the bit\n", name));
+            fmt::format("{}: checked; each hit equals that of the binary traversal on the CPU, bit for bit\n", name));
     }
 }
 
@@ -190,12 +190,12 @@ int bench_rays(RaysFlags& flags) {
 
 void add_bench_rays_command(CLI::App& bench, int& status) {
     const auto flags = std::make_shared<RaysFlags>();
-    CLI::App& verb = add_bench_verb(bench, "rays", "Sets of rays that other tracers can be timed on",
+    CLI::App& verb = add_bench_verb(bench, "rays", "Time traversal on ray sets that other tracers use too",
                                     [flags, &status] { status = bench_rays(*flags); });
     add_whole(verb, "--count", flags->count, "rays per set; the record's is four frames of 1920x1080", 1, 1u << 30)
         ->capture_default_str();
     verb.add_flag("--check", flags->check, "compare every hit with the binary traversal's on the CPU, bit for bit");
-    verb.add_flag("--axes", flags->axes, "two more sets: diffuse1 turned along axes, and a thousandth beside them");
+    verb.add_flag("--axes", flags->axes, "two more sets: diffuse1 along axes, and tilted by a thousandth");
     flags->tracer.default_build = TreeBuild::Best; // no tree's making is timed
     add_record_flags(verb, *flags, kBenchRays, "timed runs per set (5 on the CPU, 25 in CUDA)");
 }

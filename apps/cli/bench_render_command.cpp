@@ -15,6 +15,7 @@
 #include "apps/cli/interrupt.h"
 #include "base/stopwatch.h"
 #include "device/device_timer.h"
+#include "image/metrics.h"
 #include "image/picture_hash.h"
 #include "image/write_image.h"
 #include "lab/isolated_rays.h"
@@ -53,7 +54,7 @@ double seconds_after_moves(Session& session, uint32_t moves) {
 /// Measures the isolated rays of each kind in the job's scene, by the job's tracers.
 IsolatedRates isolated_rates(Queue& queue, const RecordJob& job, const Scene& scene, const TracerChoice& choice,
                              Reporter& reporter) {
-    reporter.set_work("measuring rays by themselves");
+    reporter.set_work("measuring rays in isolation");
     const PreparedScene prepared = prepare_scene(
         scene, {.bvh = {}, .bvh_cache = {}, .tracers = choice, .keep_coordinates = true}, reporter.messages());
     const Camera camera = job_camera(job, scene, 16.0f / 9.0f, reporter.messages()); // the aspect of the sets' frames
@@ -124,7 +125,7 @@ int bench_job(JobFlags& flags) {
         {"samples_per_second", "samples a second", samples_per_second, "", "{:.4g}"},
         {"rays_per_second", "rays a second", rays_per_second, "", "{:.4g}"},
         {"rays_per_sample", "rays a sample", static_cast<double>(result.rays.total()) / samples, "", "{:.2f}"},
-        {"ratio_to_isolated_rays", "of the same rays by themselves", of_isolated, "", "{:.3f}"},
+        {"ratio_to_isolated_rays", "of the same rays in isolation", of_isolated, "", "{:.3f}"},
         {"moved_samples_per_second", "samples a second after a move", moved_per_second, "", "{:.4g}"},
         {"mean", "mean", mean, "", "{:.5f}"},
         {"invalid_samples", "invalid samples", result.invalid_samples},
@@ -142,7 +143,7 @@ int bench_job(JobFlags& flags) {
 
 void add_bench_render_command(CLI::App& bench, int& status) {
     const auto flags = std::make_shared<JobFlags>();
-    CLI::App& verb = add_bench_verb(bench, "render", "One job that other renderers were timed on",
+    CLI::App& verb = add_bench_verb(bench, "render", "Time a job that other renderers were timed on",
                                     [flags, &status] { status = bench_job(*flags); });
     flags->picture.tracer.default_build = TreeBuild::Best; // only the render is timed
     std::vector<std::string> names;
@@ -164,7 +165,7 @@ void add_bench_render_command(CLI::App& bench, int& status) {
               "also move the camera this often and time one sample per pixel\nafter each move (0)", 0, 100000);
     verb.add_flag("--isolated", flags->isolated,
                   "also trace the sets of `bench rays` in isolation and report\nthe job's rate relative to theirs");
-    verb.add_option("-o,--output", flags->output, "keep the picture")->type_name("FILE");
+    verb.add_option("-o,--output", flags->output, "write the picture to this file")->type_name("FILE");
     add_picture_flags(verb, kBenchRender, flags->picture, "the job's", "the job's");
 }
 

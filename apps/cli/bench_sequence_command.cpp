@@ -14,6 +14,7 @@
 #include "apps/cli/report_radiosity.h"
 #include "base/limits.h"
 #include "image/flip.h"
+#include "image/metrics.h"
 #include "image/picture_hash.h"
 #include "image/tone_map_image.h"
 #include "session/opening/strictness.h"
@@ -79,12 +80,6 @@ RenderResult sample_of(Session& session, const RenderSettings& settings, uint32_
     return session.render_separately(session.camera(), one);
 }
 
-Image mean_of_both(const Image& a, const Image& b) {
-    Image mean = a;
-    for (std::size_t i = 0; i < mean.pixels.size(); ++i) mean.pixels[i] = 0.5f * (a.pixels[i] + b.pixels[i]);
-    return mean;
-}
-
 constexpr const char* kWays[] = {"samples", "frames", "peer"};
 
 Scores measure(RenderSetup& ready, Session& session, PictureRecord& record, const SequenceFlags& flags, float exposure,
@@ -113,7 +108,7 @@ Scores measure(RenderSetup& ready, Session& session, PictureRecord& record, cons
         const uint32_t half = (flags.reference + 1) / 2;
         const Image first = sample_of(session, ready.settings, 0x40000000u + number, half, 0).picture,
                     second = sample_of(session, ready.settings, 0x80000000u + number, half, 0).picture,
-                    reference = mean_of_both(first, second);
+                    reference = mean_of(first, second);
         std::optional<Image> peer;
         if (scores.peer) peer = read_pfm(file_of(flags.peer, number, "-denoised"), ours.width, ours.height);
         std::vector<const Image*> pictures = {&sample.picture, &ours};
@@ -171,7 +166,7 @@ int bench_sequence(SequenceFlags& flags) {
                       {"width", "width", ready->settings.width},
                       {"height", "height", ready->settings.height},
                       {"frames", "frames", ready->sequence.count()},
-                      {"max_depth", "scatterings", ready->settings.path.max_depth},
+                      {"max_depth", "max depth", ready->settings.path.max_depth},
                       {"reconstruction", "", ResultCell::raw(reconstruction_json(flags.render.reconstruction))},
                       {"reference_spp", "samples of the references", flags.reference},
                       {"reference_noise", "HDR-FLIP of their halves", scores.noise, "", "{:.4f}"},
@@ -200,9 +195,10 @@ int bench_sequence(SequenceFlags& flags) {
 
 void add_bench_sequence_command(CLI::App& bench, int& status) {
     const auto flags = std::make_shared<SequenceFlags>();
-    CLI::App& verb = add_bench_verb(
-        bench, "sequence", "Frames of a moving picture against pictures of many samples, and another denoiser's frames",
-        [flags, &status] { status = bench_sequence(*flags); });
+    CLI::App& verb =
+        add_bench_verb(bench, "sequence",
+                       "Compare frames of a sequence with pictures of many samples, and with another denoiser's frames",
+                       [flags, &status] { status = bench_sequence(*flags); });
     flags->render.size = PictureSize{1280, 720};
     flags->render.render.path.max_depth = 4;
     add_scene_name(verb, flags->render.scene);

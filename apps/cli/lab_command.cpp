@@ -48,7 +48,7 @@ std::vector<bool> on_off(const std::string& value) {
     return {value == "on"};
 }
 
-/// The switches asked for, those with the most on first: heat maps are of a traversal's first.
+/// The requested switches, those with the most on first, because heat maps show the first of a traversal.
 std::vector<TraversalOptions> traversal_options(const LabFlags& flags) {
     const auto named = [](const std::vector<std::string>& list, std::string_view name) {
         return std::ranges::find(list, name) != list.end();
@@ -74,7 +74,7 @@ std::pair<int, int> parse_depths(const std::string& text) {
         dash == std::string::npos ? std::optional<uint64_t>(1) : parse_whole_number(text.substr(0, dash));
     if (!first || !last || *first < 1 || *first > *last || *last > kMaxFrameDepth + 1) {
         throw Error(ErrorCode::BadInput, "depths", text,
-                    fmt::format("wants a largest depth or a range such as 1-8, within 1-{}", kMaxFrameDepth + 1));
+                    fmt::format("expected a largest depth or a range such as 1-8, within 1-{}", kMaxFrameDepth + 1));
     }
     return {static_cast<int>(*first), static_cast<int>(*last)};
 }
@@ -95,7 +95,7 @@ LabSettings lab_settings(const LabFlags& flags, bool is_cuda) {
     settings.structures = chosen<StructureKind>(flags.structures);
     settings.by_name = !flags.structures.empty() && !flags.traversals.empty();
     settings.traversals = chosen<TraversalKind>(flags.traversals);
-    // A brute-force traversal over all of a frame's rays takes hours: only when asked for.
+    // A brute-force traversal over all of a frame's rays takes hours, so it must be named.
     if (flags.traversals.empty()) std::erase(settings.traversals, TraversalKind::BruteForce);
     settings.options = traversal_options(flags);
     settings.distributions.clear();
@@ -186,10 +186,10 @@ void add_switch(CLI::App& verb, const char* flag, std::string& value, const char
 
 void add_lab_command(CLI::App& app, int& status) {
     CLI::App& verb = *app.add_subcommand(
-        "lab", "Every structure and every traversal side by side, on your scene and card; or every integrator");
+        "lab", "Compare every structure and traversal, or every integrator, on your scene and device");
     const auto flags = std::make_shared<LabFlags>();
     CLI::Option* scene = add_scene_name(verb, flags->scene)->required(false);
-    scene->description(scene->get_description() + "; or\nsponza, bunny, forest: those of bench rays");
+    scene->description(scene->get_description() + "; or\nsponza, bunny or forest: the scenes of bench rays");
     verb.add_option("--structures", flags->structures, "some of the structures (all)")
         ->type_name("NAME,...")
         ->delimiter(',')
@@ -205,10 +205,11 @@ void add_lab_command(CLI::App& app, int& status) {
         ->delimiter(',')
         ->check(one_of({"on", "off", "both", "nodes"}))
         ->capture_default_str();
-    add_switch(verb, "--order", flags->order, "nearer children first");
-    verb.add_option("--tests", flags->tests,
-                    "exact; fast: leaks at edges, as most tracers do; woop: so\ndoes this, by unit triangles, as Aila "
-                    "and Laine have it")
+    add_switch(verb, "--order", flags->order, "visit nearer children first");
+    verb.add_option(
+            "--tests", flags->tests,
+            "exact; fast: leaks at edges, as in most tracers; woop: Aila and\nLaine's unit triangles, which leak "
+            "at edges too")
         ->type_name("WHICH,...")
         ->delimiter(',')
         ->check(one_of(names_of<TestKind>()))
@@ -227,9 +228,10 @@ void add_lab_command(CLI::App& app, int& status) {
     add_whole(verb, "--runs", flags->runs, "number of timed runs; the result is the median", 1, 10000)
         ->capture_default_str();
     verb.add_flag("--no-heat-maps", flags->no_heat_maps, "draw no heat maps of traversal tests per pixel");
-    CLI::Option* thesis = verb.add_flag("--thesis", flags->thesis,
-                                        "chapter 6 of the thesis anew: the Cornell box and Sibenik (SCENE,\nor found "
-                                        "under PERTEV_SCENES), depths 1-8; with -o pictures of\nchapters 2 to 4 too");
+    CLI::Option* thesis =
+        verb.add_flag("--thesis", flags->thesis,
+                      "repeat chapter 6 of the thesis: the Cornell box and Sibenik\n(SCENE, or found "
+                      "under PERTEV_SCENES), depths 1-8; with -o also\nthe pictures of chapters 2 to 4");
     CLI::Option* transport =
         verb.add_flag("--transport", flags->transport,
                       "compare integrators instead of traversals: error over time\nagainst a reference");

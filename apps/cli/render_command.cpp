@@ -159,7 +159,7 @@ int render(RenderFlags& flags) {
     report_start(flags, *ready, reporter);
     PictureRecord record = picture_record(flags, *ready, reporter.messages());
     report_camera(record.camera, reporter);
-    reporter.set_work("handing the scene to the device");
+    reporter.set_work("uploading the scene");
     std::optional<Session> session(std::in_place, queue, ready->prepared(), record.camera.camera, settings);
     if (writes_tone_mapped(flags.outputs)) {
         record.display = choose_display(flags, *session, reporter);

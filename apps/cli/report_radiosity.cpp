@@ -13,9 +13,9 @@ namespace pertev {
 namespace {
 
 void report_begin(const SolveMemory& memory, float patch_size_m, Reporter& reporter) {
-    reporter.print(fmt::format("radiosity: at most {} of {:.4g} m, {:.0f} MiB of this machine's memory",
-                               fmt::format("{} {}", memory.patches, memory.patches == 1 ? "patch" : "patches"),
-                               patch_size_m, mebibytes(memory.bytes)));
+    reporter.print(
+        fmt::format("radiosity: at most {} {} with edges up to {:.4g} m, in at most {:.0f} MiB of host memory",
+                    memory.patches, memory.patches == 1 ? "patch" : "patches", patch_size_m, mebibytes(memory.bytes)));
     reporter.event(fmt::format(
         R"({{"event":"radiosity","most_patches":{},"most_shown":{},"patch_size":{},"predicted_bytes":{},"peak_bytes":{}}})",
         memory.patches, memory.shown, patch_size_m, memory.bytes, peak_memory_bytes()));
@@ -26,8 +26,8 @@ void report_end(const SolvedRadiosity& solved, Reporter& reporter) {
     reporter.end_progress();
     const SolveStats& stats = solved.stats;
     reporter.print(
-        fmt::format("{} patches send, {} are shown; {} form factors ({:.0f} bytes a patch) in {:.2f} s, "
-                    "{} {:.2f} s ({} steps, {:.2g} left), divided in {:.2f} s",
+        fmt::format("{} patches that shoot, {} that are shown; {} form factors ({:.0f} bytes per patch) in {:.2f} s, "
+                    "{} {:.2f} s ({} steps, {:.2g} unsolved), subdivided in {:.2f} s",
                     stats.patches, stats.shown, stats.factors,
                     static_cast<double>(stats.bytes) / static_cast<double>(std::max<uint64_t>(stats.patches, 1)),
                     stats.factor_seconds, stats.was_interrupted ? "ended after solving for" : "solved in",

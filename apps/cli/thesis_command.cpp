@@ -1,6 +1,5 @@
 #include "apps/cli/thesis_command.h"
 
-#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -30,10 +29,9 @@ constexpr uint32_t kPictureSamples = 32, kPictureSamplesCuda = 512;
 
 /// Returns the file, if PERTEV_SCENES has it.
 std::optional<std::string> find_sibenik() {
-    const char* root = std::getenv("PERTEV_SCENES");
-    const std::filesystem::path path = std::filesystem::path(root != nullptr ? root : "") / "sibenik/sibenik.obj";
+    const std::filesystem::path root = public_scenes_folder(), path = root / "sibenik/sibenik.obj";
     std::error_code none;
-    return root != nullptr && std::filesystem::exists(path, none) ? std::optional(path.string()) : std::nullopt;
+    return !root.empty() && std::filesystem::exists(path, none) ? std::optional(path.string()) : std::nullopt;
 }
 constexpr const char* kLacksSibenik =
     "tables 6.4 and 6.5, figure 6.8, and Sibenik in table 6.6 and figures 6.9 to 6.11: sibenik.obj is not there; name "

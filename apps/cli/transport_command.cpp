@@ -202,9 +202,9 @@ void add_transport_flags(CLI::App& verb, CLI::Option* transport, TransportFlags&
     const auto add = [&](CLI::Option* option, const char* type) {
         return option->type_name(type)->group(group)->needs(transport);
     };
-    add(verb.add_option("--preset", flags.preset,
-                        fmt::format("a built-in scene with its camera, in place of SCENE:\n{} (cornell)",
-                                    fmt::join(presets, ", "))),
+    add(verb.add_option(
+            "--preset", flags.preset,
+            fmt::format("a built-in scene with its camera, instead of SCENE:\n{} (cornell)", fmt::join(presets, ", "))),
         "NAME")
         ->check(one_of(presets));
     add(verb.add_option("--integrators", flags.integrators, "some of the integrators (all but direct and indirect)"),
@@ -227,7 +227,7 @@ void add_transport_flags(CLI::App& verb, CLI::Option* transport, TransportFlags&
         ->check(whole_between(1, 1u << 20))
         ->capture_default_str();
     add(verb.add_option("--reference", flags.reference,
-                        "a picture without noise (.exr, .hdr), of the same size and\ndepth; else one is made"),
+                        "a picture without noise (.exr, .hdr), of the same size and\ndepth (one is rendered)"),
         "FILE")
         ->check(file_name());
     add(verb.add_option("--reference-integrator", flags.reference_integrator,

@@ -31,7 +31,7 @@ struct TransportFlags {
 /// Adds the flags that need --transport, except for --transport itself.
 void add_transport_flags(CLI::App& verb, CLI::Option* transport, TransportFlags& flags);
 
-/// Measures the scene of `options`, or the presets, that are asked for, and writes into the folder `output` unless it
+/// Measures the scene of `options`, or the requested presets, and writes into the folder `output` unless it
 /// is empty. Returns the exit status. Throws Error.
 int run_transport_command(Queue& queue, const PictureOptions& options, const TransportFlags& flags,
                           const std::string& output, Reporter& reporter);

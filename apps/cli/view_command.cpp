@@ -194,7 +194,7 @@ std::vector<std::pair<IntegratorKind, std::string>> dark_integrators(RenderSetti
     return dark;
 }
 
-/// Once it is asked to end, the program ends in any case: nothing would be lost.
+/// After a request to end, the program ends in any case: nothing would be lost.
 void end_soon() {
     std::thread([] {
         while (!interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -218,7 +218,7 @@ int view(ViewFlags& flags) {
     check_jpeg_size({"size", fmt::format("{}x{}", width, height), ""}, width, height); // that is how pictures are sent
     reporter.report_messages();
     listen_for_interrupt();
-    reporter.set_work("handing the scene to the device");
+    reporter.set_work("uploading the scene");
     PictureRecord record = picture_record(flags.render, *ready, reporter.messages());
     const Camera& camera = record.camera.camera;
     Session session(*ready->queue, ready->prepared(), camera, ready->settings);

@@ -9,11 +9,11 @@ namespace pertev {
 
 /// Compile-time knowledge about motion while the shutter is open. Code for both cases would cost registers, and on a
 /// GPU keep surfaces in memory.
-enum class MotionKnown : uint8_t { None, Perhaps, Some };
+enum class MotionVariant : uint8_t { None, Perhaps, Some };
 
-template <MotionKnown kMotion>
+template <MotionVariant kMotion>
 HD inline bool is_moving(const SceneView& scene) {
-    return kMotion == MotionKnown::Some || (kMotion == MotionKnown::Perhaps && scene.motions.is_there());
+    return kMotion == MotionVariant::Some || (kMotion == MotionVariant::Perhaps && scene.motions.is_there());
 }
 
 HD inline void move_surface(const RigidMotion& motion, Surface& surface) {

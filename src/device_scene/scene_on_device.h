@@ -1,8 +1,7 @@
 #pragma once
 
 // A prepared scene in device memory, without its trees, which belong to a tracer (tracer/scene_tracer.h): owns the
-// buffers and provides the view. It consists of parts with one buffer each, which are updated separately; an update
-// that needs no more room than the part has allocates nothing.
+// buffers and provides the view. It consists of parts with one buffer each, which are updated separately.
 
 #include "device/buffer.h"
 #include "device_scene/deforming_meshes.h"
@@ -37,6 +36,7 @@ public:
 
     const SceneView& view() const { return view_; }
 
+    /// Uploads only `parts`; reuses each part's buffer if it is large enough.
     void update(Queue& queue, const PlacedScene& prepared, uint32_t parts);
 
     /// Meshes whose vertices have moved on the device, for refitting trees.

@@ -174,4 +174,16 @@ Image block_means(const Image& image, uint32_t side) {
     return means;
 }
 
+double mean_of(const Image& image) {
+    double sum = 0;
+    for (const float value : image.pixels) sum += static_cast<double>(value);
+    return sum / static_cast<double>(image.pixels.size());
+}
+
+Image mean_of(const Image& a, const Image& b) {
+    Image mean = a;
+    for (std::size_t i = 0; i < mean.pixels.size(); ++i) mean.pixels[i] = 0.5f * a.pixels[i] + 0.5f * b.pixels[i];
+    return mean;
+}
+
 } // namespace pertev

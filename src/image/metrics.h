@@ -55,6 +55,11 @@ private:
 /// Mean of (x - r)^2 over pixels and R, G, B; infinite if a value is not finite. Throws as relative_error.
 double mean_squared_error(const Image& picture, const Image& reference);
 
+/// Mean of all channels and pixels.
+double mean_of(const Image& image);
+/// Mean of two pictures with equal sample counts, which is the picture of all samples.
+Image mean_of(const Image& a, const Image& b);
+
 /// One pixel per block of `side` x `side` pixels, side >= 1; blocks at the right and lower border average fewer
 /// pixels. Sums are in double, row by row. Means over blocks have less
 /// noise, by the block's side.

@@ -54,7 +54,7 @@ Fields run_fields(const LabReport& report, const CombinationFigures& c, const Ru
                   {"near_first", "near first", o.near_first},
                   {"tests", "tests", name_of(o.tests)},
                   {"distribution", "distribution", name_of(c.combination.distribution)},
-                  {"refused", "not run because", if_not_empty(c.refused)},
+                  {"refused", "not run, reason", if_not_empty(c.refused)},
                   {"wrong", "wrong", c.wrong},
                   {"registers", "registers", of_kernel ? ResultCell(c.registers) : ResultCell()},
                   {"local_bytes", "local bytes", of_kernel ? ResultCell(c.local_bytes) : ResultCell()},
@@ -83,7 +83,7 @@ Fields run_fields(const LabReport& report, const CombinationFigures& c, const Ru
                   {"triangle_lanes", "lanes, triangles", of(&RunFigures::triangle_lanes), "", "{:.1f}"},
                   {"node_sectors", "sectors, nodes", of(&RunFigures::node_sectors), "", "{:.1f}"},
                   {"triangle_sectors", "sectors, triangles", of(&RunFigures::triangle_sectors), "", "{:.1f}"},
-                  {"different_rays", "rays that differ", of(&RunFigures::different)},
+                  {"different_rays", "differing rays", of(&RunFigures::different)},
                   {"is_copy", "is copy", of(&RunFigures::is_copy)}};
 }
 
@@ -95,7 +95,7 @@ ResultTable sets_of(const LabReport& report) {
                    {"depth", "depth", s.depth > 0 ? ResultCell(s.depth) : ResultCell()},
                    {"rays", "rays", s.rays},
                    {"hit_share", "share of hits", s.hit_share, "", "{:.3f}"},
-                   {"brute_force_rays", "held against brute force", s.brute_force_rays, "rays"}});
+                   {"brute_force_rays", "compared with brute force", s.brute_force_rays, "rays"}});
     }
     return table;
 }
@@ -149,7 +149,7 @@ Measurement measurement_of(const LabReport& report, Measurement m) {
                {"first_depth", "first depth", report.first_depth},
                {"last_depth", "last depth", largest_depth(report)},
                {"runs", "runs", report.runs},
-               {"warm_ups", "for warming up", report.warm_ups},
+               {"warm_ups", "warm-ups", report.warm_ups},
                {"interrupted", "interrupted", report.interrupted}});
     m.tables = {scene, sets_of(report), structures_of(report), runs_of(report)};
     m.notes = notes_of(report);

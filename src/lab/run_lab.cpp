@@ -1,7 +1,5 @@
 #include "lab/run_lab.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <functional>
 #include <map>
@@ -12,6 +10,7 @@
 
 #include "base/byte_units.h"
 #include "base/error.h"
+#include "base/machine_memory.h"
 #include "base/stopwatch.h"
 #include "device/device_timer.h"
 #include "device_scene/place_meshes.h"
@@ -35,10 +34,6 @@ constexpr Combination kProven = {.structure = StructureKind::Binned, .traversal 
 /// too.
 Tlas tlas_over(const Scene& scene, const BinaryTrees& trees) {
     return build_tlas(placed_trees(scene, place_meshes(scene), trees.mesh_bounds()));
-}
-
-uint64_t host_memory_bytes() {
-    return static_cast<uint64_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
 class Lab {
@@ -133,7 +128,7 @@ private:
             if (wanted || record) {
                 if (set.rays.empty()) {
                     report_.notes.push_back(
-                        fmt::format("{}: no rays, since none of {} meets the scene", set.name, parent));
+                        fmt::format("{}: no rays, because none of {} meets the scene", set.name, parent));
                 } else {
                     add_set(set, proven, oracle, set.any_hit || record ? 0 : depth); // the record's sets are not part
                                                                                      // of a frame
@@ -145,19 +140,19 @@ private:
         if (sets_.empty()) {
             if (settings_.depth == 1 && settings_.diffuse && !settings_.primary) {
                 throw Error(ErrorCode::BadInput, "depths", "1",
-                            "diffuse rays are the second of a path: they want a depth of 2 or more");
+                            "diffuse rays are the second rays of paths and need a depth of at least 2");
             }
             throw Error(ErrorCode::BadInput, "camera", "",
-                        "none of its rays meets the scene, so there are none to bounce");
+                        "none of its rays meets the scene, so no diffuse or shadow rays start");
         }
     }
 
     void add_set(const RaySet& set, const Tracer& proven, const BruteForce& oracle, int depth) {
-        const std::string checking = fmt::format("{}: the proven traversal against brute force", set.name);
+        const std::string checking = fmt::format("{}: comparing the proven traversal with brute force", set.name);
         progress(checking);
         const uint64_t checked = check_proven_traversal(queue_, set, proven, oracle, triangles_, kOracleRays,
                                                         kOracleStressRays, progress_of(checking));
-        const std::string tracing = fmt::format("{}: what the proven traversal hits", set.name);
+        const std::string tracing = fmt::format("{}: tracing by the proven traversal", set.name);
         sets_.push_back(trace_set(queue_, set, proven, progress_of(tracing)));
         sets_.back().figures.brute_force_rays = checked;
         sets_.back().figures.depth = depth;
@@ -181,11 +176,11 @@ private:
         const int sets = record ? 5 : settings_.depth + 1;
         const auto complain = [&](const std::string& what) {
             return Error(ErrorCode::OutOfMemory, record ? "count" : "size", "",
-                         fmt::format("out of memory{}: {} rays and what they meet take {:.1f} GiB a set, for up to {} "
-                                     "sets, and this machine has {:.1f} GiB; a smaller one gives fewer",
-                                     what, rays, gibibytes(bytes), sets, gibibytes(host_memory_bytes())));
+                         fmt::format("out of memory{}: {} rays and their hits take {:.1f} GiB per set, for up to {} "
+                                     "sets, and this machine has {:.1f} GiB; a smaller value gives fewer rays",
+                                     what, rays, gibibytes(bytes), sets, gibibytes(machine_memory_bytes())));
         };
-        if (bytes > host_memory_bytes()) throw complain("");
+        if (bytes > machine_memory_bytes()) throw complain("");
         try {
             f();
         } catch (const std::bad_alloc&) {

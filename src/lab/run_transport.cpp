@@ -41,13 +41,6 @@ std::size_t host_bytes_of(const RenderSettings& picture) {
     return make_integrator(queue, picture)->max_host_bytes({.width = picture.width, .height = picture.height});
 }
 
-/// Returns the mean of two pictures with equal sample counts, which is the picture of all samples.
-Image mean_of(const Image& a, const Image& b) {
-    Image mean = a;
-    for (std::size_t i = 0; i < mean.pixels.size(); ++i) mean.pixels[i] = 0.5f * a.pixels[i] + 0.5f * b.pixels[i];
-    return mean;
-}
-
 /// Draws errors in [0, 1] in false colours; an empty picture yields an empty one.
 Rgba8Image draw_errors(const Image& errors) {
     Rgba8Image image = {errors.width, errors.height, std::vector<uint8_t>(4 * errors.pixels.size(), 255)};

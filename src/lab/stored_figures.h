@@ -6,7 +6,7 @@
 // - the device has the card's very name: "NVIDIA H200 NVL" is another card, and a slice of one has a name of its own;
 // - a set of rays is of a scene of the record (by its name, its camera and its triangles), has all of the record's
 //   8,294,400 rays, and they hit as often: to the record's third digit, but to 0.05 in the forest,
-//   which is made anew from what the record says of it (docs/ray_sets.md);
+//   which is remade from its description in the record (docs/ray_sets.md);
 // - a build is of a scene of the record, by its name and its triangles;
 // - a render job has its own name, size, samples and triangles, and the picture's mean is theirs to 0.2 %.
 

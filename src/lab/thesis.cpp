@@ -105,20 +105,20 @@ std::vector<ThesisVariant> thesis_variants(bool is_cuda) {
     if (!is_cuda) {
         return {{"SWW", "speculative while-while; on a CPU no lanes wait for each other, so it is plain while-while",
                  speculative(kWithRta, OneAThread)},
-                {"SWW-R", "the same without RTA", speculative(kWithoutRta, OneAThread)},
+                {"SWW-R", "the column before without RTA", speculative(kWithoutRta, OneAThread)},
                 {"Packet", "eight rays share a stack", packet(kWithRta, OneAThread)},
-                {"Packet-R", "the same without RTA", packet(kWithoutRta, OneAThread)},
+                {"Packet-R", "the column before without RTA", packet(kWithoutRta, OneAThread)},
                 {"A",
                  "SWW with Aila and Laine's triangle test, Woop's unit-triangle transform, and boxes without growth, "
                  "which lose rays at edges; their dynamic fetch needs a GPU",
                  speculative(kWoop, OneAThread)}};
     }
     return {{"SWW", "speculative while-while, one ray a thread", speculative(kWithRta, OneAThread)},
-            {"SWW-R", "the same without RTA", speculative(kWithoutRta, OneAThread)},
+            {"SWW-R", "the column before without RTA", speculative(kWithoutRta, OneAThread)},
             {"PSWW", "persistent threads", speculative(kWithRta, Persistent)},
-            {"PSWW-R", "the same without RTA", speculative(kWithoutRta, Persistent)},
+            {"PSWW-R", "the column before without RTA", speculative(kWithoutRta, Persistent)},
             {"PPacket", "persistent packets: a warp shares a stack", packet(kWithRta, Persistent)},
-            {"PPacket-R", "the same without RTA", packet(kWithoutRta, Persistent)},
+            {"PPacket-R", "the column before without RTA", packet(kWithoutRta, Persistent)},
             {"A",
              "Aila and Laine's kernel: speculative while-while with dynamic fetch, Woop's unit-triangle transform and "
              "boxes without growth, which lose rays at edges",
@@ -154,7 +154,7 @@ ResultTable table_of(std::span<const ThesisPicture> pictures) {
 
 Measurement measurement_of(const ThesisReport& thesis, Measurement m) {
     m.kind = "thesis";
-    m.title = fmt::format("Bellek 2014, Realtime photo-realistic rendering using modern GPU systems: {} made anew",
+    m.title = fmt::format("Bellek 2014, Realtime photo-realistic rendering using modern GPU systems: {} repeated",
                           thesis.pictures.empty() ? "chapter 6" : "chapters 2 to 4 and 6");
     ResultTable variants = {"variants", "Variants"}, lacking = {"lacking", "Not made"};
     for (const ThesisVariant& v : thesis_variants(on_cuda(thesis))) {

@@ -11,6 +11,8 @@
 #include "integrators/radiosity/radiosity_display_settings.h"
 #include "lab/found_points.h"
 #include "lab/heat_map.h"
+#include "lab/measure_rays.h"
+#include "lab/record.h"
 #include "lab/thesis_recipes.h"
 #include "radiosity/solve_radiosity.h"
 #include "settings/setting_table.h"
@@ -22,15 +24,8 @@ namespace {
 constexpr float kDotRadius = 1.2f; // times the scene's longest side over the picture's height, so about this many
                                    // pixels
 
-const ThesisRecipe& recipe_named(std::string_view name) {
-    const auto& recipes = thesis_recipes();
-    const auto found = std::ranges::find(recipes, name, &ThesisRecipe::name);
-    PERTEV_CHECK(found != recipes.end());
-    return *found;
-}
-
 /// Returns the place in the thesis: "Figure 3.7" for "figure-3.7a", "Section 2.1" for "section-2.1-flat".
-std::string place_of(std::string_view name) {
+std::string location_of(std::string_view name) {
     const std::size_t dash = name.find('-'), end = name.find_first_not_of("0123456789.", dash + 1);
     std::string place = fmt::format("{} {}", name.substr(0, dash), name.substr(dash + 1, end - dash - 1));
     place.front() -= 'a' - 'A';
@@ -122,9 +117,11 @@ struct ThesisPictures::Job {
 };
 
 ThesisPicture ThesisPictures::make(std::string_view name, Sink& sink) {
-    const ThesisRecipe& recipe = recipe_named(name);
+    const ThesisRecipe* const found_recipe = find_named(thesis_recipes(), name);
+    PERTEV_CHECK(found_recipe != nullptr);
+    const ThesisRecipe& recipe = *found_recipe;
     ThesisPicture picture = {.name = recipe.name,
-                             .place = place_of(recipe.name),
+                             .place = location_of(recipe.name),
                              .title = recipe.title,
                              .shows = recipe.shows,
                              .integrator = recipe.integrator};
@@ -208,18 +205,14 @@ void ThesisPictures::show_photons(const Job& job, ThesisPicture& picture) {
 void ThesisPictures::count_work(const Job& job, ThesisPicture& picture) {
     Session session(queue_, job.prepared, job.camera, job.settings);
     const std::vector<RayWork> work = session.count_camera_work();
+    const WorkSummary mean = summarize_work(work);
     std::vector<uint32_t> tests;
-    double nodes = 0, triangles = 0;
-    for (const RayWork& ray : work) {
-        tests.push_back(ray.nodes + ray.triangles);
-        nodes += ray.nodes, triangles += ray.triangles;
-    }
-    const double rays = std::max(1.0, static_cast<double>(work.size()));
+    for (const RayWork& ray : work) tests.push_back(ray.nodes + ray.triangles);
     picture.image = draw_heat_map(tests, job.settings.width, job.settings.height, scale_end(tests));
     picture.shows +=
-        fmt::format(" Dark is few tests of nodes and triangles together, pale is many; the scale is beneath. A "
-                    "ray tests {:.1f} nodes and {:.1f} triangles in the mean, of {}.",
-                    nodes / rays, triangles / rays, job.prepared.triangles);
+        fmt::format(" Dark pixels take few tests of nodes and triangles, pale ones many; the scale is below. A ray "
+                    "tests {:.1f} nodes and {:.1f} triangles of {} on average.",
+                    mean.nodes, mean.triangles, job.prepared.triangles);
 }
 
 void ThesisPictures::show_radiosity(const Job& job, ThesisPicture& picture) {
@@ -231,7 +224,7 @@ void ThesisPictures::show_radiosity(const Job& job, ThesisPicture& picture) {
     const SolveStats& stats = solved.stats;
     picture.solve_seconds = stats.factor_seconds + stats.solve_seconds + stats.divide_seconds;
     const std::string steps = panel.is_early ? fmt::format(" {} steps;", requested.steps) : "";
-    picture.shows += fmt::format("{} {} patches send, {} are shown.", steps, stats.patches, stats.shown);
+    picture.shows += fmt::format("{} {} patches that shoot, {} that are shown.", steps, stats.patches, stats.shown);
     RenderSettings settings = job.settings;
     auto solution = std::make_shared<RadiositySolution>(solved.solution);
     if (!panel.has_ambient) solution->ambient = {};

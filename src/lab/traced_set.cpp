@@ -100,8 +100,8 @@ uint64_t check_proven_traversal(Queue& queue, const RaySet& set, const Tracer& p
     for (std::size_t i = 0; i < some.size(); ++i) {
         if (found[i] == wanted_of(truth[i], set.any_hit)) continue;
         throw Error(ErrorCode::DeviceFault,
-                    fmt::format("the proven traversal differs from brute force on {} ({}): instance {} in place of {}, "
-                                "primitive {} in place of {}, t {:a} in place of {:a}; please report it",
+                    fmt::format("the proven traversal differs from brute force on {} ({}): instance {} instead of {}, "
+                                "primitive {} instead of {}, t {:a} instead of {:a}; please report it",
                                 set.name, text_of(some[i]), found[i].instance, truth[i].instance, found[i].primitive,
                                 truth[i].primitive, found[i].t, truth[i].t));
     }

@@ -41,7 +41,7 @@ bool has_caustics_of_points(const Scene& scene) {
 std::string light_of(const std::string& integrator, const Scene& scene) {
     RenderSettings settings;
     if (!set_integrator(settings, integrator)) return {};
-    if (settings.path.light != PathLight::Path) return fmt::format("a part of path's: {} light", integrator);
+    if (settings.path.light != PathLight::Path) return fmt::format("only the {} light of path", integrator);
     const IntegratorDescriptor& kind = describe(settings.integrator);
     if (!kind.light_with_caustics.empty() && has_caustics_of_points(scene))
         return std::string(kind.light_with_caustics);
@@ -53,7 +53,7 @@ std::string why_no_solution(const Scene& scene) {
     const bool has_diffuse = std::ranges::any_of(scene.instances, [&](const Instance& i) {
         return !i.is_hidden && has_diffuse_lobe(scene.materials[i.material]);
     });
-    return has_diffuse ? "" : "patches are of diffuse surfaces, and this scene has none";
+    return has_diffuse ? "" : "only diffuse surfaces have patches, and this scene has none";
 }
 
 std::string default_reference_integrator(const Scene& scene) {

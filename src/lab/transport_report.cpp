@@ -155,7 +155,7 @@ std::optional<double> efficiency(const TransportPoint& point) {
 std::string describe_reference(const TransportReference& reference) {
     if (!reference.file.empty()) return reference.file + "; its own noise is not known";
     if (!reference.rel_mse) return reference.integrator + "; it was not made";
-    return fmt::format("{}, {} samples of each pixel, {:.3g} s; its own noise: relMSE {:.2g}, HDR-FLIP of one half "
+    return fmt::format("{}, {} samples per pixel, {:.3g} s; its own noise: relMSE {:.2g}, HDR-FLIP of one half "
                        "against the other {:.2g}",
                        reference.integrator, reference.samples, reference.seconds, *reference.rel_mse,
                        reference.flip.value_or(0));

@@ -74,10 +74,10 @@ ResultTable scenes_of(const TransportReport& report) {
                                            {"triangles", "triangles", s.triangles},
                                            {"width", "width", report.width},
                                            {"height", "height", report.height},
-                                           {"max_depth", "scatterings", report.max_depth},
+                                           {"max_depth", "max depth", report.max_depth},
                                            {"repetitions", "repetitions", report.repetitions},
                                            {"seed", "seed", report.seed},
-                                           {"budget_seconds", "time of each integrator", report.seconds, "s"},
+                                           {"budget_seconds", "time per integrator", report.seconds, "s"},
                                            {"camera", "camera", s.camera},
                                            {"shows", "shows", if_not_empty(s.shows)}});
     }
@@ -95,7 +95,7 @@ void add_points(const TransportScene& scene, ResultTable& table) {
                        {"integrator", "integrator", row.name},
                        {"finds_all", "finds all light", row.finds_all},
                        {"is_solved", "is solved", row.is_solved},
-                       {"samples", "samples of each pixel", p.samples},
+                       {"samples", "samples per pixel", p.samples},
                        {"patches", "patches", p.patches > 0 ? ResultCell(p.patches) : ResultCell()},
                        {"repetitions", "repetitions", p.repetitions},
                        {"seconds", "rendering", p.seconds.mean, "s"},
@@ -120,10 +120,10 @@ ResultTable repetitions_of(const TransportReport& report) {
             const Fields first =
                 scene_fields(scene) +
                 Fields{{"integrator", "integrator", row.name},
-                       {"light", "light that it finds", row.light},
+                       {"light", "light found", row.light},
                        {"finds_all", "finds all", row.finds_all},
                        {"is_solved", "is solved", row.is_solved},
-                       {"refused", "not run because", if_not_empty(row.refused)},
+                       {"refused", "not run, reason", if_not_empty(row.refused)},
                        {"device_bytes", "device memory", has_figures ? ResultCell(row.bytes) : ResultCell(), "bytes"},
                        {"host_bytes", "host memory", has_figures ? ResultCell(row.host_bytes) : ResultCell(), "bytes"},
                        {"invalid_samples", "invalid samples",
@@ -137,7 +137,7 @@ ResultTable repetitions_of(const TransportReport& report) {
                                  {"rel_mse", "relMSE", figure(&TransportFigures::rel_mse)},
                                  {"hdr_flip", "HDR-FLIP", figure(&TransportFigures::flip)},
                                  {"patches", "patches", f && f->patches > 0 ? ResultCell(f->patches) : ResultCell()},
-                                 {"made_seconds", "before samples", figure(&TransportFigures::made_seconds), "s"}});
+                                 {"made_seconds", "preparation", figure(&TransportFigures::made_seconds), "s"}});
             };
             if (!has_figures) add({}, {});
             for (std::size_t i = 0; i < row.repetitions.size(); ++i) {
@@ -184,12 +184,12 @@ ResultTable equal_time_table(const TransportScene& scene) {
             Fields{{"integrator", "integrator", row.name}} + point_fields(line, of_path) +
             Fields{{"samples", "samples", value_at(p, [](const auto& at) { return at.samples; }), "", "{:.4g}"},
                    {"patches", "patches", p && row.is_solved ? ResultCell(p->patches) : ResultCell(), "", "{:.0f}"},
-                   {"first_seconds", "first takes", p ? ResultCell() : ResultCell(points_of(row).front().seconds.mean),
-                    "s", "{:.3g}"},
+                   {"first_seconds", "first picture",
+                    p ? ResultCell() : ResultCell(points_of(row).front().seconds.mean), "s", "{:.3g}"},
                    {"device_mebibytes", "device", mebibytes(row.bytes), "MiB", "{:.1f}"},
                    {"host_mebibytes", "host", row.host_bytes > 0 ? ResultCell(mebibytes(row.host_bytes)) : ResultCell(),
                     "MiB", "{:.1f}"},
-                   {"light", "light that it finds", row.light}});
+                   {"light", "light found", row.light}});
     }
     return table;
 }

@@ -41,7 +41,7 @@ uint64_t found_factors(const RadiositySettings& s) {
 /// Memory of threads that make rows: a list that grows by doubling, a copy to sort it, and a hemicube.
 Parts making_rows(const RadiositySettings& s, const Counts& counts, uint64_t threads) {
     const std::size_t list = 4 * found_factors(s) * sizeof(FormFactor);
-    Parts parts = {{"rows being made", threads * (list + 65536)}};
+    Parts parts = {{"rows under construction", threads * (list + 65536)}};
     if (s.form_factors == FormFactors::Hemicube) {
         const uint64_t pixels = uint64_t(s.hemicube) * s.hemicube;
         parts.push_back({"hemicubes: pixels", threads * max_hemicube_bytes(s.hemicube) + 9 * sizeof(double) * pixels});
@@ -55,7 +55,7 @@ Parts solving_rows(const RadiositySettings& s, const Counts& counts, uint64_t th
     Parts making = making_rows(s, counts, threads);
     Parts solving;
     if (s.solver == RadiositySolver::Southwell) {
-        solving = {{"form factors by sender", entries * sizeof(FormFactor) + 2 * n * sizeof(uint64_t)},
+        solving = {{"form factors by shooting patch", entries * sizeof(FormFactor) + 2 * n * sizeof(uint64_t)},
                    {"unsent light", 2 * std::bit_ceil(n) * sizeof(double) + 2 * n * sizeof(Rgb)}};
     } else if (s.solver == RadiositySolver::Matrix) {
         const uint64_t side = std::min<uint64_t>(n, kMaxMatrixPatches);
@@ -76,7 +76,7 @@ Parts solving_rows(const RadiositySettings& s, const Counts& counts, uint64_t th
 Parts showing(const RadiositySettings& s, const Counts& counts, uint64_t threads) {
     Parts parts = s.subdivisions > 0 ? making_rows(s, counts, threads) : Parts{};
     parts.push_back(
-        {"patches that send", tree_bytes(counts.patches, counts.triangles) + 2 * counts.patches * sizeof(Rgb)});
+        {"patches that shoot", tree_bytes(counts.patches, counts.triangles) + 2 * counts.patches * sizeof(Rgb)});
     parts.push_back(
         {"patches that are shown", 2 * (tree_bytes(counts.shown, counts.triangles) + counts.shown * sizeof(Rgb)) +
                                        2 * counts.shown * sizeof(uint32_t)});

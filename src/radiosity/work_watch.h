@@ -1,6 +1,6 @@
 #pragma once
 
-// Long work by many threads that reports to a sink. Threads may ask as often as they like whether it goes on: all but
+// Long work by many threads that reports to a sink. Threads may check as often as they like whether it goes on: all but
 // one return at once.
 
 #include <atomic>

@@ -1,15 +1,13 @@
 #pragma once
 
-// Angles in degrees for people, and the size of a camera's view as a setting states it. Not every angle in radians has
-// degrees that convert back to the same bits, so they are searched for.
+// Angles in degrees for people. Not every angle in radians has degrees that convert back to the same bits, so they are
+// searched for.
 
 #include <bit>
 #include <cstdint>
 #include <initializer_list>
-#include <string_view>
 
 #include "math/scalar.h"
-#include "scene/camera.h"
 
 namespace pertev {
 
@@ -26,17 +24,6 @@ inline float degrees_for(float radians) {
         }
     }
     return near;
-}
-
-/// The setting that states the size of a camera's view, its value, and what that is.
-struct ViewSize {
-    std::string_view setting;
-    float value;
-    std::string_view meaning;
-};
-inline ViewSize view_size(const Camera& camera) {
-    if (has_parallel_rays(camera.projection)) return {"view_height", camera.ortho_height, "metres"};
-    return {"fov", degrees_for(camera.fov_y), "vertical field of view, degrees"};
 }
 
 } // namespace pertev

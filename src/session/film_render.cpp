@@ -91,8 +91,8 @@ void FilmRender::restart_for_scene() {
     restart();
 }
 
-void FilmRender::give_targets(GiveTargets give) {
-    give_targets_ = std::move(give);
+void FilmRender::set_targets(AddTargets add) {
+    add_targets_ = std::move(add);
     film_.reset(), pass_film_.reset();
     restart();
 }
@@ -100,7 +100,7 @@ void FilmRender::give_targets(GiveTargets give) {
 Film& FilmRender::film() {
     if (film_ && film_is_old_) film_->clear();
     film_is_old_ = false;
-    return fit_film(pictures_.queue(), film_, settings_, give_targets_);
+    return fit_film(pictures_.queue(), film_, settings_, add_targets_);
 }
 
 uint32_t FilmRender::render(SampleRange range, Sink& sink) {
@@ -119,7 +119,7 @@ uint32_t FilmRender::render(SampleRange range, Sink& sink) {
     const Stopwatch watch;
     const bool is_apart = leaves_passes_ && on_cpu && before > 0 && !has_steps;
     if (!is_apart) pass_film_.reset();
-    Film& into = is_apart ? fit_film(pictures_.queue(), pass_film_, settings_, give_targets_) : into_film;
+    Film& into = is_apart ? fit_film(pictures_.queue(), pass_film_, settings_, add_targets_) : into_film;
     bool makes = false;
     const auto goes_on = [&](double made_share) {
         makes = true;

@@ -25,8 +25,8 @@ public:
     void restart();
     void restart_for_scene();
 
-    /// Restarts with a new film. `give` is called for it, and for each film that replaces it or takes a pass for it.
-    void give_targets(GiveTargets give);
+    /// Restarts with a new film. `add` is called for it, and for each film that replaces it or takes a pass for it.
+    void set_targets(AddTargets add);
 
     /// Adds `range` to the film. It begins where the film ends, or anywhere if the film is empty. Fewer samples are
     /// added when the settings' time is over, when `sink`, which hears of each pass, stops, or at
@@ -65,7 +65,7 @@ private:
     Camera camera_;
     RenderSettings settings_;
     PostSteps steps_;
-    GiveTargets give_targets_;
+    AddTargets add_targets_;
     std::optional<Film> film_;
     std::optional<Film> pass_film_; // the current pass, if film_ must survive an unfinished one
     bool film_is_old_ = false;      // film_ holds samples of an outdated picture

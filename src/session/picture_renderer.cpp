@@ -10,11 +10,11 @@ bool is_film_of(const Film& film, const RenderSettings& settings) {
            film.light_layers() == light_layers_of(settings);
 }
 
-Film& fit_film(Queue& queue, std::optional<Film>& film, const RenderSettings& settings, const GiveTargets& give) {
+Film& fit_film(Queue& queue, std::optional<Film>& film, const RenderSettings& settings, const AddTargets& add) {
     if (film && is_film_of(*film, settings)) return *film;
     film.reset(); // freed before the new one, so that two need not fit
     Film made(queue, settings.width, settings.height, settings.aovs, light_layers_of(settings));
-    if (give) give(made);
+    if (add) add(made);
     return film.emplace(std::move(made));
 }
 

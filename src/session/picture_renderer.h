@@ -14,12 +14,12 @@
 
 namespace pertev {
 
-/// Gives a new film further targets, by Film::hold.
-using GiveTargets = std::function<void(Film&)>;
+/// Adds targets to a new film, by Film::hold.
+using AddTargets = std::function<void(Film&)>;
 
 /// Returns `film` if it fits a picture of these settings, else replaces it by a new one without samples, for which
-/// `give` is called.
-Film& fit_film(Queue& queue, std::optional<Film>& film, const RenderSettings& settings, const GiveTargets& give = {});
+/// `add` is called.
+Film& fit_film(Queue& queue, std::optional<Film>& film, const RenderSettings& settings, const AddTargets& add = {});
 /// Returns `frame` if it fits single samples of the scene at this size, else replaces it by a new one.
 NoisyFrame& fit_frame(const DeviceScene& scene, std::optional<NoisyFrame>& frame, uint32_t width, uint32_t height);
 bool is_film_of(const Film& film, const RenderSettings& settings);

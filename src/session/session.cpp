@@ -42,8 +42,8 @@ void Session::set_settings(const RenderSettings& settings) {
     scene_.set_tracer(settings);
 }
 
-void Session::give_targets(GiveTargets give) {
-    film_.give_targets(std::move(give));
+void Session::set_targets(AddTargets add) {
+    film_.set_targets(std::move(add));
     cut();
 }
 

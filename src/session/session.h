@@ -13,7 +13,7 @@
 //   set_settings  if the picture differs (same_picture). Another size or other layers allocate a new film at the next
 //                 render, and larger queues if needed; another tracer uploads its structure. Anything else allocates
 //                 nothing. Another frame_depth is a cut of the frames only, and the film stays.
-//   give_targets  always. Allocates a new film at the next render.
+//   set_targets   always. Allocates a new film at the next render.
 //   cut           always.
 // The picture of n samples equals that of a new session, to the byte, whatever came before; so does one of a samples
 // with b added. One thread at a time may use a session.
@@ -57,8 +57,8 @@ public:
     /// has no such tracer; Error(OutOfMemory, OverLimit) if another tracer's structure cannot be made: set_settings
     /// must then succeed before anything is rendered.
     void set_settings(const RenderSettings& settings);
-    /// Gives the session's films further targets, by FilmRender::give_targets.
-    void give_targets(GiveTargets give);
+    /// Sets targets of the session's films, as FilmRender::set_targets.
+    void set_targets(AddTargets add);
     /// Discards everything that was rendered before (for a camera that jumps, or a measurement that restarts).
     void cut();
 

@@ -31,8 +31,8 @@ std::optional<std::string> why_no_tracer(const Combination& c, bool on_cuda) {
 #if !defined(PERTEV_LAB_KERNELS)
     return "left out of this build, which has only the traversals of pictures (PERTEV_LAB_KERNELS=OFF)";
 #endif
-    if (!c.options.is_exact()) return "fast and woop tests are compiled with rta and near alone";
-    return c.options.rta_at_pops ? "not compiled" : "RTA at nodes alone is compiled with near alone";
+    if (!c.options.is_exact()) return "fast and woop tests are compiled only with RTA and nearer children first";
+    return c.options.rta_at_pops ? "not compiled" : "RTA at nodes only is compiled only with nearer children first";
 }
 
 const TraversalKernel* find_kernel(const Combination& c, bool any_hit, bool on_cuda) {

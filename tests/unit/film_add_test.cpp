@@ -152,7 +152,7 @@ TEST_CASE("all films of a session have the targets that it was given, also those
     settings.width = kWidth, settings.height = kHeight;
     settings.pass_samples = 1;
     Session session(cpu, prepare_scene(scene, {}, messages), test::mixed_scene_camera(), settings);
-    session.give_targets([&](Film& film) { film.hold(std::make_unique<CountTarget>(cpu, 5, "counts")); });
+    session.set_targets([&](Film& film) { film.hold(std::make_unique<CountTarget>(cpu, 5, "counts")); });
     session.leave_passes(true);
     for (const uint32_t width : {kWidth, kWidth + 1}) {
         settings.width = width;

@@ -13,11 +13,10 @@ TEST_CASE("a camera is described by settings that reproduce it") {
     Camera camera;
     camera.world_from_camera = look_at({0, 1, 3}, {0, 1, 0}, {0, 1, 0});
     camera.fov_y = kPi / 4;
-    CHECK(describe_camera(camera) == "`eye=0,1,3` `target=0,1,-1` `up=0,1,0` `projection=perspective` `fov=45` "
-                                     "(vertical field of view, degrees)");
+    CHECK(describe_camera(camera) == "`eye=0,1,3` `target=0,1,-1` `up=0,1,0` `projection=perspective` `fov=45`");
     camera.projection = Projection::Orthographic, camera.ortho_height = 2.5f;
     CHECK(describe_camera(camera) == "`eye=0,1,3` `target=0,1,-1` `up=0,1,0` `projection=orthographic` "
-                                     "`view_height=2.5` (metres)");
+                                     "`view_height=2.5`");
     // Far from the origin the target keeps the direction.
     const Vec3 eye = {1e6f, -2e6f, 3e5f}, way = normalize(Vec3{1, 2, -3});
     camera.world_from_camera = look_at(eye, eye + 1e6f * way, {0, 1, 0});

@@ -231,7 +231,7 @@ TEST_CASE("a scene without diffuse surfaces is refused in radiosity's row") {
         if (!material.is_emissive()) material.kind = MaterialKind::Conductor;
     }
     const TransportScene emitters = small.run(); // the lamp's own surface is diffuse, and black
-    CHECK(row_named(emitters, "radiosity").refused == "patches are of diffuse surfaces, and this scene has none");
+    CHECK(row_named(emitters, "radiosity").refused.find("diffuse") != std::string::npos);
     CHECK_FALSE(row_named(emitters, "path").repetitions.empty());
 }
 

@@ -158,11 +158,11 @@ TEST_CASE("glass walls make no room, nor does a hollow object that is solid from
     add_box(vase, {-1, 0, -1}, {1, 3, 1}, kAll, false);
     add_box(vase, {-0.9f, 0.1f, -0.9f}, {0.9f, 2.9f, 0.9f}, kAll, true);
     vase.materials[0].kind = MaterialKind::Dielectric;
-    CHECK(look_around(vase).kind == SurroundingsKind::Object);
+    CHECK(survey_surroundings(vase).kind == SurroundingsKind::Object);
     Scene shoe; // long, and open at the top
     add_box(shoe, {-2, 0, -0.6f}, {2, 1, 0.6f}, kWithoutTop, false);
     add_box(shoe, {-1.9f, 0.1f, -0.5f}, {1.9f, 1, 0.5f}, kWithoutTop, true);
-    CHECK(look_around(shoe).kind == SurroundingsKind::Object);
+    CHECK(survey_surroundings(shoe).kind == SurroundingsKind::Object);
     Messages messages;
     CHECK(!is_within(bounds_of(shoe), eye_of(make_default_camera(shoe, 1.5f, messages))));
 }
@@ -278,6 +278,6 @@ TEST_CASE("Sibenik and Sponza are seen from inside, McGuire's Cornell box from i
         CAPTURE(expected.path);
         Messages messages;
         const Scene scene = read_scene(*path, {.allowed_paths = {}, .geometry_only = true}, messages);
-        CHECK(look_around(scene).kind == expected.kind);
+        CHECK(survey_surroundings(scene).kind == expected.kind);
     }
 }

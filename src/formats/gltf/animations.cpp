@@ -227,7 +227,7 @@ std::vector<JsonValue> animations_of(const Document& document, Messages& message
 
 std::set<uint32_t> nodes_with_animated_weights(const Document& document, std::span<const Clip> clips) {
     std::set<uint32_t> nodes;
-    const auto look_at = [&](const JsonValue& channel) {
+    const auto inspect = [&](const JsonValue& channel) {
         const JsonValue target = channel.at("target");
         if (const auto extension = target.extension("KHR_animation_pointer")) {
             const std::string pointer = extension->string_or("pointer", "");
@@ -241,7 +241,7 @@ std::set<uint32_t> nodes_with_animated_weights(const Document& document, std::sp
     for (const JsonValue& animation : animations_of(document, unreported)) {
         if (!(clip++)->plays) continue;
         for (const JsonValue& channel : elements_or_none(animation, "channels", unreported)) {
-            read_or_leave_out(channel, unreported, [&] { look_at(channel); });
+            read_or_leave_out(channel, unreported, [&] { inspect(channel); });
         }
     }
     return nodes;

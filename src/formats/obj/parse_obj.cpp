@@ -241,7 +241,7 @@ private:
     ObjCounts so_far_;
     ObjData& data_;
     std::span<DoubleVec3> exact_;
-    const FoundMaterials* found_materials_; // null: nobody asks
+    const FoundMaterials* found_materials_; // null: not requested
     ObjGroupNumbers numbers_;
     ObjGroupKey key_;
     RawGroup* current_ = nullptr; // group of key_; null until a face needs it

@@ -3,6 +3,6 @@
 #include "integrators/ray_tree/tree_stages.h"
 
 namespace pertev {
-template void launch(Queue&, const char*, WorkCount, const ShadeTrees<Cast, MotionKnown::None>&);
-template void launch(Queue&, const char*, WorkCount, const ShadeTrees<Cast, MotionKnown::Perhaps>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeTrees<Cast, MotionVariant::None>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeTrees<Cast, MotionVariant::Perhaps>&);
 } // namespace pertev

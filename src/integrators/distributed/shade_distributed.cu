@@ -3,6 +3,6 @@
 #include "integrators/ray_tree/tree_stages.h"
 
 namespace pertev {
-template void launch(Queue&, const char*, WorkCount, const ShadeTrees<Distributed, MotionKnown::None>&);
-template void launch(Queue&, const char*, WorkCount, const ShadeTrees<Distributed, MotionKnown::Perhaps>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeTrees<Distributed, MotionVariant::None>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeTrees<Distributed, MotionVariant::Perhaps>&);
 } // namespace pertev

@@ -53,7 +53,7 @@ public:
         const Sphere& record = tree_.spheres[number];
         const float max_squared = square_of_radius(record.radius);
         Clamped found = {record.radius, number};
-        look_at(guess, record, max_squared, found);
+        inspect(guess, record, max_squared, found);
         for (uint32_t i = 0; i < tree_.nodes.size();) {
             const PointOctreeNode& node = tree_.nodes[i];
             const float near_squared = squared_distance_to_box(node.lo, node.hi, record.centre);
@@ -61,14 +61,14 @@ public:
                 i = node.skip;
                 continue;
             }
-            for (uint32_t k = node.first; k < node.first + node.count; ++k) look_at(k, record, max_squared, found);
+            for (uint32_t k = node.first; k < node.first + node.count; ++k) inspect(k, record, max_squared, found);
             ++i;
         }
         return found;
     }
 
 private:
-    void look_at(uint32_t k, const Sphere& record, float max_squared, Clamped& found) const {
+    void inspect(uint32_t k, const Sphere& record, float max_squared, Clamped& found) const {
         const float distance_squared = squared_distance(tree_.spheres[k].centre, record.centre);
         if (distance_squared > max_squared) return;
         const float radius = tree_.spheres[k].radius + sqrt(distance_squared);
@@ -117,7 +117,7 @@ std::size_t RecordStore::max_host_bytes(uint64_t pixels) {
 
 void RecordStore::allocate(uint64_t pixels) {
     const std::size_t most = max_records(pixels);
-    sites_.grow(queue_, pixels, "places of the overture");
+    sites_.grow(queue_, pixels, "sites of the overture");
     records_.grow(queue_, most, "irradiance records");
     reaches_.grow(queue_, most, "irradiance records");
     nodes_.grow(queue_, 2 * most, "octree over irradiance records");

@@ -10,7 +10,7 @@
 
 namespace pertev {
 
-/// Storage for a vertex's shadow ray, if it wants one, and for the listener's data of it.
+/// Storage for a vertex's shadow ray, if it has one, and for the listener's data of it.
 template <class Listener>
 struct VertexShadow {
     ShadowRay& ray;

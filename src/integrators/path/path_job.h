@@ -36,8 +36,8 @@ HD constexpr ShadingVariant variant_of(Features features) {
            : (features & kDiffuse) != 0 ? ShadingVariant::Diffuse
                                         : ShadingVariant::PlainDiffuse;
 }
-HD constexpr MotionKnown motion_of(Features features) {
-    return (features & kMoving) != 0 ? MotionKnown::Some : MotionKnown::None;
+HD constexpr MotionVariant motion_of(Features features) {
+    return (features & kMoving) != 0 ? MotionVariant::Some : MotionVariant::None;
 }
 
 inline Features features_of(ShadingVariant variant) {

@@ -30,7 +30,7 @@ struct LaneResults {
 /// A function that shades vertices, and how many it takes at a time.
 struct VertexShading {
     uint32_t lanes;
-    /// Shades vertices of a job for which can_shade_lanes holds. Stores the shadow rays of lanes that want one, one
+    /// Shades vertices of a job for which can_shade_lanes holds. Stores the shadow rays of lanes that need one, one
     /// after the other, from `shadows` on.
     LaneResults (*shade)(const PathJob& job, const LaneVertices& vertices, ShadowRay* shadows);
 };

@@ -351,7 +351,7 @@ struct Paths {
     Mask is_clamped; // scattered at least once before this vertex
 };
 
-/// sample_direct; returns the lanes that want a shadow ray.
+/// sample_direct; returns the lanes that need a shadow ray.
 unsigned sample_direct(const PathJob& job, unsigned lanes, const Paths& paths, const Surfaces& surfaces, Vec3s wo,
                        Vec3s wo_local, const LaneVertices& vertices, const SampleBitsOf<Words>& u, ShadowRay* shadows) {
     Lights lights;

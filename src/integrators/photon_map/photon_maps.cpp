@@ -35,7 +35,7 @@ void PhotonMaps::allocate(const PhotonMapSettings& settings, uint32_t max_depth)
     max_kept_ = settings.nearest > 0 ? 0xffffffffu : kMaxKept; // the nearest photons are selected from all
     global_has_all_ = global_has_all(settings);
     for (int k = 0; k < 3; ++k) {
-        stored_[k].grow(queue_, capacity, "photons as they come");
+        stored_[k].grow(queue_, capacity, "photons in order of arrival");
         ordered_[k].grow(queue_, in_maps, "photons");
     }
     for (int k = 0; k < 2; ++k) {
@@ -44,7 +44,8 @@ void PhotonMaps::allocate(const PhotonMapSettings& settings, uint32_t max_depth)
         starts_[k].grow(queue_, max_starts(k == 0 ? in_maps - of_kind : of_kind), "hash grid over photons");
     }
     if (queue_.is_cuda()) {
-        scratch_.grow(queue_, sort_scratch_bytes(queue_, static_cast<uint32_t>(capacity)), "room for sorting photons");
+        scratch_.grow(queue_, sort_scratch_bytes(queue_, static_cast<uint32_t>(capacity)),
+                      "scratch memory for sorting photons");
     }
     counts_.grow(queue_, 1, "counts of photons");
     if (search_ == PhotonSearch::KdTree) kd_nodes_.grow(queue_, in_maps, "kd-tree over photons");

@@ -3,5 +3,5 @@
 #include "integrators/ray_tree/tree_stages.h"
 
 namespace pertev {
-template void launch(Queue&, const char*, WorkCount, const ShadeTrees<Radiosity, MotionKnown::None>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeTrees<Radiosity, MotionVariant::None>&);
 } // namespace pertev

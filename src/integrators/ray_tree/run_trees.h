@@ -92,18 +92,18 @@ private:
 /// Runs ShadeTrees with the least code that the picture needs. The loop has one variant alone.
 template <class Algorithm, class Schedule>
 void shade_trees(Schedule& schedule, const TreeJob& job, WorkCount rays, uint32_t round, uint32_t first, bool is_last) {
-    const auto shade_as = [&]<MotionKnown kMotion>() {
+    const auto shade_as = [&]<MotionVariant kMotion>() {
         schedule.run(
             "shade_trees", rays,
             ShadeTrees<Algorithm, kMotion>{job.picture, job.settings, job.film, job.trees, round, first, is_last});
     };
     if constexpr (Schedule::kIsLoop) {
-        shade_as.template operator()<MotionKnown::Perhaps>();
+        shade_as.template operator()<MotionVariant::Perhaps>();
     } else {
         if constexpr (Algorithm::kHasShutter) {
-            if (job.picture.camera.is_open) return shade_as.template operator()<MotionKnown::Perhaps>();
+            if (job.picture.camera.is_open) return shade_as.template operator()<MotionVariant::Perhaps>();
         }
-        shade_as.template operator()<MotionKnown::None>();
+        shade_as.template operator()<MotionVariant::None>();
     }
 }
 

@@ -39,7 +39,7 @@ struct BeginTrees {
 /// kShadowsAtOnce; the stage runs again until all have been. The first run adds emission; the last one (`is_last`)
 /// pushes the continuation rays on the stack, in place of the ray that ended there. `kMotion` is None if no shutter is
 /// open; code for both cases would keep surfaces in memory.
-template <class Algorithm, MotionKnown kMotion>
+template <class Algorithm, MotionVariant kMotion>
 struct ShadeTrees {
     PictureView picture;
     RayTreeSettings settings;
@@ -78,7 +78,7 @@ private:
     }
     HD void shade(uint32_t tree, TreeState& state, const PendingRay& ray, const Hit& hit) const {
         const SceneView& scene = picture.scene;
-        constexpr bool kMayMove = kMotion != MotionKnown::None;
+        constexpr bool kMayMove = kMotion != MotionVariant::None;
         const float time = kMayMove ? time_of(picture.camera, settings, state) : kAtRest;
         const bool moves = is_moving<kMotion>(scene);
         const MovedHit moved(scene, hit, time);

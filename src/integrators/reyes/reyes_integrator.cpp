@@ -62,7 +62,7 @@ uint32_t ReyesIntegrator::samples_at_once(uint64_t pixels) {
 void ReyesIntegrator::reserve(const WorkSize& size) {
     const uint64_t all = samples_held(size.pixels(), size.samples);
     count_.grow(queue_, 2, "pieces of triangles");
-    positions_.grow(queue_, all, "places of samples");
+    positions_.grow(queue_, all, "positions of samples");
     nearest_.grow(queue_, all, "samples' nearest triangles");
     ways_.grow(queue_, all, "samples' micropolygons");
     next_.grow(queue_, all, "lists of samples");

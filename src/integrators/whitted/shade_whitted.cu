@@ -3,6 +3,6 @@
 #include "integrators/whitted/whitted.h"
 
 namespace pertev {
-template void launch(Queue&, const char*, WorkCount, const ShadeTrees<Whitted, MotionKnown::None>&);
-template void launch(Queue&, const char*, WorkCount, const ShadeTrees<Whitted, MotionKnown::Perhaps>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeTrees<Whitted, MotionVariant::None>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeTrees<Whitted, MotionVariant::Perhaps>&);
 } // namespace pertev

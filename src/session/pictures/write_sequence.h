@@ -27,7 +27,7 @@ struct FrameReport {
 };
 
 struct SequenceTally {
-    uint32_t frames = 0;            // asked for
+    uint32_t frames = 0;            // requested
     bool has_begun = false;         // a frame was rendered, written or not
     uint32_t written = 0, kept = 0; // frames whose files are all there
     uint32_t again = 0;             // kept frames that were rendered for the history of others

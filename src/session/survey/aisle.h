@@ -13,7 +13,7 @@ struct Aisle {
     float length = 0, floor = 0, height = 0;
 };
 
-/// `room` is the result of look_around() for the scene, of kind Room.
+/// `room` is the result of survey_surroundings() for the scene, of kind Room.
 Aisle find_aisle(const Scene& scene, const Surroundings& room);
 
 /// Distance that a ray from `from` along the unit `direction` travels, metres; `otherwise` if it hits nothing.

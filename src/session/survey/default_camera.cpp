@@ -123,7 +123,7 @@ Camera inside(const Scene& scene, const Surroundings& room, float aspect) {
 } // namespace
 
 Camera make_default_camera(const Scene& scene, float aspect, Messages& messages) {
-    Surroundings around = look_around(scene);
+    Surroundings around = survey_surroundings(scene);
     if (around.bounds.is_empty()) around.bounds = {{-1, -1, -1}, {1, 1, 1}}; // everything is hidden at rest
     const char* what = "a view from outside";
     Camera camera;

@@ -93,7 +93,7 @@ DefaultLight add_default_light(Scene& scene, SceneUse use, Messages& messages, S
     const char* why = !is_weak                    ? "the scene has no light"
                       : own == OwnLight::Punctual ? "the lights of the scene reach nothing visible"
                                                   : "the emitters of the scene light too little of it";
-    const Surroundings around = look_around(scene);
+    const Surroundings around = survey_surroundings(scene);
     if (seen != nullptr) *seen = around;
     if (around.is_dark) {
         add_emitters(scene, around);

@@ -24,7 +24,7 @@ bool lacks_light(const Scene& scene);
 /// Adds a sky (made_up_sky.h) to a scene that lacks light; for pictures also if its emitters light too little to see
 /// by, or its lights without extent reach nothing visible (weak_light.h). In a closed room, which no outside light
 /// enters, it adds a row of lights instead. A notice reports it. The scene has passed validate(). Throws
-/// Error(OverLimit) as prepare_scene() does. If it adds light, it writes the result of look_around() to `seen`.
+/// Error(OverLimit) as prepare_scene() does. If it adds light, it writes the result of survey_surroundings() to `seen`.
 DefaultLight add_default_light(Scene& scene, SceneUse use, Messages& messages, Surroundings* seen = nullptr);
 
 } // namespace pertev

@@ -1,6 +1,6 @@
 #pragma once
 
-// Reports which emitters of a scene emit only from their fronts, for file formats that cannot say so, and which of
+// Reports which emitters of a scene emit only from their fronts, for file formats that cannot state it, and which of
 // them seem to be turned the wrong way round.
 
 #include <string>

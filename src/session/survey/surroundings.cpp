@@ -108,7 +108,7 @@ float share_seen_from_outside(const Scene& scene, uint64_t triangles) {
 
 } // namespace
 
-Surroundings look_around(const Scene& scene) {
+Surroundings survey_surroundings(const Scene& scene) {
     Surroundings result;
     result.bounds = bounds_of(scene);
     uint64_t triangles = 0;

@@ -22,6 +22,6 @@ struct Surroundings {
 };
 
 /// Surveys a scene that has passed validate(). Scenes with very many triangles count as Object without a test.
-Surroundings look_around(const Scene& scene);
+Surroundings survey_surroundings(const Scene& scene);
 
 } // namespace pertev

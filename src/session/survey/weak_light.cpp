@@ -22,8 +22,8 @@ SeenShares visible_shares(const Camera& camera, const Scene& scene) {
     settings.filter = PixelFilter::Box;
     settings.transparent = true;
     settings.tracers = default_tracers(false, TreeBuild::Fast); // few rays need trees that are built quickly
-    Messages unsaid;
-    const PreparedScene prepared = prepare_scene(scene, prepare_options(settings, false), unsaid);
+    Messages discarded;
+    const PreparedScene prepared = prepare_scene(scene, prepare_options(settings, false), discarded);
     settings.path.max_depth = kDepth;
     Session session(queue, prepared, camera, settings);
     session.render(kSamples);
@@ -63,9 +63,9 @@ SeenShares visible_shares(const Camera& camera, const Scene& scene) {
 
 SeenShares shares_seen(const Scene& scene) {
     const bool has_camera = !scene.cameras.empty();
-    Messages unsaid;
+    Messages discarded;
     const Camera made_up =
-        has_camera ? Camera() : make_default_camera(scene, static_cast<float>(kWidth) / kHeight, unsaid);
+        has_camera ? Camera() : make_default_camera(scene, static_cast<float>(kWidth) / kHeight, discarded);
     const auto shares_of = [&](const Scene& now) {
         return visible_shares(has_camera ? now.cameras.front() : made_up, now);
     };

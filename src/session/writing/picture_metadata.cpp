@@ -164,8 +164,8 @@ CameraChoice choice_of(const CameraSource& source) {
     choice.eye = stated_position(eye, source.origin);
     choice.target = source.target.value_or(stated_position(target, source.origin));
     choice.up = source.up.value_or(column(from, 1));
-    for (const Vec3 unsaid : {Vec3{0, 0, -1}, Vec3{0, 1, 0}}) {
-        if (!source.up && look_at(eye, target, unsaid) == from) choice.up = unsaid;
+    for (const Vec3 default_up : {Vec3{0, 0, -1}, Vec3{0, 1, 0}}) {
+        if (!source.up && look_at(eye, target, default_up) == from) choice.up = default_up;
     }
     choice.projection = camera.projection;
     choice.aperture = camera.aperture_radius;

@@ -24,10 +24,10 @@ DeviceBuilder::DeviceBuilder(Queue& queue, uint32_t most, const CollapseSettings
       codes_(queue, most, "Morton codes"), sorted_codes_(queue, most, "Morton codes in order"),
       order_(queue, most, "order of triangles"), sorted_order_(queue, most, "order of triangles along the curve"),
       ends_(queue, most, "ends of ranges of leaves"), root_(queue, 1, "root of clusters"),
-      sort_scratch_(queue, sort_scratch_bytes(queue, most), "scratch of the sort"),
+      sort_scratch_(queue, sort_scratch_bytes(queue, most), "scratch memory for sorting"),
       nodes_(queue, std::size_t(most) * 2, "nodes of clusters"), plans_(queue, most, "plans of wide nodes"),
       sizes_(queue, most, "sizes of subtrees"), clusters_(queue, most, "clusters"),
-      items_(queue, max_nodes(most), "places of wide nodes"),
+      items_(queue, max_nodes(most), "positions of wide nodes"),
       item_nodes_(queue, max_nodes(most), "numbers of wide nodes that are placed"),
       counts_(queue, 1, "counts of wide nodes"), wide_(queue, max_nodes(most), "nodes of the built tree"),
       placed_(queue, most, "triangles of the built tree"), sources_(queue, most, "sources of triangles") {
@@ -152,7 +152,7 @@ DeviceBuilder::Figures DeviceBuilder::finish() {
 
 CompressedBvh build_compressed_bvh(Queue& queue, std::span<const BvhTriangle> triangles) {
     const auto count = static_cast<uint32_t>(triangles.size());
-    const Buffer<BvhTriangle> there(queue, triangles, "triangles to build of");
+    const Buffer<BvhTriangle> there(queue, triangles, "triangles to build over");
     DeviceBuilder builder(queue, count);
     builder.start(there.data(), count);
     builder.finish();

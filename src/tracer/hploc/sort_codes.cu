@@ -17,7 +17,7 @@ std::size_t sort_scratch_bytes(Queue& queue, uint32_t count) {
     if (queue.is_dry_run()) { // an estimate is a copy of the input, because CUB needs a device to answer
         return queue.is_cuda() ? count * (sizeof(uint64_t) + sizeof(uint32_t)) : 0;
     }
-    const Queue::Scope scope(queue, "room for sorting"); // CUB queries the thread's current device
+    const Queue::Scope scope(queue, "scratch memory for sorting"); // CUB queries the thread's current device
     std::size_t bytes = 0;
 #if defined(__CUDACC__)
     if (queue.is_cuda()) {
