@@ -19,6 +19,7 @@ from reference_job import last_event  # noqa: E402
 
 TABLE = json.loads((ROOT / "bench/jobs.json").read_text(encoding="utf-8"))
 SPONZA = next(scene for scene in TABLE["scenes"] if scene["name"] == "sponza")
+JOBS_OF_RECORD = {job["name"]: job for job in TABLE["jobs"]}
 
 
 def write_grey_obj(source, target, grey):
@@ -68,8 +69,9 @@ class SponzaJob(Sponza):
 
 
 class Bunny(Job):
-    name, stem, depth, sky, materials = "bunny, depth 8", "bunny", 7, 1.0, {"grey": (0.5, 0)}
-    eye, target, fov = (-0.017, 0.14, 0.33), (-0.017, 0.108, 0), 35
+    name, stem, depth, sky = "bunny, depth 8", "bunny", 7, 1.0
+    eye, target, fov = (JOBS_OF_RECORD["bunny"][key] for key in ("eye", "target", "fov_y_deg"))
+    materials = {"grey": (JOBS_OF_RECORD["bunny"]["reflectance"], 0)}
 
     def write(self, scenes):
         write_grey_obj(scenes / "stanford/bunny.obj", self.file, self.materials["grey"][0])
@@ -77,7 +79,7 @@ class Bunny(Job):
 
 class Corridor(Job):
     name, stem, depth = "corridor of 5,000 lamps, direct light", "corridor", 1
-    eye, target, fov = (0, 1.6, 29.5), (0, 1.5, 0), 60
+    eye, target, fov = (JOBS_OF_RECORD["corridor"][key] for key in ("eye", "target", "fov_y_deg"))
     materials = {"wall": (make_corridor.REFLECTANCE, 0), "lamp": (0, make_corridor.EMISSION)}
 
     def write(self, scenes):

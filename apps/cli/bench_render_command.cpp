@@ -112,6 +112,9 @@ int bench_job(JobFlags& flags) {
     }
     const std::string device = queue->device_name();
     const bool is_known = is_on_record(device, job, settings, prepared.triangles, mean);
+    const auto ratio_to = [&](const char* key, const char* title, double other) {
+        return ratio_field(key, title, is_known && other > 0, samples_per_second / other);
+    };
     const Fields fields = {
         {"job", "job", job.name},
         {"device", "device", device},
@@ -130,11 +133,11 @@ int bench_job(JobFlags& flags) {
         {"mean", "mean", mean, "", "{:.5f}"},
         {"invalid_samples", "invalid samples", result.invalid_samples},
         {"hash", "picture", hash},
-        ratio_field("ratio_to_mitsuba", "times Mitsuba 3", is_known, samples_per_second / job.mitsuba),
-        ratio_field("ratio_to_cycles", "times Cycles", is_known, samples_per_second / job.cycles),
-        ratio_field("ratio_to_pbrt", "times pbrt-v4", is_known, samples_per_second / job.pbrt)};
+        ratio_to("ratio_to_mitsuba", "times Mitsuba 3", job.mitsuba),
+        ratio_to("ratio_to_cycles", "times Cycles", job.cycles),
+        ratio_to("ratio_to_pbrt", "times pbrt-v4", job.pbrt)};
     report.add_alone("job", fields);
-    if (!is_known) reporter.answer(why_no_ratios(job));
+    if (!is_known && job.mitsuba > 0) reporter.answer(why_no_ratios(job));
     report.write();
     return 0;
 }
@@ -151,13 +154,14 @@ void add_bench_render_command(CLI::App& bench, int& status) {
     verb.add_option(
             "--job", flags->job,
             "S5 or S8: grey geometry under a constant sky, at most 5 or 8\nscatterings, Russian roulette from the "
-            "second;\ncornell-box-65 or cornell-box-8: the file as it is, at most\n65 or 8 edges from the camera to "
-            "a light")
+            "second; bunny: the same\nwith the default roulette; cornell-box-65 or cornell-box-8: the\nfile as it is, "
+            "at most 65 or 8 edges from the camera to a light;\ncorridor: the file as it is, direct light")
         ->type_name("NAME")
         ->check(one_of(std::move(names)))
         ->capture_default_str();
     verb.add_option("--scene", flags->picture.scenes,
-                    "the job's scene: Crytek's Sponza or Bitterli's Cornell box, as\na glTF")
+                    "the job's scene: Crytek's Sponza, Bitterli's Cornell box as a\nglTF, the Stanford bunny, or a "
+                    "corridor of 5,000 lamps\n(tools/make_corridor.py)")
         ->type_name("FILE")
         ->required()
         ->expected(1);

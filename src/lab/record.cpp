@@ -1,6 +1,7 @@
 #include "lab/record.h"
 
 #include "lab/job_table.h"
+#include "settings/value_names.h"
 
 namespace pertev {
 namespace {
@@ -36,17 +37,21 @@ RecordScene scene_of(const JsonValue& value) {
 }
 
 RecordJob job_of(const JsonValue& value) {
-    return {.name = value.string_or("name", ""),
-            .is_grey = value.bool_or("is_grey", false),
-            .width = count_of(value, "width"),
-            .height = count_of(value, "height"),
-            .samples = count_of(value, "samples"),
-            .max_depth = count_of(value, "max_depth"),
-            .triangles = value.at("triangles").to_unsigned(),
-            .mean = number_of(value, "mean"),
-            .mitsuba = number_of(value, "mitsuba"),
-            .cycles = number_of(value, "cycles"),
-            .pbrt = number_of(value, "pbrt")};
+    RecordJob job = {.name = value.string_or("name", ""),
+                     .filter = value_named<PixelFilter>(value.at("filter").to_string()).value(),
+                     .width = count_of(value, "width"),
+                     .height = count_of(value, "height"),
+                     .samples = count_of(value, "samples"),
+                     .max_depth = count_of(value, "max_depth"),
+                     .triangles = value.at("triangles").to_unsigned(),
+                     .mean = number_of(value, "mean"),
+                     .mitsuba = number_of(value, "mitsuba"),
+                     .cycles = number_of(value, "cycles"),
+                     .pbrt = number_of(value, "pbrt")};
+    if (value.find("reflectance")) job.reflectance = value.at("reflectance").to_float();
+    if (value.find("eye")) job.view = view_of(value);
+    if (value.find("roulette_depth")) job.roulette_depth = count_of(value, "roulette_depth");
+    return job;
 }
 
 TransportPreset preset_of(const JsonValue& value) {

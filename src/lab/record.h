@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "math/vec3.h"
+#include "settings/render_settings.h"
 
 namespace pertev {
 
@@ -40,13 +41,16 @@ struct RecordScene {
 
 struct RecordJob {
     std::string name;
-    bool is_grey = false; // S5, S8
+    std::optional<float> reflectance; // of all surfaces, under a sky of radiance 1; otherwise materials are the file's
+    std::optional<RecordView> view;   // otherwise the camera is the file's
+    PixelFilter filter = PixelFilter::Tent;
+    std::optional<uint32_t> roulette_depth; // of Roulette::Throughput; otherwise the default roulette
     uint32_t width = 0, height = 0, samples = 0;
     uint32_t max_depth = 0; // scatterings: one less than edges from the camera to a light
     // The scene is recognised by its triangles and by the mean over channels and pixels of others' pictures.
     uint64_t triangles = 0;
     double mean = 0;
-    double mitsuba = 0, cycles = 0, pbrt = 0; // samples a second
+    double mitsuba = 0, cycles = 0, pbrt = 0; // samples a second; 0 if unknown
 };
 
 struct TransportPreset {
@@ -59,7 +63,7 @@ struct TransportPreset {
 struct Record {
     std::string device;                   // device of all stored figures
     std::vector<RecordScene> scenes;      // sponza, bunny, forest
-    std::vector<RecordJob> jobs;          // S5, S8, cornell-box-65, cornell-box-8
+    std::vector<RecordJob> jobs;          // S5, S8, cornell-box-65, cornell-box-8, bunny, corridor
     std::vector<TransportPreset> presets; // cornell, caustic, blind, door, cove, many-lights
 };
 

@@ -22,9 +22,9 @@ Mesh read_one_mesh(const std::filesystem::path& path, Messages& messages) {
     return mesh;
 }
 
-Scene make_grey_scene(const std::string& file, Messages& messages) {
+Scene make_grey_scene(const std::string& file, float reflectance, Messages& messages) {
     Scene scene = read_scene(file, {.geometry_only = true}, messages);
-    scene.materials.assign(1, Material{{.base_color = {0.7f, 0.7f, 0.7f}}, "grey"});
+    scene.materials.assign(1, Material{{.base_color = {reflectance, reflectance, reflectance}}, "grey"});
     for (Instance& instance : scene.instances) instance.material = 0;
     for (Mesh& mesh : scene.meshes) {
         mesh.normals.clear();
@@ -35,6 +35,14 @@ Scene make_grey_scene(const std::string& file, Messages& messages) {
     scene.lights.clear();
     scene.environment = Environment{};
     return scene;
+}
+
+Camera camera_of(const RecordView& view, const std::string& name) {
+    Camera camera;
+    camera.name = name;
+    camera.world_from_camera = look_at(view.eye, view.target, {0, 1, 0});
+    camera.fov_y = view.fov_y_deg * kPi / 180;
+    return camera;
 }
 
 } // namespace
@@ -50,13 +58,7 @@ std::filesystem::path record_file(const RecordScene& scene, const std::filesyste
     return path;
 }
 
-Camera record_camera(const RecordScene& scene) {
-    Camera camera;
-    camera.name = scene.name;
-    camera.world_from_camera = look_at(scene.view.eye, scene.view.target, {0, 1, 0});
-    camera.fov_y = scene.view.fov_y_deg * kPi / 180;
-    return camera;
-}
+Camera record_camera(const RecordScene& scene) { return camera_of(scene.view, scene.name); }
 
 Scene make_record_scene(const RecordScene& record, const std::filesystem::path& folder, Messages& messages) {
     Scene scene;
@@ -71,24 +73,22 @@ RenderSettings job_settings(const RecordJob& job) {
     RenderSettings settings;
     settings.width = job.width, settings.height = job.height, settings.samples = job.samples;
     settings.path.max_depth = job.max_depth;
-    if (job.is_grey) {
-        settings.filter = PixelFilter::Box;
+    settings.filter = job.filter;
+    if (job.filter == PixelFilter::Tent) settings.filter_radius = 1;
+    if (job.roulette_depth) {
         settings.path.roulette = Roulette::Throughput;
-        settings.path.roulette_depth = 2;
-    } else {
-        settings.filter = PixelFilter::Tent;
-        settings.filter_radius = 1;
+        settings.path.roulette_depth = *job.roulette_depth;
     }
     return settings;
 }
 
 Scene make_job_scene(const RecordJob& job, const std::string& file, Messages& messages) {
-    if (job.is_grey) return make_grey_scene(file, messages);
+    if (job.reflectance) return make_grey_scene(file, *job.reflectance, messages);
     return open_scene(file, messages, SceneUse::Benchmark);
 }
 
 Camera job_camera(const RecordJob& job, const Scene& scene, float aspect, Messages& messages) {
-    if (job.is_grey) return record_camera(*find_named(the_record().scenes, "sponza"));
+    if (job.view) return camera_of(*job.view, job.name);
     return choose_camera(CameraChoice{}, scene, aspect, messages);
 }
 

@@ -28,12 +28,13 @@ class Bench(CliTest):
 
     def test_a_job_has_the_hash_of_render_and_has_ratios_only_on_the_reference_gpu(self):
         line = ["--scene", "cornell-box", *SMALL]
-        for job, depth in [("cornell-box-65", 64), ("cornell-box-8", 7)]:
+        tent, view = ["--filter", "tent", "--filter-radius", "1"], ["--eye=0,1.6,29.5", "--target=0,1.5,0", "--fov", "60"]
+        for job, depth, flags in [("cornell-box-65", 64, tent), ("cornell-box-8", 7, tent), ("corridor", 1, ["--filter", "box", *view])]:
             made = self.succeed("bench", "render", "--job", job, *line, "--json").events("job")[0]
             self.assertEqual((made["job"], made["width"], made["samples"], made["triangles"]), (job, 16, 1, 38))
             self.assertEqual([made["ratio_to_" + other] for other in ("mitsuba", "cycles", "pbrt")], [None] * 3)
             alike = self.succeed("render", "cornell-box", "-o", "x.exr", "--device", "cpu", "--size", "16x16", "--spp", "1",
-                                 "--filter", "tent", "--filter-radius", "1", "--max-depth", depth, "--json").events("done")
+                                 *flags, "--max-depth", depth, "--json").events("done")
             self.assertEqual(made["hash"], alike[0]["hash"])
         text = self.succeed("bench", "render", *line).stdout
         self.assertRegex(text, r"(?s)^job +S8\ndevice +CPU\n.*samples a second .*\n"

@@ -84,7 +84,13 @@ TEST_CASE("the table of jobs has the record's scenes and jobs and the presets of
     CHECK(record.scenes[0].view.eye == Vec3{-110, 18, -2});
     CHECK(record.scenes[2].file == "record/forest.ply"); // generated
     for (const RecordScene& scene : record.scenes) CHECK(scene.sets.size() == 5);
-    CHECK(record.jobs.size() == 4);
+    REQUIRE(record.jobs.size() == 6);
+    for (const RecordJob& job : record.jobs) CHECK(job.view.has_value() == (job.filter == PixelFilter::Box));
+    CHECK(job_named("corridor").view->eye == Vec3{0, 1.6f, 29.5f});
+    CHECK_FALSE(job_named("corridor").reflectance); // materials of the file
+    CHECK(job_named("bunny").reflectance == 0.5f);
+    CHECK(job_settings(job_named("bunny")).path.roulette == RenderSettings{}.path.roulette);
+    CHECK(job_settings(job_named("S5")).path.roulette == Roulette::Throughput);
     REQUIRE(record.presets.size() == 6);
     CHECK_FALSE(record.presets[0].view);
     CHECK(camera_choice(record.presets[1]).fov_deg == 50.0f);
