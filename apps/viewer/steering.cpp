@@ -1,9 +1,11 @@
 #include "apps/viewer/steering.h"
 
-#include <fmt/format.h>
+#include <utility>
 
+#include "apps/viewer/picture_flags.h"
 #include "math/portable_math.h"
-#include "settings/value_names.h"
+#include "session/position_text.h"
+#include "settings/setting_table.h"
 
 namespace pertev {
 namespace {
@@ -36,22 +38,19 @@ float allowed_pitch(Vec3 back, Vec3 up, float pitch) {
     return clamp(now + pitch, min(-kSteepest, now), max(kSteepest, now)) - now;
 }
 
-std::string text_of(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
-
-std::string text_of(Vec3 p, DoubleVec3 origin) {
-    if (origin == DoubleVec3{0, 0, 0}) return text_of(p);
-    const DoubleVec3 position = origin + to_double(p);
-    return fmt::format("{},{},{}", position.x, position.y, position.z);
-}
-
-std::string lens_flags(const Camera& camera) {
+/// Returns the flags of a choice with the lens of `camera` if that differs from their defaults.
+std::string flags_with_lens(PictureOptions options, const Camera& camera) {
+    CameraChoice& choice = options.scene.camera;
+    state_lens(camera, choice);
+    if (camera.projection == Projection{}) choice.projection.reset();
+    if (camera.aperture_radius == 0) choice.aperture.reset();
     std::string flags;
-    if (camera.projection != Projection{}) flags += fmt::format(" --projection {}", name_of(camera.projection));
-    flags += has_parallel_rays(camera.projection) ? fmt::format(" --view-height {}", camera.ortho_height)
-                                                  : fmt::format(" --fov {}", degrees_for(camera.fov_y));
-    if (camera.aperture_radius > 0) {
-        flags += fmt::format(" --aperture {} --focus {}", camera.aperture_radius, camera.focus_distance);
+    for (const Setting& setting : all_settings()) {
+        if (setting.group != std::string_view("Camera")) continue;
+        const std::vector<std::string> texts = texts_of(options, setting);
+        if (texts != texts_of({}, setting)) flags += flags_of(setting, texts);
     }
+    flags.pop_back(); // a space
     return flags;
 }
 
@@ -126,15 +125,18 @@ float metres_of(const ClientMessage& message, float speed) {
 }
 
 std::string camera_flags(const Pose& pose, const Camera& camera, const std::string& name, DoubleVec3 origin) {
-    std::string flags;
-    if (!name.empty()) flags += fmt::format("--camera '{}' ", name);
-    flags += fmt::format("--eye {} --target {}", text_of(pose.eye, origin), text_of(pose.target, origin));
-    if (pose.up != Vec3{0, 1, 0}) flags += fmt::format(" --up {}", text_of(pose.up));
-    return flags + lens_flags(camera);
+    PictureOptions options;
+    CameraChoice& choice = options.scene.camera;
+    choice.camera = name;
+    choice.eye = stated_position(pose.eye, origin), choice.target = stated_position(pose.target, origin);
+    if (pose.up != Vec3{0, 1, 0}) choice.up = pose.up;
+    return flags_with_lens(std::move(options), camera);
 }
 
 std::string scene_camera_flags(const Camera& camera, const std::string& name) {
-    return fmt::format("--camera '{}'", name) + lens_flags(camera);
+    PictureOptions options;
+    options.scene.camera.camera = name;
+    return flags_with_lens(std::move(options), camera);
 }
 
 Camera camera_through(const Camera& camera, float aspect, float x, float y) {

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "math/scalar.h"
-#include "scene/camera.h"
+#include "settings/camera_choice.h"
 
 namespace pertev {
 
@@ -26,6 +26,18 @@ inline float degrees_for(float radians) {
         }
     }
     return near;
+}
+
+/// Puts the lens of `camera` into a choice: its projection, the size of its view, its aperture and focus.
+inline void state_lens(const Camera& camera, CameraChoice& choice) {
+    choice.projection = camera.projection;
+    if (has_parallel_rays(camera.projection)) {
+        choice.view_height = camera.ortho_height;
+    } else {
+        choice.fov_deg = degrees_for(camera.fov_y);
+    }
+    choice.aperture = camera.aperture_radius;
+    if (camera.aperture_radius > 0) choice.focus = camera.focus_distance;
 }
 
 /// The setting that states the size of a camera's view, its value, and what that is.

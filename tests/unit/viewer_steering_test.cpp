@@ -118,7 +118,8 @@ TEST_CASE("flags contain eye, target and lens") {
     Pose leaning = kStart;
     leaning.up = {0, 0, 1};
     CHECK(camera_flags(leaning, camera, "main") ==
-          "--camera 'main' --eye 0,1,5 --target 0,1,0 --up 0,0,1 --fov 50 --aperture 0.5 --focus 4");
+          "--camera main --eye 0,1,5 --target 0,1,0 --up 0,0,1 --fov 50 --aperture 0.5 --focus 4");
+    CHECK(camera_flags(kStart, camera, "it's").starts_with("--camera 'it'\\''s' --eye 0,1,5 ")); // quoted for a shell
     camera.projection = Projection::Orthographic;
     CHECK(camera_flags(kStart, camera, "").find("--projection orthographic --view-height 2") != std::string::npos);
 }

@@ -167,14 +167,8 @@ CameraChoice choice_of(const CameraSource& source) {
     for (const Vec3 unsaid : {Vec3{0, 0, -1}, Vec3{0, 1, 0}}) {
         if (!source.up && look_at(eye, target, unsaid) == from) choice.up = unsaid;
     }
-    choice.projection = camera.projection;
-    choice.aperture = camera.aperture_radius;
-    if (camera.aperture_radius > 0) choice.focus = camera.focus_distance;
-    if (has_parallel_rays(camera.projection)) {
-        choice.view_height = camera.ortho_height;
-    } else {
-        choice.fov_deg = source.fov_deg > 0 ? source.fov_deg : degrees_for(camera.fov_y);
-    }
+    state_lens(camera, choice);
+    if (choice.fov_deg && source.fov_deg > 0) choice.fov_deg = source.fov_deg;
     return choice;
 }
 
