@@ -98,10 +98,9 @@ Pose turn(const Pose& pose, float dx, float dy, float fov_y) {
     return {pose.eye, pose.eye + ahead, pose.up, pose.eye + ahead};
 }
 
-Pose pan(const Pose& pose, float dx, float dy, float view_height, bool is_orthographic) {
+Pose pan(const Pose& pose, float dx, float dy, float view_height) {
     const Axes axes = axes_of(pose);
-    const float away = is_orthographic ? 1.0f : max(length(pose.centre - pose.eye), 1e-6f);
-    const Vec3 step = (-dx * view_height * away) * axes.right + (dy * view_height * away) * axes.above;
+    const Vec3 step = (-dx * view_height) * axes.right + (dy * view_height) * axes.above;
     return {pose.eye + step, pose.target + step, pose.up, pose.centre + step};
 }
 
@@ -140,20 +139,15 @@ std::string scene_camera_flags(const Camera& camera, const std::string& name) {
 }
 
 Camera camera_through(const Camera& camera, float aspect, float x, float y) {
-    const Transform& from = camera.world_from_camera;
     Camera through = camera;
     through.aperture_radius = 0;
-    const bool is_flat = has_parallel_rays(camera.projection);
-    const float half_height = half_view_height(camera);
-    const float right = (2 * x - 1) * half_height * aspect, above = (1 - 2 * y) * half_height;
-    if (is_flat) {
-        through.world_from_camera.translation = from.translation + right * column(from, 0) + above * column(from, 1);
-        through.ortho_height = max(camera.ortho_height * 1e-3f, 1e-20f);
-        return through;
-    }
-    const Vec3 ahead = transform_vector(from, {right, above, -1});
-    through.world_from_camera = look_at(from.translation, from.translation + ahead, column(from, 1));
+    CameraView view = make_camera_view(through, 1, 1);
+    view.half_width = view.half_height * aspect;
+    const RayLine line = make_camera_line(view, Vec2{x, y}, Vec2{0.5f, 0.5f});
+    through.world_from_camera = look_at({0, 0, 0}, line.direction, column(camera.world_from_camera, 1));
+    through.world_from_camera.translation = line.origin;
     through.fov_y = kPixelFov;
+    through.ortho_height = max(camera.ortho_height * 1e-3f, 1e-20f);
     return through;
 }
 
