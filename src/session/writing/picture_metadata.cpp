@@ -15,6 +15,7 @@
 #include "session/degrees.h"
 #include "session/position_text.h"
 #include "session/survey/ground.h"
+#include "settings/settings_file.h"
 #include "settings/value_names.h"
 
 namespace pertev {
@@ -196,9 +197,10 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
         append(metadata, {{"pertev.radiosity", solution.made}, {"pertev.radiosity_hash", solution.hash().hex()}});
     }
     if (record.frame) {
-        append(metadata, {{"pertev.reconstruction", json_of(record.frame->reconstruction, record.frame->restir)},
-                          {"pertev.frame", static_cast<int32_t>(record.frame->number)},
-                          {"pertev.first_frame", static_cast<int32_t>(record.frame->cut)}});
+        append(metadata,
+               {{"pertev.reconstruction", reconstruction_json({record.frame->reconstruction, record.frame->restir})},
+                {"pertev.frame", static_cast<int32_t>(record.frame->number)},
+                {"pertev.first_frame", static_cast<int32_t>(record.frame->cut)}});
     }
     if (settings.irradiance) metadata.emplace_back("pertev.quantity", std::string("irradiance"));
     if (record.display && !record.display->false_colors) { // metered or given
