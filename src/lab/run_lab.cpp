@@ -10,8 +10,8 @@
 
 #include <fmt/format.h>
 
-#include "base/byte_units.h"
 #include "base/error.h"
+#include "base/machine_memory.h"
 #include "base/stopwatch.h"
 #include "device/device_timer.h"
 #include "device_scene/place_meshes.h"
