@@ -2,7 +2,6 @@
 #include <doctest/doctest.h>
 
 #include "tests/support/options.h"
-#include "tests/support/parse_options.h"
 
 namespace {
 

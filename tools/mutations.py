@@ -306,7 +306,7 @@ MUTATIONS = [
      ("src/denoise/denoiser.h", "steps, Image picture) {\n", "steps, Image picture) {\n    Image result = picture;\n"),
      ("src/denoise/denoiser.h", "    return picture;\n", "    return result;\n")),
     ("a saved picture's settings are those of the viewer's start", "robust/viewer",
-     ("apps/viewer/render_loop.cpp", "    options.render = view_.picture;\n", "")),
+     ("apps/viewer/render_loop.cpp", "    PictureOptions options = view_.options;\n", "    PictureOptions options = start;\n")),
     ("a session keeps samples of the picture before", "consistency/session unit/session",
      ("src/session/film_render.cpp", "if (film_ && film_is_old_) film_->clear();", "")),
     ("a session's camera is not the new one's", "consistency/session", ("src/session/film_render.cpp", "    camera_ = camera;\n", "")),

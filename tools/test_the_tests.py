@@ -7,12 +7,13 @@ must be there exactly once, so a patch that no longer applies is found; then the
 them must fail. Without a mutation all of them must pass, and that is tried first.
 
 `tools/test_the_tests.py [NAME ...]` runs the mutations of these names only, `--list` names them all, `--check` tells in
-a moment whether all of them still apply. Prints a table, and exits 1 when a mutation went unnoticed by a test named for
+a moment whether all of them still apply, and whether tools/check_gpu.sh names tests that exist. Prints a table, and exits 1 when a mutation went unnoticed by a test named for
 it, did not apply or did not build.
 """
 
 import argparse
 import collections
+import fnmatch
 import os
 import pathlib
 import re
@@ -67,6 +68,20 @@ def check_that_all_apply():
             good = False
             print(f"{mutation.name}: does not apply: {problem}")
     sys.exit(0 if good else 1)
+
+
+def check_gpu_list():
+    """Exits 1 when tools/check_gpu.sh names a test or a file of tests that is not there."""
+    sources = {path: path.read_text() for path in (ROOT / "tests").rglob("*_test.cpp")}
+    literals = [found for text in sources.values() for found in re.findall(r'TEST_CASE(?:_TEMPLATE)?\(\s*((?:"[^"]*"\s*)+)', text)]
+    names = [re.sub(r'"\s*"', "", literal).strip().strip('"') for literal in literals]
+    script = (ROOT / "tools/check_gpu.sh").read_text()
+    tests = ",".join(re.findall(r"--test-case='([^']+)'", script)).split(",")
+    files = ",".join(re.findall(r"files\+?=',?([^']+)'", script)).split(",")
+    absent = [pattern for pattern in tests if not fnmatch.filter(names, pattern)]
+    absent += [pattern for pattern in files if not fnmatch.filter(map(str, sources), pattern)]
+    if absent:
+        sys.exit("tools/check_gpu.sh: no test has this name: " + ", ".join(absent))
 
 
 def write_tree(edits, tests):
@@ -136,10 +151,11 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", help="mutations to try; all where none is named")
     parser.add_argument("--list", action="store_true", help="name the mutations and the tests that must notice")
-    parser.add_argument("--check", action="store_true", help="only see whether all mutations still apply")
+    parser.add_argument("--check", action="store_true", help="only see whether all mutations still apply, and the tests that run on a GPU exist")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="compilers at once")
     arguments = parser.parse_args()
     if arguments.check:
+        check_gpu_list()
         check_that_all_apply()
     unknown = set(arguments.names) - {mutation.name for mutation in MUTATIONS}
     if unknown:

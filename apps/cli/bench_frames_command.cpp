@@ -14,6 +14,7 @@
 #include "math/portable_math.h"
 #include "session/session.h"
 #include "settings/parse_values.h"
+#include "settings/settings_file.h"
 #include "settings/value_names.h"
 
 namespace pertev {

@@ -120,10 +120,6 @@ std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, SettingVerb
     return benched;
 }
 
-std::string reconstruction_json(const ReconstructionOptions& options) {
-    return json_of(options.used(), options.sharing);
-}
-
 void add_picture_flags(CLI::App& verb, SettingVerbs verbs, PictureFlags& flags, const std::string& sizes,
                        const std::string& samples) {
     flags.settings.add(verb, verbs, flags, all_settings(), {{"size", sizes}, {"spp", samples}});

@@ -73,9 +73,6 @@ struct BenchedScene {
 /// Ctrl-C from then on. Throws Error; for wrong flags before anything is read.
 std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, SettingVerbs verb, Reporter& reporter);
 
-/// Returns the settings of real-time frames as JSON.
-std::string reconstruction_json(const ReconstructionOptions& options);
-
 /// Flags of benchmarks of whole pictures.
 struct PictureFlags : PictureOptions {
     std::vector<std::string> scenes;

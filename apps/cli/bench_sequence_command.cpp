@@ -20,6 +20,7 @@
 #include "session/opening/strictness.h"
 #include "session/pictures/prepare_render.h"
 #include "settings/parse_values.h"
+#include "settings/settings_file.h"
 
 namespace pertev {
 namespace {

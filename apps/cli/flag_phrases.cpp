@@ -1,8 +1,6 @@
 #include "apps/cli/flag_phrases.h"
 
-#include <algorithm>
 #include <map>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -12,9 +10,6 @@
 
 namespace pertev {
 namespace {
-
-/// Settings whose flags are not made of their names.
-constexpr std::pair<std::string_view, std::string_view> kOtherFlags[] = {{"output", "-o"}, {"scene", "SCENE"}};
 
 std::string flag_and_value(std::string_view setting, std::string_view value) {
     return flag_of(setting) + (value.empty() ? "" : ' ' + shell_word(value));
@@ -44,15 +39,6 @@ std::string named_settings_json(const std::string& reason) {
 }
 
 } // namespace
-
-std::string flag_of(std::string_view setting) {
-    const auto* const other =
-        std::ranges::find(kOtherFlags, setting, &std::pair<std::string_view, std::string_view>::first);
-    if (other != std::end(kOtherFlags)) return std::string(other->second);
-    std::string flag = "--" + std::string(setting);
-    std::ranges::replace(flag, '_', '-');
-    return flag;
-}
 
 std::string phrase(const Remark& remark) {
     std::string text;

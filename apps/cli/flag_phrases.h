@@ -4,14 +4,11 @@
 // that can be copied into a shell.
 
 #include <string>
-#include <string_view>
 
+#include "apps/viewer/picture_flags.h"
 #include "base/remark.h"
 
 namespace pertev {
-
-/// The flag of a setting: "--max-depth" for "max_depth".
-std::string flag_of(std::string_view setting);
 
 /// All parts as one text: "with --integrator cast at most 12" for "with `integrator=cast` at most 12".
 std::string phrase(const Remark& remark);

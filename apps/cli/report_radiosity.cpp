@@ -6,7 +6,7 @@
 
 #include "apps/cli/interrupt.h"
 #include "apps/cli/report_result.h"
-#include "base/byte_units.h"
+#include "base/machine_memory.h"
 #include "base/message_text.h"
 
 namespace pertev {

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "base/byte_units.h"
+#include "base/machine_memory.h"
 #include "base/message_text.h"
 #include "image/tone_map_image.h"
 #include "session/writing/metadata_json.h"

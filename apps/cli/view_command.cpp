@@ -229,7 +229,8 @@ int view(ViewFlags& flags) {
     start.camera.camera = camera;
     start.record = record;
     start.options = flags.render;
-    start.view.picture = ready->settings;
+    start.view.options = flags.render;
+    start.view.options.render = ready->settings;
     if (!flags.render.size) {
         start.view.window_pixels = uint64_t(ready->settings.width) * ready->settings.height;
     }
@@ -239,9 +240,6 @@ int view(ViewFlags& flags) {
     start.view.dark = dark_integrators(ready->settings, ready->scene());
     start.view.lens = camera;
     start.view.on_cuda = on_cuda;
-    start.view.is_reconstructed = !flags.render.reconstruction.none;
-    start.view.reconstruction = flags.render.reconstruction.settings; // the panel's denoiser brings them back
-    start.view.restir = flags.render.reconstruction.sharing;
     start.view.moving_depth =
         flags.moving_depth.value_or(flags.render.is_given("max_depth") ? ready->settings.path.max_depth : kMovingDepth);
     if (start.view.finds_exposure) {

@@ -18,6 +18,7 @@ std::string json_of(const SettingValue& value) {
     return json_string(std::get<std::string>(value));
 }
 
+constexpr const char* kGroups[] = {"Picture", "Light", "Frames", "Camera", "Rays (the picture stays the same)"};
 constexpr const char* kKinds[] = {"choice", "number", "whole"}; // names of ViewSetting::Kind
 
 void append(std::string& list, const std::string& item) {
@@ -34,9 +35,9 @@ std::string settings_json() {
             list,
             fmt::format(
                 R"({{"name":"{}","label":{},"group":{},"hint":{},"kind":"{}","choices":[{}],"low":{},"high":{},"step":{}}})",
-                setting.name, json_string(setting.label), json_string(setting.group), json_string(setting.hint),
-                kKinds[static_cast<std::size_t>(setting.kind)], choices, json_number(setting.low),
-                json_number(setting.high), json_number(setting.step)));
+                setting.name, json_string(setting.label), json_string(kGroups[static_cast<std::size_t>(setting.group)]),
+                json_string(setting.hint), kKinds[static_cast<std::size_t>(setting.kind)], choices,
+                json_number(setting.low), json_number(setting.high), json_number(setting.step)));
     }
     return list;
 }
@@ -58,7 +59,7 @@ std::string rays_per_second(uint64_t rays, double kind_s, const ViewNumbers& num
 constexpr NumberRow kRows[] = {
     {"Now", "samples",
      [](const ViewState& v, const ViewNumbers& n) {
-         return fmt::format("{} of {}", n.frame->samples, v.picture.samples);
+         return fmt::format("{} of {}", n.frame->samples, v.options.render.samples);
      }},
     {"Now", "size",
      [](const ViewState&, const ViewNumbers& n) {
@@ -163,8 +164,8 @@ std::string welcome_text(const ViewerStart& start) {
     }
     return fmt::format(
         R"({{"type":"welcome","scene":{},"device":{},"width":{},"height":{},"cameras":[{}],"about":[{}],"settings":[{}]}})",
-        json_string(name), json_string(start.record.device), start.view.picture.width, start.view.picture.height,
-        cameras, about, settings_json());
+        json_string(name), json_string(start.record.device), start.view.options.render.width,
+        start.view.options.render.height, cameras, about, settings_json());
 }
 
 std::string state_text(const ViewState& view, const ViewNumbers& numbers) {
@@ -175,7 +176,7 @@ std::string state_text(const ViewState& view, const ViewNumbers& numbers) {
     const uint32_t samples = numbers.frame != nullptr ? numbers.frame->samples : 0;
     return fmt::format(
         R"({{"type":"state","phase":"{}","samples":{},"spp":{},"hash":"{}","reference":{},"flags":{},"input":{},"steerer":{},"clock":{},"keys":[{}],"values":{{{}}},"rows":[{}]}})",
-        numbers.phase, samples, view.picture.samples, numbers.frame != nullptr ? numbers.frame->hash : "",
+        numbers.phase, samples, view.options.render.samples, numbers.frame != nullptr ? numbers.frame->hash : "",
         numbers.frame != nullptr && numbers.frame->is_reference, json_string(numbers.flags), numbers.input,
         numbers.steerer, clock_json(numbers.clock), keys_json(numbers.path), values, rows_json(view, numbers));
 }

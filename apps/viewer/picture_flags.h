@@ -1,12 +1,19 @@
 #pragma once
 
-// The flags of pertev render that make the picture on screen, for people to copy.
+// The flags of settings, and those of pertev render that make the picture on screen, for people to copy.
 
 #include <string>
+#include <string_view>
 
-#include "settings/picture_options.h"
+#include "settings/setting.h"
 
 namespace pertev {
+
+/// The flag of a setting: "--max-depth" for "max_depth".
+std::string flag_of(std::string_view setting);
+
+/// Returns the flag with each of its values, quoted for a shell: "--max-depth 3 "; empty without values.
+std::string flags_of(const Setting& setting, const std::vector<std::string>& texts);
 
 /// Returns the settings of `options` that differ from their defaults as flags, and `view` after them. `view` has the
 /// flags of the camera, and settings that it has are not repeated.

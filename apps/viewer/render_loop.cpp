@@ -101,7 +101,7 @@ void RenderLoop::steer(const Steer& requested) {
     if (message.kind == MessageKind::Shape) {
         if (!take_window_shape(view_, message.width, message.height)) return;
         take_window_shape(shown_, message.width, message.height);
-        camera_.fit(aspect_of(view_.picture.width, view_.picture.height), view_.lens);
+        camera_.fit(aspect_of(view_.options.render.width, view_.options.render.height), view_.lens);
         shown_.lens = view_.lens;
         is_done_ = false;
         budget_s_ = kFirstBudget;
@@ -253,7 +253,8 @@ std::optional<ShownFrame> RenderLoop::next_frame(const FrameRequest& wanted) {
         const ViewState failed = std::exchange(view_, shown_);
         view_.display = failed.display;
         // A setting changed at rest takes effect with the next moving frame.
-        if (failed.restir == shown_.restir) view_.restir.light = RestirLight::Off;
+        RestirSettings& restir = view_.options.reconstruction.sharing;
+        if (failed.options.reconstruction.sharing == restir) restir.light = RestirLight::Off;
         inbox_.expect(view_);
         report_state();
         return std::nullopt;
@@ -279,7 +280,7 @@ void RenderLoop::show_next() {
         if (now_s_() - reported_at_s_ > kReportEvery) report_state();
     };
     if (wanted.is_moving && !is_new_ && !time_runs() && last_ &&
-        last_->samples >= view_.picture.samples) { // nothing new to show
+        last_->samples >= view_.options.render.samples) { // nothing new to show
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
         return;
     }
@@ -298,7 +299,8 @@ void RenderLoop::show_next() {
     frames_per_second_ = since > 1 ? 0 : frames_per_second_ + 0.3 * (1 / std::max(since, 1e-4) - frames_per_second_);
     budget_s_ = wanted.is_moving ? kFirstBudget : std::min(1.5 * budget_s_, kLongestBudget);
     // A small picture has all its samples, so nothing is left to do unless it grows.
-    const bool rests_small = !wanted.is_moving && wanted.view.is_real_time && frame->samples >= view_.picture.samples;
+    const bool rests_small =
+        !wanted.is_moving && wanted.view.is_real_time && frame->samples >= view_.options.render.samples;
     is_done_ = (frame->is_final || rests_small) && !is_moving();
     last_ = *frame;
     last_->image.pixels.clear();
@@ -310,8 +312,8 @@ void RenderLoop::show_next() {
 /// the clock have changed them.
 PictureOptions RenderLoop::options_for(const PictureRecord& record) const {
     const PictureOptions& start = start_.options;
-    PictureOptions options = start;
-    options.render = view_.picture;
+    PictureOptions options = view_.options;
+    options.given = start.given;
     options.tone_map = view_.display.tone_map;
     options.exposure = fmt::format("{}", record.display->exposure_stops);
     options.time_s = record.scene.time_s;
@@ -342,7 +344,7 @@ PictureRecord RenderLoop::record() const {
         for (std::string& text : *list) text = without_folders(std::move(text), record.scene.scene);
     }
     if (start_.is_animated) record.scene.time_s = clock_.time_s;
-    record.settings = view_.picture;
+    record.settings = view_.options.render;
     record.display = view_.display;
     if (last_) record.display->exposure_stops = last_->exposure_stops;
     record.camera.camera = camera_.camera(view_.lens);
@@ -388,7 +390,7 @@ void RenderLoop::report_state() {
     numbers.phase = is_done_ ? "done" : (is_moving() ? "moving" : "gathering");
     numbers.flags = camera_.flags(view_.lens, start_.is_animated ? clock_.time_s : start_.still_s);
     if (view_.window_pixels > 0) {
-        numbers.flags += fmt::format(" --size {}x{}", view_.picture.width, view_.picture.height);
+        numbers.flags += fmt::format(" --size {}x{}", view_.options.render.width, view_.options.render.height);
     }
     if (!start_.record.scene.ground.empty()) numbers.flags += " --ground on"; // an --eye alone removes it
     if (last_) {

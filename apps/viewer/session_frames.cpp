@@ -61,8 +61,8 @@ bool is_beauty(ShownLayer layer) { return layer == ShownLayer::Beauty; }
 /// Returns whether a moving frame belongs to the session's sequence (Session::render_frame), as all do that show more
 /// than raw samples.
 bool is_of_sequence(const ViewState& view) {
-    return makes_frames(view.picture.integrator) &&
-           (view.is_reconstructed || view.restir.light != RestirLight::Off || view.reconstruction.resolution_scale < 1);
+    const ReconstructionOptions& frames = view.options.reconstruction;
+    return makes_frames(view.options.render.integrator) && (!frames.none || frames.has_frame_options());
 }
 
 bool same_metering(const RenderSettings& a, const RenderSettings& b) {
@@ -94,7 +94,7 @@ void set_render_times(double seconds, ShownFrame& frame) {
 } // namespace
 
 bool SessionFrames::Seen::is_of(const FrameRequest& request, uint64_t changes) const {
-    const RenderSettings& requested = request.view.picture;
+    const RenderSettings& requested = request.view.options.render;
     return scale > 0 && camera == request.camera && layer == request.view.layer && scene_changes == changes &&
            same_light(picture, requested) && picture.width == requested.width && picture.height == requested.height;
 }
@@ -120,7 +120,7 @@ void SessionFrames::set_time(double time_s) {
 }
 
 RenderSettings SessionFrames::settings_for(const FrameRequest& request, float scale) {
-    RenderSettings settings = request.view.picture;
+    RenderSettings settings = request.view.options.render;
     settings.time_limit_s = 0;
     settings.width = scaled_side(settings.width, scale);
     settings.height = scaled_side(settings.height, scale);
@@ -250,11 +250,12 @@ std::optional<float> SessionFrames::growth_scale(const FrameRequest& request) {
     if (film_goes_on(request)) return std::nullopt;
     if (!grown_.is_of(request, scene_changes_)) {
         growth_.begin(seen_.is_of(request, scene_changes_) ? seen_.scale : 0, pace_.full_s());
-        grown_ = {request.view.picture, request.camera, request.view.layer, scene_changes_, 1};
+        grown_ = {request.view.options.render, request.camera, request.view.layer, scene_changes_, 1};
     }
     // A frame of full size costs as much as a sample, which the film does not get: with many samples it pays.
-    const bool has_whole = request.view.picture.samples >= kSamplesWorthAFrame && request.view.is_reconstructed &&
-                           is_beauty(request.view.layer) && is_of_sequence(request.view);
+    const bool has_whole = request.view.options.render.samples >= kSamplesWorthAFrame &&
+                           !request.view.options.reconstruction.none && is_beauty(request.view.layer) &&
+                           is_of_sequence(request.view);
     return growth_.next(has_whole);
 }
 
@@ -274,21 +275,20 @@ std::optional<ShownFrame> SessionFrames::reconstruct(const FrameRequest& request
     if (is_growing) picture.frame_depth = picture.path.max_depth;
     use(picture);
     const bool shows_layer = is_of_frames(request.view.layer);
-    const ViewState& view = request.view;
-    ReconstructionSettings settings =
-        view.is_reconstructed ? view.reconstruction : of_samples_alone(view.reconstruction);
+    const RestirSettings& restir = request.view.options.reconstruction.sharing;
+    ReconstructionSettings settings = request.view.options.reconstruction.used();
     settings.keep_layers = shows_layer;
-    const bool is_alike = settings == reconstruction_settings_ && view.restir == restir_settings_;
+    const bool is_alike = settings == reconstruction_settings_ && restir == restir_settings_;
     const bool is_still = session_.camera() == request.camera && goes_on && update_s == 0 &&
                           session_.settings().width == width_before &&
                           session_.settings().frame_depth == depth_before && is_alike;
     reconstruction_settings_ = settings;
-    restir_settings_ = view.restir;
+    restir_settings_ = restir;
     still_frames_ = is_still ? still_frames_ + 1 : 1;
     session_.set_camera(request.camera);
     const Stopwatch render;
     FlagSink sink(is_growing ? &hurry_ : nullptr);
-    if (!session_.render_frame(next_sample_, settings, view.restir, sink)) return std::nullopt;
+    if (!session_.render_frame(next_sample_, settings, restir, sink)) return std::nullopt;
     next_sample_ = (next_sample_ + 1) % kMaxSamplesPerPixel;
     shows_reconstruction_ = true;
     reconstructed_as_ = session_.settings();
@@ -315,8 +315,8 @@ std::optional<ShownFrame> SessionFrames::reconstruct(const FrameRequest& request
     if (sharing_s > 0) frame.stages.emplace_back("ReSTIR", 1e3 * sharing_s);
     frame.stages.emplace_back("reconstruction", 1e3 * reconstruction_s);
     frame.stages.emplace_back("tone map", 1e3 * display.seconds());
-    frame.full_width = request.view.picture.width;
-    frame.full_height = request.view.picture.height;
+    frame.full_width = request.view.options.render.width;
+    frame.full_height = request.view.options.render.height;
     frame.scale = scale;
     frame.samples = still_frames_;
     frame.is_final = shows_layer && !request.is_moving && still_frames_ >= kFramesOfLayer;
@@ -337,8 +337,8 @@ std::optional<ShownFrame> SessionFrames::show_reconstruction_again(const FrameRe
     reconstruction_ = tone_map_image(reconstruction_light_, request.view.display.tone_map, frame.exposure_stops);
     half_samples_ = 0;
     frame.image = reconstruction_;
-    frame.full_width = request.view.picture.width;
-    frame.full_height = request.view.picture.height;
+    frame.full_width = request.view.options.render.width;
+    frame.full_height = request.view.options.render.height;
     frame.scale = static_cast<float>(reconstruction_.width) / static_cast<float>(frame.full_width);
     frame.samples = still_frames_;
     return frame;
@@ -382,7 +382,7 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     if (frame->is_reference) {
         seen_.scale = 0;
     } else {
-        seen_ = {request.view.picture, request.camera, request.view.layer, scene_changes_, frame->scale};
+        seen_ = {request.view.options.render, request.camera, request.view.layer, scene_changes_, frame->scale};
     }
     return frame;
 }
@@ -401,7 +401,8 @@ std::optional<ShownFrame> SessionFrames::make_next(const FrameRequest& request) 
     }
     const double update_s = std::exchange(update_s_, 0);
     const bool competes = shows_reconstruction_ && !shows_layer_ && !is_small && is_beauty(request.view.layer) &&
-                          request.view.is_reconstructed && same_light(reconstructed_as_, settings_for(request, scale));
+                          !request.view.options.reconstruction.none &&
+                          same_light(reconstructed_as_, settings_for(request, scale));
     if (!competes) shows_reconstruction_ = false;     // another size discards it
     if (competes && reconstruction_.pixels.empty()) { // before another size discards it
         ShownFrame frame;
@@ -414,7 +415,7 @@ std::optional<ShownFrame> SessionFrames::make_next(const FrameRequest& request) 
     }
     use(is_of_movement ? small_settings_for(request, scale) : settings_for(request, scale));
     session_.set_camera(request.camera);
-    const uint32_t wanted = is_beauty(request.view.layer) ? request.view.picture.samples : 1;
+    const uint32_t wanted = is_beauty(request.view.layer) ? request.view.options.render.samples : 1;
     const uint32_t before = session_.history().samples;
     const bool was_begun = before > 0;
     if (!was_begun) half_samples_ = 0;
@@ -463,8 +464,8 @@ std::optional<ShownFrame> SessionFrames::make_next(const FrameRequest& request) 
     const Stopwatch display;
     frame.image = show(request, frame);
     const double display_s = display.seconds();
-    frame.full_width = request.view.picture.width;
-    frame.full_height = request.view.picture.height;
+    frame.full_width = request.view.options.render.width;
+    frame.full_height = request.view.options.render.height;
     frame.scale = scale;
     shows_film_ = frame.is_reference = !is_small && is_beauty(request.view.layer);
     frame.is_final = !is_small && frame.samples >= wanted;

@@ -1,9 +1,11 @@
 #include "apps/viewer/steering.h"
 
-#include <fmt/format.h>
+#include <utility>
 
+#include "apps/viewer/picture_flags.h"
 #include "math/portable_math.h"
-#include "settings/value_names.h"
+#include "session/position_text.h"
+#include "settings/setting_table.h"
 
 namespace pertev {
 namespace {
@@ -36,22 +38,19 @@ float allowed_pitch(Vec3 back, Vec3 up, float pitch) {
     return clamp(now + pitch, min(-kSteepest, now), max(kSteepest, now)) - now;
 }
 
-std::string text_of(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
-
-std::string text_of(Vec3 p, DoubleVec3 origin) {
-    if (origin == DoubleVec3{0, 0, 0}) return text_of(p);
-    const DoubleVec3 position = origin + to_double(p);
-    return fmt::format("{},{},{}", position.x, position.y, position.z);
-}
-
-std::string lens_flags(const Camera& camera) {
+/// Returns the flags of a choice with the lens of `camera` if that differs from their defaults.
+std::string flags_with_lens(PictureOptions options, const Camera& camera) {
+    CameraChoice& choice = options.scene.camera;
+    state_lens(camera, choice);
+    if (camera.projection == Projection{}) choice.projection.reset();
+    if (camera.aperture_radius == 0) choice.aperture.reset();
     std::string flags;
-    if (camera.projection != Projection{}) flags += fmt::format(" --projection {}", name_of(camera.projection));
-    flags += has_parallel_rays(camera.projection) ? fmt::format(" --view-height {}", camera.ortho_height)
-                                                  : fmt::format(" --fov {}", degrees_for(camera.fov_y));
-    if (camera.aperture_radius > 0) {
-        flags += fmt::format(" --aperture {} --focus {}", camera.aperture_radius, camera.focus_distance);
+    for (const Setting& setting : all_settings()) {
+        if (setting.group != std::string_view("Camera")) continue;
+        const std::vector<std::string> texts = texts_of(options, setting);
+        if (texts != texts_of({}, setting)) flags += flags_of(setting, texts);
     }
+    flags.pop_back(); // a space
     return flags;
 }
 
@@ -99,10 +98,9 @@ Pose turn(const Pose& pose, float dx, float dy, float fov_y) {
     return {pose.eye, pose.eye + ahead, pose.up, pose.eye + ahead};
 }
 
-Pose pan(const Pose& pose, float dx, float dy, float view_height, bool is_orthographic) {
+Pose pan(const Pose& pose, float dx, float dy, float view_height) {
     const Axes axes = axes_of(pose);
-    const float away = is_orthographic ? 1.0f : max(length(pose.centre - pose.eye), 1e-6f);
-    const Vec3 step = (-dx * view_height * away) * axes.right + (dy * view_height * away) * axes.above;
+    const Vec3 step = (-dx * view_height) * axes.right + (dy * view_height) * axes.above;
     return {pose.eye + step, pose.target + step, pose.up, pose.centre + step};
 }
 
@@ -126,32 +124,30 @@ float metres_of(const ClientMessage& message, float speed) {
 }
 
 std::string camera_flags(const Pose& pose, const Camera& camera, const std::string& name, DoubleVec3 origin) {
-    std::string flags;
-    if (!name.empty()) flags += fmt::format("--camera '{}' ", name);
-    flags += fmt::format("--eye {} --target {}", text_of(pose.eye, origin), text_of(pose.target, origin));
-    if (pose.up != Vec3{0, 1, 0}) flags += fmt::format(" --up {}", text_of(pose.up));
-    return flags + lens_flags(camera);
+    PictureOptions options;
+    CameraChoice& choice = options.scene.camera;
+    choice.camera = name;
+    choice.eye = stated_position(pose.eye, origin), choice.target = stated_position(pose.target, origin);
+    if (pose.up != Vec3{0, 1, 0}) choice.up = pose.up;
+    return flags_with_lens(std::move(options), camera);
 }
 
 std::string scene_camera_flags(const Camera& camera, const std::string& name) {
-    return fmt::format("--camera '{}'", name) + lens_flags(camera);
+    PictureOptions options;
+    options.scene.camera.camera = name;
+    return flags_with_lens(std::move(options), camera);
 }
 
 Camera camera_through(const Camera& camera, float aspect, float x, float y) {
-    const Transform& from = camera.world_from_camera;
     Camera through = camera;
     through.aperture_radius = 0;
-    const bool is_flat = has_parallel_rays(camera.projection);
-    const float half_height = half_view_height(camera);
-    const float right = (2 * x - 1) * half_height * aspect, above = (1 - 2 * y) * half_height;
-    if (is_flat) {
-        through.world_from_camera.translation = from.translation + right * column(from, 0) + above * column(from, 1);
-        through.ortho_height = max(camera.ortho_height * 1e-3f, 1e-20f);
-        return through;
-    }
-    const Vec3 ahead = transform_vector(from, {right, above, -1});
-    through.world_from_camera = look_at(from.translation, from.translation + ahead, column(from, 1));
+    CameraView view = make_camera_view(through, 1, 1);
+    view.half_width = view.half_height * aspect;
+    const RayLine line = make_camera_line(view, Vec2{x, y}, Vec2{0.5f, 0.5f});
+    through.world_from_camera = look_at({0, 0, 0}, line.direction, column(camera.world_from_camera, 1));
+    through.world_from_camera.translation = line.origin;
     through.fov_y = kPixelFov;
+    through.ortho_height = max(camera.ortho_height * 1e-3f, 1e-20f);
     return through;
 }
 

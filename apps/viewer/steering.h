@@ -34,9 +34,8 @@ Pose orbit(const Pose& pose, float dx, float dy);
 /// Rotates around the eye by the dragged angle of the view. The centre becomes the target. `fov_y` is that of the
 /// view.
 Pose turn(const Pose& pose, float dx, float dy, float fov_y);
-/// Moves across the view, so that points at the centre's distance follow the pointer. `view_height` is the picture's
-/// height at distance 1, or that of an orthographic view.
-Pose pan(const Pose& pose, float dx, float dy, float view_height, bool is_orthographic);
+/// Moves across the view, so that points at the centre's distance, where the view has this height, follow the pointer.
+Pose pan(const Pose& pose, float dx, float dy, float view_height);
 /// Moves towards the centre, or away from it: a step is a seventh of the distance, so it is never reached.
 Pose zoom(const Pose& pose, float steps);
 

@@ -170,18 +170,18 @@ bool ViewCamera::follow_path(std::optional<double> time_s, Camera& lens) {
 void ViewCamera::step(const ClientMessage& message, const Camera& lens, float speed) {
     const Pose before = pose_;
     if (!is_own_) pose_.target = pose_.centre; // the orbit's centre becomes the target
-    const bool is_flat = has_parallel_rays(base_.projection);
-    const float height = is_flat ? base_.ortho_height : 2 * tan(0.5f * lens.fov_y);
+    const Camera now = camera(lens);
+    const float angle = view_angle(now);
     if (message.kind == MessageKind::Move) {
         const float metres = metres_of(message, speed);
         pose_ = fly(pose_, metres * message.right, metres * message.up, metres * message.forward);
     } else if (message.kind == MessageKind::Orbit) {
         pose_ = orbit(pose_, message.dx, message.dy);
     } else if (message.kind == MessageKind::Look) {
-        pose_ = turn(pose_, message.dx, message.dy, is_flat ? 1.0f : lens.fov_y);
+        pose_ = turn(pose_, message.dx, message.dy, angle > 0 ? angle : 1.0f);
     } else if (message.kind == MessageKind::Pan) {
-        pose_ = pan(pose_, message.dx, message.dy, height, is_flat);
-    } else if (is_flat) {
+        pose_ = pan(pose_, message.dx, message.dy, view_height_at(now, max(length(pose_.centre - pose_.eye), 1e-6f)));
+    } else if (angle == 0) {
         base_.ortho_height = clamp(base_.ortho_height * pow(6.0f / 7.0f, message.steps), 1e-6f, 1e12f);
     } else {
         pose_ = zoom(pose_, message.steps);

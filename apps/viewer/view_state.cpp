@@ -41,7 +41,7 @@ std::vector<std::string> strings(const Names& names) {
 
 /// The combination shown in the panel: that of camera rays. A change applies to all kinds of ray.
 Combination shown_combination(const ViewState& state) {
-    return state.picture.tracers.value_or(default_tracers(state.on_cuda)).camera;
+    return state.options.render.tracers.value_or(default_tracers(state.on_cuda)).camera;
 }
 
 std::string set_combination(ViewState& state, const Combination& combination) {
@@ -51,7 +51,7 @@ std::string set_combination(ViewState& state, const Combination& combination) {
     } catch (const Error& error) {
         return panel_phrase(error.remark());
     }
-    state.picture.tracers = choice;
+    state.options.render.tracers = choice;
     return {};
 }
 
@@ -110,66 +110,95 @@ std::string why_no_picture(const RenderSettings& settings, const Camera& camera)
 
 std::string why_no_integrator(const ViewState& state) {
     for (const auto& [kind, why_dark] : state.dark) {
-        if (kind == state.picture.integrator) return why_dark;
+        if (kind == state.options.render.integrator) return why_dark;
     }
-    const std::string why_not = why_no_picture(state.picture, state.lens);
-    return why_not.empty() ? why_no_layer(state.layer, state.picture) : why_not;
+    const std::string why_not = why_no_picture(state.options.render, state.lens);
+    return why_not.empty() ? why_no_layer(state.layer, state.options.render) : why_not;
 }
 
-/// Sets a setting of pictures. Returns why nothing was changed; empty on success.
-std::string set_shared(ViewState& state, const Setting& setting, const std::string& text) {
+/// Returns the options with the values that the view has in place of them.
+PictureOptions options_of(const ViewState& state) {
+    PictureOptions options = state.options;
+    options.tone_map = state.display.tone_map;
+    CameraChoice& lens = options.scene.camera;
+    lens.fov_deg = degrees_for(state.lens.fov_y);
+    lens.aperture = state.lens.aperture_radius;
+    lens.focus = state.lens.focus_distance;
+    return options;
+}
+
+/// Sets an option of pictures. Returns why nothing was changed; empty on success.
+std::string set_option(ViewState& state, const Setting& setting, const std::string& text) {
     const PictureOptions before = options_of(state);
-    PictureOptions options = before;
-    set_value(options, setting, std::span(&text, 1));
     ViewState wanted = state;
-    wanted.picture = options.render;
-    wanted.display.tone_map = *options.tone_map;
-    wanted.reconstruction = options.reconstruction.settings;
-    wanted.restir = options.reconstruction.sharing;
-    const CameraChoice& lens = options.scene.camera;
+    wanted.options = before;
+    set_value(wanted.options, setting, std::span(&text, 1));
+    wanted.display.tone_map = *wanted.options.tone_map;
+    const CameraChoice& lens = wanted.options.scene.camera;
     if (lens.fov_deg != before.scene.camera.fov_deg) wanted.lens.fov_y = *lens.fov_deg * kRadiansPerDegree;
     wanted.lens.aperture_radius = *lens.aperture;
     wanted.lens.focus_distance = *lens.focus;
-    const std::string_view name = setting.name;
-    if (name == "integrator") {
+    RenderSettings& picture = wanted.options.render;
+    if (integrator_name(picture) != integrator_name(before.render)) {
         if (std::string why_not = why_no_integrator(wanted); !why_not.empty()) return why_not;
-    } else if (name == "max_depth") {
-        uint32_t& depth = wanted.picture.path.max_depth;
-        wanted.moving_depth = depth = std::min(depth, max_depth(wanted.picture.integrator));
-    } else if (name == "aperture" && rasterises_camera(wanted.picture.integrator)) {
-        wanted.lens.aperture_radius = 0;
     }
+    if (picture.path.max_depth != before.render.path.max_depth) {
+        wanted.moving_depth = picture.path.max_depth = std::min(picture.path.max_depth, max_depth(picture.integrator));
+    }
+    if (rasterises_camera(picture.integrator)) wanted.lens.aperture_radius = 0;
     state = wanted;
     return {};
 }
 
-/// A row whose description, range and value are those of a setting of pictures.
-ViewSetting shared_row(const char* name, const char* label, const char* group, double step) {
-    const Setting& setting = *find_setting(name);
+/// A setting of rays. The panel sets it for all kinds of ray, together with what it needs.
+struct RaySetting {
+    std::string_view name;
+    std::string_view (*get)(const Combination&);
+    std::string (*set)(ViewState&, const std::string&);
+};
+constexpr RaySetting kRaySettings[] = {
+    {"structure", [](const Combination& c) { return name_of(c.structure); }, set_structure},
+    {"traversal", [](const Combination& c) { return name_of(c.traversal); }, set_traversal},
+    {"rta", [](const Combination& c) -> std::string_view { return name_of_rta(c.options); }, set_rta},
+};
+
+/// Makes the row of a setting of pictures.
+ViewSetting row_of(const Setting& setting) {
     PictureOptions any;
+    const SettingField field = setting.field(any);
     ViewSetting row;
-    row.name = name, row.label = label, row.group = group;
+    row.name = setting.name, row.label = setting.panel.label, row.group = setting.panel.group;
+    row.choices = is_switch(setting) ? std::vector<std::string>{"false", "true"} : choices_of(setting);
+    const bool is_choice = !row.choices.empty(), is_whole = std::holds_alternative<uint32_t*>(field) ||
+                                                            std::holds_alternative<std::optional<uint32_t>*>(field);
+    row.kind = is_choice ? Kind::Choice : is_whole ? Kind::Whole : Kind::Number;
+    row.low = setting.above ? setting.low + kMinShown : setting.low;
+    row.high = setting.high, row.step = setting.panel.step;
+    if (const auto* of_rays = std::ranges::find(kRaySettings, std::string_view(setting.name), &RaySetting::name);
+        of_rays != std::end(kRaySettings)) {
+        row.hint = setting.sentence; // the rest is about flags
+        row.get = [of_rays](const ViewState& s) {
+            return SettingValue(std::string(of_rays->get(shown_combination(s))));
+        };
+        row.set = [of_rays](ViewState& s, const SettingValue& v) { return of_rays->set(s, text_of(v)); };
+        return row;
+    }
     row.hint = *setting.more != '\0' ? setting.more : setting.sentence;
-    row.choices = choices_of(setting);
-    row.kind = !row.choices.empty()                                    ? Kind::Choice
-               : std::holds_alternative<uint32_t*>(setting.field(any)) ? Kind::Whole
-                                                                       : Kind::Number;
-    row.low = setting.above ? kMinShown : setting.low;
-    row.high = setting.high, row.step = step;
-    const bool is_choice = row.kind == Kind::Choice;
     row.get = [&setting, is_choice](const ViewState& s) -> SettingValue {
-        const std::string text = texts_of(options_of(s), setting).front();
-        return is_choice ? SettingValue(text) : SettingValue(static_cast<double>(number_in(text).value()));
+        const std::vector<std::string> texts = texts_of(options_of(s), setting);
+        const std::string text = texts.empty() ? "" : texts.front();
+        return is_choice ? SettingValue(text) : SettingValue(static_cast<double>(number_in(text).value_or(0)));
     };
     row.set = [&setting, is_choice](ViewState& s, const SettingValue& v) {
-        return set_shared(s, setting, is_choice ? text_of(v) : fmt::format("{}", std::get<double>(v)));
+        return set_option(s, setting, is_choice ? text_of(v) : fmt::format("{}", std::get<double>(v)));
     };
     return row;
 }
 
-std::vector<ViewSetting> make_settings() {
+/// The settings that only the viewer has.
+std::vector<ViewSetting> own_settings() {
     std::vector<ViewSetting> all;
-    const auto choice = [&](const char* name, const char* label, const char* group, const char* hint,
+    const auto choice = [&](const char* name, const char* label, PanelGroup group, const char* hint,
                             std::vector<std::string> choices, auto get, auto set) {
         all.push_back({name, label, group, hint, Kind::Choice, std::move(choices), 0, 0, 1,
                        [get](const ViewState& s) { return SettingValue(std::string(get(s))); },
@@ -182,7 +211,7 @@ std::vector<ViewSetting> make_settings() {
                            }
                        }});
     };
-    const auto numeric = [&](const char* name, const char* label, const char* group, const char* hint, Kind kind,
+    const auto numeric = [&](const char* name, const char* label, PanelGroup group, const char* hint, Kind kind,
                              double low, double high, double step, auto get, auto set) {
         all.push_back({name,
                        label,
@@ -200,31 +229,21 @@ std::vector<ViewSetting> make_settings() {
                        }});
     };
 
-    const auto shared = [&](const char* name, const char* label, const char* group, double step = 1) {
-        all.push_back(shared_row(name, label, group, step));
-    };
-    constexpr const char* kRays = "Rays (the picture stays the same)";
-    const auto traced = [&](const char* name, const char* label, auto get, auto set) {
-        ViewSetting& row = all.emplace_back(shared_row(name, label, kRays, 1));
-        row.hint = find_setting(name)->sentence; // the rest is about flags
-        row.get = [get](const ViewState& s) { return SettingValue(std::string(get(shown_combination(s)))); };
-        row.set = [set](ViewState& s, const SettingValue& v) { return set(s, text_of(v)); };
-    };
-
     choice(
-        "layer", "Show", "Picture",
+        "layer", "Show", PanelGroup::Picture,
         "The picture or another quantity of each pixel in false colours. Heat: the number of tests of its camera "
         "ray",
         strings(kLayers), [](const ViewState& s) { return name_of(s.layer); },
         [](ViewState& s, const std::string& name) {
             const auto layer = static_cast<ShownLayer>(std::ranges::find(kLayers, name) - std::begin(kLayers));
-            const std::string why_not = why_no_layer(layer, s.picture);
+            const std::string why_not = why_no_layer(layer, s.options.render);
             if (why_not.empty()) s.layer = layer;
             return why_not;
         });
     choice(
-        "exposed", "Exposure", "Picture", "auto: a light meter sets the exposure; fixed: only the stops below do",
-        {"auto", "fixed"}, [](const ViewState& s) { return s.finds_exposure ? "auto" : "fixed"; },
+        "exposed", "Exposure", PanelGroup::Picture,
+        "auto: a light meter sets the exposure; fixed: only the stops below do", {"auto", "fixed"},
+        [](const ViewState& s) { return s.finds_exposure ? "auto" : "fixed"; },
         [](ViewState& s, const std::string& name) {
             const bool finds = name == "auto";
             if (finds == s.finds_exposure) return;
@@ -232,54 +251,40 @@ std::vector<ViewSetting> make_settings() {
             s.finds_exposure = finds;
         });
     numeric(
-        "exposure", "Stops", "Picture", "Each stop doubles the light. It is added to an automatic exposure",
+        "exposure", "Stops", PanelGroup::Picture, "Each stop doubles the light. It is added to an automatic exposure",
         Kind::Number, -60, 60, 0.25, [](const ViewState& s) { return s.display.exposure_stops; },
         [](ViewState& s, float v) { s.display.exposure_stops = v; });
-    shared("tone_map", "Tone map", "Picture");
-    shared("integrator", "Light", "Light");
-    shared("max_depth", "Max depth", "Light");
-    shared("spp", "Samples a pixel", "Light");
     choice(
-        "mode", "At rest", "Frames",
+        "mode", "At rest", PanelGroup::Frames,
         "reference: samples accumulate to the picture of pertev render; real time: as in motion",
         {"reference", "real time"}, [](const ViewState& s) { return s.is_real_time ? "real time" : "reference"; },
         [](ViewState& s, const std::string& name) { s.is_real_time = name == "real time"; });
     numeric(
-        "moving_depth", "Max depth in motion", "Frames",
+        "moving_depth", "Max depth in motion", PanelGroup::Frames,
         "Less is faster, but darker where light is scattered often. A picture at rest has full depth", Kind::Whole, 0,
         kMaxPathDepth - 1, 1, [](const ViewState& s) { return s.moving_depth; },
         [](ViewState& s, float v) { s.moving_depth = static_cast<uint32_t>(v); });
     choice(
-        "denoiser", "Denoiser in motion", "Frames",
+        "denoiser", "Denoiser in motion", PanelGroup::Frames,
         "svgf: frames are filtered and accumulated; off: frames show their samples", {"svgf", "off"},
-        [](const ViewState& s) { return s.is_reconstructed ? "svgf" : "off"; },
-        [](ViewState& s, const std::string& name) { s.is_reconstructed = name == "svgf"; });
-    shared("restir", "ReSTIR", "Frames");
-    shared("restir_history", "ReSTIR max history, frames", "Frames");
-    shared("resolution_scale", "Light resolution, per side", "Frames", 0.05);
+        [](const ViewState& s) { return s.options.reconstruction.none ? "off" : "svgf"; },
+        [](ViewState& s, const std::string& name) { s.options.reconstruction.none = name == "off"; });
     choice(
-        "moving_scale", "Size in motion", "Frames", "automatic: as large as the frame rate permits", strings(kScaleNames),
+        "moving_scale", "Size in motion", PanelGroup::Frames, "automatic: as large as the frame rate permits",
+        strings(kScaleNames),
         [](const ViewState& s) {
             return kScaleNames[std::ranges::find(kScaleValues, s.moving_scale) - std::begin(kScaleValues)];
         },
         [](ViewState& s, const std::string& name) {
             s.moving_scale = kScaleValues[std::ranges::find(kScaleNames, name) - std::begin(kScaleNames)];
         });
-    shared("fov", "Field of view, degrees", "Camera");
-    shared("aperture", "Lens radius, m", "Camera", 0.005);
-    shared("focus", "Focus distance, m", "Camera", 0.1);
-    traced(
-        "structure", "Structure", [](const Combination& c) { return name_of(c.structure); }, set_structure);
-    traced(
-        "traversal", "Traversal", [](const Combination& c) { return name_of(c.traversal); }, set_traversal);
-    traced(
-        "rta", "Redundant traversal avoidance", [](const Combination& c) { return name_of_rta(c.options); }, set_rta);
     choice(
-        "clocks", "Time", kRays,
+        "clocks", "Time", PanelGroup::Rays,
         "by kind: each kind of ray and shading is timed separately (Stages, below). Stages wait for each other, so "
         "frames take longer",
-        {"together", "by kind"}, [](const ViewState& s) { return s.picture.time_kinds ? "by kind" : "together"; },
-        [](ViewState& s, const std::string& name) { s.picture.time_kinds = name == "by kind"; });
+        {"together", "by kind"},
+        [](const ViewState& s) { return s.options.render.time_kinds ? "by kind" : "together"; },
+        [](ViewState& s, const std::string& name) { s.options.render.time_kinds = name == "by kind"; });
     return all;
 }
 
@@ -302,31 +307,28 @@ std::string why_no_value(const ViewSetting& setting, const SettingValue& value) 
 
 } // namespace
 
-PictureOptions options_of(const ViewState& state) {
-    PictureOptions options;
-    options.render = state.picture;
-    options.size = PictureSize{state.picture.width, state.picture.height};
-    options.tone_map = state.display.tone_map;
-    options.reconstruction.settings = state.reconstruction;
-    options.reconstruction.sharing = state.restir;
-    options.scene.camera.fov_deg = degrees_for(state.lens.fov_y);
-    options.scene.camera.aperture = state.lens.aperture_radius;
-    options.scene.camera.focus = state.lens.focus_distance;
-    return options;
-}
-
 const char* name_of(ShownLayer layer) { return kLayers[static_cast<std::size_t>(layer)]; }
 
 bool is_of_frames(ShownLayer layer) { return layer == ShownLayer::Motion || layer == ShownLayer::Deviation; }
 
+std::vector<ViewSetting> make_view_settings(std::span<const Setting> table) {
+    std::vector<ViewSetting> all = own_settings();
+    for (const Setting& setting : table) {
+        if (*setting.panel.label != '\0') all.push_back(row_of(setting));
+    }
+    std::ranges::stable_sort(all, {}, &ViewSetting::group);
+    return all;
+}
+
 const std::vector<ViewSetting>& view_settings() {
-    static const std::vector<ViewSetting> all = make_settings();
+    static const std::vector<ViewSetting> all = make_view_settings(all_settings());
     return all;
 }
 
 bool restarts(const ViewState& before, const ViewState& after) {
+    const RenderSettings &was = before.options.render, &is = after.options.render;
     return before.layer != after.layer || before.is_real_time != after.is_real_time || !(before.lens == after.lens) ||
-           before.picture.tracers != after.picture.tracers || !same_picture(before.picture, after.picture);
+           was.tracers != is.tracers || !same_picture(was, is);
 }
 
 bool is_shown_otherwise(const ViewState& before, const ViewState& after) {
@@ -338,8 +340,8 @@ bool is_shown_otherwise(const ViewState& before, const ViewState& after) {
 bool take_window_shape(ViewState& state, uint32_t width, uint32_t height) {
     if (state.window_pixels == 0) return false;
     const PictureSize now = size_for_window(width, height, state.window_pixels);
-    const PictureSize before = {std::exchange(state.picture.width, now.width),
-                                std::exchange(state.picture.height, now.height)};
+    const PictureSize before = {std::exchange(state.options.render.width, now.width),
+                                std::exchange(state.options.render.height, now.height)};
     return now != before;
 }
 

@@ -1,19 +1,18 @@
 #pragma once
 
-// The state of the viewer besides the camera's pose, and the table of settings that a page may change. The page
-// builds its panel from this table, so a new setting is added only here.
+// The state of the viewer besides the camera's pose, and the settings that a page may change, of which it makes its
+// panel: the viewer's own, and the rows of the table of settings that have a Panel.
 
 #include <functional>
+#include <span>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "apps/viewer/client_message.h"
-#include "denoise/reconstruction_settings.h"
-#include "restir/restir_settings.h"
 #include "session/writing/picture_metadata.h"
-#include "settings/picture_options.h"
+#include "settings/setting_table.h"
 
 namespace pertev {
 
@@ -37,7 +36,7 @@ enum class ShownLayer : uint8_t {
 inline constexpr uint32_t kMovingDepth = 4;
 
 struct ViewState {
-    RenderSettings picture; // picture at rest: size, light, number of samples, tracers
+    PictureOptions options; // except for the tone map, the exposure and the camera, which are the fields below
     Display display;        // automatic exposure is added to its stops
     bool finds_exposure = false;
     float found_stops = 0; // automatic exposure of the last picture
@@ -45,9 +44,6 @@ struct ViewState {
     ShownLayer layer = ShownLayer::Beauty;
     bool is_real_time = false; // pictures at rest are like moving ones
     // Moving frames; none of this affects the picture at rest.
-    bool is_reconstructed = true; // with the history of earlier frames (denoise/); else they show raw samples
-    ReconstructionSettings reconstruction;
-    RestirSettings restir;
     float moving_scale = 0;               // scale; 0: whatever meets the frame rate
     uint32_t moving_depth = kMovingDepth; // maximum number of scatterings, if that is below the picture's
     float screen_rate = 0;                // refresh rate of the screen of the client that steers; 0: unknown
@@ -57,15 +53,13 @@ struct ViewState {
                                                               // why
 };
 
-/// The options of pictures that a page may change, and the picture's size.
-PictureOptions options_of(const ViewState& state);
-
 /// The value of a setting: text for choices, a number for the others.
 using SettingValue = std::variant<double, std::string>;
 
 struct ViewSetting {
     enum class Kind : uint8_t { Choice, Number, Whole };
-    const char *name = "", *label = "", *group = "";
+    const char *name = "", *label = "";
+    PanelGroup group = PanelGroup::Picture;
     const char* hint = ""; // for people who do not know it
     Kind kind = Kind::Choice;
     std::vector<std::string> choices;   // for a Choice
@@ -75,6 +69,8 @@ struct ViewSetting {
     std::function<std::string(ViewState&, const SettingValue&)> set;
 };
 
+/// Returns the viewer's own settings and those of a table, which stays where it is, in the panel's order.
+std::vector<ViewSetting> make_view_settings(std::span<const Setting> table);
 /// All settings, in the panel's order.
 const std::vector<ViewSetting>& view_settings();
 

@@ -1,11 +1,15 @@
 #pragma once
 
-// The amount of memory, for refusing work that would not fit.
+// The amount of memory, for refusing work that would not fit, and byte counts for people.
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 
 namespace pertev {
+
+inline double mebibytes(uint64_t bytes) { return static_cast<double>(bytes) / 0x1p20; }
+inline double gibibytes(uint64_t bytes) { return static_cast<double>(bytes) / 0x1p30; }
 
 /// Memory of this machine or, if that is less, of the container or the service of this process; bytes. SIZE_MAX if
 /// unknown.

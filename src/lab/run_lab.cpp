@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "base/byte_units.h"
 #include "base/error.h"
 #include "base/machine_memory.h"
 #include "base/stopwatch.h"

@@ -11,7 +11,7 @@
 
 #include "device/queue.h"
 #include "image/image.h"
-#include "session/render_picture.h"
+#include "session/session.h"
 
 namespace pertev {
 

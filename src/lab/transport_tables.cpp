@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "base/byte_units.h"
+#include "base/machine_memory.h"
 
 namespace pertev {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "base/byte_units.h"
 #include "base/error.h"
+#include "base/machine_memory.h"
 #include "radiosity/corner_table.h"
 #include "radiosity/hierarchical.h"
 #include "radiosity/radiosity_system.h"

@@ -1,13 +1,16 @@
 #pragma once
 
-// Angles in degrees for people. Not every angle in radians has degrees that convert back to the same bits, so they are
-// searched for.
+// Angles in degrees for people, and the size of a camera's view, also as settings state it. Not every angle in radians
+// has degrees that convert back to the same bits, so they are searched for. Above render/ only this file distinguishes
+// kinds of cameras.
 
 #include <bit>
 #include <cstdint>
 #include <initializer_list>
 
 #include "math/scalar.h"
+#include "render/camera_view.h"
+#include "settings/camera_choice.h"
 
 namespace pertev {
 
@@ -24,6 +27,25 @@ inline float degrees_for(float radians) {
         }
     }
     return near;
+}
+
+/// The vertical angle of a camera's view, radians; 0 if its rays are parallel, so that the view has only a height.
+inline float view_angle(const Camera& camera) { return has_parallel_rays(camera.projection) ? 0 : camera.fov_y; }
+/// The height of the view at a distance, metres.
+inline float view_height_at(const Camera& camera, float distance) {
+    return 2 * half_view_height(camera) * (view_angle(camera) > 0 ? distance : 1.0f);
+}
+
+/// Puts the lens of `camera` into a choice: its projection, the size of its view, its aperture and focus.
+inline void state_lens(const Camera& camera, CameraChoice& choice) {
+    choice.projection = camera.projection;
+    if (view_angle(camera) > 0) {
+        choice.fov_deg = degrees_for(camera.fov_y);
+    } else {
+        choice.view_height = camera.ortho_height;
+    }
+    choice.aperture = camera.aperture_radius;
+    if (camera.aperture_radius > 0) choice.focus = camera.focus_distance;
 }
 
 } // namespace pertev

@@ -72,4 +72,11 @@ std::vector<RayWork> Session::count_camera_work() {
     return pertev::count_camera_work(pictures_.queue(), scene_.tracer(), picture);
 }
 
+RenderResult render_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera,
+                            const RenderSettings& settings, Sink& sink) {
+    Session session(queue, prepared, camera, settings);
+    session.render(settings.samples, sink);
+    return session.result();
+}
+
 } // namespace pertev

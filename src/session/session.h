@@ -119,4 +119,9 @@ private:
     uint64_t cuts_ = 0;
 };
 
+/// Renders `settings.samples` samples in a session of their own, or fewer when time is over or `sink` stops. Throws
+/// Error(OutOfMemory, DeviceFault).
+RenderResult render_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera,
+                            const RenderSettings& settings, Sink& sink = nobody());
+
 } // namespace pertev

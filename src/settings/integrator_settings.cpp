@@ -128,15 +128,16 @@ std::vector<Setting> frame_settings() {
             "The number of passes of the wavelet filter.", Range{0, 8}),
         row("restir", "Frames", "NAME", FIELD(reconstruction.sharing.light),
             "Resampling of light between pixels: di for direct light at the first surface, gi for indirect light as "
-            "well. It helps with many emitters and takes time."),
+            "well. It helps with many emitters and takes time.",
+            Panel{"ReSTIR", PanelGroup::Frames}),
         row("restir_history", "Frames", "N", FIELD(reconstruction.sharing.history),
             "The maximum number of samples that a reservoir of earlier frames counts as. Fewer follow moving light and "
             "shadows sooner, with more noise.",
-            Range{0, 1024}),
+            Range{0, 1024}, Panel{"ReSTIR max history, frames", PanelGroup::Frames}),
         row("resolution_scale", "Frames", "X", FIELD(reconstruction.settings.resolution_scale),
             "The resolution of light, relative to each side of the picture; less is faster. Edges and textures keep "
             "theirs.",
-            Range{0.1, 1}),
+            Range{0.1, 1}, Panel{"Light resolution, per side", PanelGroup::Frames, 0.05}),
     };
     for (Setting& row : rows) {
         row.verbs = kRender | kView | kBenchFrames | kBenchSequence;

@@ -105,6 +105,16 @@ enum class Recorded : uint8_t {
     Changed,   // its value, if it is not the default
 };
 
+/// Group of the viewer's panel, in the panel's order.
+enum class PanelGroup : uint8_t { Picture, Light, Frames, Camera, Rays };
+
+/// A setting's row in the viewer's panel.
+struct Panel {
+    const char* label = ""; // empty: it has none
+    PanelGroup group = PanelGroup::Picture;
+    double step = 1; // between two numbers
+};
+
 struct Setting {
     const char* name;      // name in C++, JSON and metadata, from which the flag is made
     const char* group;     // a heading, one word
@@ -132,6 +142,7 @@ struct Setting {
     bool is_kept = true;      // settings files contain it, because the picture depends on it
     bool opens_scene = false; // takes effect before the scene's file is read, which thus cannot suggest it
     bool is_common = false;   // used by most people
+    Panel panel = {};         // only if the viewer can change it between frames
 };
 
 /// Returns what `visit` returns for the field of a copy of the options, so that these stay as they are.

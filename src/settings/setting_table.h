@@ -1,7 +1,7 @@
 #pragma once
 
 // The table of settings: one row each, in the order of help and documents. A setting that is added here gets a flag,
-// help, an entry in JSON and metadata, and a line in docs/settings.md.
+// help, an entry in JSON and metadata, a line in docs/settings.md and, with a Panel, a row in the viewer's panel.
 
 #include <utility>
 
@@ -77,6 +77,7 @@ inline void put(Setting& s, Of of) { s.integrators = of.integrators; }
 inline void put(Setting& s, Needs needs) { s.needs = needs.text; }
 inline void put(Setting& s, Excludes excludes) { s.excludes = excludes.text; }
 inline void put(Setting& s, In in) { s.formats = in.formats; }
+inline void put(Setting& s, Panel panel) { s.panel = panel; }
 inline void put(Setting& s, Recorded recorded) { s.recorded = recorded; }
 inline void put(Setting& s, Mark mark) {
     if (mark == Mark::Name) s.is_name = true;

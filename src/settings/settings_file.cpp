@@ -83,6 +83,17 @@ std::string settings_json(const PictureOptions& options, const std::string& hash
                        json_string(options.scene.scene), json_string(hash_of_scene), members);
 }
 
+std::string reconstruction_json(const ReconstructionOptions& options) {
+    PictureOptions used;
+    used.reconstruction = {.settings = options.used(), .sharing = options.sharing};
+    std::string members;
+    for (const Setting& setting : all_settings()) {
+        if (setting.needs != "real_time") continue;
+        members += fmt::format("{}\"{}\":{}", members.empty() ? "" : ",", setting.name, json_of(used, setting));
+    }
+    return '{' + members + '}';
+}
+
 void read_settings(const std::filesystem::path& file, uint32_t verbs, std::span<const std::string> overruled,
                    PictureOptions& options, Messages& messages) {
     const JsonFile json(file);

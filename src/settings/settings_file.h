@@ -27,6 +27,9 @@ bool is_written(const PictureOptions& options, const Setting& setting);
 std::string settings_json(const PictureOptions& options, const std::string& hash_of_scene,
                           std::span<const Setting> table = all_settings());
 
+/// Returns the settings that determine a real-time frame besides those of its picture, as a JSON object.
+std::string reconstruction_json(const ReconstructionOptions& options);
+
 /// Adds the settings of a file to `options`. Entries that the table or `verbs` do not have are skipped with a
 /// warning; another scene than that of `options` gives a warning too. Settings in `overruled` are skipped. Throws
 /// Error(BadInput) for a file that is invalid or has another version, and for an invalid value.

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "base/json_text.h"
-
 namespace pertev {
 
 std::string_view integrator_name(const RenderSettings& settings) {
@@ -44,14 +42,6 @@ uint32_t integrators_that(bool (*has)(IntegratorKind)) {
         if (has(integrator.value)) bits |= 1u << static_cast<uint32_t>(integrator.value);
     }
     return bits;
-}
-
-std::string json_of(const ReconstructionSettings& settings, const RestirSettings& restir) {
-    return fmt::format(
-        R"({{"history":{},"passes":{},"clamp_fireflies":{},"clamp_history":{},"temporal_gradients":{},"anti_alias":{},"resolution_scale":{},"restir":{},"restir_history":{}}})",
-        settings.history, settings.passes, settings.clamp_fireflies, settings.clamp_history, settings.follow_light,
-        settings.anti_alias, json_number(static_cast<double>(settings.resolution_scale)),
-        json_string(name_of(restir.light)), restir.history);
 }
 
 } // namespace pertev

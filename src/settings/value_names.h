@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "base/value_names.h"
-#include "denoise/reconstruction_settings.h"
 #include "image/tone_map_image.h"
 #include "radiosity/radiosity_settings.h"
 #include "restir/restir_settings.h"
@@ -51,9 +50,5 @@ std::vector<std::string> integrator_names(uint32_t kinds = ~0u);
 std::string list_of(const std::vector<std::string>& integrators);
 /// Returns the bits of the integrators for which `has` returns true.
 uint32_t integrators_that(bool (*has)(IntegratorKind));
-
-/// Returns everything that determines the bytes of a real-time frame, besides the picture's own settings, as a JSON
-/// object.
-std::string json_of(const ReconstructionSettings& settings, const RestirSettings& restir);
 
 } // namespace pertev

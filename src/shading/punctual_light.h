@@ -1,7 +1,7 @@
 #pragma once
 
 // Lights without extent: the light of each kind at a point, and the emission of particles. A new kind is a case in
-// each function here.
+// parts_of (scene/light.h) and in punctual_falloff.
 
 #include <cstdint>
 
@@ -58,22 +58,17 @@ struct PunctualArrival {
 /// Finds the light that arrives at `from_point`. Returns false if nothing arrives: outside a cone or the range, or if
 /// the point is the light's position.
 HD inline bool find_punctual_light(const PunctualLight& light, Vec3 from_point, PunctualArrival& arrival) {
-    switch (light.kind) {
-    case LightKind::Point:
-    case LightKind::Spot: {
-        const Vec3 to_light = light.position - from_point;
-        const float distance_squared = length_squared(to_light);
-        arrival.distance = sqrt(distance_squared);
-        arrival.wi = to_light / arrival.distance;
-        const float factor = punctual_falloff(light, arrival.wi, arrival.distance) / distance_squared;
-        if (!(factor > 0) || !is_finite(factor)) return false;
-        arrival.irradiance = factor * light.intensity;
+    if (!parts_of(light.kind).position) {
+        arrival = {-light.direction, kInfinity, light.intensity};
         return true;
     }
-    case LightKind::Directional:
-        break;
-    }
-    arrival = {-light.direction, kInfinity, light.intensity};
+    const Vec3 to_light = light.position - from_point;
+    const float distance_squared = length_squared(to_light);
+    arrival.distance = sqrt(distance_squared);
+    arrival.wi = to_light / arrival.distance;
+    const float factor = punctual_falloff(light, arrival.wi, arrival.distance) / distance_squared;
+    if (!(factor > 0) || !is_finite(factor)) return false;
+    arrival.irradiance = factor * light.intensity;
     return true;
 }
 

@@ -10,7 +10,7 @@
 #include "base/parallel_for.h"
 #include "image/picture_hash.h"
 #include "session/pictures/prepare_render.h"
-#include "session/render_picture.h"
+#include "session/session.h"
 #include "tests/support/asked_sink.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"

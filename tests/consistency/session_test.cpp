@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "image/picture_hash.h"
-#include "session/render_picture.h"
+#include "session/session.h"
 #include "tests/support/direction_integrator.h"
 #include "tests/support/options.h"
 #include "tests/support/random.h"

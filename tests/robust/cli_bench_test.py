@@ -190,7 +190,7 @@ class Bench(CliTest):
         self.assertEqual(len({event["picture"] for event in [made[0], *shared]}), 3)
         coarse = self.succeed(*line, "--resolution-scale", "0.5", "--passes", "2", "--no-anti-alias", "--json").events("frames")[0]
         self.assertEqual({name: value for name, value in coarse["reconstruction"].items() if made[0]["reconstruction"][name] != value},
-                         {"resolution_scale": 0.5, "passes": 2, "anti_alias": False})
+                         {"resolution_scale": 0.5, "passes": 2, "no_anti_alias": True})
         self.refuse(2, *line, "--restir", "all", says=["--restir", "off", "di", "gi"])
         self.refuse(2, *line, "--spp", "4", says=["--spp"])
 

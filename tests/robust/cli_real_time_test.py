@@ -142,7 +142,10 @@ class RealTime(CliTest):
         self.assertEqual(info["pertev.hash"], said.events("frame")[1]["hash"])
         self.assertEqual((info["pertev.frame"], info["pertev.first_frame"], info["pertev.spp"]), (4, 3, 1))
         made = json.loads(info["pertev.reconstruction"])
-        self.assertEqual((made["restir"], made["passes"], made["history"], made["anti_alias"]), ("di", 2, 32, True))
+        self.assertEqual((made["restir"], made["passes"], made["history"], made["no_anti_alias"]), ("di", 2, 32, False))
+        write(self.path("kept.json"), json.dumps({"version": 1, "settings": made})) # its names are those of the table
+        said = self.render("y", "--frames", "3-4", "--fps", "4", "--settings", "kept.json", output="f-#.exr")
+        self.assertEqual(said.events("frame")[1]["hash"], info["pertev.hash"])
         self.assertIn("albedo.R", info["channels"])
         self.assertIn('"0":', info["pertev.instances"])
         self.assertEqual(self.info("x/f-3.exr")["pertev.time"], 0.75)

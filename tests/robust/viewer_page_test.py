@@ -415,7 +415,7 @@ class Cameras(unittest.TestCase):
                 for number in ("1", "0"):
                     page.value(f"(() => {{ const c = document.querySelector('#cameras'); c.value = '{number}';"
                                "c.dispatchEvent(new Event('change')); })()")
-                    page.until(f"document.body.dataset.flags.startsWith(\"--camera '{number}'\") && document.body.dataset.phase == 'done'")
+                    page.until(f"document.body.dataset.flags.startsWith('--camera {number} ') && document.body.dataset.phase == 'done'")
                     self.assertEqual(page.value("document.body.dataset.hash"), render(scene, "--camera", number, size="64x48", spp=2))
 
 

@@ -60,4 +60,27 @@ std::optional<std::string> find_uncovered(std::span<const BvhTriangle> triangles
     return fmt::format("a part of triangle {} lies in no leaf that lists it", first.load());
 }
 
+/// Checks a tree by its own check_structure() and find_uncovered.
+template <class Tree, class CheckStructure, class IsListed>
+std::optional<std::string> find_fault_of(const Tree& tree, const CheckStructure& check_structure,
+                                         const IsListed& is_listed) {
+    if (tree.nodes.empty()) {
+        if (tree.triangles.empty() && tree.references.empty()) return std::nullopt;
+        return "no node, but triangles or references";
+    }
+    if (auto fault = check_structure()) return fault;
+    return find_uncovered(tree.triangles, tree.bounds, is_listed);
+}
+
+/// Returns which of these counts of what a traversal reached is not the tree's.
+template <class Tree>
+std::optional<std::string> find_unreached(const Tree& tree, uint64_t nodes, uint64_t references, int depth) {
+    if (nodes != tree.nodes.size()) return fmt::format("{} of {} nodes are reached", nodes, tree.nodes.size());
+    if (references != tree.references.size()) {
+        return fmt::format("{} of {} references are in leaves", references, tree.references.size());
+    }
+    if (depth != tree.depth) return fmt::format("depth {}, stated {}", depth, tree.depth);
+    return std::nullopt;
+}
+
 } // namespace pertev

@@ -16,13 +16,9 @@ public:
     explicit KdTreeChecker(const KdTree& tree) : tree_(tree) {}
 
     std::optional<std::string> run() const {
-        if (tree_.nodes.empty()) {
-            if (tree_.triangles.empty() && tree_.references.empty()) return std::nullopt;
-            return "no node, but triangles or references";
-        }
-        if (auto fault = check_structure()) return fault;
-        return find_uncovered(tree_.triangles, tree_.bounds,
-                              [this](uint32_t id, const TrianglePoint& p) { return is_listed(id, p); });
+        return find_fault_of(
+            tree_, [this] { return check_structure(); },
+            [this](uint32_t id, const TrianglePoint& p) { return is_listed(id, p); });
     }
 
 private:
@@ -57,12 +53,7 @@ private:
             pending.push_back({node.above(), at.depth + 1, cell_above(at.cell, node.axis(), node.plane())});
             pending.push_back({at.node + 1, at.depth + 1, cell_below(at.cell, node.axis(), node.plane())});
         }
-        if (nodes != tree_.nodes.size()) return fmt::format("{} of {} nodes are reached", nodes, tree_.nodes.size());
-        if (references != tree_.references.size()) {
-            return fmt::format("{} of {} references are in leaves", references, tree_.references.size());
-        }
-        if (depth != tree_.depth) return fmt::format("depth {}, stated {}", depth, tree_.depth);
-        return std::nullopt;
+        return find_unreached(tree_, nodes, references, depth);
     }
 
     /// Returns whether the leaf at `p` lists the triangle; on a plane, whether one of the adjacent leaves does.

@@ -25,15 +25,10 @@ class OctreeChecker {
 public:
     explicit OctreeChecker(const Octree& tree) : tree_(tree) {}
 
-    std::optional<std::string> run() {
-        if (tree_.nodes.empty()) {
-            if (tree_.triangles.empty() && tree_.references.empty()) return std::nullopt;
-            return "no node, but triangles or references";
-        }
-        if (!holds(bounds_of(root(), tree_.corner), tree_.bounds)) return "the root's cell does not hold the bounds";
-        if (auto fault = check_structure()) return fault;
-        return find_uncovered(tree_.triangles, tree_.bounds,
-                              [this](uint32_t id, const TrianglePoint& p) { return is_listed(id, p); });
+    std::optional<std::string> run() const {
+        return find_fault_of(
+            tree_, [this] { return check_structure(); },
+            [this](uint32_t id, const TrianglePoint& p) { return is_listed(id, p); });
     }
 
 private:
@@ -45,7 +40,8 @@ private:
 
     OctreeCell root() const { return {0, 0, 0, 0.5f * tree_.side}; }
 
-    std::optional<std::string> check_structure() {
+    std::optional<std::string> check_structure() const {
+        if (!holds(bounds_of(root(), tree_.corner), tree_.bounds)) return "the root's cell does not hold the bounds";
         std::vector<bool> seen(tree_.nodes.size()), listed(tree_.references.size());
         std::vector<Pending> pending = {{0, 0, root()}};
         uint64_t nodes = 0, references = 0;
@@ -80,11 +76,7 @@ private:
                 if (node.has_child(k)) pending.push_back({node.child(k), at.depth + 1, at.cell.child(k)});
             }
         }
-        if (nodes != tree_.nodes.size()) return fmt::format("{} of {} nodes are reached", nodes, tree_.nodes.size());
-        if (references != listed.size())
-            return fmt::format("{} of {} references are in leaves", references, listed.size());
-        if (depth != tree_.depth) return fmt::format("depth {}, stated {}", depth, tree_.depth);
-        return std::nullopt;
+        return find_unreached(tree_, nodes, references, depth);
     }
 
     /// Returns whether the leaf at `p` lists the triangle; on a plane, whether one of the adjacent leaves does.

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "session/render_picture.h"
+#include "session/session.h"
 
 namespace pertev::test {
 

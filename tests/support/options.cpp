@@ -7,8 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/parse_options.h"
-
 namespace pertev::test {
 namespace {
 

@@ -8,6 +8,9 @@
 
 namespace pertev::test {
 
+/// Reads --device and --long; everything else is doctest's.
+void parse_options(int argc, char** argv);
+
 /// Returns whether --device cuda was given, so that two-backend tests run on the GPU too.
 bool cuda_requested();
 

@@ -6,7 +6,7 @@
 
 #include "base/hash.h"
 #include "scene/scene.h"
-#include "session/render_picture.h"
+#include "session/session.h"
 
 namespace pertev::test {
 

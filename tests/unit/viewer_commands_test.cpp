@@ -73,7 +73,7 @@ TEST_CASE("a refused or unchanged setting restarts nothing") {
     ViewState view;
     view.dark = {{IntegratorKind::Whitted, "whitted: black"}};
     view.window_pixels = 640 * 480;
-    view.picture.width = 640, view.picture.height = 480;
+    view.options.render.width = 640, view.options.render.height = 480;
     flagged.inbox.expect(view);
     CHECK(flagged.put(setting("integrator", "whitted")) == "");
     CHECK(flagged.put(setting("integrator", "no such one")) == "");

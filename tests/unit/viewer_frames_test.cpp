@@ -23,14 +23,14 @@ struct Watched {
 
     Watched() {
         request.camera = test::mixed_scene_camera();
-        RenderSettings& picture = request.view.picture;
+        RenderSettings& picture = request.view.options.render;
         picture.width = 24, picture.height = 16;
         picture.samples = 2;
         picture.path.max_depth = 3;
         request.view.lens = request.camera;
         request.view.moving_scale = 1;
     }
-    Session session() { return {queue, scene.prepared(), request.camera, request.view.picture}; }
+    Session session() { return {queue, scene.prepared(), request.camera, request.view.options.render}; }
 };
 
 } // namespace
@@ -54,14 +54,14 @@ TEST_CASE("frames in motion share light at the set resolution, and the picture a
         CAPTURE(set.filters);
         Session session = watched.session(), alone = watched.session();
         SessionFrames frames(session, watched.scene, 0.1);
-        request.view.restir.light = set.light;
-        request.view.is_reconstructed = set.filters;
-        ReconstructionSettings& settings = request.view.reconstruction;
-        settings.resolution_scale = set.scale;
+        ReconstructionOptions& options = request.view.options.reconstruction;
+        options.sharing.light = set.light;
+        options.none = !set.filters;
+        options.settings.resolution_scale = set.scale;
         request.is_moving = true;
         for (uint32_t k = 0; k < 3; ++k) {
             const std::optional<ShownFrame> shown = frames.next(request);
-            alone.render_frame(k, set.filters ? settings : of_samples_alone(settings), request.view.restir);
+            alone.render_frame(k, set.filters ? options.settings : of_samples_alone(options.settings), options.sharing);
             alone.frame().display(request.view.display.tone_map, 0);
             REQUIRE(shown.has_value());
             CHECK(shown->image.pixels == alone.frame().displayed().pixels);
@@ -78,7 +78,7 @@ TEST_CASE("frames in motion share light at the set resolution, and the picture a
 TEST_CASE("metering and picking in a picture at rest keep its irradiance records") {
     Watched watched;
     FrameRequest& request = watched.request;
-    RenderSettings& picture = request.view.picture;
+    RenderSettings& picture = request.view.options.render;
     picture.integrator = IntegratorKind::IrradianceCache;
     picture.irradiance_cache = {.accuracy = 0.4f, .hemisphere_rays = 48};
     picture.samples = 4;
@@ -112,12 +112,12 @@ TEST_CASE("a change of ReSTIR or of the light's resolution restarts accumulation
     const auto gathered = [&] { return frames.next(request).value().samples; };
     CHECK(gathered() == 1);
     CHECK(gathered() == 2);
-    request.view.restir.light = RestirLight::Direct;
+    request.view.options.reconstruction.sharing.light = RestirLight::Direct;
     CHECK(gathered() == 1);
-    request.view.reconstruction.resolution_scale = 0.5f;
+    request.view.options.reconstruction.settings.resolution_scale = 0.5f;
     CHECK(gathered() == 1);
     CHECK(gathered() == 2);
-    request.view.is_reconstructed = false; // the samples themselves, which still share light
+    request.view.options.reconstruction.none = true; // the samples themselves, which still share light
     CHECK(gathered() == 1);
 }
 
@@ -125,7 +125,7 @@ TEST_CASE(
     "frames in motion have their own depth and continue after a rest, and the picture at rest has the full depth") {
     Watched watched;
     FrameRequest& request = watched.request;
-    RenderSettings& picture = request.view.picture;
+    RenderSettings& picture = request.view.options.render;
     picture.path.max_depth = 8;
     picture.samples = 32;
     request.view.moving_depth = 2;
@@ -135,14 +135,15 @@ TEST_CASE(
     shallow.path.max_depth = 2;
     for (const RestirLight light : {RestirLight::Off, RestirLight::Direct}) {
         CAPTURE(static_cast<int>(light));
-        request.view.restir.light = light;
+        request.view.options.reconstruction.sharing.light = light;
         Session session = watched.session(), alone = watched.session();
         alone.set_settings(shallow);
         SessionFrames frames(session, watched.scene, 0.1);
         const auto check_frame = [&](uint32_t number) {
             request.is_moving = true;
             const std::optional<ShownFrame> shown = frames.next(request);
-            alone.render_frame(number, request.view.reconstruction, request.view.restir);
+            const ReconstructionOptions& options = request.view.options.reconstruction;
+            alone.render_frame(number, options.settings, options.sharing);
             alone.frame().display(request.view.display.tone_map, 0);
             REQUIRE(shown.has_value());
             CHECK(shown->image.pixels == alone.frame().displayed().pixels);
@@ -185,12 +186,12 @@ TEST_CASE("a change of the depth in motion restarts frames but keeps the picture
 TEST_CASE("single pictures have the depth in motion, and the metered exposure at rest in real time") {
     Watched watched;
     FrameRequest& request = watched.request;
-    request.view.picture.integrator = IntegratorKind::Distributed;
+    request.view.options.render.integrator = IntegratorKind::Distributed;
     request.view.is_real_time = request.view.finds_exposure = true;
     request.view.moving_depth = 2;
     Session session = watched.session(), alone = watched.session();
     SessionFrames frames(session, watched.scene, 0.1);
-    RenderSettings shallow = request.view.picture;
+    RenderSettings shallow = request.view.options.render;
     shallow.path.max_depth = 2;
     alone.set_settings(shallow);
     const auto check_metered = [&] {
@@ -210,7 +211,7 @@ TEST_CASE("single pictures have the depth in motion, and the metered exposure at
     request.is_moving = false;
     CHECK(check_metered().found_stops != first.found_stops);
     request.view.is_real_time = false; // and the picture at rest has its own
-    alone.set_settings(request.view.picture);
+    alone.set_settings(request.view.options.render);
     request.budget_s = 100;
     check_metered();
 }
@@ -236,7 +237,7 @@ TEST_CASE("on a GPU the size keeps the screen's rate within limits, and on a CPU
 
 TEST_CASE("the exposure is metered on the displayed frame, whatever the light's resolution") {
     Watched watched;
-    RenderSettings& picture = watched.request.view.picture;
+    RenderSettings& picture = watched.request.view.options.render;
     for (const uint32_t width : {24u, 100u}) { // blocks of a pixel, and of two
         picture.width = width;
         picture.height = width * 2 / 3;
@@ -281,7 +282,7 @@ TEST_CASE("timing each kind of ray and shading does not change the picture") {
         CAPTURE(is_moving);
         request.is_moving = is_moving;
         const auto shown = [&](SessionFrames& source, bool is_timed) {
-            request.view.picture.time_kinds = is_timed;
+            request.view.options.render.time_kinds = is_timed;
             std::optional<ShownFrame> frame;
             do frame = source.next(request);
             while (!frame || (!is_moving && !frame->is_final));
@@ -297,7 +298,7 @@ TEST_CASE("timing each kind of ray and shading does not change the picture") {
         CHECK(rays.total() < timed.render_s);
         CHECK(plain.kind_seconds.total() == 0);
     }
-    request.view.picture.integrator = IntegratorKind::Raster; // has no rays
-    request.view.picture.time_kinds = true;
+    request.view.options.render.integrator = IntegratorKind::Raster; // has no rays
+    request.view.options.render.time_kinds = true;
     CHECK(stages_of(frames.next(request).value()).starts_with("render "));
 }

@@ -35,16 +35,16 @@ struct WatchedGrowth {
 
     WatchedGrowth() {
         request.camera = test::mixed_scene_camera();
-        RenderSettings& picture = request.view.picture;
+        RenderSettings& picture = request.view.options.render;
         picture.width = 48, picture.height = 32;
         picture.samples = 12; // too few for a frame of full size before them
         picture.path.max_depth = 3;
         request.view.lens = request.camera;
     }
-    Session session() { return {queue, scene.prepared(), request.camera, request.view.picture}; }
+    Session session() { return {queue, scene.prepared(), request.camera, request.view.options.render}; }
     std::string hash_alone() {
         Session plain = session();
-        plain.render(request.view.picture.samples);
+        plain.render(request.view.options.render.samples);
         return picture_hash(plain.picture()).hex();
     }
 };
@@ -87,10 +87,10 @@ TEST_CASE("a picture has the window's aspect and at most the requested pixels an
     }
     ViewState view;
     CHECK_FALSE(take_window_shape(view, 64, 48)); // its size was asked for
-    CHECK(view.picture.width == 1280);
+    CHECK(view.options.render.width == 1280);
     view.window_pixels = 1280 * 720;
     CHECK(take_window_shape(view, 640, 480));
-    CHECK(view.picture.height == 480);
+    CHECK(view.options.render.height == 480);
     CHECK_FALSE(take_window_shape(view, 640, 480));
 }
 
@@ -101,7 +101,7 @@ TEST_CASE("growing pictures precede the samples of a new view and do not affect 
     const std::string at_rest = watched.hash_alone();
     for (const IntegratorKind integrator : {IntegratorKind::Path, IntegratorKind::Distributed}) {
         CAPTURE(static_cast<int>(integrator));
-        request.view.picture.integrator = integrator;
+        request.view.options.render.integrator = integrator;
         Session session = watched.session();
         SessionFrames frames(session, watched.scene, 0.1, 0); // every sample takes long
         const auto gather = [&] {
@@ -125,13 +125,13 @@ TEST_CASE("growing pictures precede the samples of a new view and do not affect 
         CHECK(sizes >= 2);
         CHECK((hash == at_rest) == (integrator == IntegratorKind::Path));
         CHECK(gather().first == 1); // it is there
-        request.view.picture.path.max_depth = 2;
+        request.view.options.render.path.max_depth = 2;
         CHECK(gather().first >= 2); // a new setting is seen as a small picture first
-        request.view.picture.path.max_depth = 3;
+        request.view.options.render.path.max_depth = 3;
         CHECK(gather().second == hash);
-        request.view.picture.samples = 15; // more samples of the same picture need none
+        request.view.options.render.samples = 15; // more samples of the same picture need none
         CHECK(gather().first == 1);
-        request.view.picture.samples = 12; // too few for a frame of full size before them
+        request.view.options.render.samples = 12; // too few for a frame of full size before them
     }
 }
 
@@ -162,7 +162,7 @@ TEST_CASE("a change of exposure waits for no sample and loses no complete sample
     while (!rests || !rests->is_final) rests = frames.next(request);
     CHECK(rests->hash == at_rest);
     // Frames that are broken off begin anew.
-    request.view.picture.path.max_depth = 2;
+    request.view.options.render.path.max_depth = 2;
     frames.hurry() = true;
     CHECK_FALSE(frames.next(request).has_value());
     frames.hurry() = false;

@@ -91,26 +91,27 @@ TEST_CASE("fixing the exposure keeps its value, and metering resets the stops") 
 TEST_CASE("frames in motion have a smaller depth until a depth is chosen for both") {
     ViewState state;
     CHECK(state.moving_depth == kMovingDepth);
-    CHECK(state.picture.path.max_depth > kMovingDepth);
+    CHECK(state.options.render.path.max_depth > kMovingDepth);
     CHECK(set_view_setting(state, "moving_depth", 2.0) == "");
     CHECK(state.moving_depth == 2);
-    CHECK(state.picture.path.max_depth == ViewState{}.picture.path.max_depth); // the picture at rest stays
+    CHECK(state.options.render.path.max_depth ==
+          ViewState{}.options.render.path.max_depth); // the picture at rest stays
     CHECK(set_view_setting(state, "max_depth", 9.0) == "");
     CHECK(state.moving_depth == 9);
-    CHECK(state.picture.path.max_depth == 9);
+    CHECK(state.options.render.path.max_depth == 9);
 }
 
 TEST_CASE("compatible structures and traversals are chosen together for all kinds of rays") {
     ViewState state;
     CHECK(set_view_setting(state, "structure", "octree") == "");
-    CHECK(state.picture.tracers->camera.traversal == TraversalKind::Octree);
-    CHECK(state.picture.tracers->shadow == state.picture.tracers->camera);
+    CHECK(state.options.render.tracers->camera.traversal == TraversalKind::Octree);
+    CHECK(state.options.render.tracers->shadow == state.options.render.tracers->camera);
     CHECK(set_view_setting(state, "traversal", "while-while") == "");
-    CHECK(builder_of(state.picture.tracers->camera.structure).has_value());
+    CHECK(builder_of(state.options.render.tracers->camera.structure).has_value());
     CHECK(set_view_setting(state, "structure", "sbvh") == "");
-    CHECK(state.picture.tracers->bounce.traversal == TraversalKind::WhileWhile);
+    CHECK(state.options.render.tracers->bounce.traversal == TraversalKind::WhileWhile);
     CHECK(set_view_setting(state, "rta", "off") == "");
-    CHECK_FALSE(state.picture.tracers->camera.options.rta);
+    CHECK_FALSE(state.options.render.tracers->camera.options.rta);
 }
 
 TEST_CASE("messages to the page are JSON") {

@@ -64,11 +64,13 @@ TEST_CASE("no drag passes the poles") {
 }
 
 TEST_CASE("panning keeps points at the centre's distance under the pointer, and zooming never reaches the centre") {
-    const float fov = 1, height = 2 * std::tan(0.5f * fov);
-    const Pose panned = pan(kStart, 0.5f, 0, height, false); // half a picture's height to the right
-    CHECK(panned.eye.x == doctest::Approx(-0.5 * static_cast<double>(height) * 5));
+    Camera camera;
+    camera.fov_y = 1;
+    const Pose panned = pan(kStart, 0.5f, 0, view_height_at(camera, 5)); // half a picture's height to the right
+    CHECK(panned.eye.x == doctest::Approx(-5 * std::tan(0.5)));
     CHECK(near(ahead(panned), ahead(kStart)));
-    CHECK(pan(kStart, 0, 0.5f, 3, true).eye.y == doctest::Approx(1 + 1.5));
+    camera.projection = Projection::Orthographic, camera.ortho_height = 3;
+    CHECK(pan(kStart, 0, 0.5f, view_height_at(camera, 5)).eye.y == doctest::Approx(1 + 1.5));
     CHECK(length(zoom(kStart, 1).eye - kStart.centre) == doctest::Approx(5 * 6.0 / 7));
     CHECK(length(zoom(kStart, -1).eye - kStart.centre) == doctest::Approx(5 * 7.0 / 6));
     Pose near_centre = kStart;
@@ -118,7 +120,8 @@ TEST_CASE("flags contain eye, target and lens") {
     Pose leaning = kStart;
     leaning.up = {0, 0, 1};
     CHECK(camera_flags(leaning, camera, "main") ==
-          "--camera 'main' --eye 0,1,5 --target 0,1,0 --up 0,0,1 --fov 50 --aperture 0.5 --focus 4");
+          "--camera main --eye 0,1,5 --target 0,1,0 --up 0,0,1 --fov 50 --aperture 0.5 --focus 4");
+    CHECK(camera_flags(kStart, camera, "it's").starts_with("--camera 'it'\\''s' --eye 0,1,5 ")); // quoted for a shell
     camera.projection = Projection::Orthographic;
     CHECK(camera_flags(kStart, camera, "").find("--projection orthographic --view-height 2") != std::string::npos);
 }

@@ -96,7 +96,7 @@ TEST_CASE("flags state a camera's position to the bit, or the name of the scene'
     ViewCamera view(start, scene);
     Camera lens = start.camera;
     CHECK_FALSE(view.is_given_by_pose());
-    CHECK(view.flags(lens, 1.25).starts_with("--camera '0' --fov "));
+    CHECK(view.flags(lens, 1.25).starts_with("--camera 0 --fov "));
     CHECK(view.flags(lens, 1.25).ends_with(" --time 1.25"));
     view.step(step_forward(), lens, 1);
     CHECK(view.is_given_by_pose());

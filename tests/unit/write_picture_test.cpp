@@ -9,7 +9,7 @@
 #include "image/read_image.h"
 #include "image/tone_map_image.h"
 #include "session/degrees.h"
-#include "session/render_picture.h"
+#include "session/session.h"
 #include "session/writing/write_picture.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"

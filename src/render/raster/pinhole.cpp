@@ -16,7 +16,7 @@ Pinhole make_pinhole(const CameraRays& camera) {
     p.row_y = scaled(-inverse_determinant, cross(c2, c0));
     p.row_depth = scaled(-inverse_determinant, cross(c0, c1));
     p.eye = to_double(m.translation);
-    p.is_perspective = !has_parallel_rays(camera.view.projection);
+    p.is_perspective = !growth_of(camera.view).is_constant;
     p.width = camera.width;
     p.height = camera.height;
     p.half_width = static_cast<double>(camera.view.half_width);

@@ -7,7 +7,6 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "formats/files/parse_number.h"
-#include "render/camera_view.h"
 #include "scene/scene_origin.h"
 #include "session/degrees.h"
 #include "session/position_text.h"
@@ -56,13 +55,13 @@ Camera make_camera(const CameraChoice& choice, const Scene& scene, float aspect,
     return camera;
 }
 
-/// Replaces a perspective camera by an orthographic one whose height shows as much at its target.
-void flatten(const CameraChoice& choice, const Scene& scene, Camera& camera) {
+/// Gives a camera whose rays have become parallel the height that the one `before` shows at its target.
+void flatten(const CameraChoice& choice, const Scene& scene, const Camera& before, Camera& camera) {
     const Vec3 eye = camera.world_from_camera.translation, forward = -column(camera.world_from_camera, 2);
     const Bounds3 bounds = bounds_of(scene);
     const float distance = choice.target ? length(in_scene(scene, *choice.target) - eye)
                                          : dot(0.5f * (bounds.lo + bounds.hi) - eye, forward);
-    if (distance > 0) camera.ortho_height = min(2 * half_view_height(camera) * distance, kMaxCoordinate);
+    if (distance > 0) camera.ortho_height = min(view_height_at(before, distance), kMaxCoordinate);
 }
 
 /// If there is an aperture, but neither focus nor target was given, focuses the placed `camera` on what is in the
@@ -86,7 +85,7 @@ void focus_in_the_middle(const CameraChoice& choice, const Scene& scene, Camera&
 
 /// Warns of parts of a choice without effect. `flattened` means that the camera's angle of view has become a height.
 void warn_of_useless_parts(const CameraChoice& choice, const Camera& camera, bool flattened, Messages& messages) {
-    const bool is_perspective = !has_parallel_rays(camera.projection);
+    const bool is_perspective = view_angle(camera) > 0;
     if (choice.view_height && is_perspective) {
         messages.warn({"view_height", "", "the camera is perspective; it applies with `projection=orthographic`"});
     }
@@ -141,10 +140,10 @@ Camera choose_camera(CameraChoice choice, const Scene& scene, float aspect, Mess
     if (choice.fov_deg) camera.fov_y = *choice.fov_deg * kRadiansPerDegree;
     if (choice.aperture) camera.aperture_radius = *choice.aperture;
     if (choice.focus) camera.focus_distance = *choice.focus;
-    const bool is_flat = choice.projection && has_parallel_rays(*choice.projection);
-    const bool flattened = is_flat && !has_parallel_rays(camera.projection);
-    if (flattened) flatten(choice, scene, camera);
+    const Camera before = camera;
     if (choice.projection) camera.projection = *choice.projection;
+    const bool flattened = view_angle(before) > 0 && view_angle(camera) == 0;
+    if (flattened) flatten(choice, scene, before, camera);
     if (choice.view_height) camera.ortho_height = *choice.view_height;
     focus_in_the_middle(choice, scene, camera, messages);
     warn_of_useless_parts(choice, camera, flattened, messages);

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "math/portable_math.h"
 #include "scene/scene_origin.h"
+#include "session/degrees.h"
 
 namespace pertev {
 namespace {
@@ -26,7 +27,7 @@ MovingCamera::MovingCamera(CameraChoice choice, std::optional<CameraPath> path, 
     if (makes_it_up) made_up_ = at_rest;
     const bool is_focused = choice_.focus || (choice_.target && !choice_.is_aimed) || path_;
     if (choice_.aperture.value_or(0) > 0 && !is_focused) choice_.focus = at_rest.focus_distance;
-    if (choice_.projection && has_parallel_rays(*choice_.projection)) choice_.view_height = at_rest.ortho_height;
+    if (choice_.projection && view_angle(at_rest) == 0) choice_.view_height = at_rest.ortho_height;
     const Vec3 eye = at_rest.world_from_camera.translation;
     const Vec3 seen = eye - at_rest.focus_distance * column(at_rest.world_from_camera, 2);
     const Bounds3 bounds = bounds_of(rest);

@@ -15,6 +15,7 @@
 #include "session/degrees.h"
 #include "session/position_text.h"
 #include "session/survey/ground.h"
+#include "settings/settings_file.h"
 #include "settings/value_names.h"
 
 namespace pertev {
@@ -167,14 +168,8 @@ CameraChoice choice_of(const CameraSource& source) {
     for (const Vec3 default_up : {Vec3{0, 0, -1}, Vec3{0, 1, 0}}) {
         if (!source.up && look_at(eye, target, default_up) == from) choice.up = default_up;
     }
-    choice.projection = camera.projection;
-    choice.aperture = camera.aperture_radius;
-    if (camera.aperture_radius > 0) choice.focus = camera.focus_distance;
-    if (has_parallel_rays(camera.projection)) {
-        choice.view_height = camera.ortho_height;
-    } else {
-        choice.fov_deg = source.fov_deg > 0 ? source.fov_deg : degrees_for(camera.fov_y);
-    }
+    state_lens(camera, choice);
+    if (choice.fov_deg && source.fov_deg > 0) choice.fov_deg = source.fov_deg;
     return choice;
 }
 
@@ -202,9 +197,10 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
         append(metadata, {{"pertev.radiosity", solution.made}, {"pertev.radiosity_hash", solution.hash().hex()}});
     }
     if (record.frame) {
-        append(metadata, {{"pertev.reconstruction", json_of(record.frame->reconstruction, record.frame->restir)},
-                          {"pertev.frame", static_cast<int32_t>(record.frame->number)},
-                          {"pertev.first_frame", static_cast<int32_t>(record.frame->cut)}});
+        append(metadata,
+               {{"pertev.reconstruction", reconstruction_json({record.frame->reconstruction, record.frame->restir})},
+                {"pertev.frame", static_cast<int32_t>(record.frame->number)},
+                {"pertev.first_frame", static_cast<int32_t>(record.frame->cut)}});
     }
     if (settings.irradiance) metadata.emplace_back("pertev.quantity", std::string("irradiance"));
     if (record.display && !record.display->false_colors) { // metered or given
