@@ -220,10 +220,11 @@ private:
         if (!is_finite(camera.world_from_camera)) throw bad(of + ": its transform is not finite");
         if (is_singular(camera.world_from_camera)) throw bad(of + ": its transform is singular; no scale may be 0");
         if (!is_near(camera.world_from_camera.translation)) throw too_far(of);
-        if (!(camera.fov_y > 0 && camera.fov_y < kPi)) {
+        const bool is_flat = has_parallel_rays(camera.projection);
+        if (!is_flat && !(camera.fov_y > 0 && camera.fov_y < kPi)) {
             throw bad(fmt::format("{}: its field of view is {} radians; expected between 0 and pi", of, camera.fov_y));
         }
-        if (!(camera.ortho_height > 0 && camera.ortho_height <= kMaxCoordinate)) {
+        if (is_flat && !(camera.ortho_height > 0 && camera.ortho_height <= kMaxCoordinate)) {
             throw bad(fmt::format("{}: its view height is {}; expected above 0", of, camera.ortho_height));
         }
         if (!(camera.aspect >= 0 && is_finite(camera.aspect))) {
