@@ -41,10 +41,10 @@ struct RecordScene {
 
 struct RecordJob {
     std::string name;
-    std::optional<float> reflectance; // of all surfaces, under a sky of radiance 1; otherwise materials are the file's
+    std::optional<float> reflectance; // if all surfaces are grey, under a sky of radiance 1
     std::optional<RecordView> view;   // otherwise the camera is the file's
     PixelFilter filter = PixelFilter::Tent;
-    std::optional<uint32_t> roulette_depth; // of Roulette::Throughput; otherwise the default roulette
+    std::optional<uint32_t> roulette_depth; // if it is Roulette::Throughput; otherwise the default
     uint32_t width = 0, height = 0, samples = 0;
     uint32_t max_depth = 0; // scatterings: one less than edges from the camera to a light
     // The scene is recognised by its triangles and by the mean over channels and pixels of others' pictures.

@@ -56,9 +56,13 @@ HD inline void add_radiance(const FilmView& film, uint32_t pixel, Rgb radiance) 
         return;
     }
     FixedSum* sums = film.pixel(pixel);
-    film.add(&sums[0], to_fixed(radiance.r));
-    film.add(&sums[1], to_fixed(radiance.g));
-    film.add(&sums[2], to_fixed(radiance.b));
+    FixedSum red = to_fixed(radiance.r), green = to_fixed(radiance.g), blue = to_fixed(radiance.b);
+#if PERTEV_ON_DEVICE
+    if (!sum_of_warp(pixel, red, green, blue)) return; // another thread adds this one's sample
+#endif
+    film.add(&sums[0], red);
+    film.add(&sums[1], green);
+    film.add(&sums[2], blue);
 }
 
 /// Stores a pixel's sample in a frame: `radiance`, of which the first surface scatters `diffuse` by its diffuse

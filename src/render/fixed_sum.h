@@ -61,6 +61,43 @@ HD inline void atomic_add(FixedSum* target, FixedSum value) {
     if (value.high != 0) atomic_add(&target->high, value.high);
 }
 
+/// A sum in parts of 27 bits, lowest first, of which 32 can be added without overflow.
+struct FixedSumLimbs {
+    uint32_t limbs[5];
+};
+HD inline FixedSumLimbs limbs_of(FixedSum x) {
+    constexpr uint64_t kLimb = (uint64_t(1) << 27) - 1;
+    return {{uint32_t(x.low & kLimb), uint32_t(x.low >> 27 & kLimb), uint32_t((x.low >> 54 | x.high << 10) & kLimb),
+             uint32_t(x.high >> 17 & kLimb), uint32_t(x.high >> 44)}};
+}
+HD inline FixedSum sum_of(const FixedSumLimbs& sums) {
+    const auto limb = [&](int i) { return uint64_t(sums.limbs[i]); };
+    return FixedSum{limb(0) + (limb(1) << 27), 0} + FixedSum{limb(2) << 54, limb(2) >> 10} +
+           FixedSum{0, (limb(3) << 17) + (limb(4) << 44)};
+}
+
+#if PERTEV_ON_DEVICE
+/// Sums over the lanes that call it together, if all of them have the same `target`: then one lane gets the sums and
+/// true, and the others false. Otherwise each lane keeps its values and gets true. Samples of a pixel begin side by
+/// side, and many end together; additions to one address would wait for each other.
+__device__ inline bool sum_of_warp(uint32_t target, FixedSum& a, FixedSum& b, FixedSum& c) {
+#if __CUDA_ARCH__ >= 800
+    const unsigned lanes = __activemask();
+    int is_same;
+    __match_all_sync(lanes, target, &is_same);
+    if (!is_same || (lanes & (lanes - 1)) == 0) return true;
+    for (FixedSum* const x : {&a, &b, &c}) {
+        FixedSumLimbs sums = limbs_of(*x);
+        for (uint32_t& limb : sums.limbs) limb = __reduce_add_sync(lanes, limb);
+        *x = sum_of(sums);
+    }
+    return threadIdx.x % 32 == static_cast<unsigned>(__ffs(int(lanes)) - 1);
+#else
+    return true;
+#endif
+}
+#endif
+
 /// Returns sum / count, rounded once to the nearest float (ties to even). `count` is 1 to 2^37, far more than
 /// kMaxSamplesPerPixel.
 HD inline float mean_of(FixedSum sum, uint64_t count) {

@@ -40,6 +40,27 @@ float mean_by_ldexp(FixedSum sum, uint64_t count) {
 
 } // namespace
 
+TEST_CASE("sums of 32 values by limbs equal sums one after the other") {
+    test::Random random(5);
+    for (int round = 0; round < 200; ++round) {
+        FixedSum one_by_one;
+        FixedSumLimbs sums = {};
+        for (int i = 0; i < 32; ++i) {
+            const float magnitude = std::ldexp(1.0f, static_cast<int>(random.below(100)) - 60);
+            const float value = (random.below(4) == 0 ? -magnitude : magnitude) * (1 + i / 32.0f);
+            const FixedSum fixed = round == 0 ? to_fixed(-kMaxSampleValue) : to_fixed(value);
+            one_by_one = one_by_one + fixed;
+            const FixedSumLimbs limbs = limbs_of(fixed);
+            CHECK(sum_of(limbs) == fixed);
+            for (int k = 0; k < 5; ++k) {
+                CHECK(sums.limbs[k] + uint64_t(limbs.limbs[k]) <= 0xffffffffu);
+                sums.limbs[k] += limbs.limbs[k];
+            }
+        }
+        CHECK(sum_of(sums) == one_by_one);
+    }
+}
+
 TEST_CASE("a float in fixed point keeps its value, truncated towards zero below 2^-64") {
     for (const float x : {0.0f, -0.0f, 1.0f, -1.0f, 0.1f, -0.3f, 1e-10f, 3e11f, -0x1p40f, 0x1p-64f, 0x1.8p-64f}) {
         CAPTURE(x);

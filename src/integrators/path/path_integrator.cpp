@@ -277,7 +277,7 @@ void PathIntegrator::launch_round(Wavefront& w, const Work& work) {
         w.seen.mark();
         if (w.round > 0) {
             tracer_->find_hits(RayKind::Bounce, paths.query(), {most, &counts->going_on}, hits, pool(RayKind::Bounce));
-            queue_.let_wait(w.path_stream, w.light_stream); // waits for slots of paths that have ended
+            queue_.let_wait(w.path_stream, w.light_stream); // waits for radiance, and for slots of paths that end
         }
         if (w.known.all_begun == 0) {
             const WorkCount fresh = {most, &counts->fresh};
@@ -304,7 +304,6 @@ void PathIntegrator::launch_round(Wavefront& w, const Work& work) {
                              pool(RayKind::Shadow));
     choose_shading(work.job, [&]<Features, class Listener>() {
         launch(queue_, "add_light", shadow_rays, AddLight<Listener>{work.job, shadows, next, listened});
-        launch(queue_, "add_to_film", {most, &counts->ended}, EndPaths<Listener>{work.job, next, listened, last});
     });
     ++w.round;
 }

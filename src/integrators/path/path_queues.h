@@ -3,15 +3,16 @@
 // Paths in flight on the GPU and their shadow rays, as structures of arrays.
 //
 // Paths are processed in rounds: a round traces one ray of every path in flight. Paths that continue are compacted at
-// the front of a second set of arrays, which the next round reads, and ended paths at its end, for the film. The next
-// round starts new paths there, so that all rounds but the last few are full and all accesses are contiguous. Only
-// the device knows the number of paths of a round (RoundCounts).
+// the front of a second set of arrays, which the next round reads, and paths that end after their shadow ray at its
+// end; the others that end go to the film at once. The next round starts new paths there, so that all rounds but the
+// last few are full and all accesses are contiguous. Only the device knows the number of paths of a round
+// (RoundCounts).
 
 #include <cstdint>
 
 #include "device/block_append.h"
 #include "device_scene/ray_queue.h"
-#include "integrators/path/path_state.h"
+#include "integrators/path/generate_path.h"
 #include "math/float4.h"
 
 namespace pertev {
@@ -25,20 +26,30 @@ struct PathQueueView {
     Float4* radiance;   // rgb, bsdf_pdf; for an ended path rgb, bits of the pixel
     float* times;       // the times of RayQueueView; null unless something moves while the shutter is open
 
-    /// Query of the rays at slots 0, 1, ..., or backwards from `last`.
+    /// Query of the rays at slots 0, 1, ..., or of those from the camera, backwards from `last`.
     RayQueueView query() const {
         return {.rays = rays, .starts = starts, .keys = keys, .times = times, .is_endless = true};
     }
     RayQueueView query_back(uint32_t last) const {
         return {.rays = rays + last,
-                .starts = starts + last,
                 .keys = keys + last,
                 .times = times != nullptr ? times + last : nullptr,
                 .step = -1,
                 .is_endless = true};
     }
 
-    /// Loads a path without `start`, which only the tracer needs.
+    /// Loads a path that begins, without its time: all but its ray is known.
+    HD PathState load_begun(uint32_t i, const CameraRays& camera) const {
+        const Ray ray = load_ray(rays + i);
+        return begin_path(camera, bits_of(ray.t_min), bits_of(ray.t_max), ray, kAtRest);
+    }
+    /// Stores a path that begins. `any_alpha` means that the coin's key is needed.
+    HD void store_begun(uint32_t i, const PathState& path, uint32_t seed, bool any_alpha) const {
+        store_ray(rays + i, {path.origin, float_of(path.pixel), path.direction, float_of(path.sample)});
+        if (any_alpha) keys[i] = path_key(path, seed, false);
+    }
+
+    /// Loads a path that continues, without `start`, which only the tracer needs.
     HD PathState load(uint32_t i) const {
         const Ray ray = load_ray(rays + i);
         const Float4 t = throughput[i], r = radiance[i];
@@ -55,33 +66,27 @@ struct PathQueueView {
         path.rough_depth = depths >> 16;
         return path;
     }
-    /// Stores a path. `any_alpha` means that the coin's key is needed.
     HD void store(uint32_t i, const PathState& path, uint32_t seed, bool any_alpha) const {
-        store_ray(rays + i, {path.origin, float_of(path.pixel), path.direction, float_of(path.sample)});
+        store_begun(i, path, seed, any_alpha);
         starts[i] = {path.start.instance, path.start.primitive};
-        if (any_alpha) keys[i] = path_key(path, seed, false);
         throughput[i] = {path.throughput.r, path.throughput.g, path.throughput.b,
                          float_of(path.depth | (path.rough_depth << 16))};
         radiance[i] = {path.radiance.r, path.radiance.g, path.radiance.b, path.bsdf_pdf};
     }
-    /// Stores a path that has ended.
+    /// Stores a path that ends after its shadow ray.
     HD void store_ended(uint32_t i, const PathState& path) const {
         radiance[i] = {path.radiance.r, path.radiance.g, path.radiance.b, float_of(path.pixel)};
     }
-    HD uint32_t load_pixel(uint32_t i) const { return bits_of(radiance[i].w); }
-    HD Rgb load_radiance(uint32_t i) const { return {radiance[i].x, radiance[i].y, radiance[i].z}; }
-    /// Adds to the radiance and keeps the w component.
-    HD void add_radiance(uint32_t i, Rgb value) const {
-        const Float4 r = radiance[i];
-        radiance[i] = {r.x + value.r, r.y + value.g, r.z + value.b, r.w};
-    }
 };
+
+/// Bit of the slot of a path that ends after its shadow ray. Queues have fewer slots (kMaxQueueBytes).
+inline constexpr uint32_t kEndsPath = 0x80000000u;
 
 struct ShadowQueueView {
     Ray* rays;
     Uint2 *starts, *targets;
     uint32_t* keys;       // keys, and after tracing the results
-    Float4* contribution; // rgb, bits of the path's slot in the next round's arrays
+    Float4* contribution; // rgb, bits of the path's slot in the next round's arrays with kEndsPath
     float* times;         // the times of PathQueueView
 
     RayQueueView query() const {
@@ -104,7 +109,7 @@ struct alignas(128) RoundCounts {
     uint32_t fresh;       // new paths in this round, at the end
     uint32_t active;      // sum of both
     uint32_t shadows;     // shadow rays of its vertices
-    uint32_t next, ended; // active paths that continue after the round, and that end
+    uint32_t next, ended; // active paths that continue after the round, and that end after their shadow ray
     uint32_t all_begun;   // 1 if no path begins afterwards
     uint32_t taken[3];    // rays that a tracer has taken from its pool, by RayKind
 };
@@ -114,16 +119,16 @@ struct HostCounts {
     uint32_t active, all_begun; // copies from RoundCounts
 };
 
-/// Slots of a vertex's path, for the next round or the film, and of its shadow ray.
+/// Slots of a vertex's path, if it does not end at once, and of its shadow ray.
 struct RoundSlots {
     uint32_t path, shadow;
 };
 using RoundAppend = BlockAppend<3>;
 
-/// Reserves the slots of a vertex. `last` is the slot of the first path that ends.
-HD inline RoundSlots append_to_round(const RoundAppend& lists, RoundCounts& round, uint32_t last, bool is_there,
-                                     bool goes_on, bool wants_shadow) {
-    const bool ends = is_there && !goes_on;
+/// Reserves the slots of a vertex. `last` is the slot of the first path that ends after its shadow ray.
+HD inline RoundSlots append_to_round(const RoundAppend& lists, RoundCounts& round, uint32_t last, bool goes_on,
+                                     bool wants_shadow) {
+    const bool ends = wants_shadow && !goes_on;
     const ListSlots<3> slots = lists.take({&round.next, &round.ended, &round.shadows}, {goes_on, ends, wants_shadow});
     return {ends ? last - slots.at[1] : slots.at[0], slots.at[2]};
 }

@@ -11,10 +11,4 @@ template void launch(Queue&, const char*, WorkCount, const AddLight<FrameListene
 template void launch(Queue&, const char*, WorkCount, const AddLight<PlainReuseListeners>&);
 template void launch(Queue&, const char*, WorkCount, const AddLight<ReuseListeners>&);
 template void launch(Queue&, const char*, WorkCount, const AddLight<LayerListeners>&);
-template void launch(Queue&, const char*, WorkCount, const EndPaths<FilmListeners>&);
-template void launch(Queue&, const char*, WorkCount, const EndPaths<PlainFrameListeners>&);
-template void launch(Queue&, const char*, WorkCount, const EndPaths<FrameListeners>&);
-template void launch(Queue&, const char*, WorkCount, const EndPaths<PlainReuseListeners>&);
-template void launch(Queue&, const char*, WorkCount, const EndPaths<ReuseListeners>&);
-template void launch(Queue&, const char*, WorkCount, const EndPaths<LayerListeners>&);
 } // namespace pertev

@@ -51,7 +51,7 @@ struct GeneratePaths {
     HD void operator()(uint32_t i) const {
         const PixelSample begun = samples.at(round->first + i);
         const PathState path = generate_path(job.picture.camera, job.settings, begun.pixel, begun.sample);
-        paths.store(last - i, path, job.settings.seed, any_alpha);
+        paths.store_begun(last - i, path, job.settings.seed, any_alpha);
         if (paths.times != nullptr) paths.times[last - i] = path.time;
     }
 };
@@ -65,7 +65,7 @@ struct Shade {
     ShadowQueueView shadows;
     ListenerQueues listened;
     RoundCounts* round;
-    uint32_t last; // slot of the first new path, and of the first one that ends
+    uint32_t last; // slot of the first new path, and of the first one that ends after its shadow ray
 
     // Measured (docs/performance.md). For large code, warps that wait for each other fetch it together.
     static constexpr BlockShape kShape = Listener::template has<LightPaths>     ? BlockShape{128, 1}
@@ -83,12 +83,13 @@ struct Shade {
         uint32_t key = 0;
         bool goes_on = false, wants_shadow = false;
         if (is_there) {
-            const uint32_t slot = i < round->going_on ? i : last - (i - round->going_on);
-            path = paths.load(slot);
+            const bool begins = i >= round->going_on;
+            const uint32_t slot = begins ? last - (i - round->going_on) : i;
+            path = begins ? paths.load_begun(slot, job.picture.camera) : paths.load(slot);
             if (kMoves) path.time = time_of(job.picture.camera, job.settings, path);
             const Hit hit = hits.load(slot);
             key = path_key(path, job.settings.seed, true);
-            if (path.depth == 0) {
+            if (begins) {
                 listener.begins(path);
             } else {
                 typename Listener::Kept kept{};
@@ -97,19 +98,20 @@ struct Shade {
             }
             goes_on = shade_vertex<kFeatures>(job, path, hit, DrawOnDemand(), shadow, wants_shadow, listener);
         }
-        const RoundSlots slots = append_to_round(lists, *round, last, is_there, goes_on, wants_shadow);
+        const RoundSlots slots = append_to_round(lists, *round, last, goes_on, wants_shadow);
         if (!is_there) return;
+        typename Listener::Kept kept{};
+        listener.put_down(kept);
+        if (!goes_on && !wants_shadow) return listener.ended(path.pixel, path.radiance, kept);
         if (goes_on) {
             next.store(slots.path, path, job.settings.seed, job.picture.scene.any_alpha != 0);
             if (kMoves && next.times != nullptr) next.times[slots.path] = path.time;
         } else {
             next.store_ended(slots.path, path);
         }
-        typename Listener::Kept kept{};
-        listener.put_down(kept);
         Listener::store_next(listened, slots.path, kept);
         if (!wants_shadow) return;
-        shadows.store(slots.shadow, shadow, slots.path, key);
+        shadows.store(slots.shadow, shadow, slots.path | (goes_on ? 0 : kEndsPath), key);
         if (kMoves && shadows.times != nullptr) shadows.times[slots.shadow] = path.time;
         typename Listener::ShadowData shadow_data{};
         listener.hand_over(shadow_data);
@@ -117,7 +119,7 @@ struct Shade {
     }
 };
 
-/// The stage that adds the light of unoccluded shadow rays.
+/// The stage that adds the light of unoccluded shadow rays, and the paths that have ended by then to the film.
 template <class Listener>
 struct AddLight {
     PathJob job;
@@ -126,31 +128,25 @@ struct AddLight {
     ListenerQueues listened;
 
     HD void operator()(uint32_t i) const {
-        if (shadows.keys[i] != kNoHit) return;
         const Float4 c = shadows.contribution[i];
-        const uint32_t path = bits_of(c.w);
-        next.add_radiance(path, {c.x, c.y, c.z});
+        const uint32_t slot = bits_of(c.w) & ~kEndsPath;
+        const bool arrives = shadows.keys[i] == kNoHit, ends = (bits_of(c.w) & kEndsPath) != 0;
+        if (!arrives && !ends) return;
+        const Listener listener(job);
         typename Listener::Kept kept{};
-        typename Listener::ShadowData shadow_data{};
-        Listener::load_next(listened, path, kept);
-        Listener::load_shadow_data(listened, i, shadow_data);
-        Listener(job).arrived(kept, shadow_data, {c.x, c.y, c.z});
-        Listener::store_next(listened, path, kept);
-    }
-};
-
-/// The stage that ends paths: it adds them to the film.
-template <class Listener>
-struct EndPaths {
-    PathJob job;
-    PathQueueView next;
-    ListenerQueues listened;
-    uint32_t last; // slot of the first one
-
-    HD void operator()(uint32_t i) const {
-        typename Listener::Kept kept{};
-        Listener::load_next(listened, last - i, kept);
-        Listener(job).ended(next.load_pixel(last - i), next.load_radiance(last - i), kept);
+        Listener::load_next(listened, slot, kept);
+        const Float4 before = next.radiance[slot];
+        Rgb radiance = {before.x, before.y, before.z};
+        if (arrives) {
+            const Rgb light = {c.x, c.y, c.z};
+            typename Listener::ShadowData shadow_data{};
+            Listener::load_shadow_data(listened, i, shadow_data);
+            radiance += light;
+            listener.arrived(kept, shadow_data, light);
+        }
+        if (ends) return listener.ended(bits_of(before.w), radiance, kept);
+        next.radiance[slot] = {radiance.r, radiance.g, radiance.b, before.w};
+        Listener::store_next(listened, slot, kept);
     }
 };
 

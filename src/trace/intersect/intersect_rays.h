@@ -67,7 +67,7 @@ template <class F>
     return {ea, eb, ec, pa.z, pb.z, pc.z, max(below, -above) >= kSureEdge, min(-below, above) >= kSureEdge};
 }
 
-/// Where rays that pass inside meet the triangle's plane.
+/// Hits of the triangle's plane by rays that pass inside.
 template <class F>
 struct PlaneHitOf {
     F t, u, v;
