@@ -163,7 +163,7 @@ bool Audience::is_behind(double now_s) const {
 std::string Audience::clients_text(uint32_t you) const {
     std::string people;
     for (const Wheel::Seat& seat : wheel_.seats()) {
-        people += fmt::format(R"({}{{"id":{},"asks":{},"wish":{}}})", people.empty() ? "" : ",", seat.client,
+        people += fmt::format(R"({}{{"id":{},"asks":{},"request":{}}})", people.empty() ? "" : ",", seat.client,
                               seat.wants_wheel, json_string(seat.request));
     }
     return fmt::format(R"({{"type":"people","you":{},"steers":{},"people":[{}]}})", you, wheel_.holder(), people);

@@ -100,7 +100,7 @@ private:
         bool text_under_way = false, wants_welcome = true, wants_clients = true;
         uint64_t state_seen = 0;
         std::deque<std::string> notices;
-        double refused_at_s = -1e9; // when it was last told why it cannot steer
+        double refused_at_s = -1e9; // when it was last sent the reason why it cannot steer
     };
     std::string clients_text(uint32_t you) const;
     std::optional<SendJob> text_job(uint32_t id, Client& client);

@@ -136,7 +136,7 @@ struct Form {
     const char* type;
     MessageKind kind;
     std::span<const Key> keys; // each must be present exactly once
-    const char* request = "";  // wish of a client that does not steer
+    const char* request = "";  // request of a client that does not steer
     bool moves_the_picture = false;
 };
 

@@ -30,10 +30,10 @@ public:
     /// Returns false and does nothing unless `from` steers and `to` exists.
     bool hand(uint32_t from, uint32_t to, double now_s = 0);
     enum class Request : uint8_t { None, Known, New };
-    /// Records the wish of a client that does not steer. Returns None if it steered a moment ago and may not know of
+    /// Records the request of a client that does not steer. Returns None if it steered a moment ago and may not know of
     /// the change.
     Request request(uint32_t client, const std::string& what, double now_s);
-    /// Must be called regularly, because the wheel and wishes expire. Returns whether anything has changed.
+    /// Must be called regularly, because the wheel and requests expire. Returns whether anything has changed.
     bool tick(double now_s);
 
     bool steers(uint32_t client) const { return holder_ == client && client != 0; }

@@ -124,7 +124,7 @@ std::vector<Setting> picture_settings() {
         row("threads", "Machine", "N", FIELD(machine.threads), "The number of CPU threads.", Range{1, 4096},
             Otherwise{"all"}, On{kMachines | kSolve}, Mark::NotKept),
         row("no_bvh_cache", "Machine", "", FIELD(no_cache),
-            "The acceleration structure is built anew, even if it is in the cache.", On{kShown | kMeasure | kSolve},
+            "The acceleration structure is built, even if it is in the cache.", On{kShown | kMeasure | kSolve},
             Mark::NotKept),
         row("max_memory", "Machine", "MIB", FIELD(radiosity.max_memory),
             "The memory that may be used: of the device for a picture, of the machine for solving radiosity. Larger "

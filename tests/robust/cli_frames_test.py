@@ -219,11 +219,11 @@ class MovingPictures(CliTest):
         end = self.succeed(*arguments, "--continue", "--json").events("sequence")[0]
         self.assertEqual(end["kept"], len(there))
         self.assertEqual({name: self.read(name) for name in there}, before)
-        os.mkdir(self.path("anew"))
-        arguments[3] = "anew/f-##.png"
+        os.mkdir(self.path("again"))
+        arguments[3] = "again/f-##.png"
         self.succeed(*arguments)
         for k in range(40):
-            self.assertEqual(self.read(f"f-{k:02}.png"), self.read(f"anew/f-{k:02}.png"), k)
+            self.assertEqual(self.read(f"f-{k:02}.png"), self.read(f"again/f-{k:02}.png"), k)
 
     def run_on_a_full_disk(self, limit, *arguments):
         """The last object and that of the sequence where no file grows past `limit` bytes."""

@@ -96,7 +96,7 @@ class HowPicturesAreShown(CliTest):
 
 
 class RecordedPictures(CliTest):
-    """Whoever changes one of them says why, and records it anew (bench/results/one_picture.json has the second one)."""
+    """Whoever changes one of them says why, and records it again (bench/results/one_picture.json has the second one)."""
 
     def test_the_cornell_box_has_the_recorded_hashes(self):
         recorded = {("320x240", 4): "ac245b79834309455f77746a055129b2",

@@ -114,7 +114,7 @@ class RealTime(CliTest):
         self.refuse_to_render("x", "--fps", "4", "--frames", "1-2", "--continue", says=['made with first frame "0"'])
 
     def test_an_interrupt_ends_after_a_whole_frame_and_continuing_gives_the_same_bytes(self):
-        os.mkdir(self.path("x")), os.mkdir(self.path("anew"))
+        os.mkdir(self.path("x")), os.mkdir(self.path("again"))
         arguments = ["render", "m.gltf", "-o", "x/f-##.png", "--real-time", "--size", "320x240", "--device", "cpu",
                      "--exposure", "0", "--frames", "0-29", "--fps", "20"]
         program = subprocess.Popen([PROGRAM, *arguments], cwd=self.folder, env=self.environment,
@@ -131,9 +131,9 @@ class RealTime(CliTest):
         self.assertLess(len(there), 30)
         end = self.succeed(*arguments, "--continue", "--json").events("sequence")[0]
         self.assertEqual((end["kept"], end["rendered_again"], end["written"]), (len(there), len(there), 30 - len(there)))
-        arguments[3] = "anew/f-##.png"
+        arguments[3] = "again/f-##.png"
         self.succeed(*arguments)
-        self.assertEqual(self.pictures("x"), self.pictures("anew"))
+        self.assertEqual(self.pictures("x"), self.pictures("again"))
 
     def test_an_exr_holds_the_frame_its_layers_and_its_settings(self):
         said = self.render("x", "--frames", "3-4", "--fps", "4", "--restir", "di", "--passes", "2", "--aov", "albedo,ids",

@@ -60,7 +60,7 @@ class Shape(CliTest):
 class Keeps(CliTest):
     def test_a_setting_that_is_refused_keeps_the_samples(self):
         with Viewer("--threads", "1", size="64x48", spp=100000) as viewer, Client(viewer) as client:
-            # So many that a picture that begins anew has fewer for seconds.
+            # So many that a picture that begins again has fewer for seconds.
             before = client.text("state", lambda s: s["samples"] > 200)["samples"]
             for name, value in [("integrator", "whitted"), ("max_depth", -1), ("integrator", "nothing"), ("fov", 500),
                                 ("integrator", "path"), ("structure", 7), ("home", "where it is")]:
@@ -98,13 +98,13 @@ class Together(CliTest):
                     second.steer(type="orbit", dx=0.1, dy=0)
                 told = second.text("notice")
                 self.assertEqual(told["kind"], "why")
-                people = first.text("people", lambda p: any(person["wish"] for person in p["people"]))
-                wishing = next(person for person in people["people"] if person["wish"])
+                people = first.text("people", lambda p: any(person["request"] for person in p["people"]))
+                requester = next(person for person in people["people"] if person["request"])
                 self.assertIn(f"viewer {people['you']} steers", told["text"])
-                self.assertNotEqual(wishing["id"], people["you"])
-                self.assertEqual(wishing["wish"], "turn the view")
-                first.say(type="hand", to=wishing["id"])
-                second.text("people", lambda p: p["steers"] == p["you"] and not any(q["wish"] for q in p["people"]))
+                self.assertNotEqual(requester["id"], people["you"])
+                self.assertEqual(requester["request"], "turn the view")
+                first.say(type="hand", to=requester["id"])
+                second.text("people", lambda p: p["steers"] == p["you"] and not any(q["request"] for q in p["people"]))
                 second.steer(type="orbit", dx=0.1, dy=0)
                 second.text("state", lambda s: s["flags"] != before)
 

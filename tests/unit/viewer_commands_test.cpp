@@ -1,4 +1,4 @@
-// The effect of commands before they are handled (inbox.h), and wishes of clients that do not steer (wheel.h,
+// The effect of commands before they are handled (inbox.h), and requests of clients that do not steer (wheel.h,
 // audience.h).
 
 #include <atomic>
@@ -120,19 +120,19 @@ TEST_CASE("clients that do not steer are informed, and the steering one sees the
     CHECK(notices.find("viewer 1 steers") != std::string::npos);
     CHECK(notices.find("viewer 1 steers", notices.find("viewer 1 steers") + 1) ==
           std::string::npos); // once for the drag
-    CHECK(seen.find(R"("id":2,"asks":false,"wish":"turn the view")") != std::string::npos);
+    CHECK(seen.find(R"("id":2,"asks":false,"request":"turn the view")") != std::string::npos);
     CHECK(audience.received(2, R"({"type":"set","n":1,"name":"exposure","value":2})", 2) ==
-          ""); // another wish, at once
-    CHECK(texts_for(audience, 1).find(R"("wish":"set \"Stops\" to 2")") != std::string::npos);
-    audience.tick(40); // it is an old wish now
-    CHECK(texts_for(audience, 1).find(R"("wish":"")") != std::string::npos);
-    // A pick that only shows, the rate and the shape need no steering, so they record no wish.
+          ""); // another request, at once
+    CHECK(texts_for(audience, 1).find(R"("request":"set \"Stops\" to 2")") != std::string::npos);
+    audience.tick(40); // it is an old request now
+    CHECK(texts_for(audience, 1).find(R"("request":"")") != std::string::npos);
+    // A pick that only shows, the rate and the shape need no steering, so they record no request.
     CHECK(audience.received(2, R"({"type":"pick","n":1,"x":0,"y":0,"use":"show"})", 41) == "");
     CHECK(audience.received(2, R"({"type":"rate","hz":60})", 41) == "");
     CHECK(audience.received(2, R"({"type":"shape","width":64,"height":48})", 41) == "");
     CHECK(texts_for(audience, 2) == "");
     CHECK(inbox.take(std::chrono::milliseconds(0)).size() == 1);
-    // Messages in transit when the wheel was handed over are no wishes.
+    // Messages in transit when the wheel was handed over are no requests.
     CHECK(audience.received(1, R"({"type":"hand","to":2})", 50) == "");
     texts_for(audience, 1);
     CHECK(audience.received(1, kOrbit, 50.3) == "");

@@ -161,7 +161,7 @@ TEST_CASE("a change of exposure waits for no sample and loses no complete sample
     std::optional<ShownFrame> rests;
     while (!rests || !rests->is_final) rests = frames.next(request);
     CHECK(rests->hash == at_rest);
-    // Frames that are broken off begin anew.
+    // Frames that are broken off begin again.
     request.view.options.render.path.max_depth = 2;
     frames.hurry() = true;
     CHECK_FALSE(frames.next(request).has_value());

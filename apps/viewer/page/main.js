@@ -111,8 +111,8 @@ function receive(message) {
         mark = null; // the picked point lies elsewhere now
         draw();
       }
-      settings.tell(message, people.you);
-      timeLine.tell(message, people.you);
+      settings.showState(message, people.you);
+      timeLine.showState(message, people.you);
       recorder.show(message.keys);
       showReadings();
       break;
@@ -221,9 +221,9 @@ function save(format) {
 
 /** @param {string} name @param {string | number} value */
 function set(name, value) {
-  if (!people.steers()) return void link.sendInput({ type: "set", name, value }); // who steers sees the wish
+  if (!people.steers()) return void link.sendInput({ type: "set", name, value }); // who steers sees the request
   if (state) state.values[name] = value; // so that a key pressed twice counts twice before the viewer answers
-  settings.wish(name, value, link.sendInput({ type: "set", name, value }));
+  settings.expect(name, value, link.sendInput({ type: "set", name, value }));
 }
 
 /** @param {boolean} open */

@@ -61,15 +61,15 @@ export function showRows(place, rows, groupFor) {
 
 const kMarked = /** @type {Record<string, string>} */ ({ "film hash": "value hash", "flags that make it": "value hash long" });
 
-/** Something that was asked for: until a state tells of it, older ones that are still on their way do not count. */
-export class Asked {
+/** An input that was sent: older states that are still on their way do not count. */
+export class PendingInput {
   constructor() {
     this.input = 0;
     this.at = -Infinity;
   }
 
   /** @param {number} input its number */
-  ask(input) {
+  sent(input) {
     this.input = input;
     this.at = performance.now();
   }
@@ -91,8 +91,8 @@ export class Settings {
     this.onChange = onChange;
     /** @type {Map<string, HTMLInputElement | HTMLSelectElement>} */
     this.fields = new Map();
-    /** @type {Map<string, {asked: Asked, value: string | number}>} */
-    this.wishes = new Map();
+    /** @type {Map<string, {pending: PendingInput, value: string | number}>} */
+    this.pending = new Map();
   }
 
   /** @param {Setting[]} settings */
@@ -122,17 +122,17 @@ export class Settings {
 
   /** Something was set, by input number `input`.
    * @param {string} name @param {string | number} value @param {number} input */
-  wish(name, value, input) {
-    const asked = new Asked();
-    asked.ask(input);
-    this.wishes.set(name, { asked, value });
+  expect(name, value, input) {
+    const pending = new PendingInput();
+    pending.sent(input);
+    this.pending.set(name, { pending, value });
   }
 
   /** Values of a state, with what was set since.
    * @param {any} state @param {number} you */
-  tell(state, you) {
-    for (const [name, { asked, value }] of this.wishes) {
-      if (asked.isKnownTo(state, you)) this.wishes.delete(name);
+  showState(state, you) {
+    for (const [name, { pending, value }] of this.pending) {
+      if (pending.isKnownTo(state, you)) this.pending.delete(name);
       else state.values[name] = value;
     }
     for (const [name, value] of Object.entries(state.values)) {

@@ -1,9 +1,9 @@
-// Who is there, who steers, and what the others wish: in the panel, and in a bar that is there without it.
+// Who is there, who steers, and what the others request: in the panel, and in a bar that is there without it.
 
 import { button, element, make } from "./panel.js";
 
 /** @typedef {import("./link.js").Link} Link */
-/** @typedef {{id: number, asks: boolean, wish: string}} Person */
+/** @typedef {{id: number, asks: boolean, request: string}} Person */
 
 export class People {
   /** @param {Link} link */
@@ -13,7 +13,7 @@ export class People {
     this.holder = 0;
     /** @type {Person[]} */
     this.all = [];
-    this.declined = ""; // the wish that was read and put away
+    this.declined = ""; // the request that was read and put away
   }
 
   steers() {
@@ -54,24 +54,24 @@ export class People {
         row.append(person.asks ? make("span", "asked", "value") : this.askButton());
       }
       place.append(row);
-      if (person.wish && person.id !== this.holder) place.append(make("p", `would like to ${person.wish}`, "wish"));
+      if (person.request && person.id !== this.holder) place.append(make("p", `would like to ${person.request}`, "request"));
     }
   }
 
-  /** Whoever steers sees there who wishes what; the others that somebody else steers. */
+  /** Whoever steers sees there the requests of others; the others see that somebody else steers. */
   showBar() {
-    const wishing = this.all.find((person) => person.id !== this.you && (person.wish || person.asks));
+    const requester = this.all.find((person) => person.id !== this.you && (person.request || person.asks));
     const own = this.all.find((person) => person.id === this.you);
-    const wish = wishing ? `${wishing.id} ${wishing.wish} ${wishing.asks}` : "";
-    if (wish !== this.declined) this.declined = "";
+    const request = requester ? `${requester.id} ${requester.request} ${requester.asks}` : "";
+    if (request !== this.declined) this.declined = "";
     let text = "";
     /** @type {HTMLElement[]} */
     let buttons = [];
     if (this.steers()) {
-      if (wishing && !this.declined) {
-        text = `viewer ${wishing.id} would like to ${wishing.wish || "steer"}`;
-        buttons = [button("hand over", () => this.hand(wishing.id)), button("not now", () => {
-          this.declined = wish;
+      if (requester && !this.declined) {
+        text = `viewer ${requester.id} would like to ${requester.request || "steer"}`;
+        buttons = [button("hand over", () => this.hand(requester.id)), button("not now", () => {
+          this.declined = request;
           this.showBar();
         })];
       }

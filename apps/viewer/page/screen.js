@@ -1,12 +1,12 @@
 // The viewer is to know this of the screen: how often it shows a new picture, as the browser calls back once for each, and
 // the shape of the window.
 
-const kPictures = 60; // that a rate is told from
+const kPictures = 60; // that a rate is sent from
 
-/** @param {(rate: number) => void} tell pictures a second, once that is known, and again when it is another: a window may
+/** @param {(rate: number) => void} report pictures a second, once that is known, and again when it is another: a window may
  * be moved to another screen */
-export function watchRate(tell) {
-  let last = 0, told = 0;
+export function watchRate(report) {
+  let last = 0, sent = 0;
   /** @type {number[]} */
   let steps = [];
   /** @param {number} now */
@@ -18,9 +18,9 @@ export function watchRate(tell) {
     if (steps.length < kPictures) return;
     const rate = 1000 / steps.sort((a, b) => a - b)[kPictures / 4]; // a page that is busy misses some
     steps = [];
-    if (Math.abs(rate - told) < 0.1 * told) return;
-    told = rate;
-    tell(rate);
+    if (Math.abs(rate - sent) < 0.1 * sent) return;
+    sent = rate;
+    report(rate);
   };
   requestAnimationFrame(step);
 }
@@ -33,11 +33,11 @@ export function windowShape() {
   return { width: side(innerWidth), height: side(innerHeight) };
 }
 
-/** @param {() => void} tell called when the window has got another shape */
-export function watchShape(tell) {
+/** @param {() => void} report called when the window has got another shape */
+export function watchShape(report) {
   let timer = 0;
   addEventListener("resize", () => {
     clearTimeout(timer);
-    timer = setTimeout(tell, kSettles);
+    timer = setTimeout(report, kSettles);
   });
 }

@@ -1,8 +1,8 @@
 // The time line of a scene that moves, and the recorder of the camera's path. Both show what the viewer says and send
-// what is asked for; time and keys are the viewer's, so that all pages see the same.
+// what is set; time and keys are the viewer's, so that all pages see the same.
 
 import { makeGroup } from "./groups.js";
-import { Asked, button, element, make } from "./panel.js";
+import { PendingInput, button, element, make } from "./panel.js";
 
 /** @typedef {import("./link.js").Link} Link */
 /** @typedef {{at: number, end: number, on: boolean, loops: boolean, speed: number}} Clock */
@@ -25,7 +25,7 @@ export class TimeLine {
     /** @type {Clock} */
     this.clock = { at: 0, end: 0, on: false, loops: true, speed: 1 };
     this.toldAt = 0; // when the clock was so
-    this.asked = new Asked();
+    this.pending = new PendingInput();
     this.button = button("", () => this.toggle(), "play", "Space");
     this.slider = input("range", "time-at");
     this.slider.min = "0";
@@ -49,7 +49,7 @@ export class TimeLine {
     const seconds = make("div", "", "row"), speed = make("label", "", "row"), loops = make("label", "", "row");
     seconds.append(make("span", "Seconds"), this.text);
     speed.append(make("span", "Speed"), this.speed);
-    loops.append(make("span", "Begins anew at its end"), this.loops);
+    loops.append(make("span", "Repeat"), this.loops);
     const group = makeGroup("Time", "time", true);
     group.append(line, seconds, speed, loops);
     element("time").replaceChildren(group);
@@ -66,19 +66,19 @@ export class TimeLine {
     const now = this.now();
     this.keep({ ...this.clock, at: change.on && now >= this.clock.end ? 0 : now, ...change });
     const { on, loops, speed } = this.clock;
-    this.asked.ask(this.link.sendInput({ type: "play", on, loops, speed }));
+    this.pending.sent(this.link.sendInput({ type: "play", on, loops, speed }));
   }
 
   /** @param {number} at */
   goTo(at) {
     this.keep({ ...this.clock, at });
-    this.asked.ask(this.link.sendInput({ type: "time", at }));
+    this.pending.sent(this.link.sendInput({ type: "time", at }));
   }
 
   /** Takes the state that the viewer sends.
    * @param {any} state @param {number} you */
-  tell(state, you) {
-    if (this.asked.isKnownTo(state, you)) this.keep(state.clock);
+  showState(state, you) {
+    if (this.pending.isKnownTo(state, you)) this.keep(state.clock);
   }
 
   /** @param {Clock} clock */

@@ -38,7 +38,6 @@ void find_nearest(const TriangleList& list, const Ray* rays, int kz, unsigned ac
         }
         if (any) {
             going = going && !hit;
-            if (bit_mask(going) == 0) i = list.count;
         } else {
             for (unsigned rest = bit_mask(hit && at.t == t); rest != 0; rest &= rest - 1) {
                 const auto lane = static_cast<uint32_t>(__builtin_ctz(rest));
@@ -50,6 +49,7 @@ void find_nearest(const TriangleList& list, const Ray* rays, int kz, unsigned ac
         u = select(hit, at.u, u);
         v = select(hit, at.v, v);
         found = select(hit, WordOf<F>{} + i, found);
+        if (bit_mask(going) == 0) break;
     }
     t.store(nearest.t), u.store(nearest.u), v.store(nearest.v);
     std::memcpy(nearest.triangle, &found, sizeof found);
