@@ -13,7 +13,7 @@ import sys
 LIMIT = 500
 FLOOR = 12
 FOLDERS = ["src", "apps", "tests", "tools", "bench", "python", "cmake"]
-SUFFIXES = {".h", ".cpp", ".cu", ".py", ".js", ".cmake"}
+SUFFIXES = {".h", ".inl", ".cpp", ".cu", ".py", ".js", ".cmake"}
 
 
 def users_of_headers(root):

@@ -288,6 +288,8 @@ MUTATIONS = [
      ("src/integrators/path/shade_lanes.inl", "lower_direction(wi_local, s.tilt);", "lower_direction(wi_local, 0.0f * s.tilt);")),
     ("rays that meet two triangles at one distance take the later one", "consistency/trace_many",
      ("src/trace/wide/nearest_triangles_body.h", "(is_other ? 1u : 0u) << lane;", "(is_other ? 0u : 0u) << lane;")),
+    ("an any-hit search of a small scene returns what stands behind its triangles", "consistency/trace_many",
+     ("src/trace/wide/nearest_triangles_body.h", "going = going && !hit;", "going = going && !hit, i = bit_mask(going) == 0 ? list.count : i;")),
     ("layers pass all light on to a mirror beneath", "unit/bsdf_specular",
      ("src/shading/bsdf.h", "light_through(bsdf, i, wo, {-wo.x, -wo.y, wo.z}) * one.mirror", "one.mirror")),
     ("materials are taken for plain that let rays pass", "consistency/one_picture",

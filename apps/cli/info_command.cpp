@@ -90,7 +90,8 @@ std::map<std::string, std::string> origins_in(const ExrMetadata& metadata) {
     for (const auto& [key, origin] : {std::pair("pertev.by_default", "made up"),
                                       {"pertev.by_scene", "the scene's file"},
                                       {"pertev.by_settings", "a settings file"},
-                                      {"pertev.by_flags", "a flag"}}) {
+                                      {"pertev.by_caller", "a flag"},
+                                      {"pertev.by_flags", "a flag"}}) { // the key of earlier versions
         const auto entry = std::ranges::find(metadata, key, &ExrMetadata::value_type::first);
         if (entry == metadata.end() || !std::holds_alternative<std::string>(entry->second)) continue;
         std::istringstream names(std::get<std::string>(entry->second));

@@ -191,9 +191,7 @@ Threads::Threads() {
     if (t_team != nullptr && t_team->count > 0) team_ = t_team;
 }
 
-UseThreads::UseThreads(const Threads& threads) : own_(t_team) {
-    if (threads.team_ != nullptr) t_team = threads.team_;
-}
+UseThreads::UseThreads(const Threads& threads) : own_(std::exchange(t_team, threads.team_)) {}
 UseThreads::~UseThreads() { t_team = std::move(own_); }
 
 } // namespace pertev

@@ -24,9 +24,9 @@ public:
 
 private:
     friend class UseThreads;
-    std::shared_ptr<ThreadTeam> team_; // null: no count was set
+    std::shared_ptr<ThreadTeam> team_; // null: one per hardware thread
 };
-/// While it exists, these threads work for the calling thread in place of its own, if their count was set.
+/// While it exists, these threads work for the calling thread in place of its own.
 class UseThreads {
 public:
     explicit UseThreads(const Threads& threads);

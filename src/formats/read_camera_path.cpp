@@ -40,8 +40,8 @@ CameraKey read_key(const JsonValue& source, const CameraPath& before) {
     }
     const auto fov = source.find("fov");
     if (fov) key.fov_deg = fov->to_float();
-    if (fov && !(key.fov_deg >= 0.01f && key.fov_deg <= 179)) {
-        throw fov->error(fmt::format("{}; expected degrees, from 0.01 to 179", key.fov_deg));
+    if (fov && !(key.fov_deg >= static_cast<float>(kMinFovDeg) && key.fov_deg <= kMaxFovDeg)) {
+        throw fov->error(fmt::format("{}; expected degrees, from {} to {}", key.fov_deg, kMinFovDeg, kMaxFovDeg));
     }
     if (!before.keys.empty() && fov.has_value() != (before.keys[0].fov_deg > 0)) {
         throw source.error("only some keys have \"fov\"; expected it in all or none");

@@ -5,8 +5,6 @@
 namespace pertev {
 namespace {
 
-constexpr float kMinFovDeg = 0.01f, kMaxFovDeg = 179; // limits of `fov`
-
 /// A spline through one component of the keys over time.
 template <class Number>
 class Spline {
@@ -56,7 +54,7 @@ CameraKey sample_path(const CameraPath& path, double time_s) {
     now.up = to_float(vector(&CameraKey::up));
     if (now.fov_deg > 0) {
         const double fov_deg = number([](const CameraKey& key) { return key.fov_deg; });
-        now.fov_deg = clamp(static_cast<float>(fov_deg), kMinFovDeg, kMaxFovDeg);
+        now.fov_deg = static_cast<float>(std::clamp(fov_deg, kMinFovDeg, kMaxFovDeg));
     }
     return now;
 }

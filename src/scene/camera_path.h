@@ -13,6 +13,9 @@
 
 namespace pertev {
 
+// Limits of a field of view that people state, degrees.
+inline constexpr double kMinFovDeg = 0.01, kMaxFovDeg = 179;
+
 struct CameraKey {
     double time_s = 0;
     DoubleVec3 eye = {0, 0, 0}, target = {0, 0, 0}; // metres, in the coordinates of the scene's file

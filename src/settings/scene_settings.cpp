@@ -1,6 +1,7 @@
 // Settings of the scene: its file, its camera, its light, what moves in it.
 
 #include "base/limits.h"
+#include "scene/camera_path.h"
 #include "settings/setting_table.h"
 #include "settings/value_names.h"
 
@@ -35,8 +36,9 @@ std::vector<Setting> scene_settings() {
         row("up", "Camera", "X,Y,Z", FIELD(scene.camera.up), "The direction that points up in the picture.",
             Otherwise{"0,1,0"}, On{kLooking | kLab}, Excludes{"camera_path"}, Recorded::AsUsed),
         row("fov", "Camera", "DEG", FIELD(scene.camera.fov_deg), "The full vertical angle of view, in degrees.",
-            Range{0.01, 179}, Unit{"degrees"}, Otherwise{"the camera's own"}, On{kLooking | kLab | kBenchRays},
-            Mark::Common, Recorded::AsUsed, Panel{"Field of view, degrees", PanelGroup::Camera}),
+            Range{kMinFovDeg, kMaxFovDeg}, Unit{"degrees"}, Otherwise{"the camera's own"},
+            On{kLooking | kLab | kBenchRays}, Mark::Common, Recorded::AsUsed,
+            Panel{"Field of view, degrees", PanelGroup::Camera}),
         row("projection", "Camera", "NAME", FIELD(scene.camera.projection), "The camera's projection.",
             Otherwise{"the camera's own"}, On{kLooking | kLab}, Recorded::AsUsed),
         row("view_height", "Camera", "M", FIELD(scene.camera.view_height), "The full height of an orthographic view.",

@@ -146,6 +146,7 @@ TEST_CASE("an interrupted laboratory keeps what it has measured") {
 }
 
 TEST_CASE("the laboratory can be stopped inside each stage of long work and reports its progress") {
+    set_thread_count(1); // pieces are as many rays as threads want
     Queue queue = Queue::make_cpu();
     const Scene scene = scene_of({"torus", triangles_of(make_torus(20, 10), 0), {}});
     LabSettings settings = all_combinations(false, false);
@@ -153,7 +154,6 @@ TEST_CASE("the laboratory can be stopped inside each stage of long work and repo
     settings.options.resize(1);
     settings.shadow = settings.diffuse = false;
     settings.width = settings.height = 32;
-    set_thread_count(1); // pieces are as many rays as threads want
     Camera camera;
     camera.world_from_camera = look_at({1.5f, 0.7f, 3}, {}, {0, 1, 0});
     struct Stage {

@@ -124,6 +124,13 @@ TEST_CASE("testing every triangle of a small scene matches brute force bit for b
                 Hit want = some[i];
                 if (want.instance == kNoHit) want.t = rays[i].t_max;
                 wrong += hits[i] == want ? 0 : 1;
+                const std::vector<Ray> alike(tests->lanes, rays[i]);
+                NearestTriangles found;
+                tests->find({scene.baked.triangles, scene.baked.triangle_count}, alike.data(),
+                            dominant_axis(rays[i].direction), (1u << tests->lanes) - 1, true, found);
+                const bool is_hit = found.triangle[0] != kNoTriangle;
+                wrong += is_hit && found.triangle[0] >= scene.baked.triangle_count ? 1 : 0;
+                wrong += found.alone == 0 && is_hit != (all[i].instance != kNoHit) ? 1 : 0;
             }
             CHECK(wrong == 0);
         }

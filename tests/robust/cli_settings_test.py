@@ -43,7 +43,7 @@ class SettingsFiles(CliTest):
         info = self.info("a.exr")
         self.assertEqual((info["pertev.spp"], info["pertev.seed"], info["width"]), (3, "6", 8))
         self.assertEqual(set(info["pertev.by_settings"].split()), {"spp", "size"})
-        self.assertEqual(set(info["pertev.by_flags"].split()), {"seed", "device"})
+        self.assertEqual(set(info["pertev.by_caller"].split()), {"seed", "device"})
         self.assertEqual(info["pertev.by_scene"], "camera")
         self.assertNotIn("pertev.by_default", info)
         origins = dict(re.findall(r"(?m)^pertev\.(seed|camera|projection) .*?(?:\((.*)\))?$", self.succeed("info", "a.exr").stdout))

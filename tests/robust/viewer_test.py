@@ -346,7 +346,7 @@ class Pictures(CliTest):
                 for name in ["hash", "pertev.hash", "pertev.spp", "pertev.integrator", "pertev.max_depth", "pertev.seed", "pertev.eye",
                              "pertev.fov", "pertev.tone_map", "pertev.exposure", "pertev.environment", "pertev.scene_hash"]:
                     self.assertEqual(saved[name], again[name], name)
-                self.assertIn("seed", saved["pertev.by_flags"].split())
+                self.assertIn("seed", saved["pertev.by_caller"].split())
 
     def test_the_object_at_a_pixel_is_reported_by_name(self):
         with Viewer() as viewer, Client(viewer) as client:

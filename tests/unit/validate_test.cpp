@@ -289,6 +289,7 @@ TEST_CASE("faults of cameras and lights are refused") {
     check_refused("focus", E::BadInput, camera([](Camera& c) { c.focus_distance = 0; }));
     check_refused("aspect", E::BadInput, camera([](Camera& c) { c.aspect = -1; }));
     check_refused("2^40", E::OverLimit, camera([](Camera& c) { c.world_from_camera.translation.x = 1e20f; }));
+    check_refused("height", E::BadInput, camera([](Camera& c) { c.ortho_height = kNan; }));
     check_refused("height", E::BadInput, camera([](Camera& c) {
                       c.projection = Projection::Orthographic;
                       c.ortho_height = 0;

@@ -224,7 +224,8 @@ private:
         if (!is_flat && !(camera.fov_y > 0 && camera.fov_y < kPi)) {
             throw bad(fmt::format("{}: its field of view is {} radians; expected between 0 and pi", of, camera.fov_y));
         }
-        if (is_flat && !(camera.ortho_height > 0 && camera.ortho_height <= kMaxCoordinate)) {
+        if (!is_finite(camera.ortho_height) ||
+            (is_flat && !(camera.ortho_height > 0 && camera.ortho_height <= kMaxCoordinate))) {
             throw bad(fmt::format("{}: its view height is {}; expected above 0", of, camera.ortho_height));
         }
         if (!(camera.aspect >= 0 && is_finite(camera.aspect))) {

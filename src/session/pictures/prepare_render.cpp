@@ -104,10 +104,10 @@ void record_settings(const PictureOptions& options, const Scene& scene, uint32_t
     auto origins = options.given; // the scene's own camera has no value that a settings file could contain
     if (is_own) origins.try_emplace("camera", SettingOrigin::Scene);
     if (own != nullptr && own->aspect > 0) origins.try_emplace("size", SettingOrigin::Scene);
-    source.by_default = source.by_scene = source.by_settings = source.by_flags = "";
+    source.by_default = source.by_scene = source.by_settings = source.by_caller = "";
     const auto add = [](std::string& names, const std::string& name) { names += (names.empty() ? "" : " ") + name; };
     for (const auto& [name, origin] : origins) {
-        add(origin == SettingOrigin::Caller ? source.by_flags
+        add(origin == SettingOrigin::Caller ? source.by_caller
             : origin == SettingOrigin::File ? source.by_settings
                                             : source.by_scene,
             name);

@@ -228,7 +228,7 @@ ExrMetadata picture_metadata(const PictureRecord& record, const RenderStats& sta
                                      {"pertev.by_default", &scene.by_default},
                                      {"pertev.by_scene", &scene.by_scene},
                                      {"pertev.by_settings", &scene.by_settings},
-                                     {"pertev.by_flags", &scene.by_flags}}) {
+                                     {"pertev.by_caller", &scene.by_caller}}) {
         if (!text->empty()) metadata.emplace_back(name, *text);
     }
     return metadata;

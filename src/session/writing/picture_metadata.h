@@ -27,7 +27,7 @@ struct SceneSource : SceneOptions {
     std::string hash;               // scene_hash() of settings/settings_file.h; empty if unknown
     std::string settings;           // all given settings, as JSON (settings/settings_file.h); empty if unknown
     // Names of settings that were chosen for want of others, from the scene's file, from a settings file, from flags.
-    std::string by_default, by_scene, by_settings, by_flags;
+    std::string by_default, by_scene, by_settings, by_caller;
     std::vector<std::string> instances, materials; // names by id, for pictures with ids; empty without them
     std::vector<std::string> made_up, left_out;    // messages: generated parts of the scene; parts of it left out
     std::optional<DoubleVec3> position_origin;     // origin of positions in a far scene; none: the file's origin
