@@ -234,8 +234,8 @@ std::string settings_document() {
         "left out with a warning, and `--strict` refuses them. Settings marked \"not kept\" are not "
         "stored there, because they\n"
         "belong to the machine and the run: threads, folders to read from, or a time limit. \"Not with: "
-        "svgf:max_depth=0\" is a rule\n"
-        "for the value svgf alone.\n";
+        "!none:max_depth=0\" is a rule\n"
+        "for all values but none.\n";
     std::string_view group;
     std::string verbs;
     for (const Setting& setting : all_settings()) {

@@ -40,7 +40,7 @@ CameraKey read_key(const JsonValue& source, const CameraPath& before) {
     }
     const auto fov = source.find("fov");
     if (fov) key.fov_deg = fov->to_float();
-    if (fov && !(key.fov_deg >= static_cast<float>(kMinFovDeg) && key.fov_deg <= kMaxFovDeg)) {
+    if (fov && !(key.fov_deg >= static_cast<float>(kMinFovDeg) && key.fov_deg <= static_cast<float>(kMaxFovDeg))) {
         throw fov->error(fmt::format("{}; expected degrees, from {} to {}", key.fov_deg, kMinFovDeg, kMaxFovDeg));
     }
     if (!before.keys.empty() && fov.has_value() != (before.keys[0].fov_deg > 0)) {

@@ -18,16 +18,24 @@ std::vector<std::string> integrators_with(const Setting& setting) {
 namespace {
 
 const Setting* setting_of(const std::string& condition) {
-    return find_setting(condition.substr(0, condition.find('=')));
+    return find_setting(condition.substr(0, condition.find_first_of("!=")));
 }
 
 bool holds(const PictureOptions& options, const std::string& condition) {
     const Setting& setting = *setting_of(condition);
     const std::vector<std::string> texts = texts_of(options, setting);
     if (const std::size_t equals = condition.find('='); equals != std::string::npos) {
-        return std::ranges::find(texts, condition.substr(equals + 1)) != texts.end();
+        const bool is_there = std::ranges::find(texts, condition.substr(equals + 1)) != texts.end();
+        return is_there != (condition[equals - 1] == '!');
     }
     return options.is_given(setting.name) && !texts.empty() && !(is_switch(setting) && texts.front() == "false");
+}
+
+/// Returns the value with which NAME!=VALUE holds, as NAME=VALUE; other conditions as they are.
+std::string with_value(const PictureOptions& options, const std::string& condition) {
+    if (condition.find('!') == std::string::npos) return condition;
+    const Setting& setting = *setting_of(condition);
+    return fmt::format("{}={}", setting.name, texts_of(options, setting).front());
 }
 
 std::optional<SettingConflict> conflict_of(const PictureOptions& options, const Setting& setting, uint32_t verbs) {
@@ -40,11 +48,17 @@ std::optional<SettingConflict> conflict_of(const PictureOptions& options, const 
     const auto is_so = [&](const std::string& other) { return holds(options, other); };
     if (!needs.empty() && std::ranges::none_of(needs, is_so)) return SettingConflict{&setting, Kind::Needs, needs};
     for (std::string& other : words_of(setting.excludes)) {
-        const std::size_t colon = other.find(':'); // VALUE:OTHER is a rule for this value alone
-        const std::string value = other.substr(0, colon == std::string::npos ? 0 : colon);
-        if (!value.empty() && !is_so(fmt::format("{}={}", setting.name, value))) continue;
+        const std::size_t colon =
+            other.find(':'); // VALUE:OTHER is a rule for this value alone, !VALUE:OTHER for all others
+        const std::string rule = other.substr(0, colon == std::string::npos ? 0 : colon);
+        if (!rule.empty() && !is_so(setting.name + std::string(rule.starts_with('!') ? "!=" : "=") +
+                                    rule.substr(rule.starts_with('!') ? 1 : 0))) {
+            continue;
+        }
         other.erase(0, colon + 1); // npos + 1: 0
-        if (is_so(other)) return SettingConflict{&setting, Kind::Excludes, {other}, value};
+        if (!is_so(other)) continue;
+        const std::string value = rule.empty() ? "" : texts_of(options, setting).front();
+        return SettingConflict{&setting, Kind::Excludes, {with_value(options, other)}, value};
     }
     return std::nullopt;
 }

@@ -147,7 +147,7 @@ std::vector<Setting> frame_settings() {
                                   "Frames are rendered as the viewer does in motion: one sample per pixel each, "
                                   "reconstructed with earlier frames. The settings below apply only to such frames.",
                                   Of{integrators_that(makes_frames)}, Needs{"frames turntable"},
-                                  Excludes{"denoise=svgf transparent shutter lpe false_color=illuminance aov=motion"}));
+                                  Excludes{"denoise!=none transparent shutter lpe false_color=illuminance aov=motion"}));
     return rows;
 }
 

@@ -96,7 +96,7 @@ std::vector<Setting> picture_settings() {
         row("denoise", "Quality", "NAME", FIELD(render.denoise),
             "The denoiser of pictures with few samples. It is biased; EXR output also has the picture before denoising "
             "as the layer noisy.",
-            Excludes{"svgf:max_depth=0"}, Recorded::Changed, Mark::Common),
+            Excludes{"!none:max_depth=0"}, Recorded::Changed, Mark::Common),
 
         row("build", "Tracing", "WHICH", FIELD(tracer.build),
             "The quality of the acceleration structure: fast builds fastest, best traces fastest. "

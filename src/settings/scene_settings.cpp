@@ -91,7 +91,7 @@ std::vector<Setting> scene_settings() {
         row("shutter", "Motion", "[OPEN,]SECONDS", FIELD(shutter),
             "The times at which the shutter opens, 0 by default, and closes, relative to the time of the picture or "
             "frame. Motion between them is blurred.",
-            Unit{"s"}, Of{integrators_that(has_shutter)}, Needs{"time frames"}, Excludes{"denoise=svgf"}, Mark::Name,
+            Unit{"s"}, Of{integrators_that(has_shutter)}, Needs{"time frames"}, Excludes{"denoise!=none"}, Mark::Name,
             Recorded::AsUsed),
         row("camera_path", "Motion", "FILE", FIELD(camera_path),
             "A JSON file of keys (time, eye, target, up, fov) that the camera follows.",

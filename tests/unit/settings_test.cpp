@@ -178,7 +178,14 @@ TEST_CASE("a conflict is an error about the setting, whose reason names the othe
     error = refusal(options);
     REQUIRE(test::is_about(error, ErrorCode::BadInput, "denoise", "svgf"));
     CHECK(error->reason() == "cannot be combined with `max_depth=0`; leave out one of them");
+    set(options, "shutter", {"0.1"});
+    set(options, "time", {"1"});
+    set(options, "max_depth", {"1"});
+    error = refusal(options); // excludes every denoiser, and names the one that was given
+    REQUIRE(test::is_about(error, ErrorCode::BadInput, "shutter"));
+    CHECK(error->reason().find("`denoise=svgf`") != std::string::npos);
     set(options, "denoise", {"none"});
+    CHECK(!refusal(options));
     set(options, "fps", {"9"});
     error = refusal(options);
     REQUIRE(test::is_about(error, ErrorCode::BadInput, "fps"));
