@@ -36,7 +36,7 @@ RecordScene scene_of(const JsonValue& value) {
     return scene;
 }
 
-RecordJob job_of(const JsonValue& value) {
+RecordJob job_of(const JsonValue& value, const std::vector<RecordScene>& scenes) {
     RecordJob job = {.name = value.string_or("name", ""),
                      .filter = value_named<PixelFilter>(value.at("filter").to_string()).value(),
                      .width = count_of(value, "width"),
@@ -50,6 +50,7 @@ RecordJob job_of(const JsonValue& value) {
                      .pbrt = number_of(value, "pbrt")};
     if (value.find("reflectance")) job.reflectance = value.at("reflectance").to_float();
     if (value.find("eye")) job.view = view_of(value);
+    if (value.find("scene")) job.view = find_named(scenes, value.at("scene").to_string())->view;
     if (value.find("roulette_depth")) job.roulette_depth = count_of(value, "roulette_depth");
     return job;
 }
@@ -69,7 +70,7 @@ Record read_record() {
     const JsonValue& root = table.root();
     Record read = {.device = root.string_or("device", "")};
     for (const JsonValue& value : root.elements_of("scenes")) read.scenes.push_back(scene_of(value));
-    for (const JsonValue& value : root.elements_of("jobs")) read.jobs.push_back(job_of(value));
+    for (const JsonValue& value : root.elements_of("jobs")) read.jobs.push_back(job_of(value, read.scenes));
     for (const JsonValue& value : root.elements_of("presets")) read.presets.push_back(preset_of(value));
     return read;
 }

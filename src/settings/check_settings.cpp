@@ -48,13 +48,11 @@ std::optional<SettingConflict> conflict_of(const PictureOptions& options, const 
     const auto is_so = [&](const std::string& other) { return holds(options, other); };
     if (!needs.empty() && std::ranges::none_of(needs, is_so)) return SettingConflict{&setting, Kind::Needs, needs};
     for (std::string& other : words_of(setting.excludes)) {
-        const std::size_t colon =
-            other.find(':'); // VALUE:OTHER is a rule for this value alone, !VALUE:OTHER for all others
+        // VALUE:OTHER is a rule for this value alone, !VALUE:OTHER for all others.
+        const std::size_t colon = other.find(':');
         const std::string rule = other.substr(0, colon == std::string::npos ? 0 : colon);
-        if (!rule.empty() && !is_so(setting.name + std::string(rule.starts_with('!') ? "!=" : "=") +
-                                    rule.substr(rule.starts_with('!') ? 1 : 0))) {
-            continue;
-        }
+        const std::string own = setting.name + (rule.starts_with('!') ? "!=" + rule.substr(1) : "=" + rule);
+        if (!rule.empty() && !is_so(own)) continue;
         other.erase(0, colon + 1); // npos + 1: 0
         if (!is_so(other)) continue;
         const std::string value = rule.empty() ? "" : texts_of(options, setting).front();

@@ -135,8 +135,8 @@ struct Setting {
     uint32_t integrators = 0;       // bits by IntegratorKind of those that have it; 0: all. all_settings() adds those
                                     // whose IntegratorDescriptor::settings names it
     std::string_view needs = "";    // names of settings, or NAME=VALUE, at least one of which must be satisfied
-    std::string_view excludes = ""; // names of settings, or NAME=VALUE, that must not be satisfied; VALUE:NAME is a
-                                    // rule for one value of this setting
+    std::string_view excludes = ""; // names of settings, NAME=VALUE or NAME!=VALUE, that must not be satisfied;
+                                    // VALUE: or !VALUE: before it restricts the rule to some values of this setting
     uint32_t formats = 0;           // bits by ImageFormat of files that show it; 0: all
     Recorded recorded = Recorded::No;
     bool is_kept = true;      // settings files contain it, because the picture depends on it

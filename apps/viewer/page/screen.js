@@ -1,7 +1,7 @@
 // The viewer is to know this of the screen: how often it shows a new picture, as the browser calls back once for each, and
 // the shape of the window.
 
-const kPictures = 60; // that a rate is sent from
+const kPictures = 60; // from which a rate is estimated
 
 /** @param {(rate: number) => void} report pictures a second, once that is known, and again when it is another: a window may
  * be moved to another screen */

@@ -24,7 +24,7 @@ export class TimeLine {
     this.link = link;
     /** @type {Clock} */
     this.clock = { at: 0, end: 0, on: false, loops: true, speed: 1 };
-    this.toldAt = 0; // when the clock was so
+    this.receivedAt = 0; // when the clock was so
     this.pending = new PendingInput();
     this.button = button("", () => this.toggle(), "play", "Space");
     this.slider = input("range", "time-at");
@@ -84,7 +84,7 @@ export class TimeLine {
   /** @param {Clock} clock */
   keep(clock) {
     this.clock = clock;
-    this.toldAt = performance.now();
+    this.receivedAt = performance.now();
     element("time").hidden = !(clock.end > 0);
     this.button.textContent = clock.on ? "❚❚" : "▶";
     this.button.setAttribute("aria-label", clock.on ? "Pause" : "Play");
@@ -98,7 +98,7 @@ export class TimeLine {
   /** Seconds, as they have gone on since the viewer told of them. */
   now() {
     const { at, end, on, loops, speed } = this.clock;
-    const now = on ? at + ((performance.now() - this.toldAt) / 1000) * speed : at;
+    const now = on ? at + ((performance.now() - this.receivedAt) / 1000) * speed : at;
     return loops && end > 0 ? now % end || Math.min(now, end) : Math.min(now, end);
   }
 
