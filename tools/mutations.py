@@ -386,4 +386,8 @@ MUTATIONS = [
      ("src/session/writing/check_outputs.cpp", "(written & formats) != 0) return;", "formats != 0) return;")),
     ("a frame records the settings of its whole sequence", "unit/write_sequence",
      ("src/session/pictures/frame_settings.cpp", "if (!options.frames.empty()) keep_frame(", "if (false) keep_frame(")),
+    ("predicted memory of frames without the previous positions of instances", "consistency/frame_result",
+     ("src/session/session_bytes.cpp", "places_before(queue, scene.scene->instances.size(),", "places_before(queue, 0,")),
+    ("a picture's sink gets no notice of hidden backs", "unit/hidden_back",
+     ("src/session/pictures/render_samples.cpp", "if (result.hidden_back_share > 0.01)", "if (false)")),
 ]

@@ -5,8 +5,8 @@
 
 #include <string>
 
-#include "apps/viewer/picture_flags.h"
 #include "base/remark.h"
+#include "settings/picture_flags.h"
 
 namespace pertev {
 

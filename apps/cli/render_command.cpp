@@ -20,20 +20,13 @@
 #include "session/opening/strictness.h"
 #include "session/pictures/choose_display.h"
 #include "session/pictures/prepare_render.h"
+#include "session/pictures/render_samples.h"
 #include "session/pictures/write_sequence.h"
 #include "session/survey/ground.h"
 #include "session/writing/check_outputs.h"
-#include "settings/value_names.h"
 
 namespace pertev {
 namespace {
-
-void report_hidden_backs(double share, Messages& messages) {
-    if (!(share > 0.01)) return;
-    messages.note(fmt::format("the camera looks through the backs of surfaces at {:.0f} % of the picture, as they are "
-                              "not double sided (`show_back_faces` shows them)",
-                              100 * share));
-}
 
 /// Reports what will be rendered, and on which device.
 void report_start(const RenderFlags& flags, const RenderSetup& ready, Reporter& reporter) {
@@ -110,29 +103,13 @@ int render_frames(const RenderFlags& flags, const SequenceOfFrames& frames, Repo
     return cut_short ? exit_status(ErrorCode::Interrupted) : 0;
 }
 
-/// Error for a picture that was interrupted before its first sample.
-Error ended_before_samples(const RenderSettings& settings) {
-    if (interrupted()) return {ErrorCode::Interrupted, "interrupted before there was anything to keep"};
-    return {
-        ErrorCode::Interrupted, "time_limit", fmt::format("{:g}", settings.time_limit_s),
-        fmt::format("no sample was finished in this time, so nothing is written; `integrator={}` prepares more than "
-                    "samples first",
-                    integrator_name(settings))};
-}
-
 int write_one(const RenderFlags& flags, const RenderSettings& settings, PictureRecord& record,
               std::optional<Session>& session, const Queue& queue, const Stopwatch& watch, Reporter& reporter) {
-    const uint32_t added = session->render(settings.samples, reporter);
-    if (added == 0) {
-        reporter.end_progress();
-        throw ended_before_samples(settings);
-    }
-    RenderResult result = session->result();
+    RenderResult result = render_samples(*session, reporter);
     session.reset(); // writing takes memory too
     reporter.end_progress();
     const bool cut_short = interrupted() && result.samples < settings.samples;
     if (cut_short) reporter.print(fmt::format("interrupted after {} of {} spp", result.samples, settings.samples));
-    report_hidden_backs(result.hidden_back_share, reporter.messages());
     reporter.report_messages();
     reporter.set_work("writing");
     const WrittenPicture written = write_picture(flags.outputs, record, result);

@@ -8,12 +8,12 @@
 #include "apps/viewer/file_name.h"
 #include "apps/viewer/panel_phrases.h"
 #include "apps/viewer/panel_text.h"
-#include "apps/viewer/picture_flags.h"
 #include "base/error.h"
 #include "scene/scene_origin.h"
 #include "session/pictures/prepare_render.h"
 #include "session/writing/write_picture.h"
 #include "settings/check_settings.h"
+#include "settings/picture_flags.h"
 
 namespace pertev {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <utility>
 
-#include "apps/viewer/picture_flags.h"
 #include "math/portable_math.h"
 #include "session/position_text.h"
+#include "settings/picture_flags.h"
 #include "settings/setting_table.h"
 
 namespace pertev {

@@ -48,6 +48,11 @@ public:
     /// Rays of the film's samples.
     const RayCounts& rays() const { return stats_.rays; }
     Image picture() { return film().picture(settings_.transparent); }
+    /// Computes the picture for a display, times 2^exposure_stops, as tone_map_image of picture(), and starts its
+    /// copy to the host.
+    void display(ToneMap tone_map, float exposure_stops) {
+        film().display(tone_map, exposure_stops, settings_.transparent);
+    }
     /// Returns the picture after the post steps; none if the settings request no step, or without samples.
     std::optional<Image> denoised();
     std::vector<FilmLayer> layers() { return film().layers(); }

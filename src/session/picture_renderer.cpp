@@ -1,6 +1,7 @@
 #include "session/picture_renderer.h"
 
 #include "base/error.h"
+#include "render/camera_work.h"
 #include "session/check_integrator.h"
 
 namespace pertev {
@@ -95,6 +96,11 @@ RenderResult PictureRenderer::render_separately(const Camera& camera, const Rend
     result.layers = film.layers();
     result.ids = film.ids();
     return result;
+}
+
+std::vector<RayWork> PictureRenderer::count_camera_work(const Camera& camera, const RenderSettings& settings) {
+    const PictureView picture = view_of(camera, settings); // first: it checks that there is a scene
+    return pertev::count_camera_work(queue(), scene_.tracer(), picture);
 }
 
 } // namespace pertev

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "render/filter_table.h"
 #include "render/noisy_frame.h"
@@ -44,6 +45,9 @@ public:
 
     /// Renders `settings.samples` samples from `first` on into a separate film. Throws as begin().
     RenderResult render_separately(const Camera& camera, const RenderSettings& settings, uint32_t first = 0);
+    /// Returns the nodes and triangles that the ray through the middle of each pixel tests, by the tracer of camera
+    /// rays; nothing for packets. Throws Error(OutOfMemory, DeviceFault).
+    std::vector<RayWork> count_camera_work(const Camera& camera, const RenderSettings& settings);
 
 private:
     MotionTrack motion_of(const Camera& camera, Vec3 centre);

@@ -1,6 +1,5 @@
 #include "session/session.h"
 
-#include "render/camera_work.h"
 #include "session/check_integrator.h"
 
 namespace pertev {
@@ -54,10 +53,6 @@ void Session::cut() {
     film_.restart();
 }
 
-void Session::display(ToneMap tone_map, float exposure_stops) {
-    film_.film().display(tone_map, exposure_stops, settings().transparent);
-}
-
 RenderResult Session::result() {
     RenderResult result = {stats(), picture(), denoised(), layers(), film().ids()};
     if ((settings().aovs & kAovMotion) != 0) {
@@ -65,11 +60,6 @@ RenderResult Session::result() {
         result.layers.push_back({group.layer, channel_names(group), motion()});
     }
     return result;
-}
-
-std::vector<RayWork> Session::count_camera_work() {
-    const PictureView picture = pictures_.view_of(camera(), settings()); // first: it checks that there is a scene
-    return pertev::count_camera_work(pictures_.queue(), scene_.tracer(), picture);
 }
 
 RenderResult render_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera,

@@ -77,9 +77,7 @@ public:
     std::vector<FilmLayer> layers() { return film_.layers(); }
     RenderStats stats() { return film_.stats(); }
     const RayCounts& rays() const { return film_.rays(); }
-    /// Computes the picture for a display, times 2^exposure_stops, as tone_map_image of picture(), and starts its
-    /// copy to the host.
-    void display(ToneMap tone_map, float exposure_stops);
+    void display(ToneMap tone_map, float exposure_stops) { film_.display(tone_map, exposure_stops); }
     Rgba8Image displayed() { return film_.film().displayed(); }
     /// Returns picture, denoised picture, layers, ids, motion vectors and stats together.
     RenderResult result();
@@ -101,9 +99,7 @@ public:
     RenderResult render_separately(const Camera& camera, const RenderSettings& settings, uint32_t first = 0) {
         return pictures_.render_separately(camera, settings, first);
     }
-    /// Returns the nodes and triangles that the ray through the middle of each pixel tests, by the tracer of camera
-    /// rays; nothing for packets. Throws Error(OutOfMemory, DeviceFault).
-    std::vector<RayWork> count_camera_work();
+    std::vector<RayWork> count_camera_work() { return pictures_.count_camera_work(camera(), settings()); }
 
     History history() const { return {film_.samples().end, previous_camera_, cuts_}; }
     const Camera& camera() const { return film_.camera(); }

@@ -100,6 +100,7 @@ std::size_t predicted_frame_bytes(const PreparedScene& scene, const RenderSettin
     const uint32_t width = settings.width, height = settings.height;
     const uint32_t of_light[] = {scaled_side(width, reconstruction), scaled_side(height, reconstruction)};
     const bool splits = splits_light(scene);
+    const Buffer<InstanceView> places_before(queue, scene.scene->instances.size(), "instances before");
     const Tracing tracing(queue, scene, settings,
                           {.splits_light = splits, .records_bounce = restir.light == RestirLight::Indirect});
     const NoisyFrame frame(queue, of_light[0], of_light[1], splits);

@@ -234,7 +234,7 @@ class Radiosity(CliTest):
         write(self.path("white.obj"), "mtllib white.mtl\nusemtl a\n" + box)
         self.refuse(2, "solve", "radiosity", "white.obj", "-o", "w.rad", "--patch-size", "0.5", says=["radiosity: "])
 
-    def test_errors_of_invalid_requests_take_one_line(self):
+    def test_errors_of_invalid_requests_name_the_setting_or_the_file(self):
         write(self.path("mirror.mtl"), MIRROR)
         write(self.path("mirror.obj"), "mtllib mirror.mtl\nusemtl a\n" + FLOOR)
         write(self.path("text.rad"), "no solution at all")
@@ -243,32 +243,33 @@ class Radiosity(CliTest):
             cut.write(whole.read()[:-7])
         write(self.path("floor.obj"), FLOOR)
         look = ["--eye", "0,2,4", "--target", "0,0,0"]
-        for arguments, status, says in [
-                ("solve radiosity mirror.obj -o m.rad --environment 1,1,1", 2, "no surface of this scene reflects diffusely"),
-                ("solve radiosity nowhere.obj -o m.rad --steps 5", 2, "--steps: needs --solver southwell"),
-                ("solve radiosity nowhere.obj -o m.rad --hemicube 64", 2, "--hemicube: needs --form-factors hemicube"),
-                ("solve radiosity nowhere.obj -o m.rad --solver matrix --tolerance 0.1", 2, "--tolerance: cannot be combined with --solver matrix"),
-                ("solve radiosity nowhere.obj -o m.rad --patch-size 0", 2, "--patch-size"),
+        for arguments, status, named in [ # a setting, or a file
+                ("solve radiosity mirror.obj -o m.rad --environment 1,1,1", 2, "scene"),
+                ("solve radiosity nowhere.obj -o m.rad --steps 5", 2, "steps"),
+                ("solve radiosity nowhere.obj -o m.rad --hemicube 64", 2, "hemicube"),
+                ("solve radiosity nowhere.obj -o m.rad --solver matrix --tolerance 0.1", 2, "tolerance"),
+                ("solve radiosity nowhere.obj -o m.rad --patch-size 0", 2, "patch_size"),
                 ("solve radiosity nowhere.obj -o nowhere/m.rad", 6, "nowhere/m.rad"),
-                ("solve radiosity cornell-box -o m.rad --patch-size 1e-5", 3, "--patch-size 1e-05: it divides"),
-                ("solve radiosity cornell-box -o m.rad --patch-size 0.01 --patch-rays 16 --solver matrix", 3, "--solver matrix: "),
-                ("solve nothing", 2, "nothing"),
-                ("render nowhere.obj -o x.png --solution box.rad", 2, "--solution: applies to --integrator radiosity, not to path"),
-                ("render nowhere.obj -o x.png --patch-size 1", 2, "--patch-size: applies to --integrator radiosity, not to path"),
-                ("render nowhere.obj -o x.png --integrator radiosity --solution none.rad", 2, "--solution none.rad: there is no such"),
-                ("render nowhere.obj -o x.png --integrator radiosity --solution box.rad --patch-rays 64", 2,
-                 "--patch-rays: cannot be combined with --solution"),
-                ("render nowhere.obj -o x.png --integrator radiosity --denoise svgf", 2, "--denoise svgf: supports"),
-                ("render nowhere.obj -o x.png --integrator radiosity --lpe seen=LE -o x.exr", 2, "distinguish light paths"),
-                ("render nowhere.obj -o x.png --integrator radiosity --max-depth 256", 3, "--max-depth 256: the limit with --integrator radiosity is 255"),
-                ("render cornell-box -o x.png --integrator radiosity --shutter 0.1", 2, "--shutter"),
-                ("render cornell-box -o x.png --integrator radiosity --solution text.rad", 2, "text.rad: not a radiosity solution"),
-                ("render cornell-box -o x.png --integrator radiosity --solution cut.rad", 2, "cut.rad: a radiosity solution that is truncated"),
-                ("render floor.obj -o x.png --integrator radiosity --solution box.rad", 2, "box.rad: a radiosity solution of another scene")]:
+                ("solve radiosity cornell-box -o m.rad --patch-size 1e-5", 3, "patch_size"),
+                ("solve radiosity cornell-box -o m.rad --patch-size 0.01 --patch-rays 16 --solver matrix", 3, "solver"),
+                ("render nowhere.obj -o x.png --solution box.rad", 2, "solution"),
+                ("render nowhere.obj -o x.png --patch-size 1", 2, "patch_size"),
+                ("render nowhere.obj -o x.png --integrator radiosity --solution none.rad", 2, "solution"),
+                ("render nowhere.obj -o x.png --integrator radiosity --solution box.rad --patch-rays 64", 2, "patch_rays"),
+                ("render nowhere.obj -o x.png --integrator radiosity --denoise svgf", 2, "denoise"),
+                ("render nowhere.obj -o x.png --integrator radiosity --lpe seen=LE -o x.exr", 2, "lpe"),
+                ("render nowhere.obj -o x.png --integrator radiosity --max-depth 256", 3, "max_depth"),
+                ("render cornell-box -o x.png --integrator radiosity --shutter 0.1", 2, "shutter"),
+                ("render cornell-box -o x.png --integrator radiosity --solution text.rad", 2, "text.rad"),
+                ("render cornell-box -o x.png --integrator radiosity --solution cut.rad", 2, "cut.rad"),
+                ("render floor.obj -o x.png --integrator radiosity --solution box.rad", 2, "box.rad")]:
             with self.subTest(arguments=arguments):
                 more = look if "render floor.obj" in arguments else []
-                self.refuse(status, *arguments.split(), *more, says=[says])
+                error = self.refuse(status, *arguments.split(), *more, "--json").events("error")[0]
+                self.assertEqual(error.get("setting", error.get("place", {}).get("file")), named, error)
+                self.assertNotIn("\n", error["text"])
                 self.assertFalse(os.path.exists(self.path("m.rad")))
+        self.refuse(2, "solve", "nothing", says=["nothing"])
         self.assertNotIn("x.png", self.files())
 
     def test_metadata_record_how_the_radiosity_was_solved(self):

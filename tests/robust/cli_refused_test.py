@@ -72,53 +72,53 @@ class WhatIsRefused(CliTest):
             with self.subTest(flag=flag, output=output):
                 self.refuse(2, "render", "nowhere.obj", "-o", output, *flag.split(), says=[flag.split()[0]])
 
-    def test_errors_of_integrator_settings_take_one_line(self):
+    def test_errors_of_integrator_settings_name_the_setting_its_value_and_those_it_depends_on(self):
         self.render(output="heights.png")
-        for flags, code, says in [
-                ("--integrator whitted --denoise svgf", 2, "--denoise svgf: supports --integrator path, direct, indirect, hybrid, not whitted"),
-                ("--integrator distributed --max-depth 256", 3, "--max-depth 256: the limit with --integrator distributed is 255"),
-                ("--integrator bidirectional --denoise svgf", 2,
-                 "--denoise svgf: supports --integrator path, direct, indirect, hybrid, not bidirectional"),
-                ("--integrator bidirectional --max-depth 256", 3, "--max-depth 256: the limit with --integrator bidirectional is 255"),
-                ("--integrator hybrid --aperture 0.1 --focus 1", 2, "--integrator hybrid: rasterisation does not support this camera's lens"),
-                ("--integrator raster --aperture 0.1", 2, "--integrator raster: rasterisation does not support this camera's lens"),
-                ("--integrator hybrid --time 0 --shutter 0.1", 2, "--shutter: applies to --integrator path, direct, indirect, "
-                 "cast, whitted, distributed, not to hybrid"),
-                ("--time 0 --shutter 1e30", 2, "--shutter 1e30: OPEN and CLOSE must be within 1e+06 s of the picture's time"),
-                ("--time 0 --shutter 1e999,2", 2, "--shutter 1e999,2: OPEN and CLOSE must be within 1e+06 s of the picture's time"),
-                ("--time 0 --shutter 1,2,3", 2, "--shutter 1,2,3: expected SECONDS, or OPEN,CLOSE"),
-                ("--integrator raster --ambient 1 --aperture 0.1 --focus 1", 2, "--integrator raster: rasterisation does not support this camera's lens"),
-                ("--integrator photon_map --max-depth 65", 3, "--max-depth 65: the limit with --integrator photon_map is 64"),
-                ("--integrator photon_map --max-depth 64 --photons 16777216", 3, "--photons 16777216: with --max-depth 64 a pass may store more"),
-                ("--integrator light --photons 5", 2, "--photons: applies to --integrator photon_map, not to light"),
-                ("--integrator irradiance_cache --denoise svgf", 2,
-                 "--denoise svgf: supports --integrator path, direct, indirect, hybrid, not irradiance_cache"),
-                ("--integrator irradiance_cache --lpe a=LE -o x.exr", 2,
-                 "--lpe: --integrator path, direct, indirect, hybrid distinguish light paths, irradiance_cache does not"),
-                ("--integrator irradiance_cache --clamp 1", 2, "--clamp: applies to --integrator path, direct, indirect, hybrid, not to irradiance_cache"),
-                ("--accuracy 0.3", 2, "--accuracy: applies to --integrator irradiance_cache, not to path"),
-                ("--integrator light --hemisphere-rays 99", 2, "--hemisphere-rays: applies to --integrator irradiance_cache"),
-                ("--integrator photon_map --show-records", 2, "--show-records: applies to --integrator irradiance_cache"),
-                ("--integrator radiosity --solver hierarchical --form-factors hemicube", 2, "--form-factors hemicube: cannot be combined with --solver hierarchical"),
-                ("--integrator photon_map --lamp light=0W --environment 0,0,0", 2, "photon_map needs light, and this scene has none"),
-                ("--integrator radiosity --lamp light=0W --environment 0,0,0", 2, "radiosity needs light, and this scene has none"),
-                ("--gather final", 2, "--gather: applies to --integrator photon_map, not to path"),
-                ("--shading flat", 2, "--shading: applies to --integrator raster, not to path"),
-                ("--integrator cast --ambient 1 --wireframe", 2, "--wireframe: applies to --integrator raster"),
-                ("--integrator raster --ambient 1 --wireframe --shading flat", 2, "--wireframe: cannot be combined with --shading"),
-                ("--integrator reyes --ambient 1 --aperture 0.1 --focus 1", 2, "--integrator reyes: rasterisation does not support this camera's lens"),
-                ("--integrator reyes", 2, "this scene has only emitters"),
-                ("--integrator reyes --denoise svgf", 2, "--denoise svgf: supports --integrator path, direct, indirect, hybrid, not reyes"),
-                ("--integrator raster --ambient 1 --shading-rate 2", 2, "--shading-rate: applies to --integrator reyes"),
-                ("--displacement white=x.png,1", 2, "--displacement: applies to --integrator reyes, not to path"),
-                ("--integrator reyes --ambient 1 --displacement white=x.png", 2, "--displacement white=x.png: expected MATERIAL=FILE,SCALE or"),
-                ("--integrator reyes --ambient 1 --displacement nobody=x.png,1", 2, "there is no material of the scene with this name"),
-                ("--integrator reyes --ambient 1 --displacement white=nothere.png,1", 2, "nothere.png: cannot read: No such file"),
-                ("--integrator reyes --ambient 1 --displacement *=heights.png,1", 2, "without texture coordinates"),
-                ("--integrator cast", 2, "this scene has only emitters: --integrator distributed and path support all lights")]:
+        for flags, status, setting, value, others in [
+                ("--integrator whitted --denoise svgf", 2, "denoise", "svgf", ["integrator"]),
+                ("--integrator distributed --max-depth 256", 3, "max_depth", "256", ["integrator"]),
+                ("--integrator bidirectional --denoise svgf", 2, "denoise", "svgf", ["integrator"]),
+                ("--integrator bidirectional --max-depth 256", 3, "max_depth", "256", ["integrator"]),
+                ("--integrator hybrid --aperture 0.1 --focus 1", 2, "integrator", "hybrid", ["aperture", "integrator"]),
+                ("--integrator raster --aperture 0.1", 2, "integrator", "raster", ["aperture", "integrator"]),
+                ("--integrator hybrid --time 0 --shutter 0.1", 2, "shutter", None, ["integrator"]),
+                ("--time 0 --shutter 1e30", 2, "shutter", "1e30", []),
+                ("--time 0 --shutter 1e999,2", 2, "shutter", "1e999,2", []),
+                ("--time 0 --shutter 1,2,3", 2, "shutter", "1,2,3", []),
+                ("--integrator raster --ambient 1 --aperture 0.1 --focus 1", 2, "integrator", "raster", ["aperture", "integrator"]),
+                ("--integrator photon_map --max-depth 65", 3, "max_depth", "65", ["integrator"]),
+                ("--integrator photon_map --max-depth 64 --photons 16777216", 3, "photons", "16777216", ["max_depth"]),
+                ("--integrator light --photons 5", 2, "photons", None, ["integrator"]),
+                ("--integrator irradiance_cache --denoise svgf", 2, "denoise", "svgf", ["integrator"]),
+                ("--integrator irradiance_cache --lpe a=LE -o x.exr", 2, "lpe", None, ["integrator"]),
+                ("--integrator irradiance_cache --clamp 1", 2, "clamp", None, ["integrator"]),
+                ("--accuracy 0.3", 2, "accuracy", None, ["integrator"]),
+                ("--integrator light --hemisphere-rays 99", 2, "hemisphere_rays", None, ["integrator"]),
+                ("--integrator photon_map --show-records", 2, "show_records", None, ["integrator"]),
+                ("--integrator radiosity --solver hierarchical --form-factors hemicube", 2, "form_factors", "hemicube", ["solver"]),
+                ("--integrator photon_map --lamp light=0W --environment 0,0,0", 2, "integrator", "photon_map", []),
+                ("--gather final", 2, "gather", None, ["integrator"]),
+                ("--shading flat", 2, "shading", None, ["integrator"]),
+                ("--integrator cast --ambient 1 --wireframe", 2, "wireframe", None, ["integrator"]),
+                ("--integrator raster --ambient 1 --wireframe --shading flat", 2, "wireframe", None, ["shading"]),
+                ("--integrator reyes --ambient 1 --aperture 0.1 --focus 1", 2, "integrator", "reyes", ["aperture", "integrator"]),
+                ("--integrator reyes", 2, "integrator", "reyes", ["ambient", "integrator"]),
+                ("--integrator reyes --denoise svgf", 2, "denoise", "svgf", ["integrator"]),
+                ("--integrator raster --ambient 1 --shading-rate 2", 2, "shading_rate", None, ["integrator"]),
+                ("--displacement white=x.png,1", 2, "displacement", None, ["integrator"]),
+                ("--integrator reyes --ambient 1 --displacement white=x.png", 2, "displacement", "white=x.png", []),
+                ("--integrator reyes --ambient 1 --displacement nobody=x.png,1", 2, "displacement", "nobody=x.png,1", []),
+                ("--integrator reyes --ambient 1 --displacement *=heights.png,1", 2, "displacement", "*=heights.png,1", []),
+                ("--integrator cast", 2, "integrator", "cast", ["ambient", "integrator"])]:
             with self.subTest(flags=flags):
-                outcome = self.refuse(code, "render", "cornell-box", "-o", "x.png", *flags.split(), says=[says])
-                self.assertEqual(len(outcome.stderr.strip().splitlines()), 1, outcome)
+                error = self.refuse(status, "render", "cornell-box", "-o", "x.png", *flags.split(), "--json").events("error")[0]
+                self.assertEqual((error.get("setting"), error.get("value")), (setting, value), error)
+                self.assertEqual(sorted(error.get("settings", {})), others, error)
+                self.assertNotIn("\n", error["text"])
+        nowhere = self.refuse(2, "render", "cornell-box", "-o", "x.png", "--integrator", "reyes", "--ambient", "1", "--displacement",
+                              "white=nothere.png,1", "--json").events("error")[0]
+        self.assertEqual(nowhere["place"], {"file": "nothere.png"})
+        self.refuse(2, "render", "cornell-box", "-o", "x.png", *"--integrator radiosity --lamp light=0W --environment 0,0,0".split())
         self.refuse(2, "bench", "frames", "cornell-box", "--integrator", "distributed", "--restir", "di", says=["are for path"])
 
     def test_the_error_for_too_little_memory_names_the_limit_and_the_settings_to_reduce(self):

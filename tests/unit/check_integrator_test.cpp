@@ -39,7 +39,6 @@ TEST_CASE("a scene that cast or whitted would render black is refused with alter
         const Remark dark = message(kind, scene);
         CHECK(dark.setting == "integrator");
         CHECK(dark.value == name);
-        CHECK(names(dark, "only emitters"));
         CHECK((names(dark, "`integrator=distributed`") && names(dark, "`ambient=0.5`")));
         CHECK(is_fine(message(kind, scene, Rgb{0, 0, 0}))); // asked for
         CHECK(is_fine(message(kind, scene, {}, 0)));        // emission alone
@@ -48,8 +47,8 @@ TEST_CASE("a scene that cast or whitted would render black is refused with alter
     CHECK(is_fine(message(IntegratorKind::Path, scene)));
 
     scene.environment = Environment{};
-    CHECK(names(message(IntegratorKind::Cast, scene), "only emitters and an environment"));
-    CHECK(names(message(IntegratorKind::Whitted, scene), "surfaces show the environment's mean as ambient light"));
+    CHECK(message(IntegratorKind::Cast, scene).value == "cast");
+    CHECK_FALSE(is_fine(message(IntegratorKind::Whitted, scene))); // its environment lights surfaces by its mean alone
 
     scene.lights.push_back(test::point_light({0, 2, 0}, {1, 1, 1}));
     CHECK(is_fine(message(IntegratorKind::Cast, scene)));

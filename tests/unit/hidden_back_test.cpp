@@ -7,6 +7,7 @@
 
 #include "device_scene/accept_hit.h"
 #include "device_scene/scene_on_device.h"
+#include "session/pictures/render_samples.h"
 #include "tests/support/render_scenes.h"
 
 using namespace pertev;
@@ -142,4 +143,35 @@ TEST_CASE("the share of rays through hidden backs depends on scene and view, not
     CHECK(render(scene, looking({0, 0, 1}, {0, 0, 0}, 2)).hidden_back_share == 0);
     add(scene, sheet(), true, make_translation({1, 0, -0.5f})); // stands before it: nothing is passed
     CHECK(render(scene, looking({0, 0, -1}, {0, 0, 0}, 2)).hidden_back_share == 0);
+}
+
+TEST_CASE("a picture's sink gets a notice of hidden backs, and an error tells why a picture has no sample") {
+    struct StoppingSink final : Sink {
+        bool stops = false;
+        bool should_stop() override { return stops; }
+    };
+    for (const bool double_sided : {false, true}) {
+        Scene scene;
+        add(scene, sheet(), double_sided);
+        Messages messages;
+        const PreparedScene prepared = prepare_scene(scene, {}, messages);
+        Queue queue = Queue::make_cpu();
+        RenderSettings settings;
+        settings.width = settings.height = 8, settings.samples = 2;
+        Session session(queue, prepared, looking({0, 0, -4}, {0, 0, 0}, 1), settings);
+        StoppingSink sink;
+        sink.stops = true;
+        ErrorCode code = ErrorCode::BadInput;
+        try {
+            render_samples(session, sink);
+        } catch (const Error& error) {
+            code = error.code();
+            CHECK(error.setting().empty()); // not `time_limit`
+        }
+        CHECK(code == ErrorCode::Interrupted);
+        CHECK(sink.messages().all().empty());
+        sink.stops = false;
+        CHECK(render_samples(session, sink).samples == 2);
+        CHECK(sink.messages().all().size() == (double_sided ? 0 : 1));
+    }
 }

@@ -170,14 +170,14 @@ TEST_CASE("a conflict is an error about the setting, whose reason names the othe
     set(options, "integrator", {"light"});
     auto error = refusal(options);
     REQUIRE(test::is_about(error, ErrorCode::BadInput, "clamp"));
-    CHECK(error->reason() == "applies to `integrator=path`, direct, indirect, hybrid, not to light");
+    CHECK(error->reason().find("`integrator=path`") != std::string::npos);
     set(options, "integrator", {"path"});
     set(options, "denoise", {"svgf"});
     CHECK(!refusal(options));
     set(options, "max_depth", {"0"}); // excludes one value of `denoise` alone
     error = refusal(options);
     REQUIRE(test::is_about(error, ErrorCode::BadInput, "denoise", "svgf"));
-    CHECK(error->reason() == "cannot be combined with `max_depth=0`; leave out one of them");
+    CHECK(error->reason().find("`max_depth=0`") != std::string::npos);
     set(options, "shutter", {"0.1"});
     set(options, "time", {"1"});
     set(options, "max_depth", {"1"});

@@ -12,9 +12,9 @@
 #include "apps/viewer/layer_colors.h"
 #include "apps/viewer/packer.h"
 #include "apps/viewer/panel_text.h"
-#include "apps/viewer/picture_flags.h"
 #include "apps/viewer/view_state.h"
 #include "device_scene/ray_queue.h"
+#include "settings/picture_flags.h"
 #include "settings/setting_table.h"
 #include "tests/support/options.h"
 

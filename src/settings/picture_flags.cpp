@@ -1,4 +1,4 @@
-#include "apps/viewer/picture_flags.h"
+#include "settings/picture_flags.h"
 
 #include <algorithm>
 #include <utility>

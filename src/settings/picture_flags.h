@@ -1,6 +1,6 @@
 #pragma once
 
-// The flags of settings, and those of pertev render that make the picture on screen, for people to copy.
+// Phrases settings as flags, for front ends, and those of a picture as flags of pertev render, for people to copy.
 
 #include <string>
 #include <string_view>
@@ -9,10 +9,10 @@
 
 namespace pertev {
 
-/// The flag of a setting: "--max-depth" for "max_depth".
+/// The flag of a setting: two dashes and its name, with dashes in place of underscores.
 std::string flag_of(std::string_view setting);
 
-/// Returns the flag with each of its values, quoted for a shell: "--max-depth 3 "; empty without values.
+/// Returns the flag with each of its values, quoted for a shell, and a space after each; empty without values.
 std::string flags_of(const Setting& setting, const std::vector<std::string>& texts);
 
 /// Returns the settings of `options` that differ from their defaults as flags, and `view` after them. `view` has the

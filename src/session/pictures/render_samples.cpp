@@ -1,0 +1,27 @@
+#include "session/pictures/render_samples.h"
+
+#include <fmt/format.h>
+
+#include "settings/value_names.h"
+
+namespace pertev {
+
+RenderResult render_samples(Session& session, Sink& sink) {
+    const RenderSettings& settings = session.settings();
+    if (session.render(settings.samples, sink) == 0) {
+        if (sink.should_stop()) throw Error(ErrorCode::Interrupted, "interrupted before there was anything to keep");
+        throw Error(ErrorCode::Interrupted, "time_limit", fmt::format("{:g}", settings.time_limit_s),
+                    fmt::format("no sample was finished in this time, so nothing is written; `integrator={}` prepares "
+                                "more than samples first",
+                                integrator_name(settings)));
+    }
+    RenderResult result = session.result();
+    if (result.hidden_back_share > 0.01) {
+        sink.messages().note(fmt::format("the camera looks through the backs of surfaces at {:.0f} % of the picture, "
+                                         "as they are not double sided (`show_back_faces` shows them)",
+                                         100 * result.hidden_back_share));
+    }
+    return result;
+}
+
+} // namespace pertev

@@ -1,0 +1,15 @@
+#pragma once
+
+// Renders the samples of a still picture, and says what a person should know of the outcome.
+
+#include "base/sink.h"
+#include "session/session.h"
+
+namespace pertev {
+
+/// Adds the settings' samples to the film, fewer if their time is over or `sink` stops, and returns the result. Notes
+/// if the camera looks through the backs of surfaces. Throws Error(Interrupted) if there was no time for a sample, and
+/// as Session::render.
+RenderResult render_samples(Session& session, Sink& sink);
+
+} // namespace pertev
