@@ -266,6 +266,30 @@ toolkit 12.x or a driver from 580 on, then run ./setup.sh again"
     fi
 }
 
+# ---- Python -----------------------------------------------------------------------------------------------------
+
+# The tests hold the Python module too, where its tools are there or PyPI has them: nanobind and numpy, in a virtual
+# environment in build/python-tools. Sets python, or python_note.
+python="" python_note="./setup.sh --tests builds it for its tests; pip install . installs it"
+find_python() {
+    local tools=$build/python-tools
+    python_note="python3 has no headers, nanobind or numpy, and PyPI cannot be reached"
+    if [[ ! -x $tools/bin/python ]] || ! "$tools/bin/python" -c 'import nanobind, numpy' 2>/dev/null; then
+        mkdir -p "$build"
+        rm -rf "$tools"
+        if ! { python3 -m venv --system-site-packages "$tools" &&
+            { "$tools/bin/python" -c 'import nanobind, numpy' ||
+                "$tools/bin/pip" -q install --disable-pip-version-check --timeout 20 'nanobind>=2.4' numpy; }; } \
+            >"$build/fetch_nanobind.log" 2>&1; then
+            rm -rf "$tools"
+            return
+        fi
+    fi
+    "$tools/bin/python" -c 'import pathlib, sys, sysconfig
+sys.exit(not (pathlib.Path(sysconfig.get_path("include")) / "Python.h").exists() or sys.version_info < (3, 11))' || return 0
+    python=$PWD/$tools/bin/python
+}
+
 # ---- Configure and build ----------------------------------------------------------------------------------------
 
 configure() {
@@ -285,6 +309,8 @@ configure() {
     # A build folder that has tests keeps them: a plain run does not throw work away.
     if $tests || { [[ -e $build/setup.options ]] && grep -q 'TESTS=ON' "$build/setup.options"; }; then
         options+=(-DPERTEV_TESTS=ON)
+        find_python
+        [[ -z $python ]] || options+=(-DPERTEV_PYTHON=ON "-DPython_EXECUTABLE=$python")
     else
         options+=(-DPERTEV_TESTS=OFF)
     fi
@@ -344,9 +370,14 @@ summary() {
     else
         echo "  Embree    left out: libembree-dev is not installed; the tests that compare with it are not built"
     fi
+    if [[ -n $python ]]; then
+        echo "  Python    module built in $build/python"
+    else
+        echo "  Python    left out: $python_note"
+    fi
 }
 
-! $tests || packages+=(doctest-dev libembree-dev "python3=python3")
+! $tests || packages+=(doctest-dev libembree-dev "python3=python3" "python3-dev=python3-config" python3-venv)
 install_packages "${packages[@]}"
 check_tools
 choose_cuda

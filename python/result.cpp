@@ -1,0 +1,111 @@
+#include "python/result.h"
+
+#include <algorithm>
+
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+
+#include <fmt/format.h>
+
+#include "render/film_channels.h"
+#include "session/writing/metadata_json.h"
+
+namespace nb = nanobind;
+
+namespace pertev {
+namespace {
+
+/// Returns an array of shape (height, width, channels), or (height, width) of one channel, in the memory of `owner`.
+template <class Value>
+nb::object array_of(Value* values, const Image& size, std::size_t channels, nb::handle owner) {
+    const std::size_t shape[] = {size.height, size.width, channels};
+    return nb::cast(nb::ndarray<nb::numpy, Value>(values, channels > 1 ? 3 : 2, shape, owner));
+}
+
+nb::object array_of(Image& image, nb::handle owner) {
+    return array_of(image.pixels.data(), image, image.channels, owner);
+}
+
+/// Returns the layers by their names; `id` is of uint32.
+nb::dict layers_of(PythonResult& self, nb::handle owner) {
+    nb::dict layers;
+    for (FilmLayer& layer : self.result.layers) layers[layer.name.c_str()] = array_of(layer.image, owner);
+    if (!self.result.ids.empty()) {
+        static_assert(sizeof(PixelIds) == 3 * sizeof(uint32_t));
+        layers["id"] = array_of(&self.result.ids.front().instance, self.result.picture, 3, owner);
+    }
+    return layers;
+}
+
+/// Returns a layer that is asked for as an attribute. Throws AttributeError where it was not requested.
+nb::object layer_of(nb::handle owner, const char* name) {
+    const nb::dict layers = layers_of(nb::cast<PythonResult&>(owner), owner);
+    if (!layers.contains(name)) {
+        throw nb::attribute_error(fmt::format("there is no layer '{}'; request it by layers=['{}']", name,
+                                              std::string(name) == "id" ? "ids" : name)
+                                      .c_str());
+    }
+    return layers[name];
+}
+
+/// Returns the metadata by their names; texts that hold JSON, such as the settings, as what they hold.
+nb::dict info_of(const PythonResult& self) {
+    nb::dict info;
+    const nb::object parse = nb::module_::import_("json").attr("loads");
+    for (const auto& entry : self.metadata) {
+        const std::string_view name = entry.first;
+        constexpr std::string_view kOurs = "pertev.";
+        const std::string* text = std::get_if<std::string>(&entry.second);
+        const bool holds_json = text != nullptr && (text->starts_with('{') || text->starts_with('['));
+        info[std::string(name.starts_with(kOurs) ? name.substr(kOurs.size()) : name).c_str()] =
+            parse(holds_json ? *text : metadata_json(entry));
+    }
+    return info;
+}
+
+} // namespace
+
+void define_result(nb::module_& module) {
+    nb::class_<PythonResult> result(module, "Result", nb::is_final(), R"(A rendered picture.
+
+Arrays share the memory of the result, which lives as long as one of them does. Row 0 is the top row.)");
+    result.def_prop_ro(
+        "color",
+        [](nb::handle self) {
+            RenderResult& of = nb::cast<PythonResult&>(self).result;
+            return array_of(of.denoised ? *of.denoised : of.picture, self);
+        },
+        "float32 (height, width, 3), or 4 with transparent=True: linear Rec. 709, denoised if that was requested");
+    result.def_prop_ro(
+        "noisy", [](nb::handle self) { return array_of(nb::cast<PythonResult&>(self).result.picture, self); },
+        "The mean of the samples, whether or not the picture was denoised; `hash` is of this array");
+    result.def_prop_ro(
+        "layers", [](nb::handle self) { return layers_of(nb::cast<PythonResult&>(self), self); },
+        "The requested layers by their names in an EXR");
+    struct Named {
+        const char *name, *layer, *text;
+    };
+    for (const Named& named :
+         {Named{"albedo", "albedo", "float32 (height, width, 3): reflectance of the first surface"},
+          Named{"normal", "normal", "float32 (height, width, 3): its shading normal, world space"},
+          Named{"depth", "depth", "float32 (height, width): its distance along the camera's axis, metres"},
+          Named{"position", "position", "float32 (height, width, 3): its position in the file's coordinates, metres"},
+          Named{"ids", "id", "uint32 (height, width, 3): its instance, primitive and material"}}) {
+        result.def_prop_ro(
+            named.name, [layer = named.layer](nb::handle self) { return layer_of(self, layer); }, named.text);
+    }
+    result.def_prop_ro("info", &info_of, "The metadata that an EXR of this picture has, without their prefix");
+    result.def_ro("hash", &PythonResult::hash, "The picture's hash, as `pertev render` and `pertev info` print it");
+    result.def_prop_ro(
+        "samples", [](const PythonResult& self) { return self.result.samples; },
+        "Samples of each pixel; fewer than requested if time_limit ended the render");
+    result.def_prop_ro(
+        "seconds", [](const PythonResult& self) { return self.result.render_seconds; }, "Seconds of rendering alone");
+    result.def("__repr__", [](const PythonResult& self) {
+        const Image& picture = self.result.picture;
+        return fmt::format("<pertev.Result {}x{}, {} spp, {}>", picture.width, picture.height, self.result.samples,
+                           self.hash);
+    });
+}
+
+} // namespace pertev
