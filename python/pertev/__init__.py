@@ -1,7 +1,8 @@
 """Pertev: a path tracer on CPUs and GPUs whose pictures have the same bytes everywhere.
 
     import pertev
-    picture = pertev.render("cornell-box", size=(640, 480), spp=64, layers=["depth"])
+    scene = pertev.load("cornell-box")
+    picture = pertev.render(scene, size=(640, 480), spp=64, layers=["depth"])
     picture.color   # numpy float32 (480, 640, 3), linear Rec. 709
     picture.depth   # numpy float32 (480, 640), metres
 """
@@ -10,11 +11,11 @@ import difflib
 import os
 
 from . import _core
-from ._core import Result, builtin_scenes
+from ._core import Result, Scene, builtin_scenes
 from .errors import DeviceError, Error, InputError, InterruptedRender, LimitError, MemoryLimitError, WriteError
 
 __all__ = ["DeviceError", "Error", "InputError", "InterruptedRender", "LimitError", "MemoryLimitError", "Result",
-           "WriteError", "builtin_scenes", "render"]
+           "Scene", "WriteError", "builtin_scenes", "load", "render"]
 
 _SETTINGS = {row["name"]: row for row in _core.settings()}
 
@@ -43,10 +44,36 @@ def _texts(row, value):
     return [_text(row, item) for item in ([value] if is_one else value)]
 
 
+def _given(values):
+    """Returns the texts of all values that are not None, by the names of their settings."""
+    given = {}
+    for name, value in values.items():
+        if name not in _SETTINGS:
+            near = difflib.get_close_matches(name, _SETTINGS, 1)
+            raise TypeError(f"there is no setting '{name}'" + (f"; did you mean '{near[0]}'?" if near else ""))
+        if value is not None:
+            given[name] = _texts(_SETTINGS[name], value)
+    return given
+
+
+def load(scene, **values):
+    """Opens a scene, builds its trees, and returns it as a Scene, of which render() makes pictures.
+
+    scene   a file (.gltf, .glb, .obj, .ply) or the name of a built-in scene (builtin_scenes())
+    values  settings, as render() has them, for all pictures that do not overrule them
+
+    A picture with another camera, size or integrator, or with other samples, takes the scene as it is; other settings,
+    such as `device`, `time` or `environment`, open it again. Raises as render().
+    """
+    opened = Scene(os.fspath(scene), _given(values))
+    opened._open()
+    return opened
+
+
 def render(scene, *, layers=(), output=(), settings=None, **values):
     """Renders a picture of a scene and returns it as a Result.
 
-    scene     a file (.gltf, .glb, .obj, .ply) or the name of a built-in scene (builtin_scenes())
+    scene     what load() returns, or as its `scene`
     layers    names of layers to render as well: "albedo", "normal", "depth", "position", "ids", "motion"
     output    a file to write, or several: .exr .png .jpg .hdr
     settings  a file of settings, which `values` overrule
@@ -57,17 +84,9 @@ def render(scene, *, layers=(), output=(), settings=None, **values):
     raises KeyboardInterrupt. Messages go to the logger "pertev". Raises Error (pertev.errors), and TypeError for a name
     or a type that no setting has.
     """
-    given = {}
-    values["aov"] = [*([layers] if isinstance(layers, str) else layers), *_aov(values.get("aov"))] or None
-    for name, value in values.items():
-        if name not in _SETTINGS:
-            near = difflib.get_close_matches(name, _SETTINGS, 1)
-            raise TypeError(f"render() has no setting '{name}'" + (f"; did you mean '{near[0]}'?" if near else ""))
-        if value is not None:
-            given[name] = _texts(_SETTINGS[name], value)
+    aov = values.get("aov") or ()
+    requested = [name for names in (layers, aov) for name in ([names] if isinstance(names, str) else names)]
+    given = _given({**values, "aov": requested or None})
     outputs = [output] if isinstance(output, (str, os.PathLike)) else output
-    return _core.render(os.fspath(scene), os.fspath(settings or ""), given, [os.fspath(path) for path in outputs])
-
-
-def _aov(value):
-    return () if value is None else [value] if isinstance(value, str) else value
+    used = scene if isinstance(scene, Scene) else Scene(os.fspath(scene), {})
+    return used._render(os.fspath(settings or ""), given, [os.fspath(path) for path in outputs])

@@ -18,6 +18,7 @@
 #include "session/pictures/frame_settings.h"
 #include "session/render_memory.h"
 #include "session/session_bytes.h"
+#include "session/survey/ground.h"
 #include "settings/check_settings.h"
 #include "settings/settings_file.h"
 #include "settings/tracer_options.h"
@@ -43,7 +44,49 @@ void check_film(const PictureOptions& options, const RenderSettings& settings, c
     check_render_memory(film, settings, memory_to_render_in(queue, settings, max_memory_bytes(options.radiosity)));
 }
 
+/// Sets the settings and the camera of a scene at rest, to whose file's suggestions `options` give way.
+void set_picture(RenderSetup& ready, PictureOptions& options, uint32_t verbs, const std::optional<CameraPath>& path,
+                 const Scene& scene, Messages& messages) {
+    take_suggestions(scene, verbs, options, messages);
+    if (options.strict) refuse_what_is_left_out(messages, "nothing is rendered");
+    RenderSettings settings = render_settings(options, scene);
+    settings.tracers = ready.settings.tracers;
+    check_light(settings, scene, messages);
+    MovingCamera camera(options.scene.camera, path, scene, aspect_of(settings.width, settings.height), messages);
+    check_camera(settings, camera.at(scene, std::nullopt));
+    ready.settings = std::move(settings);
+    ready.camera.emplace(std::move(camera));
+}
+
+/// Settings that change neither the scene that is read, nor its trees, nor the machine. A setting that is missing here
+/// costs time, and no picture.
+constexpr std::string_view kOfPictures[] = {
+    "camera", "eye",           "target",       "up",          "fov",     "projection", "view_height", "aperture",
+    "focus",  "size",          "spp",          "seed",        "sampler", "filter",     "clamp",       "integrator",
+    "aov",    "filter_radius", "max_depth",    "transparent", "denoise", "tone_map",   "lpe",         "exposure",
+    "iso",    "f_number",      "shutter_time", "time_limit"};
+
 } // namespace
+
+bool adapt_setup(RenderSetup& ready, const PictureOptions& before, PictureOptions& options, uint32_t verbs,
+                 Sink& sink) {
+    const auto differs = [&](const Setting& setting) {
+        return std::ranges::find(kOfPictures, setting.name) == std::end(kOfPictures) &&
+               texts_of(before, setting) != texts_of(options, setting);
+    };
+    const Ground ground = ground_of(options);
+    const bool has_same_ground = ground == ready.ground || (ground == Ground::Off && !has_ground(ready.scene()));
+    const bool is_at_rest = !ready.moving->time_s() && !frame_range(options) && options.camera_path.empty();
+    if (!is_at_rest || options.scene.scene != before.scene.scene || !has_same_ground ||
+        is_solved(before.render.integrator) || is_solved(options.render.integrator) ||
+        std::ranges::any_of(all_settings(), differs)) {
+        return false;
+    }
+    check_options(options, verbs);
+    set_picture(ready, options, verbs, std::nullopt, ready.scene(), sink.messages());
+    ready.bytes = bytes_to_render(options, ready.prepared(), ready.settings, *ready.queue);
+    return true;
+}
 
 std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t verbs, Sink& sink,
                                             const SolveReport& report) {
@@ -61,16 +104,13 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     auto ready = std::make_unique<RenderSetup>();
     const bool shows_solution = is_solved(options.render.integrator) && !options.radiosity.solution.empty();
     const SceneUse use = shows_solution ? SceneUse::Measurement : SceneUse::Picture; // opened as for the solution
-    Scene scene = open_scene(options.scene, messages, use, ground_of(options));
+    ready->ground = ground_of(options);
+    Scene scene = open_scene(options.scene, messages, use, ready->ground);
     sink.check(); // the file was read to its end, and trees are built to theirs
-    take_suggestions(scene, verbs, options, messages);
-    if (options.strict) refuse_what_is_left_out(messages, "nothing is rendered");
+    ready->reading = messages;
     RenderSettings& settings = ready->settings;
-    settings = render_settings(options, scene);
     settings.tracers = tracers;
-    check_light(settings, scene, messages);
-    ready->camera.emplace(options.scene.camera, path, scene, aspect_of(settings.width, settings.height), messages);
-    check_camera(settings, ready->camera->at(scene, std::nullopt));
+    set_picture(*ready, options, verbs, path, scene, messages);
     ready->load_s = watch.seconds();
     // If it turns out not to be a GPU, the session makes what is missing.
     PrepareOptions prepare = prepare_options(settings, machine.may_be_cuda());

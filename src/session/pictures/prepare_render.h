@@ -11,6 +11,7 @@
 #include "device/queue.h"
 #include "session/moving_scene.h"
 #include "session/opening/moving_camera.h"
+#include "session/opening/open_scene.h"
 #include "session/pictures/render_sequence.h"
 #include "session/pictures/solve_scene.h"
 #include "session/writing/picture_metadata.h"
@@ -22,8 +23,10 @@ struct RenderSetup {
     FrameRange sequence;                // the requested frames, else a single one; the scene is at the first
     std::optional<MovingCamera> camera; // Never empty after prepare_render().
     std::optional<MovingScene> moving;
-    double load_s = 0;     // seconds of reading
-    std::size_t bytes = 0; // that rendering takes on the device, as predicted
+    Ground ground = Ground::Off; // whether a ground was added, or might have been
+    Messages reading;            // messages until the scene was read, which belong to each picture of it
+    double load_s = 0;           // seconds of reading
+    std::size_t bytes = 0;       // that rendering takes on the device, as predicted
     std::unique_ptr<Queue> queue;
 
     const Scene& scene() const { return moving->scene(); }
@@ -36,6 +39,11 @@ struct RenderSetup {
 /// picture, or less than the options allow, and Error(Interrupted) if the sink stops it.
 std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t verbs, Sink& sink,
                                             const SolveReport& report = {});
+
+/// Changes what prepare_render made by the options `before` to a picture by `options`, with its scene, trees and
+/// device, and returns true; or returns false, without any effect, if one of these would change. Only for scenes at
+/// rest. Throws as prepare_render; the setup is then as before.
+bool adapt_setup(RenderSetup& ready, const PictureOptions& before, PictureOptions& options, uint32_t verbs, Sink& sink);
 
 /// Records all given settings and their sources in a record that is otherwise complete; `frame` as settings_of_frame.
 void record_settings(const PictureOptions& options, const Scene& scene, uint32_t frame, PictureRecord& record);

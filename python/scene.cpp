@@ -1,0 +1,81 @@
+#include "python/scene.h"
+
+#include "base/error.h"
+#include "image/picture_hash.h"
+#include "session/pictures/choose_display.h"
+#include "session/pictures/render_samples.h"
+#include "session/writing/check_outputs.h"
+#include "session/writing/write_picture.h"
+#include "settings/setting_table.h"
+#include "settings/settings_file.h"
+
+namespace pertev {
+
+PictureOptions PythonScene::options_of(const std::string& settings_file, const SettingTexts& settings,
+                                       Messages& messages) const {
+    PictureOptions options;
+    options.scene.scene = name_;
+    SettingTexts all = settings;
+    all.insert(settings_.begin(), settings_.end());
+    combine_settings(
+        settings_file, kRender,
+        [&](PictureOptions& others) {
+            for (const auto& [name, texts] : all) {
+                const Setting* setting = find_setting(name);
+                if (setting == nullptr) throw Error(ErrorCode::BadInput, name, "", "no setting");
+                set_value(others, *setting, texts);
+            }
+        },
+        options, messages);
+    if (frame_range(options)) {
+        throw Error(ErrorCode::BadInput, "frames", options.frames, "a call renders one picture; `time` chooses it");
+    }
+    return options;
+}
+
+void PythonScene::prepare(PictureOptions& options, Sink& sink) {
+    const PictureOptions asked = options; // without what the scene's file suggests
+    if (setup_ && adapt_setup(*setup_, used_, options, kRender, sink)) {
+        if (session_) {
+            session_->set_settings(setup_->settings);
+            session_->set_camera(setup_->camera->at(setup_->scene(), std::nullopt));
+            session_->cut();
+        }
+    } else {
+        session_.reset();
+        setup_.reset();
+        setup_ = prepare_render(options, kRender, sink);
+    }
+    used_ = asked;
+}
+
+void PythonScene::open(Sink& sink) {
+    const std::lock_guard turn(turn_);
+    PictureOptions options = options_of("", {}, sink.messages());
+    prepare(options, sink);
+}
+
+PythonResult PythonScene::render(const std::string& settings_file, const SettingTexts& settings,
+                                 const std::vector<std::string>& outputs, Sink& sink) {
+    const std::lock_guard turn(turn_);
+    PictureOptions options = options_of(settings_file, settings, sink.messages());
+    if (!outputs.empty()) check_outputs(options, outputs, sink.messages());
+    prepare(options, sink);
+    report_motion(options, *setup_->moving, sink.messages());
+    Messages known = setup_->reading;
+    known.add_all(sink.messages());
+    PictureRecord record = picture_record(options, *setup_, known);
+    if (!session_) session_.emplace(*setup_->queue, setup_->prepared(), record.camera.camera, setup_->settings);
+    if (writes_tone_mapped(outputs)) record.display = choose_display(options, *session_, sink);
+    PythonResult made = {.result = render_samples(*session_, sink), .metadata = {}, .hash = ""};
+    made.hash = picture_hash(made.result.picture).hex();
+    made.metadata = picture_metadata(record, made.result, made.hash);
+    if (!outputs.empty()) {
+        RenderResult written = made.result; // files take the layers out of it
+        const std::string failures = failures_of(write_picture(outputs, record, written));
+        if (!failures.empty()) throw Error(ErrorCode::FileWrite, failures);
+    }
+    return made;
+}
+
+} // namespace pertev

@@ -1,0 +1,103 @@
+"""Tests of scenes that stay open: their pictures are those of scenes that were opened for each."""
+
+import pathlib
+import sys
+import tempfile
+import threading
+import unittest
+
+import pertev
+
+sys.argv.pop(1)
+
+# Each differs from the one before in something else.
+PICTURES = [
+    {},
+    {},
+    {"spp": 3},
+    {"seed": 4},
+    {"size": (20, 24)},
+    {"eye": (0.2, 0.3, -0.7)},
+    {"eye": (0.2, 0.3, -0.7), "target": (0.3, 0.2, 0), "fov": 60},
+    {"max_depth": 2},
+    {"integrator": "bidirectional"},
+    {"integrator": "distributed", "aperture": None},
+    {"integrator": "direct", "filter": "box"},
+    {"layers": ["depth"]},
+    {"transparent": True},
+    {"denoise": "svgf"},
+    {"environment": (1, 0, 0)},
+    {"environment": (0, 1, 0)},
+    {"device": "cpu", "threads": 1},
+    {"integrator": "radiosity", "patch_size": 0.2},
+    {},
+]
+SMALL = {"size": (24, 16), "spp": 2}
+
+
+class KeptScene(unittest.TestCase):
+    def test_pictures_as_of_scenes_opened_for_each(self):
+        scene = pertev.load("cornell-box")
+        for values in PICTURES:
+            with self.subTest(**values):
+                kept, fresh = (pertev.render(of, **{**SMALL, **values}) for of in (scene, "cornell-box"))
+                self.assertEqual(kept.hash, fresh.hash)
+                self.assertEqual((kept.color == fresh.color).all(), True)
+                self.assertEqual(kept.info["settings"], fresh.info["settings"])
+                self.assertEqual({name: layer.tobytes() for name, layer in kept.layers.items()},
+                                 {name: layer.tobytes() for name, layer in fresh.layers.items()})
+
+    def test_a_scene_is_opened_once(self):
+        scene = pertev.load("cornell-box")
+        first = pertev.render(scene, **SMALL)
+        other = pertev.render(scene, **SMALL, seed=1, eye=(0.2, 0.3, -0.7))
+        self.assertEqual(first.info["load_seconds"], other.info["load_seconds"]) # to the bit: it was not read again
+        again = pertev.render(scene, **SMALL, environment=(1, 1, 1))
+        self.assertNotEqual(first.info["load_seconds"], again.info["load_seconds"])
+
+    def test_what_was_made_up_is_that_of_the_picture(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "triangle.obj"
+            file.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+            scene = pertev.load(file)
+            for values in ({"ground": "off"}, {"ground": "off", "eye": (0, 0, 2)}, {"ground": "off"}, {}):
+                kept, fresh = (pertev.render(of, **SMALL, **values) for of in (scene, file))
+                self.assertEqual(kept.hash, fresh.hash)
+                self.assertEqual(kept.info["made_up"], fresh.info["made_up"])
+
+    def test_settings_of_load_hold_for_all_pictures(self):
+        scene = pertev.load("cornell-box", max_depth=1, spp=1)
+        self.assertEqual(pertev.render(scene, size=(8, 8)).hash,
+                         pertev.render("cornell-box", size=(8, 8), max_depth=1, spp=1).hash)
+        self.assertEqual(pertev.render(scene, size=(8, 8), max_depth=3).info["max_depth"], 3)
+
+    def test_an_error_leaves_the_scene_as_it_was(self):
+        scene = pertev.load("cornell-box")
+        before = pertev.render(scene, **SMALL)
+        for wrong in ({"spp": 0}, {"camera": "none"}, {"eye": (0, 0, 0), "target": (0, 0, 0)}, {"device": "cuda:99"}):
+            with self.assertRaises(pertev.Error):
+                pertev.render(scene, **{**SMALL, **wrong})
+        self.assertEqual(pertev.render(scene, **SMALL).hash, before.hash)
+
+    def test_load_raises(self):
+        with self.assertRaises(pertev.InputError):
+            pertev.load("no-such-scene.glb")
+
+    def test_threads_take_turns(self):
+        scene = pertev.load("cornell-box")
+        hashes = [None] * 6
+
+        def work(number):
+            hashes[number] = pertev.render(scene, **SMALL, seed=number % 2).hash
+
+        threads = [threading.Thread(target=work, args=(number,)) for number in range(6)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(hashes[:2] * 3, hashes)
+        self.assertNotEqual(hashes[0], hashes[1])
+
+
+if __name__ == "__main__":
+    unittest.main()
