@@ -1,7 +1,10 @@
 // The Python module `pertev._core`: the table of settings, rendering, errors. The package around it
 // (python/pertev/__init__.py) makes texts of Python's values.
 
+#include <algorithm>
 #include <optional>
+#include <set>
+#include <type_traits>
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/map.h>
@@ -21,6 +24,21 @@ namespace nb = nanobind;
 namespace pertev {
 namespace {
 
+/// Names the type of a setting's values: bool, int, float, size, vector, list, choice or text.
+const char* type_of(const Setting& setting) {
+    if (is_switch(setting)) return "bool";
+    if (is_list(setting)) return "list";
+    if (is_vector(setting)) return "vector";
+    return read_field({}, setting, []<class Field>(const Field&) {
+        using Value = std::remove_pointer_t<Field>;
+        constexpr auto is_one_of = []<class... Types>() { return (std::is_same_v<Value, Types> || ...); };
+        if (is_one_of.template operator()<uint32_t, std::optional<uint32_t>>()) return "int";
+        if (is_one_of.template operator()<float, std::optional<float>, double, std::optional<double>>()) return "float";
+        if (is_one_of.template operator()<std::optional<PictureSize>>()) return "size";
+        return is_one_of.template operator()<NamedField>() ? "choice" : "text";
+    });
+}
+
 /// Returns a row of the table as Python needs it.
 nb::dict row_of(const Setting& setting) {
     nb::dict row;
@@ -30,17 +48,20 @@ nb::dict row_of(const Setting& setting) {
     row["sentence"] = setting.sentence;
     row["unit"] = setting.unit;
     row["choices"] = choices_of(setting);
-    row["is_switch"] = is_switch(setting);
-    row["is_list"] = is_list(setting);
-    row["is_vector"] = is_vector(setting);
+    row["type"] = type_of(setting);
     row["default"] = texts_of(PictureOptions(), setting);
     return row;
 }
 
-std::vector<nb::dict> render_settings_table() {
+/// Returns the settings of a single picture: not `frames` and `turntable`, nor what needs these.
+std::vector<nb::dict> settings_of_pictures() {
     std::vector<nb::dict> rows;
+    std::set<std::string, std::less<>> of_sequences = {"frames", "turntable"};
     for (const Setting& setting : all_settings()) {
-        if ((setting.verbs & kRender) != 0) rows.push_back(row_of(setting));
+        const std::vector<std::string> needs = words_of(setting.needs);
+        const auto is_of_sequences = [&](const std::string& name) { return of_sequences.contains(name); };
+        if (!needs.empty() && std::ranges::all_of(needs, is_of_sequences)) of_sequences.insert(setting.name);
+        if ((setting.verbs & kRender) != 0 && !is_of_sequences(setting.name)) rows.push_back(row_of(setting));
     }
     return rows;
 }
@@ -109,7 +130,7 @@ NB_MODULE(_core, module) {
         }
     });
     define_result(module);
-    module.def("settings", &render_settings_table, "The rows of the table of settings that a render has");
+    module.def("settings", &settings_of_pictures, "The rows of the table of settings that a picture has");
     module.def("builtin_scenes", &builtin_scene_names, "Names of the scenes that are part of Pertev");
     nb::class_<PythonScene>(module, "Scene", nb::is_final(), "A scene that stays open; pertev.load() makes it.")
         .def(nb::init<std::string, SettingTexts>())

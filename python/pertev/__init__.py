@@ -27,18 +27,18 @@ def _text(row, value):
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     if isinstance(value, bool) or type(value).__name__ == "bool":
-        if row["is_switch"]:
+        if row["type"] == "bool":
             return "true" if value else "false"
     elif hasattr(value, "__float__") and getattr(value, "ndim", 0) == 0:
         number = float(value)
         return str(int(number)) if number.is_integer() and abs(number) < 2**53 else repr(number)
     elif hasattr(value, "__iter__"):
-        return ("x" if row["form"] == "WIDTHxHEIGHT" else ",").join(_text(row, item) for item in value)
+        return ("x" if row["type"] == "size" else ",").join(_text(row, item) for item in value)
     raise TypeError(f"{row['name']}: {type(value).__name__} is no value of this setting ({row['form'] or 'bool'})")
 
 
 def _texts(row, value):
-    if not row["is_list"]:
+    if row["type"] != "list":
         return [_text(row, value)]
     is_one = isinstance(value, (str, os.PathLike)) or not hasattr(value, "__iter__")
     return [_text(row, item) for item in ([value] if is_one else value)]

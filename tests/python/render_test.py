@@ -108,9 +108,14 @@ class Errors(unittest.TestCase):
             pertev.render("cornell-box", size=(4, 4), spp=1, output="/nowhere/a.png")
 
     def test_no_sequence(self):
-        with self.assertRaises(pertev.InputError) as caught:
-            pertev.render("cornell-box", frames="0-3", turntable=4)
-        self.assertEqual(caught.exception.setting, "frames")
+        with self.assertRaises(TypeError):
+            pertev.render("cornell-box", frames="0-3")
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "settings.json"
+            file.write_text('{"version":1,"settings":{"frames":"0-3","turntable":4}}')
+            with self.assertRaises(pertev.InputError) as caught:
+                pertev.render("cornell-box", settings=file)
+            self.assertEqual(caught.exception.setting, "frames")
 
     def test_settings_that_exclude_each_other(self):
         with self.assertRaises(pertev.InputError):
@@ -126,7 +131,7 @@ class Errors(unittest.TestCase):
 class Running(unittest.TestCase):
     def test_messages_are_logged(self):
         with self.assertLogs("pertev", logging.INFO) as logged:
-            pertev.render("cornell-box", size=(4, 4), spp=1, frames=None, time=1)
+            pertev.render("cornell-box", size=(4, 4), spp=1, time=1)
         self.assertTrue(any(record.levelno == logging.WARNING for record in logged.records))
 
     def test_keyboard_interrupt(self):

@@ -1,0 +1,48 @@
+"""Tests of the package's type stub: it is Python, and has each setting with its type."""
+
+import ast
+import pathlib
+import sys
+import unittest
+
+import pertev
+from pertev import _core
+
+sys.argv.pop(1)
+STUB = ast.parse((pathlib.Path(pertev.__file__).parent / "__init__.pyi").read_text(encoding="utf-8"))
+DEFINED = {node.name: node for node in STUB.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
+
+
+def types_of(function):
+    return {argument.arg: ast.unparse(argument.annotation) for argument in DEFINED[function].args.kwonlyargs}
+
+
+class Stub(unittest.TestCase):
+    def test_all_settings(self):
+        names = {row["name"] for row in _core.settings()}
+        self.assertEqual(set(types_of("load")), names)
+        self.assertEqual(set(types_of("render")), names | {"layers", "output", "settings"})
+        self.assertGreater(len(names), 60)
+        self.assertEqual(names & {"frames", "continue", "real_time", "history", "restir"}, set())
+        self.assertLessEqual({"time", "shutter", "spp", "lamp", "device"}, names)
+
+    def test_types(self):
+        types = types_of("render")
+        for name, expected in {"spp": "int | None", "transparent": "bool | None", "fov": "float | None",
+                               "size": "tuple[int, int] | str | None", "eye": "Sequence[float] | str | None",
+                               "ground": "Literal['on', 'off', 'auto'] | None"}.items():
+            self.assertEqual(types[name], expected)
+        self.assertIn("'bidirectional'", types["integrator"])
+
+    def test_members(self):
+        for kind in (pertev.Result, pertev.Scene):
+            members = {node.name for node in DEFINED[kind.__name__].body if isinstance(node, ast.FunctionDef)}
+            self.assertEqual(members, {name for name in vars(kind) if not name.startswith("_")})
+
+    def test_all_names(self):
+        imported = {alias.asname for node in STUB.body if isinstance(node, ast.ImportFrom) for alias in node.names}
+        self.assertLessEqual(set(pertev.__all__), imported | set(DEFINED))
+
+
+if __name__ == "__main__":
+    unittest.main()
