@@ -10,6 +10,20 @@
 #include "settings/settings_file.h"
 
 namespace pertev {
+namespace {
+
+/// Checks the files' names, and that something shows what the caller has set: files, or arrays, which show what an EXR
+/// does.
+void check_files(PictureOptions options, const std::vector<std::string>& outputs, Messages& messages) {
+    constexpr uint32_t kInArrays = 1u << static_cast<uint32_t>(ImageFormat::Exr);
+    std::erase_if(options.given, [](const auto& given) {
+        const Setting* setting = find_setting(given.first);
+        return setting != nullptr && (setting->formats & kInArrays) != 0;
+    });
+    check_outputs(options, outputs, messages);
+}
+
+} // namespace
 
 PictureOptions PythonScene::options_of(const std::string& settings_file, const SettingTexts& settings,
                                        Messages& messages) const {
@@ -59,7 +73,7 @@ PythonResult PythonScene::render(const std::string& settings_file, const Setting
                                  const std::vector<std::string>& outputs, Sink& sink) {
     const std::lock_guard turn(turn_);
     PictureOptions options = options_of(settings_file, settings, sink.messages());
-    if (!outputs.empty()) check_outputs(options, outputs, sink.messages());
+    if (!outputs.empty()) check_files(options, outputs, sink.messages());
     prepare(options, sink);
     report_motion(options, *setup_->moving, sink.messages());
     Messages known = setup_->reading;

@@ -70,6 +70,14 @@ class Render(unittest.TestCase):
             self.assertIn(picture.hash, json.dumps(info))
             self.assertEqual(names[1].read_bytes()[:4], b"\x89PNG")
 
+    def test_layers_beside_a_file_that_has_none(self):
+        with tempfile.TemporaryDirectory() as folder:
+            picture = pertev.render("cornell-box", size=(8, 8), spp=1, layers="depth", output=f"{folder}/a.png")
+            self.assertEqual(picture.depth.shape, (8, 8))
+            with self.assertRaises(pertev.InputError) as caught:
+                pertev.render("cornell-box", size=(8, 8), spp=1, exposure=1, output=f"{folder}/a.exr")
+            self.assertEqual(caught.exception.setting, "exposure")
+
     def test_values_of_all_types(self):
         """numpy's scalars and arrays are values as Python's own are."""
         a = pertev.render("cornell-box", size=numpy.array([8, 6]), spp=numpy.int64(1), exposure=numpy.float32(0),
