@@ -273,13 +273,15 @@ toolkit 12.x or a driver from 580 on, then run ./setup.sh again"
 python="" python_note="./setup.sh --tests builds it for its tests; pip install . installs it"
 find_python() {
     local tools=$build/python-tools
+    local needs="import nanobind, numpy; assert tuple(map(int, nanobind.__version__.split('.')[:2])) >= (2, 4)"
+    $tests || [[ -x $tools/bin/python ]] || return 0
     python_note="python3 has no headers, nanobind or numpy, and PyPI cannot be reached"
-    if [[ ! -x $tools/bin/python ]] || ! "$tools/bin/python" -c 'import nanobind, numpy' 2>/dev/null; then
+    if [[ ! -x $tools/bin/python ]] || ! "$tools/bin/python" -c "$needs" 2>/dev/null; then
         mkdir -p "$build"
         rm -rf "$tools"
         if ! { python3 -m venv --system-site-packages "$tools" &&
-            { "$tools/bin/python" -c 'import nanobind, numpy' ||
-                "$tools/bin/pip" -q install --disable-pip-version-check --timeout 20 'nanobind>=2.4' numpy; }; } \
+            { "$tools/bin/python" -c "$needs" ||
+                "$tools/bin/pip" -q install --disable-pip-version-check --timeout 20 --retries 0 'nanobind>=2.4' numpy; }; } \
             >"$build/fetch_nanobind.log" 2>&1; then
             rm -rf "$tools"
             return
@@ -370,7 +372,7 @@ summary() {
     else
         echo "  Embree    left out: libembree-dev is not installed; the tests that compare with it are not built"
     fi
-    if [[ -n $python ]]; then
+    if [[ -n $python ]] && $tests; then
         echo "  Python    module built in $build/python"
     else
         echo "  Python    left out: $python_note"

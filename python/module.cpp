@@ -13,6 +13,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "base/error.h"
+#include "base/parallel_for.h"
 #include "formats/builtin_scenes.h"
 #include "python/python_sink.h"
 #include "python/result.h"
@@ -74,6 +75,7 @@ void run_unlocked(Work work) {
     std::exception_ptr failure;
     {
         const nb::gil_scoped_release unlocked;
+        const UseThreads own{Threads()}; // a call's number of threads is not that of the next
         try {
             work(sink);
         } catch (...) {
@@ -81,7 +83,11 @@ void run_unlocked(Work work) {
         }
     }
     if (sink.has_raised()) throw nb::python_error();
-    log_messages(sink.messages());
+    try {
+        log_messages(sink.messages());
+    } catch (nb::python_error& raised) { // a handler of the caller's; the picture or the failure counts
+        raised.discard_as_unraisable("pertev");
+    }
     if (failure) std::rethrow_exception(failure);
 }
 
@@ -129,6 +135,7 @@ NB_MODULE(_core, module) {
             raise(error);
         }
     });
+    nb::set_leak_warnings(false); // a thread may still render when the interpreter ends
     define_result(module);
     module.def("settings", &settings_of_pictures, "The rows of the table of settings that a picture has");
     module.def("builtin_scenes", &builtin_scene_names, "Names of the scenes that are part of Pertev");

@@ -48,7 +48,11 @@ nb::object layer_of(nb::handle owner, const char* name) {
     return layers[name];
 }
 
-/// Returns the metadata by their names; texts that hold JSON, such as the settings, as what they hold.
+/// Metadata that are texts of JSON.
+constexpr std::string_view kJsonTexts[] = {"pertev.settings",  "pertev.made_up",   "pertev.left_out",
+                                           "pertev.instances", "pertev.materials", "pertev.reconstruction"};
+
+/// Returns the metadata by their names; texts of JSON as what they hold.
 nb::dict info_of(const PythonResult& self) {
     nb::dict info;
     const nb::object parse = nb::module_::import_("json").attr("loads");
@@ -56,7 +60,7 @@ nb::dict info_of(const PythonResult& self) {
         const std::string_view name = entry.first;
         constexpr std::string_view kOurs = "pertev.";
         const std::string* text = std::get_if<std::string>(&entry.second);
-        const bool holds_json = text != nullptr && (text->starts_with('{') || text->starts_with('['));
+        const bool holds_json = text != nullptr && std::ranges::find(kJsonTexts, name) != std::end(kJsonTexts);
         info[std::string(name.starts_with(kOurs) ? name.substr(kOurs.size()) : name).c_str()] =
             parse(holds_json ? *text : metadata_json(entry));
     }

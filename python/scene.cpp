@@ -1,7 +1,10 @@
 #include "python/scene.h"
 
+#include <chrono>
+
 #include "base/error.h"
 #include "image/picture_hash.h"
+#include "session/opening/strictness.h"
 #include "session/pictures/choose_display.h"
 #include "session/pictures/render_samples.h"
 #include "session/writing/check_outputs.h"
@@ -24,6 +27,12 @@ void check_files(PictureOptions options, const std::vector<std::string>& outputs
 }
 
 } // namespace
+
+std::unique_lock<std::timed_mutex> PythonScene::take_turn(Sink& sink) {
+    std::unique_lock turn(turn_, std::defer_lock);
+    while (!turn.try_lock_for(std::chrono::milliseconds(20))) sink.check();
+    return turn;
+}
 
 PictureOptions PythonScene::options_of(const std::string& settings_file, const SettingTexts& settings,
                                        Messages& messages) const {
@@ -64,14 +73,14 @@ void PythonScene::prepare(PictureOptions& options, Sink& sink) {
 }
 
 void PythonScene::open(Sink& sink) {
-    const std::lock_guard turn(turn_);
+    const std::unique_lock turn = take_turn(sink);
     PictureOptions options = options_of("", {}, sink.messages());
     prepare(options, sink);
 }
 
 PythonResult PythonScene::render(const std::string& settings_file, const SettingTexts& settings,
                                  const std::vector<std::string>& outputs, Sink& sink) {
-    const std::lock_guard turn(turn_);
+    const std::unique_lock turn = take_turn(sink);
     PictureOptions options = options_of(settings_file, settings, sink.messages());
     if (!outputs.empty()) check_files(options, outputs, sink.messages());
     prepare(options, sink);
@@ -81,7 +90,9 @@ PythonResult PythonScene::render(const std::string& settings_file, const Setting
     PictureRecord record = picture_record(options, *setup_, known);
     if (!session_) session_.emplace(*setup_->queue, setup_->prepared(), record.camera.camera, setup_->settings);
     if (writes_tone_mapped(outputs)) record.display = choose_display(options, *session_, sink);
+    // An interrupted picture is thrown away, and its files stay as they were.
     PythonResult made = {.result = render_samples(*session_, sink), .metadata = {}, .hash = ""};
+    sink.check();
     made.hash = picture_hash(made.result.picture).hex();
     made.metadata = picture_metadata(record, made.result, made.hash);
     if (!outputs.empty()) {
@@ -89,6 +100,7 @@ PythonResult PythonScene::render(const std::string& settings_file, const Setting
         const std::string failures = failures_of(write_picture(outputs, record, written));
         if (!failures.empty()) throw Error(ErrorCode::FileWrite, failures);
     }
+    if (options.strict) refuse_invalid_samples(made.result.invalid_samples);
     return made;
 }
 

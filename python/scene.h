@@ -33,13 +33,15 @@ public:
                         const std::vector<std::string>& outputs, Sink& sink);
 
 private:
+    /// Waits until no other thread uses the scene. Throws Error(Interrupted) if the sink stops.
+    std::unique_lock<std::timed_mutex> take_turn(Sink& sink);
     PictureOptions options_of(const std::string& settings_file, const SettingTexts& settings, Messages& messages) const;
     /// Makes setup_ and session_ those of a picture.
     void prepare(PictureOptions& options, Sink& sink);
 
     std::string name_;
     SettingTexts settings_;
-    std::mutex turn_;
+    std::timed_mutex turn_;
     PictureOptions used_; // those that setup_ was made or last adapted by
     std::unique_ptr<RenderSetup> setup_;
     std::optional<Session> session_;

@@ -26,9 +26,11 @@ def _text(row, value):
         return value
     if isinstance(value, os.PathLike):
         return os.fspath(value)
-    if isinstance(value, bool) or type(value).__name__ == "bool":
+    if isinstance(value, bool) or type(value).__name__ in ("bool", "bool_"):  # of Python, NumPy 2 and 1
         if row["type"] == "bool":
             return "true" if value else "false"
+    elif isinstance(value, int):
+        return str(value)
     elif hasattr(value, "__float__") and getattr(value, "ndim", 0) == 0:
         number = float(value)
         return str(int(number)) if number.is_integer() and abs(number) < 2**53 else repr(number)
@@ -84,7 +86,7 @@ def render(scene, *, layers=(), output=(), settings=None, **values):
     raises KeyboardInterrupt. Messages go to the logger "pertev". Raises Error (pertev.errors), and TypeError for a name
     or a type that no setting has.
     """
-    aov = values.get("aov") or ()
+    aov = () if values.get("aov") is None else values["aov"]
     requested = [name for names in (layers, aov) for name in ([names] if isinstance(names, str) else names)]
     given = _given({**values, "aov": requested or None})
     outputs = [output] if isinstance(output, (str, os.PathLike)) else output

@@ -10,6 +10,7 @@ import tempfile
 import threading
 import time
 import unittest
+import unittest.mock
 
 import numpy
 
@@ -98,7 +99,7 @@ class Errors(unittest.TestCase):
         self.assertEqual(caught.exception.setting, "size")
 
     def test_unknown_names_and_types(self):
-        for wrong in ({"sppp": 1}, {"spp": object()}, {"spp": True}):
+        for wrong in ({"sppp": 1}, {"spp": object()}, {"spp": True}, {"spp": numpy.True_}):
             with self.assertRaises(TypeError):
                 pertev.render("cornell-box", **wrong)
 
@@ -148,6 +149,30 @@ class Running(unittest.TestCase):
         with self.assertRaises(KeyboardInterrupt):
             pertev.render("cornell-box", size=(1920, 1080), spp=65536, device="cpu")
         self.assertLess(time.monotonic() - begun, 10)
+
+    def test_keyboard_interrupt_leaves_files_alone(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "a.exr"
+            file.write_text("old")
+            threading.Timer(0.5, lambda: signal.raise_signal(signal.SIGINT)).start()
+            with self.assertRaises(KeyboardInterrupt):
+                pertev.render("cornell-box", size=(640, 480), spp=65536, device="cpu", output=file)
+            self.assertEqual(file.read_text(), "old")
+
+    def test_a_log_handler_that_raises_costs_no_picture(self):
+        class Raising(logging.Handler):
+            def emit(self, record):
+                raise RuntimeError("of the test")
+
+        handler = Raising()
+        logging.getLogger("pertev").addHandler(handler)
+        try:
+            with unittest.mock.patch("sys.unraisablehook") as hook:
+                picture = pertev.render("cornell-box", size=(4, 4), spp=1, time=1)
+        finally:
+            logging.getLogger("pertev").removeHandler(handler)
+        self.assertEqual(picture.color.shape, (4, 4, 3))
+        self.assertTrue(hook.called)
 
     def test_threads_render_side_by_side(self):
         alone = [pertev.render("cornell-box", size=(32, 32), spp=8, seed=seed).hash for seed in range(4)]

@@ -79,6 +79,25 @@ class KeptScene(unittest.TestCase):
                 pertev.render(scene, **{**SMALL, **wrong})
         self.assertEqual(pertev.render(scene, **SMALL).hash, before.hash)
 
+    def test_a_picture_has_the_hash_of_the_scene_that_was_read(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "[a].obj"
+            file.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+            scene = pertev.load(file)
+            before = pertev.render(scene, **SMALL).info["scene_hash"]
+            file.write_text("v 0 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n")
+            self.assertEqual(pertev.render(scene, **SMALL).info["scene_hash"], before)
+            self.assertNotEqual(pertev.render(file, **SMALL).info["scene_hash"], before)
+
+    def test_remarks_on_a_settings_file_are_not_those_of_the_scene(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "settings.json"
+            file.write_text('{"version":1,"settings":{"sppp":3}}')
+            scene = pertev.load("cornell-box")
+            given = {**SMALL, "environment": (1, 1, 1)}
+            self.assertEqual(len(pertev.render(scene, settings=file, **given).info["left_out"]), 1)
+            self.assertEqual(pertev.render(scene, **given).info["left_out"], [])
+
     def test_load_raises(self):
         with self.assertRaises(pertev.InputError):
             pertev.load("no-such-scene.glb")

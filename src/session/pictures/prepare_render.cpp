@@ -1,6 +1,7 @@
 #include "session/pictures/prepare_render.h"
 
 #include <algorithm>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -42,6 +43,23 @@ void check_film(const PictureOptions& options, const RenderSettings& settings, c
     const std::size_t film =
         Film::predicted_bytes(settings.width, settings.height, settings.aovs, light_layers_of(settings));
     check_render_memory(film, settings, memory_to_render_in(queue, settings, max_memory_bytes(options.radiosity)));
+}
+
+/// Returns the messages with these indices and above.
+Messages messages_from(const Messages& messages, std::size_t first) {
+    Messages found;
+    for (const Message& message : std::span(messages.all()).subspan(first)) {
+        if (message.is_left_out) {
+            found.leave_out(message.remark);
+        } else if (message.is_made_up) {
+            found.make_up(message.remark);
+        } else if (message.is_warning) {
+            found.warn(message.remark);
+        } else {
+            found.note(message.remark);
+        }
+    }
+    return found;
 }
 
 /// Sets the settings and the camera of a scene at rest, to whose file's suggestions `options` give way.
@@ -105,9 +123,11 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     const bool shows_solution = is_solved(options.render.integrator) && !options.radiosity.solution.empty();
     const SceneUse use = shows_solution ? SceneUse::Measurement : SceneUse::Picture; // opened as for the solution
     ready->ground = ground_of(options);
+    const std::size_t known = messages.all().size();
     Scene scene = open_scene(options.scene, messages, use, ready->ground);
+    ready->reading = messages_from(messages, known);
+    ready->hash = scene_hash(options.scene.scene);
     sink.check(); // the file was read to its end, and trees are built to theirs
-    ready->reading = messages;
     RenderSettings& settings = ready->settings;
     settings.tracers = tracers;
     set_picture(*ready, options, verbs, path, scene, messages);
@@ -193,6 +213,7 @@ PictureRecord picture_record(const PictureOptions& options, RenderSetup& ready, 
                             .device = ready.queue->device_name(),
                             .frame = {},
                             .display = {}};
+    record.scene.hash = ready.hash;
     if ((ready.settings.aovs & kAovIds) != 0) name_ids(ready.scene(), record.scene);
     record.scene.made_up = messages.made_up();
     record.scene.left_out = messages.left_out();

@@ -24,7 +24,8 @@ struct RenderSetup {
     std::optional<MovingCamera> camera; // Never empty after prepare_render().
     std::optional<MovingScene> moving;
     Ground ground = Ground::Off; // whether a ground was added, or might have been
-    Messages reading;            // messages until the scene was read, which belong to each picture of it
+    Messages reading;            // messages of reading the scene, which belong to each picture of it
+    std::string hash;            // scene_hash() when it was read
     double load_s = 0;           // seconds of reading
     std::size_t bytes = 0;       // that rendering takes on the device, as predicted
     std::unique_ptr<Queue> queue;
