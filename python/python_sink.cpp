@@ -35,9 +35,8 @@ std::string python_text(const Remark& remark) {
     return phrase_settings(remark.text(), [](std::string_view name, std::string_view value) {
         if (value.empty()) return std::string(name);
         const Setting* setting = find_setting(name);
-        const bool is_number = !value.empty() && value.find_first_not_of("0123456789.+-e") == std::string_view::npos;
-        const bool is_tuple = setting != nullptr && is_vector(*setting);
-        if (is_tuple) return fmt::format("{}=({})", name, value);
+        if (setting != nullptr && is_vector(*setting)) return fmt::format("{}=({})", name, value);
+        const bool is_number = value.find_first_not_of("0123456789.+-e") == std::string_view::npos;
         return is_number ? fmt::format("{}={}", name, value) : fmt::format("{}='{}'", name, value);
     });
 }

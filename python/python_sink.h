@@ -1,6 +1,6 @@
 #pragma once
 
-// What a call from Python gives to long work: the work runs without the interpreter's lock, ends by Ctrl-C, and its
+// The sink of a call from Python. The call's work runs without the interpreter's lock and ends by Ctrl-C, and its
 // messages go to Python's `logging` once the call has the lock again.
 
 #include <atomic>

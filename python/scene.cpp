@@ -68,6 +68,7 @@ void PythonScene::prepare(PictureOptions& options, Sink& sink) {
         session_.reset();
         setup_.reset();
         setup_ = prepare_render(options, kRender, sink);
+        setup_->hash = scene_hash(name_); // the file may change while the scene is open
     }
     used_ = asked;
 }

@@ -126,7 +126,6 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     const std::size_t known = messages.all().size();
     Scene scene = open_scene(options.scene, messages, use, ready->ground);
     ready->reading = messages_from(messages, known);
-    ready->hash = scene_hash(options.scene.scene);
     sink.check(); // the file was read to its end, and trees are built to theirs
     RenderSettings& settings = ready->settings;
     settings.tracers = tracers;

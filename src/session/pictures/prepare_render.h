@@ -25,9 +25,9 @@ struct RenderSetup {
     std::optional<MovingScene> moving;
     Ground ground = Ground::Off; // whether a ground was added, or might have been
     Messages reading;            // messages of reading the scene, which belong to each picture of it
-    std::string hash;            // scene_hash() when it was read
-    double load_s = 0;           // seconds of reading
-    std::size_t bytes = 0;       // that rendering takes on the device, as predicted
+    std::string hash;      // scene_hash() when it was read, if the setup is kept; empty: records take it themselves
+    double load_s = 0;     // seconds of reading
+    std::size_t bytes = 0; // that rendering takes on the device, as predicted
     std::unique_ptr<Queue> queue;
 
     const Scene& scene() const { return moving->scene(); }
@@ -43,7 +43,7 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
 
 /// Changes what prepare_render made by the options `before` to a picture by `options`, with its scene, trees and
 /// device, and returns true; or returns false, without any effect, if one of these would change. Only for scenes at
-/// rest. Throws as prepare_render; the setup is then as before.
+/// rest. Throws as prepare_render; the setup is then to be adapted or made again.
 bool adapt_setup(RenderSetup& ready, const PictureOptions& before, PictureOptions& options, uint32_t verbs, Sink& sink);
 
 /// Records all given settings and their sources in a record that is otherwise complete; `frame` as settings_of_frame.
