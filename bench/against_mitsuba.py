@@ -11,6 +11,8 @@ Rates are medians of samples a second, without reading, trees and Mitsuba's comp
 the ratio of rates times the inverse ratio of errors. Means are those of the references.
 """
 
+import ctypes
+import pathlib
 import time
 import xml.etree.ElementTree as ElementTree
 
@@ -62,6 +64,12 @@ def scene_of_file(job, width, height):
     return mi.load_file(str(written))
 
 
+def hold_to_avx2(core):
+    """Has Dr.Jit compile for Haswell's eight lanes, by jit_llvm_set_target(processor, features, lanes) of its core, which Python does not
+    show. Embree is then asked for eight rays at a time, and keeps AVX-512 within."""
+    ctypes.CDLL(str(core))._Z19jit_llvm_set_targetPKcS0_j(b"haswell", b"+avx2,+fma,+f16c", 8)
+
+
 class Mitsuba:
     name = "Mitsuba"
 
@@ -70,6 +78,8 @@ class Mitsuba:
         if arguments.device == "cpu":
             import drjit
             drjit.set_thread_count(arguments.threads)
+            if arguments.lanes:
+                hold_to_avx2(pathlib.Path(drjit.__file__).parent / "libdrjit-core.so")
 
     @staticmethod
     def what():

@@ -179,9 +179,12 @@ def main(description, make_peer, devices):
     parser.add_argument("--runs", type=int, default=5, help="runs of each renderer, in turns (5)")
     parser.add_argument("--reference", type=int, default=4096, help="samples of the references (4096)")
     parser.add_argument("--jobs", nargs="+", choices=[kind.stem for kind in JOBS], metavar="STEM", help="only these")
+    parser.add_argument("--lanes", type=int, choices=[8], help="shade eight paths at once, by AVX2, where the processor has AVX-512")
     parser.add_argument("--work", type=pathlib.Path, help="a folder in which references are kept")
     parser.add_argument("-o", "--output", type=pathlib.Path)
     arguments = parser.parse_args()
+    if arguments.lanes:
+        os.environ["PERTEV_LANES"] = str(arguments.lanes)
     peer, rows = make_peer(arguments), []
     with tempfile.TemporaryDirectory() as temporary:
         folder = arguments.work or pathlib.Path(temporary)
@@ -197,5 +200,5 @@ def main(description, make_peer, devices):
             rows.append(Contest(arguments, peer, folder).run(job))
     if arguments.output:
         notes = [f"{peer.what()}; {arguments.samples} samples, box filter; medians of {arguments.runs} runs in turns; references of "
-                 f"{arguments.reference} samples."]
+                 f"{arguments.reference} samples.", *(["Shading of both held to eight lanes of AVX2 on a processor with AVX-512."] if arguments.lanes else [])]
         write_measurement(arguments.output, arguments.pertev, f"Against {peer.name}", columns_of(peer.name), rows, arguments.device, arguments.threads, notes)

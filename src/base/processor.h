@@ -3,6 +3,8 @@
 // Instructions of this computer's processor beyond x86-64-v3, which the program needs.
 
 #include <cstdint>
+#include <cstdlib>
+#include <string_view>
 
 namespace pertev {
 
@@ -14,6 +16,13 @@ inline bool has_sixteen_lanes() {
     return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
            __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
            __builtin_cpu_supports("avx512vl");
+}
+
+/// Returns whether host code takes sixteen floats at once: the processor can, and the environment does not say
+/// PERTEV_LANES=8, by which a processor with AVX-512 is timed as one without.
+inline bool takes_sixteen_lanes() {
+    const char* lanes = std::getenv("PERTEV_LANES");
+    return has_sixteen_lanes() && (lanes == nullptr || std::string_view(lanes) != "8");
 }
 
 } // namespace pertev

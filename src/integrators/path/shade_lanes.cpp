@@ -18,7 +18,7 @@ const VertexShading kShadingOf8 = {kLanes, shade_lanes};
 
 const VertexShading& vertex_shading() {
 #if defined(PERTEV_HAS_16_LANES)
-    static const VertexShading& widest = has_sixteen_lanes() ? kShadingOf16 : kShadingOf8;
+    static const VertexShading& widest = takes_sixteen_lanes() ? kShadingOf16 : kShadingOf8;
     return widest;
 #else
     return kShadingOf8;

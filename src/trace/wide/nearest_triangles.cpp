@@ -9,7 +9,7 @@ const TriangleTests kTestsOf8Rays = {Floats8::kLanes, find_nearest<Floats8>};
 
 const TriangleTests& triangle_tests() {
 #if defined(PERTEV_HAS_16_LANES)
-    static const TriangleTests& widest = has_sixteen_lanes() ? kTestsOf16Rays : kTestsOf8Rays;
+    static const TriangleTests& widest = takes_sixteen_lanes() ? kTestsOf16Rays : kTestsOf8Rays;
     return widest;
 #else
     return kTestsOf8Rays;
