@@ -19,7 +19,7 @@ import urllib.request
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 MOST_WORDS, MOST_FILES_OF_TOUR = 40_000, 40
-SOURCE = re.compile(r"`([\w./-]+\.(?:h|cpp|cu|py|sh|js|md|cmake))`")
+SOURCE = re.compile(r"`([\w./-]+\.(?:h|inl|cpp|cu|py|sh|js|md|cmake))`")
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 COMMAND = re.compile(r"(?:build/bin/|bench/|tools/|tests/)[\w./-]+|pertev\b|\./setup\.sh|cmake|ctest|python3")
 TARGETS = re.compile(r"(?i)\b(?:was|were) asked for|\basked for were|\bhoped for\b|(?<![`|\w])S[58](?![`|\w])")

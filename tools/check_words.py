@@ -17,7 +17,7 @@ import sys
 import tempfile
 import tokenize
 
-FOLDERS = ["src", "apps", "tests", "tools", "bench", "cmake", ".ci"]
+FOLDERS = ["src", "apps", "tests", "tools", "bench", "cmake", "python", ".ci"]
 C_SUFFIXES = {".h", ".cpp", ".cu", ".inl", ".js"}
 SCRIPT_SUFFIXES = {".cmake", ".sh"}
 FRAGMENTS = re.compile(r"[/*!<#\s]*(?:of|what|those|the same|likewise|as|beside)\b", re.IGNORECASE)
