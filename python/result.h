@@ -11,7 +11,7 @@ namespace pertev {
 
 struct PythonResult {
     RenderResult result;
-    ExrMetadata metadata; // of an EXR with this picture
+    ExrMetadata metadata; // that an EXR with this picture has
     std::string hash;
 };
 

@@ -42,7 +42,7 @@ private:
     std::string name_;
     SettingTexts settings_;
     std::timed_mutex turn_;
-    PictureOptions used_; // those that setup_ was made or last adapted by
+    PictureOptions used_; // options that setup_ was made or last adapted by
     std::unique_ptr<RenderSetup> setup_;
     std::optional<Session> session_;
 };
