@@ -36,6 +36,18 @@ def limit_addresses(gibibytes):
     return limit
 
 
+KEYS = json.load(open(os.path.join(os.path.dirname(__file__), "../../docs/json_keys.json"), encoding="utf-8"))
+
+
+def refuse_unlisted_keys(line):
+    """Every key of an event stands in docs/json_keys.json; attributes of an EXR are the file's."""
+    unlisted = {key for key in line if key not in KEYS[line["event"]] and not key.startswith("pertev.")} - {"event"}
+    if line["event"] == "info" and "channels" in line:
+        unlisted -= {"pixelAspectRatio", "screenWindowWidth"}
+    if unlisted:
+        raise ValueError(f"docs/json_keys.json does not have {sorted(unlisted)} of {line['event']}")
+
+
 class Outcome:
     def __init__(self, arguments, status, stdout, stderr):
         self.arguments, self.status = arguments, status
@@ -44,6 +56,9 @@ class Outcome:
     def events(self, kind=None):
         """The JSON lines of stdout, all of them or those of one kind; anything else there is an error."""
         lines = [json.loads(line, parse_constant=refuse_constant) for line in self.stdout.split("\n") if line]
+        for line in lines:
+            if "event" in line:
+                refuse_unlisted_keys(line)
         return lines if kind is None else [line for line in lines if line["event"] == kind]
 
     def error(self):
