@@ -4,6 +4,7 @@
 
 #include "render/film_channels.h"
 #include "session/frame_range.h"
+#include "session/opening/camera_list.h"
 #include "session/pictures/choose_display.h"
 #include "settings/settings_file.h"
 
@@ -33,6 +34,7 @@ void keep_frame(PictureOptions& options, const PictureRecord& record, uint32_t f
 } // namespace
 
 std::string settings_of_frame(PictureOptions options, const PictureRecord& record, uint32_t frame) {
+    if (options.camera_list) options = options_of_camera(options, frame, kRender);
     options.size = PictureSize{record.settings.width, record.settings.height};
     options.given.try_emplace("size", SettingOrigin::File);
     options.given.try_emplace("spp", SettingOrigin::File);
