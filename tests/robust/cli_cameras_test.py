@@ -4,7 +4,7 @@ import json
 import math
 import os
 
-from cli_run import CliTest, as_flag, main, read_exr, write
+from cli_run import CliTest, as_flag, main, read_exr, read_png, write
 
 VIEW = ["--eye", "0.3,0.35,-0.7", "--target", "0.2,0.25,0.3", "--fov", "40"]  # into the box
 
@@ -101,12 +101,14 @@ class ManyCameras(CliTest):
         self.assertEqual(read_exr(self.path("side.exr"))[:2], (16, 16))
 
     def test_a_picture_s_settings_make_it_again_alone(self):
-        frames = self.succeed(*self.many()).events("frame")
+        frames = self.succeed(*self.many("-o", "{name}.png")).events("frame")
         settings = self.succeed("info", "side.exr", "--settings").stdout
         self.assertNotIn("cameras", json.loads(settings)["settings"])
         write(self.path("side.json"), settings)
-        again = self.succeed("render", "cornell-box", "-o", "again.exr", "--settings", "side.json", "--device", "cpu", "--json")
+        again = self.succeed("render", "cornell-box", "-o", "again.exr", "-o", "again.png", "--settings", "side.json",
+                             "--device", "cpu", "--json")
         self.assertEqual(again.events("done")[0]["hash"], frames[1]["hash"])
+        self.assertEqual(read_png(self.path("again.png")), read_png(self.path("side.png")))  # exposed as the list is
 
     def test_an_interrupted_list_continues_where_files_are_missing_and_refuses_other_cameras(self):
         self.succeed(*self.many(output="v-##-{name}.exr"))
