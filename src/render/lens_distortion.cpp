@@ -2,12 +2,14 @@
 
 #include <algorithm>
 
+#include "math/double_vec3.h"
+
 namespace pertev {
 namespace {
 
-constexpr double kFarthest = 100;        // distance in the view of a polynomial lens: 89.4 degrees from the axis
-constexpr double kWidestAngle = 3.1415;  // largest angle of a fisheye, radians
-constexpr int kSteps = 512, kTurns = 16; // in which the limit is searched for
+constexpr double kFarthest = 100;       // distance in the view of a polynomial lens: 89.4 degrees from the axis
+constexpr double kWidestAngle = 3.1415; // largest angle of a fisheye, radians
+constexpr int kSteps = 512, kTurns = 8; // in which the limit is searched for
 
 /// Returns the largest x in [0, most], to 2^-40 of it, up to which `is_good` holds at all steps.
 template <class IsGood>
@@ -29,8 +31,8 @@ double largest_good(double most, const IsGood& is_good) {
     return low;
 }
 
-/// Returns whether the polynomial lens is monotone at distance `r` from the axis, in the direction of turn `i`.
-bool is_monotone(const LensView& lens, double r, int i) {
+/// Returns whether the polynomial lens is monotone at distance `r` from the axis, in a unit direction.
+bool is_monotone(const LensView& lens, double r, DoubleVec3 direction) {
     const auto number = [](float x) { return static_cast<double>(x); };
     const double k1 = number(lens.k1), k2 = number(lens.k2), k3 = number(lens.k3), k4 = number(lens.k4),
                  k5 = number(lens.k5), k6 = number(lens.k6), p1 = number(lens.p1), p2 = number(lens.p2);
@@ -38,9 +40,7 @@ bool is_monotone(const LensView& lens, double r, int i) {
     if (!(below > 0)) return false;
     const double radial = (1 + r2 * (k1 + r2 * (k2 + r2 * k3))) / below;
     const double slope = 2 * (k1 + r2 * (2 * k2 + r2 * 3 * k3) - radial * (k4 + r2 * (2 * k5 + r2 * 3 * k6))) / below;
-    float s = 0, c = 0;
-    sin_cos_2pi(static_cast<float>(i) / kTurns, s, c);
-    const double x = r * number(c), y = r * number(s);
+    const double x = r * direction.x, y = r * direction.y;
     const double xx = radial + x * x * slope + 2 * p1 * y + 6 * p2 * x, xy = x * y * slope + 2 * p1 * x + 2 * p2 * y,
                  yy = radial + y * y * slope + 6 * p1 * y + 2 * p2 * x;
     return xx * yy - xy * xy > 0 && xx + yy > 0;
@@ -77,7 +77,10 @@ LensView make_lens_view(const Camera& camera) {
         lens.k1 = k[0], lens.k2 = k[1], lens.k3 = k[4], lens.k4 = k[5], lens.k5 = k[6], lens.k6 = k[7];
         lens.p1 = -k[2], lens.p2 = k[3];
         for (int i = 0; i < (lens.p1 == 0 && lens.p2 == 0 ? 1 : kTurns); ++i) { // without p all directions are alike
-            const double limit = largest_good(kFarthest, [&](double r) { return is_monotone(lens, r, i); });
+            float s = 0, c = 0;
+            sin_cos_2pi(static_cast<float>(i) / kTurns, s, c);
+            const DoubleVec3 direction = to_double(Vec3{c, s, 0});
+            const double limit = largest_good(kFarthest, [&](double r) { return is_monotone(lens, r, direction); });
             lens.limit = max(lens.limit, static_cast<float>(limit));
         }
         break;
