@@ -57,7 +57,7 @@ nb::dict row_of(const Setting& setting) {
 /// Returns the settings of a single picture: not `frames` and `turntable`, nor what needs these.
 std::vector<nb::dict> settings_of_pictures() {
     std::vector<nb::dict> rows;
-    std::set<std::string, std::less<>> of_sequences = {"frames", "turntable"};
+    std::set<std::string, std::less<>> of_sequences = {"frames", "turntable", "cameras"};
     for (const Setting& setting : all_settings()) {
         const std::vector<std::string> needs = words_of(setting.needs);
         const auto is_of_sequences = [&](const std::string& name) { return of_sequences.contains(name); };

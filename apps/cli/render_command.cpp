@@ -17,6 +17,7 @@
 #include "base/machine_memory.h"
 #include "base/message_text.h"
 #include "base/stopwatch.h"
+#include "session/opening/camera_list.h"
 #include "session/opening/strictness.h"
 #include "session/pictures/choose_display.h"
 #include "session/pictures/prepare_render.h"
@@ -61,15 +62,16 @@ std::string kept_text(const SequenceTally& tally) {
 void report_frame(const FrameReport& made, Reporter& reporter) {
     report_files(made.written, reporter);
     if (!failures_of(made.written).empty()) return; // an error follows
+    const std::string camera = made.camera.empty() ? "" : fmt::format(R"(,"camera":{})", json_string(made.camera));
     if (made.is_kept) {
-        reporter.event(fmt::format(R"({{"event":"frame","frame":{},"kept":true{}}})", made.frame,
+        reporter.event(fmt::format(R"({{"event":"frame","frame":{}{},"kept":true{}}})", made.frame, camera,
                                    made.hash.empty() ? "" : fmt::format(R"(,"hash":"{}")", made.hash)));
         return;
     }
     reporter.event(fmt::format(
-        R"({{"event":"frame","frame":{},"time":{},{},"samples":{},"update_seconds":{:.6f},"render_seconds":{:.6f}}})",
-        made.frame, made.time_s ? fmt::format("{}", *made.time_s) : "null", hashes_json(made.written), made.samples,
-        made.update_s, made.render_s));
+        R"({{"event":"frame","frame":{}{},"time":{},{},"samples":{},"update_seconds":{:.6f},"render_seconds":{:.6f}}})",
+        made.frame, camera, made.time_s ? fmt::format("{}", *made.time_s) : "null", hashes_json(made.written),
+        made.samples, made.update_s, made.render_s));
 }
 
 /// Renders and writes the frames by write_sequence and reports them. Ctrl-C ends after the last whole frame. Returns
@@ -125,6 +127,7 @@ int render(RenderFlags& flags) {
     Reporter reporter(flags.report);
     flags.settings.read(flags, reporter.messages());
     for (const std::string& output : flags.outputs) refuse_list(output);
+    read_camera_list(flags);
     check_outputs(flags, flags.outputs, reporter.messages());
     const Stopwatch watch;
     const std::unique_ptr<RenderSetup> ready = prepare_render(flags, kRender, reporter, report_solving(reporter));
@@ -144,7 +147,7 @@ int render(RenderFlags& flags) {
     }
     reporter.set_work("rendering");
     if (frame_range(flags)) {
-        const FrameCamera camera = {*ready->camera, ready->sequence};
+        const FrameCamera camera = {*ready->camera, ready->sequence, ready->list};
         return render_frames(flags, {camera, *ready->moving, record, *session}, reporter);
     }
     return write_one(flags, settings, record, session, queue, watch, reporter);

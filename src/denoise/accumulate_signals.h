@@ -36,7 +36,8 @@ struct AccumulateSignals {
         const uint32_t object = object_of(guide);
         const Vec2 centre = {static_cast<float>(at.x) + 0.5f, static_cast<float>(at.y) + 0.5f};
         if (object == kNoHit) {
-            if (has_history) was_at[pixel] = reproject_far(cameras.now, cameras.before, centre);
+            const FrameCameras straight = with_straight_lenses(cameras);
+            if (has_history) was_at[pixel] = reproject_far(straight.now, straight.before, centre);
             return forget(pixel);
         }
         Taps taps = {}, mirrored = {};
@@ -44,7 +45,8 @@ struct AccumulateSignals {
         float longest_diffuse = static_cast<float>(longest), longest_gloss = longest_diffuse;
         if (has_history) {
             const Vec3 normal = normal_of(guide);
-            const Reprojection then = reproject_surface(cameras, scene, scene_before, centre, frame.hit[pixel]);
+            const Reprojection then =
+                reproject_surface(with_straight_lenses(cameras), scene, scene_before, centre, frame.hit[pixel]);
             was_at[pixel] = then.pixel;
             taps = find_taps(before, cameras, then.pixel, max(then.depth, 1e-20f), normal, kSeenAlike, object);
             if constexpr (kFollows) {

@@ -59,7 +59,7 @@ struct MotionOfHits {
 private:
     HD bool faces_sky_before(Vec2 centre) const {
         const Vec3 direction = make_camera_ray(cameras.now, centre, {0.5f, 0.5f}).direction;
-        return transform_transposed(cameras.before.world_from_camera, direction).z < 0;
+        return is_projected(cameras.before, -transform_transposed(cameras.before.world_from_camera, direction).z);
     }
 };
 

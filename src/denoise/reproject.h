@@ -14,7 +14,8 @@ namespace pertev {
 inline constexpr float kEnoughWeight = 0.01f;
 
 /// Reprojects a reflection seen at the pixel's centre: the virtual point `distance` metres behind the surface.
-HD inline Reprojection reproject_virtual(const FrameCameras& cameras, Vec2 centre, float depth, float distance) {
+HD inline Reprojection reproject_virtual(const FrameCameras& frames, Vec2 centre, float depth, float distance) {
+    const FrameCameras cameras = with_straight_lenses(frames);
     const Ray ray = make_camera_ray(cameras.now, centre, {0, 0});
     const Transform& m = cameras.now.world_from_camera;
     const float along = depth / -dot(transform_transposed(m, ray.direction), Vec3{0, 0, 1}); // metres along the ray

@@ -53,7 +53,7 @@ private:
     static constexpr int kTaps = 4; // per side
 
     HD Vec2 position_before(uint32_t pixel, uint32_t own) const {
-        const FrameCameras cameras = {camera, camera_before, width, height};
+        const FrameCameras cameras = with_straight_lenses({camera, camera_before, width, height});
         const Vec2 centre = {static_cast<float>(pixel % width) + 0.5f, static_cast<float>(pixel / width) + 0.5f};
         if (own == kNoHit) return reproject_far(cameras.now, cameras.before, centre);
         return reproject_surface(cameras, scene, scene_before, centre, features.hit[pixel]).pixel;

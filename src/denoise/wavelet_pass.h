@@ -98,7 +98,8 @@ private:
             const float scale = 1.0f / (size * static_cast<float>(step));
             per_column = scale * (n.x * (2.0f * camera.inv_width * camera.half_width));
             per_row = -scale * (n.y * (2.0f * camera.inv_height * camera.half_height));
-            at_zero = 0.5f * (per_column + per_row) + scale * (n.y * camera.half_height - n.x * camera.half_width);
+            at_zero = 0.5f * (per_column + per_row) + scale * (n.y * (camera.centre.y * camera.half_height) -
+                                                               n.x * (camera.centre.x * camera.half_width));
             per_depth = -scale * n.z;
             here = 0;
             here = signed_distance(on_column(x) + on_row(y), depth);

@@ -1,8 +1,9 @@
 #pragma once
 
-// The device form of a camera: its rays (pinhole, thin lens and orthographic) and the projection of points;
-// render/connect_to_camera.h projects through the lens. Only these files distinguish kinds of cameras. A pixel position
-// is in pixels from the picture's upper left corner.
+// The device form of a camera: its rays (pinhole, thin lens, distorting lens, fisheye and orthographic) and the
+// projection of points; render/connect_to_camera.h projects through the lens. Only these files and
+// render/lens_distortion.h distinguish kinds of cameras. A pixel position is in pixels from the picture's upper left
+// corner.
 
 #include <cstdint>
 
@@ -10,6 +11,7 @@
 #include "math/sampling.h"
 #include "math/transform.h"
 #include "math/vec2.h"
+#include "render/lens_distortion.h"
 #include "scene/camera.h"
 #include "trace/intersect/ray.h"
 
@@ -22,7 +24,14 @@ struct CameraView {
     float inv_width, inv_height;   // 1 / pixels
     float aperture_radius;         // metres
     float focus_distance;          // metres
+    Vec2 centre;                   // where the axis meets the picture, in halves of its width and height: usually 1, 1
+    LensView lens;
 };
+
+/// The origin of a camera ray that does not exist, because the lens shows nothing at that place of the picture. The ray
+/// leads away from every scene, so nothing blocks it, and it brings no light.
+inline constexpr float kNowhere = 0x1p44f;
+HD inline bool is_nowhere(Vec3 origin) { return max_component(abs(origin)) > 0x1p42f; }
 
 /// Half the height of the view: at distance 1, or in metres for parallel rays.
 float half_view_height(const Camera& camera);
@@ -34,8 +43,13 @@ CameraView make_camera_view(const Camera& camera, uint32_t width, uint32_t heigh
 /// Position of `pixel` in the view, x to the right and y up, in the unit of half_width.
 template <class T = float>
 HD inline Vec2Of<T> view_position(const CameraView& camera, Vec2Of<T> pixel) {
-    return {(2.0f * (pixel.x * camera.inv_width) - 1.0f) * camera.half_width,
-            (1.0f - 2.0f * (pixel.y * camera.inv_height)) * camera.half_height};
+    return {(2.0f * (pixel.x * camera.inv_width) - camera.centre.x) * camera.half_width,
+            (camera.centre.y - 2.0f * (pixel.y * camera.inv_height)) * camera.half_height};
+}
+/// The pixel position of a point of the view.
+HD inline Vec2 pixel_at(const CameraView& camera, Vec2 at) {
+    return {(0.5f * at.x / camera.half_width + 0.5f * camera.centre.x) / camera.inv_width,
+            (0.5f * camera.centre.y - 0.5f * at.y / camera.half_height) / camera.inv_height};
 }
 
 /// Scale of a view as a function of depth: objects there appear smaller by this factor.
@@ -51,8 +65,15 @@ template <class T>
 HD inline RayLineOf<T> make_camera_line(const CameraView& camera, Vec2Of<T> pixel, Vec2Of<T> lens) {
     const Vec2Of<T> at = view_position(camera, pixel);
     Vec3Of<T> origin = {0, 0, 0}, direction = {at.x, at.y, -1};
+    MaskOf<T> is_seen = true;
     switch (camera.projection) {
     case Projection::Perspective:
+        if (camera.lens.model != LensModel::Straight) {
+            const SeenThroughLens<T> seen =
+                seen_through_lens(camera.lens, at, 0x1p-5f * (camera.inv_width * camera.half_width));
+            direction = seen.direction;
+            is_seen = seen.is_seen;
+        }
         break;
     case Projection::Orthographic:
         origin = {at.x, at.y, 0};
@@ -71,7 +92,12 @@ HD inline RayLineOf<T> make_camera_line(const CameraView& camera, Vec2Of<T> pixe
         direction = focus - origin;
     }
     const auto world_from_camera = for_lanes<T>(camera.world_from_camera);
-    return {transform_point(world_from_camera, origin), normalize(transform_vector(world_from_camera, direction))};
+    const Vec3Of<T> from = transform_point(world_from_camera, origin),
+                    towards = normalize(transform_vector(world_from_camera, direction));
+    if (camera.lens.model == LensModel::Straight) return {from, towards};
+    const T nowhere = kNowhere, diagonal = 0x1.279a74p-1f;
+    return {select(is_seen, from, {nowhere, nowhere, nowhere}),
+            select(is_seen, towards, {diagonal, diagonal, diagonal})};
 }
 
 /// The camera ray through `pixel`, unbounded.
@@ -86,34 +112,39 @@ struct ProjectedPoint {
     float depth;
 };
 
-/// Projects `point` (world space) through a pinhole. The pixel is meaningless for a point behind a perspective camera
-/// (depth <= 0).
+/// Projects `point` (world space) through the middle of the lens. The pixel is meaningless for a point behind a
+/// perspective camera (depth <= 0), and NaN for one that a distorting lens does not show.
 HD inline ProjectedPoint project_point(const CameraView& camera, Vec3 point) {
     const Vec3 local = transform_transposed(camera.world_from_camera, point - camera.world_from_camera.translation);
     const float depth = -local.z;
     const float scale = 1.0f / growth_at(camera, depth);
-    return {{(0.5f * (scale * local.x) / camera.half_width + 0.5f) / camera.inv_width,
-             (0.5f - 0.5f * (scale * local.y) / camera.half_height) / camera.inv_height},
-            depth};
+    Vec2 at = {scale * local.x, scale * local.y};
+    if (camera.lens.model != LensModel::Straight) {
+        const LensProjection through = project_through_lens(camera.lens, local);
+        at = through.is_seen ? through.at : Vec2{float_of(0x7fc00000u), float_of(0x7fc00000u)};
+    }
+    return {pixel_at(camera, at), depth};
 }
 
-/// The point in camera space that a pinhole sees at `pixel` and `depth`.
+/// The point in camera space that a camera with a straight lens sees at `pixel` and `depth`.
 HD inline Vec3 unproject_point(const CameraView& camera, Vec2 pixel, float depth) {
     const Vec2 at = view_position(camera, pixel);
     const float scale = growth_at(camera, depth);
     return {scale * at.x, scale * at.y, -depth};
 }
 
-/// Returns whether project_point is valid at `depth`: in front of the camera, or for an orthographic camera.
+/// Returns whether project_point is valid at `depth`: in front of the camera, or for an orthographic camera or a
+/// fisheye.
 HD inline bool is_projected(const CameraView& camera, float depth) {
-    return depth > 0 || has_parallel_rays(camera.projection);
+    return depth > 0 || has_parallel_rays(camera.projection) || camera.lens.model == LensModel::Fisheye;
 }
 
 /// Returns where a camera, moved from `now` to `before`, saw what is infinitely far away at `pixel`.
 HD inline Vec2 reproject_far(const CameraView& now, const CameraView& before, Vec2 pixel) {
     if (has_parallel_rays(now.projection)) return pixel;
-    const Vec3 direction = make_camera_ray(now, pixel, {0, 0}).direction;
-    return project_point(before, before.world_from_camera.translation + direction).pixel;
+    const Ray ray = make_camera_ray(now, pixel, {0, 0});
+    if (is_nowhere(ray.origin)) return pixel;
+    return project_point(before, before.world_from_camera.translation + ray.direction).pixel;
 }
 
 /// Returns how far the direction in which a camera sees `point` turns from `before` to `now`, as the length of the

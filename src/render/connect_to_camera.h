@@ -20,11 +20,23 @@ struct CameraConnection {
 /// Returns whether the density of camera rays at a point is that of CameraConnection over its squared distance.
 HD inline bool falls_with_distance(const CameraRays& camera) { return !has_parallel_rays(camera.view.projection); }
 
-/// Density of camera rays along `direction` (unit), as in CameraConnection.
-HD inline float camera_density(const CameraRays& camera, Vec3 direction) {
+/// Density of camera rays along `direction` (unit) from `origin`, as in CameraConnection; 0 if there are none.
+HD inline float camera_density(const CameraRays& camera, Vec3 origin, Vec3 direction) {
+    const CameraView& view = camera.view;
     const float cosine = dot(direction, camera.axis);
-    const float view = 4.0f * camera.view.half_width * camera.view.half_height;
-    return falls_with_distance(camera) ? 1.0f / (view * cosine * cosine * cosine) : 1.0f / (view * cosine);
+    const float area = 4.0f * view.half_width * view.half_height;
+    if (!falls_with_distance(camera)) return 1.0f / (area * cosine);
+    const float of_straight = 1.0f / (area * cosine * cosine * cosine);
+    if (view.lens.model == LensModel::Straight) return of_straight;
+    Vec3 local = transform_transposed(view.world_from_camera, direction);
+    if (camera.has_lens()) { // the direction to the ray's point in focus from the middle of the lens
+        const Vec3 lens = transform_transposed(view.world_from_camera, origin - view.world_from_camera.translation);
+        local = {lens.x - view.focus_distance * local.x / local.z, lens.y - view.focus_distance * local.y / local.z,
+                 -view.focus_distance};
+    }
+    const LensProjection through = project_through_lens(view.lens, local);
+    if (!through.is_seen) return 0.0f;
+    return view.lens.model == LensModel::Fisheye ? through.growth / area : through.growth * of_straight;
 }
 
 /// Projects `point` through the lens point `u`. Returns false if it is not in front of the camera, or if the camera
@@ -33,7 +45,7 @@ HD inline bool connect_to_camera(const CameraRays& camera, Vec3 point, Vec2 u, C
     const CameraView& view = camera.view;
     const Vec3 local = transform_transposed(view.world_from_camera, point - view.world_from_camera.translation);
     const float depth = -local.z;
-    if (!(depth > 0) || camera.is_meter()) return false;
+    if (!(depth > 0 || view.lens.model == LensModel::Fisheye) || camera.is_meter()) return false;
     const Vec2 lens = camera.has_lens() ? view.aperture_radius * sample_uniform_disk_concentric(u) : Vec2{0, 0};
     float x, y; // in the plane at distance 1, or in the orthographic view
     Vec3 from = {lens.x, lens.y, 0};
@@ -52,19 +64,26 @@ HD inline bool connect_to_camera(const CameraRays& camera, Vec3 point, Vec2 u, C
         x = from.x - lens.x;
         y = from.y - lens.y;
     }
+    if (view.lens.model != LensModel::Straight) {
+        const LensProjection through =
+            project_through_lens(view.lens, view.lens.model == LensModel::Fisheye ? local : Vec3{x, y, -1});
+        if (!through.is_seen) return false;
+        x = through.at.x;
+        y = through.at.y;
+    }
     seen.from = transform_point(view.world_from_camera, from);
     const Vec3 way = point - seen.from;
     const float distance_squared = length_squared(way);
     if (!(distance_squared > 0)) return false;
     seen.direction = way / sqrt(distance_squared);
-    seen.raster = {(0.5f * x / view.half_width + 0.5f) * static_cast<float>(camera.width),
-                   (0.5f - 0.5f * y / view.half_height) * static_cast<float>(camera.height)};
+    seen.raster = {(0.5f * x / view.half_width + 0.5f * view.centre.x) * static_cast<float>(camera.width),
+                   (0.5f * view.centre.y - 0.5f * y / view.half_height) * static_cast<float>(camera.height)};
     const float reach = camera.filter.radius, right = static_cast<float>(camera.width) + reach,
                 low = static_cast<float>(camera.height) + reach;
     if (!(seen.raster.x > -reach && seen.raster.x < right && seen.raster.y > -reach && seen.raster.y < low)) {
         return false;
     }
-    seen.density = camera_density(camera, seen.direction);
+    seen.density = camera_density(camera, seen.from, seen.direction);
     seen.distance_squared = is_parallel ? 1.0f : distance_squared;
     return seen.density > 0 && is_finite(seen.density);
 }

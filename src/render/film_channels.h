@@ -16,12 +16,13 @@ namespace pertev {
 
 /// Groups of auxiliary channels; lower bits come first.
 enum AovBits : uint32_t {
-    kAovAlbedo = 1,   // reflectance of the first surface
-    kAovNormal = 2,   // shading normal of the first surface, world space
-    kAovDepth = 4,    // distance along the camera's axis, metres
-    kAovPosition = 8, // in the file's coordinates, in metres; relative to SceneView::position_shift in a far scene
-    kAovIds = 16,     // ids of sample 0, which are not sums; see FilmView::ids
-    kAovMotion = 32,  // not in the film: denoise/motion_vectors.h
+    kAovAlbedo = 1,    // reflectance of the first surface
+    kAovNormal = 2,    // shading normal of the first surface, world space
+    kAovDepth = 4,     // distance along the camera's axis, metres
+    kAovPosition = 8,  // in the file's coordinates, in metres; relative to SceneView::position_shift in a far scene
+    kAovIds = 16,      // ids of sample 0, which are not sums; see FilmView::ids
+    kAovMotion = 32,   // not in the film: denoise/motion_vectors.h
+    kAovDistance = 64, // along the camera ray, metres
 };
 
 inline constexpr uint32_t kFilmColorChannels = 4;
@@ -43,6 +44,7 @@ inline constexpr AovGroup kAovTable[] = {
     {kAovPosition, "position", "position", {"X", "Y", "Z"}, true, true},
     {kAovIds, "ids", "id", {"instance", "primitive", "material"}, false, false},
     {kAovMotion, "motion", "motion", {"u", "v"}, false, false},
+    {kAovDistance, "distance", "distance", {"Z"}, true, true},
 };
 
 namespace film_channels {

@@ -41,6 +41,9 @@ HD inline void add_first_hit(const FilmView& film, uint32_t pixel, uint32_t samp
         add_channel(film, pixel, channel_offset(film.aovs, kAovDepth),
                     dot(surface.position - ray.origin, picture.camera.axis_at(time)));
     }
+    if ((film.aovs & kAovDistance) != 0) {
+        add_channel(film, pixel, channel_offset(film.aovs, kAovDistance), length(surface.position - ray.origin));
+    }
     if ((film.aovs & kAovPosition) != 0) { // the film adds both without rounding
         const uint32_t channel = channel_offset(film.aovs, kAovPosition);
         add_channels(film, pixel, channel, surface.position);

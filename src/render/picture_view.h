@@ -12,6 +12,9 @@ struct PictureView {
     SceneView scene;
     CameraRays camera;
     bool hide_background = false; // camera rays that hit nothing return black, for pictures with alpha
+
+    /// Returns whether a camera ray from `origin` that hits nothing is black.
+    HD bool hides_background(Vec3 origin) const { return hide_background || is_nowhere(origin); }
 };
 
 } // namespace pertev

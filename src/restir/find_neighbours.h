@@ -31,7 +31,8 @@ struct FindBefore {
         const uint32_t object = bits_of(now.hit[pixel].x), width = cameras.width, height = cameras.height;
         if (object != kNoHit) {
             const Vec2 centre = {static_cast<float>(pixel % width) + 0.5f, static_cast<float>(pixel / width) + 0.5f};
-            const Reprojection at = reproject_surface(cameras, scene, scene_before, centre, now.hit[pixel]);
+            const Reprojection at =
+                reproject_surface(with_straight_lenses(cameras), scene, scene_before, centre, now.hit[pixel]);
             const Vec2 p = at.pixel;
             if (p.x >= 0 && p.y >= 0 && p.x < static_cast<float>(width) && p.y < static_cast<float>(height)) {
                 const uint32_t there = static_cast<uint32_t>(to_int(p.y, 0, static_cast<int>(height) - 1)) * width +

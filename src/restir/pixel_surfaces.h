@@ -24,7 +24,11 @@ struct PixelSurfaces {
         return {0, p.z, p.w, bits_of(p.x), bits_of(p.y)};
     }
     /// Direction of the pixel's camera ray, unit.
-    HD Vec3 direction(uint32_t pixel) const { return camera.ray(pixel, sampler, key(pixel)).direction; }
+    HD Vec3 direction(uint32_t pixel) const {
+        CameraRays straight = camera; // frames have no other lens; saying so spares registers
+        straight.view.lens = {};
+        return straight.ray(pixel, sampler, key(pixel)).direction;
+    }
     HD WorldTriangle triangle(const SceneView& scene, uint32_t pixel) const {
         const Hit at = hit(pixel);
         const InstanceView& instance = scene.instances[at.instance];

@@ -3,6 +3,7 @@
 // A camera: at its local origin, looking along -z, +y up, +x right.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,16 +43,30 @@ HD constexpr bool is_light_meter(Projection projection) {
     return true;
 }
 
+/// Model of a lens whose picture does not have straight lines (render/lens_distortion.h).
+enum class LensModel : uint8_t { Straight, OpenCv, Fisheye };
+
+/// A calibrated view: focal lengths and principal point in pixels of a picture of `width` x `height` pixels, from its
+/// upper left corner. In a picture of another size both scale with width and height.
+struct Intrinsics {
+    double focal_x, focal_y, centre_x, centre_y;
+    uint32_t width, height;
+    bool operator==(const Intrinsics&) const = default;
+};
+
 struct Camera {
     std::string name, origin;
     Projection projection = Projection::Perspective;
-    Transform world_from_camera; // rigid; readers remove scale
-    float fov_y = 0.785398163f;  // Perspective: full vertical angle, radians, (0, pi)
-    float ortho_height = 2;      // Orthographic: full height of the view, metres
-    float aspect = 0;            // width / height in the file; 0: none
-    float aperture_radius = 0;   // thin lens, metres; 0 = pinhole
-    float focus_distance = 1;    // metres along -z to the plane in focus
-    uint32_t node = kNoNode;     // index into Scene::nodes
+    Transform world_from_camera;          // rigid; readers remove scale
+    float fov_y = 0.785398163f;           // Perspective: full vertical angle, radians, (0, pi)
+    float ortho_height = 2;               // Orthographic: full height of the view, metres
+    std::optional<Intrinsics> intrinsics; // Perspective: in place of fov_y, which is about the same
+    LensModel lens = LensModel::Straight; // Perspective
+    std::vector<double> distortion;       // coefficients in the lens's order, at most 8; those that lack are 0
+    float aspect = 0;                     // width / height in the file; 0: none
+    float aperture_radius = 0;            // thin lens, metres; 0 = pinhole
+    float focus_distance = 1;             // metres along -z to the plane in focus
+    uint32_t node = kNoNode;              // index into Scene::nodes
     // Motion while the shutter is open, around the origin, relative to world_from_camera (math/rigid_motion.h),
     // metres in the world. Empty: the camera does not move.
     std::vector<MotionKey> motion;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "render/lens_distortion.h"
 #include "render/raster/pinhole.h"
 #include "settings/value_names.h"
 
@@ -74,6 +75,8 @@ void check_integrator(const RenderSettings& settings) {
     const bool is_denoised = settings.denoise != Denoise::None;
     refuse(is_denoised && !makes_frames(settings.integrator), "denoise", name_of(settings.denoise),
            fmt::format("supports {}, not {}", those_that(makes_frames), name));
+    refuse(is_denoised && (settings.aovs & kAovDistance) != 0, "aov", "distance",
+           fmt::format("`denoise={}` does not make it; depth is measured along the axis", name_of(settings.denoise)));
     if (settings.light_paths) {
         refuse(!has_light_path_layers(settings.integrator), "lpe", "",
                fmt::format("{} distinguish light paths, {} does not", those_that(has_light_path_layers), name));
@@ -101,9 +104,15 @@ void check_shutter(const RenderSettings& settings) {
 }
 
 void check_camera(const RenderSettings& settings, const Camera& camera) {
+    if (settings.denoise != Denoise::None) check_reconstruction(camera);
     if (!rasterises_camera(settings.integrator)) return;
     const std::string why = why_no_raster(camera);
     refuse(!why.empty(), "integrator", integrator_name(settings), why);
+}
+
+void check_reconstruction(const Camera& camera) {
+    refuse(!has_straight_lens(camera), "distortion", "",
+           "real-time frames and denoising need a lens that draws straight lines");
 }
 
 std::optional<Remark> why_dark(const RenderSettings& settings, const Scene& scene) {

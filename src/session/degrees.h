@@ -39,13 +39,18 @@ inline float view_height_at(const Camera& camera, float distance) {
 /// Puts the lens of `camera` into a choice: its projection, the size of its view, its aperture and focus.
 inline void state_lens(const Camera& camera, CameraChoice& choice) {
     choice.projection = camera.projection;
-    if (view_angle(camera) > 0) {
+    if (const auto& own = camera.intrinsics) {
+        choice.intrinsics = {own->focal_x, own->focal_y, own->centre_x, own->centre_y};
+        choice.intrinsics_size = PictureSize{own->width, own->height};
+    } else if (view_angle(camera) > 0) {
         choice.fov_deg = degrees_for(camera.fov_y);
     } else {
         choice.view_height = camera.ortho_height;
     }
     choice.aperture = camera.aperture_radius;
     if (camera.aperture_radius > 0) choice.focus = camera.focus_distance;
+    if (camera.lens != LensModel::Straight) choice.lens = camera.lens;
+    choice.distortion = camera.distortion;
 }
 
 } // namespace pertev

@@ -10,6 +10,7 @@
 namespace pertev {
 namespace {
 
+constexpr std::string_view kName = "{name}";
 constexpr uint32_t kMaxFrames = 1'000'000'000;
 
 constexpr double kMaxShutter = 1e6; // seconds, positive or negative
@@ -22,7 +23,10 @@ std::optional<double> seconds_in(std::string_view text) {
 
 } // namespace
 
-bool names_frames(const std::string& pattern) { return pattern.find('#', pattern.rfind('/') + 1) != std::string::npos; }
+bool names_frames(const std::string& pattern) {
+    const std::size_t name = pattern.rfind('/') + 1; // npos + 1: 0
+    return pattern.find('#', name) != std::string::npos || pattern.find(kName, name) != std::string::npos;
+}
 
 double FrameRange::turn_at(uint32_t frame, double share) const {
     if (turntable == 0) return 0;
@@ -31,9 +35,14 @@ double FrameRange::turn_at(uint32_t frame, double share) const {
     return turns - std::floor(turns);
 }
 
-std::string frame_file(const std::string& pattern, uint32_t frame) {
+std::string frame_file(std::string pattern, uint32_t frame, std::span<const std::string> names) {
     const std::size_t name = pattern.rfind('/') + 1; // npos + 1: 0
     std::string file = pattern.substr(0, name);
+    const std::size_t camera = names.empty() ? std::string::npos : pattern.find(kName, name);
+    if (camera != std::string::npos) { // whose name may contain a '#'
+        return frame_file(pattern.substr(0, camera), frame) + names[frame] +
+               frame_file(pattern.substr(camera + kName.size()), frame);
+    }
     for (std::size_t at = name; at < pattern.size();) {
         const std::size_t end = std::min(pattern.find_first_not_of('#', at), pattern.size());
         if (end > at) file += fmt::format("{:0{}}", frame, end - at);
@@ -65,6 +74,11 @@ std::optional<FrameRange> frame_range(const PictureOptions& options) {
     sequence.shutter = shutter(options);
     sequence.turntable = options.turntable;
     sequence.time_s = options.time_s;
+    if (options.camera_list) {
+        for (const CameraOfFile& camera : *options.camera_list) sequence.names.push_back(camera.name);
+        sequence.last = static_cast<uint32_t>(sequence.names.size() - 1);
+        return sequence;
+    }
     if (options.frames.empty()) {
         if (options.turntable == 0) return std::nullopt;
         sequence.last = options.turntable - 1;

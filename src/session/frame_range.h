@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "base/limits.h"
 #include "session/shutter.h"
@@ -17,6 +19,7 @@ struct FrameRange {
     std::optional<double> fps;      // frames per second; without it all frames have one time
     std::optional<double> time_s;   // that time; without it the scene is at rest
     uint32_t turntable = 0;         // frames per revolution of the camera; 0: it does not revolve
+    std::vector<std::string> names; // names of cameras, one a frame; empty: all frames have the same
     std::optional<Shutter> shutter; // around each frame's time; without it a frame shows one moment
 
     uint32_t count() const { return last - first + 1; }
@@ -36,11 +39,11 @@ struct FrameRange {
     double turn_before(uint32_t frame) const { return turntable == 0 ? 0 : turn_of(frame % turntable + turntable - 1); }
 };
 
-/// Returns whether `pattern` names a file for each frame, that is, contains a '#'.
+/// Returns whether `pattern` names a file for each frame, that is, contains a '#' or "{name}".
 bool names_frames(const std::string& pattern);
-/// Name of a frame's file: the frame's number, zero-padded, replaces each run of '#'. All '#' must be in the file's
-/// name, not in its folder's.
-std::string frame_file(const std::string& pattern, uint32_t frame);
+/// Name of a frame's file: the frame's number, zero-padded, replaces each run of '#', and the frame's of `names`, if
+/// there are any, "{name}". All must be in the file's name, not in its folder's.
+std::string frame_file(std::string pattern, uint32_t frame, std::span<const std::string> names = {});
 
 /// Returns the times of the shutter; none if they were not given. Throws Error(BadInput).
 std::optional<Shutter> shutter(const PictureOptions& options);

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "denoise/motion_vectors.h"
+#include "session/check_integrator.h"
 #include "settings/value_names.h"
 
 namespace pertev {
@@ -57,6 +58,7 @@ bool FrameSequence::render(uint32_t number, const Camera& camera, const RenderSe
     of_light.width = scaled_side(settings.width, reconstruction);
     of_light.height = scaled_side(settings.height, reconstruction);
     number_ = number;
+    check_reconstruction(camera);
     NoisyFrame& frame = fit_frame(scene, sample_, of_light.width, of_light.height);
     if (!reconstruction_ || !temporal_gradients_ ||
         !temporal_gradients_->fits(frame)) { // another size, or other signals

@@ -3,14 +3,25 @@
 // Requested properties of a camera, from which session/opening/choose_camera.h makes one. Messages use the names of
 // the fields.
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "math/double_vec3.h"
 #include "math/vec3.h"
 #include "scene/camera.h"
 
 namespace pertev {
+
+struct PictureSize {
+    uint32_t width = 0, height = 0; // pixels
+    bool operator==(const PictureSize&) const = default;
+};
+
+/// Axes of a camera's pose. OpenGl: x to the right, y up, it looks along -z, as Camera does. OpenCv: x to the right, y
+/// down, it looks along z. Blender: as OpenGl, in a world with z up.
+enum class PoseConvention : uint8_t { OpenGl, OpenCv, Blender };
 
 struct CameraChoice {
     std::string camera;                    // name or number, from 0, of a camera of the scene; "": the first
@@ -22,6 +33,17 @@ struct CameraChoice {
     std::optional<float> focus;    // focus distance, metres
     std::optional<Projection> projection;
     std::optional<float> view_height; // full height of an orthographic view, metres
+    std::vector<double> pose;         // world from camera, 16 or 12 numbers by rows, in the coordinates of the file
+    std::optional<PoseConvention> convention;
+    std::vector<double> intrinsics; // focal lengths and principal point, or K by rows, pixels
+    std::optional<PictureSize> intrinsics_size;
+    std::optional<LensModel> lens; // not Straight
+    std::vector<double> distortion;
+    std::string camera_from;    // an EXR with the metadata of a camera
+    std::optional<float> fov_y; // radians, of that camera; degrees need not give them to the bit
+
+    /// Returns whether it places the camera anywhere but where the scene's own is.
+    bool places_camera() const { return eye || !pose.empty() || !camera_from.empty(); }
 };
 
 } // namespace pertev

@@ -15,18 +15,10 @@ namespace {
 
 constexpr float kMaxFloat = std::numeric_limits<float>::max();
 
-/// Parses three numbers, each within the range of floats.
 std::optional<DoubleVec3> three_doubles(std::string_view text) {
-    double values[3];
-    for (int i = 0; i < 3; ++i) {
-        const std::size_t comma = text.find(',');
-        if ((comma == std::string_view::npos) != (i == 2)) return std::nullopt;
-        const auto value = parse_whole_float<double>(text.substr(0, comma));
-        if (!value || !is_finite(static_cast<float>(*value))) return std::nullopt;
-        values[i] = *value;
-        if (i < 2) text.remove_prefix(comma + 1);
-    }
-    return DoubleVec3{values[0], values[1], values[2]};
+    const auto values = numbers_in(text);
+    if (!values || values->size() != 3) return std::nullopt;
+    return DoubleVec3{(*values)[0], (*values)[1], (*values)[2]};
 }
 
 std::optional<Vec3> three_numbers(std::string_view text) {
@@ -73,6 +65,18 @@ std::string why_no_choice(const std::string& text, const std::vector<std::string
 std::optional<float> number_in(std::string_view text) {
     const std::optional<float> value = parse_whole_float(text);
     return value && is_finite(*value) ? value : std::nullopt;
+}
+
+std::optional<std::vector<double>> numbers_in(std::string_view text) {
+    std::vector<double> values;
+    while (true) {
+        const std::size_t comma = std::min(text.find(','), text.size());
+        const auto value = parse_whole_float<double>(text.substr(0, comma));
+        if (!value || !is_finite(static_cast<float>(*value))) return std::nullopt;
+        values.push_back(*value);
+        if (comma == text.size()) return values;
+        text.remove_prefix(comma + 1);
+    }
 }
 
 std::pair<uint32_t, uint32_t> parse_size(const std::string& setting, const std::string& text) {

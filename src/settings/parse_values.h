@@ -17,6 +17,8 @@ namespace pertev {
 
 /// Parses the whole text as a finite number. A value too small for a float is 0.
 std::optional<float> number_in(std::string_view text);
+/// Parses numbers between commas, each within the range of floats.
+std::optional<std::vector<double>> numbers_in(std::string_view text);
 
 // Each returns why the text is no such value, without the text: "not a number from 0 to 1". Empty if it is one.
 std::string why_no_number(const std::string& text, double low, double high); // from low to high

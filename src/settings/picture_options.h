@@ -7,11 +7,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "denoise/reconstruction_settings.h"
+#include "formats/cameras/read_cameras.h"
 #include "image/tone_map.h"
 #include "radiosity/radiosity_settings.h"
 #include "restir/restir_settings.h"
@@ -72,11 +74,6 @@ struct ReconstructionOptions {
     bool has_frame_options() const { return sharing.light != RestirLight::Off || settings.resolution_scale != 1; }
 };
 
-struct PictureSize {
-    uint32_t width = 0, height = 0; // pixels
-    bool operator==(const PictureSize&) const = default;
-};
-
 /// The source of a setting's value. Later ones override earlier ones.
 enum class SettingOrigin : uint8_t {
     Scene,  // the scene's file
@@ -89,13 +86,15 @@ struct PictureOptions {
     RenderSettings render; // except for size, aovs, light_paths, irradiance and heights, which are the fields below
     std::optional<PictureSize> size;
     std::optional<ToneMap> tone_map;
-    std::string exposure;                             // auto, or stops
-    float iso = 0, f_number = 0, shutter_s = 0;       // a physical exposure
-    std::vector<std::string> aovs, lpe, displacement; // lists of texts
-    std::string false_color;                          // luminance or illuminance
-    std::string false_color_range;                    // A,B
-    std::optional<double> time_s;                     // none: at rest
-    std::string frames, camera_path, shutter;         // A-B; a file; [OPEN,]SECONDS
+    std::string exposure;                                         // auto, or stops
+    float iso = 0, f_number = 0, shutter_s = 0;                   // a physical exposure
+    std::vector<std::string> aovs, lpe, displacement;             // lists of texts
+    std::string false_color;                                      // luminance or illuminance
+    std::string false_color_range;                                // A,B
+    std::optional<double> time_s;                                 // none: at rest
+    std::string frames, camera_path, shutter;                     // A-B; a file; [OPEN,]SECONDS
+    std::string cameras;                                          // a file or folder of many cameras
+    std::shared_ptr<const std::vector<CameraOfFile>> camera_list; // its cameras, once it is read
     double fps = 0;
     uint32_t turntable = 0;
     bool goes_on = false; // continues a sequence that was interrupted

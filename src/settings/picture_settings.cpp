@@ -92,7 +92,7 @@ std::vector<Setting> picture_settings() {
         row("time_limit", "Quality", "SECONDS", FIELD(render.time_limit_s),
             "The time after which the render stops, at the end of a sample. irradiance_cache makes records first and "
             "may stop before its first sample.",
-            Above{0}, Unit{"s"}, Otherwise{"none"}, Excludes{"frames turntable"}, Mark::NotKept, Mark::Common),
+            Above{0}, Unit{"s"}, Otherwise{"none"}, Excludes{"frames turntable cameras"}, Mark::NotKept, Mark::Common),
         row("denoise", "Quality", "NAME", FIELD(render.denoise),
             "The denoiser of pictures with few samples. It is biased; EXR output also has the picture before denoising "
             "as the layer noisy.",

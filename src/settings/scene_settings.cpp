@@ -52,6 +52,31 @@ std::vector<Setting> scene_settings() {
             "The distance at which a lens with an aperture is in focus.", Above{0, kMaxCoordinate}, Unit{"m"},
             Otherwise{"the target's distance, or else that of the surface at the picture's centre"}, On{kLooking},
             Excludes{"aperture=0"}, Recorded::AsUsed, Panel{"Focus distance, m", PanelGroup::Camera, 0.1}),
+        row("camera_pose", "Camera", "NUMBERS", FIELD(scene.camera.pose),
+            "The camera's place and axes in the world: the matrix world from camera, 16 or 12 numbers row by row.",
+            Counts{{12, 16}}, Excludes{"eye target up camera_path"}),
+        row("convention", "Camera", "NAME", FIELD(scene.camera.convention),
+            "The axes of camera_pose, and of NeRF's cameras: opengl (y up, looks along -z), opencv (y down, looks "
+            "along z) or blender (opengl's, in a world with z up).",
+            Otherwise{"opengl"}, Needs{"camera_pose cameras"}),
+        row("intrinsics", "Camera", "FX,FY,CX,CY", FIELD(scene.camera.intrinsics),
+            "Focal lengths and principal point in pixels from the picture's upper left corner, or the nine numbers of "
+            "K. The first pixel's centre is 0.5,0.5 (in OpenCV 0,0).",
+            Counts{{4, 9}}, Needs{"size intrinsics_size"}, Excludes{"fov view_height projection=orthographic"},
+            Recorded::AsUsed),
+        row("intrinsics_size", "Camera", "WIDTHxHEIGHT", FIELD(scene.camera.intrinsics_size),
+            "The picture's size for which intrinsics hold; they scale with width and height.",
+            Otherwise{"the picture's own"}, Needs{"intrinsics"}, Recorded::AsUsed),
+        row("lens", "Camera", "NAME", FIELD(scene.camera.lens),
+            "The model of the lens: opencv, or fisheye (Kannala and Brandt, as cv::fisheye).", Otherwise{"opencv"},
+            Excludes{"projection=orthographic fisheye:aperture fisheye:denoise!=none fisheye:real_time"},
+            Recorded::AsUsed),
+        row("distortion", "Camera", "K1,K2,...", FIELD(scene.camera.distortion),
+            "The lens's coefficients: k1,k2,p1,p2[,k3[,k4,k5,k6]], or of a fisheye k1,k2,k3,k4.", Counts{{4, 5, 8}},
+            Excludes{"projection=orthographic denoise!=none real_time"}, Recorded::AsUsed),
+        row("camera_from", "Camera", "FILE", FIELD(scene.camera.camera_from),
+            "An EXR of Pertev's whose camera is used, to the bit, but for what other settings say.",
+            Excludes{"camera camera_path"}, Mark::Name),
 
         row("environment", "Environment", "FILE|R,G,B", FIELD(scene.environment),
             "Light from infinitely far away: an .hdr or .exr panorama, or a radiance R,G,B.", On{kScenes}, Mark::Common,
@@ -99,6 +124,12 @@ std::vector<Setting> scene_settings() {
         row("turntable", "Motion", "N", FIELD(turntable),
             "The number of pictures in which the camera orbits its target once; in the viewer, in N / 24 s.",
             Range{1, 1e9}, On{kRender | kView | kBenchSequence}, Excludes{"camera_path"}),
+        row("cameras", "Motion", "FILE", FIELD(cameras),
+            "A file of cameras, each of which makes a picture: JSON, NeRF's transforms.json or COLMAP's folder. {name} "
+            "in "
+            "an output's name becomes the camera's, # its number.",
+            Excludes{"frames turntable camera_path camera camera_from eye target up camera_pose real_time"},
+            Mark::Name),
         row("frames", "Motion", "A-B", FIELD(frames),
             "The first and last frame to render. A run of # in an output's name, as in frame-####.png, becomes the "
             "frame's number.",
@@ -106,7 +137,7 @@ std::vector<Setting> scene_settings() {
         row("fps", "Motion", "F", FIELD(fps), "The number of frames per second; frame k is at k / F seconds.",
             Above{0, 1e6}, Unit{"1/s"}, Otherwise{"24"}, On{kRender | kBenchSequence}, Needs{"frames"}),
         row("continue", "Motion", "", FIELD(goes_on), "An interrupted sequence continues: complete frames are kept.",
-            Needs{"frames turntable"}, Mark::NotKept),
+            Needs{"frames turntable cameras"}, Mark::NotKept),
     };
 }
 

@@ -1,6 +1,9 @@
 #include "settings/setting.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/error.h"
 #include "base/json_text.h"
@@ -40,6 +43,7 @@ std::string text_of(const Rgb& c) { return fmt::format("{},{},{}", c.r, c.g, c.b
 std::string text_of(const PictureSize& size) { return fmt::format("{}x{}", size.width, size.height); }
 std::string text_of(const std::filesystem::path& path) { return path.string(); }
 std::string text_of(const std::string& text) { return text; }
+std::string text_of(const std::vector<double>& numbers) { return fmt::format("{}", fmt::join(numbers, ",")); }
 template <class Number>
     requires std::is_arithmetic_v<Number>
 std::string text_of(Number number) {
@@ -54,6 +58,7 @@ void put_value(PictureOptions& options, const Setting& setting, std::span<const 
                           [&](std::string* f) { *f = text; },
                           [&](std::vector<std::string>* f) { f->assign(texts.begin(), texts.end()); },
                           [&](std::vector<std::filesystem::path>* f) { f->assign(texts.begin(), texts.end()); },
+                          [&](std::vector<double>* f) { *f = *numbers_in(text); },
                           [&](std::optional<Vec3>* f) { *f = parse_vec3(name, text); },
                           [&](std::optional<DoubleVec3>* f) { *f = parse_position(name, text); },
                           [&](std::optional<Rgb>* f) { *f = parse_radiance(name, text); },
@@ -102,7 +107,8 @@ bool is_list(const Setting& setting) {
 
 bool is_vector(const Setting& setting) {
     return read_field({}, setting, []<class Field>(Field) {
-        return is_field_of<Field, Vec3> || is_field_of<Field, DoubleVec3> || is_field_of<Field, Rgb>;
+        return std::is_same_v<Field, std::vector<double>*> || is_field_of<Field, Vec3> ||
+               is_field_of<Field, DoubleVec3> || is_field_of<Field, Rgb>;
     });
 }
 
@@ -133,6 +139,10 @@ std::string why_no_value(const Setting& setting, const std::string& text) {
             return why_no_number_for(setting, text);
         } else if constexpr (is_on_off<Field>) {
             return why_no_choice(text, {"true", "false"});
+        } else if constexpr (std::is_same_v<Field, std::vector<double>*>) {
+            const auto numbers = numbers_in(text);
+            const bool is_one = numbers && std::ranges::find(setting.counts, numbers->size()) != setting.counts.end();
+            return is_one ? "" : fmt::format("expected {} numbers between commas", fmt::join(setting.counts, " or "));
         } else {
             return "";
         }
@@ -156,6 +166,9 @@ std::vector<std::string> texts_of(const PictureOptions& options, const Setting& 
                                  [](NamedField f) {
                                      const std::string_view name = f.get(f.field);
                                      return name.empty() ? std::vector<std::string>() : std::vector{std::string(name)};
+                                 },
+                                 [](std::vector<double>* f) {
+                                     return f->empty() ? std::vector<std::string>() : std::vector{text_of(*f)};
                                  },
                                  []<class Value>(std::vector<Value>* f) {
                                      std::vector<std::string> texts;

@@ -32,8 +32,8 @@ struct NamedField {
 using SettingField =
     std::variant<bool*, InverseSwitch, uint32_t*, std::optional<uint32_t>*, float*, std::optional<float>*, double*,
                  std::optional<double>*, std::string*, std::vector<std::string>*, std::vector<std::filesystem::path>*,
-                 std::optional<Vec3>*, std::optional<DoubleVec3>*, std::optional<Rgb>*, std::optional<PictureSize>*,
-                 NamedField>;
+                 std::vector<double>*, std::optional<Vec3>*, std::optional<DoubleVec3>*, std::optional<Rgb>*,
+                 std::optional<PictureSize>*, NamedField>;
 
 template <NamedValue Value>
 SettingField field_of(Value& field) {
@@ -129,6 +129,7 @@ struct Setting {
     const char* unit = "";      // unit of numbers
     const char* otherwise = ""; // text of the default if the setting is not given and its field is empty or 0
     std::vector<std::string> choices = {}; // all values of a text; for named fields their names
+    std::vector<uint32_t> counts = {};     // how many numbers a value that is a vector of doubles may have
     bool is_name = false;                  // a text that must not be empty
     bool is_by_ray = false;                // whether KIND=, a kind of ray, may stand before a value
     uint32_t verbs = kRender;

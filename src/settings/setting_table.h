@@ -48,6 +48,9 @@ struct More {
 struct Choices {
     std::vector<std::string> names;
 };
+struct Counts {
+    std::vector<uint32_t> numbers;
+};
 struct On {
     uint32_t verbs;
 };
@@ -72,6 +75,7 @@ inline void put(Setting& s, Otherwise otherwise) { s.otherwise = otherwise.text;
 inline void put(Setting& s, OldName old) { s.old_name = old.text; }
 inline void put(Setting& s, More more) { s.more = more.text; }
 inline void put(Setting& s, Choices choices) { s.choices = std::move(choices.names); }
+inline void put(Setting& s, Counts counts) { s.counts = std::move(counts.numbers); }
 inline void put(Setting& s, On on) { s.verbs = on.verbs; }
 inline void put(Setting& s, Of of) { s.integrators = of.integrators; }
 inline void put(Setting& s, Needs needs) { s.needs = needs.text; }

@@ -19,20 +19,10 @@ constexpr uint64_t kVersion = 1;
 
 using gltf::JsonValue;
 
-/// Returns the value as text: a number as it is written, an array of numbers as "1,2,3".
-std::string text_of(const JsonValue& value) {
-    const std::string json = value.to_json();
-    if (json.starts_with('"')) return std::string(value.to_string());
-    if (!json.starts_with('[')) return json;
-    std::string text;
-    for (const JsonValue& element : value.elements()) text += (text.empty() ? "" : ",") + element.to_json();
-    return text;
-}
-
 std::vector<std::string> texts_of(const Setting& setting, const JsonValue& value) {
     std::vector<std::string> texts;
-    if (!is_list(setting)) return {text_of(value)};
-    for (const JsonValue& element : value.elements()) texts.push_back(text_of(element));
+    if (!is_list(setting)) return {setting_text(value)};
+    for (const JsonValue& element : value.elements()) texts.push_back(setting_text(element));
     return texts;
 }
 

@@ -14,6 +14,7 @@
 #include "image/tone_map_image.h"
 #include "radiosity/radiosity_settings.h"
 #include "restir/restir_settings.h"
+#include "settings/camera_choice.h"
 #include "settings/render_settings.h"
 
 namespace pertev {
@@ -33,12 +34,18 @@ inline constexpr ValueName<Denoise> kDenoisers[] = {{Denoise::None, "none"}, {De
 inline constexpr ValueName<Projection> kProjections[] = {{Projection::Perspective, "perspective"},
                                                          {Projection::Orthographic, "orthographic"}};
 
+inline constexpr ValueName<PoseConvention> kPoseConventions[] = {
+    {PoseConvention::OpenGl, "opengl"}, {PoseConvention::OpenCv, "opencv"}, {PoseConvention::Blender, "blender"}};
+inline constexpr ValueName<LensModel> kLensModels[] = {{LensModel::OpenCv, "opencv"}, {LensModel::Fisheye, "fisheye"}};
+
 constexpr const auto& names_of_all(PathLight) { return kPathLights; }
 constexpr const auto& names_of_all(SamplerKind) { return kSamplers; }
 constexpr const auto& names_of_all(PixelFilter) { return kPixelFilters; }
 constexpr const auto& names_of_all(RestirLight) { return kRestirLights; }
 constexpr const auto& names_of_all(Denoise) { return kDenoisers; }
 constexpr const auto& names_of_all(Projection) { return kProjections; }
+constexpr const auto& names_of_all(PoseConvention) { return kPoseConventions; }
+constexpr const auto& names_of_all(LensModel) { return kLensModels; }
 
 /// Returns the integrator's name; for the path integrator the name of the part of the light that it renders.
 std::string_view integrator_name(const RenderSettings& settings);

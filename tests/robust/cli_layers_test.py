@@ -12,7 +12,7 @@ DOWN = ["--eye", "0,3,0", "--target", "0,0,0", "--projection", "orthographic", "
 BELOW = "v -9 -1 -9\nv 9 -1 -9\nv 9 -1 9\nv -9 -1 9\nf 8 7 6 5\n"
 
 # Results of a render; everything else in the metadata is a flag.
-RESULTS = {"version", "scene", "world_from_camera", "device", "hash", "invalid_samples", "load_seconds", "build_seconds",
+RESULTS = {"version", "scene", "world_from_camera", "fov_y", "device", "hash", "invalid_samples", "load_seconds", "build_seconds",
            "render_seconds", "rays", "made_up", "left_out", "position_origin", "scene_hash", "by_default", "by_scene", "by_settings", "by_caller"}
 
 

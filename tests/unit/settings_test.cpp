@@ -122,6 +122,11 @@ TEST_CASE("invalid values are refused, and too large ones exceed a limit") {
     CHECK(code_of("size", "65537x1") == ErrorCode::OverLimit);
     CHECK(!code_of("eye", "1,-2e0,.5"));
     CHECK(!code_of("seed", "4294967295"));
+    CHECK(code_of("camera_pose", "1,0,0,0,1,0,0,0,1") == ErrorCode::BadInput); // nine numbers
+    CHECK(code_of("intrinsics", "1,2,3") == ErrorCode::BadInput);
+    CHECK(code_of("distortion", "0,0,0,nan") == ErrorCode::BadInput);
+    CHECK(code_of("distortion", "0,0,0,1e60") == ErrorCode::BadInput);
+    CHECK(!code_of("distortion", "-0.1,0,1e-3,0,2"));
     CHECK(code_of("structure", "sah") == ErrorCode::BadInput);
     CHECK(code_of("structure", "camera=sah") == ErrorCode::BadInput);
     CHECK(code_of("structure", "sight=binned") == ErrorCode::BadInput);
@@ -223,11 +228,13 @@ TEST_CASE("settings survive writing to JSON and reading back") {
     set(options, "transparent", {"true"});
     set(options, "no_anti_alias", {"true"});
     set(options, "tone_map", {"aces"});
+    set(options, "intrinsics", {"500.125,500,10,20"});
     set(options, "lpe", {"a=LD+E", "b=L<'la\"mp'>.*E"});
     set(options, "device", {"cpu"});
     const std::string json = settings_json(options, scene_hash("cornell-box"));
     CHECK(json.find("\"device\"") == std::string::npos); // the picture does not depend on it
     CHECK(json.find("\"eye\":[0.1,2,3.5]") != std::string::npos);
+    CHECK(json.find("\"intrinsics\":[500.125,500,10,20]") != std::string::npos);
     test::write_text(file, json);
     PictureOptions read;
     read.scene.scene = "cornell-box";
@@ -248,6 +255,12 @@ TEST_CASE("settings survive writing to JSON and reading back") {
         CHECK(old.given.size() == 1);
         CHECK(old.is_given("no_history_clamping"));
         CHECK(settings_json(old, "").find("\"no_history_clamping\":true") != std::string::npos);
+    }
+    SUBCASE("a matrix may be an array of rows") {
+        test::write_text(file, R"({"version":1,"settings":{"camera_pose":[[1,0,0,2],[0,1,0,3],[0,0,1,4.5]]}})");
+        PictureOptions posed;
+        read_settings(file, kRender, {}, posed, messages);
+        CHECK(posed.scene.camera.pose == std::vector<double>{1, 0, 0, 2, 0, 1, 0, 3, 0, 0, 1, 4.5});
     }
     SUBCASE("another scene is reported") {
         read.scene.scene = "many-lights";

@@ -41,13 +41,15 @@ TEST_CASE("the pixel filter's density equals that of camera rays") {
 TEST_CASE("a vertex projects to the pixel whose camera ray reaches it") {
     test::Random random(7);
     for (const Projection projection : {Projection::Perspective, Projection::Orthographic}) {
-        for (const float aperture : {0.0f, 0.3f}) {
+        for (const auto& [aperture, is_distorted] :
+             {std::pair(0.0f, false), {0.3f, false}, {0.0f, true}, {0.3f, true}}) {
             Camera camera;
             camera.projection = projection;
             camera.world_from_camera = look_at({1, 2, 3}, {-0.5f, 0.2f, -1}, {0.1f, 1, 0});
             camera.fov_y = 0.8f;
             camera.aperture_radius = aperture;
             camera.focus_distance = 2.5f;
+            if (is_distorted) camera.lens = LensModel::OpenCv, camera.distortion = {-0.2, 0.05, 0.01, -0.02};
             const CameraRays rays = make_camera_rays(camera, {PixelFilter::Box, 0.5f, nullptr}, 40, 30, {0, 0, 0});
             for (int i = 0; i < 100; ++i) {
                 const float x = 40 * random.unit(), y = 30 * random.unit(), distance = 1 + 4 * random.unit();

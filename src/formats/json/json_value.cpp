@@ -211,4 +211,13 @@ void JsonValue::read_doubles(double* numbers, std::size_t count) const {
     for (std::size_t i = 0; i < count; ++i) numbers[i] = values[i].to_double();
 }
 
+std::string setting_text(const JsonValue& value) {
+    const std::string json = value.to_json();
+    if (json.starts_with('"')) return std::string(value.to_string());
+    if (!json.starts_with('[')) return json;
+    std::string text;
+    for (const JsonValue& element : value.elements()) text += (text.empty() ? "" : ",") + setting_text(element);
+    return text;
+}
+
 } // namespace pertev::gltf

@@ -97,4 +97,8 @@ private:
     simdjson::dom::element element_;
 };
 
+/// Returns the value in the syntax of settings: a text as it is, a number as it is written, an array of numbers as
+/// "1,2,3", one of rows likewise.
+std::string setting_text(const JsonValue& value);
+
 } // namespace pertev::gltf

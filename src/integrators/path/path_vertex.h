@@ -65,7 +65,7 @@ template <Features kFeatures, class Listener>
 HD INLINE_ON_DEVICE void add_background(const PathJob& job, PathState& path, Listener& listener) {
     const LightSetView& lights = job.picture.scene.lights;
     Rgb light = {0, 0, 0};
-    if (lights.has_environment() && !(job.picture.hide_background && path.depth == 0)) {
+    if (lights.has_environment() && !(path.depth == 0 && job.picture.hides_background(path.origin))) {
         const EnvironmentHit seen =
             find_environment<LightChoice<kFeatures>>(lights, context_before(path), path.direction, path.bsdf_pdf > 0);
         if (!listener.takes(path, environment_point(path.direction), seen.pdf)) {

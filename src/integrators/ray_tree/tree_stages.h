@@ -66,7 +66,7 @@ private:
     HD void add_background(TreeState& state, const PendingRay& ray) const {
         const LightSetView& lights = picture.scene.lights;
         if (ray.depth == 0) add_no_first_hit(film, state.pixel, state.sample);
-        if (!lights.has_environment() || (picture.hide_background && ray.depth == 0)) return;
+        if (!lights.has_environment() || (ray.depth == 0 && picture.hides_background(ray.origin))) return;
         const float light_pdf = ray.bsdf_pdf > 0 ? pdf_environment(lights, ray.origin, ray.direction) : 0.0f;
         add_emission(state, ray, environment_radiance(lights.environment, ray.direction), light_pdf);
     }

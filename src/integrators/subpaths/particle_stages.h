@@ -286,7 +286,7 @@ struct BeginCameraSubpaths {
         const SampleKey key = {state.pixel, state.sample, scene.settings.seed};
         const Ray ray = camera.ray(state.pixel, scene.settings.sampler, key);
         state.throughput = {1, 1, 1};
-        state.mis = {min(square(1.0f / camera_density(camera, ray.direction)), kMaxWeightSum), 0};
+        state.mis = {min(square(1.0f / camera_density(camera, ray.origin, ray.direction)), kMaxWeightSum), 0};
         state.is_from_far = falls_with_distance(camera) ? 0 : 1;
         subpaths.states[i] = state;
         subpaths.queue_ray(i, i, ray, {}, coin_key(key, 0, false), 0);
@@ -304,7 +304,7 @@ HD inline void add_seen_background(const PictureView& picture, const FilmView& f
                                    const Ray& ray) {
     add_no_first_hit(film, state.pixel, state.sample);
     const LightSetView& lights = picture.scene.lights;
-    if (!lights.has_environment() || picture.hide_background) return;
+    if (!lights.has_environment() || picture.hides_background(ray.origin)) return;
     add_radiance(film, state.pixel, environment_radiance(lights.environment, ray.direction));
 }
 

@@ -21,6 +21,8 @@ Pinhole make_pinhole(const CameraRays& camera) {
     p.height = camera.height;
     p.half_width = static_cast<double>(camera.view.half_width);
     p.half_height = static_cast<double>(camera.view.half_height);
+    p.centre_x = static_cast<double>(camera.view.centre.x);
+    p.centre_y = static_cast<double>(camera.view.centre.y);
     p.filter_radius = static_cast<double>(camera.filter.radius) * (1 + 0x1p-10) + 0x1p-10;
 
     // Bound on the ray's rotation by rounding, with u = 2^-24 and M the linear part: position and view contribute at
@@ -29,8 +31,9 @@ Pinhole make_pinhole(const CameraRays& camera) {
     const double norm = std::max(size(m.row0), std::max(size(m.row1), size(m.row2)));
     p.error_scale = std::max(size_of(p.row_x), std::max(size_of(p.row_y), size_of(p.row_depth)));
     const double condition = norm * p.error_scale;
-    const double view =
-        std::max(p.half_width, p.half_height) * (1 + 2 * (p.filter_radius + 1) / std::min(p.width, p.height));
+    const auto farther = [](double centre) { return 1 + ::fabs(centre - 1); }; // farther of two opposite edges
+    const double view = std::max(farther(p.centre_x) * p.half_width, farther(p.centre_y) * p.half_height) *
+                        (1 + 2 * (p.filter_radius + 1) / std::min(p.width, p.height));
     const double reach = std::max(1.0, view);
     const double margin = 0x1p-18 * condition * (p.is_perspective ? reach * (1 + reach) : view);
     p.margin_x = margin / p.half_width * 0.5 * p.width;
@@ -54,6 +57,9 @@ std::string why_no_raster(const Camera& camera) {
     if (camera.aperture_radius > 0) {
         return "rasterisation does not support this camera's lens (`aperture=0` removes it; `integrator=path` supports "
                "it)";
+    }
+    if (!has_straight_lens(camera)) {
+        return "rasterisation does not support this camera's distortion (`integrator=path` supports it)";
     }
     if (is_light_meter(camera.projection)) {
         return "rasterisation supports only perspective and orthographic cameras";

@@ -28,6 +28,7 @@ struct Pinhole {
     bool is_perspective;
     uint32_t width, height;         // pixels
     double half_width, half_height; // x and y of the view
+    double centre_x, centre_y;      // see CameraView
     double filter_radius;           // maximum offset of a sample from its pixel's centre, pixels, including rounding
     double margin_x, margin_y;      // maximum displacement of a ray by rounding, pixels
     float origin_max;               // maximum |coordinate| of a ray's origin, metres
@@ -40,10 +41,10 @@ struct Pinhole {
         return {dot(row_x, p), dot(row_y, p), is_perspective ? depth : 1.0, depth};
     }
     /// Converts a position in the picture, in pixels from its left (upper) edge, to x (y), and back.
-    HD double x_of(double coordinate) const { return (2 * coordinate / width - 1) * half_width; }
-    HD double y_of(double coordinate) const { return (2 * coordinate / height - 1) * half_height; }
-    HD double column_of(double x) const { return (x / half_width + 1) * 0.5 * width; }
-    HD double row_of(double y) const { return (y / half_height + 1) * 0.5 * height; }
+    HD double x_of(double coordinate) const { return (2 * coordinate / width - centre_x) * half_width; }
+    HD double y_of(double coordinate) const { return (2 * coordinate / height - centre_y) * half_height; }
+    HD double column_of(double x) const { return (x / half_width + centre_x) * 0.5 * width; }
+    HD double row_of(double y) const { return (y / half_height + centre_y) * 0.5 * height; }
 };
 
 /// Makes the pinhole of a camera that why_no_raster accepts; its transform is finite and invertible.

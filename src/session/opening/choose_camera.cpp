@@ -9,6 +9,7 @@
 #include "formats/files/parse_number.h"
 #include "scene/scene_origin.h"
 #include "session/degrees.h"
+#include "session/opening/calibrated_camera.h"
 #include "session/position_text.h"
 #include "session/survey/aim_camera.h"
 #include "session/survey/default_camera.h"
@@ -28,6 +29,10 @@ float rounded(float x, int digits) {
 }
 
 void place_camera(const CameraChoice& choice, const Scene& scene, Camera& camera) {
+    if (!choice.pose.empty()) {
+        camera.world_from_camera = placed_by_pose(choice, scene);
+        return;
+    }
     if (!choice.eye && !choice.target && !choice.up) return;
     const Transform& from = camera.world_from_camera;
     const Vec3 eye = choice.eye ? in_scene(scene, *choice.eye) : from.translation;
@@ -131,13 +136,13 @@ Camera choose_camera(CameraChoice choice, const Scene& scene, float aspect, Mess
     Camera camera;
     if (const Camera* given = scene_camera(choice.camera, scene)) {
         camera = *given;
-    } else if (!choice.eye) {
+    } else if (!choice.places_camera()) {
         camera = make_camera(choice, scene, aspect, messages);
     }
     Vec3& position = camera.world_from_camera.translation;
     position = rounded_to_file(scene, position); // so that numbers in the coordinates of the file state it to the bit
     place_camera(choice, scene, camera);
-    if (choice.fov_deg) camera.fov_y = *choice.fov_deg * kRadiansPerDegree;
+    if (choice.fov_deg) camera.fov_y = choice.fov_y.value_or(*choice.fov_deg * kRadiansPerDegree);
     if (choice.aperture) camera.aperture_radius = *choice.aperture;
     if (choice.focus) camera.focus_distance = *choice.focus;
     const Camera before = camera;
@@ -145,6 +150,7 @@ Camera choose_camera(CameraChoice choice, const Scene& scene, float aspect, Mess
     const bool flattened = view_angle(before) > 0 && view_angle(camera) == 0;
     if (flattened) flatten(choice, scene, before, camera);
     if (choice.view_height) camera.ortho_height = *choice.view_height;
+    set_lens(choice, camera);
     focus_in_the_middle(choice, scene, camera, messages);
     warn_of_useless_parts(choice, camera, flattened, messages);
     return camera;

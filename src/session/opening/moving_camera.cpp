@@ -21,7 +21,7 @@ bool has_own_camera(const CameraChoice& choice, const Scene& scene) {
 MovingCamera::MovingCamera(CameraChoice choice, std::optional<CameraPath> path, const Scene& rest, float aspect,
                            Messages& messages)
     : choice_(std::move(choice)), path_(std::move(path)), aspect_(aspect) {
-    const bool makes_it_up = !path_ && !choice_.eye && !has_own_camera(choice_, rest);
+    const bool makes_it_up = !path_ && !choice_.places_camera() && !has_own_camera(choice_, rest);
     aim_camera(choice_, rest, messages);
     const Camera at_rest = choose_camera(choice_at(std::nullopt), rest, aspect, messages);
     if (makes_it_up) made_up_ = at_rest;

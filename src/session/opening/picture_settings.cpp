@@ -49,6 +49,15 @@ RenderSettings light_settings(const PictureOptions& options) {
     return settings;
 }
 
+void set_size(const PictureOptions& options, const Scene& scene, RenderSettings& settings) {
+    const CameraChoice& camera = options.scene.camera;
+    if (const auto& size = options.size ? options.size : camera.intrinsics_size) {
+        settings.width = size->width, settings.height = size->height;
+    } else {
+        set_default_size(settings, scene_camera(camera.camera, scene));
+    }
+}
+
 RenderSettings render_settings(const PictureOptions& options, const Scene& scene) {
     RenderSettings settings = light_settings(options);
     if (settings.light_paths) {
@@ -56,11 +65,7 @@ RenderSettings render_settings(const PictureOptions& options, const Scene& scene
             std::make_shared<const LightPathLayers>(put_to_scene(settings.light_paths->expressions, scene));
     }
     settings.heights = read_height_maps(height_maps(options), scene);
-    if (options.size) {
-        settings.width = options.size->width, settings.height = options.size->height;
-    } else {
-        set_default_size(settings, scene_camera(options.scene.camera.camera, scene));
-    }
+    set_size(options, scene, settings);
     const std::size_t of_ids = (settings.aovs & kAovIds) != 0 ? 3 : 0;
     check_exr_row(settings.width, film_channel_count(settings.aovs) + of_ids + 3 * light_layers_of(settings).size());
     return settings;

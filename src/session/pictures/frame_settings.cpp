@@ -4,6 +4,7 @@
 
 #include "render/film_channels.h"
 #include "session/frame_range.h"
+#include "session/opening/camera_list.h"
 #include "session/pictures/choose_display.h"
 #include "settings/settings_file.h"
 
@@ -18,8 +19,6 @@ void set(PictureOptions& options, const char* name, const std::string& text) {
 
 /// Replaces the frames by one.
 void keep_frame(PictureOptions& options, const PictureRecord& record, uint32_t frame) {
-    if (record.display && is_metered(options))
-        set(options, "exposure", fmt::format("{}", record.display->exposure_stops));
     const bool has_motion = (record.settings.aovs & kAovMotion) != 0;
     if (options.real_time || options.turntable > 0 || has_motion) {
         const uint32_t first = record.frame ? record.frame->cut : frame;
@@ -33,6 +32,10 @@ void keep_frame(PictureOptions& options, const PictureRecord& record, uint32_t f
 } // namespace
 
 std::string settings_of_frame(PictureOptions options, const PictureRecord& record, uint32_t frame) {
+    const bool shares_exposure = options.camera_list || !options.frames.empty();
+    if (options.camera_list) options = options_of_camera(options, frame, kRender);
+    if (shares_exposure && record.display && is_metered(options))
+        set(options, "exposure", fmt::format("{}", record.display->exposure_stops));
     options.size = PictureSize{record.settings.width, record.settings.height};
     options.given.try_emplace("size", SettingOrigin::File);
     options.given.try_emplace("spp", SettingOrigin::File);

@@ -12,6 +12,8 @@
 #include "formats/read_camera_path.h"
 #include "session/check_integrator.h"
 #include "session/machine.h"
+#include "session/opening/calibrated_camera.h"
+#include "session/opening/camera_list.h"
 #include "session/opening/open_scene.h"
 #include "session/opening/picture_settings.h"
 #include "session/opening/strictness.h"
@@ -32,7 +34,7 @@ namespace {
 Ground ground_of(const PictureOptions& options) {
     if (options.scene.ground == "on") return Ground::On;
     const CameraChoice& camera = options.scene.camera;
-    const bool has_camera = camera.eye || !camera.camera.empty() || !options.camera_path.empty();
+    const bool has_camera = camera.places_camera() || !camera.camera.empty() || !options.camera_path.empty();
     const bool is_off = options.scene.ground == "off" || has_camera || options.render.transparent ||
                         !finds_all_light(options.render.integrator);
     return is_off ? Ground::Off : Ground::Auto;
@@ -62,6 +64,18 @@ Messages messages_from(const Messages& messages, std::size_t first) {
     return found;
 }
 
+/// Sets the size of `settings` and returns the camera of the options in a scene at rest.
+MovingCamera set_camera(PictureOptions& options, const std::optional<CameraPath>& path, const Scene& scene,
+                        RenderSettings& settings, Messages& messages) {
+    set_size(options, scene, settings);
+    fit_intrinsics({settings.width, settings.height}, options.scene.camera);
+    MovingCamera camera(options.scene.camera, path, scene, aspect_of(settings.width, settings.height), messages);
+    const Camera at_rest = camera.at(scene, std::nullopt);
+    check_camera(settings, at_rest);
+    if (options.real_time) check_reconstruction(at_rest);
+    return camera;
+}
+
 /// Sets the settings and the camera of a scene at rest, to whose file's suggestions `options` give way.
 void set_picture(RenderSetup& ready, PictureOptions& options, uint32_t verbs, const std::optional<CameraPath>& path,
                  const Scene& scene, Messages& messages) {
@@ -70,19 +84,40 @@ void set_picture(RenderSetup& ready, PictureOptions& options, uint32_t verbs, co
     RenderSettings settings = render_settings(options, scene);
     settings.tracers = ready.settings.tracers;
     check_light(settings, scene, messages);
-    MovingCamera camera(options.scene.camera, path, scene, aspect_of(settings.width, settings.height), messages);
-    check_camera(settings, camera.at(scene, std::nullopt));
+    ready.list.clear();
+    for (uint32_t i = 0; options.camera_list && i < options.camera_list->size(); ++i) {
+        PictureOptions own = options_of_camera(options, i, verbs);
+        Messages of_others; // which say the same again
+        MovingCamera camera = set_camera(own, path, scene, settings, i == 0 ? messages : of_others);
+        ready.list.push_back({std::move(camera), {settings.width, settings.height}});
+    }
+    if (ready.list.empty()) {
+        ready.camera.emplace(set_camera(options, path, scene, settings, messages));
+    } else {
+        ready.camera = ready.list.front().camera;
+        settings.width = ready.list.front().size.width, settings.height = ready.list.front().size.height;
+    }
     ready.settings = std::move(settings);
-    ready.camera.emplace(std::move(camera));
+}
+
+/// Returns the settings of the largest picture.
+RenderSettings settings_of_largest(const RenderSetup& ready) {
+    RenderSettings settings = ready.settings;
+    const auto pixels = [](const ListedCamera& listed) { return uint64_t{listed.size.width} * listed.size.height; };
+    const auto largest = std::ranges::max_element(ready.list, {}, pixels);
+    if (largest != ready.list.end()) settings.width = largest->size.width, settings.height = largest->size.height;
+    return settings;
 }
 
 /// Settings that change neither the scene that is read, nor its trees, nor the machine. A setting that is missing here
 /// costs time, and no picture.
 constexpr std::string_view kOfPictures[] = {
-    "camera", "eye",           "target",       "up",          "fov",     "projection", "view_height", "aperture",
-    "focus",  "size",          "spp",          "seed",        "sampler", "filter",     "clamp",       "integrator",
-    "aov",    "filter_radius", "max_depth",    "transparent", "denoise", "tone_map",   "lpe",         "exposure",
-    "iso",    "f_number",      "shutter_time", "time_limit"};
+    "camera",        "eye",        "target",      "up",           "fov",        "projection",
+    "view_height",   "aperture",   "camera_pose", "convention",   "intrinsics", "intrinsics_size",
+    "lens",          "distortion", "camera_from", "focus",        "size",       "spp",
+    "seed",          "sampler",    "filter",      "clamp",        "integrator", "aov",
+    "filter_radius", "max_depth",  "transparent", "denoise",      "tone_map",   "lpe",
+    "exposure",      "iso",        "f_number",    "shutter_time", "time_limit"};
 
 } // namespace
 
@@ -101,6 +136,7 @@ bool adapt_setup(RenderSetup& ready, const PictureOptions& before, PictureOption
         return false;
     }
     check_options(options, verbs);
+    take_camera_from(options);
     set_picture(ready, options, verbs, std::nullopt, ready.scene(), sink.messages());
     ready.bytes = bytes_to_render(options, ready.prepared(), ready.settings, *ready.queue);
     return true;
@@ -110,6 +146,8 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
                                             const SolveReport& report) {
     if (options.real_time && !options.is_given("spp")) options.render.samples = 1;
     check_options(options, verbs);
+    read_camera_list(options);
+    take_camera_from(options);
     Messages& messages = sink.messages();
     std::optional<CameraPath> path;
     if (!options.camera_path.empty()) path = read_camera_path(options.camera_path);
@@ -151,15 +189,16 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
         check_film(options, settings, *ready->queue);
         settings.radiosity = radiosity_display(ready->prepared(), options.radiosity, settings.path.seed, sink, report);
     }
-    ready->bytes = bytes_to_render(options, ready->prepared(), settings, *ready->queue);
+    ready->bytes = bytes_to_render(options, ready->prepared(), settings_of_largest(*ready), *ready->queue);
     return ready;
 }
 
 void record_settings(const PictureOptions& options, const Scene& scene, uint32_t frame, PictureRecord& record) {
+    if (options.camera_list) return record_settings(options_of_camera(options, frame, kRender), scene, frame, record);
     SceneSource& source = record.scene;
     const CameraChoice& choice = options.scene.camera;
     const Camera* const own = scene_camera(choice.camera, scene);
-    const bool is_own = own != nullptr && !choice.eye && options.camera_path.empty();
+    const bool is_own = own != nullptr && !choice.places_camera() && options.camera_path.empty();
     auto origins = options.given; // the scene's own camera has no value that a settings file could contain
     if (is_own) origins.try_emplace("camera", SettingOrigin::Scene);
     if (own != nullptr && own->aspect > 0) origins.try_emplace("size", SettingOrigin::Scene);
@@ -171,7 +210,7 @@ void record_settings(const PictureOptions& options, const Scene& scene, uint32_t
                                             : source.by_scene,
             name);
     }
-    if (!is_own && !choice.eye && options.camera_path.empty()) add(source.by_default, "camera");
+    if (!is_own && !choice.places_camera() && options.camera_path.empty()) add(source.by_default, "camera");
     if (source.has_environment && options.scene.environment.empty()) add(source.by_default, "environment");
     if (!source.ground.empty() && !options.is_given("ground")) add(source.by_default, "ground");
     if (source.hash.empty()) source.hash = scene_hash(options.scene.scene);
@@ -221,7 +260,7 @@ PictureRecord picture_record(const PictureOptions& options, RenderSetup& ready, 
     const uint32_t first = ready.sequence.first;
     if (options.real_time)
         record.frame = ReconstructedFrame{first, first, options.reconstruction.used(), options.reconstruction.sharing};
-    place_frame(first, *ready.moving, {*ready.camera, ready.sequence}, record);
+    place_frame(first, *ready.moving, {*ready.camera, ready.sequence, ready.list}, record);
     record_settings(options, ready.scene(), first, record);
     return record;
 }

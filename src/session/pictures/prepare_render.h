@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "base/sink.h"
 #include "device/queue.h"
@@ -22,6 +23,7 @@ struct RenderSetup {
     RenderSettings settings;
     FrameRange sequence;                // the requested frames, else a single one; the scene is at the first
     std::optional<MovingCamera> camera; // Never empty after prepare_render().
+    std::vector<ListedCamera> list;     // cameras of a file, of which `camera` is the first
     std::optional<MovingScene> moving;
     Ground ground = Ground::Off; // whether a ground was added, or might have been
     Messages reading;            // messages of reading the scene, which belong to each picture of it

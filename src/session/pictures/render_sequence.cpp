@@ -53,7 +53,10 @@ CameraSource camera_at(const MovingCamera& camera, const Scene& scene, std::opti
 void place_frame(uint32_t frame, MovingScene& moving, const FrameCamera& camera, PictureRecord& record) {
     record.scene.time_s = camera.sequence.time_of(frame);
     record.scene.shutter = camera.sequence.shutter;
-    record.camera = camera_at(camera.camera, moving.scene(), record.scene.time_s, camera.sequence.turn_of(frame));
+    const ListedCamera* const listed = camera.list.empty() ? nullptr : &camera.list[frame];
+    record.camera = camera_at(listed != nullptr ? listed->camera : camera.camera, moving.scene(), record.scene.time_s,
+                              camera.sequence.turn_of(frame));
+    if (listed != nullptr) record.settings.width = listed->size.width, record.settings.height = listed->size.height;
     if (camera.sequence.shutter) move_in_shutter(frame, moving, camera, record.camera.camera);
 }
 
@@ -62,12 +65,14 @@ void go_to_frame(uint32_t frame, const FrameCamera& camera, MovingScene& moving,
     go_to(camera.sequence.time_of(frame), moving, session, messages);
     place_frame(frame, moving, camera, record);
     session.set_camera(record.camera.camera);
+    if (!camera.list.empty()) session.set_settings(record.settings);
 }
 
 RenderedFrame render_frame(uint32_t frame, const SequenceOfFrames& frames, Sink& sink) {
     auto& [camera, moving, record, session] = frames;
     const Stopwatch update;
-    if ((record.settings.aovs & kAovMotion) != 0) show_frame_before(frame, camera, moving, session, sink.messages());
+    if ((record.settings.aovs & kAovMotion) != 0 && camera.list.empty())
+        show_frame_before(frame, camera, moving, session, sink.messages());
     go_to_frame(frame, camera, moving, session, record, sink.messages());
     const double update_s = update.seconds();
     if (!record.frame) {

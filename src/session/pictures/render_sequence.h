@@ -3,6 +3,8 @@
 // Renders the frames of a moving scene in one session, which keeps from frame to frame whatever does not move. A
 // frame equals, to the byte, the picture at its time, or in real time the next frame of its sequence.
 
+#include <span>
+
 #include "session/frame_range.h"
 #include "session/moving_scene.h"
 #include "session/opening/moving_camera.h"
@@ -11,18 +13,25 @@
 
 namespace pertev {
 
+/// A camera of a list, and the size of its pictures.
+struct ListedCamera {
+    MovingCamera camera;
+    PictureSize size;
+};
+
 /// The camera at each frame.
 struct FrameCamera {
     const MovingCamera& camera;
     FrameRange sequence;
+    std::span<const ListedCamera> list = {}; // one a frame, in place of `camera`; empty: none
 };
 
 /// Moves the session's scene to a time, if there is one. Throws as MovingScene::set_time and Session::update_scene.
 void go_to(std::optional<double> time_s, MovingScene& moving, Session& session, Messages& messages);
 /// Returns the camera at a time, and after a fraction of a revolution.
 CameraSource camera_at(const MovingCamera& camera, const Scene& scene, std::optional<double> time_s, double turn);
-/// Sets the camera and the time of `frame` in `record`; `moving` is at that time. The camera moves while a shutter is
-/// open.
+/// Sets the camera, its size and the time of `frame` in `record`; `moving` is at that time. The camera moves while a
+/// shutter is open.
 void place_frame(uint32_t frame, MovingScene& moving, const FrameCamera& camera, PictureRecord& record);
 /// Moves scene, camera and record to `frame`. Throws as go_to.
 void go_to_frame(uint32_t frame, const FrameCamera& camera, MovingScene& moving, Session& session,

@@ -1,12 +1,14 @@
 #include "session/pictures/write_sequence.h"
 
 #include <algorithm>
+#include <span>
 #include <variant>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "base/error.h"
+#include "base/hash.h"
 #include "base/read_file.h"
 #include "base/stopwatch.h"
 #include "image/picture_hash.h"
@@ -15,6 +17,18 @@
 
 namespace pertev {
 namespace {
+
+/// The hash of what a file of cameras says, wherever it lies.
+std::string hash_of_cameras(const std::vector<CameraOfFile>& cameras) {
+    std::string text;
+    for (const CameraOfFile& camera : cameras) {
+        text += camera.name + '\n';
+        for (const auto& [name, value] : camera.settings) text += fmt::format("{}={}\n", name, value);
+    }
+    Hasher hasher;
+    hasher.add(std::as_bytes(std::span(text)));
+    return hasher.result().hex();
+}
 
 /// Everything that decides the pictures: all settings but the frames, which may be others of the same sequence, and
 /// what the first frame's metadata say of them, which is the same however they were written.
@@ -36,6 +50,8 @@ SequenceRecord::Settings settings_of(const PictureOptions& options, const FrameR
         put(name.substr(kPrefix.size()), std::visit([](const auto& v) { return fmt::format("{}", v); }, value));
     put("size", fmt::format("{}x{}", record.settings.width, record.settings.height));
     put("hash of camera_path", hash_of_file(options.camera_path));
+    put("hash of camera_from", hash_of_file(options.scene.camera.camera_from));
+    if (options.camera_list) put("cameras", hash_of_cameras(*options.camera_list));
     put("hash of the scene's file", hash_of_file(options.scene.scene));
     put("hash of environment", hash_of_file(options.scene.environment));
     return settings;
@@ -47,7 +63,7 @@ public:
     SequenceWriter(const SequenceOfFrames& frames, const PictureOptions& options,
                    const std::vector<std::string>& outputs, Sink& sink)
         : frames_(frames), options_(options), outputs_(outputs), sink_(sink), sequence_(frames.camera.sequence),
-          done_(outputs, settings_of(options, sequence_, frames.record)) {
+          done_(outputs, settings_of(options, sequence_, frames.record), sequence_.names) {
         if (options.goes_on) done_.load();
         if (frames.record.frame) with_history_ = count_frames_to_render();
     }
@@ -99,6 +115,7 @@ private:
         FrameReport made;
         made.frame = frame;
         made.time_s = sequence_.time_of(frame);
+        if (!sequence_.names.empty()) made.camera = sequence_.names[frame];
         made.is_kept = is_there(frame);
         const bool is_rendered = !made.is_kept || frame - sequence_.first < with_history_;
         if (is_rendered) {
@@ -135,7 +152,7 @@ private:
         source.build_seconds = made.update_s;
         source.settings = settings_of_frame(options_, frames_.record, made.frame);
         std::vector<std::string> files;
-        for (const std::string& output : outputs_) files.push_back(frame_file(output, made.frame));
+        for (const std::string& output : outputs_) files.push_back(frame_file(output, made.frame, sequence_.names));
         made.written = write_picture(files, frames_.record, result);
         const std::string failures = failures_of(made.written);
         if (failures.empty()) {

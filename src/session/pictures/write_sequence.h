@@ -20,6 +20,7 @@ struct FrameReport {
     uint32_t frame = 0;
     std::optional<double> time_s; // none: at rest
     bool is_kept = false;
+    std::string camera;     // its name in a list; empty: there is none
     std::string hash;       // the picture's hash; empty if it is kept and was not rendered again
     WrittenPicture written; // its files, also those that could not be written; none if it is kept
     uint32_t samples = 0;

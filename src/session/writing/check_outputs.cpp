@@ -40,7 +40,7 @@ std::filesystem::path canonical_path(const std::string& file) {
 void refuse_twins(std::span<const std::string> outputs, const std::optional<FrameRange>& frames) {
     std::map<std::filesystem::path, std::string> taken;
     for (const std::string& output : outputs) {
-        const std::string file = frames ? frame_file(output, frames->last) : output; // the most digits
+        const std::string file = frames ? frame_file(output, frames->last, frames->names) : output; // the most digits
         const auto [entry, is_new] = taken.emplace(canonical_path(file), output);
         if (is_new) continue;
         refuse("output", output,
@@ -97,9 +97,9 @@ void check_outputs(const PictureOptions& options, std::span<const std::string> o
         if (frames && !names_frames(output)) {
             refuse("output", output,
                    "each frame needs a file of its own; a run of # in the name, as in frame-####.png, is the frame's "
-                   "number");
+                   "number, and {name} that of its camera");
         }
-        check_image_output(frames ? frame_file(output, frames->first) : output, size.width, size.height);
+        check_image_output(frames ? frame_file(output, frames->first, frames->names) : output, size.width, size.height);
         written |= bit_of(image_format_for(output));
         if (!frames) note_number_signs(output, messages);
     }

@@ -178,6 +178,7 @@ ExrMetadata camera_metadata(const CameraSource& source) {
     options.scene.camera = choice_of(source);
     ExrMetadata metadata = recorded_settings(options, rows_of(true));
     const Transform& from = source.camera.world_from_camera;
+    if (options.scene.camera.fov_deg) metadata.emplace_back("pertev.fov_y", source.camera.fov_y);
     const auto text = [](Vec3 axis) { return fmt::format("{},{},{}", axis.x, axis.y, axis.z); };
     metadata.emplace_back("pertev.world_from_camera",
                           fmt::format("{} {} {} {}", text(column(from, 0)), text(column(from, 1)),

@@ -26,8 +26,8 @@ std::string json_object(const auto& entries) {
 
 } // namespace
 
-SequenceRecord::SequenceRecord(std::vector<std::string> outputs, Settings settings)
-    : outputs_(std::move(outputs)), settings_(std::move(settings)),
+SequenceRecord::SequenceRecord(std::vector<std::string> outputs, Settings settings, std::vector<std::string> names)
+    : outputs_(std::move(outputs)), names_(std::move(names)), settings_(std::move(settings)),
       path_(std::filesystem::path(outputs_.front()).replace_extension(".json")) {
     for (auto& [name, value] : settings_) value = utf8_text(value);
 }
@@ -56,7 +56,7 @@ bool SequenceRecord::load() {
 
 bool SequenceRecord::has(uint32_t frame) const {
     for (const std::string& output : outputs_) {
-        const std::filesystem::path file = frame_file(output, frame);
+        const std::filesystem::path file = frame_file(output, frame, names_);
         const auto known = hashes_.find(file.string());
         std::error_code fault;
         if (known == hashes_.end() || !std::filesystem::is_regular_file(file, fault)) return false;
@@ -77,7 +77,7 @@ void SequenceRecord::check_picture(uint32_t frame, const std::string& picture) c
 void SequenceRecord::add(uint32_t frame, const std::string& picture) {
     pictures_[frame] = picture;
     for (const std::string& output : outputs_) {
-        const std::string file = frame_file(output, frame);
+        const std::string file = frame_file(output, frame, names_);
         hashes_[file] = hash_of_file(file);
     }
     std::string text = fmt::format("{{\n  \"settings\": {},\n  \"files\": [", json_object(settings_));

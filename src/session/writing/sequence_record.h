@@ -19,9 +19,9 @@ class SequenceRecord {
 public:
     using Settings = std::vector<std::pair<std::string, std::string>>; // names and values
 
-    /// Makes a record. `outputs` are names with '#' (session/frame_range.h); `settings` is everything that determines
-    /// the frames' pictures.
-    SequenceRecord(std::vector<std::string> outputs, Settings settings);
+    /// Makes a record. `outputs` are patterns and `names` the cameras (session/frame_range.h); `settings` is everything
+    /// that determines the frames' pictures.
+    SequenceRecord(std::vector<std::string> outputs, Settings settings, std::vector<std::string> names = {});
 
     /// Path of the record: "frame-####.json" for "frame-####.png".
     const std::filesystem::path& path() const { return path_; }
@@ -38,7 +38,7 @@ public:
     void check_picture(uint32_t frame, const std::string& picture) const;
 
 private:
-    std::vector<std::string> outputs_;
+    std::vector<std::string> outputs_, names_;
     Settings settings_;
     std::filesystem::path path_;
     std::map<std::string, std::string> hashes_; // by file name

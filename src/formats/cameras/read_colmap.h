@@ -1,0 +1,16 @@
+#pragma once
+
+// COLMAP's cameras and images: cameras.txt and images.txt, or cameras.bin and images.bin, in one folder. Pixels are
+// counted from the picture's upper left corner, as here.
+
+#include "formats/cameras/read_cameras.h"
+
+namespace pertev {
+
+/// Returns whether `path` is a folder or a file of COLMAP's, by its name.
+bool is_colmap(const std::filesystem::path& path);
+
+/// Reads the folder of `path`, or that it is in. Throws Error(BadInput) with the line of a text.
+std::vector<CameraOfFile> read_colmap(const std::filesystem::path& path);
+
+} // namespace pertev

@@ -1,0 +1,167 @@
+#include "session/opening/calibrated_camera.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.h"
+#include "base/limits.h"
+#include "image/read_exr.h"
+#include "math/portable_math.h"
+#include "scene/scene_origin.h"
+#include "settings/parse_values.h"
+#include "settings/setting_table.h"
+
+namespace pertev {
+namespace {
+
+constexpr double kRigid = 1e-3;       // how far the products of a pose's axes may be from those of a rotation
+constexpr double kAsStated = 0x1p-20; // up to which the axes stay as they are stated
+
+std::string text_of(const std::vector<double>& numbers) { return fmt::format("{}", fmt::join(numbers, ",")); }
+
+/// Returns the greatest difference of the axes' products from those of unit axes at right angles.
+double distance_from_rigid(const std::array<DoubleVec3, 3>& axes) {
+    double distance = 0;
+    for (int i = 0; i < 3; ++i) {
+        for (int k = i; k < 3; ++k) distance = std::max(distance, ::fabs(dot(axes[i], axes[k]) - (i == k)));
+    }
+    return distance;
+}
+
+/// Returns whether the 3x3 matrix of K has nothing but focal lengths and a principal point.
+bool is_plain(const std::vector<double>& k) { return k[1] == 0 && k[3] == 0 && k[6] == 0 && k[7] == 0 && k[8] == 1; }
+
+/// Returns the text of an entry under the name of a setting; nothing if there is none.
+std::optional<std::string> entry_of(const ExrFile& file, std::string_view name) {
+    for (const auto& [key, value] : file.metadata) {
+        if (key == fmt::format("pertev.{}", name))
+            return std::visit([](const auto& v) { return fmt::format("{}", v); }, value);
+    }
+    return std::nullopt;
+}
+
+void set_from(PictureOptions& options, const char* name, const std::string& text) {
+    const auto given = options.given;
+    set_value(options, *find_setting(name), {&text, 1});
+    options.given = given;
+}
+
+} // namespace
+
+Transform placed_by_pose(const CameraChoice& choice, const Scene& scene) {
+    const std::vector<double>& m = choice.pose;
+    const auto refuse = [&](const char* why) { throw Error(ErrorCode::BadInput, "camera_pose", text_of(m), why); };
+    if (m.size() == 16 && !(m[12] == 0 && m[13] == 0 && m[14] == 0 && m[15] == 1)) {
+        refuse("the last row of a pose is 0,0,0,1");
+    }
+    std::array<DoubleVec3, 4> columns; // axes, then the place
+    for (std::size_t k = 0; k < 4; ++k) columns[k] = {m[k], m[4 + k], m[8 + k]};
+    const PoseConvention convention = choice.convention.value_or(PoseConvention::OpenGl);
+    if (convention == PoseConvention::OpenCv) {
+        for (DoubleVec3* axis : {&columns[1], &columns[2]}) *axis = {-axis->x, -axis->y, -axis->z};
+    }
+    if (convention == PoseConvention::Blender) {
+        for (DoubleVec3& column : columns) column = {column.x, column.z, -column.y};
+    }
+    const double off = distance_from_rigid({columns[0], columns[1], columns[2]});
+    if (!(off <= kRigid)) refuse("its axes, the columns, must have the length 1 and right angles between them");
+    if (!(dot(columns[0], cross(columns[1], columns[2])) > 0)) refuse("it mirrors; the third axis has the wrong sign");
+    const Vec3 x = to_float(columns[0]), y = to_float(columns[1]), z = to_float(columns[2]);
+    if (max_component(abs(to_float(columns[3]))) > kMaxCoordinate) {
+        throw Error(ErrorCode::OverLimit, "camera_pose", text_of(m),
+                    fmt::format("beyond the limit of {:.4g} m from the origin", kMaxCoordinate));
+    }
+    const Transform stated = {{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}, in_scene(scene, columns[3])};
+    return off <= kAsStated ? stated : *without_scale(stated);
+}
+
+void set_lens(const CameraChoice& choice, Camera& camera) {
+    if (choice.fov_deg) camera.intrinsics.reset();
+    if (!choice.intrinsics.empty()) {
+        const std::vector<double>& k = choice.intrinsics;
+        const auto refuse = [&](const char* why) { throw Error(ErrorCode::BadInput, "intrinsics", text_of(k), why); };
+        if (k.size() == 9 && !is_plain(k)) refuse("expected fx,0,cx,0,fy,cy,0,0,1; skew is not supported");
+        const PictureSize size = choice.intrinsics_size.value_or(PictureSize{});
+        PERTEV_CHECK(size.width > 0 && size.height > 0);
+        Intrinsics own = {k[0], k[1], k[2], k[3], size.width, size.height};
+        if (k.size() == 9) own = {k[0], k[4], k[2], k[5], size.width, size.height};
+        constexpr double kLeast = 1e-6, kMost = 1e6; // limits of focal length and place, in sides of the picture
+        for (const auto& [focal, centre, side] :
+             {std::tuple(own.focal_x, own.centre_x, own.width), {own.focal_y, own.centre_y, own.height}}) {
+            if (!(focal >= kLeast * side && focal <= kMost * side && ::fabs(centre) <= kMost * side))
+                refuse("expected focal lengths above 0, and a principal point near the picture");
+        }
+        camera.intrinsics = own;
+        camera.fov_y = 2 * atan(static_cast<float>(0.5 * own.height / own.focal_y));
+    }
+    if (choice.lens) camera.lens = *choice.lens;
+    if (!choice.distortion.empty()) {
+        if (camera.lens == LensModel::Straight) camera.lens = LensModel::OpenCv;
+        camera.distortion = choice.distortion;
+    }
+    if (camera.lens == LensModel::Fisheye && !camera.distortion.empty() && camera.distortion.size() != 4) {
+        throw Error(ErrorCode::BadInput, "distortion", text_of(camera.distortion),
+                    "a lens `lens=fisheye` has four coefficients");
+    }
+    if (camera.lens == LensModel::Fisheye && camera.aperture_radius > 0) {
+        throw Error(ErrorCode::BadInput, "lens", "fisheye", "it has no depth of field; `aperture=0` removes that");
+    }
+}
+
+void fit_intrinsics(PictureSize picture, CameraChoice& choice) {
+    if (choice.intrinsics.empty()) return;
+    if (!choice.intrinsics_size) choice.intrinsics_size = picture;
+    const PictureSize own = *choice.intrinsics_size;
+    const auto across = [](uint32_t a, uint32_t b) { return static_cast<int64_t>(uint64_t{a} * b); };
+    const int64_t off = across(picture.width, own.height) - across(picture.height, own.width);
+    if (std::abs(off) <= std::max({picture.width, picture.height, own.width, own.height})) return;
+    throw Error(ErrorCode::BadInput, "intrinsics_size", fmt::format("{}x{}", own.width, own.height),
+                fmt::format("`size={}x{}` has another shape; crop the calibration to it, or choose a size that is a "
+                            "multiple",
+                            picture.width, picture.height));
+}
+
+void take_camera_from(PictureOptions& options) {
+    CameraChoice& choice = options.scene.camera;
+    if (choice.camera_from.empty()) return;
+    const ExrFile file = read_exr(choice.camera_from);
+    const auto is_given = [&](const char* name) { return options.is_given(name); };
+    const auto take = [&](const char* name) {
+        const auto text = entry_of(file, name);
+        if (text && !text->empty() && !is_given(name)) set_from(options, name, *text);
+    };
+    const std::optional<std::string> columns = entry_of(file, "world_from_camera");
+    if (!columns) {
+        throw Error(ErrorCode::BadInput, "camera_from", choice.camera_from,
+                    "its metadata have no camera (`pertev.world_from_camera`)");
+    }
+    if (!is_given("camera_pose") && !choice.eye && !choice.target && !choice.up) {
+        std::string text = *columns; // "x,y,z x,y,z x,y,z x,y,z", by columns
+        std::ranges::replace(text, ' ', ',');
+        set_from(options, "camera_pose", text);
+        const std::vector<double> c = choice.pose;
+        for (std::size_t i = 0; i < 12; ++i) choice.pose[i] = c[i % 4 * 3 + i / 4];
+        choice.convention.reset();
+    }
+    take("projection");
+    const bool has_own_view =
+        is_given("fov") || is_given("intrinsics") || choice.projection == Projection::Orthographic;
+    if (!has_own_view && entry_of(file, "intrinsics")) {
+        take("intrinsics");
+        take("intrinsics_size");
+    } else if (!is_given("intrinsics")) {
+        take("fov");
+        const std::optional<std::string> radians = entry_of(file, "fov_y");
+        if (radians && !is_given("fov")) choice.fov_y = parse_number("fov_y", *radians);
+    }
+    for (const char* name : {"view_height", "aperture", "focus", "lens", "distortion"}) take(name);
+    if (choice.projection == Projection::Orthographic) choice.lens.reset(), choice.distortion.clear();
+    if (!options.size && !choice.intrinsics_size) options.size = PictureSize{file.width, file.height};
+}
+
+} // namespace pertev

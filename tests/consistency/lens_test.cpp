@@ -1,0 +1,198 @@
+// Pictures through lenses that do not draw straight lines: one picture whatever renders it, features where OpenCV
+// projects them, and black where the lens shows nothing. With --device cuda a GPU renders too.
+
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "session/session.h"
+#include "tests/support/flat_scenes.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+#include "tests/support/thrown_error.h"
+
+using namespace pertev;
+
+namespace {
+
+Camera through(Camera camera, LensModel lens, std::vector<double> distortion) {
+    camera.lens = lens;
+    camera.distortion = std::move(distortion);
+    return camera;
+}
+
+/// Lenses over the mixed scene: OpenCV's model with and without a black rim and with an aperture, and a fisheye whose
+/// corners are black.
+std::vector<Camera> lenses() {
+    const Camera plain = test::mixed_scene_camera();
+    std::vector<Camera> all = {through(plain, LensModel::OpenCv, {-0.2, 0.05, 0.01, -0.02}),
+                               through(plain, LensModel::OpenCv, {-0.9, 0, 0, 0}),
+                               through(plain, LensModel::Fisheye, {0.1, -0.05, 0.02, -0.004})};
+    all.push_back(all[0]);
+    all.back().aperture_radius = 0.1f;
+    all[2].intrinsics = Intrinsics{10, 12, 15, 11, 37, 21};
+    return all;
+}
+
+RenderSettings small_settings() {
+    RenderSettings settings;
+    settings.width = 37, settings.height = 21, settings.samples = 3;
+    settings.aovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds | kAovDistance;
+    settings.transparent = true;
+    return settings;
+}
+
+} // namespace
+
+TEST_CASE("a picture through a lens is the same by loop, wavefront and device, and no other lens has it") {
+    const Scene scene = test::make_mixed_scene();
+    std::vector<Hash128> hashes;
+    for (const Camera& camera : lenses()) {
+        for (const IntegratorKind kind : {IntegratorKind::Path, IntegratorKind::Distributed,
+                                          IntegratorKind::Bidirectional, IntegratorKind::Light}) {
+            CAPTURE(static_cast<int>(kind));
+            RenderSettings settings = small_settings();
+            settings.integrator = kind;
+            settings.path.max_depth = 4;
+            Queue cpu = Queue::make_cpu();
+            settings.body = PathBody::Loop;
+            const Hash128 loop = test::render_hash(test::render(cpu, scene, camera, settings));
+            settings.body = PathBody::Wavefront;
+            Queue device = test::requested_queue();
+            CHECK(test::render_hash(test::render(device, scene, camera, settings)) == loop);
+            if (kind == IntegratorKind::Path) hashes.push_back(loop);
+        }
+    }
+    for (std::size_t i = 0; i < hashes.size(); ++i) {
+        for (std::size_t k = 0; k < i; ++k) CHECK(hashes[i] != hashes[k]);
+    }
+}
+
+TEST_CASE("small emitters appear where OpenCV projects them, within a tenth of a pixel") {
+    constexpr Vec3 kPlaces[] = {{0.1f, 0.2f, -2},      {0.5f, -0.4f, -1.5f}, {-0.6f, 0.3f, -1.2f},
+                                {-0.2f, -0.5f, -3.0f}, {0.9f, 0.5f, -2.5f},  {0, 0, -1}};
+    struct Case {
+        LensModel lens;
+        std::vector<double> distortion;
+        double focal_x, focal_y;
+        Vec2 seen[6]; // by cv2.projectPoints or cv2.fisheye.projectPoints, 1280x720
+    };
+    const Case cases[] = {{LensModel::OpenCv,
+                           {-0.28, 0.07, 0.001, -0.0005},
+                           900,
+                           990,
+                           {{694.826117f, 251.382542f},
+                            {935.368637f, 601.376961f},
+                            {236.158203f, 122.77373f},
+                            {590.498473f, 513.621225f},
+                            {958.943699f, 161.322337f},
+                            {650, 350}}},
+                          {LensModel::Fisheye,
+                           {-0.02, 0.005, -0.003, 0.0005},
+                           400,
+                           440,
+                           {{669.912363f, 306.192801f},
+                            {775.623852f, 460.54899f},
+                            {468.525328f, 250.188931f},
+                            {623.630859f, 422.515138f},
+                            {786.196432f, 266.768847f},
+                            {650, 350}}}};
+    Scene scene;
+    for (const Vec3 place : kPlaces) {
+        const float half = 0.005f * -place.z;
+        test::add(scene, test::sheet(place, {half, 0, 0}, {0, half, 0}), {{.emission = {1, 1, 1}}, "lamp"});
+    }
+    Queue queue = test::requested_queue();
+    for (const Case& c : cases) {
+        Camera camera = through({}, c.lens, c.distortion);
+        camera.intrinsics = Intrinsics{c.focal_x, c.focal_y, 650, 350, 1280, 720};
+        RenderSettings settings;
+        settings.width = 640, settings.height = 360, settings.samples = 64; // half the calibration's size
+        settings.filter = PixelFilter::Box;
+        settings.path.max_depth = 0;
+        const Image picture = test::render(queue, scene, camera, settings).picture;
+        for (int i = 0; i < 6; ++i) {
+            CAPTURE(i);
+            const double x = 0.5 * double(c.seen[i].x), y = 0.5 * double(c.seen[i].y);
+            double sum = 0, sum_x = 0, sum_y = 0;
+            for (uint32_t row = uint32_t(y) - 8; row < uint32_t(y) + 8; ++row) {
+                for (uint32_t column = uint32_t(x) - 8; column < uint32_t(x) + 8; ++column) {
+                    const double light = double(picture.at(column, row)[0]);
+                    sum += light, sum_x += light * (column + 0.5), sum_y += light * (row + 0.5);
+                }
+            }
+            REQUIRE(sum > 3);
+            CHECK(std::abs(sum_x / sum - x) < 0.1);
+            CHECK(std::abs(sum_y / sum - y) < 0.1);
+        }
+    }
+}
+
+TEST_CASE("where a lens shows nothing, every integrator leaves black without alpha") {
+    const Scene scene = test::make_furnace_scene(0.5f); // under an environment of radiance 1
+    Camera camera = through({}, LensModel::OpenCv, {-0.9, 0, 0, 0});
+    camera.world_from_camera = make_translation({0, 0, 6});
+    camera.fov_y = 1.2f;
+    Queue queue = test::requested_queue();
+    for (const IntegratorKind kind :
+         {IntegratorKind::Path, IntegratorKind::Whitted, IntegratorKind::Distributed, IntegratorKind::Light,
+          IntegratorKind::Bidirectional, IntegratorKind::PhotonMap, IntegratorKind::IrradianceCache}) {
+        CAPTURE(static_cast<int>(kind));
+        RenderSettings settings = small_settings();
+        settings.transparent = false;
+        settings.integrator = kind;
+        settings.path.max_depth = 2;
+        settings.aovs = kAovIds | kAovDepth;
+        const RenderResult result = test::render(queue, scene, camera, settings);
+        CHECK(result.picture.at(0, 0)[0] == 0);
+        CHECK(result.picture.at(36, 20)[1] == 0);
+        CHECK(result.picture.at(14, 10)[1] == doctest::Approx(1).epsilon(1e-3)); // background that it shows
+        CHECK(result.ids.front().instance == kNoHit);
+        CHECK(result.invalid_samples == 0);
+        settings.transparent = true;
+        CHECK(test::render(queue, scene, camera, settings).picture.at(0, 0)[3] == 0);
+    }
+}
+
+TEST_CASE("light tracing and path tracing agree through a lens") {
+    const Scene scene = test::floor_under_spot();
+    Queue queue = test::requested_queue();
+    for (const LensModel lens : {LensModel::OpenCv, LensModel::Fisheye}) {
+        Camera camera = through({}, lens, {-0.25, 0.05, 0.01, 0});
+        camera.world_from_camera = look_at({0.1f, 0.9f, 0.2f}, {0, 0, 0}, {0, 0, -1});
+        RenderSettings settings;
+        settings.width = settings.height = 24, settings.samples = 256;
+        settings.path.max_depth = 1;
+        const double by_paths = test::mean_of(test::render(queue, scene, camera, settings).picture);
+        settings.integrator = IntegratorKind::Light;
+        const double by_light = test::mean_of(test::render(queue, scene, camera, settings).picture);
+        CHECK(by_light == doctest::Approx(by_paths).epsilon(0.01));
+        CHECK(by_paths > 0.01);
+    }
+}
+
+TEST_CASE("reconstruction and rasterisation refuse a lens that does not draw straight lines") {
+    const Scene scene = test::make_furnace_scene(0.5f);
+    Queue queue = Queue::make_cpu();
+    const Camera camera = lenses()[0];
+    RenderSettings settings = small_settings();
+    settings.integrator = IntegratorKind::Hybrid;
+    auto error = test::thrown_error([&] { test::render(queue, scene, camera, settings); });
+    CHECK(test::is_about(error, ErrorCode::BadInput, "integrator", "hybrid"));
+    settings.integrator = IntegratorKind::Path;
+    settings.denoise = Denoise::Svgf;
+    settings.aovs = 0;
+    error = test::thrown_error([&] { test::render(queue, scene, camera, settings); });
+    CHECK(test::is_about(error, ErrorCode::BadInput, "distortion"));
+}
+
+TEST_CASE("hybrid rasterises a picture with any principal point and focal lengths as paths see it") {
+    const Scene scene = test::make_mixed_scene();
+    Queue queue = test::requested_queue();
+    Camera camera = test::mixed_scene_camera();
+    camera.intrinsics = Intrinsics{30, 24, 5.5, 16.25, 37, 21};
+    RenderSettings settings = small_settings();
+    const Hash128 paths = test::render_hash(test::render(queue, scene, camera, settings));
+    settings.integrator = IntegratorKind::Hybrid;
+    CHECK(test::render_hash(test::render(queue, scene, camera, settings)) == paths);
+}

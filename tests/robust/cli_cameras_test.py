@@ -1,0 +1,148 @@
+"""Cameras by matrices, K and lenses on the command line, from the metadata of a picture, and many of them in a file."""
+
+import json
+import math
+import os
+
+from cli_run import CliTest, as_flag, main, read_exr, read_png, write
+
+VIEW = ["--eye", "0.3,0.35,-0.7", "--target", "0.2,0.25,0.3", "--fov", "40"]  # into the box
+
+
+class CamerasOfCalibrations(CliTest):
+    def matrix(self, *flags):
+        """The columns of the matrix world from camera."""
+        self.render(*flags, output="x.exr")
+        return self.info("x.exr")["pertev.world_from_camera"]
+
+    def pose(self, columns):
+        return ",".join(str(column[row]) for row in range(3) for column in columns)
+
+    def test_every_convention_of_a_pose_makes_the_picture_of_eye_and_target_to_the_byte(self):
+        expected = self.render(*VIEW)["hash"]
+        x, y, z, at = self.matrix(*VIEW)
+
+        def minus(v):
+            return [-n for n in v]
+
+        def with_z_up(v):
+            return [v[0], -v[2], v[1]]
+
+        conventions = {"opengl": [x, y, z, at], "opencv": [x, minus(y), minus(z), at],
+                       "blender": [with_z_up(v) for v in [x, y, z, at]]}
+        for convention, columns in conventions.items():
+            with self.subTest(convention=convention):
+                flags = ["--camera-pose=" + self.pose(columns), "--convention", convention, "--fov", "40"]
+                self.assertEqual(self.render(*flags)["hash"], expected)
+
+    def test_a_picture_s_metadata_make_its_camera_again_to_the_byte(self):
+        calibrated = ["--intrinsics", "20.5,24,7,9", "--distortion=-0.2,0.1,0.01,0,0.02", *VIEW[:4]]
+        for flags in [VIEW, ["--projection", "orthographic", *VIEW[:4]], [*VIEW, "--aperture", "0.05"], calibrated,
+                      ["--lens", "fisheye", "--distortion", "0.1,0,0,0", *VIEW]]:
+            with self.subTest(flags=flags):
+                first = self.render(*flags, output="a.exr")
+                again = self.succeed("render", "cornell-box", "-o", "b.exr", "--camera-from", "a.exr", "--spp", 1, "--device",
+                                     "cpu", "--json").events("done")[0]
+                self.assertEqual(again["hash"], first["hash"])
+        self.assertEqual(as_flag(self.info("b.exr")["pertev.lens"]), "fisheye")
+
+    def test_intrinsics_of_another_size_scale_with_the_picture(self):
+        small = self.render("--intrinsics", "20,24,7,9", *VIEW[:4], size="16x16")["hash"]
+        flags = ["--intrinsics", "40,48,14,18", "--intrinsics-size", "32x32", *VIEW[:4]]
+        self.assertEqual(self.render(*flags, size="16x16")["hash"], small)
+        self.refuse(2, "render", "cornell-box", "-o", "x.exr", "--size", "32x16", *flags, says=["--intrinsics-size"])
+
+    def test_depth_is_along_the_axis_and_distance_along_the_ray(self):
+        self.render("--aov", "depth,distance", "--filter", "box", *VIEW, output="x.exr", size="17x17", spp=64)
+        _, _, rows = read_exr(self.path("x.exr"))
+        self.assertAlmostEqual(rows["depth.Z"][8][8], rows["distance.Z"][8][8], delta=0.01)
+        aside = rows["distance.Z"][8][4] / rows["depth.Z"][8][4]
+        self.assertAlmostEqual(aside, 1 / math.cos(math.atan(math.tan(math.radians(20)) * 8 / 17)), delta=0.002)
+
+    def test_what_excludes_each_other_is_refused(self):
+        pose = ["--camera-pose", "1,0,0,0,0,1,0,1,0,0,1,4"]
+        lens = ["--distortion", "0.1,0,0,0"]
+        intrinsics = ["--intrinsics", "20,20,8,8"]
+        size = ["--size", "16x16"]
+        for flags, says in [([*pose, "--eye", "0,0,1"], ["--camera-pose", "--eye"]), (["--convention", "opencv"], ["--camera-pose"]),
+                            (intrinsics, ["--size"]), ([*intrinsics, *size, "--fov", 40], ["--fov"]),
+                            ([*lens, "--denoise", "svgf"], ["--denoise"]), ([*lens, "--integrator", "hybrid"], ["distortion"]),
+                            ([*lens, "--projection", "orthographic"], ["--projection"]),
+                            (["--lens", "fisheye", "--aperture", 0.1], ["--aperture"]),
+                            (["--camera-pose", "1,2,3"], ["--camera-pose", "12 or 16"]),
+                            (["--camera-from", "none.exr"], ["none.exr"])]:
+            with self.subTest(flags=flags):
+                self.refuse(2, "render", "cornell-box", "-o", "x.exr", "--spp", 1, *flags, says=says)
+
+
+FRONT = {"name": "front", "eye": [0.3, 0.35, -0.7], "target": [0.2, 0.25, 0.3], "fov": 40, "size": "12x8"}
+SIDE = {"name": "side", "camera_pose": [[-1, 0, 0, 0.25], [0, 1, 0, 0.3], [0, 0, -1, -0.8]], "intrinsics": [10, 12, 7, 9],
+        "intrinsics_size": "16x16", "distortion": [-0.1, 0, 0, 0]}
+ALONE = {"front": [*VIEW, "--size", "12x8"],
+         "side": ["--camera-pose=-1,0,0,0.25,0,1,0,0.3,0,0,-1,-0.8", "--intrinsics", "10,12,7,9", "--distortion=-0.1,0,0,0",
+                  "--size", "16x16"]}
+
+
+class ManyCameras(CliTest):
+    def many(self, *arguments, output="{name}.exr", cameras=(FRONT, SIDE)):
+        write(self.path("views.json"), json.dumps({"cameras": list(cameras)}))
+        return ["render", "cornell-box", "-o", output, "--cameras", "views.json", "--spp", "1", "--device", "cpu", "--json",
+                *arguments]
+
+    def alone(self, name):
+        return self.succeed("render", "cornell-box", "-o", "x.exr", "--spp", "1", "--device", "cpu", "--json",
+                            *ALONE[name]).events("done")[0]["hash"]
+
+    def test_each_camera_s_picture_has_the_bytes_of_the_same_camera_alone(self):
+        frames = self.succeed(*self.many()).events("frame")
+        self.assertEqual([(frame["frame"], frame["camera"]) for frame in frames], [(0, "front"), (1, "side")])
+        self.assertEqual([frame["hash"] for frame in frames], [self.alone("front"), self.alone("side")])
+        self.assertEqual(read_exr(self.path("front.exr"))[:2], (12, 8))
+        self.assertEqual(read_exr(self.path("side.exr"))[:2], (16, 16))
+
+    def test_a_picture_s_settings_make_it_again_alone(self):
+        frames = self.succeed(*self.many("-o", "{name}.png")).events("frame")
+        settings = self.succeed("info", "side.exr", "--settings").stdout
+        self.assertNotIn("cameras", json.loads(settings)["settings"])
+        write(self.path("side.json"), settings)
+        again = self.succeed("render", "cornell-box", "-o", "again.exr", "-o", "again.png", "--settings", "side.json",
+                             "--device", "cpu", "--json")
+        self.assertEqual(again.events("done")[0]["hash"], frames[1]["hash"])
+        self.assertEqual(read_png(self.path("again.png")), read_png(self.path("side.png")))  # exposed as the list is
+
+    def test_an_interrupted_list_continues_where_files_are_missing_and_refuses_other_cameras(self):
+        self.succeed(*self.many(output="v-##-{name}.exr"))
+        self.assertEqual([name for name in self.files() if name.endswith("exr")], ["v-00-front.exr", "v-01-side.exr"])
+        os.remove(self.path("v-00-front.exr"))
+        frames = self.succeed(*self.many("--continue", output="v-##-{name}.exr")).events("frame")
+        self.assertEqual([frame.get("kept", False) for frame in frames], [False, True])
+        moved = dict(SIDE, intrinsics=[10, 12, 7, 8])
+        self.refuse(2, *self.many("--continue", output="v-##-{name}.exr", cameras=[FRONT, moved]), says=["--cameras"])
+
+    def test_a_file_of_cameras_that_is_wrong_is_refused_with_its_place(self):
+        for camera, says in [({"name": "front"}, "/cameras/1"), ({"spp": 4}, "spp"), ({"fov": 400}, "/cameras/1"),
+                             ({"eye": [0, 0, 1], "camera_pose": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]}, "/cameras/1")]:
+            with self.subTest(camera=camera):
+                arguments = self.many(cameras=[FRONT, camera])
+                self.refuse(2, *arguments, says=[says])
+        self.refuse(2, *self.many(output="x.exr"), says=["{name}"])
+        self.refuse(2, *self.many("--frames", "0-1"), says=["--frames"])
+
+    def test_transforms_and_colmap_show_what_their_poses_say(self):
+        matrix = [[-1, 0, 0, 0.25], [0, 1, 0, 0.3], [0, 0, -1, -0.8], [0, 0, 0, 1]]
+        write(self.path("transforms.json"), json.dumps(
+            {"fl_x": 10, "fl_y": 12, "cx": 7, "cy": 9, "w": 16, "h": 16, "k1": -0.1,
+             "frames": [{"file_path": "images/side.png", "transform_matrix": matrix}]}))
+        os.mkdir(self.path("sparse"))
+        write(self.path("sparse/cameras.txt"), "1 OPENCV 16 16 10 12 7 9 -0.1 0 0 0\n")
+        # OpenCV's axes of the same camera: turned by half a turn about z, and the inverse of its place.
+        write(self.path("sparse/images.txt"), "1 0 0 0 1 0.25 0.3 0.8 1 side.png\n\n")
+        expected = self.alone("side")
+        for cameras in ["transforms.json", "sparse"]:
+            frames = self.succeed("render", "cornell-box", "-o", "{name}.exr", "--cameras", cameras, "--spp", "1", "--device",
+                                  "cpu", "--json").events("frame")
+            self.assertEqual([frame["hash"] for frame in frames], [expected], cameras)
+
+
+if __name__ == "__main__":
+    main()
