@@ -62,54 +62,116 @@ Messages messages_from(const Messages& messages, std::size_t first) {
     return found;
 }
 
-/// Sets the settings and the camera of a scene at rest, to whose file's suggestions `options` give way.
-void set_picture(RenderSetup& ready, PictureOptions& options, uint32_t verbs, const std::optional<CameraPath>& path,
-                 const Scene& scene, Messages& messages) {
+/// Checks the options. A frame in real time has one sample by default.
+void check(PictureOptions& options, uint32_t verbs) {
+    if (options.real_time && !options.is_given("spp")) options.render.samples = 1;
+    check_options(options, verbs);
+}
+
+/// Returns the picture's settings, after `options` have taken what the scene's file suggests.
+RenderSettings take_settings(const RenderSetup& ready, PictureOptions& options, uint32_t verbs, const Scene& scene,
+                             Messages& messages) {
     take_suggestions(scene, verbs, options, messages);
     if (options.strict) refuse_what_is_left_out(messages, "nothing is rendered");
     RenderSettings settings = render_settings(options, scene);
     settings.tracers = ready.settings.tracers;
-    check_light(settings, scene, messages);
-    MovingCamera camera(options.scene.camera, path, scene, aspect_of(settings.width, settings.height), messages);
-    check_camera(settings, camera.at(scene, std::nullopt));
-    ready.settings = std::move(settings);
-    ready.camera.emplace(std::move(camera));
+    return settings;
 }
 
-/// Settings that change neither the scene that is read, nor its trees, nor the machine. A setting that is missing here
-/// costs time, and no picture.
-constexpr std::string_view kOfPictures[] = {
-    "camera", "eye",           "target",       "up",          "fov",     "projection", "view_height", "aperture",
-    "focus",  "size",          "spp",          "seed",        "sampler", "filter",     "clamp",       "integrator",
-    "aov",    "filter_radius", "max_depth",    "transparent", "denoise", "tone_map",   "lpe",         "exposure",
-    "iso",    "f_number",      "shutter_time", "time_limit"};
+/// Chooses the camera of a scene at rest.
+void set_camera(const PictureOptions& options, const std::optional<CameraPath>& path, const RenderSettings& settings,
+                const Scene& rest, RenderSetup& ready) {
+    Messages messages;
+    MovingCamera camera(options.scene.camera, path, rest, aspect_of(settings.width, settings.height), messages);
+    check_camera(settings, camera.at(rest, std::nullopt));
+    ready.camera.emplace(std::move(camera));
+    ready.of_camera = std::move(messages);
+}
+
+void set_light(const RenderSettings& settings, const Scene& rest, RenderSetup& ready) {
+    Messages messages;
+    check_light(settings, rest, messages);
+    ready.of_light = std::move(messages);
+}
+
+constexpr std::string_view kOfCameras[] = {"camera",     "eye",         "target",   "up",   "fov",
+                                           "projection", "view_height", "aperture", "focus"};
+
+/// Settings that change neither the scene that is read, nor its trees, nor the machine, besides those of cameras. A
+/// setting that is missing here costs time, and no picture.
+constexpr std::string_view kOfPictures[] = {"size",      "spp",        "seed",        "sampler",      "filter",
+                                            "clamp",     "integrator", "aov",         "time",         "filter_radius",
+                                            "max_depth", "denoise",    "transparent", "lpe",          "tone_map",
+                                            "exposure",  "iso",        "f_number",    "shutter_time", "time_limit"};
+
+/// Returns whether the choice leaves nothing open that is decided in the scene at rest.
+bool is_whole(const PictureOptions& options, const Scene& scene) {
+    const CameraChoice& choice = options.scene.camera;
+    const bool is_own = !choice.eye && scene_camera(choice.camera, scene) != nullptr && options.turntable == 0;
+    return (choice.eye ? choice.target.has_value() : is_own) && !choice.projection &&
+           (!choice.aperture || choice.focus);
+}
 
 } // namespace
 
 bool adapt_setup(RenderSetup& ready, const PictureOptions& before, PictureOptions& options, uint32_t verbs,
                  Sink& sink) {
-    const auto differs = [&](const Setting& setting) {
-        return std::ranges::find(kOfPictures, setting.name) == std::end(kOfPictures) &&
-               texts_of(before, setting) != texts_of(options, setting);
+    const auto is_among = [](std::span<const std::string_view> names, const Setting& setting) {
+        return std::ranges::find(names, setting.name) != names.end();
     };
     const Ground ground = ground_of(options);
     const bool has_same_ground = ground == ready.ground || (ground == Ground::Off && !has_ground(ready.scene()));
-    const bool is_at_rest = !ready.moving->time_s() && !frame_range(options) && options.camera_path.empty();
-    if (!is_at_rest || options.scene.scene != before.scene.scene || !has_same_ground ||
-        is_solved(before.render.integrator) || is_solved(options.render.integrator) ||
-        std::ranges::any_of(all_settings(), differs)) {
-        return false;
+    if (options.scene.scene != before.scene.scene || !has_same_ground) return false;
+    bool has_same_camera = !ready.must_choose;
+    for (const Setting& setting : all_settings()) {
+        const bool is_given = before.is_given(setting.name) || options.is_given(setting.name);
+        if (!is_given || is_among(kOfPictures, setting)) continue;
+        if (texts_of(before, setting) == texts_of(options, setting)) continue;
+        if (!is_among(kOfCameras, setting)) return false;
+        has_same_camera = false;
     }
-    check_options(options, verbs);
-    set_picture(ready, options, verbs, std::nullopt, ready.scene(), sink.messages());
-    ready.bytes = bytes_to_render(options, ready.prepared(), ready.settings, *ready.queue);
+    check(options, verbs);
+    if (options.strict) refuse_what_is_left_out(sink.messages(), "nothing is rendered");
+    PictureOptions taken = options;
+    Messages messages;
+    MovingScene& moving = *ready.moving;
+    RenderSettings settings = take_settings(ready, taken, verbs, moving.scene(), messages);
+    if (is_solved(ready.settings.integrator) || is_solved(settings.integrator)) return false;
+    has_same_camera = has_same_camera && aspect_of(settings.width, settings.height) ==
+                                             aspect_of(ready.settings.width, ready.settings.height);
+    const bool has_frames = frame_range(options).has_value();
+    const bool is_timed = moving.is_animated() && (moving.time_s() || moving.is_behind());
+    if (!has_same_camera && !options.camera_path.empty()) return false;
+    if (is_timed && !has_frames && !options.time_s) return false; // back at rest
+    // Whatever is judged in the scene at rest stays.
+    const bool is_decided = has_same_camera || is_whole(options, moving.scene());
+    if (is_timed && (!is_decided || settings.integrator != ready.settings.integrator)) return false;
+    const std::size_t bytes = bytes_to_render(taken, ready.prepared(), settings, *ready.queue);
+    ready.must_choose = true; // until nothing can throw
+    if (!is_timed) set_light(settings, moving.scene(), ready);
+    if (has_same_camera) {
+        check_camera(settings, ready.camera->at(moving.scene(), moving.time_s()));
+    } else {
+        set_camera(options, std::nullopt, settings, moving.scene(), ready);
+    }
+    if (!has_frames) {
+        const bool moves = options.time_s && (options.time_s != moving.time_s() || moving.is_behind());
+        if (moves) ready.changed_parts |= moving.set_time(*options.time_s, messages);
+        ready.sequence.time_s = options.time_s;
+    }
+    ready.must_choose = false;
+    ready.settings = std::move(settings);
+    ready.bytes = bytes;
+    options = std::move(taken);
+    messages.add_all(ready.of_light);
+    messages.add_all(ready.of_camera);
+    sink.messages().add_all(messages);
     return true;
 }
 
 std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t verbs, Sink& sink,
-                                            const SolveReport& report) {
-    if (options.real_time && !options.is_given("spp")) options.render.samples = 1;
-    check_options(options, verbs);
+                                            const SolveReport& report, const SceneInMemory& in_memory) {
+    check(options, verbs);
     Messages& messages = sink.messages();
     std::optional<CameraPath> path;
     if (!options.camera_path.empty()) path = read_camera_path(options.camera_path);
@@ -124,12 +186,17 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     const SceneUse use = shows_solution ? SceneUse::Measurement : SceneUse::Picture; // opened as for the solution
     ready->ground = ground_of(options);
     const std::size_t known = messages.all().size();
-    Scene scene = open_scene(options.scene, messages, use, ready->ground);
+    Scene scene = open_scene(options.scene, messages, use, ready->ground, in_memory.read);
+    if (in_memory.edit) in_memory.edit(scene);
     ready->reading = messages_from(messages, known);
     sink.check(); // the file was read to its end, and trees are built to theirs
     RenderSettings& settings = ready->settings;
     settings.tracers = tracers;
-    set_picture(*ready, options, verbs, path, scene, messages);
+    settings = take_settings(*ready, options, verbs, scene, messages);
+    set_light(settings, scene, *ready);
+    set_camera(options, path, settings, scene, *ready);
+    messages.add_all(ready->of_light);
+    messages.add_all(ready->of_camera);
     ready->load_s = watch.seconds();
     // If it turns out not to be a GPU, the session makes what is missing.
     PrepareOptions prepare = prepare_options(settings, machine.may_be_cuda());
