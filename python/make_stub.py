@@ -13,7 +13,8 @@ TYPES = {"bool": "bool", "int": "int", "float": "float", "size": "tuple[int, int
 
 HEAD = '''# Made by python/make_stub.py from the table of settings.
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from types import TracebackType
 from typing import Any, Literal, TypeAlias
 
 import numpy
@@ -25,12 +26,38 @@ from .errors import MemoryLimitError as MemoryLimitError, WriteError as WriteErr
 
 _Text: TypeAlias = str | os.PathLike[str]
 _Floats: TypeAlias = NDArray[numpy.float32]
+_Picture: TypeAlias = Result | Any
+_Curve: TypeAlias = Literal["srgb", "agx", "aces", "neutral"]
+_Parts: TypeAlias = Mapping[str, Mapping[str, Any]]
 
 def builtin_scenes() -> list[str]: ...
 '''
 
-ARRAYS = {"ids": "NDArray[numpy.uint32]", "layers": "dict[str, NDArray[Any]]", "info": "dict[str, Any]", "hash": "str",
-          "samples": "int", "seconds": "float", "name": "str"}
+# Types of members and functions by their names, where nothing in the package tells them.
+MEMBERS = {"ids": "NDArray[numpy.uint32]", "layers": "dict[str, NDArray[Any]]", "info": "dict[str, Any]", "hash": "str",
+           "samples": "int", "seconds": "float", "name": "str", "params": "Params", "frame": "int | None"}
+SIGNATURES = {
+    "read": "(path: _Text) -> _Floats",
+    "write": '(path: _Text, picture: _Picture, *, curve: _Curve = "srgb", exposure: float = 0.0) -> None',
+    "tone_map": '(picture: _Picture, *, curve: _Curve = "agx", exposure: float = 0.0) -> NDArray[numpy.uint8]',
+    "compare": "(picture: _Picture | _Text, reference: _Picture | _Text, *, blocks: int = 1) -> dict[str, float | bool]",
+    "Params.__init__": "(self, scene: Scene) -> None",
+    "Params.__getitem__": "(self, path: str) -> Any",
+    "Params.__setitem__": "(self, path: str, value: Any) -> None",
+    "Params.__iter__": "(self) -> Iterator[str]",
+    "Params.__len__": "(self) -> int",
+    "Session.__iter__": "(self) -> Session",
+    "Session.__next__": "(self) -> Result",
+    "Session.reset": "(self) -> None",
+    "Viewer.close": "(self) -> None",
+    "Viewer.__enter__": "(self) -> Viewer",
+    "Viewer.__exit__": "(self, kind: type[BaseException] | None, error: BaseException | None, "
+                       "trace: TracebackType | None) -> None",
+}
+PARTS = ["meshes: _Parts | None = None,", "materials: _Parts | None = None,", "instances: _Parts | None = None,",
+         "lights: _Parts | None = None,", "environment: Any = None,", "cameras: _Parts | None = None,",
+         'name: str = "arrays",']
+LAYERS = "layers: str | Sequence[str] = (),"
 
 
 def type_of(row):
@@ -40,25 +67,38 @@ def type_of(row):
     return TYPES.get(row["type"], "str")
 
 
-def class_of(kind):
-    yield f"class {kind.__name__}:"
-    yield f'    """{(kind.__doc__ or "").strip()}"""'
-    for name, value in vars(kind).items():
-        if not name.startswith("_"):
-            yield "    @property"
-            yield f"    def {name}(self) -> {ARRAYS.get(name, '_Floats')}:"
-            yield f'        """{inspect.getdoc(value)}"""'
-    yield ""
+def doc_of(thing, indent):
+    return textwrap.indent(f'"""{inspect.getdoc(thing) or ""}"""', indent)
 
 
-def function_of(name, first, returned, core, package):
+def takes_settings(name, first, returned, rows, thing):
+    """A function whose last parameters are settings."""
     yield f"def {name}("
     yield from (f"    {line}" for line in first)
-    for row in core.settings():
+    for row in rows:
         yield from textwrap.wrap(row["sentence"], 110, initial_indent="    # ", subsequent_indent="    # ")
         yield f"    {row['name']}: {type_of(row)} | None = None,"
     yield f") -> {returned}:"
-    yield textwrap.indent(f'"""{inspect.getdoc(getattr(package, name))}"""', "    ")
+    yield doc_of(thing, "    ")
+    yield ""
+
+
+def properties_of(kind):
+    for name, value in vars(kind).items():
+        if not name.startswith("_") and not callable(value):
+            yield "@property"
+            yield f"def {name}(self) -> {MEMBERS.get(name, '_Floats')}:"
+            yield doc_of(value, "    ")
+
+
+def class_of(name, kind, bases, *members):
+    yield f"class {name}{bases}:"
+    yield doc_of(kind, "    ")
+    for lines in members:
+        yield from (textwrap.indent(line, "    ") for line in lines)
+    for signature, text in SIGNATURES.items():
+        if signature.startswith(name + "."):
+            yield f"    def {signature.removeprefix(name + '.')}{text}: ..."
     yield ""
 
 
@@ -67,13 +107,26 @@ def main():
     sys.path.insert(0, str(folder.parent))
     package = importlib.import_module(folder.name)
     core = importlib.import_module(f"{folder.name}._core")
-    print(HEAD)
-    for kind in (core.Scene, core.Result):
-        print("\n".join(class_of(kind)))
-    print("\n".join(function_of("load", ["scene: _Text,", "*,"], "Scene", core, package)))
-    print("\n".join(function_of("render", ["scene: Scene | _Text,", "*,", "layers: str | Sequence[str] = (),",
-                                          "output: _Text | Sequence[_Text] = (),", "settings: _Text | None = None,"],
-                                "Result", core, package)))
+    rows = core.settings()
+    all_rows = rows + core.frame_settings()
+    scene, session, viewer = package.Scene, package.Session, package.Viewer
+    lines = [HEAD]
+    lines += class_of("Result", core.Result, "", properties_of(core.Result))
+    lines += class_of("Params", package.Params, "(Mapping[str, Any])")
+    made_of = takes_settings("__init__", ["self,", "source: _Text | None = None,", "*,", *PARTS], "None", rows, scene)
+    lines += class_of("Scene", scene, "", properties_of(core.Scene), properties_of(scene), made_of)
+    lines += class_of("Session", session, "", properties_of(core.Session),
+                      takes_settings("__init__", ["self,", "scene: Scene | _Text,", "*,", LAYERS], "None", all_rows, session),
+                      takes_settings("set", ["self,", "*,"], "None", all_rows, session.set))
+    lines += class_of("Viewer", viewer, "", ["url: str"])
+    lines += takes_settings("load", ["scene: _Text,", "*,"], "Scene", rows, package.load)
+    lines += takes_settings("render", ["scene: Scene | _Text,", "*,", LAYERS, "output: _Text | Sequence[_Text] = (),",
+                                       "settings: _Text | None = None,", "out: Mapping[str, Any] | None = None,"],
+                            "Result", rows, package.render)
+    lines += takes_settings("view", ["scene: Scene | _Text,", "*,", "port: int = 0,"], "Viewer", rows, package.view)
+    for name in ("read", "write", "tone_map", "compare"):
+        lines += [f"def {name}{SIGNATURES[name]}:", doc_of(getattr(package, name), "    "), ""]
+    print("\n".join(lines))
 
 
 if __name__ == "__main__":

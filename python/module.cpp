@@ -8,6 +8,7 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
@@ -15,9 +16,14 @@
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "formats/builtin_scenes.h"
+#include "python/array_argument.h"
+#include "python/contents_hash.h"
+#include "python/images.h"
 #include "python/python_sink.h"
 #include "python/result.h"
 #include "python/scene.h"
+#include "python/scene_arrays.h"
+#include "python/session.h"
 #include "settings/setting_table.h"
 
 namespace nb = nanobind;
@@ -54,15 +60,17 @@ nb::dict row_of(const Setting& setting) {
     return row;
 }
 
-/// Returns the settings of a single picture: not `frames` and `turntable`, nor what needs these.
-std::vector<nb::dict> settings_of_pictures() {
+/// Returns the settings of a single picture, or those of frames: `frames`, `turntable` and what needs these, but for
+/// `continue`, which is about files.
+std::vector<nb::dict> settings_of(bool frames) {
     std::vector<nb::dict> rows;
     std::set<std::string, std::less<>> of_sequences = {"frames", "turntable", "cameras"};
     for (const Setting& setting : all_settings()) {
         const std::vector<std::string> needs = words_of(setting.needs);
         const auto is_of_sequences = [&](const std::string& name) { return of_sequences.contains(name); };
         if (!needs.empty() && std::ranges::all_of(needs, is_of_sequences)) of_sequences.insert(setting.name);
-        if ((setting.verbs & kRender) != 0 && !is_of_sequences(setting.name)) rows.push_back(row_of(setting));
+        if ((setting.verbs & kRender) == 0 || is_of_sequences(setting.name) != frames) continue;
+        if (setting.name != std::string_view("continue")) rows.push_back(row_of(setting));
     }
     return rows;
 }
@@ -91,15 +99,77 @@ void run_unlocked(Work work) {
     if (failure) std::rethrow_exception(failure);
 }
 
-PythonResult render(PythonScene& scene, const std::string& settings_file, const SettingTexts& settings,
-                    const std::vector<std::string>& outputs) {
-    std::optional<PythonResult> made;
-    run_unlocked([&](PythonSink& sink) { made = scene.render(settings_file, settings, outputs, sink); });
+template <class Work>
+auto result_of(Work work) {
+    std::optional<decltype(work(std::declval<PythonSink&>()))> made;
+    run_unlocked([&](PythonSink& sink) { made.emplace(work(sink)); });
     return std::move(*made);
 }
 
-void open(PythonScene& scene) {
-    run_unlocked([&](PythonSink& sink) { scene.open(sink); });
+PythonResult render(PythonScene& scene, const std::string& settings_file, const SettingTexts& settings,
+                    const std::vector<std::string>& outputs) {
+    return result_of([&](PythonSink& sink) { return scene.render({settings_file, settings}, outputs, sink); });
+}
+
+/// Makes a scene of arrays if there are parts, else of a file.
+void make_scene(PythonScene* scene, const std::string& name, const SettingTexts& settings, const nb::object& parts) {
+    EditedScene source = {.name = name, .arrays = nullptr, .hash_of_arrays = "", .edits = {}};
+    if (!parts.is_none()) {
+        Messages messages;
+        source.arrays = std::make_shared<const Scene>(scene_of_arrays(name, nb::cast<nb::dict>(parts), messages));
+        source.hash_of_arrays = hash_of_contents(*source.arrays);
+        log_messages(messages);
+    }
+    new (scene) PythonScene(std::move(source), settings);
+}
+
+nb::object array_of(const PythonScene::Value& value) {
+    auto* values = new std::vector<double>(value.values);
+    const nb::capsule owner(values, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
+    if (value.shape.empty()) return nb::float_(values->front());
+    return nb::cast(nb::ndarray<nb::numpy, double>(values->data(), value.shape.size(), value.shape.data(), owner));
+}
+
+nb::object parameter(PythonScene& scene, const std::string& path) {
+    const auto value = result_of([&](PythonSink& sink) { return scene.value(path, sink); });
+    return value ? array_of(*value) : nb::none();
+}
+
+bool set_parameter(PythonScene& scene, const std::string& path, nb::handle value) {
+    const ArrayArgument array(value, path);
+    PythonScene::Value given = {.shape = {}, .values = array.doubles()};
+    for (std::size_t axis = 0; axis < array.axes(); ++axis) given.shape.push_back(array.length(axis));
+    return result_of([&](PythonSink& sink) { return scene.set_value(path, given, sink); });
+}
+
+nb::dict edits_of(PythonScene& scene) {
+    nb::dict edits;
+    for (const auto& [path, value] : result_of([&](PythonSink& sink) { return scene.edits(sink); })) {
+        edits[path.c_str()] = array_of(value);
+    }
+    return edits;
+}
+
+void define_scene(nb::module_& module) {
+    nb::class_<PythonScene>(module, "Scene")
+        .def("__init__", &make_scene, nb::arg("name"), nb::arg("settings"), nb::arg("parts").none())
+        .def("_open", [](PythonScene& scene) { run_unlocked([&](PythonSink& sink) { scene.open(sink); }); })
+        .def("_render", &render)
+        .def("_paths",
+             [](PythonScene& scene) { return result_of([&](PythonSink& sink) { return scene.paths(sink); }); })
+        .def("_value", &parameter)
+        .def("_set_value", &set_parameter)
+        .def("_edits", &edits_of)
+        .def_prop_ro("_settings", &PythonScene::settings)
+        .def_prop_ro("name", &PythonScene::name, "The file, or the name of a built-in scene or of a scene of arrays")
+        .def("__repr__", [](const PythonScene& scene) { return "<pertev.Scene " + scene.name() + ">"; });
+    nb::class_<PythonSession>(module, "Session")
+        .def(nb::init<PythonScene&, SettingTexts>(), nb::keep_alive<1, 2>())
+        .def("_next",
+             [](PythonSession& session) { return result_of([&](PythonSink& sink) { return session.next(sink); }); })
+        .def("_set", &PythonSession::set)
+        .def("reset", &PythonSession::reset, "Forgets earlier frames, so that the next one is the first.")
+        .def_prop_ro("frame", &PythonSession::frame, "Number of the next frame; None before the first");
 }
 
 /// Raises the package's exception for the error's code, with its parts as attributes.
@@ -137,14 +207,13 @@ NB_MODULE(_core, module) {
     });
     nb::set_leak_warnings(false); // a thread may still render when the interpreter ends
     define_result(module);
-    module.def("settings", &settings_of_pictures, "The rows of the table of settings that a picture has");
+    module.def(
+        "settings", [] { return settings_of(false); }, "The rows of the table of settings that a picture has");
+    module.def(
+        "frame_settings", [] { return settings_of(true); }, "Further rows, which only frames have");
     module.def("builtin_scenes", &builtin_scene_names, "Names of the scenes that are part of Pertev");
-    nb::class_<PythonScene>(module, "Scene", nb::is_final(), "A scene that stays open; pertev.load() makes it.")
-        .def(nb::init<std::string, SettingTexts>())
-        .def("_open", &open)
-        .def("_render", &render)
-        .def_prop_ro("name", &PythonScene::name, "The file, or the name of a built-in scene")
-        .def("__repr__", [](const PythonScene& scene) { return "<pertev.Scene " + scene.name() + ">"; });
+    define_scene(module);
+    define_images(module);
 }
 
 } // namespace pertev

@@ -1,11 +1,22 @@
 #include "python/result.h"
 
 #include <algorithm>
+#include <cstring>
+#include <map>
+#include <span>
 
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/string.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.h"
+#include "image/auto_exposure.h"
+#include "image/picture_hash.h"
+#include "image/tone_map_image.h"
+#include "image/write_png.h"
 
 #include "render/film_channels.h"
 #include "session/writing/metadata_json.h"
@@ -22,12 +33,20 @@ nb::object array_of(Value* values, const Image& size, std::size_t channels, nb::
     return nb::cast(nb::ndarray<nb::numpy, Value>(values, channels > 1 ? 3 : 2, shape, owner));
 }
 
+/// Returns the result, whose hash is known before its arrays can be changed.
+PythonResult& result_of(nb::handle owner) {
+    PythonResult& result = nb::cast<PythonResult&>(owner);
+    result.known_hash();
+    return result;
+}
+
 nb::object array_of(Image& image, nb::handle owner) {
     return array_of(image.pixels.data(), image, image.channels, owner);
 }
 
 /// Returns the layers by their names; `id` is of uint32.
-nb::dict layers_of(PythonResult& self, nb::handle owner) {
+nb::dict layers_of(nb::handle owner) {
+    PythonResult& self = result_of(owner);
     nb::dict layers;
     for (FilmLayer& layer : self.result.layers) layers[layer.name.c_str()] = array_of(layer.image, owner);
     if (!self.result.ids.empty()) {
@@ -39,7 +58,7 @@ nb::dict layers_of(PythonResult& self, nb::handle owner) {
 
 /// Returns a layer that is asked for as an attribute. Throws AttributeError where it was not requested.
 nb::object layer_of(nb::handle owner, const char* name) {
-    const nb::dict layers = layers_of(nb::cast<PythonResult&>(owner), owner);
+    const nb::dict layers = layers_of(owner);
     if (!layers.contains(name)) {
         throw nb::attribute_error(fmt::format("there is no layer '{}'; request it by layers=['{}']", name,
                                               std::string(name) == "id" ? "ids" : name)
@@ -53,10 +72,12 @@ constexpr std::string_view kJsonTexts[] = {"pertev.settings",  "pertev.made_up",
                                            "pertev.instances", "pertev.materials", "pertev.reconstruction"};
 
 /// Returns the metadata by their names; texts of JSON as what they hold.
-nb::dict info_of(const PythonResult& self) {
+nb::dict info_of(PythonResult& self) {
     nb::dict info;
     const nb::object parse = nb::module_::import_("json").attr("loads");
-    for (const auto& entry : self.metadata) {
+    ExrMetadata metadata = picture_metadata(*self.record, self.result, self.known_hash());
+    for (const auto& entry : id_metadata(self.record->scene, self.result.ids)) metadata.push_back(entry);
+    for (const auto& entry : metadata) {
         const std::string_view name = entry.first;
         constexpr std::string_view kOurs = "pertev.";
         const std::string* text = std::get_if<std::string>(&entry.second);
@@ -67,7 +88,58 @@ nb::dict info_of(const PythonResult& self) {
     return info;
 }
 
+/// Returns the values of an array that is named as an attribute.
+std::span<const std::byte> bytes_of(PythonResult& self, const std::string& name, std::vector<std::size_t>& shape) {
+    const RenderResult& result = self.result;
+    const Image* image = name == "color"   ? (result.denoised ? &*result.denoised : &result.picture)
+                         : name == "noisy" ? &result.picture
+                                           : nullptr;
+    for (const FilmLayer& layer : result.layers) {
+        if (layer.name == name) image = &layer.image;
+    }
+    shape = {result.picture.height, result.picture.width};
+    if (name == "ids" && !result.ids.empty()) {
+        shape.push_back(3);
+        return std::as_bytes(std::span(result.ids));
+    }
+    if (image == nullptr) throw Error(ErrorCode::BadInput, "out", name, "the picture has no such array");
+    if (image->channels > 1) shape.push_back(image->channels);
+    return std::as_bytes(std::span(image->pixels));
+}
+
+/// Copies arrays of the result into the caller's.
+void fill(PythonResult& self, const std::map<std::string, nb::ndarray<nb::c_contig, nb::device::cpu>>& out) {
+    for (const auto& [name, array] : out) {
+        std::vector<std::size_t> shape;
+        const std::span<const std::byte> bytes = bytes_of(self, name, shape);
+        const bool is_its_type = array.dtype() == (name == "ids" ? nb::dtype<uint32_t>() : nb::dtype<float>());
+        bool is_its_shape = array.ndim() == shape.size();
+        for (std::size_t axis = 0; is_its_shape && axis < shape.size(); ++axis) {
+            is_its_shape = array.shape(axis) == shape[axis];
+        }
+        if (!is_its_type || !is_its_shape) {
+            throw Error(ErrorCode::BadInput, "out", name,
+                        fmt::format("expected an array of {} of shape ({})", name == "ids" ? "uint32" : "float32",
+                                    fmt::join(shape, ", ")));
+        }
+        std::memcpy(array.data(), bytes.data(), bytes.size());
+    }
+}
+
+/// Returns the picture as PNG for notebooks, at the exposure that fits it.
+nb::bytes png_of(const PythonResult& self) {
+    const Image& image = self.result.denoised ? *self.result.denoised : self.result.picture;
+    const float stops = auto_exposure_stops(image, ToneMap::Agx);
+    const std::vector<std::byte> png = encode_png(tone_map_image(image, ToneMap::Agx, stops), image.channels == 4);
+    return nb::bytes(reinterpret_cast<const char*>(png.data()), png.size());
+}
+
 } // namespace
+
+const std::string& PythonResult::known_hash() {
+    if (hash.empty()) hash = picture_hash(result.picture).hex();
+    return hash;
+}
 
 void define_result(nb::module_& module) {
     nb::class_<PythonResult> result(module, "Result", nb::is_final(), R"(A rendered picture.
@@ -76,16 +148,15 @@ Arrays share the memory of the result, which lives as long as one of them does. 
     result.def_prop_ro(
         "color",
         [](nb::handle self) {
-            RenderResult& of = nb::cast<PythonResult&>(self).result;
+            RenderResult& of = result_of(self).result;
             return array_of(of.denoised ? *of.denoised : of.picture, self);
         },
         "float32 (height, width, 3), or 4 with transparent=True: linear Rec. 709, denoised if that was requested");
     result.def_prop_ro(
-        "noisy", [](nb::handle self) { return array_of(nb::cast<PythonResult&>(self).result.picture, self); },
+        "noisy", [](nb::handle self) { return array_of(result_of(self).result.picture, self); },
         "The mean of the samples, whether or not the picture was denoised; `hash` is of this array");
     result.def_prop_ro(
-        "layers", [](nb::handle self) { return layers_of(nb::cast<PythonResult&>(self), self); },
-        "The requested layers by their names in an EXR");
+        "layers", [](nb::handle self) { return layers_of(self); }, "The requested layers by their names in an EXR");
     struct Named {
         const char *name, *layer, *text;
     };
@@ -99,16 +170,19 @@ Arrays share the memory of the result, which lives as long as one of them does. 
             named.name, [layer = named.layer](nb::handle self) { return layer_of(self, layer); }, named.text);
     }
     result.def_prop_ro("info", &info_of, "The metadata that an EXR of this picture has, without their prefix");
-    result.def_ro("hash", &PythonResult::hash, "The picture's hash, as `pertev render` and `pertev info` print it");
+    result.def_prop_ro("hash", &PythonResult::known_hash,
+                       "The picture's hash, as `pertev render` and `pertev info` print it");
+    result.def("_fill", &fill, nb::arg("out").noconvert());
+    result.def("_repr_png_", &png_of);
     result.def_prop_ro(
         "samples", [](const PythonResult& self) { return self.result.samples; },
         "Samples of each pixel; fewer than requested if time_limit ended the render");
     result.def_prop_ro(
         "seconds", [](const PythonResult& self) { return self.result.render_seconds; }, "Seconds of rendering alone");
-    result.def("__repr__", [](const PythonResult& self) {
+    result.def("__repr__", [](PythonResult& self) {
         const Image& picture = self.result.picture;
         return fmt::format("<pertev.Result {}x{}, {} spp, {}>", picture.width, picture.height, self.result.samples,
-                           self.hash);
+                           self.known_hash());
     });
 }
 

@@ -2,6 +2,8 @@
 
 // A rendered picture as Python sees it: arrays that share the memory of the result, and what is known about it.
 
+#include <memory>
+
 #include <nanobind/nanobind.h>
 
 #include "session/writing/picture_metadata.h"
@@ -10,9 +12,13 @@
 namespace pertev {
 
 struct PythonResult {
+    PythonResult(RenderResult rendered, std::shared_ptr<const PictureRecord> of)
+        : result(std::move(rendered)), record(std::move(of)) {}
+
     RenderResult result;
-    ExrMetadata metadata; // that an EXR with this picture has
-    std::string hash;
+    std::shared_ptr<const PictureRecord> record;
+    std::string hash; // made at the first request, before which no array was given away
+    const std::string& known_hash();
 };
 
 void define_result(nanobind::module_& module);

@@ -2,6 +2,9 @@
 
 #include <chrono>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "base/error.h"
 #include "image/picture_hash.h"
 #include "session/opening/strictness.h"
@@ -26,6 +29,14 @@ void check_files(PictureOptions options, const std::vector<std::string>& outputs
     check_outputs(options, outputs, messages);
 }
 
+void set_all(PictureOptions& options, const SettingTexts& settings) {
+    for (const auto& [name, texts] : settings) {
+        const Setting* setting = find_setting(name);
+        if (setting == nullptr) throw Error(ErrorCode::BadInput, name, "", "no setting");
+        set_value(options, *setting, texts);
+    }
+}
+
 } // namespace
 
 std::unique_lock<std::timed_mutex> PythonScene::take_turn(Sink& sink) {
@@ -34,75 +45,107 @@ std::unique_lock<std::timed_mutex> PythonScene::take_turn(Sink& sink) {
     return turn;
 }
 
-PictureOptions PythonScene::options_of(const std::string& settings_file, const SettingTexts& settings,
-                                       Messages& messages) const {
+PictureOptions PythonScene::options_of(const CallSettings& settings, Messages& messages) const {
     PictureOptions options;
-    options.scene.scene = name_;
-    SettingTexts all = settings;
-    all.insert(settings_.begin(), settings_.end());
+    options.scene.scene = name();
+    set_all(options, settings_); // which the call's file overrules
     combine_settings(
-        settings_file, kRender,
-        [&](PictureOptions& others) {
-            for (const auto& [name, texts] : all) {
-                const Setting* setting = find_setting(name);
-                if (setting == nullptr) throw Error(ErrorCode::BadInput, name, "", "no setting");
-                set_value(others, *setting, texts);
-            }
-        },
-        options, messages);
-    if (frame_range(options)) {
-        throw Error(ErrorCode::BadInput, "frames", options.frames, "a call renders one picture; `time` chooses it");
-    }
+        settings.file, kRender, [&](PictureOptions& others) { set_all(others, settings.texts); }, options, messages);
     return options;
 }
 
-void PythonScene::prepare(PictureOptions& options, Sink& sink) {
-    const PictureOptions asked = options; // without what the scene's file suggests
-    if (setup_ && adapt_setup(*setup_, used_, options, kRender, sink)) {
-        if (session_) {
-            session_->set_settings(setup_->settings);
-            session_->set_camera(setup_->camera->at(setup_->scene(), std::nullopt));
-            session_->cut();
-        }
-    } else {
-        session_.reset();
-        setup_.reset();
-        setup_ = prepare_render(options, kRender, sink);
-        setup_->hash = scene_hash(name_); // the file may change while the scene is open
-    }
-    used_ = asked;
+void PythonScene::open_in_turn(Sink& sink) {
+    if (opened_.setup() != nullptr) return;
+    PictureOptions options = options_of({}, sink.messages());
+    opened_.prepare(options, source_, sink);
 }
 
 void PythonScene::open(Sink& sink) {
     const std::unique_lock turn = take_turn(sink);
-    PictureOptions options = options_of("", {}, sink.messages());
-    prepare(options, sink);
+    open_in_turn(sink);
 }
 
-PythonResult PythonScene::render(const std::string& settings_file, const SettingTexts& settings,
-                                 const std::vector<std::string>& outputs, Sink& sink) {
+/// Makes record_ and options_ those of a call.
+const PictureRecord& PythonScene::prepare(const CallSettings& settings, const std::vector<std::string>& outputs,
+                                          Sink& sink) {
+    const bool repeats = last_ && outputs.empty() && *last_ == settings && settings.file.empty();
+    if (repeats && edits_ == source_.edit_count) return *record_;
+    last_.reset();
+    options_ = options_of(settings, sink.messages());
+    if (frame_range(options_)) {
+        throw Error(ErrorCode::BadInput, "frames", options_.frames, "a call renders one picture; `time` chooses it");
+    }
+    if (!outputs.empty()) check_files(options_, outputs, sink.messages());
+    opened_.prepare(options_, source_, sink);
+    record_ = std::make_shared<const PictureRecord>(opened_.record(options_, source_, sink));
+    if (outputs.empty()) last_ = settings;
+    edits_ = source_.edit_count;
+    return *record_;
+}
+
+PythonResult PythonScene::render(const CallSettings& settings, const std::vector<std::string>& outputs, Sink& sink) {
     const std::unique_lock turn = take_turn(sink);
-    PictureOptions options = options_of(settings_file, settings, sink.messages());
-    if (!outputs.empty()) check_files(options, outputs, sink.messages());
-    prepare(options, sink);
-    report_motion(options, *setup_->moving, sink.messages());
-    Messages known = setup_->reading;
-    known.add_all(sink.messages());
-    PictureRecord record = picture_record(options, *setup_, known);
-    if (!session_) session_.emplace(*setup_->queue, setup_->prepared(), record.camera.camera, setup_->settings);
-    if (writes_tone_mapped(outputs)) record.display = choose_display(options, *session_, sink);
+    Session& session = opened_.session(prepare(settings, outputs, sink));
+    session.cut();
+    if (writes_tone_mapped(outputs)) {
+        PictureRecord shown = *record_;
+        shown.display = choose_display(options_, session, sink);
+        record_ = std::make_shared<const PictureRecord>(std::move(shown));
+    }
     // An interrupted picture is thrown away, and its files stay as they were.
-    PythonResult made = {.result = render_samples(*session_, sink), .metadata = {}, .hash = ""};
+    PythonResult made(render_samples(session, sink), record_);
     sink.check();
-    made.hash = picture_hash(made.result.picture).hex();
-    made.metadata = picture_metadata(record, made.result, made.hash);
     if (!outputs.empty()) {
         RenderResult written = made.result; // files take the layers out of it
-        const std::string failures = failures_of(write_picture(outputs, record, written));
+        const std::string failures = failures_of(write_picture(outputs, *record_, written));
         if (!failures.empty()) throw Error(ErrorCode::FileWrite, failures);
     }
-    if (options.strict) refuse_invalid_samples(made.result.invalid_samples);
+    if (options_.strict) refuse_invalid_samples(made.result.invalid_samples);
     return made;
+}
+
+std::vector<std::string> PythonScene::paths(Sink& sink) {
+    const std::unique_lock turn = take_turn(sink);
+    open_in_turn(sink);
+    return opened_.parameters().paths(opened_.setup()->scene());
+}
+
+std::optional<PythonScene::Value> PythonScene::value(const std::string& path, Sink& sink) {
+    const std::unique_lock turn = take_turn(sink);
+    open_in_turn(sink);
+    const Scene& scene = opened_.setup()->scene();
+    const auto parameter = opened_.parameters().find(scene, path);
+    if (!parameter) return std::nullopt;
+    const auto edit = source_.edits.find(path);
+    return Value{shape_of(*parameter),
+                 edit != source_.edits.end() ? edit->second.values : read_parameter(scene, *parameter)};
+}
+
+bool PythonScene::set_value(const std::string& path, const Value& value, Sink& sink) {
+    const std::unique_lock turn = take_turn(sink);
+    open_in_turn(sink);
+    const Scene& scene = opened_.setup()->scene();
+    const auto parameter = opened_.parameters().find(scene, path);
+    if (!parameter) return false;
+    if (shape_of(*parameter) != value.shape) {
+        throw Error(ErrorCode::BadInput, path, "",
+                    fmt::format("its shape is ({}); expected ({})", fmt::join(value.shape, ", "),
+                                fmt::join(shape_of(*parameter), ", ")));
+    }
+    check_parameter(scene, *parameter, value.values, path);
+    source_.edits[path] = {value.values, ++source_.edit_count};
+    return true;
+}
+
+std::map<std::string, PythonScene::Value> PythonScene::edits(Sink& sink) {
+    const std::unique_lock turn = take_turn(sink);
+    std::map<std::string, Value> values;
+    for (const auto& [path, edit] : source_.edits) {
+        const std::size_t size = edit.values.size();
+        const std::vector<std::size_t> shapes[] = {{}, {size}, {4, 4}};
+        values[path] = {shapes[size == 1 ? 0 : size == 16 ? 2 : 1], edit.values};
+    }
+    return values;
 }
 
 } // namespace pertev

@@ -1,7 +1,6 @@
 #pragma once
 
-// A scene as Python keeps it: open, with its trees and its place on a device, as long as pictures differ in nothing
-// that these depend on.
+// A scene as Python keeps it, of which it renders pictures.
 
 #include <map>
 #include <memory>
@@ -10,41 +9,75 @@
 #include <string>
 #include <vector>
 
+#include "python/opened_scene.h"
 #include "python/result.h"
-#include "session/pictures/prepare_render.h"
-#include "session/session.h"
 
 namespace pertev {
 
 /// Values of settings by their names, as texts (settings/setting.h).
 using SettingTexts = std::map<std::string, std::vector<std::string>>;
 
+/// The settings of a call.
+struct CallSettings {
+    std::string file; // a file of settings; empty: none
+    SettingTexts texts;
+    bool operator==(const CallSettings&) const = default;
+};
+
 /// Several threads may use one, and take turns.
 class PythonScene {
 public:
     /// `settings` hold for all pictures that do not overrule them.
-    PythonScene(std::string name, SettingTexts settings) : name_(std::move(name)), settings_(std::move(settings)) {}
+    PythonScene(EditedScene source, SettingTexts settings)
+        : source_(std::move(source)), settings_(std::move(settings)) {}
 
-    const std::string& name() const { return name_; }
-    /// Reads the scene and builds its trees. Throws as prepare_render.
+    const std::string& name() const { return source_.name; }
+    const SettingTexts& settings() const { return settings_; }
+    bool is_of_arrays() const { return source_.arrays != nullptr; }
+    /// Returns the options of a call. Throws Error(BadInput).
+    PictureOptions options_of(const CallSettings& settings, Messages& messages) const;
+
+    /// Opens the scene if it is not open. Throws as prepare_render.
     void open(Sink& sink);
     /// Renders a picture, and writes it to `outputs`. Throws Error.
-    PythonResult render(const std::string& settings_file, const SettingTexts& settings,
-                        const std::vector<std::string>& outputs, Sink& sink);
+    PythonResult render(const CallSettings& settings, const std::vector<std::string>& outputs, Sink& sink);
+
+    // Parameters (scene_parameters.h). All but edits() open the scene if it is not open. Null: there is none of this
+    // path.
+    std::vector<std::string> paths(Sink& sink);
+    struct Value {
+        std::vector<std::size_t> shape;
+        std::vector<double> values;
+    };
+    std::optional<Value> value(const std::string& path, Sink& sink);
+    /// Changes a parameter of what is rendered from now on. Throws Error(BadInput) for values that it cannot have.
+    bool set_value(const std::string& path, const Value& value, Sink& sink);
+
+    /// Returns what was changed, by path.
+    std::map<std::string, Value> edits(Sink& sink);
+
+    /// Calls `work` with the source while no other thread changes it.
+    template <class Work>
+    auto with_source(Sink& sink, const Work& work) {
+        const std::unique_lock turn = take_turn(sink);
+        return work(static_cast<const EditedScene&>(source_));
+    }
 
 private:
     /// Waits until no other thread uses the scene. Throws Error(Interrupted) if the sink stops.
     std::unique_lock<std::timed_mutex> take_turn(Sink& sink);
-    PictureOptions options_of(const std::string& settings_file, const SettingTexts& settings, Messages& messages) const;
-    /// Makes setup_ and session_ those of a picture.
-    void prepare(PictureOptions& options, Sink& sink);
+    void open_in_turn(Sink& sink);
+    const PictureRecord& prepare(const CallSettings& settings, const std::vector<std::string>& outputs, Sink& sink);
 
-    std::string name_;
+    EditedScene source_;
     SettingTexts settings_;
     std::timed_mutex turn_;
-    PictureOptions used_; // options that setup_ was made or last adapted by
-    std::unique_ptr<RenderSetup> setup_;
-    std::optional<Session> session_;
+    OpenedScene opened_;
+    // The last call that wrote no file, whose repetition takes everything as it is.
+    std::optional<CallSettings> last_;
+    std::shared_ptr<const PictureRecord> record_;
+    PictureOptions options_;
+    uint64_t edits_ = 0;
 };
 
 } // namespace pertev

@@ -46,11 +46,24 @@ SceneTriangles changed_triangles(const Scene& scene, const MeshPlacement& placem
     return triangles;
 }
 
+void update_lights(const PreparedScene& before, const Scene& scene, Messages& messages, PreparedScene& after) {
+    after.lights =
+        build_light_set(scene, srgb_decode_table().data(), messages, after.centre, before.lights.environment);
+    balance_lights(after, srgb_decode_table().data());
+}
+
 } // namespace
 
 PreparedScene update_scene(const PreparedScene& before, const Scene& scene, const SceneUpdate& update,
                            Messages& messages, std::shared_ptr<const MotionKeys> motions) {
     const Stopwatch watch;
+    if (update.keeps_surfaces() && motions == before.motions) {
+        PreparedScene after = before;
+        after.scene = &scene;
+        if (update.lights_changed) update_lights(before, scene, messages, after);
+        after.build_seconds = watch.seconds();
+        return after;
+    }
     const MeshPlacement placement = place_meshes(scene, before.centre);
     if (placement.is_baked != before.is_baked || 1 + placement.mesh_tree_count != before.trees.parts.size()) {
         PrepareOptions options;
@@ -70,9 +83,7 @@ PreparedScene update_scene(const PreparedScene& before, const Scene& scene, cons
     after.structures = before.structures->updated(after.trees, after.tlas, changes, triangles);
     after.triangles = after.trees.triangle_count();
     after.build_seconds = watch.seconds();
-    after.lights =
-        build_light_set(scene, srgb_decode_table().data(), messages, after.centre, before.lights.environment);
-    balance_lights(after, srgb_decode_table().data());
+    update_lights(before, scene, messages, after);
     return after;
 }
 
@@ -83,11 +94,10 @@ bool changes_prepared(const SceneUpdate& update) {
 }
 
 uint32_t parts_of(const SceneUpdate& update) {
-    uint32_t parts = changes_prepared(update) ? kPartLights : 0u;
+    uint32_t parts = update.lights_changed ? kPartLights : 0u;
+    if (update.materials_changed) parts |= kPartMaterials;
     if (update.poses_changed) parts |= kPartPoses;
-    if (!update.moved_instances.empty() || !update.deformed_meshes.empty() || !update.replaced_meshes.empty()) {
-        parts |= kPartTrees | kPartInstances;
-    }
+    if (!update.keeps_surfaces()) parts |= kPartLights | kPartTrees | kPartInstances;
     if (!update.deformed_meshes.empty() || !update.replaced_meshes.empty()) parts |= kPartGeometry;
     return parts;
 }

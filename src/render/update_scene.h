@@ -20,6 +20,7 @@ namespace pertev {
 ///   deformed meshes     have their trees refitted, or at first replaced by one that can be (update_binary_trees), and
 ///                       converted to other layouts again; kd-trees and octrees, whose planes do not move, are rebuilt
 ///   replaced meshes     have their trees rebuilt
+///   lights, materials   keep all trees
 /// If other instances would have to be baked than before, everything is prepared anew. Throws as prepare_scene.
 /// `motions` becomes PreparedScene::motions.
 PreparedScene update_scene(const PreparedScene& before, const Scene& scene, const SceneUpdate& update,
@@ -28,8 +29,8 @@ PreparedScene update_scene(const PreparedScene& before, const Scene& scene, cons
 /// Returns whether update_scene has anything to do. For pure vertex motion only PreparedScene::poses change.
 bool changes_prepared(const SceneUpdate& update);
 
-/// The parts (ScenePart) that Session::update_scene must then upload. They include lights unless only poses changed,
-/// because light selection depends on positions; meshes whose vertices the renderer moves count as at rest. The
+/// The parts (ScenePart) that Session::update_scene must then upload. They include lights if surfaces change, because
+/// light selection depends on positions; meshes whose vertices the renderer moves count as at rest. The
 /// environment is not included, as it stays the same.
 uint32_t parts_of(const SceneUpdate& update);
 

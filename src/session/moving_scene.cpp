@@ -116,20 +116,40 @@ uint32_t MovingScene::set_time(double time_s, Messages& messages) {
     const auto motions = motions_at(time_s);
     if (motions != nullptr || prepared_.motions != nullptr) add_moving(motions, prepared_.motions, update);
     options_.motions = motions;
+    uint32_t parts = apply(std::move(update), was_behind, messages);
+    if (was_at_rest && !posed_.poses().empty()) parts |= kPartShapes | kPartPoses;
+    prepared_.poses = posed_.poses();
+    time_s_ = time_s;
+    return parts;
+}
+
+uint32_t MovingScene::edit(const std::function<SceneUpdate(Scene&)>& edit, Messages& messages) {
+    SceneUpdate update = posed_.edit(edit);
+    bool prepares_anew = std::exchange(is_behind_, true);
+    if (time_s_) update += posed_.set_time(*time_s_);
+    if (!update.moved_instances.empty() && !is_animated()) {
+        const Vec3 centre = world_centre(scene());
+        prepares_anew = prepares_anew || !(centre == *options_.centre);
+        options_.centre = centre;
+    }
+    const uint32_t parts = apply(std::move(update), prepares_anew, messages);
+    prepared_.poses = time_s_ ? posed_.poses() : prepared_.poses;
+    return parts;
+}
+
+/// Makes prepared() that of the scene after these changes.
+uint32_t MovingScene::apply(SceneUpdate update, bool prepares_anew, Messages& messages) {
     uint32_t parts = 0;
-    if (was_behind) {
+    if (prepares_anew) {
         prepared_ = prepare_scene(posed_.scene(), options_, messages);
         parts = kAllParts;
     } else if (!update.is_empty()) {
         if (changes_prepared(update)) {
-            prepared_ = update_scene(prepared_, posed_.scene(), update, messages, motions);
+            prepared_ = update_scene(prepared_, posed_.scene(), update, messages, options_.motions);
         }
         parts = parts_of(update);
     }
-    if (was_at_rest && !posed_.poses().empty()) parts |= kPartShapes | kPartPoses;
-    prepared_.poses = posed_.poses();
     is_behind_ = false;
-    time_s_ = time_s;
     return parts;
 }
 

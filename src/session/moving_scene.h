@@ -31,16 +31,23 @@ public:
     bool is_animated() const { return posed_.is_animated(); }
     double end_s() const;                                    // end of all animations, seconds; 0 without any
     std::optional<double> time_s() const { return time_s_; } // nothing at rest
+    bool is_behind() const { return is_behind_; }            // the last change threw
 
     /// Moves to `time_s`. Returns the parts (ScenePart) of prepared() that Session::update_scene must upload, 0 if
     /// the scene of the picture does not change. Throws as the constructor; the next set_time then repairs the state.
     uint32_t set_time(double time_s, Messages& messages);
+
+    /// Changes the scene as PosedScene::edit and keeps its time. Returns parts as set_time. A scene that is not
+    /// animated is placed in the world as a fresh one with these values would be; made-up lights and the ground stay.
+    /// Throws as set_time and `edit`.
+    uint32_t edit(const std::function<SceneUpdate(Scene&)>& edit, Messages& messages);
 
     /// The cameras of the scene at a time, without moving the scene there.
     std::vector<Camera> cameras_at(double time_s) { return posed_.placements_at(time_s).cameras; }
 
 private:
     std::shared_ptr<const MotionKeys> motions_at(double time_s);
+    uint32_t apply(SceneUpdate update, bool prepares_anew, Messages& messages);
 
     PosedScene posed_;
     std::optional<Shutter> shutter_;

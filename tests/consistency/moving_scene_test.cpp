@@ -167,6 +167,57 @@ TEST_CASE("a step without changes updates nothing") {
     CHECK(*moving.time_s() == 3);
 }
 
+TEST_CASE("an edited scene renders like a fresh one with these numbers, at its time and at later ones") {
+    const auto edit = [](Scene& scene) -> SceneUpdate {
+        for (Material& material : scene.materials) {
+            material.base_color = {0.25f, 0.5f, 0.125f};
+            material.emission = 0.5f * material.emission;
+        }
+        for (Light& light : scene.lights) light.position.x += 0.25f; // an animation moves its intensity alone
+        for (Camera& camera : scene.cameras) camera.fov_y *= 0.5f;
+        return {.moved_instances = {},
+                .deformed_meshes = {},
+                .replaced_meshes = {},
+                .lights_changed = true,
+                .materials_changed = true};
+    };
+    const Camera camera = test::mixed_scene_camera();
+    const RenderSettings settings = test::layered_settings();
+    const Scene rest = make_moving_scene();
+    Scene changed = rest;
+    edit(changed);
+    Messages messages;
+    Queue queue = test::requested_queue();
+    MovingScene moving(rest, 1.5, {}, messages);
+    Session session(queue, moving.prepared(), camera, settings);
+    const auto hash = [&](uint32_t parts) {
+        session.update_scene(moving.prepared(), parts);
+        session.render(settings.samples);
+        return test::render_hash(session.result());
+    };
+    CHECK(hash(moving.edit(edit, messages)) == hash_at(changed, 1.5, camera, settings));
+    CHECK(moving.time_s() == 1.5);
+    CHECK(hash(moving.set_time(3.25, messages)) == hash_at(changed, 3.25, camera, settings));
+}
+
+TEST_CASE("the world's centre follows an instance that is moved") {
+    Scene rest = test::make_mixed_scene();
+    Messages messages;
+    validate(rest, "mixed", messages);
+    const auto edit = [](Scene& scene) -> SceneUpdate {
+        for (Instance& instance : scene.instances) instance.world_from_local.translation.x += 100;
+        SceneUpdate update;
+        for (uint32_t i = 0; i < scene.instances.size(); ++i) update.moved_instances.push_back(i);
+        return update;
+    };
+    MovingScene moving(rest, std::nullopt, {}, messages);
+    const Vec3 before = moving.prepared().centre;
+    moving.edit(edit, messages);
+    edit(rest);
+    CHECK(moving.prepared().centre == MovingScene(rest, std::nullopt, {}, messages).prepared().centre);
+    CHECK(!(moving.prepared().centre == before));
+}
+
 TEST_CASE("a step after a failed one is complete") {
     Scene rest = make_moving_scene();
     rest.animations[0].channels[0].times = {0, 4, 5};

@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include "device_scene/scene_on_device.h"
 #include "session/session.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
@@ -49,6 +50,20 @@ std::vector<Step> steps() {
         {"a shared mesh is replaced by another",
          [](Scene& scene) { scene.meshes[0] = scene.meshes[3]; },
          {.moved_instances = {}, .deformed_meshes = {}, .replaced_meshes = {0}}},
+        {"a material that emits nothing changes",
+         [](Scene& scene) {
+             scene.materials[scene.instances[1].material].base_color = {0.1f, 0.7f, 0.3f};
+         },
+         {.moved_instances = {}, .deformed_meshes = {}, .replaced_meshes = {}, .materials_changed = true}},
+        {"an emitter changes",
+         [](Scene& scene) {
+             for (Material& material : scene.materials) material.emission = 0.5f * material.emission;
+         },
+         {.moved_instances = {},
+          .deformed_meshes = {},
+          .replaced_meshes = {},
+          .lights_changed = true,
+          .materials_changed = true}},
         {"all at once",
          [](Scene& scene) {
              scene.instances[2].world_from_local.translation.y += 0.125f;
@@ -125,6 +140,13 @@ TEST_CASE("a change rebuilds only the trees of changed meshes") {
             return is_same;
         };
         std::vector<bool> all(before.trees.parts.size(), true);
+        const SceneUpdate of_materials = {.moved_instances = {},
+                                          .deformed_meshes = {},
+                                          .replaced_meshes = {},
+                                          .lights_changed = true,
+                                          .materials_changed = true};
+        CHECK(parts_of(of_materials) == (kPartMaterials | kPartLights));
+        CHECK(update_scene(before, scene, of_materials, messages).structures == before.structures);
         SceneUpdate update;
         update.moved_instances = {1};
         CHECK(same(update_scene(before, scene, update, messages)) == all);

@@ -71,6 +71,26 @@ class KeptScene(unittest.TestCase):
                          pertev.render("cornell-box", size=(8, 8), max_depth=1, spp=1).hash)
         self.assertEqual(pertev.render(scene, size=(8, 8), max_depth=3).info["max_depth"], 3)
 
+    def test_a_file_of_settings_overrules_those_of_load(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "settings.json"
+            file.write_text('{"version":1,"settings":{"max_depth":3}}')
+            scene = pertev.load("cornell-box", max_depth=1, spp=1)
+            self.assertEqual(pertev.render(scene, size=(8, 8), settings=file).info["max_depth"], 3)
+            self.assertEqual(pertev.render(scene, size=(8, 8), settings=file, max_depth=2).info["max_depth"], 2)
+            self.assertEqual(pertev.render(scene, size=(8, 8)).info["max_depth"], 1)
+
+    def test_a_wrong_setting_leaves_the_scene_open(self):
+        scene = pertev.load("cornell-box")
+        before = pertev.render(scene, **SMALL)
+        for wrong in ({"environment": "no-such-file.exr"}, {"displacement": "x=none.png", "integrator": "reyes"},
+                      {"device": "cuda:99"}):
+            with self.assertRaises(pertev.Error):
+                pertev.render(scene, **SMALL, **wrong)
+            after = pertev.render(scene, **SMALL)
+            self.assertEqual(after.info["load_seconds"], before.info["load_seconds"])
+            self.assertEqual(after.hash, before.hash)
+
     def test_an_error_leaves_the_scene_as_it_was(self):
         scene = pertev.load("cornell-box")
         before = pertev.render(scene, **SMALL)

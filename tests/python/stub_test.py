@@ -21,7 +21,12 @@ class Stub(unittest.TestCase):
     def test_all_settings(self):
         names = {row["name"] for row in _core.settings()}
         self.assertEqual(set(types_of("load")), names)
-        self.assertEqual(set(types_of("render")), names | {"layers", "output", "settings"})
+        self.assertEqual(set(types_of("render")), names | {"layers", "output", "settings", "out"})
+        of_frames = {row["name"] for row in _core.frame_settings()}
+        made = next(node for node in DEFINED["Session"].body if getattr(node, "name", "") == "__init__")
+        self.assertEqual({argument.arg for argument in made.args.kwonlyargs}, names | of_frames | {"layers"})
+        self.assertLessEqual({"frames", "turntable", "real_time", "fps", "restir"}, of_frames)
+        self.assertNotIn("continue", of_frames)
         self.assertGreater(len(names), 60)
         self.assertEqual(names & {"frames", "continue", "real_time", "history", "restir"}, set())
         self.assertLessEqual({"time", "shutter", "spp", "lamp", "device"}, names)
@@ -35,9 +40,11 @@ class Stub(unittest.TestCase):
         self.assertIn("'bidirectional'", types["integrator"])
 
     def test_members(self):
-        for kind in (pertev.Result, pertev.Scene):
-            members = {node.name for node in DEFINED[kind.__name__].body if isinstance(node, ast.FunctionDef)}
-            self.assertEqual(members, {name for name in vars(kind) if not name.startswith("_")})
+        for kind in (pertev.Result, pertev.Scene, pertev.Params, pertev.Session, pertev.Viewer):
+            of_stub = {node.name for node in DEFINED[kind.__name__].body if isinstance(node, ast.FunctionDef)}
+            own = {name for base in kind.__mro__ if base.__module__.startswith("pertev") for name in vars(base)}
+            self.assertEqual({name for name in of_stub if not name.startswith("_")},
+                             {name for name in own if not name.startswith("_")}, kind.__name__)
 
     def test_all_names(self):
         imported = {alias.asname for node in STUB.body if isinstance(node, ast.ImportFrom) for alias in node.names}

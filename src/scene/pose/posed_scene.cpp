@@ -79,6 +79,7 @@ void PosedScene::find_shapes_to_leave() {
         const Instance& instance = scene_.instances[i];
         if (scene_.materials[instance.material].is_emissive() || !instance_moves_[i]) stays[instance.mesh] = true;
     }
+    may_be_left_.clear();
     for (const MeshShape& shape : scene_.shapes)
         may_be_left_.push_back(leaves_vertices_ && !stays[shape.mesh] && !shape.is_turned_over);
 }
@@ -100,6 +101,25 @@ SceneUpdate PosedScene::set_time(double time_s) {
     place_cameras();
     place_lights();
     return take_changes();
+}
+
+SceneUpdate PosedScene::edit(const std::function<SceneUpdate(Scene&)>& edit) {
+    const auto swap_rest = [&] {
+        scene_.lights.swap(lights_at_rest_);
+        scene_.cameras.swap(cameras_at_rest_);
+    };
+    swap_rest();
+    SceneUpdate update;
+    try {
+        update = edit(scene_);
+    } catch (...) {
+        swap_rest();
+        throw;
+    }
+    lights_ = lights_at_rest_ = scene_.lights;
+    cameras_ = cameras_at_rest_ = scene_.cameras;
+    if (update.materials_changed) find_shapes_to_leave();
+    return update;
 }
 
 PosedScene::Placements PosedScene::placements_at(double time_s) {
@@ -292,8 +312,8 @@ void PosedScene::place_lights() {
 }
 
 SceneUpdate PosedScene::take_changes() {
-    SceneUpdate update = {numbers_of(moved_), numbers_of(deformed_), numbers_of(replaced_), lights_changed_,
-                          poses_changed_};
+    SceneUpdate update = {numbers_of(moved_), numbers_of(deformed_), numbers_of(replaced_),
+                          lights_changed_,    poses_changed_,        false};
     for (std::vector<bool>* flags : {&moved_, &deformed_, &replaced_}) flags->assign(flags->size(), false);
     lights_changed_ = poses_changed_ = false;
     return update;

@@ -11,6 +11,7 @@
 // A transform that is singular or not finite at a time hides its instance; a camera whose direction it loses keeps
 // its pose at rest, and a light gives no light.
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -36,6 +37,11 @@ public:
     /// something lies beyond kMaxCoordinate then. After that the scene is in an undefined state, and the next
     /// set_time returns all changes since the last one that succeeded.
     SceneUpdate set_time(double time_s);
+
+    /// Changes numbers of the scene by `edit`, to which lights and cameras are at rest. It returns what it changed, as
+    /// SceneUpdate allows, and nothing that an animation changes. A scene at a time must then be moved there again by
+    /// set_time(), whose changes come in addition. If `edit` throws, it has changed nothing.
+    SceneUpdate edit(const std::function<SceneUpdate(Scene&)>& edit);
 
     /// Positions of things at a time, without moving the scene there.
     struct Placements {

@@ -148,7 +148,7 @@ Camera choose_camera(CameraChoice choice, const Scene& scene, float aspect, Mess
     const Camera before = camera;
     if (choice.projection) camera.projection = *choice.projection;
     const bool flattened = view_angle(before) > 0 && view_angle(camera) == 0;
-    if (flattened) flatten(choice, scene, before, camera);
+    if (flattened && !choice.view_height) flatten(choice, scene, before, camera);
     if (choice.view_height) camera.ortho_height = *choice.view_height;
     set_lens(choice, camera);
     focus_in_the_middle(choice, scene, camera, messages);

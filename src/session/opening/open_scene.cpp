@@ -156,10 +156,10 @@ Scene read_scene_and_emitters(const std::filesystem::path& path, const ReadOptio
     return scene;
 }
 
-Scene open_scene(const SceneOptions& options, Messages& messages, SceneUse use, Ground ground) {
+Scene open_scene(const SceneOptions& options, Messages& messages, SceneUse use, Ground ground, const ReadScene& read) {
     std::vector<EmitterStrength> emitters;
     for (const std::string& text : options.emitters) emitters.push_back(parse_emitter(text));
-    Scene scene = read_scene_and_emitters(options.scene, read_options(options), messages);
+    Scene scene = read ? read(messages) : read_scene_and_emitters(options.scene, read_options(options), messages);
     if (options.animation.empty()) report_animation(scene, options.scene, messages);
     if (options.two_sided_lights && std::ranges::none_of(scene.materials, &Material::is_emissive)) {
         messages.warn({"two_sided_lights", "", "no surface of the scene emits light"});

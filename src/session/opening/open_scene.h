@@ -5,6 +5,7 @@
 // session/opening/choose_camera.h.
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,11 +31,14 @@ ReadOptions read_options(const SceneOptions& options);
 /// The environment in the syntax of `environment`: a file, or a radiance R,G,B; empty: none.
 std::string environment_text(const SceneOptions& options);
 
+/// Gives a scene that has passed validate() in place of that of the file, for scenes that are made in memory.
+using ReadScene = std::function<Scene(Messages& messages)>;
+
 /// Reads the scene, with the environment of the options or, if it has no light, the default light, and a ground
 /// (session/survey/ground.h). An option without effect on this scene gives a warning. The result has passed
 /// validate(). Throws Error.
 Scene open_scene(const SceneOptions& options, Messages& messages, SceneUse use = SceneUse::Picture,
-                 Ground ground = Ground::Off);
+                 Ground ground = Ground::Off, const ReadScene& read = {});
 /// Opens a scene with all other settings at their defaults.
 Scene open_scene(const std::string& scene, Messages& messages, SceneUse use = SceneUse::Picture);
 

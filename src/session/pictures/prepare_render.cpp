@@ -34,7 +34,8 @@ namespace {
 Ground ground_of(const PictureOptions& options) {
     if (options.scene.ground == "on") return Ground::On;
     const CameraChoice& camera = options.scene.camera;
-    const bool has_camera = camera.places_camera() || !camera.camera.empty() || !options.camera_path.empty();
+    const bool has_camera =
+        camera.places_camera() || !camera.camera.empty() || !options.camera_path.empty() || options.camera_list;
     const bool is_off = options.scene.ground == "off" || has_camera || options.render.transparent ||
                         !finds_all_light(options.render.integrator);
     return is_off ? Ground::Off : Ground::Auto;
@@ -64,40 +65,53 @@ Messages messages_from(const Messages& messages, std::size_t first) {
     return found;
 }
 
-/// Sets the size of `settings` and returns the camera of the options in a scene at rest.
-MovingCamera set_camera(PictureOptions& options, const std::optional<CameraPath>& path, const Scene& scene,
-                        RenderSettings& settings, Messages& messages) {
-    set_size(options, scene, settings);
+/// Checks the options. A frame in real time has one sample by default.
+void check(PictureOptions& options, uint32_t verbs) {
+    if (options.real_time && !options.is_given("spp")) options.render.samples = 1;
+    check_options(options, verbs);
+}
+
+/// Returns the picture's settings, after `options` have taken what the scene's file suggests.
+RenderSettings take_settings(const RenderSetup& ready, PictureOptions& options, uint32_t verbs, const Scene& scene,
+                             Messages& messages) {
+    take_suggestions(scene, verbs, options, messages);
+    if (options.strict) refuse_what_is_left_out(messages, "nothing is rendered");
+    RenderSettings settings = render_settings(options, scene);
+    settings.tracers = ready.settings.tracers;
+    return settings;
+}
+
+/// Returns the camera of the options in a scene at rest.
+MovingCamera camera_of(PictureOptions& options, const std::optional<CameraPath>& path, const RenderSettings& settings,
+                       const Scene& rest, Messages& messages) {
     fit_intrinsics({settings.width, settings.height}, options.scene.camera);
-    MovingCamera camera(options.scene.camera, path, scene, aspect_of(settings.width, settings.height), messages);
-    const Camera at_rest = camera.at(scene, std::nullopt);
+    MovingCamera camera(options.scene.camera, path, rest, aspect_of(settings.width, settings.height), messages);
+    const Camera at_rest = camera.at(rest, std::nullopt);
     check_camera(settings, at_rest);
     if (options.real_time) check_reconstruction(at_rest);
     return camera;
 }
 
-/// Sets the settings and the camera of a scene at rest, to whose file's suggestions `options` give way.
-void set_picture(RenderSetup& ready, PictureOptions& options, uint32_t verbs, const std::optional<CameraPath>& path,
-                 const Scene& scene, Messages& messages) {
-    take_suggestions(scene, verbs, options, messages);
-    if (options.strict) refuse_what_is_left_out(messages, "nothing is rendered");
-    RenderSettings settings = render_settings(options, scene);
-    settings.tracers = ready.settings.tracers;
-    check_light(settings, scene, messages);
-    ready.list.clear();
+/// Chooses the camera of a scene at rest, or those of a list, whose first gives `settings` its size.
+void set_camera(PictureOptions& options, uint32_t verbs, const std::optional<CameraPath>& path, const Scene& rest,
+                RenderSettings& settings, RenderSetup& ready) {
+    Messages messages;
+    std::vector<ListedCamera> list;
     for (uint32_t i = 0; options.camera_list && i < options.camera_list->size(); ++i) {
         PictureOptions own = options_of_camera(options, i, verbs);
+        set_size(own, rest, settings);
         Messages of_others; // which say the same again
-        MovingCamera camera = set_camera(own, path, scene, settings, i == 0 ? messages : of_others);
-        ready.list.push_back({std::move(camera), {settings.width, settings.height}});
+        MovingCamera camera = camera_of(own, path, settings, rest, i == 0 ? messages : of_others);
+        list.push_back({std::move(camera), {settings.width, settings.height}});
     }
-    if (ready.list.empty()) {
-        ready.camera.emplace(set_camera(options, path, scene, settings, messages));
+    if (list.empty()) {
+        ready.camera.emplace(camera_of(options, path, settings, rest, messages));
     } else {
-        ready.camera = ready.list.front().camera;
-        settings.width = ready.list.front().size.width, settings.height = ready.list.front().size.height;
+        ready.camera = list.front().camera;
+        settings.width = list.front().size.width, settings.height = list.front().size.height;
     }
-    ready.settings = std::move(settings);
+    ready.list = std::move(list);
+    ready.of_camera = std::move(messages);
 }
 
 /// Returns the settings of the largest picture.
@@ -109,43 +123,95 @@ RenderSettings settings_of_largest(const RenderSetup& ready) {
     return settings;
 }
 
-/// Settings that change neither the scene that is read, nor its trees, nor the machine. A setting that is missing here
-/// costs time, and no picture.
-constexpr std::string_view kOfPictures[] = {
-    "camera",        "eye",        "target",      "up",           "fov",        "projection",
-    "view_height",   "aperture",   "camera_pose", "convention",   "intrinsics", "intrinsics_size",
-    "lens",          "distortion", "camera_from", "focus",        "size",       "spp",
-    "seed",          "sampler",    "filter",      "clamp",        "integrator", "aov",
-    "filter_radius", "max_depth",  "transparent", "denoise",      "tone_map",   "lpe",
-    "exposure",      "iso",        "f_number",    "shutter_time", "time_limit"};
+void set_light(const RenderSettings& settings, const Scene& rest, RenderSetup& ready) {
+    Messages messages;
+    check_light(settings, rest, messages);
+    ready.of_light = std::move(messages);
+}
+
+constexpr std::string_view kOfCameras[] = {
+    "camera",      "eye",        "target",     "up",   "fov",        "projection",      "view_height", "aperture",
+    "camera_pose", "convention", "intrinsics", "lens", "distortion", "intrinsics_size", "focus",       "camera_from"};
+
+/// Settings that change neither the scene that is read, nor its trees, nor the machine, besides those of cameras. A
+/// setting that is missing here costs time, and no picture.
+constexpr std::string_view kOfPictures[] = {"size",      "spp",        "seed",        "sampler",      "filter",
+                                            "clamp",     "integrator", "aov",         "time",         "filter_radius",
+                                            "max_depth", "denoise",    "transparent", "lpe",          "tone_map",
+                                            "exposure",  "iso",        "f_number",    "shutter_time", "time_limit"};
+
+/// Returns whether the choice leaves nothing open that is decided in the scene at rest.
+bool is_whole(const PictureOptions& options, const Scene& scene) {
+    const CameraChoice& choice = options.scene.camera;
+    const bool is_own =
+        !choice.places_camera() && scene_camera(choice.camera, scene) != nullptr && options.turntable == 0;
+    const bool is_placed = !choice.pose.empty() || (choice.eye ? choice.target.has_value() : is_own);
+    return is_placed && !choice.projection && (!choice.aperture || choice.focus);
+}
 
 } // namespace
 
 bool adapt_setup(RenderSetup& ready, const PictureOptions& before, PictureOptions& options, uint32_t verbs,
                  Sink& sink) {
-    const auto differs = [&](const Setting& setting) {
-        return std::ranges::find(kOfPictures, setting.name) == std::end(kOfPictures) &&
-               texts_of(before, setting) != texts_of(options, setting);
+    const auto is_among = [](std::span<const std::string_view> names, const Setting& setting) {
+        return std::ranges::find(names, setting.name) != names.end();
     };
     const Ground ground = ground_of(options);
     const bool has_same_ground = ground == ready.ground || (ground == Ground::Off && !has_ground(ready.scene()));
-    const bool is_at_rest = !ready.moving->time_s() && !frame_range(options) && options.camera_path.empty();
-    if (!is_at_rest || options.scene.scene != before.scene.scene || !has_same_ground ||
-        is_solved(before.render.integrator) || is_solved(options.render.integrator) ||
-        std::ranges::any_of(all_settings(), differs)) {
-        return false;
+    if (options.scene.scene != before.scene.scene || !has_same_ground || !options.cameras.empty()) return false;
+    bool has_same_camera = !ready.must_choose && options.scene.camera.camera_from.empty();
+    for (const Setting& setting : all_settings()) {
+        const bool is_given = before.is_given(setting.name) || options.is_given(setting.name);
+        if (!is_given || is_among(kOfPictures, setting)) continue;
+        if (texts_of(before, setting) == texts_of(options, setting)) continue;
+        if (!is_among(kOfCameras, setting)) return false;
+        has_same_camera = false;
     }
-    check_options(options, verbs);
-    take_camera_from(options);
-    set_picture(ready, options, verbs, std::nullopt, ready.scene(), sink.messages());
-    ready.bytes = bytes_to_render(options, ready.prepared(), ready.settings, *ready.queue);
+    check(options, verbs);
+    if (options.strict) refuse_what_is_left_out(sink.messages(), "nothing is rendered");
+    PictureOptions taken = options;
+    take_camera_from(taken);
+    Messages messages;
+    MovingScene& moving = *ready.moving;
+    RenderSettings settings = take_settings(ready, taken, verbs, moving.scene(), messages);
+    if (is_solved(ready.settings.integrator) || is_solved(settings.integrator)) return false;
+    const bool has_same_size = settings.width == ready.settings.width && settings.height == ready.settings.height;
+    const bool has_same_shape =
+        aspect_of(settings.width, settings.height) == aspect_of(ready.settings.width, ready.settings.height);
+    has_same_camera = has_same_camera && (taken.scene.camera.intrinsics.empty() ? has_same_shape : has_same_size);
+    const bool has_frames = frame_range(options).has_value();
+    const bool is_timed = moving.is_animated() && (moving.time_s() || moving.is_behind());
+    if (!has_same_camera && !options.camera_path.empty()) return false;
+    if (is_timed && !has_frames && !options.time_s) return false; // back at rest
+    // Whatever is judged in the scene at rest stays.
+    const bool is_decided = has_same_camera || is_whole(options, moving.scene());
+    if (is_timed && (!is_decided || settings.integrator != ready.settings.integrator)) return false;
+    const std::size_t bytes = bytes_to_render(taken, ready.prepared(), settings, *ready.queue);
+    ready.must_choose = true; // until nothing can throw
+    if (!is_timed) set_light(settings, moving.scene(), ready);
+    if (has_same_camera) {
+        check_camera(settings, ready.camera->at(moving.scene(), moving.time_s()));
+    } else {
+        set_camera(taken, verbs, std::nullopt, moving.scene(), settings, ready);
+    }
+    if (!has_frames) {
+        const bool moves = options.time_s && (options.time_s != moving.time_s() || moving.is_behind());
+        if (moves) ready.changed_parts |= moving.set_time(*options.time_s, messages);
+        ready.sequence.time_s = options.time_s;
+    }
+    ready.must_choose = false;
+    ready.settings = std::move(settings);
+    ready.bytes = bytes;
+    options = std::move(taken);
+    messages.add_all(ready.of_light);
+    messages.add_all(ready.of_camera);
+    sink.messages().add_all(messages);
     return true;
 }
 
 std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t verbs, Sink& sink,
-                                            const SolveReport& report) {
-    if (options.real_time && !options.is_given("spp")) options.render.samples = 1;
-    check_options(options, verbs);
+                                            const SolveReport& report, const SceneInMemory& in_memory) {
+    check(options, verbs);
     read_camera_list(options);
     take_camera_from(options);
     Messages& messages = sink.messages();
@@ -162,12 +228,17 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     const SceneUse use = shows_solution ? SceneUse::Measurement : SceneUse::Picture; // opened as for the solution
     ready->ground = ground_of(options);
     const std::size_t known = messages.all().size();
-    Scene scene = open_scene(options.scene, messages, use, ready->ground);
+    Scene scene = open_scene(options.scene, messages, use, ready->ground, in_memory.read);
+    if (in_memory.edit) in_memory.edit(scene);
     ready->reading = messages_from(messages, known);
     sink.check(); // the file was read to its end, and trees are built to theirs
     RenderSettings& settings = ready->settings;
     settings.tracers = tracers;
-    set_picture(*ready, options, verbs, path, scene, messages);
+    settings = take_settings(*ready, options, verbs, scene, messages);
+    set_light(settings, scene, *ready);
+    set_camera(options, verbs, path, scene, settings, *ready);
+    messages.add_all(ready->of_light);
+    messages.add_all(ready->of_camera);
     ready->load_s = watch.seconds();
     // If it turns out not to be a GPU, the session makes what is missing.
     PrepareOptions prepare = prepare_options(settings, machine.may_be_cuda());

@@ -1,0 +1,120 @@
+#pragma once
+
+// The fields of an object that Python describes by a dictionary. Errors name the path of the field, such as
+// "lights/lamp/position", as the setting. Needs the interpreter's lock.
+
+#include <algorithm>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.h"
+#include "math/double_vec3.h"
+#include "math/rgb.h"
+#include "python/array_argument.h"
+
+namespace pertev {
+
+[[noreturn]] inline void refuse_argument(const std::string& path, const std::string& why) {
+    throw Error(ErrorCode::BadInput, path, "", why);
+}
+
+inline std::string text_argument(nanobind::handle value, const std::string& path) {
+    if (!nanobind::isinstance<nanobind::str>(value)) refuse_argument(path, "expected a text");
+    return nanobind::cast<nanobind::str>(value).c_str();
+}
+
+/// The fields of one object. Each is taken once, and what is left over is an error.
+class ArgumentFields {
+public:
+    ArgumentFields(nanobind::handle values, std::string path) : path_(std::move(path)) {
+        if (!nanobind::isinstance<nanobind::dict>(values)) refuse_argument(path_, "expected a dictionary");
+        values_ = nanobind::borrow<nanobind::dict>(values);
+    }
+    const std::string& path() const { return path_; }
+    std::string path_of(const char* field) const { return path_ + "/" + field; }
+
+    /// Returns a field that is there and not None.
+    std::optional<nanobind::object> take(const char* field) {
+        known_.push_back(field);
+        if (!values_.contains(field) || values_[field].is_none()) return std::nullopt;
+        return nanobind::borrow(values_[field]);
+    }
+    std::optional<ArrayArgument> array(const char* field) {
+        const auto value = take(field);
+        return value ? std::optional(ArrayArgument(*value, path_of(field))) : std::nullopt;
+    }
+    ArrayArgument needed(const char* field) {
+        auto value = array(field);
+        if (!value) refuse_argument(path_of(field), "it is missing");
+        return std::move(*value);
+    }
+    std::string text(const char* field, const std::string& otherwise) {
+        const auto value = take(field);
+        return value ? text_argument(*value, path_of(field)) : otherwise;
+    }
+    void number(const char* field, float& value) {
+        if (const auto given = array(field)) value = given->of_shape({}).floats().front();
+    }
+    void flag(const char* field, bool& value) {
+        const auto given = take(field);
+        if (given && !nanobind::isinstance<nanobind::bool_>(*given))
+            refuse_argument(path_of(field), "expected True or False");
+        if (given) value = nanobind::cast<bool>(*given);
+    }
+    void vector(const char* field, Vec3& value) {
+        const auto given = array(field);
+        if (!given) return;
+        const std::vector<float> v = given->of_shape({3}).floats();
+        value = {v[0], v[1], v[2]};
+    }
+    void color(const char* field, Rgb& value) {
+        Vec3 v = {value.r, value.g, value.b};
+        vector(field, v);
+        value = {v.x, v.y, v.z};
+    }
+    std::optional<DoubleVec3> point(const char* field) {
+        const auto given = array(field);
+        if (!given) return std::nullopt;
+        const std::vector<double> v = given->of_shape({3}).doubles();
+        return DoubleVec3{v[0], v[1], v[2]};
+    }
+    std::optional<std::vector<double>> transform(const char* field) {
+        const auto given = array(field);
+        if (!given) return std::nullopt;
+        std::vector<double> values = given->of_shape({4, 4}).doubles();
+        const double last[] = {0, 0, 0, 1};
+        if (!std::equal(last, last + 4, values.begin() + 12)) given->fail("its last row is not 0, 0, 0, 1");
+        return values;
+    }
+    /// Returns the index of a text among names.
+    uint32_t one_of(const char* field, const std::string& otherwise, std::initializer_list<std::string_view> names) {
+        const std::string value = text(field, otherwise);
+        const auto found = std::ranges::find(names, value);
+        if (found == names.end()) {
+            throw Error(ErrorCode::BadInput, path_of(field), value,
+                        fmt::format("expected one of {}", fmt::join(names, ", ")));
+        }
+        return static_cast<uint32_t>(found - names.begin());
+    }
+    void refuse_others() const {
+        for (const auto& [key, value] : values_) {
+            const std::string name = text_argument(key, path_);
+            if (std::ranges::find(known_, name) != known_.end()) continue;
+            refuse_argument(path_ + "/" + name,
+                            fmt::format("there is no such field; there are {}", fmt::join(known_, ", ")));
+        }
+    }
+
+private:
+    nanobind::dict values_;
+    std::string path_;
+    std::vector<std::string> known_;
+};
+
+} // namespace pertev

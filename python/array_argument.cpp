@@ -1,0 +1,142 @@
+#include "python/array_argument.h"
+
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.h"
+
+namespace nb = nanobind;
+
+namespace pertev {
+namespace {
+
+using Code = nb::dlpack::dtype_code;
+
+std::string text_of_shape(std::span<const std::size_t> shape) {
+    std::vector<std::string> lengths;
+    for (const std::size_t length : shape) {
+        lengths.push_back(length == ArrayArgument::kAny ? "N" : fmt::format("{}", length));
+    }
+    return fmt::format("({}{})", fmt::join(lengths, ", "), lengths.size() == 1 ? "," : "");
+}
+
+/// Calls `visit` for the offset of each element, in the order of C.
+template <class Visit>
+void for_each_offset(const nb::ndarray<nb::ro>& array, std::size_t axis, int64_t offset, const Visit& visit) {
+    if (axis == array.ndim()) return visit(offset);
+    for (std::size_t i = 0; i < array.shape(axis); ++i) {
+        for_each_offset(array, axis + 1, offset + static_cast<int64_t>(i) * array.stride(axis), visit);
+    }
+}
+
+/// IEEE half precision.
+struct Half {
+    uint16_t bits;
+    explicit operator double() const {
+        const int exponent = bits >> 10 & 31, fraction = bits & 1023;
+        const double size = exponent == 0    ? std::ldexp(fraction, -24)
+                            : exponent == 31 ? (fraction == 0 ? std::numeric_limits<double>::infinity()
+                                                              : std::numeric_limits<double>::quiet_NaN())
+                                             : std::ldexp(1024 + fraction, exponent - 25);
+        return (bits & 0x8000) != 0 ? -size : size;
+    }
+};
+
+} // namespace
+
+ArrayArgument::ArrayArgument(nb::handle value, std::string name) : name_(std::move(name)) {
+    if (!nb::try_cast(value, array_)) {
+        try {
+            const nb::object made = nb::module_::import_("numpy").attr("asarray")(value);
+            if (!nb::try_cast(made, array_))
+                fail(fmt::format("{} is no array of numbers", nb::type_name(value.type()).c_str()));
+        } catch (nb::python_error& error) {
+            fail(fmt::format("no array of numbers: {}", error.what()));
+        }
+    }
+    if (array_.device_type() != nb::device::cpu::value)
+        fail("the array is not in the memory of the CPU; copy it there");
+}
+
+void ArrayArgument::fail(const std::string& why) const { throw Error(ErrorCode::BadInput, name_, "", why); }
+
+bool ArrayArgument::has_shape(std::initializer_list<std::size_t> shape) const {
+    if (axes() != shape.size()) return false;
+    std::size_t axis = 0;
+    for (const std::size_t length : shape) {
+        if (length != kAny && length != array_.shape(axis)) return false;
+        ++axis;
+    }
+    return true;
+}
+
+const ArrayArgument& ArrayArgument::of_shape(std::initializer_list<std::size_t> shape) const {
+    if (has_shape(shape)) return *this;
+    std::vector<std::size_t> own;
+    for (std::size_t axis = 0; axis < axes(); ++axis) own.push_back(array_.shape(axis));
+    fail(fmt::format("its shape is {}; expected {}", text_of_shape(own), text_of_shape({shape.begin(), shape.size()})));
+}
+
+bool ArrayArgument::is_uint8() const { return array_.dtype() == nb::dtype<uint8_t>(); }
+
+bool ArrayArgument::is_whole() const {
+    const auto code = static_cast<Code>(array_.dtype().code);
+    return code == Code::Int || code == Code::UInt;
+}
+
+template <class From, class To>
+std::vector<To> ArrayArgument::values_of() const {
+    std::vector<To> values;
+    values.reserve(array_.size());
+    const From* const from = static_cast<const From*>(array_.data());
+    for_each_offset(array_, 0, 0, [&](int64_t offset) {
+        if constexpr (std::is_same_v<From, Half>) {
+            values.push_back(static_cast<To>(static_cast<double>(from[offset])));
+        } else {
+            values.push_back(static_cast<To>(from[offset]));
+        }
+    });
+    return values;
+}
+
+template <class To>
+std::vector<To> ArrayArgument::values() const {
+    const nb::dlpack::dtype type = array_.dtype();
+    const bool is_float = static_cast<Code>(type.code) == Code::Float,
+               is_signed = static_cast<Code>(type.code) == Code::Int;
+    if (type.lanes == 1 && is_float) {
+        if (type.bits == 16) return values_of<Half, To>();
+        if (type.bits == 32) return values_of<float, To>();
+        if (type.bits == 64) return values_of<double, To>();
+    }
+    if (type.lanes == 1 && is_whole()) {
+        if (type.bits == 8) return is_signed ? values_of<int8_t, To>() : values_of<uint8_t, To>();
+        if (type.bits == 16) return is_signed ? values_of<int16_t, To>() : values_of<uint16_t, To>();
+        if (type.bits == 32) return is_signed ? values_of<int32_t, To>() : values_of<uint32_t, To>();
+        if (type.bits == 64) return is_signed ? values_of<int64_t, To>() : values_of<uint64_t, To>();
+    }
+    fail("its dtype is not that of numbers; expected floats or integers");
+}
+
+std::vector<float> ArrayArgument::floats() const { return values<float>(); }
+std::vector<double> ArrayArgument::doubles() const { return values<double>(); }
+std::vector<uint8_t> ArrayArgument::bytes() const { return values<uint8_t>(); }
+
+std::vector<uint32_t> ArrayArgument::indices(std::size_t end) const {
+    if (!is_whole()) fail("its dtype is not that of integers");
+    std::vector<uint32_t> found;
+    found.reserve(array_.size());
+    for (const int64_t index : values<int64_t>()) {
+        if (index < 0 || static_cast<uint64_t>(index) >= end) {
+            fail(fmt::format("index {} is out of range; there are {}", index, end));
+        }
+        found.push_back(static_cast<uint32_t>(index));
+    }
+    return found;
+}
+
+} // namespace pertev

@@ -1,0 +1,111 @@
+#include "python/images.h"
+
+#include <fmt/format.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+
+#include "base/error.h"
+#include "image/flip.h"
+#include "image/metrics.h"
+#include "image/picture_hash.h"
+#include "image/read_image.h"
+#include "image/tone_map_image.h"
+#include "image/write_image.h"
+#include "python/array_argument.h"
+#include "python/python_sink.h"
+
+namespace nb = nanobind;
+
+namespace pertev {
+namespace {
+
+/// Returns a picture of (height, width) or (height, width, channels) with 1 to 4 channels.
+Image image_of(nb::handle value, const std::string& name) {
+    const ArrayArgument array(value, name);
+    const std::size_t channels = array.axes() == 2 ? 1 : array.axes() == 3 ? array.length(2) : 0;
+    if (channels < 1 || channels > 4) {
+        array.fail("expected the shape (height, width), or (height, width, channels) with 1 to 4 channels");
+    }
+    if (array.length(0) > UINT32_MAX || array.length(1) > UINT32_MAX) array.fail("it is too large");
+    return {static_cast<uint32_t>(array.length(1)), static_cast<uint32_t>(array.length(0)),
+            static_cast<uint32_t>(channels), array.floats()};
+}
+
+template <class Value>
+nb::object array_of(std::vector<Value> pixels, std::size_t height, std::size_t width, std::size_t channels) {
+    auto* const kept = new std::vector<Value>(std::move(pixels));
+    const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<Value>*>(p); });
+    const std::size_t shape[] = {height, width, channels};
+    return nb::cast(nb::ndarray<nb::numpy, Value>(kept->data(), 3, shape, owner));
+}
+
+nb::object read(const std::string& path) {
+    Messages messages;
+    Image image;
+    {
+        const nb::gil_scoped_release unlocked;
+        image = read_image(path, &messages);
+    }
+    log_messages(messages);
+    return array_of(std::move(image.pixels), image.height, image.width, image.channels);
+}
+
+ToneMap curve_of(const std::string& name) {
+    const auto curve = value_named<ToneMap>(name);
+    if (!curve) throw Error(ErrorCode::BadInput, "curve", name, "expected srgb, agx, aces or neutral");
+    return *curve;
+}
+
+void write(const std::string& path, nb::handle array, const std::string& curve, float exposure) {
+    const Image image = image_of(array, "picture");
+    WriteImageOptions options;
+    options.tone_map = curve_of(curve);
+    options.exposure_stops = exposure;
+    options.transparent = image.channels == 2 || image.channels == 4;
+    const nb::gil_scoped_release unlocked;
+    write_image(path, image, options);
+}
+
+nb::object tone_map_array(nb::handle array, const std::string& curve, float exposure) {
+    Rgba8Image image = tone_map_image(image_of(array, "picture"), curve_of(curve), exposure);
+    return array_of(std::move(image.pixels), image.height, image.width, 4);
+}
+
+nb::dict compare(nb::handle picture, nb::handle reference, uint32_t blocks) {
+    if (blocks == 0) throw Error(ErrorCode::BadInput, "blocks", "0", "expected at least 1");
+    Image a = image_of(picture, "picture"), b = image_of(reference, "reference");
+    check_comparable(a, b);
+    const bool equal = picture_hash(a) == picture_hash(b);
+    if (blocks > 1) {
+        a = block_means(a, blocks);
+        b = block_means(b, blocks);
+    }
+    double rel_mse = 0, trimmed = 0, mse = 0, flip_mean = 0, hdr_mean = 0;
+    {
+        const nb::gil_scoped_release unlocked;
+        rel_mse = relative_error(a, b, 1.0).rel_mse;
+        trimmed = relative_error(a, b).rel_mse;
+        mse = mean_squared_error(a, b);
+        flip_mean = flip(a, b).mean;
+        hdr_mean = hdr_flip(a, b).mean;
+    }
+    nb::dict result;
+    result["rel_mse"] = rel_mse;
+    result["rel_mse_98"] = trimmed;
+    result["mse"] = mse;
+    result["flip"] = flip_mean;
+    result["hdr_flip"] = hdr_mean;
+    result["equal"] = equal;
+    return result;
+}
+
+} // namespace
+
+void define_images(nb::module_& module) {
+    module.def("read", &read);
+    module.def("write", &write);
+    module.def("tone_map", &tone_map_array);
+    module.def("compare", &compare);
+}
+
+} // namespace pertev

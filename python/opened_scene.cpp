@@ -1,0 +1,120 @@
+#include "python/opened_scene.h"
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "settings/settings_file.h"
+
+namespace pertev {
+namespace {
+
+SceneParameter parameter_of(const SceneParameters& parameters, const Scene& scene, const std::string& path) {
+    if (const auto found = parameters.find(scene, path)) return *found;
+    throw Error(ErrorCode::BadInput, path, "", "with these settings the scene has no such parameter");
+}
+
+} // namespace
+
+std::string EditedScene::edited(const std::string& hash) const {
+    if (edits.empty()) return hash;
+    Hasher hasher;
+    const auto add = [&](const std::string& text) { hasher.add(std::as_bytes(std::span(text))); };
+    add(hash);
+    for (const auto& [path, edit] : edits) {
+        add(path);
+        hasher.add(std::as_bytes(std::span(edit.values)));
+    }
+    return hasher.result().hex();
+}
+
+const SceneParameters& OpenedScene::parameters() {
+    if (!parameters_) parameters_.emplace(setup_->scene());
+    return *parameters_;
+}
+
+/// Changes the opened scene as its source was since. Returns false if it must be opened again.
+bool OpenedScene::take_edits(const EditedScene& source, Sink& sink) {
+    if (edits_ == source.edit_count) return true;
+    MovingScene& moving = *setup_->moving;
+    std::vector<std::pair<SceneParameter, const std::vector<double>*>> news;
+    for (const auto& [path, edit] : source.edits) {
+        if (edit.number <= edits_) continue;
+        news.emplace_back(parameter_of(parameters(), moving.scene(), path), &edit.values);
+        // A world that moves has its centre where the scene at rest has it.
+        if (news.back().first.owner == ParameterOwner::Instance && moving.is_animated()) return false;
+    }
+    const auto write_all = [&](Scene& scene) {
+        SceneUpdate update;
+        for (const auto& [parameter, values] : news) update += write_parameter(scene, parameter, *values);
+        return update;
+    };
+    for (const auto& [parameter, values] : news) {
+        const bool is_seen_from =
+            parameter.owner == ParameterOwner::Instance || parameter.owner == ParameterOwner::Camera;
+        setup_->must_choose = setup_->must_choose || is_seen_from; // a made-up view depends on places
+    }
+    setup_->changed_parts |= moving.edit(write_all, sink.messages());
+    edits_ = source.edit_count;
+    return true;
+}
+
+void OpenedScene::open(PictureOptions& options, const EditedScene& source, Sink& sink) {
+    SceneInMemory in_memory;
+    if (source.arrays) in_memory.read = [&](Messages&) { return *source.arrays; };
+    in_memory.edit = [&](Scene& scene) {
+        const SceneParameters parameters(scene);
+        for (const auto& [path, edit] : source.edits) {
+            write_parameter(scene, parameter_of(parameters, scene, path), edit.values);
+        }
+    };
+    auto made = prepare_render(options, kRender, sink, {}, in_memory);
+    made->hash =
+        source.arrays ? source.hash_of_arrays : scene_hash(source.name); // the file may change while it is open
+    parameters_.reset();
+    setup_ = std::move(made);
+    edits_ = source.edit_count;
+}
+
+void OpenedScene::prepare(PictureOptions& options, const EditedScene& source, Sink& sink) {
+    const PictureOptions asked = options; // without what the scene's file suggests
+    const bool is_open = setup_ && take_edits(source, sink) && adapt_setup(*setup_, used_, options, kRender, sink);
+    if (!is_open) {
+        session_.reset();
+        try {
+            open(options, source, sink);
+        } catch (const Error& error) {
+            // Two scenes may not fit into memory. A wrong setting leaves the old one open.
+            if (error.code() != ErrorCode::OutOfMemory || !setup_) throw;
+            setup_.reset();
+            options = asked;
+            open(options, source, sink);
+        }
+    }
+    used_ = asked;
+}
+
+PictureRecord OpenedScene::record(const PictureOptions& options, const EditedScene& source, Sink& sink) {
+    report_motion(options, *setup_->moving, sink.messages());
+    Messages known = setup_->reading;
+    known.add_all(sink.messages());
+    const std::string own = setup_->hash;
+    setup_->hash = source.edited(own);
+    PictureRecord record = picture_record(options, *setup_, known);
+    setup_->hash = own;
+    return record;
+}
+
+Session& OpenedScene::session(const PictureRecord& record) {
+    const uint32_t parts = std::exchange(setup_->changed_parts, 0);
+    if (!session_) return session_.emplace(*setup_->queue, setup_->prepared(), record.camera.camera, record.settings);
+    try {
+        if (parts != 0) session_->update_scene(setup_->prepared(), parts);
+        session_->set_settings(record.settings);
+    } catch (...) {
+        session_.reset(); // which is made anew with the whole scene
+        throw;
+    }
+    session_->set_camera(record.camera.camera);
+    return *session_;
+}
+
+} // namespace pertev

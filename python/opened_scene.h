@@ -1,0 +1,61 @@
+#pragma once
+
+// A scene that stays open, with its trees and its place on a device, as long as pictures or frames differ in nothing
+// that these depend on, and follows changes of its numbers.
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "python/scene_parameters.h"
+#include "session/pictures/prepare_render.h"
+#include "session/session.h"
+
+namespace pertev {
+
+/// Where a scene comes from, and what its user has changed since.
+struct EditedScene {
+    struct Edit {
+        std::vector<double> values;
+        uint64_t number = 0; // of all edits
+    };
+
+    std::string name;                    // a file or a built-in scene; a scene of arrays has it for messages
+    std::shared_ptr<const Scene> arrays; // in place of a file; null: there is one
+    std::string hash_of_arrays;
+    std::map<std::string, Edit> edits; // by their paths (SceneParameters); the last one of each
+    uint64_t edit_count = 0;
+
+    /// Returns the hash of a scene that was read with `hash` after all edits.
+    std::string edited(const std::string& hash) const;
+};
+
+class OpenedScene {
+public:
+    /// Prepares a picture of the source by `options`, which get what the scene suggests, as it was opened, or opens it.
+    /// Throws as prepare_render; the scene stays open if a setting is wrong.
+    void prepare(PictureOptions& options, const EditedScene& source, Sink& sink);
+
+    /// Returns null before the first prepare() that succeeded.
+    RenderSetup* setup() const { return setup_.get(); }
+    /// Returns the names of the scene's parameters; there must be a setup.
+    const SceneParameters& parameters();
+    /// Returns the record of a picture without its display; prepare() has gone before.
+    PictureRecord record(const PictureOptions& options, const EditedScene& source, Sink& sink);
+    /// Returns the session, made or brought up to date, with the record's camera and settings.
+    Session& session(const PictureRecord& record);
+
+private:
+    bool take_edits(const EditedScene& source, Sink& sink);
+    void open(PictureOptions& options, const EditedScene& source, Sink& sink);
+
+    PictureOptions used_; // those that setup_ was made or last adapted by
+    std::unique_ptr<RenderSetup> setup_;
+    std::optional<SceneParameters> parameters_;
+    std::optional<Session> session_;
+    uint64_t edits_ = 0; // how many of the source's edits the setup has
+};
+
+} // namespace pertev

@@ -1,0 +1,36 @@
+"""Pictures as arrays and files, by the functions of the program."""
+
+import os
+
+from . import _core
+
+
+def _array(picture):
+    return picture.color if isinstance(picture, _core.Result) else picture
+
+
+def read(path):
+    """Returns the picture of a file (.exr .png .jpg .hdr) as float32 (height, width, 3 or 4), linear Rec. 709."""
+    return _core.read(os.fspath(path))
+
+
+def write(path, picture, *, curve="srgb", exposure=0.0):
+    """Writes a Result's `color`, or an array of (height, width) or with 1 to 4 channels, linear Rec. 709.
+
+    .exr and .hdr hold its values; .png and .jpg show it by `curve` (as tone_map()) at `exposure` in stops.
+    """
+    _core.write(os.fspath(path), _array(picture), curve, exposure)
+
+
+def tone_map(picture, *, curve="agx", exposure=0.0):
+    """Returns uint8 (height, width, 4), sRGB: the picture times 2**exposure by "srgb", "agx", "aces" or "neutral"."""
+    return _core.tone_map(_array(picture), curve, exposure)
+
+
+def compare(picture, reference, *, blocks=1):
+    """Returns what `pertev compare` prints: rel_mse, rel_mse_98, mse, flip, hdr_flip and equal, as a dictionary.
+
+    Each is a file, a Result or an array of 3 or 4 channels; `blocks` compares means over blocks of pixels.
+    """
+    a, b = (read(one) if isinstance(one, (str, os.PathLike)) else _array(one) for one in (picture, reference))
+    return _core.compare(a, b, blocks)

@@ -1,0 +1,150 @@
+"""Scenes that stay open, and their parameters."""
+
+import collections.abc
+import difflib
+import os
+
+from . import _core
+from ._process import check_process
+from ._settings import OF_FRAMES, texts_of, with_layers
+
+
+class Params(collections.abc.Mapping):
+    """Values of a scene by paths such as "materials/gold/roughness"; what is set holds for all pictures from then on.
+
+    Paths are materials/NAME/..., instances/NAME/transform, lights/NAME/... and cameras/NAME/..., with an object's number
+    in place of a name that it lacks or shares. Transforms are 4x4, world from local, in the coordinates of the file.
+    """
+
+    def __init__(self, scene):
+        check_process()
+        self._scene = scene
+
+    def __getitem__(self, path):
+        value = self._scene._value(path)
+        if value is None:
+            raise self._unknown(path)
+        return value
+
+    def __setitem__(self, path, value):
+        if not self._scene._set_value(path, value):
+            raise self._unknown(path)
+
+    def __iter__(self):
+        return iter(self._scene._paths())
+
+    def __len__(self):
+        return len(self._scene._paths())
+
+    def _unknown(self, path):
+        near = difflib.get_close_matches(path, self, 1)
+        return KeyError(f"there is no '{path}'" + (f"; did you mean '{near[0]}'?" if near else ""))
+
+
+class Scene(_core.Scene):
+    """A scene that stays open: of a file, which load() opens, or of arrays.
+
+        Scene(meshes={"floor": {"vertices": (N, 3), "faces": (M, 3), "normals": (N, 3), "uv": (N, 2), "colors": (N, 4)}},
+              materials={"gold": {"base_color": (1, 0.8, 0.3), "metallic": 1, "roughness": 0.2}},
+              instances={"a": {"mesh": "floor", "material": "gold", "transform": (4, 4)}},
+              lights={"lamp": {"kind": "point", "position": (0, 2, 0), "intensity": (9, 9, 9)}},
+              environment=(1, 1, 1), cameras={"front": {"eye": (0, 1, 3), "target": (0, 0, 0), "fov": 45}})
+
+    Arrays are of NumPy or of anything with DLPack or the buffer protocol, in the memory of the CPU, and are copied. Only
+    meshes and instances must be given. `values` are settings for all pictures that do not overrule them. Raises
+    InputError, whose `setting` is the path of a wrong argument, such as "meshes/floor/faces".
+
+    materials    kind "metallic_roughness" (default), "diffuse", "conductor", "dielectric" or "unlit"; numbers and
+                 colours as scene.params has them; textures of (height, width), or with 1, 3 or 4 channels, uint8 or float:
+                 base_color_texture, emission_texture (uint8: sRGB), metallic_texture, roughness_texture,
+                 normal_texture, alpha_texture; alpha_mode, double_sided, two_sided_emission
+    lights       kind "point", "spot" or "directional"; intensity, position, direction or transform, range; inner_cone and
+                 outer_cone in degrees
+    environment  a colour, or an array of (height, width, 3) as environment maps have it
+    cameras      eye and target (and up), or transform; fov in degrees; projection "perspective" or "orthographic" with
+                 view_height; aperture, focus, aspect
+    """
+
+    def __init__(self, source=None, *, meshes=None, materials=None, instances=None, lights=None, environment=None,
+                 cameras=None, name="arrays", **values):
+        check_process()
+        parts = {"meshes": meshes, "materials": materials, "instances": instances, "lights": lights,
+                 "environment": environment, "cameras": cameras}
+        if source is not None and any(part is not None for part in (*parts.values(),)):
+            raise TypeError("a scene is of a file or of arrays")
+        if source is None and (meshes is None or instances is None):
+            raise TypeError("a scene of arrays needs meshes and instances")
+        super().__init__(name if source is None else os.fspath(source), texts_of(values),
+                         parts if source is None else None)
+        self._is_of_arrays = source is None
+
+    @property
+    def params(self):
+        """Values by paths such as "materials/gold/roughness" (Params)"""
+        return Params(self)
+
+    def __reduce__(self):
+        if self._is_of_arrays:
+            raise TypeError("a scene of arrays is not pickled; make it of its arrays in each process")
+        return _reopened, (self.name, self._settings, self._edits())
+
+
+def _reopened(name, settings, edits):
+    scene = load(name, **settings)
+    for path, value in edits.items():
+        scene.params[path] = value
+    return scene
+
+
+def load(scene, **values):
+    """Opens a scene, builds its trees, and returns it as a Scene, of which render() makes pictures.
+
+    scene   a file (.gltf, .glb, .obj, .ply) or the name of a built-in scene (builtin_scenes())
+    values  settings, as render() has them, for all pictures that do not overrule them
+
+    A picture with another camera, size or integrator, with other samples, or at another time, takes the scene as it is;
+    other settings, such as `device` or `environment`, open it again. Raises as render().
+    """
+    opened = Scene(scene, **values)
+    opened._open()
+    return opened
+
+
+class Session(_core.Session):
+    """Frames of a scene, one after the other: each has one sample per pixel, reconstructed with earlier ones.
+
+        for frame in pertev.Session(scene, fps=24, size=(640, 360), frames="0-99"):
+            frame.color
+
+    scene   what load() returns, or as its `scene`. The session opens it for itself, with its changes (Scene.params)
+    layers  names of layers to render as well, as of render()
+    values  settings as render() has them, and those that only frames have. real_time=False gives ordinary pictures;
+            without `frames` there is no last one
+
+    Frames are Results with the bytes of `pertev render --frames` with the same settings. Raises as render().
+    """
+
+    def __init__(self, scene, *, layers=(), **values):
+        check_process()
+        scene = scene if isinstance(scene, Scene) else Scene(scene)
+        given = with_layers({"real_time": True, "frames": None if values.get("turntable") else "0-1000000000", **values},
+                            layers)
+        super().__init__(scene, texts_of(given, OF_FRAMES))
+
+    def __iter__(self):
+        return self
+
+    def __next__(self):
+        check_process()
+        frame = self._next()
+        if frame is None:
+            raise StopIteration
+        return frame
+
+    def set(self, **values):
+        """Changes settings of the frames to come. None is as if the setting was not given.
+
+        Settings of the camera keep the history of earlier frames. Those that change the scene, its trees or the device
+        open the scene again, without a history."""
+        texts = texts_of(values, OF_FRAMES)
+        self._set({name: texts.get(name, []) for name in values})

@@ -1,0 +1,81 @@
+"""The viewer of the program, as a process."""
+
+import json
+import os
+import shutil
+import subprocess
+import sysconfig
+import threading
+
+from . import _core
+from ._settings import OF_PICTURES, texts_of
+from .errors import Error
+
+
+def _program():
+    """Returns the program: that of $PERTEV_PROGRAM, the one installed with this package, or the one on the path."""
+    beside = os.path.join(sysconfig.get_path("scripts"), "pertev")
+    found = os.environ.get("PERTEV_PROGRAM") or (beside if os.path.exists(beside) else shutil.which("pertev"))
+    if not found:
+        raise Error("there is no program 'pertev'; set PERTEV_PROGRAM to it")
+    return found
+
+
+class Viewer:
+    """A running viewer: `url` is its address. Leaving a `with` block or close() ends it. Notebooks show it as a frame."""
+
+    _reader = None
+
+    def __init__(self, scene, port, values):
+        flags = ["--port", str(port), "--no-browser"]
+        for name, texts in texts_of(values, OF_PICTURES).items():
+            flag = "--" + name.replace("_", "-")
+            is_switch = OF_PICTURES[name]["type"] == "bool"
+            flags += ([flag] if texts == ["true"] else []) if is_switch else [x for text in texts for x in (flag, text)]
+        self._process = subprocess.Popen([_program(), "view", scene, *flags, "--json"], stdout=subprocess.PIPE,
+                                         stderr=subprocess.DEVNULL, text=True)
+        try:
+            self.url = self._address()
+        except BaseException:
+            self.close()
+            raise
+        self._reader = threading.Thread(target=self._process.stdout.read, daemon=True) # so that it never waits for one
+        self._reader.start()
+
+    def _address(self):
+        why = "it ended"
+        for line in self._process.stdout:
+            event = json.loads(line)
+            if event.get("event") == "listening":
+                return event["address"]
+            why = event.get("text", event.get("reason", why)) if event.get("event") == "error" else why
+        raise Error(f"the viewer did not start: {why}")
+
+    def close(self):
+        """Ends the viewer."""
+        self._process.terminate()
+        self._process.wait()
+        if self._reader is not None:
+            self._reader.join()
+        self._process.stdout.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def __repr__(self):
+        return f"<pertev.Viewer {self.url}>"
+
+    def _repr_html_(self):
+        return f'<iframe src="{self.url}" width="100%" height="600" style="border:0"></iframe>'
+
+
+def view(scene, *, port=0, **values):
+    """Starts the viewer of a scene (a file, or the name of a built-in scene) and returns it as a Viewer.
+
+    port    that it listens on; 0 is any free one
+    values  settings of `pertev view`
+    """
+    return Viewer(scene.name if isinstance(scene, _core.Scene) else os.fspath(scene), port, values)

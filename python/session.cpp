@@ -1,0 +1,60 @@
+#include "python/session.h"
+
+#include "base/error.h"
+#include "session/pictures/frame_settings.h"
+#include "session/pictures/render_sequence.h"
+
+namespace pertev {
+
+void PythonSession::set(const SettingTexts& settings) {
+    for (const auto& [name, texts] : settings) {
+        if (texts.empty()) {
+            settings_.erase(name);
+        } else {
+            settings_[name] = texts;
+        }
+    }
+    record_.reset();
+}
+
+void PythonSession::reset() { frame_.reset(), cut_.reset(); }
+
+/// Makes the record that of the settings and the scene as they are now.
+void PythonSession::prepare(Sink& sink) {
+    scene_.with_source(sink, [&](const EditedScene& source) {
+        if (record_ && edits_ == source.edit_count) return;
+        PictureOptions options = scene_.options_of({"", settings_}, sink.messages());
+        const RenderSetup* const before = opened_.setup();
+        opened_.prepare(options, source, sink);
+        if (opened_.setup() != before) cut_.reset(); // it was opened again, and has no history
+        options_ = options;
+        record_ = opened_.record(options_, source, sink);
+        edits_ = source.edit_count;
+    });
+}
+
+std::optional<PythonResult> PythonSession::next(Sink& sink) {
+    prepare(sink);
+    RenderSetup& setup = *opened_.setup();
+    if (!frame_) frame_ = setup.sequence.first;
+    if (*frame_ > setup.sequence.last) return std::nullopt;
+    Session& session = opened_.session(*record_);
+    if (!cut_) session.cut();
+    if (!cut_ || session.history().cuts != cuts_) cut_ = frame_; // other settings may have ended the history
+    cuts_ = session.history().cuts;
+    if (record_->frame) record_->frame->cut = *cut_;
+    const FrameCamera camera = {*setup.camera, setup.sequence};
+    RenderedFrame rendered = render_frame(*frame_, {camera, *setup.moving, *record_, session}, sink);
+    if (rendered.result.samples < record_->settings.samples) {
+        cut_.reset(); // which has ended the history
+        sink.check();
+        throw Error(ErrorCode::Interrupted, "interrupted before the frame was complete");
+    }
+    PictureRecord record = *record_;
+    record.scene.build_seconds = rendered.update_s;
+    record.scene.settings = settings_of_frame(options_, record, *frame_);
+    ++*frame_;
+    return PythonResult(std::move(rendered.result), std::make_shared<const PictureRecord>(std::move(record)));
+}
+
+} // namespace pertev

@@ -1,0 +1,40 @@
+#pragma once
+
+// Frames of a scene for Python, one after the other: reconstructed with the history of earlier ones, or pictures.
+
+#include <memory>
+#include <optional>
+
+#include "python/scene.h"
+
+namespace pertev {
+
+/// It opens the scene for itself, with the scene's changes so far at each frame, so that pictures of the scene and
+/// frames do not disturb each other. One thread at a time may use it.
+class PythonSession {
+public:
+    /// Frames are those of `pertev render --frames` with these settings; `scene` outlives it.
+    PythonSession(PythonScene& scene, SettingTexts settings) : scene_(scene), settings_(std::move(settings)) {}
+
+    /// Renders the next frame; none after the last one. Throws Error, after which the frame is the next one still.
+    std::optional<PythonResult> next(Sink& sink);
+    /// Changes settings of the frames to come. No texts: the setting counts as not given.
+    void set(const SettingTexts& settings);
+    /// Forgets earlier frames: the next one is the first.
+    void reset();
+    /// Number of the next frame; none before the first one is known.
+    std::optional<uint32_t> frame() const { return frame_; }
+
+private:
+    void prepare(Sink& sink);
+
+    PythonScene& scene_;
+    SettingTexts settings_;
+    OpenedScene opened_;
+    PictureOptions options_;
+    std::optional<PictureRecord> record_; // none: the settings have changed
+    uint64_t edits_ = 0, cuts_ = 0;
+    std::optional<uint32_t> frame_, cut_; // the next one; the first one of the history
+};
+
+} // namespace pertev

@@ -1,0 +1,100 @@
+"""Tests of pictures as arrays and files: they have the bytes and numbers of the program."""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy
+
+import pertev
+
+PROGRAM = sys.argv.pop(1)
+
+
+def program(*arguments):
+    lines = subprocess.run([PROGRAM, *map(str, arguments), "--json"], check=True, capture_output=True,
+                           text=True).stdout.splitlines()
+    return [json.loads(line) for line in lines]
+
+
+class Images(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.picture = pertev.render("cornell-box", size=(24, 16), spp=2, device="cpu")
+
+    def test_read_what_was_written(self):
+        for picture in (self.picture, self.picture.color):
+            pertev.write(self.folder / "a.exr", picture)
+            self.assertTrue((pertev.read(self.folder / "a.exr") == self.picture.color).all())
+        info = program("info", self.folder / "a.exr")
+        self.assertIn(self.picture.hash, json.dumps(info))
+
+    def test_shown_as_the_program_shows_it(self):
+        pertev.render("cornell-box", size=(24, 16), spp=2, device="cpu", tone_map="agx", exposure=1.5,
+                      output=self.folder / "a.png")
+        pertev.write(self.folder / "b.png", self.picture, curve="agx", exposure=1.5)
+        self.assertTrue((pertev.read(self.folder / "a.png") == pertev.read(self.folder / "b.png")).all())
+        shown = pertev.tone_map(self.picture, curve="agx", exposure=1.5)
+        self.assertEqual((shown.shape, shown.dtype), ((16, 24, 4), numpy.uint8))
+        pertev.write(self.folder / "c.png", self.picture, curve="srgb")
+        self.assertFalse((pertev.read(self.folder / "a.png") == pertev.read(self.folder / "c.png")).all())
+
+    def test_compare(self):
+        other = pertev.render("cornell-box", size=(24, 16), spp=4, seed=5, device="cpu")
+        files = [self.folder / "a.exr", self.folder / "b.exr"]
+        for file, picture in zip(files, (self.picture, other)):
+            pertev.write(file, picture)
+        for blocks in (1, 4):
+            printed = program("compare", *files, "--blocks", blocks)[-1]
+            for found in (pertev.compare(self.picture, other, blocks=blocks), pertev.compare(*files, blocks=blocks)):
+                for name, value in found.items():
+                    self.assertEqual(float(f"{value:.9g}"), printed[name], name)
+        self.assertTrue(pertev.compare(other, files[1])["equal"])
+
+    def test_pictures_show_themselves(self):
+        png = self.picture._repr_png_()
+        (self.folder / "a.png").write_bytes(png)
+        self.assertEqual(pertev.read(self.folder / "a.png").shape, (16, 24, 3))
+
+    def test_wrong_arguments(self):
+        with self.assertRaises(pertev.InputError) as caught:
+            pertev.tone_map(self.picture, curve="none")
+        self.assertEqual(caught.exception.setting, "curve")
+        with self.assertRaises(pertev.InputError) as caught:
+            pertev.write(self.folder / "a.exr", numpy.zeros((2, 2, 7)))
+        self.assertEqual(caught.exception.setting, "picture")
+        with self.assertRaises(pertev.InputError):
+            pertev.compare(self.picture, numpy.zeros((2, 2, 3)))
+        with self.assertRaises(pertev.InputError):
+            pertev.read(self.folder / "none.exr")
+
+
+class Out(unittest.TestCase):
+    def test_arrays_are_filled(self):
+        scene = pertev.load("cornell-box", size=(24, 16), spp=2, device="cpu")
+        out = {"color": numpy.empty((16, 24, 3), numpy.float32), "depth": numpy.empty((16, 24), numpy.float32),
+               "ids": numpy.empty((16, 24, 3), numpy.uint32)}
+        for seed in (1, 2):
+            expected = pertev.render(scene, seed=seed, layers=["depth", "ids"])
+            pertev.render(scene, seed=seed, layers=["depth", "ids"], out=out)
+            for name, array in out.items():
+                self.assertTrue((array == getattr(expected, name)).all(), name)
+
+    def test_wrong_arrays(self):
+        scene = pertev.load("cornell-box", size=(24, 16), spp=1, device="cpu")
+        for out in ({"color": numpy.empty((24, 16, 3), numpy.float32)}, {"color": numpy.empty((16, 24, 3))},
+                    {"depth": numpy.empty((16, 24), numpy.float32)}):
+            with self.assertRaises(pertev.InputError) as caught:
+                pertev.render(scene, out=out)
+            self.assertEqual(caught.exception.setting, "out")
+        with self.assertRaises(TypeError):
+            pertev.render(scene, out={"color": numpy.empty((16, 24, 6), numpy.float32)[..., ::2]})
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,208 @@
+"""Tests of scene.params: a changed scene has the bytes of a file with these values, and costs what it changes."""
+
+import base64
+import json
+import pathlib
+import pickle
+import struct
+import sys
+import tempfile
+import time
+import unittest
+
+import numpy
+
+import pertev
+
+sys.argv.pop(1)
+SMALL = {"size": (24, 16), "spp": 2, "device": "cpu"}
+
+
+def gltf(roughness=0.5, emission=(3, 3, 3), matrix=None, lamp=5.0, fov=0.8, base=(0.8, 0.4, 0.2)):
+    """A floor, a box-like pair of triangles that shares its mesh with nobody, a lit triangle, a light and a camera."""
+    floor = [(-2, 0, -2), (2, 0, -2), (2, 0, 2), (-2, 0, 2)]
+    thing = [(-0.5, 0, 0), (0.5, 0, 0), (0, 1, 0.2)]
+    glow = [(-1, 2, -1), (1, 2, -1), (0, 2, 1)]
+    data = b"".join(struct.pack("<3f", *p) for p in floor + thing + glow)
+    indices = struct.pack("<6H", 0, 2, 1, 0, 3, 2) + struct.pack("<3H", 0, 1, 2)
+    spans = [(0, 4, floor), (48, 3, thing), (84, 3, glow)]
+    views = [{"buffer": 0, "byteOffset": at, "byteLength": 12 * count} for at, count, _ in spans]
+    views += [{"buffer": 0, "byteOffset": 120, "byteLength": 12}, {"buffer": 0, "byteOffset": 132, "byteLength": 6}]
+    accessors = [{"bufferView": i, "componentType": 5126, "count": count, "type": "VEC3",
+                  "min": [min(p[k] for p in points) for k in range(3)], "max": [max(p[k] for p in points) for k in range(3)]}
+                 for i, (_, count, points) in enumerate(spans)]
+    accessors += [{"bufferView": 3, "componentType": 5123, "count": 6, "type": "SCALAR"},
+                  {"bufferView": 4, "componentType": 5123, "count": 3, "type": "SCALAR"}]
+    def mesh(name, of, faces, material):
+        return {"name": name, "primitives": [{"attributes": {"POSITION": of}, "indices": faces, "material": material}]}
+    thing_node = {"name": "thing", "mesh": 1}
+    if matrix is not None:
+        thing_node["matrix"] = [float(x) for x in numpy.asarray(matrix).T.ravel()]
+    return {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2, 3, 4]}],
+        "extensionsUsed": ["KHR_lights_punctual"],
+        "extensions": {"KHR_lights_punctual": {"lights": [{"name": "lamp", "type": "point", "intensity": lamp}]}},
+        "nodes": [{"name": "floor", "mesh": 0}, thing_node, {"name": "glow", "mesh": 2},
+                  {"name": "lamp", "translation": [0.5, 1.5, 1], "extensions": {"KHR_lights_punctual": {"light": 0}}},
+                  {"name": "front", "camera": 0, "translation": [0, 0.7, 3]}],
+        "cameras": [{"name": "front", "type": "perspective", "perspective": {"yfov": fov, "znear": 0.1}}],
+        "meshes": [mesh("floor", 0, 3, 0), mesh("thing", 1, 4, 0), mesh("glow", 2, 4, 1)],
+        "materials": [{"name": "gold", "doubleSided": True,
+                       "pbrMetallicRoughness": {"baseColorFactor": [*base, 1], "roughnessFactor": roughness,
+                                                "metallicFactor": 0.5}},
+                      {"name": "glow", "doubleSided": True, "emissiveFactor": [min(x, 1) for x in emission],
+                       "extensions": {}, "pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1]}}],
+        "accessors": accessors, "bufferViews": views,
+        "buffers": [{"byteLength": 138, "uri": "data:application/octet-stream;base64," +
+                     base64.b64encode(data + indices).decode()}]}
+
+
+MOVED = [[0.8, 0, 0.6, 0.3], [0, 1, 0, 0.5], [-0.6, 0, 0.8, 0.25], [0, 0, 0, 1]]
+FAR = [[1, 0, 0, 40], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+CHANGES = [("materials/gold/roughness", 0.25, {"roughness": 0.25}),
+           ("materials/gold/base_color", (0.1, 0.9, 0.3), {"base": (0.1, 0.9, 0.3)}),
+           ("materials/glow/emission", (0.5, 0.25, 1), {"emission": (0.5, 0.25, 1)}),
+           ("instances/thing/transform", MOVED, {"matrix": MOVED}),
+           ("instances/thing/transform", FAR, {"matrix": FAR}), # the middle of the scene moves too
+           ("lights/lamp/intensity", (2, 2, 2), {"lamp": 2.0})]
+
+
+class Params(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def file(self, name="a.gltf", **values):
+        path = pathlib.Path(self.folder.name) / name
+        path.write_text(json.dumps(gltf(**values)))
+        return path
+
+    def test_paths(self):
+        scene = pertev.load(self.file())
+        paths = list(scene.params)
+        for path, _, _ in CHANGES:
+            self.assertIn(path, paths)
+        self.assertEqual(len(paths), len(scene.params))
+        self.assertEqual(len(paths), len(set(paths)))
+        self.assertTrue(all(scene.params[path] is not None for path in paths))
+
+    def test_values_are_those_of_the_file(self):
+        params = pertev.load(self.file(roughness=0.25, matrix=MOVED)).params
+        self.assertEqual(params["materials/gold/roughness"], 0.25)
+        self.assertTrue((params["instances/thing/transform"] == numpy.float32(MOVED)).all())
+        self.assertTrue((params["lights/lamp/intensity"] == 5).all())
+        self.assertAlmostEqual(params["cameras/front/fov"], numpy.degrees(0.8), 4)
+        self.assertTrue((params["cameras/front/transform"][:3, 3] == numpy.float32((0, 0.7, 3))).all())
+
+    def test_same_bytes_as_a_file_with_these_values(self):
+        for path, value, values in CHANGES:
+            for first in (False, True): # changed before the first picture, or between two
+                with self.subTest(path=path, first=first):
+                    scene = pertev.load(self.file())
+                    before = None if first else pertev.render(scene, **SMALL)
+                    scene.params[path] = value
+                    changed = pertev.render(scene, **SMALL)
+                    fresh = pertev.render(self.file("b.gltf", **values), **SMALL)
+                    self.assertEqual(changed.hash, fresh.hash)
+                    if before is not None:
+                        self.assertNotEqual(changed.hash, before.hash)
+                        self.assertNotEqual(changed.info["scene_hash"], before.info["scene_hash"])
+                    self.assertTrue(numpy.allclose(scene.params[path], value))
+
+    def test_several_changes_and_back(self):
+        scene = pertev.load(self.file())
+        first = pertev.render(scene, **SMALL).hash
+        old = {path: scene.params[path] for path, _, _ in CHANGES}
+        for path, value, _ in CHANGES:
+            scene.params[path] = value
+            pertev.render(scene, **SMALL)
+        changes = {}
+        for _, _, values in CHANGES:
+            changes.update(values)
+        self.assertEqual(pertev.render(scene, **SMALL).hash, pertev.render(self.file("b.gltf", **changes), **SMALL).hash)
+        for path, value in old.items():
+            scene.params[path] = value
+        self.assertEqual(pertev.render(scene, **SMALL).hash, first)
+
+    def test_changes_outlive_a_scene_that_is_opened_again(self):
+        scene = pertev.load(self.file())
+        scene.params["materials/gold/roughness"] = 0.25
+        for values in ({"environment": (1, 1, 1)}, {"integrator": "radiosity", "patch_size": 0.5}, {}):
+            self.assertEqual(pertev.render(scene, **SMALL, **values).hash,
+                             pertev.render(self.file("b.gltf", roughness=0.25), **SMALL, **values).hash)
+
+    def test_an_emitter_that_is_switched_off_and_on(self):
+        scene = pertev.load(self.file())
+        lit = pertev.render(scene, **SMALL).hash
+        scene.params["materials/glow/emission"] = (0, 0, 0)
+        self.assertEqual(pertev.render(scene, **SMALL).hash, pertev.render(self.file("b.gltf", emission=(0, 0, 0)), **SMALL).hash)
+        scene.params["materials/glow/emission"] = (1, 1, 1)
+        self.assertEqual(pertev.render(scene, **SMALL).hash, lit)
+
+    def test_cameras(self):
+        scene = pertev.load(self.file())
+        pertev.render(scene, **SMALL)
+        scene.params["cameras/front/fov"] = 60
+        scene.params["cameras/front/transform"] = [[1, 0, 0, 0.5], [0, 1, 0, 0.7], [0, 0, 1, 2], [0, 0, 0, 1]]
+        self.assertEqual(pertev.render(scene, **SMALL).hash,
+                         pertev.render(scene, **SMALL, eye=(0.5, 0.7, 2), target=(0.5, 0.7, 0), fov=60).hash)
+
+    def test_lights_turn(self):
+        scene = pertev.load(self.file())
+        scene.params["lights/lamp/position"] = (1, 2, 3)
+        self.assertTrue((scene.params["lights/lamp/position"] == (1, 2, 3)).all())
+        pertev.render(scene, **SMALL)
+        self.assertTrue((scene.params["lights/lamp/transform"][:3, 3] == (1, 2, 3)).all())
+
+    def test_unknown_paths(self):
+        params = pertev.load(self.file()).params
+        with self.assertRaisesRegex(KeyError, "materials/gold/roughness"):
+            params["materials/gold/roughnes"]
+        with self.assertRaises(KeyError):
+            params["materials/gold"] = 1
+        self.assertNotIn("lights/lamp/direction", params)
+
+    def test_wrong_values_name_the_path_and_change_nothing(self):
+        scene = pertev.load(self.file())
+        before = pertev.render(scene, **SMALL).hash
+        for path, value in (("materials/gold/roughness", 2), ("materials/gold/roughness", (1, 1)),
+                            ("materials/gold/roughness", float("nan")), ("materials/gold/roughness", "rough"),
+                            ("materials/gold/base_color", 1), ("instances/thing/transform", numpy.zeros((4, 4))),
+                            ("instances/thing/transform", numpy.diag((1, 1, 0, 1))), ("lights/lamp/intensity", (-1, 0, 0)),
+                            ("instances/thing/transform", numpy.eye(3)), ("cameras/front/fov", 0)):
+            with self.subTest(path=path, value=value):
+                with self.assertRaises(pertev.InputError) as caught:
+                    scene.params[path] = value
+                self.assertEqual(caught.exception.setting, path)
+        self.assertEqual(pertev.render(scene, **SMALL).hash, before)
+
+    def test_a_material_costs_no_tree(self):
+        """A scene of many triangles: a changed roughness takes less than a tenth of opening it."""
+        n = 400
+        x, y = numpy.meshgrid(numpy.arange(n), numpy.arange(n))
+        vertices = numpy.stack([x.ravel(), numpy.sin(x * y).ravel(), y.ravel()], 1).astype(numpy.float32)
+        at = (y[:-1, :-1] * n + x[:-1, :-1]).ravel()
+        faces = numpy.concatenate([numpy.stack([at, at + n, at + 1], 1), numpy.stack([at + 1, at + n, at + n + 1], 1)])
+        begun = time.perf_counter()
+        scene = pertev.Scene(meshes={"hills": {"vertices": vertices, "faces": faces}}, materials={"a": {}},
+                             instances={"hills": {"mesh": "hills", "material": "a"}}, environment=(1, 1, 1), no_bvh_cache=True)
+        pertev.render(scene, **SMALL)
+        opening = time.perf_counter() - begun
+        times = []
+        for roughness in (0.2, 0.4, 0.6):
+            begun = time.perf_counter()
+            scene.params["materials/a/roughness"] = roughness
+            pertev.render(scene, **SMALL)
+            times.append(time.perf_counter() - begun)
+        self.assertLess(min(times), 0.1 * opening)
+
+    def test_pickled_scenes_keep_their_changes(self):
+        scene = pertev.load(self.file(), spp=3)
+        scene.params["materials/gold/roughness"] = 0.25
+        scene.params["instances/thing/transform"] = MOVED
+        again = pickle.loads(pickle.dumps(scene))
+        self.assertEqual(pertev.render(again, size=(24, 16)).hash, pertev.render(scene, size=(24, 16)).hash)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,73 @@
+"""Tests of processes: forks, workers, pickled scenes and the viewer."""
+
+import multiprocessing
+import os
+import pickle
+import subprocess
+import sys
+import unittest
+import unittest.mock
+import urllib.request
+
+import pertev
+
+PROGRAM = sys.argv.pop(1) if len(sys.argv) > 1 else ""
+SMALL = {"size": (16, 8), "spp": 1, "device": "cpu"}
+
+
+def hash_of(scene):
+    return pertev.render(scene, **SMALL).hash
+
+
+def run_python(text):
+    return subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, timeout=60)
+
+
+class Processes(unittest.TestCase):
+    def test_a_fork_before_any_work_renders(self):
+        done = run_python("import os, pertev\nif os.fork() == 0:\n"
+                          "    print(pertev.render('cornell-box', size=(4, 4), spp=1, device='cpu').hash)\n"
+                          "else:\n    os.wait()\n")
+        self.assertEqual(len(done.stdout.strip()), 32, done.stderr)
+
+    def test_a_fork_after_work_says_what_to_do(self):
+        done = run_python("import os, pertev\nr = lambda: pertev.render('cornell-box', size=(4, 4), spp=1, device='cpu')\n"
+                          "r()\nif os.fork() == 0:\n"
+                          "    try:\n        r()\n    except pertev.DeviceError as error:\n        print(error, flush=True)\n"
+                          "        os._exit(0)\nelse:\n    os.wait()\n    r()\n    print('parent')\n")
+        self.assertIn("spawn", done.stdout, done.stderr)
+        self.assertIn("parent", done.stdout, done.stderr)
+
+    def test_workers_get_scenes_by_pickling(self):
+        scene = pertev.load("cornell-box", max_depth=2)
+        expected = hash_of(scene)
+        self.assertEqual(hash_of(pickle.loads(pickle.dumps(scene))), expected)
+        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+        with unittest.mock.patch.dict(os.environ, environment):
+            with multiprocessing.get_context("spawn").Pool(2) as pool:
+                self.assertEqual(pool.map(hash_of, [scene, scene]), [expected] * 2)
+
+    def test_importing_is_quick(self):
+        done = run_python("import time; t = time.perf_counter(); import numpy; u = time.perf_counter(); import pertev\n"
+                          "print(time.perf_counter() - u)")
+        self.assertLess(float(done.stdout), 1)
+
+
+class Viewer(unittest.TestCase):
+    def test_it_starts_and_ends(self):
+        with unittest.mock.patch.dict(os.environ, {"PERTEV_PROGRAM": PROGRAM}):
+            with pertev.view("cornell-box", device="cpu", size=(64, 48), port=0) as viewer:
+                page = urllib.request.urlopen(viewer.url, timeout=20).read()
+                self.assertIn(b"<html", page.lower())
+                self.assertIn(viewer.url, viewer._repr_html_())
+            with self.assertRaises(OSError):
+                urllib.request.urlopen(viewer.url, timeout=5)
+
+    def test_a_scene_that_is_missing(self):
+        with unittest.mock.patch.dict(os.environ, {"PERTEV_PROGRAM": PROGRAM}):
+            with self.assertRaises(pertev.Error):
+                pertev.view("none.glb")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,158 @@
+"""Tests of sessions: frames have the bytes of `pertev render --frames`, and scenes at times those of `--time`."""
+
+import base64
+import json
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import pertev
+
+PROGRAM = sys.argv.pop(1)
+SMALL = {"size": (24, 16), "device": "cpu"}
+FLAGS = ["--size", "24x16", "--device", "cpu"]
+
+
+def moving_scene(folder):
+    """A triangle that slides to the right for a second, before a larger one, with a light that glows up."""
+    points = [(-0.5, 0, 0), (0.5, 0, 0), (0, 1, 0), (-2, -1, -1), (2, -1, -1), (0, 3, -1)]
+    data = b"".join(struct.pack("<3f", *p) for p in points) + struct.pack("<3H", 0, 1, 2) + b"\0\0"
+    data += struct.pack("<2f", 0, 1) + struct.pack("<6f", 0, 0, 0, 1, 0, 0)
+    lengths = (36, 36, 6, 8, 24)
+    starts = (0, 36, 72, 80, 88)
+    gltf = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
+        "nodes": [{"name": "slides", "mesh": 0}, {"name": "stays", "mesh": 1}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": k}, "indices": 2}]} for k in range(2)],
+        "animations": [{"samplers": [{"input": 3, "output": 4}],
+                        "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}],
+        "accessors": [{"bufferView": k, "componentType": 5126, "count": 3, "type": "VEC3",
+                       "min": [min(p[i] for p in points[3 * k:3 * k + 3]) for i in range(3)],
+                       "max": [max(p[i] for p in points[3 * k:3 * k + 3]) for i in range(3)]} for k in range(2)] +
+                     [{"bufferView": 2, "componentType": 5123, "count": 3, "type": "SCALAR"},
+                      {"bufferView": 3, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1]},
+                      {"bufferView": 4, "componentType": 5126, "count": 2, "type": "VEC3"}],
+        "bufferViews": [{"buffer": 0, "byteOffset": at, "byteLength": length} for at, length in zip(starts, lengths)],
+        "buffers": [{"byteLength": len(data),
+                     "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}]}
+    path = pathlib.Path(folder) / "moves.gltf"
+    path.write_text(json.dumps(gltf))
+    return path
+
+
+def frames_of_program(scene, *flags):
+    with tempfile.TemporaryDirectory() as folder:
+        lines = subprocess.run([PROGRAM, "render", str(scene), *FLAGS, *flags, "--json", "-o", f"{folder}/f#.exr"],
+                               check=True, capture_output=True, text=True).stdout.splitlines()
+    return [event["hash"] for event in map(json.loads, lines) if event.get("event") == "frame"]
+
+
+class Sessions(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.moves = moving_scene(folder.name)
+
+    def test_frames_of_a_moving_scene(self):
+        session = pertev.Session(pertev.load(self.moves), fps=4, frames="0-5", layers=["depth"], **SMALL)
+        frames = list(session)
+        self.assertEqual([frame.hash for frame in frames],
+                         frames_of_program(self.moves, "--frames", "0-5", "--fps", "4", "--real-time", "--aov", "depth"))
+        self.assertEqual(frames[0].depth.shape, (16, 24))
+        self.assertEqual([frame.info["frame"] for frame in frames], list(range(6)))
+        self.assertEqual(frames[3].info["time"], 0.75)
+        self.assertEqual(len({frame.hash for frame in frames}), 6)
+
+    def test_frames_of_a_turntable(self):
+        frames = [frame.hash for frame in pertev.Session("cornell-box", turntable=4, **SMALL)]
+        self.assertEqual(frames, frames_of_program("cornell-box", "--turntable", "4", "--real-time"))
+
+    def test_ordinary_pictures_as_frames(self):
+        frames = [frame.hash for frame in pertev.Session(self.moves, real_time=False, spp=2, fps=2, frames="1-2", **SMALL)]
+        self.assertEqual(frames, frames_of_program(self.moves, "--frames", "1-2", "--fps", "2", "--spp", "2"))
+
+    def test_reset(self):
+        session = pertev.Session("cornell-box", **SMALL)
+        first = [next(session).hash for _ in range(3)]
+        self.assertEqual(session.frame, 3)
+        session.reset()
+        self.assertEqual([next(session).hash for _ in range(3)], first)
+        self.assertEqual(len(set(first)), 3)
+
+    def test_a_camera_that_is_set_between_frames_keeps_the_history(self):
+        views = [((0, 0.2, 0.9 - 0.05 * k), (0, 0.2, -1)) for k in range(4)]
+        session = pertev.Session("cornell-box", fps=1, **SMALL)
+        frames = []
+        for eye, target in views:
+            session.set(eye=eye, target=target)
+            frames.append(next(session).hash)
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "path.json"
+            path.write_text(json.dumps({"keys": [{"time": float(k), "eye": eye, "target": target}
+                                                 for k, (eye, target) in enumerate(views)]}))
+            try:
+                of_path = frames_of_program("cornell-box", "--frames", "0-3", "--fps", "1", "--real-time", "--camera-path",
+                                            str(path))
+            except subprocess.CalledProcessError as error:
+                self.fail(error.stderr)
+        self.assertEqual(frames, of_path)
+
+    def test_a_changed_scene(self):
+        scene = pertev.load("cornell-box")
+        material = next(path for path in scene.params if path.endswith("/base_color"))
+        session = pertev.Session(scene, **SMALL)
+        next(session)
+        scene.params[material] = (0.1, 0.2, 0.9)
+        changed = next(session)
+        unchanged = pertev.Session("cornell-box", **SMALL)
+        next(unchanged)
+        self.assertNotEqual(changed.hash, next(unchanged).hash)
+        self.assertEqual(changed.info["first_frame"], 0) # it kept its history
+
+    def test_pictures_of_the_scene_do_not_disturb_frames(self):
+        scene = pertev.load("cornell-box")
+        session = pertev.Session(scene, **SMALL)
+        frames = []
+        for spp in range(1, 4):
+            frames.append(next(session).hash)
+            pertev.render(scene, spp=spp, integrator="direct", **SMALL)
+        session.reset()
+        self.assertEqual([next(session).hash for _ in range(3)], frames)
+
+    def test_wrong_settings(self):
+        with self.assertRaises(TypeError):
+            pertev.Session("cornell-box", fpss=3)
+        session = pertev.Session("cornell-box", **SMALL)
+        first = next(session).hash
+        session.set(spp=-1)
+        with self.assertRaises(pertev.InputError):
+            next(session)
+        session.set(spp=None)
+        session.reset()
+        self.assertEqual(next(session).hash, first)
+
+
+class Times(unittest.TestCase):
+    def test_times_of_an_open_scene(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = moving_scene(folder)
+            scene = pertev.load(file)
+            loads = set()
+            for values in ({}, {"time": 0.25}, {"time": 0.75, "spp": 3}, {"time": 0}, {"time": 0.5, "seed": 3},
+                           {"time": 0.5, "eye": (1, 1, 4), "target": (0, 0, 0)}):
+                kept, fresh = (pertev.render(of, **{"spp": 2, "ground": "off", **SMALL, **values}) for of in (scene, file))
+                self.assertEqual(kept.hash, fresh.hash)
+                self.assertEqual(kept.info["settings"], fresh.info["settings"])
+                self.assertEqual(kept.info["made_up"], fresh.info["made_up"])
+                loads.add(kept.info["load_seconds"])
+            self.assertEqual(len(loads), 1) # it was not read again
+            rest = pertev.render(scene, spp=2, ground="off", **SMALL) # for which it was
+            self.assertEqual(rest.hash, pertev.render(file, spp=2, ground="off", **SMALL).hash)
+            self.assertNotIn(rest.info["load_seconds"], loads)
+
+
+if __name__ == "__main__":
+    unittest.main()
