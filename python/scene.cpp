@@ -17,13 +17,13 @@ namespace {
 
 /// Checks the files' names, and that something shows what the caller has set: files, or arrays, which show what an EXR
 /// does.
-void check_files(PictureOptions options, const std::vector<std::string>& outputs, Messages& messages) {
+void check_files(PictureOptions options, const std::vector<std::string>& outputs, Sink& sink) {
     constexpr uint32_t kInArrays = 1u << static_cast<uint32_t>(ImageFormat::Exr);
     std::erase_if(options.given, [](const auto& given) {
         const Setting* setting = find_setting(given.first);
         return setting != nullptr && (setting->formats & kInArrays) != 0;
     });
-    check_outputs(options, outputs, messages);
+    check_outputs(options, outputs, sink);
 }
 
 } // namespace
@@ -35,7 +35,7 @@ std::unique_lock<std::timed_mutex> PythonScene::take_turn(Sink& sink) {
 }
 
 PictureOptions PythonScene::options_of(const std::string& settings_file, const SettingTexts& settings,
-                                       Messages& messages) const {
+                                       Sink& sink) const {
     PictureOptions options;
     options.scene.scene = name_;
     SettingTexts all = settings;
@@ -49,7 +49,7 @@ PictureOptions PythonScene::options_of(const std::string& settings_file, const S
                 set_value(others, *setting, texts);
             }
         },
-        options, messages);
+        options, sink);
     if (frame_range(options)) {
         throw Error(ErrorCode::BadInput, "frames", options.frames, "a call renders one picture; `time` chooses it");
     }
@@ -75,17 +75,17 @@ void PythonScene::prepare(PictureOptions& options, Sink& sink) {
 
 void PythonScene::open(Sink& sink) {
     const std::unique_lock turn = take_turn(sink);
-    PictureOptions options = options_of("", {}, sink.messages());
+    PictureOptions options = options_of("", {}, sink);
     prepare(options, sink);
 }
 
 PythonResult PythonScene::render(const std::string& settings_file, const SettingTexts& settings,
                                  const std::vector<std::string>& outputs, Sink& sink) {
     const std::unique_lock turn = take_turn(sink);
-    PictureOptions options = options_of(settings_file, settings, sink.messages());
-    if (!outputs.empty()) check_files(options, outputs, sink.messages());
+    PictureOptions options = options_of(settings_file, settings, sink);
+    if (!outputs.empty()) check_files(options, outputs, sink);
     prepare(options, sink);
-    report_motion(options, *setup_->moving, sink.messages());
+    report_motion(options, *setup_->moving, sink);
     Messages known = setup_->reading;
     known.add_all(sink.messages());
     PictureRecord record = picture_record(options, *setup_, known);

@@ -35,7 +35,7 @@ public:
 private:
     /// Waits until no other thread uses the scene. Throws Error(Interrupted) if the sink stops.
     std::unique_lock<std::timed_mutex> take_turn(Sink& sink);
-    PictureOptions options_of(const std::string& settings_file, const SettingTexts& settings, Messages& messages) const;
+    PictureOptions options_of(const std::string& settings_file, const SettingTexts& settings, Sink& sink) const;
     /// Makes setup_ and session_ those of a picture.
     void prepare(PictureOptions& options, Sink& sink);
 

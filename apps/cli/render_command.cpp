@@ -123,12 +123,12 @@ int write_one(const RenderFlags& flags, const RenderSettings& settings, PictureR
 
 int render(RenderFlags& flags) {
     Reporter reporter(flags.report);
-    flags.settings.read(flags, reporter.messages());
+    flags.settings.read(flags, reporter);
     for (const std::string& output : flags.outputs) refuse_list(output);
-    check_outputs(flags, flags.outputs, reporter.messages());
+    check_outputs(flags, flags.outputs, reporter);
     const Stopwatch watch;
     const std::unique_ptr<RenderSetup> ready = prepare_render(flags, kRender, reporter, report_solving(reporter));
-    report_motion(flags, *ready->moving, reporter.messages());
+    report_motion(flags, *ready->moving, reporter);
     const RenderSettings& settings = ready->settings;
     Queue& queue = *ready->queue;
     reporter.report_messages();

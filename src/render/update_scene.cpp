@@ -48,8 +48,8 @@ SceneTriangles changed_triangles(const Scene& scene, const MeshPlacement& placem
 
 } // namespace
 
-PreparedScene update_scene(const PreparedScene& before, const Scene& scene, const SceneUpdate& update,
-                           Messages& messages, std::shared_ptr<const MotionKeys> motions) {
+PreparedScene update_scene(const PreparedScene& before, const Scene& scene, const SceneUpdate& update, Sink& sink,
+                           std::shared_ptr<const MotionKeys> motions) {
     const Stopwatch watch;
     const MeshPlacement placement = place_meshes(scene, before.centre);
     if (placement.is_baked != before.is_baked || 1 + placement.mesh_tree_count != before.trees.parts.size()) {
@@ -57,7 +57,7 @@ PreparedScene update_scene(const PreparedScene& before, const Scene& scene, cons
         options.centre = before.centre;
         options.builder = before.structures->builder();
         options.motions = std::move(motions);
-        return prepare_scene(scene, options, messages);
+        return prepare_scene(scene, options, sink);
     }
     PreparedScene after = before;
     after.scene = &scene;
@@ -70,8 +70,7 @@ PreparedScene update_scene(const PreparedScene& before, const Scene& scene, cons
     after.structures = before.structures->updated(after.trees, after.tlas, changes, triangles);
     after.triangles = after.trees.triangle_count();
     after.build_seconds = watch.seconds();
-    after.lights =
-        build_light_set(scene, srgb_decode_table().data(), messages, after.centre, before.lights.environment);
+    after.lights = build_light_set(scene, srgb_decode_table().data(), sink, after.centre, before.lights.environment);
     balance_lights(after, srgb_decode_table().data());
     return after;
 }

@@ -49,13 +49,13 @@ std::vector<double> keys_within(const Scene& scene, double time_s, const Shutter
 
 } // namespace
 
-MovingScene::MovingScene(Scene rest, std::optional<double> time_s, PrepareOptions options, Messages& messages,
+MovingScene::MovingScene(Scene rest, std::optional<double> time_s, PrepareOptions options, Sink& sink,
                          std::optional<Shutter> shutter)
     : posed_(std::move(rest), true), shutter_(shutter), time_s_(time_s), options_(std::move(options)) {
     options_.centre = world_centre(posed_.scene());
     if (time_s) posed_.set_time(*time_s);
     if (time_s) options_.motions = motions_at(*time_s);
-    prepared_ = prepare_scene(posed_.scene(), options_, messages);
+    prepared_ = prepare_scene(posed_.scene(), options_, sink);
     if (time_s) prepared_.poses = posed_.poses();
 }
 
@@ -110,7 +110,7 @@ double MovingScene::end_s() const {
     return end_s;
 }
 
-uint32_t MovingScene::set_time(double time_s, Messages& messages) {
+uint32_t MovingScene::set_time(double time_s, Sink& sink) {
     const bool was_behind = std::exchange(is_behind_, true), was_at_rest = prepared_.poses.empty();
     SceneUpdate update = posed_.set_time(time_s);
     const auto motions = motions_at(time_s);
@@ -118,11 +118,11 @@ uint32_t MovingScene::set_time(double time_s, Messages& messages) {
     options_.motions = motions;
     uint32_t parts = 0;
     if (was_behind) {
-        prepared_ = prepare_scene(posed_.scene(), options_, messages);
+        prepared_ = prepare_scene(posed_.scene(), options_, sink);
         parts = kAllParts;
     } else if (!update.is_empty()) {
         if (changes_prepared(update)) {
-            prepared_ = update_scene(prepared_, posed_.scene(), update, messages, motions);
+            prepared_ = update_scene(prepared_, posed_.scene(), update, sink, motions);
         }
         parts = parts_of(update);
     }

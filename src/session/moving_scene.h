@@ -21,7 +21,7 @@ public:
     /// Prepares `rest`, which has passed validate(), at `time_s`, or at rest without one. `options` contain no centre
     /// and no motions. Instances move while `shutter` is open, if there is a time. Throws as PosedScene::set_time and
     /// prepare_scene.
-    MovingScene(Scene rest, std::optional<double> time_s, PrepareOptions options, Messages& messages,
+    MovingScene(Scene rest, std::optional<double> time_s, PrepareOptions options, Sink& sink,
                 std::optional<Shutter> shutter = std::nullopt);
     MovingScene(const MovingScene&) = delete; // prepared() points into it
     MovingScene& operator=(const MovingScene&) = delete;
@@ -34,7 +34,7 @@ public:
 
     /// Moves to `time_s`. Returns the parts (ScenePart) of prepared() that Session::update_scene must upload, 0 if
     /// the scene of the picture does not change. Throws as the constructor; the next set_time then repairs the state.
-    uint32_t set_time(double time_s, Messages& messages);
+    uint32_t set_time(double time_s, Sink& sink);
 
     /// The cameras of the scene at a time, without moving the scene there.
     std::vector<Camera> cameras_at(double time_s) { return posed_.placements_at(time_s).cameras; }

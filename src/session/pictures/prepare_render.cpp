@@ -45,32 +45,15 @@ void check_film(const PictureOptions& options, const RenderSettings& settings, c
     check_render_memory(film, settings, memory_to_render_in(queue, settings, max_memory_bytes(options.radiosity)));
 }
 
-/// Returns the messages with these indices and above.
-Messages messages_from(const Messages& messages, std::size_t first) {
-    Messages found;
-    for (const Message& message : std::span(messages.all()).subspan(first)) {
-        if (message.is_left_out) {
-            found.leave_out(message.remark);
-        } else if (message.is_made_up) {
-            found.make_up(message.remark);
-        } else if (message.is_warning) {
-            found.warn(message.remark);
-        } else {
-            found.note(message.remark);
-        }
-    }
-    return found;
-}
-
 /// Sets the settings and the camera of a scene at rest, to whose file's suggestions `options` give way.
 void set_picture(RenderSetup& ready, PictureOptions& options, uint32_t verbs, const std::optional<CameraPath>& path,
-                 const Scene& scene, Messages& messages) {
-    take_suggestions(scene, verbs, options, messages);
-    if (options.strict) refuse_what_is_left_out(messages, "nothing is rendered");
+                 const Scene& scene, Sink& sink) {
+    take_suggestions(scene, verbs, options, sink);
+    if (options.strict) refuse_what_is_left_out(sink.messages(), "nothing is rendered");
     RenderSettings settings = render_settings(options, scene);
     settings.tracers = ready.settings.tracers;
-    check_light(settings, scene, messages);
-    MovingCamera camera(options.scene.camera, path, scene, aspect_of(settings.width, settings.height), messages);
+    check_light(settings, scene, sink);
+    MovingCamera camera(options.scene.camera, path, scene, aspect_of(settings.width, settings.height), sink);
     check_camera(settings, camera.at(scene, std::nullopt));
     ready.settings = std::move(settings);
     ready.camera.emplace(std::move(camera));
@@ -101,7 +84,7 @@ bool adapt_setup(RenderSetup& ready, const PictureOptions& before, PictureOption
         return false;
     }
     check_options(options, verbs);
-    set_picture(ready, options, verbs, std::nullopt, ready.scene(), sink.messages());
+    set_picture(ready, options, verbs, std::nullopt, ready.scene(), sink);
     ready.bytes = bytes_to_render(options, ready.prepared(), ready.settings, *ready.queue);
     return true;
 }
@@ -110,10 +93,9 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
                                             const SolveReport& report) {
     if (options.real_time && !options.is_given("spp")) options.render.samples = 1;
     check_options(options, verbs);
-    Messages& messages = sink.messages();
     std::optional<CameraPath> path;
     if (!options.camera_path.empty()) path = read_camera_path(options.camera_path);
-    ComingMachine machine(options.machine, messages);
+    ComingMachine machine(options.machine, sink);
     std::optional<TracerChoice> tracers; // a tracer that does not fit the device is refused before the scene is read
     if (!options.tracer.are_empty()) tracers = tracer_choice(options.tracer, machine.is_cuda());
     sink.report_messages();
@@ -123,13 +105,12 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     const bool shows_solution = is_solved(options.render.integrator) && !options.radiosity.solution.empty();
     const SceneUse use = shows_solution ? SceneUse::Measurement : SceneUse::Picture; // opened as for the solution
     ready->ground = ground_of(options);
-    const std::size_t known = messages.all().size();
-    Scene scene = open_scene(options.scene, messages, use, ready->ground);
-    ready->reading = messages_from(messages, known);
-    sink.check(); // the file was read to its end, and trees are built to theirs
+    const std::size_t known = sink.messages().all().size();
+    Scene scene = open_scene(options.scene, sink, use, ready->ground);
+    ready->reading = sink.messages().since(known);
     RenderSettings& settings = ready->settings;
     settings.tracers = tracers;
-    set_picture(*ready, options, verbs, path, scene, messages);
+    set_picture(*ready, options, verbs, path, scene, sink);
     ready->load_s = watch.seconds();
     // If it turns out not to be a GPU, the session makes what is missing.
     PrepareOptions prepare = prepare_options(settings, machine.may_be_cuda());
@@ -137,7 +118,7 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     if (!options.no_cache) prepare.bvh_cache = bvh_cache_folder();
     sink.set_work("building trees");
     ready->sequence = frame_range(options).value_or(FrameRange{.time_s = options.time_s, .shutter = shutter(options)});
-    ready->moving.emplace(std::move(scene), ready->sequence.time_of(ready->sequence.first), prepare, messages,
+    ready->moving.emplace(std::move(scene), ready->sequence.time_of(ready->sequence.first), prepare, sink,
                           ready->sequence.shutter);
     sink.check();
     ready->queue = machine.take();
@@ -188,20 +169,20 @@ std::size_t bytes_to_render(const PictureOptions& options, const PreparedScene& 
     return bytes;
 }
 
-void report_motion(const PictureOptions& options, const MovingScene& moving, Messages& messages) {
+void report_motion(const PictureOptions& options, const MovingScene& moving, Sink& sink) {
     const bool has_time = options.time_s || !options.frames.empty();
     if (moving.is_animated() && !has_time) {
-        messages.note({FileLocation{options.scene.scene},
-                       fmt::format("shown at rest; `time` shows it at a time of its {} (0 to {:.4g} s)",
-                                   counted(moving.scene().animations.size(), "animation"), moving.end_s())});
+        sink.note({FileLocation{options.scene.scene},
+                   fmt::format("shown at rest; `time` shows it at a time of its {} (0 to {:.4g} s)",
+                               counted(moving.scene().animations.size(), "animation"), moving.end_s())});
     }
     if (std::ranges::count(options.aovs, "motion") > 0 && options.frames.empty()) {
-        messages.note({"aov", "motion", "0 without `frames`, as there is no frame before"});
+        sink.note({"aov", "motion", "0 without `frames`, as there is no frame before"});
     }
     const bool camera_moves = !options.camera_path.empty() || options.turntable > 0;
     if (!moving.is_animated() && has_time && !camera_moves && !options.real_time) { // which gather light at rest
-        messages.warn({options.time_s ? "time" : "frames", "",
-                       "nothing moves in this scene (`time_limit` ends a render after a time)"});
+        sink.warn({options.time_s ? "time" : "frames", "",
+                   "nothing moves in this scene (`time_limit` ends a render after a time)"});
     }
 }
 
