@@ -4,7 +4,6 @@
 
 #include "base/error.h"
 #include "image/picture_hash.h"
-#include "session/opening/strictness.h"
 #include "session/pictures/choose_display.h"
 #include "session/pictures/render_samples.h"
 #include "session/writing/check_outputs.h"
@@ -18,7 +17,7 @@ namespace {
 /// Checks the files' names, and that something shows what the caller has set: files, or arrays, which show what an EXR
 /// does.
 void check_files(PictureOptions options, const std::vector<std::string>& outputs, Sink& sink) {
-    constexpr uint32_t kInArrays = 1u << static_cast<uint32_t>(ImageFormat::Exr);
+    constexpr uint32_t kInArrays = bit_of(ImageFormat::Exr);
     std::erase_if(options.given, [](const auto& given) {
         const Setting* setting = find_setting(given.first);
         return setting != nullptr && (setting->formats & kInArrays) != 0;
@@ -96,12 +95,12 @@ PythonResult PythonScene::render(const std::string& settings_file, const Setting
     sink.check();
     made.hash = picture_hash(made.result.picture).hex();
     made.metadata = picture_metadata(record, made.result, made.hash);
+    WrittenPicture written;
     if (!outputs.empty()) {
-        RenderResult written = made.result; // files take the layers out of it
-        const std::string failures = failures_of(write_picture(outputs, record, written));
-        if (!failures.empty()) throw Error(ErrorCode::FileWrite, failures);
+        RenderResult result = made.result; // files take the layers out of it
+        written = write_picture(outputs, record, result);
     }
-    if (options.strict) refuse_invalid_samples(made.result.invalid_samples);
+    refuse_faults(written, made.result.invalid_samples, options.strict);
     return made;
 }
 

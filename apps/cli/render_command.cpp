@@ -115,9 +115,7 @@ int write_one(const RenderFlags& flags, const RenderSettings& settings, PictureR
     const WrittenPicture written = write_picture(flags.outputs, record, result);
     report_files(written, reporter);
     report_result(result, written, queue, watch.seconds(), cut_short, reporter);
-    if (const std::string failures = failures_of(written); !failures.empty())
-        throw Error(ErrorCode::FileWrite, failures);
-    if (flags.strict) refuse_invalid_samples(result.invalid_samples);
+    refuse_faults(written, result.invalid_samples, flags.strict);
     return cut_short ? exit_status(ErrorCode::Interrupted) : 0;
 }
 

@@ -16,8 +16,6 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t bit_of(ImageFormat format) { return 1u << static_cast<uint32_t>(format); }
-
 /// The file that is written, however it is named: without links, also one to a file that is not there yet, "." and
 /// "..".
 std::filesystem::path canonical_path(const std::string& file) {
