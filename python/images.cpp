@@ -44,7 +44,7 @@ nb::object read(const std::string& path) {
     Image image;
     {
         const nb::gil_scoped_release unlocked;
-        image = read_image(path, &messages);
+        image = read_image(path, messages);
     }
     log_messages(messages);
     return array_of(std::move(image.pixels), image.height, image.width, image.channels);

@@ -52,14 +52,14 @@ bool OpenedScene::take_edits(const EditedScene& source, Sink& sink) {
             parameter.owner == ParameterOwner::Instance || parameter.owner == ParameterOwner::Camera;
         setup_->must_choose = setup_->must_choose || is_seen_from; // a made-up view depends on places
     }
-    setup_->changed_parts |= moving.edit(write_all, sink.messages());
+    setup_->changed_parts |= moving.edit(write_all, sink);
     edits_ = source.edit_count;
     return true;
 }
 
 void OpenedScene::open(PictureOptions& options, const EditedScene& source, Sink& sink) {
     SceneInMemory in_memory;
-    if (source.arrays) in_memory.read = [&](Messages&) { return *source.arrays; };
+    if (source.arrays) in_memory.read = [&](Sink&) { return *source.arrays; };
     in_memory.edit = [&](Scene& scene) {
         const SceneParameters parameters(scene);
         for (const auto& [path, edit] : source.edits) {
@@ -93,7 +93,7 @@ void OpenedScene::prepare(PictureOptions& options, const EditedScene& source, Si
 }
 
 PictureRecord OpenedScene::record(const PictureOptions& options, const EditedScene& source, Sink& sink) {
-    report_motion(options, *setup_->moving, sink.messages());
+    report_motion(options, *setup_->moving, sink);
     Messages known = setup_->reading;
     known.add_all(sink.messages());
     const std::string own = setup_->hash;

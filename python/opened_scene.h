@@ -15,11 +15,11 @@
 
 namespace pertev {
 
-/// Where a scene comes from, and what its user has changed since.
+/// A scene's source, and the edits of its user.
 struct EditedScene {
     struct Edit {
         std::vector<double> values;
-        uint64_t number = 0; // of all edits
+        uint64_t number = 0; // counts all edits
     };
 
     std::string name;                    // a file or a built-in scene; a scene of arrays has it for messages
@@ -51,7 +51,7 @@ private:
     bool take_edits(const EditedScene& source, Sink& sink);
     void open(PictureOptions& options, const EditedScene& source, Sink& sink);
 
-    PictureOptions used_; // those that setup_ was made or last adapted by
+    PictureOptions used_; // options that setup_ was made or last adapted by
     std::unique_ptr<RenderSetup> setup_;
     std::optional<SceneParameters> parameters_;
     std::optional<Session> session_;

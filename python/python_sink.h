@@ -11,7 +11,7 @@
 
 namespace pertev {
 
-class PythonSink final : public Sink {
+class PythonSink final : public Messages {
 public:
     /// Returns whether a signal's handler has raised an exception, which is then the calling thread's. Only that
     /// thread asks the interpreter, at most every 20 ms.

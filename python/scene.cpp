@@ -7,7 +7,6 @@
 
 #include "base/error.h"
 #include "image/picture_hash.h"
-#include "session/opening/strictness.h"
 #include "session/pictures/choose_display.h"
 #include "session/pictures/render_samples.h"
 #include "session/writing/check_outputs.h"
@@ -20,13 +19,13 @@ namespace {
 
 /// Checks the files' names, and that something shows what the caller has set: files, or arrays, which show what an EXR
 /// does.
-void check_files(PictureOptions options, const std::vector<std::string>& outputs, Messages& messages) {
-    constexpr uint32_t kInArrays = 1u << static_cast<uint32_t>(ImageFormat::Exr);
+void check_files(PictureOptions options, const std::vector<std::string>& outputs, Sink& sink) {
+    constexpr uint32_t kInArrays = bit_of(ImageFormat::Exr);
     std::erase_if(options.given, [](const auto& given) {
         const Setting* setting = find_setting(given.first);
         return setting != nullptr && (setting->formats & kInArrays) != 0;
     });
-    check_outputs(options, outputs, messages);
+    check_outputs(options, outputs, sink);
 }
 
 void set_all(PictureOptions& options, const SettingTexts& settings) {
@@ -45,18 +44,18 @@ std::unique_lock<std::timed_mutex> PythonScene::take_turn(Sink& sink) {
     return turn;
 }
 
-PictureOptions PythonScene::options_of(const CallSettings& settings, Messages& messages) const {
+PictureOptions PythonScene::options_of(const CallSettings& settings, Sink& sink) const {
     PictureOptions options;
     options.scene.scene = name();
     set_all(options, settings_); // which the call's file overrules
     combine_settings(
-        settings.file, kRender, [&](PictureOptions& others) { set_all(others, settings.texts); }, options, messages);
+        settings.file, kRender, [&](PictureOptions& others) { set_all(others, settings.texts); }, options, sink);
     return options;
 }
 
 void PythonScene::open_in_turn(Sink& sink) {
     if (opened_.setup() != nullptr) return;
-    PictureOptions options = options_of({}, sink.messages());
+    PictureOptions options = options_of({}, sink);
     opened_.prepare(options, source_, sink);
 }
 
@@ -71,11 +70,11 @@ const PictureRecord& PythonScene::prepare(const CallSettings& settings, const st
     const bool repeats = last_ && outputs.empty() && *last_ == settings && settings.file.empty();
     if (repeats && edits_ == source_.edit_count) return *record_;
     last_.reset();
-    options_ = options_of(settings, sink.messages());
+    options_ = options_of(settings, sink);
     if (frame_range(options_)) {
         throw Error(ErrorCode::BadInput, "frames", options_.frames, "a call renders one picture; `time` chooses it");
     }
-    if (!outputs.empty()) check_files(options_, outputs, sink.messages());
+    if (!outputs.empty()) check_files(options_, outputs, sink);
     opened_.prepare(options_, source_, sink);
     record_ = std::make_shared<const PictureRecord>(opened_.record(options_, source_, sink));
     if (outputs.empty()) last_ = settings;
@@ -95,12 +94,12 @@ PythonResult PythonScene::render(const CallSettings& settings, const std::vector
     // An interrupted picture is thrown away, and its files stay as they were.
     PythonResult made(render_samples(session, sink), record_);
     sink.check();
+    WrittenPicture written;
     if (!outputs.empty()) {
-        RenderResult written = made.result; // files take the layers out of it
-        const std::string failures = failures_of(write_picture(outputs, *record_, written));
-        if (!failures.empty()) throw Error(ErrorCode::FileWrite, failures);
+        RenderResult result = made.result; // files take the layers out of it
+        written = write_picture(outputs, *record_, result);
     }
-    if (options_.strict) refuse_invalid_samples(made.result.invalid_samples);
+    refuse_faults(written, made.result.invalid_samples, options_.strict);
     return made;
 }
 

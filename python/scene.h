@@ -35,7 +35,7 @@ public:
     const SettingTexts& settings() const { return settings_; }
     bool is_of_arrays() const { return source_.arrays != nullptr; }
     /// Returns the options of a call. Throws Error(BadInput).
-    PictureOptions options_of(const CallSettings& settings, Messages& messages) const;
+    PictureOptions options_of(const CallSettings& settings, Sink& sink) const;
 
     /// Opens the scene if it is not open. Throws as prepare_render.
     void open(Sink& sink);

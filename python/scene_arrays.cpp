@@ -222,7 +222,7 @@ DoubleBounds3 box_of(const Scene& scene, const std::vector<std::vector<double>>&
 
 } // namespace
 
-Scene scene_of_arrays(const std::string& name, const nb::dict& parts, Messages& messages) {
+Scene scene_of_arrays(const std::string& name, const nb::dict& parts, Sink& sink) {
     Scene scene;
     Names meshes, materials;
     for_each(parts, "meshes", [&](const std::string& of, ArgumentFields& fields) {
@@ -265,7 +265,7 @@ Scene scene_of_arrays(const std::string& name, const nb::dict& parts, Messages& 
         scene.cameras.back().name = of;
     });
     scene.environment = environment_of(parts["environment"]);
-    validate(scene, name, messages);
+    validate(scene, name, sink);
     return scene;
 }
 

@@ -7,7 +7,7 @@
 
 #include <nanobind/nanobind.h>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "scene/scene.h"
 
 namespace pertev {
@@ -15,6 +15,6 @@ namespace pertev {
 /// `parts` has the keys meshes, materials, instances, lights, cameras and environment, each a dictionary, a value, or
 /// None. The scene has passed validate(), where `name` stands for its file. Throws Error(BadInput) with a path such as
 /// "meshes/floor/faces" as the setting.
-Scene scene_of_arrays(const std::string& name, const nanobind::dict& parts, Messages& messages);
+Scene scene_of_arrays(const std::string& name, const nanobind::dict& parts, Sink& sink);
 
 } // namespace pertev

@@ -20,7 +20,7 @@ enum class ParameterOwner : uint8_t { Material, Instance, Light, Camera };
 
 struct SceneParameter {
     ParameterOwner owner = ParameterOwner::Material;
-    uint32_t index = 0;    // of the owner
+    uint32_t index = 0;    // number of the owner
     std::string_view name; // a constant
 };
 

@@ -23,7 +23,7 @@ void PythonSession::reset() { frame_.reset(), cut_.reset(); }
 void PythonSession::prepare(Sink& sink) {
     scene_.with_source(sink, [&](const EditedScene& source) {
         if (record_ && edits_ == source.edit_count) return;
-        PictureOptions options = scene_.options_of({"", settings_}, sink.messages());
+        PictureOptions options = scene_.options_of({"", settings_}, sink);
         const RenderSetup* const before = opened_.setup();
         opened_.prepare(options, source, sink);
         if (opened_.setup() != before) cut_.reset(); // it was opened again, and has no history

@@ -9,8 +9,8 @@
 
 namespace pertev {
 
-/// It opens the scene for itself, with the scene's changes so far at each frame, so that pictures of the scene and
-/// frames do not disturb each other. One thread at a time may use it.
+/// Frames of a scene, which the session opens for itself, with the scene's changes so far at each frame, so that
+/// pictures of the scene and frames do not disturb each other. One thread at a time may use it.
 class PythonSession {
 public:
     /// Frames are those of `pertev render --frames` with these settings; `scene` outlives it.

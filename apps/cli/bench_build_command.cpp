@@ -29,8 +29,8 @@ struct BuildFlags : RecordFlags {
 };
 
 /// Returns the triangles that do not move, in world space; if there are none, the first mesh's.
-std::vector<BvhTriangle> read_triangles(const std::string& name, Messages& messages) {
-    const Scene scene = read_record_scene(name, messages);
+std::vector<BvhTriangle> read_triangles(const std::string& name, Sink& sink) {
+    const Scene scene = read_record_scene(name, sink);
     std::vector<BvhTriangle> triangles = baked_triangles(scene, place_meshes(scene));
     return triangles.empty() && !scene.meshes.empty() ? mesh_triangles(scene.meshes.front()) : triangles;
 }
@@ -69,7 +69,7 @@ void add_build(const std::string& scene, std::string_view tree, const std::strin
 void bench_scene(const std::string& name, Queue& queue, const BuildFlags& flags, Reporter& reporter,
                  BenchReport& report) {
     reporter.set_work(fmt::format("{}: reading", name));
-    const std::vector<BvhTriangle> triangles = read_triangles(name, reporter.messages());
+    const std::vector<BvhTriangle> triangles = read_triangles(name, reporter);
     reporter.report_messages();
     throw_if_interrupted();
     float sbvh_cost = 0;
@@ -111,10 +111,10 @@ void bench_scene(const std::string& name, Queue& queue, const BuildFlags& flags,
 
 int bench_build(BuildFlags& flags) {
     Reporter reporter(flags.report);
-    flags.settings.read(flags, reporter.messages());
+    flags.settings.read(flags, reporter);
     const std::vector<std::string> scenes = check_record_scenes(flags.scenes);
     listen_for_interrupt();
-    const std::unique_ptr<Queue> queue = take_machine(flags.machine, reporter.messages());
+    const std::unique_ptr<Queue> queue = take_machine(flags.machine, reporter);
     BenchReport report(reporter, flags.report, *queue, "Trees built on the device");
     for (const std::string& scene : scenes) bench_scene(scene, *queue, flags, reporter, report);
     report.write();

@@ -44,21 +44,21 @@ private:
 
 /// Returns the row of a scene on a device.
 Fields measure(const std::string& file, Queue& queue, RenderSettings settings) {
-    Messages messages;
+    Sink& sink = nobody();
     const Stopwatch watch;
-    const Scene scene = open_scene(file, messages, SceneUse::Benchmark);
+    const Scene scene = open_scene(file, sink, SceneUse::Benchmark);
     const double load_s = watch.seconds();
     const ScratchCache cache;
     PrepareOptions options = trees_for(settings, queue);
     const PrepareOptions uncached = options;
     options.bvh_cache = cache.path();
     throw_if_interrupted();
-    const PreparedScene prepared = prepare_scene(scene, options, messages); // also fills the cache
+    const PreparedScene prepared = prepare_scene(scene, options, sink); // also fills the cache
     throw_if_interrupted();
-    const PreparedScene cached = prepare_scene(scene, options, messages);
-    const double build_s = prepare_scene(scene, uncached, messages).build_seconds;
+    const PreparedScene cached = prepare_scene(scene, options, sink);
+    const double build_s = prepare_scene(scene, uncached, sink).build_seconds;
 
-    const Camera camera = choose_camera(CameraChoice{}, scene, aspect_of(settings.width, settings.height), messages);
+    const Camera camera = choose_camera(CameraChoice{}, scene, aspect_of(settings.width, settings.height), sink);
     {
         Session warm_up(queue, cached, camera, settings); // whose trees are not those that are yet to be converted
         render_again(warm_up, 1);
@@ -107,8 +107,7 @@ std::vector<std::string> default_scenes() {
 
 int bench_scenes(PictureFlags& flags) {
     Reporter reporter(flags.report);
-    Messages& messages = reporter.messages();
-    flags.settings.read(flags, messages);
+    flags.settings.read(flags, reporter);
     RenderSettings settings;
     const PictureSize size = flags.size.value_or(PictureSize{1920, 1080});
     settings.width = size.width, settings.height = size.height;
@@ -116,8 +115,8 @@ int bench_scenes(PictureFlags& flags) {
     for (const std::string& scene : scenes) check_bench_scene(scene);
     listen_for_interrupt();
     std::vector<std::unique_ptr<Queue>> queues;
-    queues.push_back(take_machine(flags.machine, messages));
-    if (flags.machine.device == "auto" && queues.front()->is_cuda()) queues.push_back(choose_device("cpu", messages));
+    queues.push_back(take_machine(flags.machine, reporter));
+    if (flags.machine.device == "auto" && queues.front()->is_cuda()) queues.push_back(choose_device("cpu", reporter));
     reporter.report_messages();
     BenchReport report(reporter, flags.report, *queues.front(), "Loading, building and rendering");
     for (const std::string& scene : scenes) {

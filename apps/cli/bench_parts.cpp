@@ -65,19 +65,19 @@ std::vector<std::string> check_record_scenes(std::vector<std::string> names) {
     return names;
 }
 
-Scene read_record_scene(const std::string& name, Messages& messages) {
+Scene read_record_scene(const std::string& name, Sink& sink) {
     if (const RecordScene* record = find_named(the_record().scenes, name)) {
-        return make_record_scene(*record, public_scenes_folder(), messages);
+        return make_record_scene(*record, public_scenes_folder(), sink);
     }
-    return read_scene(name, {.geometry_only = true}, messages);
+    return read_scene(name, {.geometry_only = true}, sink);
 }
 
-Scene read_lab_scene(const SceneOptions& options, Messages& messages) {
+Scene read_lab_scene(const SceneOptions& options, Sink& sink) {
     const std::string& name = options.scene;
     if (const RecordScene* record = find_named(the_record().scenes, name)) {
         refuse(!options.file_scene.empty(),
                {"file_scene", options.file_scene, fmt::format("{} has no scenes of its own to choose from", name)});
-        return make_record_scene(*record, public_scenes_folder(), messages);
+        return make_record_scene(*record, public_scenes_folder(), sink);
     }
     if (!is_there(name)) {
         std::vector<std::string_view> known = builtin_scene_names();
@@ -85,7 +85,7 @@ Scene read_lab_scene(const SceneOptions& options, Messages& messages) {
         throw Error(ErrorCode::BadInput, "scene", name,
                     fmt::format("neither a file nor a scene of this name; there are {}", fmt::join(known, ", ")));
     }
-    return read_any_scene(options, messages);
+    return read_any_scene(options, sink);
 }
 
 std::string lab_scene_title(const std::string& scene) {
@@ -93,24 +93,23 @@ std::string lab_scene_title(const std::string& scene) {
 }
 
 std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, SettingVerbs verb, Reporter& reporter) {
-    Messages& messages = reporter.messages();
-    flags.settings.read(flags, messages); // before anything is read
+    flags.settings.read(flags, reporter); // before anything is read
     check_options(flags, verb);
     listen_for_interrupt();
     auto benched = std::make_unique<BenchedScene>();
-    benched->queue = take_machine(flags.machine, messages);
+    benched->queue = take_machine(flags.machine, reporter);
     reporter.report_messages();
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
-    benched->scene = open_scene(flags.scene, messages, SceneUse::Benchmark);
-    if (flags.strict) refuse_what_is_left_out(messages, "nothing is measured");
+    benched->scene = open_scene(flags.scene, reporter, SceneUse::Benchmark);
+    if (flags.strict) refuse_what_is_left_out(reporter, "nothing is measured");
     const RenderSettings& settings = benched->settings = render_settings(flags, benched->scene);
-    check_light(settings, benched->scene, messages);
+    check_light(settings, benched->scene, reporter);
     benched->camera =
-        choose_camera(flags.scene.camera, benched->scene, aspect_of(settings.width, settings.height), messages);
+        choose_camera(flags.scene.camera, benched->scene, aspect_of(settings.width, settings.height), reporter);
     check_camera(settings, benched->camera);
     throw_if_interrupted();
     reporter.set_work("building trees");
-    benched->prepared = prepare_scene(benched->scene, {}, messages);
+    benched->prepared = prepare_scene(benched->scene, {}, reporter);
     reporter.report_messages();
     if (is_solved(settings.integrator)) {
         benched->settings.radiosity = radiosity_display(benched->prepared, flags.radiosity, settings.path.seed,

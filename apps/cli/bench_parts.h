@@ -53,10 +53,10 @@ void add_record_flags(CLI::App& verb, RecordFlags& flags, SettingVerbs verbs, co
 /// Checks each name like check_bench_scene and returns them; without names returns all scenes of the record.
 std::vector<std::string> check_record_scenes(std::vector<std::string> names);
 /// Reads a scene of the record by its name, else the geometry of a built-in scene or a file.
-Scene read_record_scene(const std::string& name, Messages& messages);
+Scene read_record_scene(const std::string& name, Sink& sink);
 /// Reads a scene of the record by its name, else a scene with its light as `pertev render` does. Throws Error, with the
 /// known names if there is neither a file nor a scene of this name.
-Scene read_lab_scene(const SceneOptions& options, Messages& messages);
+Scene read_lab_scene(const SceneOptions& options, Sink& sink);
 /// The scene's title in reports: its file's name without folder and extension, in UTF-8 whatever its bytes are.
 std::string lab_scene_title(const std::string& scene);
 

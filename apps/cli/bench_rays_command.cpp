@@ -130,16 +130,15 @@ void print_summary(const std::string& scene, std::span<const double> ratios, Rep
 /// Ratios to the best public tracers go to `all`.
 void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, const TracerChoice& choice,
                  BenchReport& report, std::vector<double>& all, Reporter& reporter) {
-    Messages& messages = reporter.messages();
     reporter.set_work(fmt::format("{}: making sets of rays", name));
     Stopwatch watch;
-    const Scene scene = read_record_scene(name, messages);
+    const Scene scene = read_record_scene(name, reporter);
     const double load_s = watch.seconds();
     throw_if_interrupted();
     const PreparedScene prepared = // the sets are in the file's coordinates
-        prepare_scene(scene, {.bvh = {}, .bvh_cache = {}, .tracers = choice, .keep_coordinates = true}, messages);
+        prepare_scene(scene, {.bvh = {}, .bvh_cache = {}, .tracers = choice, .keep_coordinates = true}, reporter);
     const FrameSize frame = record_frame(flags.count);
-    const Camera camera = choose_camera(flags.scene.camera, scene, 16.0f / 9.0f, messages);
+    const Camera camera = choose_camera(flags.scene.camera, scene, 16.0f / 9.0f, reporter);
     reporter.report_messages();
     watch.restart();
     std::vector<RaySet> sets = make_isolated_sets(queue, scene, camera, prepared, flags.count, reporter);
@@ -173,10 +172,10 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
 
 int bench_rays(RaysFlags& flags) {
     Reporter reporter(flags.report);
-    flags.settings.read(flags, reporter.messages());
+    flags.settings.read(flags, reporter);
     const std::vector<std::string> scenes = check_record_scenes(flags.scenes);
     listen_for_interrupt();
-    const std::unique_ptr<Queue> queue = take_machine(flags.machine, reporter.messages());
+    const std::unique_ptr<Queue> queue = take_machine(flags.machine, reporter);
     const TracerChoice choice = tracer_choice(flags.tracer, queue->is_cuda()).value(); // there is one: of the best tree
     BenchReport report(reporter, flags.report, *queue, "Rays of the record");
     std::vector<double> ratios;

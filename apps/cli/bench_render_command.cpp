@@ -55,17 +55,16 @@ double seconds_after_moves(Session& session, uint32_t moves) {
 IsolatedRates isolated_rates(Queue& queue, const RecordJob& job, const Scene& scene, const TracerChoice& choice,
                              Reporter& reporter) {
     reporter.set_work("measuring rays in isolation");
-    const PreparedScene prepared = prepare_scene(
-        scene, {.bvh = {}, .bvh_cache = {}, .tracers = choice, .keep_coordinates = true}, reporter.messages());
-    const Camera camera = job_camera(job, scene, 16.0f / 9.0f, reporter.messages()); // the aspect of the sets' frames
-    const uint32_t count = queue.is_cuda() ? kRecordRays : kRecordRays / 16;         // a CPU takes seconds for these
+    const PreparedScene prepared =
+        prepare_scene(scene, {.bvh = {}, .bvh_cache = {}, .tracers = choice, .keep_coordinates = true}, reporter);
+    const Camera camera = job_camera(job, scene, 16.0f / 9.0f, reporter);    // the aspect of the sets' frames
+    const uint32_t count = queue.is_cuda() ? kRecordRays : kRecordRays / 16; // a CPU takes seconds for these
     return measure_isolated_rays(queue, scene, camera, prepared, choice, count, reporter);
 }
 
 int bench_job(JobFlags& flags) {
     Reporter reporter(flags.picture.report);
-    Messages& messages = reporter.messages();
-    flags.picture.settings.read(flags.picture, messages);
+    flags.picture.settings.read(flags.picture, reporter);
     const RecordJob& job = *find_named(the_record().jobs, flags.job);
     const std::string& file = flags.picture.scenes.front();
     RenderSettings settings = job_settings(job);
@@ -74,21 +73,21 @@ int bench_job(JobFlags& flags) {
     settings.path.seed = flags.picture.render.path.seed;
     if (!flags.output.empty()) {
         refuse_list(flags.output);
-        note_number_signs(flags.output, messages);
+        note_number_signs(flags.output, reporter);
         check_image_output(flags.output, settings.width, settings.height);
     }
     check_bench_scene(file);
     listen_for_interrupt();
-    const std::unique_ptr<Queue> queue = take_machine(flags.picture.machine, messages);
+    const std::unique_ptr<Queue> queue = take_machine(flags.picture.machine, reporter);
     settings.tracers = tracer_choice(flags.picture.tracer, queue->is_cuda());
     BenchReport report(reporter, flags.picture.report, *queue, "One job of the record");
     reporter.set_work(fmt::format("measuring {}", file));
     const Stopwatch watch;
-    const Scene scene = make_job_scene(job, file, messages);
+    const Scene scene = make_job_scene(job, file, reporter);
     const double load_s = watch.seconds();
     throw_if_interrupted();
-    const PreparedScene prepared = prepare_scene(scene, trees_for(settings, *queue), messages);
-    const Camera camera = job_camera(job, scene, aspect_of(settings.width, settings.height), messages);
+    const PreparedScene prepared = prepare_scene(scene, trees_for(settings, *queue), reporter);
+    const Camera camera = job_camera(job, scene, aspect_of(settings.width, settings.height), reporter);
     reporter.report_messages();
 
     Session session(*queue, prepared, camera, settings);

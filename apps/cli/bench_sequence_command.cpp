@@ -95,7 +95,7 @@ Scores measure(RenderSetup& ready, Session& session, PictureRecord& record, cons
         const uint32_t frame = ready.sequence.first + number;
         reporter.progress((number + 1.0) / ready.sequence.count(),
                           fmt::format("frame {} of {}", number + 1, ready.sequence.count()));
-        go_to_frame(frame, camera, *ready.moving, session, record, reporter.messages());
+        go_to_frame(frame, camera, *ready.moving, session, record, reporter);
         session.render_frame(FrameRange::sample_of(frame), settings, restir);
         const Image ours = session.frame().picture();
         const auto shown = [&](const Image& picture) { return tone_map_image(picture, tone_map, exposure); };
@@ -144,7 +144,7 @@ Fields fields_of(const Score& score) {
 
 int bench_sequence(SequenceFlags& flags) {
     Reporter reporter(flags.render.report);
-    flags.render.settings.read(flags.render, reporter.messages());
+    flags.render.settings.read(flags.render, reporter);
     refuse(!frame_range(flags.render), {"frames", "", "the frames are missing; set `frames` or `turntable`"});
     refuse(flags.reference == 0 && !flags.peer.empty(), {"peer", "", "the reference is missing; add --reference SPP"});
     const std::unique_ptr<RenderSetup> ready =

@@ -38,8 +38,7 @@ Image without_alpha(const Image& picture) {
 
 int compare(const CompareFlags& flags) {
     Reporter reporter(flags.report);
-    Messages& messages = reporter.messages();
-    Image a = read_image(flags.picture, &messages), b = read_image(flags.reference, &messages);
+    Image a = read_image(flags.picture, reporter), b = read_image(flags.reference, reporter);
     reporter.report_messages();
     check_comparable(a, b);
     const Hash128 hash_a = picture_hash(a), hash_b = picture_hash(b);

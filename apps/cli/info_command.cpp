@@ -100,8 +100,8 @@ std::map<std::string, std::string> origins_in(const ExrMetadata& metadata) {
     return origins;
 }
 
-void describe_image(const InfoFlags& flags, Facts& facts, Messages& messages) {
-    const Image image = read_image(flags.scene.scene, &messages);
+void describe_image(const InfoFlags& flags, Facts& facts, Sink& sink) {
+    const Image image = read_image(flags.scene.scene, sink);
     facts.add("width", image.width);
     facts.add("height", image.height);
     facts.add("hash", picture_hash(image).hex());
@@ -154,8 +154,8 @@ void describe_choices(const Scene& scene, Facts& facts) {
     facts.add("shows", file_scene_choice(scene));
 }
 
-void describe_scene(const InfoFlags& flags, Facts& facts, Messages& messages) {
-    const Scene scene = read_any_scene(flags.scene, messages);
+void describe_scene(const InfoFlags& flags, Facts& facts, Sink& sink) {
+    const Scene scene = read_any_scene(flags.scene, sink);
     uint64_t unique = 0, placed = 0;
     for (const Mesh& mesh : scene.meshes) unique += mesh.triangle_count();
     for (const Instance& instance : scene.instances) placed += scene.meshes[instance.mesh].triangle_count();
@@ -212,8 +212,7 @@ void describe_solution(const InfoFlags& flags, Facts& facts) {
 
 int info(InfoFlags& flags) {
     Reporter reporter(flags.report);
-    Messages& messages = reporter.messages();
-    flags.settings.read(flags, messages);
+    flags.settings.read(flags, reporter);
     const std::string& name = flags.scene.scene;
     if (flags.shows_settings) {
         const std::string settings = settings_of(name);
@@ -226,9 +225,9 @@ int info(InfoFlags& flags) {
     refuse(!flags.scene.file_scene.empty() && (is_picture_name(name) || !is_scene_name(name)),
            {"file_scene", flags.scene.file_scene, fmt::format("applies to scenes; {} is none", name)});
     if (is_picture_name(name)) {
-        describe_image(flags, facts, messages);
+        describe_image(flags, facts, reporter);
     } else if (is_scene_name(flags.scene.scene)) {
-        describe_scene(flags, facts, messages);
+        describe_scene(flags, facts, reporter);
     } else if (is_solution(flags.scene.scene)) {
         describe_solution(flags, facts);
     } else {

@@ -133,12 +133,11 @@ LabSettings lab_settings(const LabFlags& flags, bool is_cuda) {
 
 int run(LabFlags& flags) {
     Reporter reporter(flags.report);
-    Messages& messages = reporter.messages();
-    flags.settings.read(flags, messages);
+    flags.settings.read(flags, reporter);
     if (!flags.thesis && !flags.transport && flags.scene.scene.empty()) {
         throw Error(ErrorCode::BadInput, "scene", "", "it is required (or --thesis, or --transport)");
     }
-    const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
+    const std::unique_ptr<Queue> queue = take_machine(flags.machine, reporter);
     if (flags.transport) {
         reporter.set_work("loading");
         return run_transport_command(*queue, flags, flags.of_transport, flags.output, reporter);
@@ -147,10 +146,10 @@ int run(LabFlags& flags) {
     reporter.set_work("loading");
     if (flags.thesis) return run_thesis(*queue, flags.scene, settings, flags.output, reporter);
 
-    const Scene scene = read_lab_scene(flags.scene, messages);
-    if (flags.strict) refuse_what_is_left_out(messages, "nothing is measured");
+    const Scene scene = read_lab_scene(flags.scene, reporter);
+    if (flags.strict) refuse_what_is_left_out(reporter, "nothing is measured");
     const Camera camera =
-        choose_camera(flags.scene.camera, scene, aspect_of(settings.width, settings.height), messages);
+        choose_camera(flags.scene.camera, scene, aspect_of(settings.width, settings.height), reporter);
     check_any_can_run(list_combinations(settings, queue->is_cuda())); // before a folder is made
     if (!flags.output.empty()) check_lab_folder(flags.output);
     reporter.report_messages();

@@ -69,21 +69,20 @@ void print(const MeasureFlags& flags, const Irradiance& e, const Queue& queue, d
 
 int measure(MeasureFlags& flags) {
     Reporter reporter(flags.report);
-    Messages& messages = reporter.messages();
-    flags.settings.read(flags, messages);
+    flags.settings.read(flags, reporter);
     const MeterPoint point = point_of(flags); // before anything is read
-    ComingMachine machine(flags.machine, messages);
+    ComingMachine machine(flags.machine, reporter);
     reporter.report_messages();
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
     const RenderSettings& settings = flags.render;
-    Scene scene = open_scene(flags.scene, messages, SceneUse::Measurement);
-    if (flags.strict) refuse_what_is_left_out(messages, "nothing is measured");
+    Scene scene = open_scene(flags.scene, reporter, SceneUse::Measurement);
+    if (flags.strict) refuse_what_is_left_out(reporter, "nothing is measured");
     for (Material& material : scene.materials) material.double_sided = true; // backs are hidden from cameras alone
     PrepareOptions prepare = prepare_options(settings, machine.may_be_cuda());
     prepare.may_be_better = true;
     if (!flags.no_cache) prepare.bvh_cache = bvh_cache_folder();
     reporter.set_work("building trees");
-    const MovingScene moving(std::move(scene), flags.time_s, prepare, messages);
+    const MovingScene moving(std::move(scene), flags.time_s, prepare, reporter);
     const std::unique_ptr<Queue> queue = machine.take();
     reporter.report_messages();
     listen_for_interrupt();
@@ -94,7 +93,7 @@ int measure(MeasureFlags& flags) {
             reporter.progress(now.share, "measuring");
             return true;
         },
-        &reporter);
+        reporter);
     const Irradiance irradiance = measure_irradiance(*queue, moving.prepared(), point, settings, part);
     reporter.end_progress();
     print(flags, irradiance, *queue, watch.seconds(), reporter);

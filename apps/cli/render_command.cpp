@@ -117,27 +117,25 @@ int write_one(const RenderFlags& flags, const RenderSettings& settings, PictureR
     const WrittenPicture written = write_picture(flags.outputs, record, result);
     report_files(written, reporter);
     report_result(result, written, queue, watch.seconds(), cut_short, reporter);
-    if (const std::string failures = failures_of(written); !failures.empty())
-        throw Error(ErrorCode::FileWrite, failures);
-    if (flags.strict) refuse_invalid_samples(result.invalid_samples);
+    refuse_faults(written, result.invalid_samples, flags.strict);
     return cut_short ? exit_status(ErrorCode::Interrupted) : 0;
 }
 
 int render(RenderFlags& flags) {
     Reporter reporter(flags.report);
-    flags.settings.read(flags, reporter.messages());
+    flags.settings.read(flags, reporter);
     for (const std::string& output : flags.outputs) refuse_list(output);
     read_camera_list(flags);
-    check_outputs(flags, flags.outputs, reporter.messages());
+    check_outputs(flags, flags.outputs, reporter);
     const Stopwatch watch;
     const std::unique_ptr<RenderSetup> ready = prepare_render(flags, kRender, reporter, report_solving(reporter));
-    report_motion(flags, *ready->moving, reporter.messages());
+    report_motion(flags, *ready->moving, reporter);
     const RenderSettings& settings = ready->settings;
     Queue& queue = *ready->queue;
     reporter.report_messages();
     listen_for_interrupt();
     report_start(flags, *ready, reporter);
-    PictureRecord record = picture_record(flags, *ready, reporter.messages());
+    PictureRecord record = picture_record(flags, *ready, reporter);
     report_camera(record.camera, reporter);
     reporter.set_work("uploading the scene");
     std::optional<Session> session(std::in_place, queue, ready->prepared(), record.camera.camera, settings);

@@ -53,8 +53,8 @@ Reporter::~Reporter() {
 }
 
 void Reporter::report_messages() {
-    for (; reported_ < messages().all().size(); ++reported_) {
-        const Message& message = messages().all()[reported_];
+    for (; reported_ < all().size(); ++reported_) {
+        const Message& message = all()[reported_];
         if (flags_.json && !flags_.quiet) {
             event(fmt::format(R"({{"event":"{}","text":{},"times":{}{}}})", message.is_warning ? "warning" : "notice",
                               json_string(phrase(message.remark)), message.times, json_parts(message.remark)));
@@ -117,7 +117,7 @@ void Reporter::event(const std::string& object) {
 
 void Reporter::result(const std::string& object) {
     std::vector<std::string> made_up, left_out;
-    for (const Message& message : messages().all()) {
+    for (const Message& message : all()) {
         if (message.is_made_up) made_up.push_back(phrase(message.remark));
         if (message.is_left_out) left_out.push_back(phrase(message.remark));
     }

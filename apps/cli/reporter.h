@@ -25,7 +25,7 @@ struct ReportFlags {
 
 void add_report_flags(CLI::App& verb, ReportFlags& flags);
 
-class Reporter final : public Sink {
+class Reporter final : public Messages {
 public:
     explicit Reporter(const ReportFlags& flags);
     ~Reporter() override;

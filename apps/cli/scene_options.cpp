@@ -21,8 +21,8 @@ CLI::Option* add_scene_name(CLI::App& verb, SceneOptions& options) {
         ->required();
 }
 
-Scene read_any_scene(const SceneOptions& options, Messages& messages) {
-    return read_scene_and_emitters(options.scene, read_options(options), messages);
+Scene read_any_scene(const SceneOptions& options, Sink& sink) {
+    return read_scene_and_emitters(options.scene, read_options(options), sink);
 }
 
 } // namespace pertev

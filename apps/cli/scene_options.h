@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "scene/scene.h"
 #include "settings/picture_options.h"
 
@@ -22,6 +22,6 @@ std::string builtin_scene_list();
 
 /// Reads a file, or a built-in scene by its name, and adds nothing (session/opening/open_scene.h's
 /// read_scene_and_emitters). Throws Error.
-Scene read_any_scene(const SceneOptions& options, Messages& messages);
+Scene read_any_scene(const SceneOptions& options, Sink& sink);
 
 } // namespace pertev

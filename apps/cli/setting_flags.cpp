@@ -71,9 +71,9 @@ void SettingFlags::add_file(CLI::App& verb) {
         ->check(file_name());
 }
 
-void SettingFlags::read(PictureOptions& options, Messages& messages) const {
+void SettingFlags::read(PictureOptions& options, Sink& sink) const {
     combine_settings(
-        file_, verbs_, [&](PictureOptions& others) { read_flags(others); }, options, messages);
+        file_, verbs_, [&](PictureOptions& others) { read_flags(others); }, options, sink);
 }
 
 void SettingFlags::read_flags(PictureOptions& options) const {

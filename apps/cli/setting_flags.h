@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "apps/cli/flag_phrases.h"
-#include "base/messages.h"
+#include "base/sink.h"
 #include "settings/setting_table.h"
 
 namespace CLI {
@@ -38,7 +38,7 @@ public:
     void add_file(CLI::App& verb);
 
     /// Sets `options` from the settings file, then from the flags, by combine_settings. Throws Error.
-    void read(PictureOptions& options, Messages& messages) const;
+    void read(PictureOptions& options, Sink& sink) const;
 
 private:
     struct Flag {

@@ -38,8 +38,7 @@ std::string solution_name(const std::string& picture) {
 
 int solve(SolveFlags& flags) {
     Reporter reporter(flags.report);
-    Messages& messages = reporter.messages();
-    flags.settings.read(flags, messages);
+    flags.settings.read(flags, reporter);
     if (is_picture_name(flags.output)) {
         throw Error(ErrorCode::BadInput, "output", flags.output,
                     fmt::format("a solution is no picture; -o {0} keeps it, and pertev render --integrator radiosity "
@@ -47,19 +46,19 @@ int solve(SolveFlags& flags) {
                                 solution_name(flags.output)));
     }
     refuse_list(flags.output);
-    note_number_signs(flags.output, messages);
+    note_number_signs(flags.output, reporter);
     check_writable(flags.output);
     set_thread_count(static_cast<int>(flags.machine.threads));
     const Stopwatch total_time;
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
-    Scene scene = open_scene(flags.scene, messages, SceneUse::Measurement);
-    if (flags.strict) refuse_what_is_left_out(messages, "nothing is solved");
-    check_light(flags.render, scene, messages);
+    Scene scene = open_scene(flags.scene, reporter, SceneUse::Measurement);
+    if (flags.strict) refuse_what_is_left_out(reporter, "nothing is solved");
+    check_light(flags.render, scene, reporter);
     PrepareOptions prepare = prepare_options(flags.render, false);
     prepare.may_be_better = true;
     if (!flags.no_cache) prepare.bvh_cache = bvh_cache_folder();
     reporter.set_work("building trees");
-    const MovingScene moving(std::move(scene), flags.time_s, prepare, messages);
+    const MovingScene moving(std::move(scene), flags.time_s, prepare, reporter);
     reporter.report_messages();
     const SolvedRadiosity solved =
         solve_scene(moving.prepared(), flags.radiosity, flags.render.path.seed, reporter, report_solving(reporter));

@@ -46,12 +46,12 @@ struct MeasuredScene {
 
 /// Reads a scene. Light is added only if pictures are made.
 MeasuredScene load(SceneOptions options, const std::string& scene, const LabSettings& settings, bool has_pictures,
-                   Messages& messages) {
+                   Sink& sink) {
     options.scene = scene;
-    MeasuredScene thesis = {lab_scene_title(scene), read_lab_scene(options, messages), false, {}};
+    MeasuredScene thesis = {lab_scene_title(scene), read_lab_scene(options, sink), false, {}};
     if (has_pictures)
-        thesis.default_light = add_default_light(thesis.scene, SceneUse::Benchmark, messages) != DefaultLight::None;
-    thesis.camera = choose_camera(options.camera, thesis.scene, aspect_of(settings.width, settings.height), messages);
+        thesis.default_light = add_default_light(thesis.scene, SceneUse::Benchmark, sink) != DefaultLight::None;
+    thesis.camera = choose_camera(options.camera, thesis.scene, aspect_of(settings.width, settings.height), sink);
     return thesis;
 }
 
@@ -64,9 +64,9 @@ RenderResult render(Session& session, PathLight light) {
 }
 
 /// Adds pictures of local and global illumination at one exposure, so that they can be compared.
-void add_pictures(Queue& queue, const MeasuredScene& scene, const LabSettings& settings, Messages& messages, int figure,
+void add_pictures(Queue& queue, const MeasuredScene& scene, const LabSettings& settings, Sink& sink, int figure,
                   ThesisReport& thesis) {
-    const PreparedScene prepared = prepare_scene(scene.scene, {}, messages);
+    const PreparedScene prepared = prepare_scene(scene.scene, {}, sink);
     RenderSettings picture;
     picture.width = settings.width, picture.height = settings.height;
     picture.samples = queue.is_cuda() ? kPictureSamplesCuda : kPictureSamples;
@@ -140,7 +140,7 @@ void add_pictures_by_chapter(Queue& queue, const LabSettings& settings, const st
                                              .seconds = watch.seconds(),
                                              .share_of_step = now.share});
                 },
-                &reporter);
+                reporter);
             ThesisPicture made = pictures.make(names[i], part);
             if (!made.command.empty()) made.command = "pertev render " + phrase(made.command);
             write_file(folder, made);
@@ -173,12 +173,12 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
     ThesisReport thesis;
     Attempts attempts(thesis);
     // All are read before the first is measured. The camera's flags are the second's.
-    std::vector<MeasuredScene> scenes = {load({}, "cornell-box", settings, has_pictures, reporter.messages())};
+    std::vector<MeasuredScene> scenes = {load({}, "cornell-box", settings, has_pictures, reporter)};
     if (const auto second = options.scene.empty() ? find_sibenik() : std::optional(options.scene)) {
-        scenes.push_back(load(options, *second, settings, has_pictures, reporter.messages()));
+        scenes.push_back(load(options, *second, settings, has_pictures, reporter));
     } else {
         thesis.lacking.emplace_back(kLacksSibenik);
-        reporter.messages().warn(fmt::format("left out: {}", kLacksSibenik));
+        reporter.warn(fmt::format("left out: {}", kLacksSibenik));
     }
     if (has_pictures) check_lab_folder(output);
     reporter.report_messages();
@@ -202,7 +202,7 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
         if (attempts.may_go_on()) {
             const int figure = &scene == scenes.data() ? 7 : 8;
             attempts.attempt("pictures of " + scene.name,
-                             [&] { add_pictures(queue, scene, settings, reporter.messages(), figure, thesis); });
+                             [&] { add_pictures(queue, scene, settings, reporter, figure, thesis); });
         }
         write_files(output, thesis, head);
     }

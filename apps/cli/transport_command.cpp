@@ -38,17 +38,17 @@ struct Subject {
     Camera camera;
 };
 
-Subject read_subject(SceneOptions options, const TransportPreset* preset, float aspect, Messages& messages) {
+Subject read_subject(SceneOptions options, const TransportPreset* preset, float aspect, Sink& sink) {
     Subject subject;
     if (preset != nullptr) options.scene = preset->scene;
-    subject.scene = read_lab_scene(options, messages);
-    add_default_light(subject.scene, SceneUse::Benchmark, messages);
+    subject.scene = read_lab_scene(options, sink);
+    add_default_light(subject.scene, SceneUse::Benchmark, sink);
     subject.name = preset != nullptr ? preset->name : lab_scene_title(options.scene);
     subject.shows = preset != nullptr ? preset->shows : "";
     subject.reference_integrator =
         preset != nullptr ? preset->reference_integrator : default_reference_integrator(subject.scene);
-    subject.camera = preset != nullptr ? choose_camera(camera_choice(*preset), subject.scene, aspect, messages)
-                                       : choose_camera(options.camera, subject.scene, aspect, messages);
+    subject.camera = preset != nullptr ? choose_camera(camera_choice(*preset), subject.scene, aspect, sink)
+                                       : choose_camera(options.camera, subject.scene, aspect, sink);
     return subject;
 }
 
@@ -77,18 +77,17 @@ void phrase_all(TransportScene& measured) {
 }
 
 /// Errors are of radiance: what was made for a display has lost it.
-Image read_linear_image(const std::string& file, Messages& messages) {
+Image read_linear_image(const std::string& file, Sink& sink) {
     const std::vector<std::byte> bytes = read_file(file);
     const std::optional<ImageFormat> format = recognise_image(bytes);
     refuse(format == ImageFormat::Png || format == ImageFormat::Jpeg,
            {"reference", file,
             "a picture for displays, tone-mapped and of few bits; errors are of radiance, which an EXR or HDR file has "
             "(pertev render -o reference.exr)"});
-    return read_image(bytes, file, &messages);
+    return read_image(bytes, file, sink);
 }
 
-TransportSettings settings_of(const PictureOptions& options, const TransportFlags& flags, bool is_cuda,
-                              Messages& messages) {
+TransportSettings settings_of(const PictureOptions& options, const TransportFlags& flags, bool is_cuda, Sink& sink) {
     TransportSettings settings;
     for (const std::string& name : flags.integrators) {
         if (std::ranges::find(settings.integrators, name) == settings.integrators.end()) {
@@ -107,7 +106,7 @@ TransportSettings settings_of(const PictureOptions& options, const TransportFlag
                                  : is_cuda                   ? kReferenceSamplesCuda
                                                              : kReferenceSamples;
     if (!flags.reference.empty()) {
-        settings.reference = read_linear_image(flags.reference, messages);
+        settings.reference = read_linear_image(flags.reference, sink);
         settings.reference_file = flags.reference;
     }
     return settings;
@@ -129,11 +128,11 @@ int run_transport_command(Queue& queue, const PictureOptions& options, const Tra
                           const std::string& output, Reporter& reporter) {
     const SceneOptions& scene = options.scene;
     const std::vector<const TransportPreset*> presets = presets_of(scene, flags);
-    TransportSettings settings = settings_of(options, flags, queue.is_cuda(), reporter.messages());
+    TransportSettings settings = settings_of(options, flags, queue.is_cuda(), reporter);
     std::vector<Subject> subjects; // all are read before the first is measured
     for (const TransportPreset* preset : presets) {
-        subjects.push_back(read_subject(scene, preset, aspect_of(settings.picture.width, settings.picture.height),
-                                        reporter.messages()));
+        subjects.push_back(
+            read_subject(scene, preset, aspect_of(settings.picture.width, settings.picture.height), reporter));
     }
     if (!output.empty()) check_lab_folder(output);
     reporter.report_messages();

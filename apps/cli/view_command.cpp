@@ -81,7 +81,7 @@ void open_browser(const std::string& address) {
 void report_address(const ViewFlags& flags, const std::string& address, Reporter& reporter) {
     reporter.event(fmt::format(R"({{"event":"listening","address":{}}})", json_string(address)));
     if (!is_this_machine_alone(flags.host)) {
-        reporter.messages().warn(fmt::format(
+        reporter.warn(fmt::format(
             "--host {}: anyone who reaches this machine by that name can try to connect, the connection is not "
             "encrypted, and anyone with the address below can watch and steer; without --host, ssh -L is a safe way",
             flags.host));
@@ -150,8 +150,7 @@ void let_time_move(const ViewFlags& flags, const RenderSetup& ready, ViewerStart
     const bool is_made_up = ready.scene().cameras.empty() && !scene.camera.eye && flags.render.camera_path.empty();
     if (is_made_up && turntable == 0 && !moving.is_animated()) {
         start.camera.framed = [&ready, choice = scene.camera](float aspect) {
-            Messages already_reported;
-            const MovingCamera framed(choice, std::nullopt, ready.scene(), aspect, already_reported);
+            const MovingCamera framed(choice, std::nullopt, ready.scene(), aspect, nobody()); // already reported
             return camera_at(framed, ready.scene(), std::nullopt, 0);
         };
     }
@@ -171,8 +170,7 @@ Pose start_pose(const PictureRecord& record, const Scene& scene, FrameSource& so
 std::unique_ptr<Queue> queue_for_jpeg(const ViewFlags& flags) {
     if (flags.jpeg == "cpu") return nullptr;
     try {
-        Messages already_reported;
-        std::unique_ptr<Queue> queue = choose_device(flags.render.machine.device, already_reported);
+        std::unique_ptr<Queue> queue = choose_device(flags.render.machine.device, nobody());
         return queue->is_cuda() ? std::move(queue) : nullptr;
     } catch (const Error&) { // it has no room for two
         return nullptr;
@@ -205,15 +203,15 @@ void end_soon() {
 
 int view(ViewFlags& flags) {
     Reporter reporter(flags.render.report);
-    flags.render.settings.read(flags.render, reporter.messages());
+    flags.render.settings.read(flags.render, reporter);
     check_host(flags.host);
     const std::unique_ptr<RenderSetup> ready = prepare_render(flags.render, kView, reporter, report_solving(reporter));
     if (!makes_frames(ready->settings.integrator) && flags.render.reconstruction.has_frame_options()) {
-        reporter.messages().note({"integrator", std::string(integrator_name(ready->settings)),
-                                  "its frames are not reconstructed; `restir` and `resolution_scale` apply once the "
-                                  "panel's integrator is path or hybrid"});
+        reporter.note({"integrator", std::string(integrator_name(ready->settings)),
+                       "its frames are not reconstructed; `restir` and `resolution_scale` apply once the "
+                       "panel's integrator is path or hybrid"});
     }
-    if (flags.render.time_s) report_motion(flags.render, *ready->moving, reporter.messages());
+    if (flags.render.time_s) report_motion(flags.render, *ready->moving, reporter);
     const uint32_t width = ready->settings.width, height = ready->settings.height;
     check_jpeg_size({"size", fmt::format("{}x{}", width, height), ""}, width, height); // that is how pictures are sent
     reporter.report_messages();
@@ -253,7 +251,7 @@ int view(ViewFlags& flags) {
     report_choices(ready->scene(), start);
     let_time_move(flags, *ready, start);
     if (!start.why_still.empty()) {
-        reporter.messages().note(
+        reporter.note(
             {FileLocation{flags.render.scene.scene},
              fmt::format("the scene {}; `time` shows it at another, `integrator=path` moving", start.why_still)});
         reporter.report_messages();

@@ -105,9 +105,8 @@ SessionFrames::SessionFrames(Session& session, MovingScene& scene, double frame_
 void SessionFrames::set_time(double time_s) {
     if (scene_.time_s() == time_s && !is_behind_) return;
     const Stopwatch watch;
-    Messages already_reported; // discards messages about the scene, which were shown at the start
     const bool was_behind = std::exchange(is_behind_, true);
-    const uint32_t parts = scene_.set_time(time_s, already_reported);
+    const uint32_t parts = scene_.set_time(time_s, nobody()); // messages were shown at the start
     if (was_behind) {
         shows_reconstruction_ = false; // its frames are discarded
         session_.set_scene(scene_.prepared());
@@ -443,7 +442,7 @@ std::optional<ShownFrame> SessionFrames::make_next(const FrameRequest& request) 
                                                                   // it takes
                 return !has_begun || now.seconds < request.budget_s;
             },
-            &flag);
+            flag);
         added = session_.render(is_small ? 1 : until - before, sink);
         frame.rays = session_.rays() - rays_before;
     }

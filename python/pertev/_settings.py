@@ -15,7 +15,7 @@ def _text(row, value):
         return value
     if isinstance(value, os.PathLike):
         return os.fspath(value)
-    if isinstance(value, bool) or type(value).__name__ in ("bool", "bool_"):  # of Python, NumPy 2 and 1
+    if isinstance(value, bool) or type(value).__name__ in ("bool", "bool_"):  # names in Python, NumPy 2 and 1
         if row["type"] == "bool":
             return "true" if value else "false"
     elif isinstance(value, int):

@@ -130,6 +130,8 @@ void parallel_invoke(const std::function<void()>& a, const std::function<void()>
 #else
 
 constexpr std::size_t kMaxThreads = 4096;
+// An exception beside a call does not cancel it. TBB would let the call return as if it had done its work.
+constexpr auto kIsolated = tbb::task_group_context::isolated;
 
 } // namespace
 
@@ -166,10 +168,12 @@ void parallel_for_ranges(uint64_t count, uint64_t grain, const std::function<voi
     if (count == 0) return;
     const tbb::blocked_range<uint64_t> all(0, count, std::max<uint64_t>(grain, 1));
     run_in_team([&] {
-        tbb::parallel_for(all, [&](const tbb::blocked_range<uint64_t>& range) {
+        tbb::task_group_context own(kIsolated);
+        const auto work = [&](const tbb::blocked_range<uint64_t>& range) {
             const DefaultFloatingPoint control;
             body(range.begin(), range.end());
-        });
+        };
+        tbb::parallel_for(all, work, own);
     });
 }
 
@@ -180,7 +184,10 @@ void parallel_invoke(const std::function<void()>& a, const std::function<void()>
             work();
         };
     };
-    run_in_team([&] { tbb::parallel_invoke(guarded(a), guarded(b)); });
+    run_in_team([&] {
+        tbb::task_group_context own(kIsolated);
+        tbb::parallel_invoke(guarded(a), guarded(b), own);
+    });
 }
 
 #endif

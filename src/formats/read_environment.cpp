@@ -9,12 +9,12 @@
 
 namespace pertev {
 
-Image read_environment_image(const std::filesystem::path& path, Messages& messages) {
-    Image image = read_image(path, &messages);
+Image read_environment_image(const std::filesystem::path& path, Sink& sink) {
+    Image image = read_image(path, sink);
     if (image.width != 2 * image.height) {
-        messages.warn({FileLocation{path.string()},
-                       fmt::format("{}x{} is not twice as wide as high; it is used as a full panorama anyway",
-                                   image.width, image.height)});
+        sink.warn({FileLocation{path.string()},
+                   fmt::format("{}x{} is not twice as wide as high; it is used as a full panorama anyway", image.width,
+                               image.height)});
     }
     if (image.channels == 4) { // alpha means nothing here
         const std::size_t count = image.pixels.size() / 4;
@@ -24,7 +24,7 @@ Image read_environment_image(const std::filesystem::path& path, Messages& messag
     }
     const std::string extension = lower_case_extension(path);
     if (extension == ".png" || extension == ".jpg" || extension == ".jpeg") {
-        messages.warn(
+        sink.warn(
             {FileLocation{path.string()}, "8-bit pictures clip bright light; an .hdr or .exr has the full range"});
     }
     return image;

@@ -23,7 +23,7 @@ namespace {
 
 struct FormatReader {
     std::string_view extension;
-    Scene (*read)(const std::filesystem::path&, const FileAccess&, const ReadOptions&, Messages&);
+    Scene (*read)(const std::filesystem::path&, const FileAccess&, const ReadOptions&, Sink&);
     bool defines_sides; // its files can say whether a surface emits from both faces
     bool defines_space; // their coordinates are metres, y up
 };
@@ -42,30 +42,30 @@ const FormatReader* find_reader(const std::filesystem::path& path) {
     return found == kReaders.end() ? nullptr : &*found;
 }
 
-Scene read_file_or_builtin(const std::filesystem::path& path, const ReadOptions& options, Messages& messages) {
+Scene read_file_or_builtin(const std::filesystem::path& path, const ReadOptions& options, Sink& sink) {
     const FileAccess access(path, options.allowed_paths);
     if (const auto bytes = builtin_scene(path.string())) {
         if (const auto materials = builtin_materials(path.string())) {
-            return read_obj(path, ObjTexts{*bytes, *materials}, access, options, messages);
+            return read_obj(path, ObjTexts{*bytes, *materials}, access, options, sink);
         }
-        return read_gltf(path, {bytes->begin(), bytes->end()}, access, options, messages);
+        return read_gltf(path, {bytes->begin(), bytes->end()}, access, options, sink);
     }
-    if (const FormatReader* reader = find_reader(path)) return reader->read(path, access, options, messages);
+    if (const FormatReader* reader = find_reader(path)) return reader->read(path, access, options, sink);
     throw Error(ErrorCode::BadInput, FileLocation{path.string()}, fmt::format("neither {}", scene_kinds()));
 }
 
 } // namespace
 
-Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, Messages& messages) {
-    Scene scene = read_file_or_builtin(path, options, messages);
+Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, Sink& sink) {
+    Scene scene = read_file_or_builtin(path, options, sink);
     // Formats that have neither, and files that have none.
     if (scene.clips.empty() && !options.animation.empty()) choose_clips(path.string(), {}, options.animation);
     if (scene.file_scenes.empty() && !options.file_scene.empty()) {
         choose_file_scene(path.string(), {}, options.file_scene);
     }
     if (!defines_space(path)) convert_to_metres(options.space, scene);
-    validate(scene, path.string(), messages);
-    warn_of_invisible_materials(scene, path.string(), messages);
+    validate(scene, path.string(), sink);
+    warn_of_invisible_materials(scene, path.string(), sink);
     if (options.two_sided_lights) {
         for (Material& material : scene.materials) material.two_sided_emission = true;
     }

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "formats/files/read_options.h"
 #include "scene/scene.h"
 
@@ -14,9 +14,9 @@ namespace pertev {
 
 /// Reads the scene of a file, or the built-in one with this name (formats/builtin_scenes.h). Throws Error(BadInput)
 /// that names the file, the location in it and what would be right, and, for an animation or a scene that the file
-/// does not have, a list of those that it has. `messages` reports what was left out or repaired. The scene has passed
+/// does not have, a list of those that it has. `sink` reports what was left out or repaired. The scene has passed
 /// validate().
-Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, Messages& messages);
+Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, Sink& sink);
 
 /// Returns whether files of this name's format can say if a surface emits from one face or from both; built-in scenes
 /// can.

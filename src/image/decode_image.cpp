@@ -37,13 +37,12 @@ ImageHeader read_image_header(std::span<const std::byte> bytes, const std::strin
     check_failed("a known image format", __FILE__, __LINE__);
 }
 
-std::variant<Rgba8Image, Image> decode_image(std::span<const std::byte> bytes, const std::string& name,
-                                             Messages* messages) {
+std::variant<Rgba8Image, Image> decode_image(std::span<const std::byte> bytes, const std::string& name, Sink& sink) {
     switch (format_of(bytes, name)) {
     case ImageFormat::Png:
-        return decode_png(bytes, name, messages);
+        return decode_png(bytes, name, sink);
     case ImageFormat::Jpeg:
-        return decode_jpeg(bytes, name, messages);
+        return decode_jpeg(bytes, name, sink);
     case ImageFormat::Hdr:
         return decode_hdr(bytes, name);
     case ImageFormat::Exr:

@@ -8,7 +8,7 @@
 #include <string>
 #include <variant>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "image/image.h"
 #include "image/image_header.h"
 
@@ -25,7 +25,7 @@ namespace pertev {
 /// Throws Error(BadInput) for data that is damaged, truncated or none of these, Error(OverLimit) for more pixels than
 /// base/limits.h allows. Damage that leaves every pixel known (a bad checksum in a comment) gives a warning.
 std::variant<Rgba8Image, Image> decode_image(std::span<const std::byte> bytes, const std::string& name,
-                                             Messages* messages = nullptr);
+                                             Sink& sink = nobody());
 
 /// Returns the size of the picture according to the file's header. Throws Error for an invalid header.
 ImageHeader read_image_header(std::span<const std::byte> bytes, const std::string& name);

@@ -145,7 +145,7 @@ void open(JpegReader& reader, std::span<const std::byte> bytes, const std::strin
 
 } // namespace
 
-Rgba8Image decode_jpeg(std::span<const std::byte> bytes, const std::string& name, Messages* messages) {
+Rgba8Image decode_jpeg(std::span<const std::byte> bytes, const std::string& name, Sink& sink) {
     JpegReader reader;
     open(reader, bytes, name);
     const jpeg_decompress_struct& info = reader.info;
@@ -159,8 +159,7 @@ Rgba8Image decode_jpeg(std::span<const std::byte> bytes, const std::string& name
         if (info.out_color_space == JCS_CMYK) convert_cmyk_row(row, image.width, info.saw_Adobe_marker != FALSE);
     }
     if (!finish(reader)) fail(reader, name, image.height);
-    if (messages != nullptr && reader.warning[0] != '\0')
-        messages->warn(fmt::format("{}: JPEG: {}", name, reader.warning));
+    if (reader.warning[0] != '\0') sink.warn(fmt::format("{}: JPEG: {}", name, reader.warning));
     return image;
 }
 

@@ -8,14 +8,14 @@
 #include <span>
 #include <string>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "image/image.h"
 #include "image/image_header.h"
 
 namespace pertev {
 
 /// Decodes a JPEG file under the contract of decode_image.
-Rgba8Image decode_jpeg(std::span<const std::byte> bytes, const std::string& name, Messages* messages);
+Rgba8Image decode_jpeg(std::span<const std::byte> bytes, const std::string& name, Sink& sink);
 /// Reads the header of a JPEG file under the contract of read_image_header.
 ImageHeader read_jpeg_header(std::span<const std::byte> bytes, const std::string& name);
 

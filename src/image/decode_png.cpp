@@ -125,8 +125,7 @@ std::vector<T> read_all(PngReader& reader, const std::string& name) {
 
 } // namespace
 
-std::variant<Rgba8Image, Image> decode_png(std::span<const std::byte> bytes, const std::string& name,
-                                           Messages* messages) {
+std::variant<Rgba8Image, Image> decode_png(std::span<const std::byte> bytes, const std::string& name, Sink& sink) {
     PngReader reader;
     start(reader, bytes, name);
     std::variant<Rgba8Image, Image> result;
@@ -139,8 +138,7 @@ std::variant<Rgba8Image, Image> decode_png(std::span<const std::byte> bytes, con
     } else {
         result = Rgba8Image{reader.width, reader.height, read_all<uint8_t>(reader, name)};
     }
-    if (messages != nullptr && reader.warning[0] != '\0')
-        messages->warn(fmt::format("{}: PNG: {}", name, reader.warning));
+    if (reader.warning[0] != '\0') sink.warn(fmt::format("{}: PNG: {}", name, reader.warning));
     return result;
 }
 

@@ -3,6 +3,7 @@
 // Identifies picture formats from the first bytes, because names and extensions may be wrong.
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -11,6 +12,8 @@
 namespace pertev {
 
 enum class ImageFormat { Png, Jpeg, Hdr, Exr };
+/// The format in a set of formats.
+constexpr uint32_t bit_of(ImageFormat format) { return 1u << static_cast<uint32_t>(format); }
 
 /// The format whose magic bytes `bytes` starts with; nothing for any other content.
 std::optional<ImageFormat> recognise_image(std::span<const std::byte> bytes);

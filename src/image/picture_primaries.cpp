@@ -33,17 +33,14 @@ Found find_primaries(std::span<const std::byte> bytes, const std::string& name) 
 
 } // namespace
 
-std::optional<ColorMatrix> color_matrix_of(std::span<const std::byte> bytes, const std::string& name,
-                                           Messages* messages) {
+std::optional<ColorMatrix> color_matrix_of(std::span<const std::byte> bytes, const std::string& name, Sink& sink) {
     const Found found = find_primaries(bytes, name);
     if (!found.is_given || (found.primaries && is_rec709(*found.primaries))) return std::nullopt;
     if (found.primaries) {
         if (std::optional<ColorMatrix> matrix = rec709_from(*found.primaries)) return matrix;
     }
-    if (messages != nullptr) {
-        messages->leave_out(fmt::format(
-            "{}: its chromaticities are not valid primaries and are left out; its colours are read as Rec. 709", name));
-    }
+    sink.leave_out(fmt::format(
+        "{}: its chromaticities are not valid primaries and are left out; its colours are read as Rec. 709", name));
     return std::nullopt;
 }
 

@@ -47,12 +47,12 @@ Image with_colour(Image from, std::size_t file_bytes, const std::string& name) {
 
 } // namespace
 
-Image read_image(std::span<const std::byte> bytes, const std::string& name, Messages* messages) {
-    std::variant<Rgba8Image, Image> decoded = decode_image(bytes, name, messages);
+Image read_image(std::span<const std::byte> bytes, const std::string& name, Sink& sink) {
+    std::variant<Rgba8Image, Image> decoded = decode_image(bytes, name, sink);
     if (const Rgba8Image* image = std::get_if<Rgba8Image>(&decoded))
         return linear_from_bytes(*image, bytes.size(), name);
     Image& stored = std::get<Image>(decoded);
-    if (const auto matrix = color_matrix_of(bytes, name, messages)) convert_colors(*matrix, stored);
+    if (const auto matrix = color_matrix_of(bytes, name, sink)) convert_colors(*matrix, stored);
     Image image = with_colour(std::move(stored), bytes.size(), name);
     if (recognise_image(bytes) == ImageFormat::Png) {
         for (std::size_t i = 0; i < image.pixels.size(); ++i)
@@ -61,8 +61,8 @@ Image read_image(std::span<const std::byte> bytes, const std::string& name, Mess
     return image;
 }
 
-Image read_image(const std::filesystem::path& path, Messages* messages) {
-    return read_image(read_file(path), path.string(), messages);
+Image read_image(const std::filesystem::path& path, Sink& sink) {
+    return read_image(read_file(path), path.string(), sink);
 }
 
 } // namespace pertev

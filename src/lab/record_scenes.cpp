@@ -10,8 +10,8 @@ namespace pertev {
 namespace {
 
 /// Returns only the file's triangles, in one mesh in the file's order, without normals.
-Mesh read_one_mesh(const std::filesystem::path& path, Messages& messages) {
-    const Scene scene = read_scene(path, {.geometry_only = true}, messages);
+Mesh read_one_mesh(const std::filesystem::path& path, Sink& sink) {
+    const Scene scene = read_scene(path, {.geometry_only = true}, sink);
     Mesh mesh;
     for (const Instance& instance : scene.instances) {
         const Mesh& part = scene.meshes[instance.mesh];
@@ -22,8 +22,8 @@ Mesh read_one_mesh(const std::filesystem::path& path, Messages& messages) {
     return mesh;
 }
 
-Scene make_grey_scene(const std::string& file, float reflectance, Messages& messages) {
-    Scene scene = read_scene(file, {.geometry_only = true}, messages);
+Scene make_grey_scene(const std::string& file, float reflectance, Sink& sink) {
+    Scene scene = read_scene(file, {.geometry_only = true}, sink);
     scene.materials.assign(1, Material{{.base_color = {reflectance, reflectance, reflectance}}, "grey"});
     for (Instance& instance : scene.instances) instance.material = 0;
     for (Mesh& mesh : scene.meshes) {
@@ -60,9 +60,9 @@ std::filesystem::path record_file(const RecordScene& scene, const std::filesyste
 
 Camera record_camera(const RecordScene& scene) { return camera_of(scene.view, scene.name); }
 
-Scene make_record_scene(const RecordScene& record, const std::filesystem::path& folder, Messages& messages) {
+Scene make_record_scene(const RecordScene& record, const std::filesystem::path& folder, Sink& sink) {
     Scene scene;
-    scene.meshes.push_back(read_one_mesh(record_file(record, folder), messages));
+    scene.meshes.push_back(read_one_mesh(record_file(record, folder), sink));
     scene.materials.push_back({{}, "grey"});
     scene.instances.push_back({.name = record.name});
     scene.cameras.push_back(record_camera(record));
@@ -82,14 +82,14 @@ RenderSettings job_settings(const RecordJob& job) {
     return settings;
 }
 
-Scene make_job_scene(const RecordJob& job, const std::string& file, Messages& messages) {
-    if (job.reflectance) return make_grey_scene(file, *job.reflectance, messages);
-    return open_scene(file, messages, SceneUse::Benchmark);
+Scene make_job_scene(const RecordJob& job, const std::string& file, Sink& sink) {
+    if (job.reflectance) return make_grey_scene(file, *job.reflectance, sink);
+    return open_scene(file, sink, SceneUse::Benchmark);
 }
 
-Camera job_camera(const RecordJob& job, const Scene& scene, float aspect, Messages& messages) {
+Camera job_camera(const RecordJob& job, const Scene& scene, float aspect, Sink& sink) {
     if (job.view) return camera_of(*job.view, job.name);
-    return choose_camera(CameraChoice{}, scene, aspect, messages);
+    return choose_camera(CameraChoice{}, scene, aspect, sink);
 }
 
 CameraChoice camera_choice(const TransportPreset& preset) {

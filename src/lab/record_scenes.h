@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <string>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "lab/record.h"
 #include "scene/scene.h"
 #include "session/opening/choose_camera.h"
@@ -29,16 +29,16 @@ Camera record_camera(const RecordScene& scene);
 std::filesystem::path record_file(const RecordScene& scene, const std::filesystem::path& folder);
 
 /// Reads a scene of the record: geometry in one mesh, grey, with the camera. Throws like record_file.
-Scene make_record_scene(const RecordScene& scene, const std::filesystem::path& folder, Messages& messages);
+Scene make_record_scene(const RecordScene& scene, const std::filesystem::path& folder, Sink& sink);
 
 /// Returns the settings of a job: size, samples, filter and depth.
 RenderSettings job_settings(const RecordJob& job);
 
 /// Reads the job's scene from the file that has its geometry. Throws Error.
-Scene make_job_scene(const RecordJob& job, const std::string& file, Messages& messages);
+Scene make_job_scene(const RecordJob& job, const std::string& file, Sink& sink);
 
 /// Returns the job's camera for pictures of this width / height. Throws Error(BadInput).
-Camera job_camera(const RecordJob& job, const Scene& scene, float aspect, Messages& messages);
+Camera job_camera(const RecordJob& job, const Scene& scene, float aspect, Sink& sink);
 
 /// Returns the preset's own view; all defaults if it has none.
 CameraChoice camera_choice(const TransportPreset& preset);

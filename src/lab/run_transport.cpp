@@ -71,8 +71,7 @@ public:
     TransportScene run() {
         try {
             progress("building trees");
-            Messages messages; // messages of reading the scene, already reported
-            prepared_ = prepare_scene(scene_, prepare_options(settings_.picture, queue_.is_cuda()), messages);
+            prepared_ = prepare_scene(scene_, prepare_options(settings_.picture, queue_.is_cuda()), nobody());
             report_.triangles = prepared_.triangles;
             turns_left_ = static_cast<double>(settings_.repetitions) *
                           static_cast<double>(std::ranges::count(report_.rows, "", &TransportRow::refused));
@@ -94,10 +93,9 @@ private:
     std::string why_not(const std::string& integrator) const {
         try {
             const RenderSettings picture = settings_of(settings_, integrator, 0);
-            Messages notes;
             check_integrator(picture);
             check_camera(picture, camera_);
-            check_light(picture, scene_, notes);
+            check_light(picture, scene_, nobody());
             if (is_solved(picture.integrator)) return why_no_solution(scene_);
         } catch (const Error& error) {
             return error.setting() == "integrator" ? error.reason() : error.what();

@@ -145,8 +145,7 @@ ThesisPicture ThesisPictures::make(std::string_view name, Sink& sink) {
             same_for_all({.structure = recipe.structure,
                           .traversal = only_traversal_of(recipe.structure).value_or(TraversalKind::WhileWhile)});
     }
-    Messages messages;
-    job.prepared = prepare_scene(job.scene, prepare_options(settings, queue_.is_cuda()), messages);
+    job.prepared = prepare_scene(job.scene, prepare_options(settings, queue_.is_cuda()), job.sink);
     job.camera = camera_of(recipe.scene, job.scene, aspect_of(settings.width, settings.height));
     picture.command = command_text(recipe, settings);
     switch (recipe.way) {

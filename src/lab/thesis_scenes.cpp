@@ -100,8 +100,7 @@ constexpr uint32_t kSmoothRings = 48, kCoarseRings = 10;
 } // namespace
 
 Scene make_thesis_scene(ThesisScene which) {
-    Messages messages;
-    Scene scene = read_scene(which == ThesisScene::Caustic ? "caustic" : "cornell-box", {}, messages);
+    Scene scene = read_scene(which == ThesisScene::Caustic ? "caustic" : "cornell-box", {}, nobody());
     using enum ThesisScene;
     const auto is_one_of = [which](auto... scenes) { return ((which == scenes) || ...); };
     if (is_one_of(PointLight, PlasticBall, TwoBalls)) replace_emitter(scene);
@@ -114,10 +113,9 @@ Scene make_thesis_scene(ThesisScene which) {
 }
 
 Camera camera_of(ThesisScene which, const Scene& scene, float aspect) {
-    Messages messages;
     const bool is_preset = which == ThesisScene::Caustic;
     return choose_camera(is_preset ? camera_choice(*find_named(the_record().presets, "caustic")) : CameraChoice{},
-                         scene, aspect, messages);
+                         scene, aspect, nobody());
 }
 
 const char* command_of(ThesisScene which) {

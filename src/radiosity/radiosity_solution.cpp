@@ -230,16 +230,16 @@ RadiositySolution read_any_solution(const std::filesystem::path& path) {
     return solution;
 }
 
-RadiositySolution read_solution(const std::filesystem::path& path, const Scene& scene, Messages& messages) {
+RadiositySolution read_solution(const std::filesystem::path& path, const Scene& scene, Sink& sink) {
     RadiositySolution solution = read_any_solution(path);
     check_scene(path, solution, scene);
     if (!solution.light) {
-        messages.warn({FileLocation{path.string()},
-                       "an earlier version made it and did not record its light; if lights or materials have changed "
-                       "since, it shows the old ones; solve the scene again"});
+        sink.warn({FileLocation{path.string()},
+                   "an earlier version made it and did not record its light; if lights or materials have changed "
+                   "since, it shows the old ones; solve the scene again"});
     }
     if (solution.extent.part != SolvedPart::All) {
-        messages.warn(
+        sink.warn(
             {FileLocation{path.string()},
              fmt::format("it is unfinished and holds {}; solve the scene again for all", describe(solution.extent))});
     }

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/hash.h"
-#include "base/messages.h"
+#include "base/sink.h"
 #include "radiosity/radiosity_view.h"
 #include "radiosity/solved_light.h"
 #include "scene/scene.h"
@@ -72,6 +72,6 @@ RadiositySolution read_any_solution(const std::filesystem::path& path);
 
 /// Reads a solution of `scene`. Throws Error(BadInput) too if it belongs to another scene, or to this one under other
 /// light. A file that does not state its light gives a warning, and so does an incomplete solution.
-RadiositySolution read_solution(const std::filesystem::path& path, const Scene& scene, Messages& messages);
+RadiositySolution read_solution(const std::filesystem::path& path, const Scene& scene, Sink& sink);
 
 } // namespace pertev

@@ -303,20 +303,20 @@ SolvedRadiosity solve_radiosity(const PreparedScene& prepared, const RadiositySe
     return solved;
 }
 
-void warn_of_limits(const SolveStats& stats, const RadiositySettings& settings, Messages& messages) {
+void warn_of_limits(const SolveStats& stats, const RadiositySettings& settings, Sink& sink) {
     if (stats.link_error > settings.link_error) {
-        messages.warn(
+        sink.warn(
             {"link_error", fmt::format("{}", settings.link_error),
              fmt::format("radiosity has more than {} links, the limit; {} with `link_error={}` (set that to save time)",
                          kMaxLinks, stats.was_interrupted ? "it is unfinished" : "it is solved", stats.link_error)});
     }
     if (!stats.reached_limit) return;
     const bool is_ambient = settings.solver == RadiositySolver::Southwell;
-    messages.warn({"tolerance", fmt::format("{}", settings.tolerance),
-                   fmt::format("radiosity: after {} steps, the limit, {:.2g} of the light {}, which exceeds it (almost "
-                               "nothing absorbs light; lower reflectances, or use a larger tolerance)",
-                               stats.steps, stats.left,
-                               is_ambient ? "is unshot and displayed as ambient light" : "still changes")});
+    sink.warn({"tolerance", fmt::format("{}", settings.tolerance),
+               fmt::format("radiosity: after {} steps, the limit, {:.2g} of the light {}, which exceeds it (almost "
+                           "nothing absorbs light; lower reflectances, or use a larger tolerance)",
+                           stats.steps, stats.left,
+                           is_ambient ? "is unshot and displayed as ambient light" : "still changes")});
 }
 
 std::string json_of(const RadiositySettings& s) {

@@ -44,7 +44,7 @@ SolvedRadiosity solve_radiosity(const PreparedScene& prepared, const RadiositySe
                                 uint64_t max_links = kMaxLinks);
 
 /// Warns of a complete solution that does not meet the request.
-void warn_of_limits(const SolveStats& stats, const RadiositySettings& settings, Messages& messages);
+void warn_of_limits(const SolveStats& stats, const RadiositySettings& settings, Sink& sink);
 
 /// Settings that determine the bytes of the solution, as a JSON object.
 std::string json_of(const RadiositySettings& settings);

@@ -16,13 +16,13 @@ namespace {
 constexpr uint64_t kManyCopiedTriangles = 1u << 18;
 
 /// Warns of materials whose index of refraction is not the one that is rendered.
-void warn_of_indices(const Scene& scene, Messages& messages) {
+void warn_of_indices(const Scene& scene, Sink& sink) {
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const Material& material = scene.materials[i];
         if (material.kind != MaterialKind::Dielectric) continue;
         const float used = DielectricLobe::usable_ior(material.ior, alpha_from_roughness(material.roughness));
         if (used == material.ior) continue;
-        messages.warn(fmt::format(
+        sink.warn(fmt::format(
             "{}: rough glass of index {} is rendered with {}, because its energy is tabulated only from 1.1 to 3",
             numbered("material", i, material.name, material.origin), material.ior, used));
     }
@@ -43,18 +43,18 @@ std::vector<BvhBuilder> builders_for(const PrepareOptions& options) {
 
 } // namespace
 
-PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, Messages& messages) {
+PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, Sink& sink) {
     const Stopwatch watch;
     PreparedScene prepared;
     prepared.scene = &scene;
-    warn_of_indices(scene, messages);
+    warn_of_indices(scene, sink);
     if (!options.keep_coordinates) prepared.centre = options.centre.value_or(world_centre(scene));
     const MeshPlacement placement = place_meshes(scene, prepared.centre);
     prepared.is_baked = placement.is_baked;
     if (placement.copied_triangles > kManyCopiedTriangles) {
-        messages.warn(fmt::format("{} of shared meshes squeezed too much for a tree in their own space are copied into "
-                                  "world space, which takes memory for {} more triangles",
-                                  counted(placement.copies, "instance"), placement.copied_triangles));
+        sink.warn(fmt::format("{} of shared meshes squeezed too much for a tree in their own space are copied into "
+                              "world space, which takes memory for {} more triangles",
+                              counted(placement.copies, "instance"), placement.copied_triangles));
     }
 
     const SceneTriangles triangles(scene, placement);
@@ -62,7 +62,7 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, M
     for (std::size_t part = 0; part < triangles.parts(); ++part) {
         const std::vector<BvhTriangle>& list = triangles.part(part);
         BvhBuilder taken = builders.front();
-        Bvh bvh = load_or_build_bvh(list, builders, options.bvh, options.bvh_cache, messages, &taken);
+        Bvh bvh = load_or_build_bvh(list, builders, options.bvh, options.bvh_cache, sink, &taken);
         prepared.trees.add(taken, std::move(bvh), list.size());
     }
     prepared.blas_of_mesh = placement.blas_of_mesh;
@@ -73,11 +73,14 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, M
     prepared.trees.build_s = watch.seconds();
     prepared.structures = std::make_shared<SceneStructures>(builders.front(), prepared.trees, prepared.tlas);
     if (options.tracers) {
-        for (const RayKind kind : kValuesOf<RayKind>) prepared.structures->get((*options.tracers)[kind]);
+        for (const RayKind kind : kValuesOf<RayKind>) {
+            sink.check();
+            prepared.structures->get((*options.tracers)[kind]);
+        }
     }
     prepared.build_seconds = watch.seconds();
 
-    prepared.lights = build_light_set(scene, srgb_decode_table().data(), messages, prepared.centre);
+    prepared.lights = build_light_set(scene, srgb_decode_table().data(), sink, prepared.centre);
     balance_lights(prepared, srgb_decode_table().data());
     return prepared;
 }

@@ -10,7 +10,7 @@
 
 #include "accel/builders/build_bvh.h"
 #include "accel/bvh/tlas.h"
-#include "base/messages.h"
+#include "base/sink.h"
 #include "device_scene/placed_scene.h"
 #include "tracer/scene_structures.h"
 
@@ -44,7 +44,7 @@ struct PreparedScene : PlacedScene {
 };
 
 /// Prepares `scene`, which must outlive the result.
-PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, Messages& messages);
-PreparedScene prepare_scene(const Scene&& scene, const PrepareOptions& options, Messages& messages) = delete;
+PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, Sink& sink);
+PreparedScene prepare_scene(const Scene&& scene, const PrepareOptions& options, Sink& sink) = delete;
 
 } // namespace pertev

@@ -46,21 +46,20 @@ SceneTriangles changed_triangles(const Scene& scene, const MeshPlacement& placem
     return triangles;
 }
 
-void update_lights(const PreparedScene& before, const Scene& scene, Messages& messages, PreparedScene& after) {
-    after.lights =
-        build_light_set(scene, srgb_decode_table().data(), messages, after.centre, before.lights.environment);
+void update_lights(const PreparedScene& before, const Scene& scene, Sink& sink, PreparedScene& after) {
+    after.lights = build_light_set(scene, srgb_decode_table().data(), sink, after.centre, before.lights.environment);
     balance_lights(after, srgb_decode_table().data());
 }
 
 } // namespace
 
-PreparedScene update_scene(const PreparedScene& before, const Scene& scene, const SceneUpdate& update,
-                           Messages& messages, std::shared_ptr<const MotionKeys> motions) {
+PreparedScene update_scene(const PreparedScene& before, const Scene& scene, const SceneUpdate& update, Sink& sink,
+                           std::shared_ptr<const MotionKeys> motions) {
     const Stopwatch watch;
     if (update.keeps_surfaces() && motions == before.motions) {
         PreparedScene after = before;
         after.scene = &scene;
-        if (update.lights_changed) update_lights(before, scene, messages, after);
+        if (update.lights_changed) update_lights(before, scene, sink, after);
         after.build_seconds = watch.seconds();
         return after;
     }
@@ -70,7 +69,7 @@ PreparedScene update_scene(const PreparedScene& before, const Scene& scene, cons
         options.centre = before.centre;
         options.builder = before.structures->builder();
         options.motions = std::move(motions);
-        return prepare_scene(scene, options, messages);
+        return prepare_scene(scene, options, sink);
     }
     PreparedScene after = before;
     after.scene = &scene;
@@ -83,7 +82,7 @@ PreparedScene update_scene(const PreparedScene& before, const Scene& scene, cons
     after.structures = before.structures->updated(after.trees, after.tlas, changes, triangles);
     after.triangles = after.trees.triangle_count();
     after.build_seconds = watch.seconds();
-    update_lights(before, scene, messages, after);
+    update_lights(before, scene, sink, after);
     return after;
 }
 

@@ -23,8 +23,8 @@ namespace pertev {
 ///   lights, materials   keep all trees
 /// If other instances would have to be baked than before, everything is prepared anew. Throws as prepare_scene.
 /// `motions` becomes PreparedScene::motions.
-PreparedScene update_scene(const PreparedScene& before, const Scene& scene, const SceneUpdate& update,
-                           Messages& messages, std::shared_ptr<const MotionKeys> motions = nullptr);
+PreparedScene update_scene(const PreparedScene& before, const Scene& scene, const SceneUpdate& update, Sink& sink,
+                           std::shared_ptr<const MotionKeys> motions = nullptr);
 
 /// Returns whether update_scene has anything to do. For pure vertex motion only PreparedScene::poses change.
 bool changes_prepared(const SceneUpdate& update);

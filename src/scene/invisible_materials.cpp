@@ -41,7 +41,7 @@ bool lets_all_through(const Material& material, float opacity) {
 
 } // namespace
 
-void warn_of_invisible_materials(const Scene& scene, const std::string& file, Messages& messages) {
+void warn_of_invisible_materials(const Scene& scene, const std::string& file, Sink& sink) {
     std::vector<float> opacity(scene.materials.size());
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const Material& material = scene.materials[i];
@@ -65,7 +65,7 @@ void warn_of_invisible_materials(const Scene& scene, const std::string& file, Me
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         if (unseen[i] == 0 || seen[i] > 0 || invisible++ >= kMaxNamed) continue;
         const Material& material = scene.materials[i];
-        messages.warn(
+        sink.warn(
             {FileLocation{file}, fmt::format("the material {} is invisible{}, because its alpha is 0 or below its "
                                              "cutoff (in MTL d 0 or Tr 1); {} with it cannot be seen",
                                              material.name.empty() ? fmt::format("{}", i) : material.name,
@@ -73,7 +73,7 @@ void warn_of_invisible_materials(const Scene& scene, const std::string& file, Me
                                              counted(unseen[i], "surface"))});
     }
     if (invisible > kMaxNamed) {
-        messages.warn(
+        sink.warn(
             {FileLocation{file}, fmt::format("{} {} invisible", counted(invisible - kMaxNamed, "further material"),
                                              is_or_are(invisible - kMaxNamed))});
     }

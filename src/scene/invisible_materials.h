@@ -5,13 +5,13 @@
 
 #include <string>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "scene/scene.h"
 
 namespace pertev {
 
 /// Warns of each material whose opacity is 0 wherever a triangle uses it: by its own alpha, its textures' or the
 /// vertices'. `scene` has passed validate().
-void warn_of_invisible_materials(const Scene& scene, const std::string& file, Messages& messages);
+void warn_of_invisible_materials(const Scene& scene, const std::string& file, Sink& sink);
 
 } // namespace pertev

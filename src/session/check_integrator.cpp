@@ -131,20 +131,20 @@ std::optional<Remark> why_dark(const RenderSettings& settings, const Scene& scen
                     lights_of(scene)));
 }
 
-void check_light(const RenderSettings& settings, const Scene& scene, Messages& messages) {
+void check_light(const RenderSettings& settings, const Scene& scene, Sink& sink) {
     if (const auto why = why_dark(settings, scene)) throw Error(ErrorCode::BadInput, *why);
     const bool is_ambient = needs_punctual_lights(settings.integrator) && settings.ambient;
     if (!is_ambient && !has_any_light(scene) && !has_unlit(scene)) {
-        messages.warn("nothing in this scene emits light: " + no_lights_of(scene) +
-                      "; the picture would be black (`environment=1,1,1` adds light)");
+        sink.warn("nothing in this scene emits light: " + no_lights_of(scene) +
+                  "; the picture would be black (`environment=1,1,1` adds light)");
         return;
     }
     if (!lacks_lights(settings, scene)) return;
-    messages.note({"integrator", std::string(integrator_name(settings)),
-                   fmt::format("point, spot and directional lights light its surfaces, and {}; surfaces show the "
-                               "environment's mean as ambient light (`integrator=distributed` casts shadows of all "
-                               "lights)",
-                               lights_of(scene))});
+    sink.note({"integrator", std::string(integrator_name(settings)),
+               fmt::format("point, spot and directional lights light its surfaces, and {}; surfaces show the "
+                           "environment's mean as ambient light (`integrator=distributed` casts shadows of all "
+                           "lights)",
+                           lights_of(scene))});
 }
 
 } // namespace pertev

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "scene/scene.h"
 #include "settings/render_settings.h"
 
@@ -27,6 +27,6 @@ std::optional<Remark> why_dark(const RenderSettings& settings, const Scene& scen
 
 /// Throws Error(BadInput) with the reason of why_dark. A note says what whitted leaves out, and a warning says if
 /// nothing in the scene, not even its environment, emits light.
-void check_light(const RenderSettings& settings, const Scene& scene, Messages& messages);
+void check_light(const RenderSettings& settings, const Scene& scene, Sink& sink);
 
 } // namespace pertev

@@ -53,8 +53,8 @@ Image first_channel(const std::variant<Rgba8Image, Image>& decoded) {
     return heights;
 }
 
-Image read_heights(const HeightMapText& map, Messages* messages) {
-    Image heights = first_channel(decode_image(read_file(map.file), map.file, messages));
+Image read_heights(const HeightMapText& map, Sink& sink) {
+    Image heights = first_channel(decode_image(read_file(map.file), map.file, sink));
     const auto is_bad = [](float h) { return !(std::abs(h) <= kMaxScale); };
     if (std::ranges::any_of(heights.pixels, is_bad)) {
         refuse(map, fmt::format("a height that is not finite, or beyond {}", kMaxScale));
@@ -94,7 +94,7 @@ HeightMapText parse_height_map(std::string_view text) {
 }
 
 std::shared_ptr<const HeightMaps> read_height_maps(std::span<const HeightMapText> texts, const Scene& scene,
-                                                   Messages* messages) {
+                                                   Sink& sink) {
     std::map<uint32_t, HeightMap> of_material;
     for (const HeightMapText& map : texts) {
         std::vector<Names> all;
@@ -103,8 +103,8 @@ std::shared_ptr<const HeightMaps> read_height_maps(std::span<const HeightMapText
             all.push_back({scene.materials[i].name});
             if (!matches_name(map.material, scene.materials[i].name)) continue;
             if (!heights)
-                heights = read_heights(map, messages); // before the material is checked, so that a missing
-                                                       // file is always reported
+                heights = read_heights(map, sink); // before the material is checked, so that a missing
+                                                   // file is always reported
             check_coordinates(map, scene, i);
             of_material[i] = {i, *heights, map.scale, map.middle, map.text};
         }

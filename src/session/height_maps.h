@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "integrators/kinds/make_integrator.h"
 #include "integrators/reyes/reyes_settings.h"
 #include "scene/scene.h"
@@ -28,6 +28,6 @@ HeightMapText parse_height_map(std::string_view text);
 /// material counts. Returns null if `texts` is empty. Throws Error(BadInput) for a material that the scene does not
 /// have or whose meshes have no texture coordinates, and as decode_image does.
 std::shared_ptr<const HeightMaps> read_height_maps(std::span<const HeightMapText> texts, const Scene& scene,
-                                                   Messages* messages = nullptr);
+                                                   Sink& sink = nobody());
 
 } // namespace pertev

@@ -31,17 +31,16 @@ int cuda_index(const std::string& name) {
 
 } // namespace
 
-std::unique_ptr<Queue> choose_device(const std::string& name, Messages& messages) {
-    return ComingMachine({.device = name}, messages).take();
+std::unique_ptr<Queue> choose_device(const std::string& name, Sink& sink) {
+    return ComingMachine({.device = name}, sink).take();
 }
 
-std::unique_ptr<Queue> take_machine(const MachineOptions& options, Messages& messages) {
+std::unique_ptr<Queue> take_machine(const MachineOptions& options, Sink& sink) {
     if (options.threads > 0) set_thread_count(static_cast<int>(options.threads));
-    return choose_device(options.device, messages);
+    return choose_device(options.device, sink);
 }
 
-ComingMachine::ComingMachine(const MachineOptions& options, Messages& messages)
-    : name_(options.device), messages_(messages) {
+ComingMachine::ComingMachine(const MachineOptions& options, Sink& sink) : name_(options.device), sink_(sink) {
     if (options.threads > 0) set_thread_count(static_cast<int>(options.threads));
     if (name_ == "cpu") {
         queue_ = std::make_unique<Queue>(Queue::make_cpu());
@@ -72,7 +71,7 @@ bool ComingMachine::is_cuda() {
         const std::string reason = why_no_gpu_.get();
         is_cuda_ = reason.empty();
         if (!reason.empty() && name_ != "auto") refuse_device(name_, reason);
-        if (!reason.empty()) messages_.note(fmt::format("using the CPU: {}", reason));
+        if (!reason.empty()) sink_.note(fmt::format("using the CPU: {}", reason));
     }
     return *is_cuda_;
 }

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "device/queue.h"
 #include "settings/picture_options.h"
 
@@ -15,17 +15,17 @@ namespace pertev {
 
 /// Returns the queue of the named device. `auto` is the first working CUDA device, else the CPU with a notice of the
 /// reason; `cpu` never touches CUDA. Throws Error(BadInput) with the reason if the device cannot be used.
-std::unique_ptr<Queue> choose_device(const std::string& name, Messages& messages);
+std::unique_ptr<Queue> choose_device(const std::string& name, Sink& sink);
 
 /// Sets the number of threads that work for the calling thread, and returns the queue of choose_device.
-std::unique_ptr<Queue> take_machine(const MachineOptions& options, Messages& messages);
+std::unique_ptr<Queue> take_machine(const MachineOptions& options, Sink& sink);
 
 /// Takes the machine while its user reads a scene, because starting a GPU's driver takes as long as that. If there is
 /// no driver, a named GPU is refused at once; everything else is known later.
 class ComingMachine {
 public:
-    /// Starts to take the machine; `messages` outlives it. Throws as choose_device.
-    ComingMachine(const MachineOptions& options, Messages& messages);
+    /// Starts to take the machine; `sink` outlives it. Throws as choose_device.
+    ComingMachine(const MachineOptions& options, Sink& sink);
 
     /// Waits until the device is known. Throws Error(BadInput) if a named GPU cannot be used.
     bool is_cuda();
@@ -38,7 +38,7 @@ public:
 
 private:
     std::string name_;
-    Messages& messages_;
+    Sink& sink_;
     std::future<std::string> why_no_gpu_;
     std::future<std::unique_ptr<Queue>> coming_;
     std::unique_ptr<Queue> queue_; // the CPU's queue, if the CPU is named

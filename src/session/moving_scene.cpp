@@ -49,13 +49,13 @@ std::vector<double> keys_within(const Scene& scene, double time_s, const Shutter
 
 } // namespace
 
-MovingScene::MovingScene(Scene rest, std::optional<double> time_s, PrepareOptions options, Messages& messages,
+MovingScene::MovingScene(Scene rest, std::optional<double> time_s, PrepareOptions options, Sink& sink,
                          std::optional<Shutter> shutter)
     : posed_(std::move(rest), true), shutter_(shutter), time_s_(time_s), options_(std::move(options)) {
     options_.centre = world_centre(posed_.scene());
     if (time_s) posed_.set_time(*time_s);
     if (time_s) options_.motions = motions_at(*time_s);
-    prepared_ = prepare_scene(posed_.scene(), options_, messages);
+    prepared_ = prepare_scene(posed_.scene(), options_, sink);
     if (time_s) prepared_.poses = posed_.poses();
 }
 
@@ -110,20 +110,20 @@ double MovingScene::end_s() const {
     return end_s;
 }
 
-uint32_t MovingScene::set_time(double time_s, Messages& messages) {
+uint32_t MovingScene::set_time(double time_s, Sink& sink) {
     const bool was_behind = std::exchange(is_behind_, true), was_at_rest = prepared_.poses.empty();
     SceneUpdate update = posed_.set_time(time_s);
     const auto motions = motions_at(time_s);
     if (motions != nullptr || prepared_.motions != nullptr) add_moving(motions, prepared_.motions, update);
     options_.motions = motions;
-    uint32_t parts = apply(std::move(update), was_behind, messages);
+    uint32_t parts = apply(std::move(update), was_behind, sink);
     if (was_at_rest && !posed_.poses().empty()) parts |= kPartShapes | kPartPoses;
     prepared_.poses = posed_.poses();
     time_s_ = time_s;
     return parts;
 }
 
-uint32_t MovingScene::edit(const std::function<SceneUpdate(Scene&)>& edit, Messages& messages) {
+uint32_t MovingScene::edit(const std::function<SceneUpdate(Scene&)>& edit, Sink& sink) {
     SceneUpdate update = posed_.edit(edit);
     bool prepares_anew = std::exchange(is_behind_, true);
     if (time_s_) update += posed_.set_time(*time_s_);
@@ -132,20 +132,20 @@ uint32_t MovingScene::edit(const std::function<SceneUpdate(Scene&)>& edit, Messa
         prepares_anew = prepares_anew || !(centre == *options_.centre);
         options_.centre = centre;
     }
-    const uint32_t parts = apply(std::move(update), prepares_anew, messages);
+    const uint32_t parts = apply(std::move(update), prepares_anew, sink);
     prepared_.poses = time_s_ ? posed_.poses() : prepared_.poses;
     return parts;
 }
 
 /// Makes prepared() that of the scene after these changes.
-uint32_t MovingScene::apply(SceneUpdate update, bool prepares_anew, Messages& messages) {
+uint32_t MovingScene::apply(SceneUpdate update, bool prepares_anew, Sink& sink) {
     uint32_t parts = 0;
     if (prepares_anew) {
-        prepared_ = prepare_scene(posed_.scene(), options_, messages);
+        prepared_ = prepare_scene(posed_.scene(), options_, sink);
         parts = kAllParts;
     } else if (!update.is_empty()) {
         if (changes_prepared(update)) {
-            prepared_ = update_scene(prepared_, posed_.scene(), update, messages, options_.motions);
+            prepared_ = update_scene(prepared_, posed_.scene(), update, sink, options_.motions);
         }
         parts = parts_of(update);
     }

@@ -24,8 +24,8 @@ SettingField integrator_field(PictureOptions& options) {
 std::vector<Setting> picture_settings() {
     constexpr uint32_t kShown = kRender | kView,
                        kMachines = kLooking | kMeasure | kLab | kBenchPictures | kBenchBuild | kBenchRays;
-    constexpr uint32_t kExr = 1u << uint32_t(ImageFormat::Exr), kPng = 1u << uint32_t(ImageFormat::Png),
-                       kToned = kPng | 1u << uint32_t(ImageFormat::Jpeg);
+    constexpr uint32_t kExr = bit_of(ImageFormat::Exr), kPng = bit_of(ImageFormat::Png),
+                       kToned = kPng | bit_of(ImageFormat::Jpeg);
     constexpr uint32_t kTracing = kShown | kBenchPictures | kBenchRays;
     return {
         row("size", "Picture", "WIDTHxHEIGHT", FIELD(size), "The width and height of the picture in pixels.",

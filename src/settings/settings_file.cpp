@@ -26,20 +26,19 @@ std::vector<std::string> texts_of(const Setting& setting, const JsonValue& value
     return texts;
 }
 
-void compare_scene(const JsonValue& root, const std::filesystem::path& file, const std::string& scene,
-                   Messages& messages) {
+void compare_scene(const JsonValue& root, const std::filesystem::path& file, const std::string& scene, Sink& sink) {
     const std::optional<JsonValue> source = root.find("scene");
     if (!source) return;
     for (const auto& [key, value] : source->members()) {
         if (key != "name" && key != "hash") {
-            messages.leave_out(fmt::format("{}: unknown name in a file of settings", text_of(value.location())));
+            sink.leave_out(fmt::format("{}: unknown name in a file of settings", text_of(value.location())));
         }
     }
     const std::string name = source->string_or("name", ""), hash = source->string_or("hash", "");
     const std::string here = hash.empty() ? "" : scene_hash(scene);
     if (here.empty() || here == hash) return;
-    messages.warn(fmt::format("{}: the settings are for {} with hash {}; {} is a different scene (hash {})",
-                              file.string(), name, hash, scene, here));
+    sink.warn(fmt::format("{}: the settings are for {} with hash {}; {} is a different scene (hash {})", file.string(),
+                          name, hash, scene, here));
 }
 
 } // namespace
@@ -85,20 +84,20 @@ std::string reconstruction_json(const ReconstructionOptions& options) {
 }
 
 void read_settings(const std::filesystem::path& file, uint32_t verbs, std::span<const std::string> overruled,
-                   PictureOptions& options, Messages& messages) {
+                   PictureOptions& options, Sink& sink) {
     const JsonFile json(file);
     const JsonValue& root = json.root();
     if (const JsonValue version = root.at("version"); version.to_unsigned() != kVersion) {
         throw version.error(fmt::format("{}; expected {}", version.to_unsigned(), kVersion));
     }
-    compare_scene(root, file, options.scene.scene, messages);
+    compare_scene(root, file, options.scene.scene, sink);
     const JsonValue settings = root.at("settings");
     for (const auto& [name, value] : settings.members()) {
         const Setting* const setting = find_setting(name);
         if (setting != nullptr && std::ranges::find(overruled, setting->name) != overruled.end()) continue;
         if (setting == nullptr || !setting->is_kept || (setting->verbs & verbs) == 0) {
-            messages.leave_out(fmt::format("{}: {}", text_of(value.location()),
-                                           setting == nullptr ? "unknown setting" : "not a setting of this verb"));
+            sink.leave_out(fmt::format("{}: {}", text_of(value.location()),
+                                       setting == nullptr ? "unknown setting" : "not a setting of this verb"));
             continue;
         }
         try {
@@ -109,19 +108,17 @@ void read_settings(const std::filesystem::path& file, uint32_t verbs, std::span<
     }
     for (const auto& [name, value] : root.members()) {
         if (name != "version" && name != "scene" && name != "settings") {
-            messages.leave_out(fmt::format("{}: unknown name in a file of settings", text_of(value.location())));
+            sink.leave_out(fmt::format("{}: unknown name in a file of settings", text_of(value.location())));
         }
     }
 }
 
 void combine_settings(const std::filesystem::path& file, uint32_t verbs, const SetOthers& set_others,
-                      PictureOptions& options, Messages& messages) {
+                      PictureOptions& options, Sink& sink) {
     const PictureOptions start = options;
     std::vector<std::string> overruled; // settings of the file that do not go with the others
-    Messages already_reported;
     while (true) {
-        if (!file.empty())
-            read_settings(file, verbs, overruled, options, overruled.empty() ? messages : already_reported);
+        if (!file.empty()) read_settings(file, verbs, overruled, options, overruled.empty() ? sink : nobody());
         set_others(options);
         const auto conflict = find_conflict(options, verbs);
         if (!conflict) return;

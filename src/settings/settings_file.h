@@ -9,7 +9,7 @@
 #include <span>
 #include <string>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "settings/setting_table.h"
 
 namespace pertev {
@@ -34,7 +34,7 @@ std::string reconstruction_json(const ReconstructionOptions& options);
 /// warning; another scene than that of `options` gives a warning too. Settings in `overruled` are skipped. Throws
 /// Error(BadInput) for a file that is invalid or has another version, and for an invalid value.
 void read_settings(const std::filesystem::path& file, uint32_t verbs, std::span<const std::string> overruled,
-                   PictureOptions& options, Messages& messages);
+                   PictureOptions& options, Sink& sink);
 
 /// Sets some of the options.
 using SetOthers = std::function<void(PictureOptions&)>;
@@ -43,6 +43,6 @@ using SetOthers = std::function<void(PictureOptions&)>;
 /// does not go with them is dropped. Throws Error(BadInput) for a conflict between the others (check_settings), and as
 /// read_settings and `set_others`.
 void combine_settings(const std::filesystem::path& file, uint32_t verbs, const SetOthers& set_others,
-                      PictureOptions& options, Messages& messages);
+                      PictureOptions& options, Sink& sink);
 
 } // namespace pertev

@@ -234,7 +234,7 @@ void store_probabilities(LightSetData& data) {
 
 } // namespace
 
-LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, Messages& messages, Vec3 centre,
+LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, Sink& sink, Vec3 centre,
                              std::shared_ptr<const EnvironmentData> environment) {
     LightSetData data;
     for (const Material& material : scene.materials) {
@@ -247,8 +247,7 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
     }
     if (scene.environment) {
         if (environment == nullptr) {
-            environment =
-                std::make_shared<const EnvironmentData>(build_environment_light(*scene.environment, messages));
+            environment = std::make_shared<const EnvironmentData>(build_environment_light(*scene.environment, sink));
         }
         data.environment = std::move(environment);
     }

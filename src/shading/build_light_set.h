@@ -10,7 +10,7 @@
 #include <memory>
 #include <vector>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "scene/scene.h"
 #include "shading/light_set.h"
 
@@ -41,8 +41,8 @@ inline constexpr double kEvenShare = 0.5;
 /// Builds the lights of a `scene` that has passed validate(). `linear_from_srgb` [256]. `centre` is the origin of the
 /// world in which the lights are placed, in the scene's coordinates. `environment` is the data of this scene's
 /// environment from an earlier call, or null. Throws Error(OverLimit) for more than kMaxLights.
-LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, Messages& messages,
-                             Vec3 centre = {0, 0, 0}, std::shared_ptr<const EnvironmentData> environment = nullptr);
+LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, Sink& sink, Vec3 centre = {0, 0, 0},
+                             std::shared_ptr<const EnvironmentData> environment = nullptr);
 
 /// Builds the table that samples a source: by power within near and far ones, with `far_share`, in (0, 1), of the
 /// samples for far ones if there are both.

@@ -24,7 +24,7 @@ double sin_squared(double x) {
 }
 
 /// Returns the image times its scale, made finite and >= 0; one white pixel if there is no image.
-std::vector<Rgb> clean_pixels(const Environment& environment, Messages& messages) {
+std::vector<Rgb> clean_pixels(const Environment& environment, Sink& sink) {
     const Image& image = environment.image;
     const bool is_empty = image.pixels.empty();
     const uint64_t count = is_empty ? 1 : uint64_t(image.width) * image.height;
@@ -53,7 +53,7 @@ std::vector<Rgb> clean_pixels(const Environment& environment, Messages& messages
     });
     const auto warn = [&](uint64_t times, const char* what, const char* became) {
         if (times == 0) return;
-        messages.warn("environment: " + std::to_string(times) + " pixel values are " + what + "; read as " + became);
+        sink.warn("environment: " + std::to_string(times) + " pixel values are " + what + "; read as " + became);
     };
     warn(negative, "negative", "0");
     warn(not_a_number, "not a number", "0");
@@ -72,9 +72,9 @@ double mean_brightness(const PanoramaCorners& corners) {
 
 } // namespace
 
-EnvironmentData build_environment_light(const Environment& environment, Messages& messages) {
+EnvironmentData build_environment_light(const Environment& environment, Sink& sink) {
     EnvironmentData data;
-    data.pixels = clean_pixels(environment, messages);
+    data.pixels = clean_pixels(environment, sink);
     data.constant = data.pixels[0];
     data.is_constant = std::all_of(data.pixels.begin(), data.pixels.end(), [&](Rgb p) { return p == data.constant; });
     if (data.is_constant) {

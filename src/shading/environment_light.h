@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "base/host_device.h"
-#include "base/messages.h"
+#include "base/sink.h"
 #include "math/bilinear_patch.h"
 #include "math/portable_math.h"
 #include "math/rgb.h"
@@ -230,7 +230,7 @@ struct EnvironmentData {
 /// 65504 (the largest half float, from whose overflow they usually result), each kind with one warning. Values below
 /// 2^-100 become 0, because a film resolves nothing below 2^-64. An image whose pixels are all equal, or no image,
 /// becomes a constant. Takes seconds for 10^8 pixels.
-EnvironmentData build_environment_light(const Environment& environment, Messages& messages);
+EnvironmentData build_environment_light(const Environment& environment, Sink& sink);
 
 /// View of host memory, valid as long as the data.
 EnvironmentView view_of(const EnvironmentData& data);

@@ -70,6 +70,27 @@ class WhenItEnds(CliTest):
         if not SANITIZED:
             self.assertLess(time.monotonic() - began, 10)  # a sample takes half a minute
 
+    def test_an_interrupt_while_a_scene_is_read_ends_at_once_with_75(self):
+        with open(os.path.join(self.folder, "big.obj"), "w", encoding="ascii") as file:
+            file.write("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n" * 4_000_000)
+        for kind in [signal.SIGINT, signal.SIGTERM]:
+            program = subprocess.Popen([PROGRAM, "render", "big.obj", "-o", "x.exr", "--json"], cwd=self.folder,
+                                       env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            self.addCleanup(program.kill)
+            self.wait_while(program, is_listening=False)
+            time.sleep(0.2)
+            self.assertIsNone(program.poll())
+            program.send_signal(kind)
+            began = time.monotonic()
+            stdout, stderr = program.communicate(timeout=PATIENCE_S)
+            took = time.monotonic() - began
+            self.assertEqual((program.returncode, stderr, self.files()), (75, b"", ["big.obj"]))
+            events = [json.loads(line) for line in stdout.splitlines()]
+            self.assertEqual((events[-1]["event"], events[-1]["code"]), ("error", "interrupted"))
+            self.assertNotIn("scene", [event["event"] for event in events])
+            if not SANITIZED:
+                self.assertLess(took, 2)
+
     def test_a_time_limit_ends_at_a_whole_sample_with_0(self):
         done = self.render("--time-limit", "0.5", size="48x48", spp=8388607)
         self.assertLess(done["seconds"], 60)

@@ -11,7 +11,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "scene/scene.h"
 
 namespace pertev::test {

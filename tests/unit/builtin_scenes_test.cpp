@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "base/version.h"
 #include "formats/builtin_scenes.h"
 #include "formats/read_scene.h"

@@ -109,10 +109,10 @@ TEST_CASE("an EXR picture is converted to Rec. 709 when it is used, and kept as 
     const std::vector<std::byte> plain = encode_exr(kPicture);
     const std::vector<std::byte> bytes = with_chromaticities(plain, kAcesCg);
     Messages messages;
-    check_pixel(read_image(bytes, "t.exr", &messages), kRight);
+    check_pixel(read_image(bytes, "t.exr", messages), kRight);
     CHECK(std::get<Image>(decode_image(bytes, "t.exr")).pixels == kPicture.pixels);
-    CHECK(read_image(plain, "t.exr", &messages).pixels == kPicture.pixels); // without the attribute: as it is
-    CHECK(read_image(with_chromaticities(plain, kRec709), "t.exr", &messages).pixels == kPicture.pixels);
+    CHECK(read_image(plain, "t.exr", messages).pixels == kPicture.pixels); // without the attribute: as it is
+    CHECK(read_image(with_chromaticities(plain, kRec709), "t.exr", messages).pixels == kPicture.pixels);
     CHECK(messages.all().empty());
 
     const Image with_alpha = {1, 1, 4, {0.39735f, 0.26587f, 0.14643f, 0.5f}};
@@ -131,7 +131,7 @@ TEST_CASE("the line PRIMARIES of a Radiance HDR works like an EXR's chromaticiti
     const auto read = [](const std::string& line, Messages& messages) {
         std::string text = "#?RADIANCE\n" + line + "FORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n";
         for (const int byte : {64, 128, 32, 129}) text += static_cast<char>(byte); // (.5, 1, .25)
-        return read_image(std::as_bytes(std::span(text)), "t.hdr", &messages);
+        return read_image(std::as_bytes(std::span(text)), "t.hdr", messages);
     };
     Messages messages;
     CHECK(read("", messages).pixels == std::vector<float>{0.5f, 1, 0.25f});
@@ -155,7 +155,7 @@ TEST_CASE("chromaticities that are degenerate or of another type are left out wi
     const std::vector<std::byte> plain = encode_exr(kPicture);
     for (const auto& bytes : {with_chromaticities(plain, {}), with_chromaticities(plain, kAcesCg, "string")}) {
         Messages messages;
-        CHECK(read_image(bytes, "t.exr", &messages).pixels == kPicture.pixels);
+        CHECK(read_image(bytes, "t.exr", messages).pixels == kPicture.pixels);
         REQUIRE(messages.all().size() == 1);
         CHECK(messages.all()[0].is_warning);
         CHECK(messages.all()[0].text.find("t.exr: its chromaticities") == 0);

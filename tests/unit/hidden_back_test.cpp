@@ -146,7 +146,7 @@ TEST_CASE("the share of rays through hidden backs depends on scene and view, not
 }
 
 TEST_CASE("a picture's sink gets a notice of hidden backs, and an error tells why a picture has no sample") {
-    struct StoppingSink final : Sink {
+    struct StoppingSink final : Messages {
         bool stops = false;
         bool should_stop() override { return stops; }
     };

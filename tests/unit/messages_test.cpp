@@ -5,7 +5,8 @@
 #include <fmt/format.h>
 
 #include "base/json_text.h"
-#include "base/messages.h"
+#include "base/sink.h"
+#include "tests/support/thrown_error.h"
 
 using namespace pertev;
 
@@ -30,6 +31,31 @@ TEST_CASE("left-out parts cause warnings, defaults cause notices, and both are l
     CHECK(others.left_out() == messages.left_out());
     CHECK(others.made_up() == messages.made_up());
     CHECK(others.all()[0].times == 3);
+    CHECK(messages.since(4).left_out() == std::vector<std::string>{"a lamp"});
+    CHECK(messages.since(3).made_up() == messages.made_up());
+}
+
+TEST_CASE("a user's sink gets the messages of parts and ends them") {
+    struct Own final : Sink {
+        std::vector<std::string> texts;
+        bool stops = false;
+        void receive(const Message& message) override { texts.push_back(message.text); }
+        bool should_stop() override { return stops; }
+    } own;
+    ProgressSink heard = part_of(own, 0, 0.5);
+    heard.leave_out({"eye", "", "looks at itself"});
+    CHECK(own.texts == std::vector<std::string>{"`eye` looks at itself"});
+    PartMessages unheard(own);
+    unheard.make_up("a sky");
+    CHECK(own.texts.size() == 1);
+    CHECK(unheard.made_up() == std::vector<std::string>{"a sky"});
+    own.stops = true;
+    for (Sink* part : {static_cast<Sink*>(&heard), static_cast<Sink*>(&unheard)}) {
+        const std::optional<Error> error = test::thrown_error([&] { part->check(); });
+        CHECK((error && error->code() == ErrorCode::Interrupted));
+    }
+    nobody().warn("unheard");
+    CHECK(nobody().messages().all().empty());
 }
 
 TEST_CASE("messages about a million faults take little memory") {

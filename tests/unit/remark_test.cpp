@@ -3,8 +3,8 @@
 #include <doctest/doctest.h>
 
 #include "apps/viewer/panel_phrases.h"
-#include "base/messages.h"
 #include "base/phrase_settings.h"
+#include "base/sink.h"
 #include "tests/support/thrown_error.h"
 
 using namespace pertev;

@@ -30,7 +30,7 @@ PictureOptions small_turntable() {
 }
 
 /// A program that ends a sequence after some frames.
-struct Caller final : Sink {
+struct Caller final : Messages {
     uint32_t most = 100;
     std::vector<FrameReport> frames;
     bool should_stop() override { return frames.size() >= most; }

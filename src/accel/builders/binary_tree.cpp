@@ -236,7 +236,9 @@ float cost_with_leaves(const BinaryTree& tree, const BvhBuildSettings& settings)
 Bvh make_bvh(BinaryTree tree, const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings) {
     PERTEV_CHECK(settings.max_leaf >= 1);
     if (tree.root == kNoLink) return {};
+    settings.sink->check();
     limit_depth(tree, kMaxBvhDepth);
+    settings.sink->check();
     return Flattener(tree, triangles, settings).run();
 }
 

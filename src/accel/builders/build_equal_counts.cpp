@@ -26,7 +26,8 @@ struct EqualCountCuts {
 Bvh build_equal_counts_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings) {
     check_reference_count(triangles.size());
     EqualCountCuts cuts = {references_of(triangles)};
-    return make_bvh(TopDownBuilder(cuts, static_cast<uint32_t>(triangles.size())).build(), triangles, settings);
+    return make_bvh(TopDownBuilder(cuts, static_cast<uint32_t>(triangles.size()), *settings.sink).build(), triangles,
+                    settings);
 }
 
 } // namespace pertev

@@ -49,6 +49,7 @@ Bvh build_hploc_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSet
     std::vector<hploc::Cluster> clusters(count);
     std::vector<uint32_t> ends(count);
     uint32_t root = 0;
+    settings.sink->check();
     const hploc::Climb climb = {
         {nodes.data(), plans.data(), sizes.data(), count, {}}, curve.codes.data(), clusters.data(), ends.data(), &root};
     run(count, hploc::StoreLeaves{triangles.data(), curve.order.data(), climb});

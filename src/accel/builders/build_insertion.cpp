@@ -117,7 +117,10 @@ Bvh build_insertion_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuil
     leaves.root = 0;
     LinkedTree tree(std::move(leaves));
     InsertionSearch search(tree);
-    for (uint32_t i = 1; i < count; ++i) tree.insert(i, search.find(tree.node(i).box), count + i - 1);
+    for (uint32_t i = 1; i < count; ++i) {
+        if (i % 1024 == 0) settings.sink->check();
+        tree.insert(i, search.find(tree.node(i).box), count + i - 1);
+    }
     return make_bvh(tree.take(), triangles, settings);
 }
 

@@ -40,7 +40,8 @@ struct MedianCuts {
 Bvh build_median_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings) {
     check_reference_count(triangles.size());
     MedianCuts cuts = {references_of(triangles)};
-    return make_bvh(TopDownBuilder(cuts, static_cast<uint32_t>(triangles.size())).build(), triangles, settings);
+    return make_bvh(TopDownBuilder(cuts, static_cast<uint32_t>(triangles.size()), *settings.sink).build(), triangles,
+                    settings);
 }
 
 } // namespace pertev

@@ -49,7 +49,7 @@ std::vector<CurveKey> sort_along_curve(const std::vector<BuildReference>& refere
 
 class Clusters {
 public:
-    explicit Clusters(const std::vector<BuildReference>& references) {
+    Clusters(const std::vector<BuildReference>& references, Sink& sink) : sink_(sink) {
         const std::vector<CurveKey> keys = sort_along_curve(references);
         const auto count = static_cast<uint32_t>(keys.size());
         tree_.nodes.resize(2 * static_cast<std::size_t>(count) - 1);
@@ -67,6 +67,7 @@ public:
     BinaryTree build() {
         uint32_t blur = 0;
         while (clusters_.size() > 1) {
+            sink_.check();
             choose(blur);
             const std::size_t before = clusters_.size();
             merge();
@@ -161,6 +162,7 @@ private:
         used_ = sum.merged;
     }
 
+    Sink& sink_;
     BinaryTree tree_;
     std::vector<Cluster> clusters_, next_; // in order along the curve
     std::vector<uint32_t> choice_;         // [cluster] the neighbour that it chose
@@ -172,7 +174,7 @@ private:
 Bvh build_ploc_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings) {
     check_reference_count(triangles.size());
     if (triangles.empty()) return {};
-    return make_bvh(Clusters(references_of(triangles)).build(), triangles, settings);
+    return make_bvh(Clusters(references_of(triangles), *settings.sink).build(), triangles, settings);
 }
 
 } // namespace pertev

@@ -260,7 +260,7 @@ struct SplitPart {
 
 class SpatialSplitBuilder {
 public:
-    explicit SpatialSplitBuilder(const Cutter& cutter) : cutter_(cutter) {}
+    SpatialSplitBuilder(const Cutter& cutter, Sink& sink) : cutter_(cutter), sink_(sink) {}
 
     BinaryTree build(const References& all, uint64_t allowance) {
         std::vector<References> chunks((all.size() - 1) / kSplitChunk + 1);
@@ -279,6 +279,7 @@ public:
 
 private:
     std::unique_ptr<SplitPart> build_part(std::vector<References> chunks, uint64_t allowance, int depth) const {
+        sink_.check();
         auto part = std::make_unique<SplitPart>();
         std::vector<std::span<const BuildReference>> views(chunks.begin(), chunks.end());
         const std::size_t size = size_of(views);
@@ -347,6 +348,7 @@ private:
     }
 
     const Cutter& cutter_;
+    Sink& sink_;
     BinaryTree tree_;
 };
 
@@ -363,7 +365,7 @@ BinaryTree build_spatial_split_tree(const std::vector<BvhTriangle>& triangles, c
     for (const BuildReference& r : all) box.extend(box_of(r));
     const Cutter cutter(triangles, static_cast<uint32_t>(settings.max_leaf), splits.min_overlap * box.half_area(),
                         splits.min_own_overlap);
-    return SpatialSplitBuilder(cutter).build(all, allowance);
+    return SpatialSplitBuilder(cutter, *settings.sink).build(all, allowance);
 }
 
 Bvh build_spatial_split_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings,

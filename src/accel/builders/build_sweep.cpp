@@ -92,7 +92,8 @@ private:
 Bvh build_sweep_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings) {
     check_reference_count(triangles.size());
     SweepCuts cuts(triangles);
-    return make_bvh(TopDownBuilder(cuts, static_cast<uint32_t>(triangles.size())).build(), triangles, settings);
+    return make_bvh(TopDownBuilder(cuts, static_cast<uint32_t>(triangles.size()), *settings.sink).build(), triangles,
+                    settings);
 }
 
 } // namespace pertev

@@ -20,7 +20,7 @@ namespace pertev {
 template <class Cuts>
 class TopDownBuilder {
 public:
-    TopDownBuilder(Cuts& cuts, uint32_t count) : cuts_(cuts), count_(count) {}
+    TopDownBuilder(Cuts& cuts, uint32_t count, Sink& sink) : cuts_(cuts), count_(count), sink_(sink) {}
 
     BinaryTree build() {
         if (count_ == 0) return {};
@@ -51,6 +51,7 @@ private:
         const auto build_left = [&] { build_range(begin, middle, left, depth + 1); };
         const auto build_right = [&] { build_range(middle, end, right, depth + 1); };
         if (size >= kParallelSubtree) {
+            sink_.check();
             parallel_invoke(build_left, build_right);
         } else {
             build_left();
@@ -61,6 +62,7 @@ private:
 
     Cuts& cuts_;
     uint32_t count_;
+    Sink& sink_;
     BinaryTree tree_;
 };
 

@@ -194,7 +194,7 @@ Hash128 bvh_cache_key(const std::vector<BvhTriangle>& triangles, const BvhBuildS
 }
 
 std::optional<Bvh> load_cached_bvh(const Hash128& key, const fs::path& folder,
-                                   const std::vector<BvhTriangle>& triangles, Messages& messages) {
+                                   const std::vector<BvhTriangle>& triangles, Sink& sink) {
     const fs::path path = file_of(key, folder);
     try {
         if (!fs::exists(path)) return std::nullopt;
@@ -205,15 +205,15 @@ std::optional<Bvh> load_cached_bvh(const Hash128& key, const fs::path& folder,
         fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);
         return bvh;
     } catch (const Unusable& unusable) {
-        messages.warn({FileLocation{path.string()}, fmt::format("ignored and rebuilt: {}", unusable.why)});
+        sink.warn({FileLocation{path.string()}, fmt::format("ignored and rebuilt: {}", unusable.why)});
     } catch (const fs::filesystem_error& error) {
-        messages.warn({FileLocation{path.string()}, fmt::format("ignored and rebuilt: {}", error.code().message())});
+        sink.warn({FileLocation{path.string()}, fmt::format("ignored and rebuilt: {}", error.code().message())});
     }
     return std::nullopt;
 }
 
 void store_cached_bvh(const Hash128& key, const fs::path& folder, const BuiltTree& tree, std::size_t triangle_count,
-                      Messages& messages, uint64_t max_bytes) {
+                      Sink& sink, uint64_t max_bytes) {
     std::vector<uint32_t> order(tree.order.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = tree.order[i] | (tree.is_last[i] ? kEndOfLeaf : 0u);
     Header header = {.magic = {},
@@ -243,30 +243,31 @@ void store_cached_bvh(const Hash128& key, const fs::path& folder, const BuiltTre
         write_file_atomically(file_of(key, folder), bytes);
         remove_oldest(folder, max_bytes);
     } catch (const fs::filesystem_error& error) {
-        messages.warn({FileLocation{folder.string()},
-                       fmt::format("the structure cache cannot be written: {}", error.code().message())});
+        sink.warn({FileLocation{folder.string()},
+                   fmt::format("the structure cache cannot be written: {}", error.code().message())});
     } catch (const Error& error) {
-        messages.warn(
+        sink.warn(
             {FileLocation{folder.string()}, fmt::format("the structure cache cannot be written: {}", error.what())});
     }
 }
 
 Bvh load_or_build_bvh(const std::vector<BvhTriangle>& triangles, std::span<const BvhBuilder> builders,
-                      const BvhBuildSettings& settings, const std::optional<fs::path>& folder, Messages& messages,
-                      BvhBuilder* taken) {
+                      BvhBuildSettings settings, const std::optional<fs::path>& folder, Sink& sink, BvhBuilder* taken) {
+    settings.sink = &sink;
     const BvhBuilder builder = builders.front();
     if (taken != nullptr) *taken = builder;
     if (!folder || triangles.size() < kMinCachedTriangles) return build_bvh(builder, triangles, settings);
     const Hash128 hash = hash_of(triangles);
     for (const BvhBuilder stored : std::views::reverse(builders)) {
         const Hash128 key = key_of(hash, settings, stored);
-        std::optional<Bvh> bvh = load_cached_bvh(key, *folder, triangles, messages);
+        std::optional<Bvh> bvh = load_cached_bvh(key, *folder, triangles, sink);
         if (!bvh) continue;
         if (taken != nullptr) *taken = stored;
         return std::move(*bvh);
     }
     BuiltTree tree = build_by_position(builder, triangles, settings);
-    store_cached_bvh(key_of(hash, settings, builder), *folder, tree, triangles.size(), messages);
+    sink.check();
+    store_cached_bvh(key_of(hash, settings, builder), *folder, tree, triangles.size(), sink);
     return make_bvh(std::move(tree), triangles);
 }
 

@@ -13,7 +13,7 @@
 #include "accel/builders/build_bvh.h"
 #include "accel/builders/builders.h"
 #include "base/hash.h"
-#include "base/messages.h"
+#include "base/sink.h"
 
 namespace pertev {
 
@@ -27,12 +27,12 @@ Hash128 bvh_cache_key(const std::vector<BvhTriangle>& triangles, const BvhBuildS
 /// Loads the tree stored under `key` for these triangles. Returns nothing if there is none or it is unusable. The
 /// result passes find_broken_link, whatever the file contained.
 std::optional<Bvh> load_cached_bvh(const Hash128& key, const std::filesystem::path& folder,
-                                   const std::vector<BvhTriangle>& triangles, Messages& messages);
+                                   const std::vector<BvhTriangle>& triangles, Sink& sink);
 
 /// Stores a tree of `triangle_count` triangles, each of which it holds at least once, and creates the folder. Then
 /// the least recently used files are removed until the folder's trees take at most `max_bytes`.
 void store_cached_bvh(const Hash128& key, const std::filesystem::path& folder, const BuiltTree& tree,
-                      std::size_t triangle_count, Messages& messages, uint64_t max_bytes = uint64_t(8) << 30);
+                      std::size_t triangle_count, Sink& sink, uint64_t max_bytes = uint64_t(8) << 30);
 
 /// Loads a tree from the cache, or builds it with builders.front() and stores it. A cached tree of the other builders
 /// is equally valid, and the last that exists is preferred, because those are better but take longer to build.
@@ -40,7 +40,7 @@ void store_cached_bvh(const Hash128& key, const std::filesystem::path& folder, c
 /// a file is read. `taken` is set to the builder of the returned tree.
 inline constexpr std::size_t kMinCachedTriangles = 1 << 14;
 Bvh load_or_build_bvh(const std::vector<BvhTriangle>& triangles, std::span<const BvhBuilder> builders,
-                      const BvhBuildSettings& settings, const std::optional<std::filesystem::path>& folder,
-                      Messages& messages, BvhBuilder* taken = nullptr);
+                      BvhBuildSettings settings, const std::optional<std::filesystem::path>& folder, Sink& sink,
+                      BvhBuilder* taken = nullptr);
 
 } // namespace pertev

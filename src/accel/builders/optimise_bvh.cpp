@@ -68,7 +68,7 @@ Bvh optimise_bvh(const Bvh& bvh, const BvhBuildSettings& settings, const Reinser
     if (bvh.root == kNoLink) return {};
     BinaryTree tree = unfold(bvh);
     const float cost_before = cost_with_leaves(tree, settings);
-    reinsert_subtrees(tree, reinsertion);
+    reinsert_subtrees(tree, reinsertion, *settings.sink);
     // The sum of areas is not exactly the cost with leaves of several triangles.
     const bool better = cost_with_leaves(tree, settings) < cost_before;
     return make_bvh(better ? std::move(tree) : unfold(bvh), bvh.triangles, settings);
@@ -77,7 +77,7 @@ Bvh optimise_bvh(const Bvh& bvh, const BvhBuildSettings& settings, const Reinser
 Bvh build_spatial_reinsertion_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings) {
     if (triangles.empty()) return {};
     BinaryTree tree = build_spatial_split_tree(triangles, settings);
-    reinsert_subtrees(tree);
+    reinsert_subtrees(tree, {}, *settings.sink);
     return make_bvh(std::move(tree), triangles, settings);
 }
 

@@ -51,10 +51,10 @@ public:
     /// Tries to move about the fraction `part` of the nodes, those with the largest boxes, because they have the most
     /// to gain. Nodes whose move is blocked by moves with a higher gain are tried again as long as enough of them
     /// succeed.
-    void pass(float part) {
+    void pass(float part, Sink& sink) {
         std::vector<uint32_t> nodes = largest_nodes(part);
         while (!nodes.empty()) {
-            const std::size_t made = round(nodes);
+            const std::size_t made = round(nodes, sink);
             if (made * kWorthAnother < nodes.size()) return;
         }
     }
@@ -77,9 +77,10 @@ private:
 
     /// Makes the moves of `nodes` that no better move conflicts with, and leaves the blocked ones in `nodes`. Returns
     /// the number of moves made.
-    std::size_t round(std::vector<uint32_t>& nodes) {
+    std::size_t round(std::vector<uint32_t>& nodes, Sink& sink) {
         std::vector<Move> moves(nodes.size());
         parallel_for(nodes.size(), 64, [&](uint64_t i) {
+            sink.check_at(i);
             if (can_move(nodes[i])) moves[i] = find_move(nodes[i]);
         });
         std::erase_if(moves, [](const Move& move) { return move.target == kNoLink; });
@@ -245,13 +246,13 @@ private:
 
 } // namespace
 
-void reinsert_subtrees(BinaryTree& tree, const ReinsertionSettings& settings) {
+void reinsert_subtrees(BinaryTree& tree, const ReinsertionSettings& settings, Sink& sink) {
     if (tree.root == kNoLink) return;
     Reinserter reinserter(tree);
     double before = reinserter.total_area();
     const double enough = static_cast<double>(settings.min_gain) * before;
     for (int pass = 0; pass < settings.passes; ++pass) {
-        reinserter.pass(settings.part);
+        reinserter.pass(settings.part, sink);
         const double after = reinserter.total_area();
         if (before - after <= enough) break;
         before = after;

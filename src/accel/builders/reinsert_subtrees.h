@@ -14,6 +14,6 @@ namespace pertev {
 
 /// Improves `tree`. Inner boxes are the unions of their children's, before and after. Simultaneous moves may reduce
 /// each other's gain.
-void reinsert_subtrees(BinaryTree& tree, const ReinsertionSettings& settings = {});
+void reinsert_subtrees(BinaryTree& tree, const ReinsertionSettings& settings = {}, Sink& sink = nobody());
 
 } // namespace pertev

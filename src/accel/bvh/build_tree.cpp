@@ -101,6 +101,7 @@ private:
         const auto build_left = [&] { links[0] = build_range(left, depth + 1, counts[0]); };
         const auto build_right = [&] { links[1] = build_range(right, depth + 1, counts[1]); };
         if (range.size() >= kParallelSubtree) {
+            settings_.sink->check();
             parallel_invoke(build_left, build_right);
         } else {
             build_left();

@@ -12,6 +12,7 @@
 
 #include "accel/bvh/bvh.h"
 #include "base/limits.h"
+#include "base/sink.h"
 
 namespace pertev {
 
@@ -22,6 +23,7 @@ struct BvhBuildSettings {
                                   // max_leaf))
     float node_cost = 1.0f;       // cost of testing a node's two boxes
     float leaf_cost = 1.0f;       // cost of testing one triangle
+    Sink* sink = &nobody();       // may end the build
     bool operator==(const BvhBuildSettings&) const = default;
 };
 

@@ -87,8 +87,7 @@ FileAccess::Located FileAccess::locate(const fs::path& name) const {
 }
 
 /// Returns the file whose path ends like `name`; nothing, with a warning, if several do.
-std::optional<fs::path> FileAccess::find_end_of(const fs::path& name, const FileLocation& from,
-                                                Messages& messages) const {
+std::optional<fs::path> FileAccess::find_end_of(const fs::path& name, const FileLocation& from, Sink& sink) const {
     const std::vector<std::string> components = components_below(name);
     if (components.empty()) return std::nullopt;
     // Names in the same case below the folder itself are found without a look around.
@@ -107,20 +106,19 @@ std::optional<fs::path> FileAccess::find_end_of(const fs::path& name, const File
         }
         if (fits.size() == 1) return fits.front();
         if (fits.empty()) continue;
-        messages.warn({from, fmt::format("there is no \"{}\", and {} files match, such as {} and {}; none is read",
-                                         shortened(name.string()), fits.size(), fits[0].string(), fits[1].string())});
+        sink.warn({from, fmt::format("there is no \"{}\", and {} files match, such as {} and {}; none is read",
+                                     shortened(name.string()), fits.size(), fits[0].string(), fits[1].string())});
         return std::nullopt;
     }
     return std::nullopt;
 }
 
-std::optional<fs::path> FileAccess::find(const FileLocation& from, const std::string& reference,
-                                         Messages& messages) const {
+std::optional<fs::path> FileAccess::find(const FileLocation& from, const std::string& reference, Sink& sink) const {
     check_is_name(from, reference);
     const fs::path name = portable(reference);
     const Located wanted = locate(folder_of(from) / name);
     if (wanted.is_there && wanted.is_allowed) return wanted.path;
-    const std::optional<fs::path> found = find_end_of(name, from, messages);
+    const std::optional<fs::path> found = find_end_of(name, from, sink);
     if (!found) {
         if (wanted.is_there) (void)resolve(from, reference); // throws
         return std::nullopt;
@@ -129,18 +127,18 @@ std::optional<fs::path> FileAccess::find(const FileLocation& from, const std::st
     const bool is_same_name = found->filename() == name.filename();
     if (is_same_name && name.has_parent_path()) {
         const fs::path there = found->parent_path().lexically_relative(locate(folder_of(from)).path);
-        messages.warn({FileLocation{folder},
-                       fmt::format("files named as in \"{}\" are {}; files of the same name in {} are read instead",
-                                   shortened(name.parent_path().string()),
-                                   wanted.is_allowed ? "missing" : "outside the scene's folder",
-                                   there == "." ? "the folder itself" : "\"" + there.string() + "\"")});
+        sink.warn({FileLocation{folder},
+                   fmt::format("files named as in \"{}\" are {}; files of the same name in {} are read instead",
+                               shortened(name.parent_path().string()),
+                               wanted.is_allowed ? "missing" : "outside the scene's folder",
+                               there == "." ? "the folder itself" : "\"" + there.string() + "\"")});
     } else if (listing_->may_name_another()) {
-        messages.warn(
+        sink.warn(
             {from, fmt::format("there is no \"{}\"; {} is read instead, the only file of that name{}",
                                shortened(reference), found->string(), is_same_name ? "" : " except for its case")});
     } else {
-        messages.warn({FileLocation{folder},
-                       "further missing files are read from the only file of that name except for its case"});
+        sink.warn({FileLocation{folder},
+                   "further missing files are read from the only file of that name except for its case"});
     }
     return found;
 }

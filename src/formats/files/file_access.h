@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "formats/files/list_folders.h"
 
 namespace pertev {
@@ -29,8 +29,7 @@ public:
     /// if a single file fits best, because exporters write paths of the machine on which they ran. A warning reports
     /// it. Returns nothing if no file fits, and with a warning if several do. Throws Error(BadInput), which names
     /// `allow_path`, if the only such file is outside.
-    std::optional<std::filesystem::path> find(const FileLocation& from, const std::string& reference,
-                                              Messages& messages) const;
+    std::optional<std::filesystem::path> find(const FileLocation& from, const std::string& reference, Sink& sink) const;
 
 private:
     struct Located {
@@ -40,7 +39,7 @@ private:
     bool is_allowed(const std::filesystem::path& canonical) const;
     Located locate(const std::filesystem::path& name) const;
     std::optional<std::filesystem::path> find_end_of(const std::filesystem::path& name, const FileLocation& from,
-                                                     Messages& messages) const;
+                                                     Sink& sink) const;
 
     std::vector<std::filesystem::path> roots_; // canonical
     std::shared_ptr<FolderListing> listing_;   // listing of roots_

@@ -106,10 +106,10 @@ std::string_view extension_of(std::span<const std::byte> picture) {
 } // namespace
 
 int32_t TextureLoader::add_file(const FileLocation& from, const std::string& reference) {
-    const std::optional<fs::path> path = access_.find(from, reference, *messages_);
+    const std::optional<fs::path> path = access_.find(from, reference, *sink_);
     if (!path) {
         if (missing_++ < kMissingNamed) {
-            messages_->leave_out(
+            sink_->leave_out(
                 {from, fmt::format("there is no texture {}; only its factor is used", shortened(reference))});
         }
         return kNoImage;
@@ -157,8 +157,8 @@ void TextureLoader::read(Source& source, uint64_t limit, std::atomic<uint64_t>& 
         source.texture_bytes = texture_bytes(read_image_header(bytes, name));
         if ((all_bytes += source.texture_bytes) > limit) return;
         source.is_png = recognise_image(bytes) == ImageFormat::Png;
-        source.color_matrix = color_matrix_of(bytes, name, &source.messages);
-        source.image = decode_image(bytes, name, &source.messages);
+        source.color_matrix = color_matrix_of(bytes, name, source.messages);
+        source.image = decode_image(bytes, name, source.messages);
     } catch (const Error& error) {
         const std::string_view extension = extension_of(is_embedded ? source.bytes : file);
         source.fault = error.remark();
@@ -175,13 +175,14 @@ void TextureLoader::decode_within(uint64_t limit) {
         if (is_done(source)) all_bytes += source.texture_bytes;
     }
     parallel_for(sources_.size(), 1, [&](uint64_t i) {
+        sink_->check();
         if (!is_done(sources_[i])) read(sources_[i], limit, all_bytes);
     });
 }
 
 void TextureLoader::load_into(Scene& scene, uint64_t scene_bytes) {
     if (missing_ > kMissingNamed) {
-        messages_->leave_out(fmt::format("not there: {}", counted(missing_ - kMissingNamed, "further texture")));
+        sink_->leave_out(fmt::format("not there: {}", counted(missing_ - kMissingNamed, "further texture")));
     }
     const uint64_t limit = budget(scene_bytes);
     decode_within(limit);
@@ -197,9 +198,9 @@ void TextureLoader::load_into(Scene& scene, uint64_t scene_bytes) {
     });
     std::vector<int32_t> renumbered(sources_.size(), kNoImage);
     for (std::size_t i = 0; i < sources_.size(); ++i) {
-        messages_->add_all(sources_[i].messages);
+        sink_->add_all(sources_[i].messages);
         if (sources_[i].fault) {
-            messages_->leave_out(sources_[i].fault->and_then("; only its factor is used"));
+            sink_->leave_out(sources_[i].fault->and_then("; only its factor is used"));
             continue;
         }
         PERTEV_CHECK(sources_[i].image);

@@ -17,7 +17,7 @@
 #include <variant>
 #include <vector>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "formats/files/file_access.h"
 #include "image/color_primaries.h"
 #include "image/image.h"
@@ -27,10 +27,10 @@ namespace pertev {
 
 class TextureLoader {
 public:
-    /// `access` and `messages` outlive it.
-    TextureLoader(const FileAccess& access, Messages& messages) : access_(access), messages_(&messages) {}
-    /// Redirects messages to `messages`, which must outlive the loader.
-    void report_to(Messages& messages) { messages_ = &messages; }
+    /// `access` and `sink` outlive it.
+    TextureLoader(const FileAccess& access, Sink& sink) : access_(access), sink_(&sink) {}
+    /// Redirects messages to `sink`, which must outlive the loader.
+    void report_to(Sink& sink) { sink_ = &sink; }
 
     /// Sets `advice`, which is appended to messages about pictures that are not decoded: how to convert them. It gets
     /// the glTF extension of the picture's format.
@@ -75,7 +75,7 @@ private:
     void read(Source& source, uint64_t limit, std::atomic<uint64_t>& all_bytes) const;
 
     const FileAccess& access_;
-    Messages* messages_;
+    Sink* sink_;
     std::function<std::string(std::string_view)> advice_;
     std::vector<Source> sources_;
     std::map<std::filesystem::path, int32_t> by_path_;

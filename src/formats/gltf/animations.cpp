@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/message_text.h"
+#include "base/sink.h"
 #include "formats/files/parse_number.h"
 #include "formats/gltf/leave_out.h"
 #include "formats/gltf/repair_keys.h"
@@ -144,13 +145,12 @@ std::optional<Target> pointed_at(const Document& document, const JsonValue& json
 }
 
 /// Returns the target of a channel; nothing, with a message, for a property whose animation is not supported.
-std::optional<Target> read_target(const Document& document, const JsonValue& target, const Scene& scene,
-                                  Messages& messages) {
+std::optional<Target> read_target(const Document& document, const JsonValue& target, const Scene& scene, Sink& sink) {
     if (const auto extension = target.extension("KHR_animation_pointer")) {
         const JsonValue pointer = extension->at("pointer");
         std::optional<Target> found = pointed_at(document, pointer, scene);
         if (!found) {
-            messages.leave_out(
+            sink.leave_out(
                 {pointer.location(),
                  fmt::format("\"{}\" is not animated; expected a node's translation, rotation, scale or "
                              "weights, a camera's /perspective/yfov or /orthographic/ymag, or a light's color, "
@@ -161,7 +161,7 @@ std::optional<Target> read_target(const Document& document, const JsonValue& tar
     }
     const std::optional<JsonValue> node = target.find("node");
     if (!node) { // the format leaves such to extensions
-        messages.leave_out({target.location(), "the channel has no node and is left out"});
+        sink.leave_out({target.location(), "the channel has no node and is left out"});
         return std::nullopt;
     }
     const uint32_t index = document.index_into("nodes", *node);
@@ -212,15 +212,14 @@ AnimationChannel read_keys(const Document& document, Buffers& buffers, const Jso
 }
 
 /// Returns the elements of a member; none, with a warning, if the member is not an array.
-std::vector<JsonValue> elements_or_none(const JsonValue& object, std::string_view key, Messages& messages) {
+std::vector<JsonValue> elements_or_none(const JsonValue& object, std::string_view key, Sink& sink) {
     std::vector<JsonValue> elements;
-    read_or_leave_out(fmt::format("{}/{}", object.pointer(), key), messages,
-                      [&] { elements = object.elements_of(key); });
+    read_or_leave_out(fmt::format("{}/{}", object.pointer(), key), sink, [&] { elements = object.elements_of(key); });
     return elements;
 }
 
-std::vector<JsonValue> animations_of(const Document& document, Messages& messages) {
-    return elements_or_none(document.root(), "animations", messages);
+std::vector<JsonValue> animations_of(const Document& document, Sink& sink) {
+    return elements_or_none(document.root(), "animations", sink);
 }
 
 } // namespace
@@ -236,45 +235,45 @@ std::set<uint32_t> nodes_with_animated_weights(const Document& document, std::sp
             nodes.insert(document.index_into("nodes", *node));
         }
     };
-    Messages unreported; // read_animations reports what cannot be read
+    Sink& unheard = nobody(); // read_animations reports what cannot be read
     auto clip = clips.begin();
-    for (const JsonValue& animation : animations_of(document, unreported)) {
+    for (const JsonValue& animation : animations_of(document, unheard)) {
         if (!(clip++)->plays) continue;
-        for (const JsonValue& channel : elements_or_none(animation, "channels", unreported)) {
-            read_or_leave_out(channel, unreported, [&] { inspect(channel); });
+        for (const JsonValue& channel : elements_or_none(animation, "channels", unheard)) {
+            read_or_leave_out(channel, unheard, [&] { inspect(channel); });
         }
     }
     return nodes;
 }
 
-void read_animations(const Document& document, Buffers& buffers, Scene& scene, Messages& clip_messages) {
+void read_animations(const Document& document, Buffers& buffers, Scene& scene, Sink& clip_sink) {
     auto clip = scene.clips.begin();
-    Messages none; // errors in the list were reported when clips were chosen
-    for (const JsonValue& source : animations_of(document, none)) {
-        Messages unreported; // discards messages about clips that do not play
-        Messages& messages = clip->plays ? clip_messages : unreported;
+    for (const JsonValue& source : animations_of(document, nobody())) { // errors were reported when clips were chosen
+        clip_sink.check();
+        PartMessages unreported(clip_sink); // discards messages about clips that do not play
+        Sink& sink = clip->plays ? clip_sink : unreported;
         Animation animation;
         animation.name = clip->name;
         animation.origin = source.pointer();
         buffers.charge(animation.name.size() + animation.origin.size(), source);
-        const std::vector<JsonValue> samplers = elements_or_none(source, "samplers", messages);
+        const std::vector<JsonValue> samplers = elements_or_none(source, "samplers", sink);
         std::set<std::pair<uint32_t, AnimatedPart>> taken;
         const auto read_channel = [&](const JsonValue& entry) {
             const JsonValue json = entry.at("target");
-            const std::optional<Target> target = read_target(document, json, scene, messages);
+            const std::optional<Target> target = read_target(document, json, scene, sink);
             if (!target || target->indices.empty()) return;
             AnimationChannel channel = read_keys(document, buffers, entry.at("sampler"), samplers, *target, scene);
             channel.target = target->indices[0];
             if (const std::string mended = repair_keys(channel, channel.values.size() / channel.times.size());
                 !mended.empty()) {
-                messages.warn({entry.location(), mended});
+                sink.warn({entry.location(), mended});
             }
             if (const std::string fault = fault_of(channel, scene); !fault.empty()) {
-                messages.leave_out({entry.location(), fmt::format("{}; the channel is left out", fault)});
+                sink.leave_out({entry.location(), fmt::format("{}; the channel is left out", fault)});
                 return;
             }
             if (!taken.emplace(target->indices[0], target->part).second) {
-                messages.leave_out(
+                sink.leave_out(
                     {json.location(),
                      fmt::format(
                          "{}; the channel is left out",
@@ -289,8 +288,8 @@ void read_animations(const Document& document, Buffers& buffers, Scene& scene, M
                 animation.channels.push_back(channel);
             }
         };
-        for (const JsonValue& entry : elements_or_none(source, "channels", messages)) {
-            read_or_leave_out(entry, messages, [&] { read_channel(entry); });
+        for (const JsonValue& entry : elements_or_none(source, "channels", sink)) {
+            read_or_leave_out(entry, sink, [&] { read_channel(entry); });
         }
         clip->end_s = animation.end_s();
         if ((clip++)->plays) scene.animations.push_back(std::move(animation));

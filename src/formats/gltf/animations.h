@@ -21,6 +21,6 @@ std::set<uint32_t> nodes_with_animated_weights(const Document& document, std::sp
 /// unknown path or interpolation, a node that cannot be animated so), contain meaningless numbers (a quaternion of 0,
 /// a number that is not finite), or have the target of an earlier channel of its animation. Keys are repaired
 /// (repair_keys).
-void read_animations(const Document& document, Buffers& buffers, Scene& scene, Messages& messages);
+void read_animations(const Document& document, Buffers& buffers, Scene& scene, Sink& sink);
 
 } // namespace pertev::gltf

@@ -16,14 +16,14 @@ constexpr uint64_t kMaxCodecRatio = 64;
 
 } // namespace
 
-Buffers::Buffers(const Document& document, const FileAccess& access, Messages& messages)
+Buffers::Buffers(const Document& document, const FileAccess& access, Sink& sink)
     : document_(document), decompressed_(document.table("bufferViews").size()), file_bytes_(document.file_bytes()) {
     const std::vector<JsonValue>& buffers = document.table("buffers");
     buffers_.resize(buffers.size());
     faults_.resize(buffers.size());
     const auto read = [&](std::size_t i) {
         if (const std::optional<JsonValue> uri = buffers[i].find("uri")) {
-            buffers_[i] = read_uri(*uri, access, messages);
+            buffers_[i] = read_uri(*uri, access, sink);
         } else if (i == 0) {
             buffers_[i] = document.binary_chunk();
         }
@@ -31,8 +31,8 @@ Buffers::Buffers(const Document& document, const FileAccess& access, Messages& m
         if (!buffers_[i] || !length) return;
         const uint64_t bytes = length->to_unsigned();
         if (buffers_[i]->size() < bytes) {
-            messages.warn({buffers[i].location(),
-                           fmt::format("byteLength is {}, but there are only {} bytes", bytes, buffers_[i]->size())});
+            sink.warn({buffers[i].location(),
+                       fmt::format("byteLength is {}, but there are only {} bytes", bytes, buffers_[i]->size())});
         } else {
             buffers_[i] = buffers_[i]->first(bytes);
         }
@@ -48,7 +48,7 @@ Buffers::Buffers(const Document& document, const FileAccess& access, Messages& m
     }
 }
 
-std::span<const std::byte> Buffers::read_uri(const JsonValue& uri, const FileAccess& access, Messages& messages) {
+std::span<const std::byte> Buffers::read_uri(const JsonValue& uri, const FileAccess& access, Sink& sink) {
     const auto own = [&](std::vector<std::byte> bytes) -> std::span<const std::byte> {
         file_bytes_ += bytes.size();
         return owned_.emplace_back(std::move(bytes));
@@ -64,7 +64,7 @@ std::span<const std::byte> Buffers::read_uri(const JsonValue& uri, const FileAcc
     if (!name) throw uri.error(fmt::format("\"{}\"; expected a relative path or a data URI", shortened(text)));
     std::optional<std::filesystem::path> path;
     try {
-        path = access.find(uri.location(), *name, messages);
+        path = access.find(uri.location(), *name, sink);
         if (path) {
             const auto [entry, is_new] = by_path_.try_emplace(*path);
             if (is_new) entry->second = own(read_file(*path));

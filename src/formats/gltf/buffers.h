@@ -27,7 +27,7 @@ class Buffers {
 public:
     /// Reads all buffers. A missing or badly encoded one is an error only once it is used, and so are the missing
     /// bytes of one that is too short.
-    Buffers(const Document& document, const FileAccess& access, Messages& messages);
+    Buffers(const Document& document, const FileAccess& access, Sink& sink);
 
     /// The view with the index `reference`. Throws Error(BadInput) if it exceeds its buffer or cannot be
     /// decompressed.
@@ -40,7 +40,7 @@ public:
     uint64_t file_bytes() const { return file_bytes_; }
 
 private:
-    std::span<const std::byte> read_uri(const JsonValue& uri, const FileAccess& access, Messages& messages);
+    std::span<const std::byte> read_uri(const JsonValue& uri, const FileAccess& access, Sink& sink);
     std::span<const std::byte> slice(const JsonValue& json) const;
     std::vector<std::byte> decompress(const JsonValue& compressed);
 

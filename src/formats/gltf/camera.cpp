@@ -19,10 +19,10 @@ float positive(const JsonValue& value, float below) {
 
 } // namespace
 
-Camera read_camera(const JsonValue& source, Messages& messages) {
+Camera read_camera(const JsonValue& source, Sink& sink) {
     Camera camera;
     const auto attempt = [&](const char* what, const auto& read) {
-        read_or_leave_out(fmt::format("{} of {}", what, source.pointer()), messages, read);
+        read_or_leave_out(fmt::format("{} of {}", what, source.pointer()), sink, read);
     };
     attempt("the name", [&] { camera.name = source.string_or("name", ""); });
     const std::string type = source.string_or("type", "");

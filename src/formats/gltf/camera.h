@@ -2,7 +2,7 @@
 
 // glTF cameras. Source: glTF 2.0 section 3.10.
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "formats/json/json_value.h"
 #include "scene/camera.h"
 
@@ -10,6 +10,6 @@ namespace pertev::gltf {
 
 /// Reads a camera without its position. Clipping planes are ignored, because nothing is clipped. An invalid angle or
 /// aspect is left out with a warning.
-Camera read_camera(const JsonValue& camera, Messages& messages);
+Camera read_camera(const JsonValue& camera, Sink& sink);
 
 } // namespace pertev::gltf

@@ -68,43 +68,43 @@ std::string version_text(const JsonValue& value) {
 
 } // namespace
 
-Document::Document(const std::filesystem::path& path, std::vector<std::byte> bytes, Messages& messages)
+Document::Document(const std::filesystem::path& path, std::vector<std::byte> bytes, Sink& sink)
     : path_(path), file_(path.string()), bytes_(std::move(bytes)), json_chunk_(bytes_) {
     if (bytes_.empty()) {
         throw Error(ErrorCode::BadInput, FileLocation{file_}, "the file is empty; expected a glTF 2.0 document");
     }
     if (bytes_.size() >= sizeof kGlbMagic && read_u32(bytes_, 0) == kGlbMagic) {
-        split_glb(messages);
+        split_glb(sink);
     } else if (lower_case_extension(path) == ".glb") {
         throw Error(ErrorCode::BadInput, FileLocation{file_}, "byte 0: expected \"glTF\", the start of a GLB file");
     }
-    parse(json_chunk_, messages);
-    check_version(messages);
-    for (const std::string_view name : kTables) read_table(name, root(), messages);
-    read_or_leave_out("/extensions/KHR_lights_punctual", messages, [&] {
-        if (const auto lights = root().extension("KHR_lights_punctual")) read_table("lights", *lights, messages);
+    parse(json_chunk_, sink);
+    check_version(sink);
+    for (const std::string_view name : kTables) read_table(name, root(), sink);
+    read_or_leave_out("/extensions/KHR_lights_punctual", sink, [&] {
+        if (const auto lights = root().extension("KHR_lights_punctual")) read_table("lights", *lights, sink);
     });
-    check_extensions(messages);
+    check_extensions(sink);
 }
 
-void Document::read_table(std::string_view name, const JsonValue& holder, Messages& messages) {
+void Document::read_table(std::string_view name, const JsonValue& holder, Sink& sink) {
     std::vector<JsonValue>& table = tables_[std::string(name)];
-    read_member(holder, name, messages, [&](const JsonValue& member) { table = member.elements(); });
+    read_member(holder, name, sink, [&](const JsonValue& member) { table = member.elements(); });
 }
 
 /// Returns the end of the container, in bytes: the header's length, or the file's size if that length is impossible.
-std::size_t Document::glb_end(Messages& messages) const {
+std::size_t Document::glb_end(Sink& sink) const {
     const uint32_t length = read_u32(bytes_, 8);
     if (length >= kHeaderBytes && length <= bytes_.size()) return length;
-    messages.warn({FileLocation{file_},
-                   fmt::format("byte 8: the header states {} bytes, but the file has {}; all of them are read", length,
-                               bytes_.size())});
+    sink.warn({FileLocation{file_},
+               fmt::format("byte 8: the header states {} bytes, but the file has {}; all of them are read", length,
+                           bytes_.size())});
     return bytes_.size();
 }
 
 /// Returns the end of the chunk of JSON that begins at byte `begin`, and the start of the next. Some exporters count
 /// the padding wrongly; then the text itself determines its end, and the binary chunk follows.
-Document::ChunkEnd Document::json_chunk_end(std::size_t begin, std::size_t size, Messages& messages) const {
+Document::ChunkEnd Document::json_chunk_end(std::size_t begin, std::size_t size, Sink& sink) const {
     const std::span<const std::byte> glb(bytes_);
     const auto begins_binary = [&](std::size_t at) {
         return at + kChunkHeaderBytes <= glb.size() && read_u32(glb, at + 4) == kBinaryChunk;
@@ -120,14 +120,14 @@ Document::ChunkEnd Document::json_chunk_end(std::size_t begin, std::size_t size,
         if (is_whole || end == glb.size()) return {declared, declared};
         next = end;
     }
-    messages.warn({FileLocation{file_},
-                   fmt::format("byte {}: the chunk states {} bytes, but its text ends after {}; the text is read",
-                               begin - kChunkHeaderBytes, size, end - begin)});
+    sink.warn({FileLocation{file_},
+               fmt::format("byte {}: the chunk states {} bytes, but its text ends after {}; the text is read",
+                           begin - kChunkHeaderBytes, size, end - begin)});
     return {end, next};
 }
 
 /// Returns the end of the binary chunk, in bytes: the start of another chunk, or the end of the file.
-std::size_t Document::binary_chunk_end(std::size_t begin, std::size_t size, Messages& messages) const {
+std::size_t Document::binary_chunk_end(std::size_t begin, std::size_t size, Sink& sink) const {
     const std::span<const std::byte> glb(bytes_);
     const std::size_t declared = begin + std::min(size, glb.size() - begin), left = glb.size() - declared;
     const auto is_letter = [](std::byte c) { return c > std::byte{' '} && c < std::byte{0x7f}; };
@@ -135,20 +135,20 @@ std::size_t Document::binary_chunk_end(std::size_t begin, std::size_t size, Mess
                           read_u32(glb, declared) <= left - kChunkHeaderBytes &&
                           std::ranges::all_of(glb.subspan(declared + 4, 3), is_letter);
     if (is_chunk || std::ranges::all_of(text_of(glb.subspan(declared)), is_padding)) return declared;
-    messages.warn(
+    sink.warn(
         {FileLocation{file_}, fmt::format("byte {}: the chunk states {} bytes, but no other follows; all {} are read",
                                           begin - kChunkHeaderBytes, size, glb.size() - begin)});
     return glb.size();
 }
 
-void Document::split_glb(Messages& messages) {
+void Document::split_glb(Sink& sink) {
     const auto fail = [&](std::size_t at, const std::string& what) {
         return Error(ErrorCode::BadInput, FileLocation{file_}, fmt::format("byte {}: {}", at, what));
     };
     if (bytes_.size() < kHeaderBytes) throw fail(bytes_.size(), "the file ends within the GLB header of 12 bytes");
     const uint32_t version = read_u32(bytes_, 4);
     if (version != 2) throw fail(4, fmt::format("GLB container version {}; expected 2", version));
-    const std::size_t end = glb_end(messages);
+    const std::size_t end = glb_end(sink);
     const std::span<const std::byte> glb(bytes_);
     bool has_json = false;
     for (std::size_t at = kHeaderBytes; bytes_.size() - at >= kChunkHeaderBytes;) {
@@ -160,12 +160,12 @@ void Document::split_glb(Messages& messages) {
         ChunkEnd end_of_chunk = {begin + std::min<std::size_t>(size, available)};
         end_of_chunk.next = end_of_chunk.end;
         if (!has_json) {
-            end_of_chunk = json_chunk_end(begin, size, messages);
+            end_of_chunk = json_chunk_end(begin, size, sink);
         } else if (type == kBinaryChunk && !binary_chunk_) {
-            end_of_chunk.end = end_of_chunk.next = binary_chunk_end(begin, size, messages);
+            end_of_chunk.end = end_of_chunk.next = binary_chunk_end(begin, size, sink);
         }
         if (size > available && end_of_chunk.end == glb.size()) {
-            messages.leave_out(
+            sink.leave_out(
                 {FileLocation{file_}, fmt::format("byte {}: the chunk states {} bytes, but {} are left; the file is "
                                                   "truncated or damaged, and missing data is left out",
                                                   at, size, available)});
@@ -181,7 +181,7 @@ void Document::split_glb(Messages& messages) {
     if (!has_json) throw fail(kHeaderBytes, "there is no JSON chunk");
 }
 
-void Document::parse(std::span<const std::byte> json, Messages& messages) {
+void Document::parse(std::span<const std::byte> json, Sink& sink) {
     constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
     std::string_view text = text_of(json);
     if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
@@ -192,7 +192,7 @@ void Document::parse(std::span<const std::byte> json, Messages& messages) {
         std::vector<std::string> repairs;
         const std::string mended = repair_json(text, RepairJson::All, &repairs);
         if (failure == simdjson::DEPTH_ERROR || parser_.parse(mended).get(element)) throw bad_json(text, failure);
-        for (const std::string& what : repairs) messages.warn({FileLocation{file_}, what});
+        for (const std::string& what : repairs) sink.warn({FileLocation{file_}, what});
     }
     root_.emplace(file_, "", element);
 }
@@ -210,7 +210,7 @@ Error Document::bad_json(std::string_view text, simdjson::error_code failure) co
     return Error(ErrorCode::BadInput, FileLocation{file_}, what);
 }
 
-void Document::check_version(Messages& messages) const {
+void Document::check_version(Sink& sink) const {
     const auto parts = [&](const JsonValue& value) {
         const std::string text = version_text(value);
         std::array<unsigned, 2> numbers = {0, 0}; // major, minor
@@ -222,8 +222,8 @@ void Document::check_version(Messages& messages) const {
             good = minor.ec == std::errc() && minor.ptr == end;
         }
         if (!good) {
-            messages.warn({value.location(),
-                           fmt::format("\"{}\" is not a version; the file is read as glTF 2.0", shortened(text))});
+            sink.warn({value.location(),
+                       fmt::format("\"{}\" is not a version; the file is read as glTF 2.0", shortened(text))});
             numbers = {2, 0};
         }
         return numbers;
@@ -231,7 +231,7 @@ void Document::check_version(Messages& messages) const {
     const std::optional<JsonValue> asset = root().find("asset");
     const std::optional<JsonValue> version = asset ? asset->find("version") : std::nullopt;
     if (!version) {
-        messages.warn({root().location(), "\"asset\" with a \"version\" is missing; it is read as glTF 2.0"});
+        sink.warn({root().location(), "\"asset\" with a \"version\" is missing; it is read as glTF 2.0"});
         return;
     }
     if (parts(*version)[0] != 2) {
@@ -239,24 +239,23 @@ void Document::check_version(Messages& messages) const {
     }
     const std::optional<JsonValue> least = asset->find("minVersion");
     if (least && parts(*least) > std::array<unsigned, 2>{2, 0}) {
-        messages.leave_out(
-            {least->location(),
-             fmt::format("the file needs glTF {}; features that 2.0 lacks are left out", version_text(*least))});
+        sink.leave_out({least->location(), fmt::format("the file needs glTF {}; features that 2.0 lacks are left out",
+                                                       version_text(*least))});
     }
 }
 
-void Document::check_extensions(Messages& messages) const {
+void Document::check_extensions(Sink& sink) const {
     std::set<std::string, std::less<>> reported;
     const auto check = [&](std::string_view list, const char* verb) {
         const std::optional<JsonValue> names = root().find(list);
         if (!names) return;
         std::vector<JsonValue> elements;
-        read_or_leave_out(*names, messages, [&] { elements = names->elements(); });
+        read_or_leave_out(*names, sink, [&] { elements = names->elements(); });
         for (const JsonValue& name : elements) {
-            read_or_leave_out(name, messages, [&] {
+            read_or_leave_out(name, sink, [&] {
                 const std::string_view extension = name.to_string();
                 if (is_known_extension(extension) || !reported.emplace(extension).second) return;
-                messages.leave_out(
+                sink.leave_out(
                     {name.location(), fmt::format("the file {} the extension {}, which is not supported and left out",
                                                   verb, shortened(extension))});
             });
@@ -267,10 +266,9 @@ void Document::check_extensions(Messages& messages) const {
     const auto is_news = [&](std::string_view name) { return !is_known_extension(name) && !reported.contains(name); };
     for (const auto& [name, json] : root().extensions_within(is_news)) {
         if (!reported.insert(name).second) continue;
-        messages.leave_out(
-            {json.location(),
-             fmt::format("the extension {} is not supported, not listed in \"extensionsUsed\", and left out",
-                         shortened(name))});
+        sink.leave_out({json.location(),
+                        fmt::format("the extension {} is not supported, not listed in \"extensionsUsed\", and left out",
+                                    shortened(name))});
     }
 }
 

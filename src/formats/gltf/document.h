@@ -16,7 +16,7 @@
 
 #include <simdjson.h>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "formats/json/json_value.h"
 
 namespace pertev::gltf {
@@ -25,7 +25,7 @@ class Document {
 public:
     /// Parses the file. Throws Error(BadInput) if it is not JSON or not glTF 2. Warns of each required or used
     /// extension that is left out.
-    Document(const std::filesystem::path& path, std::vector<std::byte> bytes, Messages& messages);
+    Document(const std::filesystem::path& path, std::vector<std::byte> bytes, Sink& sink);
     Document(const Document&) = delete; // its values point into it
     Document& operator=(const Document&) = delete;
 
@@ -45,18 +45,18 @@ public:
     }
 
 private:
-    void split_glb(Messages& messages);
-    void read_table(std::string_view name, const JsonValue& holder, Messages& messages);
-    std::size_t glb_end(Messages& messages) const;
+    void split_glb(Sink& sink);
+    void read_table(std::string_view name, const JsonValue& holder, Sink& sink);
+    std::size_t glb_end(Sink& sink) const;
     struct ChunkEnd {
         std::size_t end, next = 0; // offsets in the file: end of its data, and start of the next chunk
     };
-    ChunkEnd json_chunk_end(std::size_t begin, std::size_t size, Messages& messages) const;
-    std::size_t binary_chunk_end(std::size_t begin, std::size_t size, Messages& messages) const;
-    void parse(std::span<const std::byte> json, Messages& messages);
+    ChunkEnd json_chunk_end(std::size_t begin, std::size_t size, Sink& sink) const;
+    std::size_t binary_chunk_end(std::size_t begin, std::size_t size, Sink& sink) const;
+    void parse(std::span<const std::byte> json, Sink& sink);
     Error bad_json(std::string_view text, simdjson::error_code failure) const;
-    void check_version(Messages& messages) const;
-    void check_extensions(Messages& messages) const;
+    void check_version(Sink& sink) const;
+    void check_extensions(Sink& sink) const;
 
     std::filesystem::path path_;
     std::string file_;

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "formats/json/json_value.h"
 
 namespace pertev::gltf {
@@ -17,28 +17,28 @@ namespace pertev::gltf {
 /// whether `read` succeeded. Other errors are passed on, because a limit applies to the whole file. Never inlined,
 /// because g++ 12 at -O3 then loses the value that the caller's std::optional had before `read`, if that throws.
 template <class Read>
-[[gnu::noinline]] bool read_or_leave_out(const std::string& what, Messages& messages, const Read& read) {
+[[gnu::noinline]] bool read_or_leave_out(const std::string& what, Sink& sink, const Read& read) {
     try {
         read();
         return true;
     } catch (const Error& error) {
         if (error.code() != ErrorCode::BadInput) throw;
-        messages.leave_out(error.remark().and_then(fmt::format("; {} is left out", what)));
+        sink.leave_out(error.remark().and_then(fmt::format("; {} is left out", what)));
         return false;
     }
 }
 
 /// Runs `read` in the same way for the value `json`.
 template <class Read>
-bool read_or_leave_out(const JsonValue& json, Messages& messages, const Read& read) {
-    return read_or_leave_out(json.pointer(), messages, read);
+bool read_or_leave_out(const JsonValue& json, Sink& sink, const Read& read) {
+    return read_or_leave_out(json.pointer(), sink, read);
 }
 
 /// Calls read(member) if `object` has the member. An unreadable one counts as absent.
 template <class Read>
-void read_member(const JsonValue& object, std::string_view key, Messages& messages, const Read& read) {
+void read_member(const JsonValue& object, std::string_view key, Sink& sink, const Read& read) {
     if (const std::optional<JsonValue> member = object.find(key)) {
-        read_or_leave_out(*member, messages, [&] { read(*member); });
+        read_or_leave_out(*member, sink, [&] { read(*member); });
     }
 }
 

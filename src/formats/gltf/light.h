@@ -4,7 +4,7 @@
 //
 // Source: KHR_lights_punctual.
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "formats/json/json_value.h"
 #include "scene/light.h"
 
@@ -12,6 +12,6 @@ namespace pertev::gltf {
 
 /// Reads a light without its position. A cone with equal angles (which exporters write for a sharp edge) is accepted
 /// with a warning. A negative strength becomes 0, and any other unreadable member is left out.
-Light read_light(const JsonValue& light, Messages& messages);
+Light read_light(const JsonValue& light, Sink& sink);
 
 } // namespace pertev::gltf

@@ -51,7 +51,7 @@ uint32_t Materials::add(Material material) {
 /// Runs `read`. If a member of `source` cannot be read, only that member is left out.
 template <class Read>
 void Materials::attempt_at(const JsonValue& source, const Read& read) const {
-    read_or_leave_out(fmt::format("this property of {}", source.pointer()), messages_, read);
+    read_or_leave_out(fmt::format("this property of {}", source.pointer()), sink_, read);
 }
 
 Material Materials::read(const JsonValue& source) {
@@ -125,12 +125,12 @@ void Materials::read_specular_glossiness(const JsonValue& source, Material& mate
         is_exact = false;
     }
     if (is_exact) return;
-    messages_.leave_out({extension->location(),
-                         "the material is converted to metal and roughness; specular colours that these cannot "
-                         "express, such as coloured reflections of a non-metal, are left out"});
+    sink_.leave_out({extension->location(),
+                     "the material is converted to metal and roughness; specular colours that these cannot "
+                     "express, such as coloured reflections of a non-metal, are left out"});
 }
 
-void Materials::convert_textures(uint64_t limit) { gltf::convert_textures(pending_, limit, scene_, messages_); }
+void Materials::convert_textures(uint64_t limit) { gltf::convert_textures(pending_, limit, scene_, sink_); }
 
 void Materials::read_metallic_roughness(const JsonValue& pbr, Material& material) {
     attempt_at(pbr, [&] {
@@ -169,7 +169,7 @@ void Materials::read_specular(const JsonValue& material, Material& result) const
         result.kind = MaterialKind::Diffuse;
         return;
     }
-    messages_.leave_out(
+    sink_.leave_out(
         {extension->location(),
          "KHR_materials_specular is left out; only a specularFactor of 0 with a metallicFactor of 0 is supported"});
 }
@@ -181,7 +181,7 @@ void Materials::read_transmission(const JsonValue& material, Material& result) c
     const std::optional<JsonValue> volume = material.extension("KHR_materials_volume");
     const bool is_solid = volume && volume->float_or("thicknessFactor", 0) > 0;
     if (factor != 1 || transmission->find("transmissionTexture") || !is_solid || result.metallic != 0) {
-        messages_.leave_out(
+        sink_.leave_out(
             {transmission->location(),
              "KHR_materials_transmission is left out and the material opaque; only solid glass is supported: a "
              "transmissionFactor of 1 without texture, a thicknessFactor above 0 and a metallicFactor of 0"});
@@ -189,8 +189,7 @@ void Materials::read_transmission(const JsonValue& material, Material& result) c
     }
     result.kind = MaterialKind::Dielectric;
     if (volume->find("attenuationDistance")) {
-        messages_.leave_out(
-            {volume->location(), "the attenuation of KHR_materials_volume is not supported and left out"});
+        sink_.leave_out({volume->location(), "the attenuation of KHR_materials_volume is not supported and left out"});
     }
 }
 
@@ -199,7 +198,7 @@ float Materials::read_ior(const JsonValue& material) const {
     const std::optional<JsonValue> extension = material.extension("KHR_materials_ior");
     const float ior = extension ? extension->float_or("ior", usual) : usual;
     if (ior >= 1) return ior;
-    messages_.warn(
+    sink_.warn(
         {extension->location(), fmt::format("ior {} is not supported; expected at least 1, {} is used", ior, usual)});
     return usual;
 }
@@ -208,7 +207,7 @@ TextureRef Materials::read_texture(const JsonValue& parent, std::string_view key
     const std::optional<JsonValue> info = parent.find(key);
     TextureRef texture;
     if (!info) return texture;
-    read_or_leave_out(*info, messages_, [&] { texture = textures_->read(*info); });
+    read_or_leave_out(*info, sink_, [&] { texture = textures_->read(*info); });
     texture.is_srgb = is_srgb;
     return texture;
 }

@@ -20,8 +20,8 @@ namespace pertev::gltf {
 class Materials {
 public:
     /// Reads materials on demand. A null `textures` leaves all materials out: every surface is then the same grey.
-    Materials(const Document& document, Textures* textures, Scene& scene, Messages& messages)
-        : document_(document), textures_(textures), scene_(scene), messages_(messages),
+    Materials(const Document& document, Textures* textures, Scene& scene, Sink& sink)
+        : document_(document), textures_(textures), scene_(scene), sink_(sink),
           by_index_(document.table("materials").size()) {}
 
     /// Index in scene.materials of the material of `primitive`; glTF's default material if it names none.
@@ -50,7 +50,7 @@ private:
     const Document& document_;
     Textures* textures_;
     Scene& scene_;
-    Messages& messages_;
+    Sink& sink_;
     std::vector<std::optional<uint32_t>> by_index_;
     std::vector<PendingConversion> pending_;
     std::optional<uint32_t> default_; // glTF's default material, or the grey without materials

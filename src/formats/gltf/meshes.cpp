@@ -24,10 +24,9 @@ std::string members_as_text(const JsonValue& object, std::initializer_list<std::
 } // namespace
 
 Meshes::Meshes(const Document& document, Buffers& buffers, const NodeGraph& nodes, Materials& materials, Scene& scene,
-               bool geometry_only, Messages& messages)
+               bool geometry_only, Sink& sink)
     : document_(document), buffers_(buffers), nodes_(nodes), materials_(materials), scene_(scene),
-      geometry_only_(geometry_only), messages_(messages),
-      reshaped_nodes_(nodes_with_animated_weights(document, scene.clips)) {}
+      geometry_only_(geometry_only), sink_(sink), reshaped_nodes_(nodes_with_animated_weights(document, scene.clips)) {}
 
 // Equal texts: equal parts at all times.
 std::string Meshes::use_key(uint32_t node) const {
@@ -57,9 +56,10 @@ std::vector<Meshes::Part> Meshes::read_parts(uint32_t index) {
     const std::vector<JsonValue> primitives = mesh.elements_of("primitives");
     std::vector<Part> parts;
     for (std::size_t i = 0; i < primitives.size(); ++i) {
+        sink_.check();
         const std::string part_name = primitives.size() > 1 ? fmt::format("{}/{}", name, i) : name;
         std::optional<uint32_t> part;
-        read_or_leave_out(primitives[i], messages_, [&] { part = mesh_of(primitives[i], index, part_name); });
+        read_or_leave_out(primitives[i], sink_, [&] { part = mesh_of(primitives[i], index, part_name); });
         if (!part) continue;
         parts.push_back({*part, material_of(primitives[i])});
         check_texture_coordinates(parts.back());
@@ -70,7 +70,7 @@ std::vector<Meshes::Part> Meshes::read_parts(uint32_t index) {
 /// Returns the index of a primitive's material; that of the default material if it cannot be read.
 uint32_t Meshes::material_of(const JsonValue& primitive) {
     std::optional<uint32_t> material;
-    read_or_leave_out(fmt::format("the material of {}", primitive.pointer()), messages_,
+    read_or_leave_out(fmt::format("the material of {}", primitive.pointer()), sink_,
                       [&] { material = materials_.material_of(primitive); });
     return material ? *material : materials_.default_material();
 }
@@ -80,7 +80,7 @@ void Meshes::check_texture_coordinates(const Part& part) {
     const Material& material = scene_.materials[part.material];
     for (const TextureRef* texture : material.textures()) {
         if (!mesh.uv[texture->uv_set].empty()) continue;
-        messages_.warn(
+        sink_.warn(
             {FileLocation{document_.file()},
              fmt::format("{}: a texture uses TEXCOORD_{}, which a mesh with this material lacks; its corner is shown",
                          material.origin, texture->uv_set)});
@@ -90,7 +90,7 @@ void Meshes::check_texture_coordinates(const Part& part) {
 std::optional<uint32_t> Meshes::mesh_of(const JsonValue& primitive, uint32_t node, const std::string& name) {
     const auto [entry, is_new] = by_data_.try_emplace(data_key(primitive, node));
     if (!is_new) return entry->second;
-    std::optional<Primitive> read = read_primitive({document_, buffers_, primitive, geometry_only_}, messages_);
+    std::optional<Primitive> read = read_primitive({document_, buffers_, primitive, geometry_only_}, sink_);
     if (!read) return std::nullopt;
     buffers_.charge(name.size(), primitive);
     read->mesh.name = name;
@@ -127,7 +127,7 @@ void Meshes::add_shape(const JsonValue& primitive, uint32_t node, std::vector<Mo
     std::span<const Transform> joints;
     if (shape.skin != kNoSkin) {
         joints = joints_of(shape.skin);
-        read_joint_weights(document_, buffers_, primitive.at("attributes"), joints.size(), shape, messages_);
+        read_joint_weights(document_, buffers_, primitive.at("attributes"), joints.size(), shape, sink_);
     }
     shape_mesh(shape, scene_.nodes[node].morph_weights, joints, mesh);
 }
@@ -137,7 +137,7 @@ const std::vector<Transform>& Meshes::joints_of(uint32_t index) {
     if (!is_new) return entry->second;
     Skin& skin = scene_.skins[index];
     const JsonValue& source = document_.table("skins")[index];
-    read_or_leave_out(fmt::format("{}/inverseBindMatrices", source.pointer()), messages_, [&] {
+    read_or_leave_out(fmt::format("{}/inverseBindMatrices", source.pointer()), sink_, [&] {
         skin.joint_from_mesh = read_inverse_bind_matrices(document_, buffers_, source, skin.joints.size());
     });
     return entry->second = joint_transforms(skin, nodes_.world_from_node());

@@ -25,7 +25,7 @@ public:
 
     /// Reads meshes on demand for a scene that has its nodes, skins and clips.
     Meshes(const Document& document, Buffers& buffers, const NodeGraph& nodes, Materials& materials, Scene& scene,
-           bool geometry_only, Messages& messages);
+           bool geometry_only, Sink& sink);
 
     /// The drawable parts, at rest, of the mesh that node `index` (which has one) shows. With a skin they are in
     /// world space. An unreadable part is left out with a warning.
@@ -47,7 +47,7 @@ private:
     Materials& materials_;
     Scene& scene_;
     bool geometry_only_;
-    Messages& messages_;
+    Sink& sink_;
     std::map<std::string, std::vector<Part>> by_use_;        // several nodes may show the same
     std::map<std::string, std::optional<uint32_t>> by_data_; // nothing: not drawable
     std::map<uint32_t, std::vector<Transform>> joints_;      // [skin] at rest

@@ -12,9 +12,9 @@ namespace pertev::gltf {
 namespace {
 
 /// Reads the pose of a node. If a member cannot be read, only that member is left out.
-std::variant<NodePose, DoubleTransform> pose_of(const JsonValue& node, Messages& messages) {
+std::variant<NodePose, DoubleTransform> pose_of(const JsonValue& node, Sink& sink) {
     std::optional<std::array<double, 16>> m; // by columns
-    const auto attempt = [&](const char* key, const auto& read) { read_member(node, key, messages, read); };
+    const auto attempt = [&](const char* key, const auto& read) { read_member(node, key, sink, read); };
     attempt("matrix", [&](const JsonValue& matrix) { m = matrix.to_doubles<16>(); });
     if (m) {
         const std::array<double, 16>& a = *m;
@@ -36,14 +36,14 @@ std::variant<NodePose, DoubleTransform> pose_of(const JsonValue& node, Messages&
 
 } // namespace
 
-NodeGraph::NodeGraph(const Document& document, uint32_t shown, Messages& messages) {
-    read_children(document, messages);
-    cut_cycles(document, messages);
-    place_nodes(document, messages);
-    for_each_below(scene_roots(document, shown, messages), [&](uint32_t node) { scene_nodes_.push_back(node); });
+NodeGraph::NodeGraph(const Document& document, uint32_t shown, Sink& sink) {
+    read_children(document, sink);
+    cut_cycles(document, sink);
+    place_nodes(document, sink);
+    for_each_below(scene_roots(document, shown, sink), [&](uint32_t node) { scene_nodes_.push_back(node); });
 }
 
-void NodeGraph::read_children(const Document& document, Messages& messages) {
+void NodeGraph::read_children(const Document& document, Sink& sink) {
     const std::vector<JsonValue>& nodes = document.table("nodes");
     children_.resize(nodes.size());
     nodes_.resize(nodes.size());
@@ -57,9 +57,9 @@ void NodeGraph::read_children(const Document& document, Messages& messages) {
         children_[node].push_back(child);
     };
     for (uint32_t node = 0; node < nodes.size(); ++node) {
-        read_or_leave_out(fmt::format("{}/children", nodes[node].pointer()), messages, [&] {
+        read_or_leave_out(fmt::format("{}/children", nodes[node].pointer()), sink, [&] {
             for (const JsonValue& reference : nodes[node].elements_of("children")) {
-                read_or_leave_out(reference, messages, [&] { read_child(node, reference); });
+                read_or_leave_out(reference, sink, [&] { read_child(node, reference); });
             }
         });
     }
@@ -67,7 +67,7 @@ void NodeGraph::read_children(const Document& document, Messages& messages) {
 
 /// Removes the link from a node to its parent if the node is its own ancestor. Nodes that are then below no root of the
 /// scene are not shown.
-void NodeGraph::cut_cycles(const Document& document, Messages& messages) {
+void NodeGraph::cut_cycles(const Document& document, Sink& sink) {
     enum class State : uint8_t { Unseen, OnThisPath, Seen };
     std::vector<State> states(nodes_.size(), State::Unseen);
     std::vector<uint32_t> path;
@@ -82,7 +82,7 @@ void NodeGraph::cut_cycles(const Document& document, Messages& messages) {
             const uint32_t parent = nodes_[node].parent;
             std::erase(children_[parent], node);
             nodes_[node].parent = kNoNode;
-            messages.leave_out(
+            sink.leave_out(
                 {document.table("nodes")[node].location(),
                  fmt::format("the node is its own ancestor; expected a tree; its link to node {} is left out",
                              parent)});
@@ -91,21 +91,21 @@ void NodeGraph::cut_cycles(const Document& document, Messages& messages) {
     }
 }
 
-void NodeGraph::place_nodes(const Document& document, Messages& messages) {
+void NodeGraph::place_nodes(const Document& document, Sink& sink) {
     const std::vector<JsonValue>& nodes = document.table("nodes");
     const std::vector<uint32_t> order = parents_first(nodes_);
     for (uint32_t node = 0; node < nodes.size(); ++node) {
         const auto attempt = [&](const char* what, const auto& read) {
-            read_or_leave_out(fmt::format("{} of {}", what, nodes[node].pointer()), messages, read);
+            read_or_leave_out(fmt::format("{} of {}", what, nodes[node].pointer()), sink, read);
         };
         attempt("the name", [&] { nodes_[node].name = nodes[node].string_or("name", ""); });
-        attempt("the transform", [&] { nodes_[node].pose = pose_of(nodes[node], messages); });
+        attempt("the transform", [&] { nodes_[node].pose = pose_of(nodes[node], sink); });
     }
     transforms_ = transforms_of(nodes_, order);
     world_from_node_ = world_from_nodes(transforms_, {0, 0, 0});
 }
 
-std::vector<uint32_t> NodeGraph::scene_roots(const Document& document, uint32_t shown, Messages& messages) const {
+std::vector<uint32_t> NodeGraph::scene_roots(const Document& document, uint32_t shown, Sink& sink) const {
     const std::vector<JsonValue>& scenes = document.table("scenes");
     std::vector<uint32_t> roots;
     if (scenes.empty()) { // a library of parts: show all of it
@@ -121,9 +121,9 @@ std::vector<uint32_t> NodeGraph::scene_roots(const Document& document, uint32_t 
         if (!is_listed[node]) roots.push_back(node);
         is_listed[node] = true;
     };
-    read_or_leave_out(fmt::format("{}/nodes", scenes[shown].pointer()), messages, [&] {
+    read_or_leave_out(fmt::format("{}/nodes", scenes[shown].pointer()), sink, [&] {
         for (const JsonValue& reference : scenes[shown].elements_of("nodes")) {
-            read_or_leave_out(reference, messages, [&] { read_root(reference); });
+            read_or_leave_out(reference, sink, [&] { read_root(reference); });
         }
     });
     std::vector<bool> is_below(nodes_.size()); // one that is listed
@@ -133,7 +133,7 @@ std::vector<uint32_t> NodeGraph::scene_roots(const Document& document, uint32_t 
     }
     std::erase_if(roots, [&](uint32_t node) {
         if (!is_below[node]) return false;
-        messages.warn(
+        sink.warn(
             {scenes[shown].location(),
              fmt::format("node {} is listed by the scene and is a descendant of another listed node; it is used once",
                          node)});

@@ -18,7 +18,7 @@ class NodeGraph {
 public:
     /// Reads the nodes. Cycles are cut, and if a node has two parents the first counts, each with a warning. `shown` is
     /// the index of the document's scene that is shown; without scenes all nodes are shown.
-    NodeGraph(const Document& document, uint32_t shown, Messages& messages);
+    NodeGraph(const Document& document, uint32_t shown, Sink& sink);
 
     /// The scene's nodes, each before its children, in the order of the file.
     const std::vector<uint32_t>& scene_nodes() const { return scene_nodes_; }
@@ -30,10 +30,10 @@ public:
     std::vector<Node> take_nodes() { return std::move(nodes_); }
 
 private:
-    void read_children(const Document& document, Messages& messages);
-    void cut_cycles(const Document& document, Messages& messages);
-    void place_nodes(const Document& document, Messages& messages);
-    std::vector<uint32_t> scene_roots(const Document& document, uint32_t shown, Messages& messages) const;
+    void read_children(const Document& document, Sink& sink);
+    void cut_cycles(const Document& document, Sink& sink);
+    void place_nodes(const Document& document, Sink& sink);
+    std::vector<uint32_t> scene_roots(const Document& document, uint32_t shown, Sink& sink) const;
     template <class Visit>
     void for_each_below(const std::vector<uint32_t>& roots, const Visit& visit) const;
 

@@ -24,11 +24,11 @@ std::vector<std::size_t> count_targets(const Document& document) {
 }
 
 /// Returns the weights of the morph targets at rest: the node's own, otherwise its mesh's.
-std::vector<float> read_weights(const JsonValue& node, const JsonValue& mesh, Messages& messages) {
+std::vector<float> read_weights(const JsonValue& node, const JsonValue& mesh, Sink& sink) {
     const std::optional<JsonValue> own = node.find("weights"), source = own ? own : mesh.find("weights");
     std::vector<float> weights;
     if (!source) return weights;
-    read_or_leave_out(*source, messages, [&] {
+    read_or_leave_out(*source, sink, [&] {
         for (const JsonValue& weight : source->elements()) weights.push_back(weight.to_float());
     });
     return weights;
@@ -36,11 +36,11 @@ std::vector<float> read_weights(const JsonValue& node, const JsonValue& mesh, Me
 
 } // namespace
 
-void read_node_shapes(const Document& document, Buffers& buffers, Scene& scene, Messages& messages) {
+void read_node_shapes(const Document& document, Buffers& buffers, Scene& scene, Sink& sink) {
     std::vector<bool> is_skin; // has all its joints
     for (const JsonValue& skin : document.table("skins")) {
         scene.skins.emplace_back();
-        is_skin.push_back(read_or_leave_out(skin, messages, [&] {
+        is_skin.push_back(read_or_leave_out(skin, sink, [&] {
             for (const JsonValue& joint : skin.at("joints").elements()) {
                 scene.skins.back().joints.push_back(document.index_into("nodes", joint));
             }
@@ -53,7 +53,7 @@ void read_node_shapes(const Document& document, Buffers& buffers, Scene& scene, 
         const std::optional<JsonValue> reference = sources[i].find("mesh");
         if (!reference) return;
         if (const auto skin = sources[i].find("skin")) {
-            read_or_leave_out(*skin, messages, [&] {
+            read_or_leave_out(*skin, sink, [&] {
                 const uint32_t index = document.index_into("skins", *skin);
                 if (is_skin[index]) scene.nodes[i].skin = index;
             });
@@ -61,7 +61,7 @@ void read_node_shapes(const Document& document, Buffers& buffers, Scene& scene, 
         const uint32_t mesh = document.index_into("meshes", *reference);
         if (targets[mesh] == 0) return;
         buffers.charge(targets[mesh] * sizeof(float), sources[i]);
-        scene.nodes[i].morph_weights = read_weights(sources[i], document.table("meshes")[mesh], messages);
+        scene.nodes[i].morph_weights = read_weights(sources[i], document.table("meshes")[mesh], sink);
         scene.nodes[i].morph_weights.resize(targets[mesh]);
     };
     for (std::size_t i = 0; i < sources.size(); ++i) {

@@ -11,6 +11,6 @@ namespace pertev::gltf {
 
 /// Fills scene.skins, and the skin and morph weights of scene.nodes, which have been read. A skin with an invalid
 /// joint is left out.
-void read_node_shapes(const Document& document, Buffers& buffers, Scene& scene, Messages& messages);
+void read_node_shapes(const Document& document, Buffers& buffers, Scene& scene, Sink& sink);
 
 } // namespace pertev::gltf

@@ -71,15 +71,15 @@ std::string describe_nothing(const Document& document, const NodeGraph& nodes) {
 } // namespace
 
 void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& nodes, Meshes& meshes, Scene& scene,
-                 Messages& messages) {
-    const std::size_t before = messages.left_out().size();
+                 Sink& sink) {
+    const std::size_t before = sink.messages().left_out().size();
     const auto place_mesh = [&](const JsonValue& node, uint32_t index) {
         const std::vector<Meshes::Part>& parts = meshes.parts_of(index);
         const std::optional<JsonValue> instancing = node.extension("EXT_mesh_gpu_instancing");
         const bool has_skin = scene.nodes[index].skin != kNoSkin; // its joints have moved it already
         std::vector<Transform> node_from_local(1);
         if (instancing && !has_skin) {
-            read_or_leave_out(*instancing, messages,
+            read_or_leave_out(*instancing, sink,
                               [&] { node_from_local = read_placements(document, buffers, *instancing); });
         }
         const std::string& name = scene.nodes[index].name;
@@ -87,7 +87,7 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
         for (const Transform& m : node_from_local) {
             const Transform world_from_local = has_skin ? Transform() : placed_in(nodes.transform(index), m, {0, 0, 0});
             if (!is_near(world_from_local)) {
-                messages.leave_out({node.location(), "the mesh lies beyond 2^40 metres and is left out"});
+                sink.leave_out({node.location(), "the mesh lies beyond 2^40 metres and is left out"});
                 continue;
             }
             for (const Meshes::Part& part : parts) {
@@ -106,7 +106,7 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
 
     const auto place_camera = [&](const JsonValue& node, const JsonValue& reference, uint32_t index,
                                   const Transform& world_from_node) {
-        Camera camera = read_camera(document.item("cameras", reference), messages);
+        Camera camera = read_camera(document.item("cameras", reference), sink);
         if (camera.name.empty()) camera.name = scene.nodes[index].name;
         camera.origin = node.pointer();
         camera.node = index;
@@ -116,13 +116,13 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
             camera.world_from_camera = *rigid;
             scene.cameras.push_back(std::move(camera));
         } else {
-            messages.leave_out({node.location(), "the camera's transform is singular; it is left out"});
+            sink.leave_out({node.location(), "the camera's transform is singular; it is left out"});
         }
     };
     const auto place_emitter = [&](const JsonValue& node, uint32_t index, const Transform& world_from_node) {
         const std::optional<JsonValue> extension = node.extension("KHR_lights_punctual");
         if (!extension) return;
-        Light light = read_light(document.item("lights", extension->at("light")), messages);
+        Light light = read_light(document.item("lights", extension->at("light")), sink);
         if (light.name.empty()) light.name = scene.nodes[index].name;
         light.origin = node.pointer();
         light.node = index;
@@ -132,14 +132,15 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
         if (place_light(world_from_node, light)) {
             scene.lights.push_back(std::move(light));
         } else {
-            messages.leave_out({node.location(), "the light's transform is singular; it is left out"});
+            sink.leave_out({node.location(), "the light's transform is singular; it is left out"});
         }
     };
     for (const uint32_t index : nodes.scene_nodes()) {
+        sink.check();
         const JsonValue& node = document.table("nodes")[index];
         const Transform& world_from_node = nodes.world_from_node(index);
         const auto attempt = [&](const char* what, const auto& add) {
-            read_or_leave_out(fmt::format("the {} of {}", what, node.pointer()), messages, add);
+            read_or_leave_out(fmt::format("the {} of {}", what, node.pointer()), sink, add);
         };
         attempt("mesh", [&] {
             if (node.find("mesh")) place_mesh(node, index);
@@ -151,7 +152,7 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
     }
     if (!scene.instances.empty()) return;
     scene.no_instances = describe_nothing(document, nodes);
-    const std::vector<std::string> left_out = messages.left_out();
+    const std::vector<std::string> left_out = sink.messages().left_out();
     if (left_out.empty()) return;
     // The first part that was left out here, where meshes are read, has the reason; otherwise the first of all.
     const std::size_t first = before < left_out.size() ? before : 0;

@@ -83,7 +83,7 @@ std::vector<Vec4> read_colors(const Accessor& accessor) {
     return colors;
 }
 
-void read_attributes(const PrimitiveRequest& request, const JsonValue& attributes, Mesh& mesh, Messages& messages) {
+void read_attributes(const PrimitiveRequest& request, const JsonValue& attributes, Mesh& mesh, Sink& sink) {
     const AttributeReader reader(request, attributes);
     const auto positions = reader.find("POSITION", 0, {ElementType::Vec3});
     const uint64_t vertices = positions->count();
@@ -94,7 +94,7 @@ void read_attributes(const PrimitiveRequest& request, const JsonValue& attribute
     if (vertices == 0) return;
     // The shape is there without these.
     const auto attempt = [&](const char* name, std::initializer_list<ElementType> types, const auto& take) {
-        read_or_leave_out(fmt::format("{}/{}", attributes.pointer(), name), messages, [&] {
+        read_or_leave_out(fmt::format("{}/{}", attributes.pointer(), name), sink, [&] {
             if (const auto accessor = reader.find(name, vertices, types)) take(*accessor);
         });
     };
@@ -109,7 +109,7 @@ void read_attributes(const PrimitiveRequest& request, const JsonValue& attribute
             [&](const Accessor& colors) { mesh.colors = read_colors(colors); });
 }
 
-std::vector<MorphTarget> read_targets(const PrimitiveRequest& request, const Mesh& mesh, Messages& messages) {
+std::vector<MorphTarget> read_targets(const PrimitiveRequest& request, const Mesh& mesh, Sink& sink) {
     std::vector<MorphTarget> targets;
     for (const JsonValue& source : request.primitive.elements_of("targets")) {
         const AttributeReader reader(request, source);
@@ -118,7 +118,7 @@ std::vector<MorphTarget> read_targets(const PrimitiveRequest& request, const Mes
             return offsets ? offsets->read_vec3() : std::vector<Vec3>();
         };
         MorphTarget& target = targets.emplace_back();
-        read_or_leave_out(source, messages, [&] {
+        read_or_leave_out(source, sink, [&] {
             target.positions = read("POSITION", mesh.positions.size());
             target.normals = read("NORMAL", mesh.normals.size());
             target.tangents = read("TANGENT", mesh.tangents.size());
@@ -140,8 +140,7 @@ std::vector<uint32_t> read_corners(const PrimitiveRequest& request, std::size_t 
 }
 
 /// Leaves out triangles with a corner whose index is out of range.
-void drop_triangles_past(std::size_t vertices, const JsonValue& primitive, std::vector<uint32_t>& indices,
-                         Messages& messages) {
+void drop_triangles_past(std::size_t vertices, const JsonValue& primitive, std::vector<uint32_t>& indices, Sink& sink) {
     const auto is_past = [&](uint32_t index) { return index >= vertices; };
     const auto first = std::ranges::find_if(indices, is_past);
     if (first == indices.end()) return;
@@ -153,9 +152,9 @@ void drop_triangles_past(std::size_t vertices, const JsonValue& primitive, std::
     }
     const std::size_t dropped = (indices.size() - kept) / 3;
     indices.resize(kept);
-    messages.leave_out({primitive.at("indices").location(),
-                        fmt::format("index {} exceeds the {} vertices; {} with such a corner left out", index, vertices,
-                                    dropped == 1 ? "the triangle" : fmt::format("the {} triangles", dropped))});
+    sink.leave_out({primitive.at("indices").location(),
+                    fmt::format("index {} exceeds the {} vertices; {} with such a corner left out", index, vertices,
+                                dropped == 1 ? "the triangle" : fmt::format("the {} triangles", dropped))});
 }
 
 /// Returns whether the vertices exist only in a Draco stream.
@@ -167,9 +166,9 @@ bool is_compressed_alone(const PrimitiveRequest& request, const JsonValue& posit
 
 } // namespace
 
-std::optional<Primitive> read_primitive(const PrimitiveRequest& request, Messages& messages) {
+std::optional<Primitive> read_primitive(const PrimitiveRequest& request, Sink& sink) {
     const auto leave_out = [&](const std::string& what) {
-        messages.leave_out({request.primitive.location(), what});
+        sink.leave_out({request.primitive.location(), what});
         return std::nullopt;
     };
     const Topology topology = read_topology(request.primitive);
@@ -184,8 +183,8 @@ std::optional<Primitive> read_primitive(const PrimitiveRequest& request, Message
     }
     Primitive result;
     Mesh& mesh = result.mesh;
-    read_attributes(request, attributes, mesh, messages);
-    result.targets = read_targets(request, mesh, messages);
+    read_attributes(request, attributes, mesh, sink);
+    result.targets = read_targets(request, mesh, sink);
     std::vector<uint32_t> corners = read_corners(request, mesh.positions.size());
     if (topology == Topology::Triangles && corners.size() % 3 != 0) {
         leave_out("the number of corners of triangles is not a multiple of 3; the rest is left out");
@@ -193,7 +192,7 @@ std::optional<Primitive> read_primitive(const PrimitiveRequest& request, Message
     if (topology != Topology::Triangles)
         request.buffers.charge(corners.size() * 3 * sizeof(uint32_t), request.primitive);
     mesh.indices = triangle_list(topology, std::move(corners));
-    drop_triangles_past(mesh.positions.size(), request.primitive, mesh.indices, messages);
+    drop_triangles_past(mesh.positions.size(), request.primitive, mesh.indices, sink);
     if (mesh.indices.empty()) return leave_out("a primitive without a complete triangle is left out");
     return result;
 }

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "formats/gltf/accessor.h"
 #include "formats/gltf/document.h"
 #include "scene/mesh.h"
@@ -30,6 +30,6 @@ struct Primitive {
 /// Reads a primitive. Returns nothing, with a warning, if it draws no triangle: points, lines, no positions, an
 /// unsupported compression. Throws Error(BadInput) if positions or indices cannot be read; anything else that cannot
 /// is left out with a warning. Normals and tangents are those of the file; validate() normalizes them.
-std::optional<Primitive> read_primitive(const PrimitiveRequest& request, Messages& messages);
+std::optional<Primitive> read_primitive(const PrimitiveRequest& request, Sink& sink);
 
 } // namespace pertev::gltf

@@ -18,11 +18,11 @@
 namespace pertev::gltf {
 namespace {
 
-std::vector<std::string> names_of(const std::vector<JsonValue>& elements, Buffers& buffers, Messages& messages) {
+std::vector<std::string> names_of(const std::vector<JsonValue>& elements, Buffers& buffers, Sink& sink) {
     std::vector<std::string> names;
     for (const JsonValue& element : elements) {
         names.emplace_back();
-        read_or_leave_out(fmt::format("the name of {}", element.pointer()), messages,
+        read_or_leave_out(fmt::format("the name of {}", element.pointer()), sink,
                           [&] { names.back() = element.string_or("name", ""); });
         buffers.charge(sizeof(Clip) + names.back().size(), element);
     }
@@ -32,19 +32,19 @@ std::vector<std::string> names_of(const std::vector<JsonValue>& elements, Buffer
 /// Fills scene.clips, except for their ends, scene.file_scenes and scene.file_scene, by the options or, without any,
 /// by the file: its first animation plays, and its `scene` or else its first scene is shown. Throws Error(BadInput)
 /// with a list of those that exist.
-void choose(const Document& document, Buffers& buffers, const ReadOptions& options, Scene& scene, Messages& messages) {
+void choose(const Document& document, Buffers& buffers, const ReadOptions& options, Scene& scene, Sink& sink) {
     std::vector<JsonValue> animations;
-    read_or_leave_out("/animations", messages, [&] { animations = document.root().elements_of("animations"); });
-    const std::vector<std::string> clips = names_of(animations, buffers, messages);
+    read_or_leave_out("/animations", sink, [&] { animations = document.root().elements_of("animations"); });
+    const std::vector<std::string> clips = names_of(animations, buffers, sink);
     const std::vector<bool> plays = choose_clips(document.file(), clips, options.animation);
     for (std::size_t i = 0; i < clips.size(); ++i) scene.clips.push_back({.name = clips[i], .plays = plays[i]});
 
-    scene.file_scenes = names_of(document.table("scenes"), buffers, messages);
+    scene.file_scenes = names_of(document.table("scenes"), buffers, sink);
     if (!options.file_scene.empty()) {
         scene.file_scene = choose_file_scene(document.file(), scene.file_scenes, options.file_scene);
     } else if (const std::optional<JsonValue> chosen = document.root().find("scene");
                chosen && !scene.file_scenes.empty()) {
-        read_or_leave_out(*chosen, messages, [&] { scene.file_scene = document.index_into("scenes", *chosen); });
+        read_or_leave_out(*chosen, sink, [&] { scene.file_scene = document.index_into("scenes", *chosen); });
     }
 }
 
@@ -54,28 +54,27 @@ void choose(const Document& document, Buffers& buffers, const ReadOptions& optio
 
 namespace pertev {
 
-Scene read_gltf(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options,
-                Messages& messages) {
-    return read_gltf(path, read_file(path), access, options, messages);
+Scene read_gltf(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options, Sink& sink) {
+    return read_gltf(path, read_file(path), access, options, sink);
 }
 
 Scene read_gltf(const std::filesystem::path& path, std::vector<std::byte> bytes, const FileAccess& access,
-                const ReadOptions& options, Messages& messages) {
+                const ReadOptions& options, Sink& sink) {
     Scene scene;
-    const gltf::Document document(path, std::move(bytes), messages);
-    gltf::Buffers buffers(document, access, messages);
-    gltf::choose(document, buffers, options, scene, messages);
-    gltf::NodeGraph nodes(document, scene.file_scene, messages);
+    const gltf::Document document(path, std::move(bytes), sink);
+    gltf::Buffers buffers(document, access, sink);
+    gltf::choose(document, buffers, options, scene, sink);
+    gltf::NodeGraph nodes(document, scene.file_scene, sink);
 
-    TextureLoader loader(access, messages);
-    gltf::Textures textures(document, buffers, loader, messages);
-    gltf::Materials materials(document, options.geometry_only ? nullptr : &textures, scene, messages);
-    gltf::Meshes meshes(document, buffers, nodes, materials, scene, options.geometry_only, messages);
+    TextureLoader loader(access, sink);
+    gltf::Textures textures(document, buffers, loader, sink);
+    gltf::Materials materials(document, options.geometry_only ? nullptr : &textures, scene, sink);
+    gltf::Meshes meshes(document, buffers, nodes, materials, scene, options.geometry_only, sink);
     scene.nodes = nodes.take_nodes();
-    gltf::read_node_shapes(document, buffers, scene, messages);
-    gltf::place_nodes(document, buffers, nodes, meshes, scene, messages);
+    gltf::read_node_shapes(document, buffers, scene, sink);
+    gltf::place_nodes(document, buffers, nodes, meshes, scene, sink);
     take_off_centre(scene);
-    gltf::read_animations(document, buffers, scene, messages);
+    gltf::read_animations(document, buffers, scene, sink);
     loader.load_into(scene, buffers.file_bytes());
     materials.convert_textures(justified_bytes(kFreeImageBytes, buffers.file_bytes()));
 

@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "formats/files/file_access.h"
 #include "formats/files/read_options.h"
 #include "scene/scene.h"
@@ -20,10 +20,9 @@ namespace pertev {
 
 /// Reads the chosen scene without validating it. Throws Error(BadInput) that names the file and the JSON pointer. If
 /// the file has no tangents, Mesh::tangents is empty; validate() makes those that are needed.
-Scene read_gltf(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options,
-                Messages& messages);
+Scene read_gltf(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options, Sink& sink);
 /// Reads a file from memory; `path` names it, and references are relative to it.
 Scene read_gltf(const std::filesystem::path& path, std::vector<std::byte> bytes, const FileAccess& access,
-                const ReadOptions& options, Messages& messages);
+                const ReadOptions& options, Sink& sink);
 
 } // namespace pertev

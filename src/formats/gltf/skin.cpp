@@ -59,12 +59,12 @@ std::vector<Transform> read_inverse_bind_matrices(const Document& document, Buff
 }
 
 void read_joint_weights(const Document& document, Buffers& buffers, const JsonValue& attributes,
-                        std::size_t joint_count, MeshShape& shape, Messages& messages) {
+                        std::size_t joint_count, MeshShape& shape, Sink& sink) {
     const std::size_t vertices = shape.positions.size();
     std::vector<JointSet> sets;
     for (;;) {
         std::optional<JointSet> set;
-        read_or_leave_out(fmt::format("JOINTS_{} of {}", sets.size(), attributes.pointer()), messages,
+        read_or_leave_out(fmt::format("JOINTS_{} of {}", sets.size(), attributes.pointer()), sink,
                           [&] { set = read_set(document, buffers, attributes, sets.size(), joint_count, vertices); });
         if (!set) break;
         sets.push_back(*std::move(set));

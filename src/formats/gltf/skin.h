@@ -18,6 +18,6 @@ std::vector<Transform> read_inverse_bind_matrices(const Document& document, Buff
 /// Fills the joints and weights of `shape`, which has its positions, from the JOINTS_n and WEIGHTS_n of `attributes`.
 /// An unreadable set, such as one with a joint beyond the skin's `joint_count`, is left out with all later ones.
 void read_joint_weights(const Document& document, Buffers& buffers, const JsonValue& attributes,
-                        std::size_t joint_count, MeshShape& shape, Messages& messages);
+                        std::size_t joint_count, MeshShape& shape, Sink& sink);
 
 } // namespace pertev::gltf

@@ -137,7 +137,7 @@ MetallicRoughness metallic_roughness_of(const SpecularGlossiness& from, bool& is
     return to;
 }
 
-void convert_textures(const std::vector<PendingConversion>& pending, uint64_t limit, Scene& scene, Messages& messages) {
+void convert_textures(const std::vector<PendingConversion>& pending, uint64_t limit, Scene& scene, Sink& sink) {
     using Key = std::tuple<int32_t, int32_t, std::array<float, 7>>;
     std::map<Key, int32_t> known; // the first of the two images
     uint64_t bytes = 0;
@@ -147,7 +147,7 @@ void convert_textures(const std::vector<PendingConversion>& pending, uint64_t li
         TextureRef& specular = material.roughness_texture;
         const TextureRef where = diffuse.has_image() ? diffuse : specular;
         const auto use_factors = [&](const char* why) {
-            messages.leave_out({location, fmt::format("{}; the specular-glossiness texture is left out", why)});
+            sink.leave_out({location, fmt::format("{}; the specular-glossiness texture is left out", why)});
             specular = material.metallic_texture = {};
         };
         if (!diffuse.has_image() && !specular.has_image()) continue; // the loader has reported why

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "scene/scene.h"
 
 namespace pertev::gltf {
@@ -40,6 +40,6 @@ struct PendingConversion {
 
 /// Gives each material of `pending` its own textures, two images that are appended to the scene's. `limit` is the
 /// maximum number of bytes of all these; further materials get only their factors, with a warning.
-void convert_textures(const std::vector<PendingConversion>& pending, uint64_t limit, Scene& scene, Messages& messages);
+void convert_textures(const std::vector<PendingConversion>& pending, uint64_t limit, Scene& scene, Sink& sink);
 
 } // namespace pertev::gltf

@@ -55,9 +55,8 @@ void read_transform(const JsonValue& transform, TextureRef& texture) {
 
 } // namespace
 
-Textures::Textures(const Document& document, Buffers& buffers, TextureLoader& loader, Messages& messages)
-    : document_(document), buffers_(buffers), loader_(loader), messages_(messages),
-      images_(document.table("images").size()) {
+Textures::Textures(const Document& document, Buffers& buffers, TextureLoader& loader, Sink& sink)
+    : document_(document), buffers_(buffers), loader_(loader), sink_(sink), images_(document.table("images").size()) {
     loader.advise_by(
         [path = document.path()](std::string_view extension) { return conversion_advice(extension, path); });
 }
@@ -67,15 +66,15 @@ TextureRef Textures::read(const JsonValue& info) {
     TextureRef texture;
     uint64_t uv_set = info.unsigned_or("texCoord", 0);
     if (const std::optional<JsonValue> transform = info.extension("KHR_texture_transform")) {
-        read_or_leave_out(*transform, messages_, [&] {
+        read_or_leave_out(*transform, sink_, [&] {
             uv_set = transform->unsigned_or("texCoord", uv_set);
             read_transform(*transform, texture);
         });
     }
-    read_member(source, "sampler", messages_,
+    read_member(source, "sampler", sink_,
                 [&](const JsonValue& sampler) { read_sampler(document_.item("samplers", sampler), texture); });
     if (uv_set > 1) {
-        messages_.leave_out(
+        sink_.leave_out(
             {info.location(),
              fmt::format("set {} of texture coordinates; only 0 and 1 are supported; the texture is left out",
                          uv_set)});
@@ -94,13 +93,13 @@ TextureRef Textures::read(const JsonValue& info) {
 void Textures::leave_out_without_image(const JsonValue& texture) {
     for (const std::string_view extension : kOtherImages) {
         if (!texture.extension(extension)) continue;
-        messages_.leave_out(
+        sink_.leave_out(
             {texture.location(),
              fmt::format("the texture's image is given only by {}, which is not supported; it is left out{}", extension,
                          conversion_advice(extension, document_.path()))});
         return;
     }
-    messages_.leave_out({texture.location(), "the texture has no supported image and is left out"});
+    sink_.leave_out({texture.location(), "the texture has no supported image and is left out"});
 }
 
 void Textures::read_sampler(const JsonValue& sampler, TextureRef& texture) const {
@@ -143,7 +142,7 @@ int32_t Textures::add_image(const JsonValue& image) {
     }
     std::optional<std::vector<std::byte>> bytes = decode_data_uri(text);
     if (!bytes) {
-        messages_.leave_out({uri->location(), "the data URI cannot be decoded; the texture is left out"});
+        sink_.leave_out({uri->location(), "the data URI cannot be decoded; the texture is left out"});
         return kNoImage;
     }
     return loader_.add_bytes(name, embedded_.emplace_back(*std::move(bytes)));

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "formats/files/load_textures.h"
 #include "formats/gltf/buffers.h"
 #include "formats/gltf/document.h"
@@ -19,7 +19,7 @@ namespace pertev::gltf {
 
 class Textures {
 public:
-    Textures(const Document& document, Buffers& buffers, TextureLoader& loader, Messages& messages);
+    Textures(const Document& document, Buffers& buffers, TextureLoader& loader, Sink& sink);
 
     /// The texture that `info`, a textureInfo, describes. The result has no image, with a warning, if that is missing,
     /// of an unsupported kind, or uses a third set of texture coordinates. Throws Error(BadInput) for an invalid
@@ -35,7 +35,7 @@ private:
     const Document& document_;
     Buffers& buffers_;
     TextureLoader& loader_;
-    Messages& messages_;
+    Sink& sink_;
     std::vector<std::optional<int32_t>> images_; // [glTF image] the loader's index, once requested
     std::map<std::pair<const std::byte*, std::size_t>, int32_t> by_bytes_; // several glTF images may share a view
     std::deque<std::vector<std::byte>> embedded_; // contents of data URIs, which the loader reads later

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "math/vec4.h"
 
 namespace pertev {
@@ -18,6 +18,6 @@ inline constexpr Vec4 kNoVertexColor = {1, 1, 1, -1};
 /// Converts fractional colours of a file to linear ones. They are display values in [0, 1], or, with a notice, in [0,
 /// 255] if any is 2 or more: smaller excesses may be rounding or highlights, which validate() clamps. Alpha, which is
 /// linear, is treated separately.
-void decode_vertex_colors(std::vector<Vec4>& colors, const std::string& file, Messages& messages);
+void decode_vertex_colors(std::vector<Vec4>& colors, const std::string& file, Sink& sink);
 
 } // namespace pertev

@@ -69,8 +69,7 @@ std::string lower_case(std::string_view text) {
 
 class MtlParser {
 public:
-    MtlParser(std::string_view text, const std::string& file, Messages& messages)
-        : lines_(text), file_(file), messages_(messages) {}
+    MtlParser(std::string_view text, const std::string& file, Sink& sink) : lines_(text), file_(file), sink_(sink) {}
 
     std::vector<MtlStatements> run() {
         std::string_view line;
@@ -80,25 +79,24 @@ public:
             try {
                 statement(line);
             } catch (const MtlFault& fault) {
-                messages_.leave_out(
+                sink_.leave_out(
                     {FileLocation{file_, lines_.number()}, fmt::format("{}; the line is left out", fault.what)});
             }
         }
         for (const auto& [key, lines] : left_out_) {
-            messages_.leave_out(
+            sink_.leave_out(
                 {FileLocation{file_, lines.first_line},
                  fmt::format("{} of {} {} left out", counted(lines.times, "line"), key, is_or_are(lines.times))});
         }
         if (too_long_.times > 0) {
-            messages_.leave_out({FileLocation{file_, too_long_.first_line},
-                                 fmt::format("{} with more numbers than the key has; the rest is left out",
-                                             counted(too_long_.times, "line"))});
+            sink_.leave_out({FileLocation{file_, too_long_.first_line},
+                             fmt::format("{} with more numbers than the key has; the rest is left out",
+                                         counted(too_long_.times, "line"))});
         }
         if (unknown_.times > 0) {
-            messages_.leave_out(
-                {FileLocation{file_, unknown_.first_line},
-                 fmt::format("{} with an unknown key ({} is the first) {} left out", counted(unknown_.times, "line"),
-                             first_unknown_, is_or_are(unknown_.times))});
+            sink_.leave_out({FileLocation{file_, unknown_.first_line},
+                             fmt::format("{} with an unknown key ({} is the first) {} left out",
+                                         counted(unknown_.times, "line"), first_unknown_, is_or_are(unknown_.times))});
         }
         return std::move(materials_);
     }
@@ -174,7 +172,7 @@ private:
 
     ObjLines lines_;
     const std::string& file_;
-    Messages& messages_;
+    Sink& sink_;
     std::vector<MtlStatements> materials_;
     std::string_view key_; // key of the statement, as written
     std::map<std::string, CountedLines> left_out_;
@@ -184,8 +182,8 @@ private:
 
 } // namespace
 
-std::vector<MtlStatements> parse_mtl(std::span<const std::byte> bytes, const std::string& file, Messages& messages) {
-    return MtlParser(text_of(bytes), file, messages).run();
+std::vector<MtlStatements> parse_mtl(std::span<const std::byte> bytes, const std::string& file, Sink& sink) {
+    return MtlParser(text_of(bytes), file, sink).run();
 }
 
 } // namespace pertev

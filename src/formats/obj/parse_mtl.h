@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "math/rgb.h"
 #include "math/vec2.h"
 
@@ -40,6 +40,6 @@ struct MtlStatements {
 
 /// Returns materials in the order of the file. Anything left out gives a warning with the line. Throws
 /// Error(BadInput) that names `file` and the line for a number that is missing, invalid or not finite.
-std::vector<MtlStatements> parse_mtl(std::span<const std::byte> bytes, const std::string& file, Messages& messages);
+std::vector<MtlStatements> parse_mtl(std::span<const std::byte> bytes, const std::string& file, Sink& sink);
 
 } // namespace pertev

@@ -249,15 +249,15 @@ private:
 
 class ObjParser {
 public:
-    ObjParser(std::string_view text, const std::string& file, Messages& messages, std::size_t piece_bytes)
-        : file_(file), messages_(messages), end_of_line_(ObjLines::end_of_line_of(text)),
+    ObjParser(std::string_view text, const std::string& file, Sink& sink, std::size_t piece_bytes)
+        : file_(file), sink_(sink), end_of_line_(ObjLines::end_of_line_of(text)),
           pieces_(cut_into_obj_pieces(text, end_of_line_, piece_bytes)) {}
 
     ObjData run(const FoundMaterials& found_materials) {
         parse_pieces(found_materials);
         move_to_origin();
         if (!join_groups(false)) {
-            messages_.note(
+            sink_.note(
                 {FileLocation{file_},
                  fmt::format("more than {} objects and groups; faces are grouped by material only", kMaxObjGroups)});
             join_groups(true);
@@ -299,7 +299,7 @@ private:
         if (bad.times == 0) return;
         const auto first =
             std::ranges::find_if(parsers_, [](const PieceParser& parser) { return parser.bad_faces.times > 0; });
-        messages_.leave_out(first->first_bad_face->and_then(
+        sink_.leave_out(first->first_bad_face->and_then(
             fmt::format("; {} {} left out", counted(bad.times, "such face"), is_or_are(bad.times))));
     }
 
@@ -309,11 +309,11 @@ private:
 
     void leave_out(const CountedLines& what, const char* thing, const char* text) const {
         if (what.times == 0) return;
-        messages_.leave_out(remark_on(what, thing, text).and_then(fmt::format(" {} left out", is_or_are(what.times))));
+        sink_.leave_out(remark_on(what, thing, text).and_then(fmt::format(" {} left out", is_or_are(what.times))));
     }
 
     void warn(const CountedLines& what, const char* thing, const char* text) const {
-        if (what.times > 0) messages_.warn(remark_on(what, thing, text));
+        if (what.times > 0) sink_.warn(remark_on(what, thing, text));
     }
 
     void parse_pieces(const FoundMaterials& found_materials) {
@@ -328,7 +328,10 @@ private:
         for (std::size_t i = 0; i < pieces_.size(); ++i)
             parsers_.emplace_back(pieces_[i], end_of_line_, file_, data_, exact_,
                                   i == 0 && found_materials ? &found_materials : nullptr);
-        parallel_for(parsers_.size(), 1, [&](uint64_t i) { parsers_[i].run(); });
+        parallel_for(parsers_.size(), 1, [&](uint64_t i) {
+            sink_.check();
+            parsers_[i].run();
+        });
     }
 
     /// Bounds of the positions that a sample of face corners refers to.
@@ -383,7 +386,7 @@ private:
             const auto first = static_cast<std::ptrdiff_t>(pieces_[i].counts.positions);
             std::ranges::copy(parsers_[i].colors, data_.colors.begin() + first);
         }
-        decode_vertex_colors(data_.colors, file_, messages_);
+        decode_vertex_colors(data_.colors, file_, sink_);
     }
 
     /// Checks a group's indices and cuts its faces into triangles.
@@ -406,6 +409,7 @@ private:
         std::vector<uint32_t> cut;
         ObjCorner* corners = raw.corners.data();
         for (const Face& face : raw.faces) {
+            sink_.check_at(static_cast<uint64_t>(&face - raw.faces.data()));
             for (uint32_t i = 0; i < face.corner_count; ++i) check(corners[i], face.line, without);
             const bool has_all = std::all_of(corners, corners + face.corner_count, [&](const ObjCorner& corner) {
                 return corner.position < data_.positions.size();
@@ -438,7 +442,7 @@ private:
     }
 
     const std::string& file_;
-    Messages& messages_;
+    Sink& sink_;
     const char end_of_line_;
     std::vector<ObjPiece> pieces_;
     std::deque<PieceParser> parsers_; // parsers of the pieces
@@ -449,9 +453,9 @@ private:
 
 } // namespace
 
-ObjData parse_obj(std::span<const std::byte> bytes, const std::string& file, Messages& messages,
+ObjData parse_obj(std::span<const std::byte> bytes, const std::string& file, Sink& sink,
                   const FoundMaterials& found_materials, std::size_t piece_bytes) {
-    return ObjParser(text_of(bytes), file, messages, piece_bytes).run(found_materials);
+    return ObjParser(text_of(bytes), file, sink, piece_bytes).run(found_materials);
 }
 
 } // namespace pertev

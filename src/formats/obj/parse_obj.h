@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "formats/mesh/vertex_key.h"
 #include "math/double_bounds3.h"
 #include "math/vec2.h"
@@ -62,7 +62,7 @@ struct ObjData {
 /// is called once with the first of material_files if that is in the first piece, possibly from another thread, and
 /// even if this function throws later. It must not throw. A thread parses about `piece_bytes` at once; the result does
 /// not depend on it.
-ObjData parse_obj(std::span<const std::byte> bytes, const std::string& file, Messages& messages,
+ObjData parse_obj(std::span<const std::byte> bytes, const std::string& file, Sink& sink,
                   const FoundMaterials& found_materials = {}, std::size_t piece_bytes = std::size_t(1) << 20);
 
 } // namespace pertev

@@ -18,8 +18,7 @@ float roughness_of(float exponent) { return sqrt(sqrt(2.0f / (max(exponent, 0.0f
 
 class Converter {
 public:
-    Converter(const fs::path& path, TextureLoader& loader, Messages& messages)
-        : path_(path), loader_(loader), messages_(messages) {}
+    Converter(const fs::path& path, TextureLoader& loader, Sink& sink) : path_(path), loader_(loader), sink_(sink) {}
 
     MtlMaterial convert(const MtlStatements& from) {
         MtlMaterial result;
@@ -48,7 +47,7 @@ private:
             ref.image = loader_.add_file(FileLocation{path_.string(), from.line}, gltf::plain_file_name(from.name));
         } catch (const Error& error) { // the file is outside the allowed folders
             if (error.code() != ErrorCode::BadInput) throw;
-            messages_.leave_out(error.remark().and_then("; only its factor is used"));
+            sink_.leave_out(error.remark().and_then("; only its factor is used"));
         }
         ref.is_srgb = is_colour && !from.is_linear;
         if (from.clamp) ref.wrap_s = ref.wrap_t = Wrap::ClampToEdge;
@@ -127,7 +126,7 @@ private:
 
     const fs::path& path_;
     TextureLoader& loader_;
-    Messages& messages_;
+    Sink& sink_;
 };
 
 std::size_t pixel_count(const TextureImage& image) {
@@ -169,28 +168,28 @@ AlphaStatistics alpha_statistics(const TextureImage& image, int channel) {
 
 } // namespace
 
-std::map<std::string, MtlMaterial> read_mtl(const fs::path& path, TextureLoader& loader, Messages& messages) {
-    return read_mtl(read_file(path), path, loader, messages);
+std::map<std::string, MtlMaterial> read_mtl(const fs::path& path, TextureLoader& loader, Sink& sink) {
+    return read_mtl(read_file(path), path, loader, sink);
 }
 
 std::map<std::string, MtlMaterial> read_mtl(std::span<const std::byte> bytes, const fs::path& path,
-                                            TextureLoader& loader, Messages& messages) {
+                                            TextureLoader& loader, Sink& sink) {
     std::map<std::string, MtlMaterial> materials;
-    Converter converter(path, loader, messages);
-    for (const MtlStatements& statements : parse_mtl(bytes, path.string(), messages)) {
+    Converter converter(path, loader, sink);
+    for (const MtlStatements& statements : parse_mtl(bytes, path.string(), sink)) {
         if (statements.name.empty() || materials.contains(statements.name)) continue;
         materials.emplace(statements.name, converter.convert(statements));
     }
-    if (materials.empty()) messages.warn({FileLocation{path.string()}, "it has no material (newmtl)"});
+    if (materials.empty()) sink.warn({FileLocation{path.string()}, "it has no material (newmtl)"});
     return materials;
 }
 
 void finish_mtl_material(MtlMaterial& material, const std::vector<TextureImage>& images, const std::string& file,
-                         Messages& messages) {
+                         Sink& sink) {
     Material& to = material.material;
     if (material.normal_may_be_height && to.normal_texture.has_image()) {
         if (!looks_like_normals(images[static_cast<std::size_t>(to.normal_texture.image)])) {
-            messages.leave_out({FileLocation{file}, "a height map in map_bump is left out; only normal maps are read"});
+            sink.leave_out({FileLocation{file}, "a height map in map_bump is left out; only normal maps are read"});
             to.normal_texture = {};
         }
     }

@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "formats/files/load_textures.h"
 #include "scene/scene.h"
 
@@ -35,15 +35,14 @@ struct MtlMaterial {
 
 /// Materials of the file at `path` by name, the first of equal names; `loader` gets their textures. Throws
 /// Error(BadInput) if the file cannot be read or, with the line, if a number is invalid.
-std::map<std::string, MtlMaterial> read_mtl(const std::filesystem::path& path, TextureLoader& loader,
-                                            Messages& messages);
+std::map<std::string, MtlMaterial> read_mtl(const std::filesystem::path& path, TextureLoader& loader, Sink& sink);
 /// Reads materials from memory; `path` starts every message.
 std::map<std::string, MtlMaterial> read_mtl(std::span<const std::byte> bytes, const std::filesystem::path& path,
-                                            TextureLoader& loader, Messages& messages);
+                                            TextureLoader& loader, Sink& sink);
 
 /// Finishes `material.material` after its images have been decoded (and its textures renumbered by the loader): reads
 /// the alpha mode and channel off the images, and drops a map_bump with heights, with a warning.
 void finish_mtl_material(MtlMaterial& material, const std::vector<TextureImage>& images, const std::string& file,
-                         Messages& messages);
+                         Sink& sink);
 
 } // namespace pertev

@@ -1,6 +1,7 @@
 #include "formats/obj/read_obj.h"
 
 #include <algorithm>
+#include <chrono>
 #include <future>
 #include <map>
 #include <optional>
@@ -17,6 +18,7 @@
 #include "base/message_text.h"
 #include "base/parallel_for.h"
 #include "base/read_file.h"
+#include "base/sink.h"
 #include "formats/files/load_textures.h"
 #include "formats/obj/parse_obj.h"
 #include "formats/obj/read_mtl.h"
@@ -28,7 +30,7 @@ namespace pertev {
 namespace {
 
 void warn_of_textures_without_coordinates(const Scene& scene, const ObjData& data, const std::string& file,
-                                          Messages& messages) {
+                                          Sink& sink) {
     std::set<uint32_t> materials;
     std::string first;
     for (std::size_t i = 0; i < data.groups.size(); ++i) {
@@ -42,7 +44,7 @@ void warn_of_textures_without_coordinates(const Scene& scene, const ObjData& dat
         materials.insert(material);
     }
     if (materials.empty()) return;
-    messages.warn(
+    sink.warn(
         {FileLocation{file},
          fmt::format("{} with a texture on faces without texture coordinates ({} is the first); its corner is shown",
                      counted(materials.size(), "material"), shortened(first))});
@@ -50,7 +52,7 @@ void warn_of_textures_without_coordinates(const Scene& scene, const ObjData& dat
 
 /// Removes vertex colours from meshes with a colour texture, because scanners write the same colours to the vertices as
 /// well.
-void drop_colors_beside_textures(Scene& scene, const std::string& file, Messages& messages) {
+void drop_colors_beside_textures(Scene& scene, const std::string& file, Sink& sink) {
     std::size_t dropped = 0;
     for (const Instance& instance : scene.instances) {
         std::vector<Vec4>& colors = scene.meshes[instance.mesh].colors;
@@ -59,10 +61,10 @@ void drop_colors_beside_textures(Scene& scene, const std::string& file, Messages
         ++dropped;
     }
     if (dropped == 0) return;
-    messages.leave_out({FileLocation{file}, "vertex colours are left out, because a texture defines the colour"});
+    sink.leave_out({FileLocation{file}, "vertex colours are left out, because a texture defines the colour"});
 }
 
-Mesh make_mesh(const ObjGroup& group, const ObjData& data) {
+Mesh make_mesh(const ObjGroup& group, const ObjData& data, Sink& sink) {
     Mesh mesh;
     mesh.name = group.name.empty() ? group.material : group.name;
     mesh.origin = fmt::format("line {}", group.line);
@@ -70,6 +72,7 @@ Mesh make_mesh(const ObjGroup& group, const ObjData& data) {
     mesh.indices.reserve(group.corners.size());
     bool has_uv = false, has_normal = false;
     for (const ObjCorner& corner : group.corners) {
+        sink.check_at(mesh.indices.size());
         mesh.indices.push_back(table.number_of(corner));
         has_uv |= corner.uv != kNoIndex;
         has_normal |= corner.normal != kNoIndex;
@@ -110,15 +113,15 @@ void wind_after_normals(Mesh& mesh) {
 }
 
 std::vector<fs::path> find_material_files(const ObjMaterialFiles& line, const fs::path& obj, const FileAccess& access,
-                                          Messages& messages) {
+                                          Sink& sink) {
     const FileLocation location = {obj.string(), line.line};
     bool is_refused = false; // true once a refused file has been reported
     const auto find = [&](const std::string& name) -> std::optional<fs::path> {
         try {
-            return access.find(location, name, messages);
+            return access.find(location, name, sink);
         } catch (const Error& error) {
             if (error.code() != ErrorCode::BadInput) throw;
-            messages.leave_out(error.remark().and_then("; its materials are grey"));
+            sink.leave_out(error.remark().and_then("; its materials are grey"));
             is_refused = true;
             return std::nullopt;
         }
@@ -132,7 +135,7 @@ std::vector<fs::path> find_material_files(const ObjMaterialFiles& line, const fs
         if (const std::optional<fs::path> path = find(name)) {
             found.push_back(*path);
         } else if (!is_refused) {
-            messages.leave_out(
+            sink.leave_out(
                 {location, fmt::format("there is no material file {}; its materials are grey", shortened(name))});
         }
     }
@@ -145,8 +148,8 @@ std::vector<fs::path> find_material_files(const ObjMaterialFiles& line, const fs
 class MaterialsBeside {
 public:
     /// Makes an object that all arguments must outlive.
-    MaterialsBeside(const fs::path& obj, const FileAccess& access, TextureLoader& loader, Messages& messages)
-        : obj_(obj), access_(access), loader_(loader), messages_(messages) {}
+    MaterialsBeside(const fs::path& obj, const FileAccess& access, TextureLoader& loader, Sink& sink)
+        : obj_(obj), access_(access), loader_(loader), sink_(sink) {}
 
     /// Starts to read the materials of the first mtllib statement. It is called at most once, and throws nothing.
     void start(const ObjMaterialFiles& line) {
@@ -163,7 +166,10 @@ public:
     /// Waits for the first materials, reads those of the other `lines`, and returns all.
     std::map<std::string, MtlMaterial> finish(const std::vector<ObjMaterialFiles>& lines) {
         const bool is_first_read = first_.valid();
-        if (is_first_read) first_.get();
+        if (is_first_read) {
+            while (first_.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) sink_.check();
+            first_.get();
+        }
         for (std::size_t i = is_first_read ? 1 : 0; i < lines.size(); ++i) read(lines[i]);
         return std::move(materials_);
     }
@@ -171,15 +177,15 @@ public:
 private:
     void read(const ObjMaterialFiles& line) {
         if (line.names.empty()) return;
-        for (const fs::path& path : find_material_files(line, obj_, access_, messages_)) {
-            if (seen_.insert(path).second) materials_.merge(read_mtl(path, loader_, messages_));
+        for (const fs::path& path : find_material_files(line, obj_, access_, sink_)) {
+            if (seen_.insert(path).second) materials_.merge(read_mtl(path, loader_, sink_));
         }
     }
 
     const fs::path& obj_;
     const FileAccess& access_;
     TextureLoader& loader_;
-    Messages& messages_;
+    Sink& sink_;
     std::map<std::string, MtlMaterial> materials_;
     std::set<fs::path> seen_;
     std::future<void> first_; // the last member: it is waited for before the others go
@@ -194,7 +200,7 @@ Material grey_material(const std::string& name, const ObjData& data) {
 
 /// Makes the scene. `loader` has the textures of `materials`.
 Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& materials, TextureLoader& loader,
-                 const std::string& file, const ReadOptions& options, Messages& messages) {
+                 const std::string& file, const ReadOptions& options, Sink& sink) {
     Scene scene;
     set_origin(data.box, scene);
     scene.meshes.resize(data.groups.size());
@@ -222,20 +228,20 @@ Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& 
     if (data.groups.empty()) {
         scene.no_instances =
             fmt::format("{} but no face; expected a line such as f 1 2 3", counted(data.positions.size(), "position"));
-        const std::vector<std::string> left_out = messages.left_out();
+        const std::vector<std::string> left_out = sink.messages().left_out();
         if (!left_out.empty()) scene.no_instances += fmt::format("; left out: {}", left_out.front());
     }
 
     if (unknown > 0 && !options.geometry_only) {
-        messages.leave_out({FileLocation{file}, fmt::format("{} that {} in no .mtl file ({} is the first) {} grey",
-                                                            counted(unknown, "material"), is_or_are(unknown),
-                                                            shortened(first_unknown), is_or_are(unknown))});
+        sink.leave_out({FileLocation{file}, fmt::format("{} that {} in no .mtl file ({} is the first) {} grey",
+                                                        counted(unknown, "material"), is_or_are(unknown),
+                                                        shortened(first_unknown), is_or_are(unknown))});
     }
 
     parallel_invoke([&] { loader.load_into(scene); },
                     [&] {
                         parallel_for(data.groups.size(), 1, [&](uint64_t i) {
-                            scene.meshes[i] = make_mesh(data.groups[i], data);
+                            scene.meshes[i] = make_mesh(data.groups[i], data, sink);
                             const Material& material = scene.materials[scene.instances[i].material];
                             if (material.is_emissive()) wind_after_normals(scene.meshes[i]);
                         });
@@ -246,42 +252,42 @@ Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& 
         if (known == materials.end()) continue;
         MtlMaterial finished = known->second;
         finished.material = material;
-        finish_mtl_material(finished, scene.images, file, messages);
+        finish_mtl_material(finished, scene.images, file, sink);
         material = finished.material;
     }
-    warn_of_textures_without_coordinates(scene, data, file, messages);
-    drop_colors_beside_textures(scene, file, messages);
+    warn_of_textures_without_coordinates(scene, data, file, sink);
+    drop_colors_beside_textures(scene, file, sink);
     return scene;
 }
 
 } // namespace
 
-Scene read_obj(const fs::path& path, const FileAccess& access, const ReadOptions& options, Messages& messages) {
-    Messages of_materials; // reported after those of the geometry
+Scene read_obj(const fs::path& path, const FileAccess& access, const ReadOptions& options, Sink& sink) {
+    PartMessages of_materials(sink); // reported after those of the geometry
     TextureLoader loader(access, of_materials);
     MaterialsBeside beside(path, access, loader, of_materials);
-    const ObjData data = parse_obj(read_file(path), path.string(), messages, [&](const ObjMaterialFiles& line) {
+    const ObjData data = parse_obj(read_file(path), path.string(), sink, [&](const ObjMaterialFiles& line) {
         if (!options.geometry_only) beside.start(line);
     });
     std::map<std::string, MtlMaterial> materials;
     try {
         if (!options.geometry_only) materials = beside.finish(data.material_files);
     } catch (...) {
-        messages.add_all(of_materials);
+        sink.add_all(of_materials);
         throw;
     }
-    messages.add_all(of_materials);
-    loader.report_to(messages);
-    return make_scene(data, materials, loader, path.string(), options, messages);
+    sink.add_all(of_materials);
+    loader.report_to(sink);
+    return make_scene(data, materials, loader, path.string(), options, sink);
 }
 
 Scene read_obj(const fs::path& path, const ObjTexts& texts, const FileAccess& access, const ReadOptions& options,
-               Messages& messages) {
-    const ObjData data = parse_obj(texts.geometry, path.string(), messages);
-    TextureLoader loader(access, messages);
+               Sink& sink) {
+    const ObjData data = parse_obj(texts.geometry, path.string(), sink);
+    TextureLoader loader(access, sink);
     std::map<std::string, MtlMaterial> materials;
-    if (!options.geometry_only) materials = read_mtl(texts.materials, path, loader, messages);
-    return make_scene(data, materials, loader, path.string(), options, messages);
+    if (!options.geometry_only) materials = read_mtl(texts.materials, path, loader, sink);
+    return make_scene(data, materials, loader, path.string(), options, sink);
 }
 
 } // namespace pertev

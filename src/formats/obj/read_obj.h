@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <span>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "formats/files/file_access.h"
 #include "formats/files/read_options.h"
 #include "scene/scene.h"
@@ -16,8 +16,7 @@ namespace pertev {
 
 /// Reads an OBJ file without validating the scene. Throws Error(BadInput) that names the file and the line. A missing
 /// .mtl or texture gives a warning.
-Scene read_obj(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options,
-               Messages& messages);
+Scene read_obj(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options, Sink& sink);
 
 struct ObjTexts {
     std::span<const std::byte> geometry,
@@ -25,6 +24,6 @@ struct ObjTexts {
 };
 /// Reads an OBJ file from memory; `path` starts every message.
 Scene read_obj(const std::filesystem::path& path, const ObjTexts& texts, const FileAccess& access,
-               const ReadOptions& options, Messages& messages);
+               const ReadOptions& options, Sink& sink);
 
 } // namespace pertev

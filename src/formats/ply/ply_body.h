@@ -22,7 +22,7 @@
 
 #include "base/error.h"
 #include "base/message_text.h"
-#include "base/messages.h"
+#include "base/sink.h"
 #include "formats/files/parse_number.h"
 #include "formats/ply/ply_header.h"
 
@@ -110,16 +110,16 @@ public:
         if (!was_bad && long_lines_++ == 0) first_long_line_ = line();
         while (at_ != end_ && *at_ != '\n' && *at_ != '\r') ++at_;
     }
-    void warn(Messages& messages) const {
+    void warn(Sink& sink) const {
         if (bad_values_ > 0) {
-            messages.leave_out(first_bad_value_->and_then(
+            sink.leave_out(first_bad_value_->and_then(
                 bad_values_ == 1 ? "; it is left out"
                                  : fmt::format("; this and {} more are left out", bad_values_ - 1)));
         }
         if (long_lines_ == 0) return;
-        messages.leave_out({FileLocation{file_, first_long_line_},
-                            fmt::format("{} with more numbers than the header states; the rest is left out",
-                                        counted(long_lines_, "line"))});
+        sink.leave_out({FileLocation{file_, first_long_line_},
+                        fmt::format("{} with more numbers than the header states; the rest is left out",
+                                    counted(long_lines_, "line"))});
     }
 
 private:

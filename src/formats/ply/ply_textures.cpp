@@ -95,14 +95,14 @@ void split_vertices(const std::vector<Vec2>& uvs, std::vector<uint32_t>& corners
 }
 
 Scene make_ply_scene(Mesh mesh, const std::vector<uint32_t>& sizes, const PlyFaceTextures& of_faces,
-                     const PlyHeader& header, const std::string& file, TextureLoader& loader, Messages& messages) {
+                     const PlyHeader& header, const std::string& file, TextureLoader& loader, Sink& sink) {
     Scene scene;
     const std::string name = mesh.name;
     const bool has_uv = !mesh.uv[0].empty();
     if (!header.textures.empty() && !has_uv) {
-        messages.leave_out({FileLocation{file, header.textures.front().line},
-                            fmt::format("{} left out: neither vertices nor faces have texture coordinates",
-                                        counted(header.textures.size(), "texture"))});
+        sink.leave_out({FileLocation{file, header.textures.front().line},
+                        fmt::format("{} left out: neither vertices nor faces have texture coordinates",
+                                    counted(header.textures.size(), "texture"))});
     }
     for (Part& part : split_by_texture(std::move(mesh), sizes, of_faces.textures, header.textures.size())) {
         Material& material = scene.materials.emplace_back();
@@ -129,7 +129,7 @@ Scene make_ply_scene(Mesh mesh, const std::vector<uint32_t>& sizes, const PlyFac
         has_colors_beside = true;
     }
     if (has_colors_beside) {
-        messages.leave_out({FileLocation{file}, "vertex colours are left out, because a texture defines the colour"});
+        sink.leave_out({FileLocation{file}, "vertex colours are left out, because a texture defines the colour"});
     }
     return scene;
 }

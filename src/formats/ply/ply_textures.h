@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "formats/files/load_textures.h"
 #include "formats/ply/ply_header.h"
 #include "math/vec2.h"
@@ -31,6 +31,6 @@ void split_vertices(const std::vector<Vec2>& uvs, std::vector<uint32_t>& corners
 /// Makes the scene of a PLY file from `mesh`, whose faces had `sizes` corners before triangulation: a mesh for each
 /// texture, with its own material. Vertex colours apply where there is no texture.
 Scene make_ply_scene(Mesh mesh, const std::vector<uint32_t>& sizes, const PlyFaceTextures& of_faces,
-                     const PlyHeader& header, const std::string& file, TextureLoader& loader, Messages& messages);
+                     const PlyHeader& header, const std::string& file, TextureLoader& loader, Sink& sink);
 
 } // namespace pertev

@@ -43,8 +43,8 @@ float colour(double value, PlyType type, bool is_alpha) {
 
 class Reader {
 public:
-    Reader(std::span<const std::byte> bytes, const PlyHeader& header, const std::string& file)
-        : body_(bytes, header, file), header_(header), file_(file) {
+    Reader(std::span<const std::byte> bytes, const PlyHeader& header, const std::string& file, Sink& sink)
+        : body_(bytes, header, file), header_(header), file_(file), sink_(sink) {
         for (const PlyElement& element : header.elements) {
             if (element.name == "vertex") vertex_count_ = std::min<uint64_t>(element.count, 0xffffffffu);
         }
@@ -55,7 +55,7 @@ public:
     const DoubleBounds3& box() const { return box_; }
 
     /// Reads the file's mesh. Its faces are described by sizes() and of_faces().
-    Mesh run(Messages& messages) {
+    Mesh run() {
         if (std::none_of(header_.elements.begin(), header_.elements.end(), is_surface)) {
             throw Error(ErrorCode::BadInput, FileLocation{file_},
                         "it has no faces; a surface has an element face with a list vertex_indices");
@@ -79,33 +79,33 @@ public:
                 if (!of_faces_.textures.empty())
                     sizes_.resize(of_faces_.textures.size()); // the last may lack its texture
                 corners_.resize(std::accumulate(sizes_.begin(), sizes_.end(), std::size_t(0)));
-                messages.leave_out(error.remark().and_then("; the rest is left out"));
+                sink_.leave_out(error.remark().and_then("; the rest is left out"));
                 break;
             }
         }
         move_to_origin();
-        if (has_float_colors_) decode_vertex_colors(mesh_.colors, file_, messages);
+        if (has_float_colors_) decode_vertex_colors(mesh_.colors, file_, sink_);
         if (!of_faces_.textures.empty() && of_faces_.textures.size() != sizes_.size()) {
-            messages.leave_out({FileLocation{file_}, "textures of faces in a file with triangle strips are left out"});
+            sink_.leave_out({FileLocation{file_}, "textures of faces in a file with triangle strips are left out"});
             of_faces_ = {};
         }
         if (!of_faces_.uvs.empty()) split_vertices(of_faces_.uvs, corners_, mesh_);
         triangulate();
-        warn_of_face_properties(messages);
-        body_.warn(messages);
+        warn_of_face_properties();
+        body_.warn(sink_);
         if (bad_indices_ > 0) {
-            messages.leave_out(first_bad_index_->and_then(fmt::format(
+            sink_.leave_out(first_bad_index_->and_then(fmt::format(
                 "; what {} left out",
                 bad_indices_ == 1 ? "has that corner is" : fmt::format("has such a corner, of {}, is", bad_indices_))));
         }
         if (bad_textures_ > 0) {
-            messages.leave_out(
+            sink_.leave_out(
                 {FileLocation{file_}, fmt::format("{} with a texture that the header does not list {} without it",
                                                   counted(bad_textures_, "face"), is_or_are(bad_textures_))});
         }
         if (strays_ > 0) {
-            messages.leave_out({FileLocation{file_}, fmt::format("{} with fewer than three corners {} left out",
-                                                                 counted(strays_, "face"), is_or_are(strays_))});
+            sink_.leave_out({FileLocation{file_}, fmt::format("{} with fewer than three corners {} left out",
+                                                              counted(strays_, "face"), is_or_are(strays_))});
         }
         return std::move(mesh_);
     }
@@ -124,7 +124,7 @@ private:
                std::any_of(element.properties.begin(), element.properties.end(), is_indices);
     }
 
-    void warn_of_face_properties(Messages& messages) const {
+    void warn_of_face_properties() const {
         for (const PlyElement& element : header_.elements) {
             if (element.name != "face" || element.count == 0) continue;
             bool has_colour = false, has_uv = false;
@@ -134,10 +134,10 @@ private:
                 has_uv |= is_face_uv(p) && header_.textures.empty();
             }
             if (has_colour)
-                messages.leave_out(
+                sink_.leave_out(
                     {FileLocation{file_}, "colours of faces are left out; only those of vertices are read"});
             if (has_uv)
-                messages.leave_out(
+                sink_.leave_out(
                     {FileLocation{file_},
                      "texture coordinates of faces are left out, because no comment TextureFile names a texture"});
         }
@@ -194,6 +194,7 @@ private:
         const auto number = [&](PlySlot slot) { return static_cast<float>(values[slot]); };
         const auto channel = [&](PlySlot slot) { return colour(values[slot], types[slot], slot == kAlpha); };
         for (std::size_t i = 0; i < count; ++i) {
+            sink_.check_at(i);
             body_.set_number(i);
             read_values(body_, element, slots, values);
             mesh_.positions[i] = {number(kX), number(kY), number(kZ)};
@@ -215,6 +216,7 @@ private:
         const bool has_uv = has_textures && std::ranges::any_of(element.properties, is_face_uv);
         const bool has_numbers = has_textures && std::ranges::any_of(element.properties, is_texture_number);
         for (uint64_t i = 0; i < element.count; ++i) {
+            sink_.check_at(i);
             body_.set_number(i);
             bool taken = false;
             uint64_t corners = 0;
@@ -364,6 +366,7 @@ private:
         std::vector<uint32_t> cut;
         const uint32_t* corners = corners_.data();
         for (const uint32_t size : sizes_) {
+            sink_.check_at(static_cast<uint64_t>(&size - sizes_.data()));
             polygon.clear();
             cut.clear();
             for (uint32_t i = 0; i < size; ++i) polygon.push_back(mesh_.positions[corners[i]]);
@@ -376,6 +379,7 @@ private:
     PlyBody body_;
     const PlyHeader& header_;
     const std::string& file_;
+    Sink& sink_;
     uint64_t vertex_count_ = 0; // declared count, because faces may precede the vertices
     Mesh mesh_;
     std::vector<DoubleVec3> exact_; // positions, if they are not floats in the file
@@ -390,18 +394,18 @@ private:
 
 } // namespace
 
-Scene read_ply(const fs::path& path, const FileAccess& access, const ReadOptions& options, Messages& messages) {
+Scene read_ply(const fs::path& path, const FileAccess& access, const ReadOptions& options, Sink& sink) {
     const std::string file = path.string();
     const std::vector<std::byte> bytes = read_file(path);
     PlyHeader header = parse_ply_header(bytes, file);
-    for (const Remark& repair : header.repairs) messages.warn(repair);
+    for (const Remark& repair : header.repairs) sink.warn(repair);
     if (options.geometry_only) header.textures.clear();
-    Reader reader(bytes, header, file);
-    Mesh mesh = reader.run(messages);
+    Reader reader(bytes, header, file, sink);
+    Mesh mesh = reader.run();
     mesh.name = path.stem().string();
     if (options.geometry_only) mesh.colors.clear();
-    TextureLoader loader(access, messages);
-    Scene scene = make_ply_scene(std::move(mesh), reader.sizes(), reader.of_faces(), header, file, loader, messages);
+    TextureLoader loader(access, sink);
+    Scene scene = make_ply_scene(std::move(mesh), reader.sizes(), reader.of_faces(), header, file, loader, sink);
     set_origin(reader.box(), scene);
     return scene;
 }

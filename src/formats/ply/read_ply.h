@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "formats/files/file_access.h"
 #include "formats/files/read_options.h"
 #include "scene/scene.h"
@@ -17,7 +17,6 @@ namespace pertev {
 /// (formats/mesh/vertex_colors.h); v of texture coordinates points up. The result is not validated. Throws
 /// Error(BadInput) that names the file and the header line, or the element, its number and the line (binary: the
 /// byte).
-Scene read_ply(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options,
-               Messages& messages);
+Scene read_ply(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options, Sink& sink);
 
 } // namespace pertev

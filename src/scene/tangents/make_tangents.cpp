@@ -190,7 +190,7 @@ std::vector<MeshBySet> choose_meshes(Scene& scene) {
 
 } // namespace
 
-void make_tangents(Scene& scene) {
+void make_tangents(Scene& scene, Sink& sink) {
     struct Task {
         uint32_t mesh;
         uint8_t uv_set;
@@ -205,6 +205,7 @@ void make_tangents(Scene& scene) {
     std::vector<MeshShape*> shapes(scene.meshes.size());
     for (MeshShape& shape : scene.shapes) shapes[shape.mesh] = &shape;
     parallel_for(tasks.size(), 1, [&](uint64_t i) {
+        sink.check();
         add_tangents(scene.meshes[tasks[i].mesh], shapes[tasks[i].mesh], tasks[i].uv_set);
     });
     std::vector<MeshShape*> changed;

@@ -3,6 +3,7 @@
 // Adds tangents to meshes with a normal map whose file has none, by MikkTSpace over the texture coordinates of that
 // map, as glTF 2.0 section 3.7.2.1 requires.
 
+#include "base/sink.h"
 #include "scene/scene.h"
 
 namespace pertev {
@@ -13,6 +14,6 @@ namespace pertev {
 /// are computed from its undeformed vertices and deform with them; each morph target stores the difference to the
 /// tangents of the mesh at that target. Every index of `scene` is in range and every number finite (validate() calls
 /// this).
-void make_tangents(Scene& scene);
+void make_tangents(Scene& scene, Sink& sink = nobody());
 
 } // namespace pertev

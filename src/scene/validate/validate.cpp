@@ -22,13 +22,12 @@ constexpr const char* kTooFar = "lies beyond 2^40 metres";
 
 class Validator {
 public:
-    Validator(Scene& scene, const std::string& file, Messages& messages)
-        : scene_(scene), file_(file), messages_(messages) {}
+    Validator(Scene& scene, const std::string& file, Sink& sink) : scene_(scene), file_(file), sink_(sink) {}
 
     void run() {
         references();
         validate_nodes(scene_, file_);
-        validate_materials(scene_, file_, messages_);
+        validate_materials(scene_, file_, sink_);
         moves_ = may_move(scene_);
         meshes();
         report();
@@ -47,7 +46,7 @@ public:
         }
         for (std::size_t i = 0; i < scene_.cameras.size(); ++i) camera(i);
         for (std::size_t i = 0; i < scene_.lights.size(); ++i) light(i);
-        make_tangents(scene_);
+        make_tangents(scene_, sink_);
     }
 
 private:
@@ -113,6 +112,7 @@ private:
             shapes[shape.mesh] = &shape;
         }
         for (std::size_t i = 0; i < scene_.meshes.size(); ++i) {
+            sink_.check();
             Mesh& mesh = scene_.meshes[i];
             const MeshName of = {file_, name_of(i, mesh)};
             MeshShape* shape = shapes[i];
@@ -130,13 +130,13 @@ private:
             return fmt::format("{}: {} {} {} {}", file_, counted(count, thing), which, is_or_are(count), done);
         };
         const auto warn = [&](uint64_t count, const char* thing, const char* which, const char* done) {
-            if (count > 0) messages_.warn(text(count, thing, which, done));
+            if (count > 0) sink_.warn(text(count, thing, which, done));
         };
         if (repairs_.not_finite > 0) {
-            messages_.leave_out(text(repairs_.not_finite, "triangle", "with a vertex that is not finite", "left out"));
+            sink_.leave_out(text(repairs_.not_finite, "triangle", "with a vertex that is not finite", "left out"));
         }
         if (repairs_.too_far > 0) {
-            messages_.leave_out(text(repairs_.too_far, "triangle", "that reaches beyond 2^40 metres", "left out"));
+            sink_.leave_out(text(repairs_.too_far, "triangle", "that reaches beyond 2^40 metres", "left out"));
         }
         warn(repairs_.without_area, "triangle", "without area", "left out");
         warn(repairs_.normals, "normal", "of length zero or not finite", "replaced by the geometric normal");
@@ -176,15 +176,15 @@ private:
             if (const std::string fault = fault_of_transform(instance, bounds[instance.mesh]); !fault.empty()) {
                 const std::string what = fmt::format("{} {}", name_of(number, instance), fault);
                 if (first_misplaced_.empty()) first_misplaced_ = what;
-                messages_.leave_out({FileLocation{file_}, fmt::format("{}; it is left out", what)});
+                sink_.leave_out({FileLocation{file_}, fmt::format("{}; it is left out", what)});
                 return true;
             }
             const bool drops = is_singular(instance.world_from_local) && !moves_[number];
             if (drops && dropped++ == 0) first_singular_ = name_of(number, instance);
             if (drops && is_flat(instance.world_from_local)) {
-                messages_.leave_out({FileLocation{file_},
-                                     fmt::format("{} has a singular transform, such as one scale of 0, and is left out",
-                                                 name_of(number, instance))});
+                sink_.leave_out({FileLocation{file_},
+                                 fmt::format("{} has a singular transform, such as one scale of 0, and is left out",
+                                             name_of(number, instance))});
             }
             return drops;
         });
@@ -194,9 +194,9 @@ private:
             instance.world_from_local = {};
         }
         if (dropped == 0) return;
-        messages_.warn({FileLocation{file_},
-                        fmt::format("{} with a singular transform, such as a scale of 0, hidden ({} is the first)",
-                                    counted(dropped, "instance"), first_singular_)});
+        sink_.warn({FileLocation{file_},
+                    fmt::format("{} with a singular transform, such as a scale of 0, hidden ({} is the first)",
+                                counted(dropped, "instance"), first_singular_)});
     }
 
     /// Returns whether a transform removes all area of surfaces.
@@ -266,7 +266,7 @@ private:
 
     Scene& scene_;
     const std::string& file_;
-    Messages& messages_;
+    Sink& sink_;
     MeshRepairs repairs_;
     std::vector<bool> moves_;                                         // may_move of the instances
     std::string first_empty_mesh_, first_singular_, first_misplaced_; // locations in the file
@@ -274,6 +274,6 @@ private:
 
 } // namespace
 
-void validate(Scene& scene, const std::string& file, Messages& messages) { Validator(scene, file, messages).run(); }
+void validate(Scene& scene, const std::string& file, Sink& sink) { Validator(scene, file, sink).run(); }
 
 } // namespace pertev

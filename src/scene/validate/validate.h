@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "scene/scene.h"
 
 namespace pertev {
@@ -15,6 +15,6 @@ namespace pertev {
 /// warning per kind that counts them, and so are instances that a scale of 0 always hides. Throws Error(BadInput or
 /// OverLimit) for everything else. `file` names the source in messages. A scene without any triangle left is an
 /// error. Meshes with a normal map and without tangents get them (scene/tangents/make_tangents.h).
-void validate(Scene& scene, const std::string& file, Messages& messages);
+void validate(Scene& scene, const std::string& file, Sink& sink);
 
 } // namespace pertev

@@ -13,14 +13,13 @@ constexpr float kMaxUvScale = 0x1p40f;
 
 class Checker {
 public:
-    Checker(Scene& scene, const std::string& file, Messages& messages)
-        : scene_(scene), file_(file), messages_(messages) {}
+    Checker(Scene& scene, const std::string& file, Sink& sink) : scene_(scene), file_(file), sink_(sink) {}
 
     void run() {
         for (std::size_t i = 0; i < scene_.images.size(); ++i) image(i);
         for (std::size_t i = 0; i < scene_.materials.size(); ++i) material(i);
         if (clamped_ > 0) {
-            messages_.warn(
+            sink_.warn(
                 {FileLocation{file_}, fmt::format("{} of materials outside the range {} clamped; the first is {}",
                                                   counted(clamped_, "number"), is_or_are(clamped_), first_clamped_)});
         }
@@ -52,8 +51,8 @@ private:
             ++bad_values;
         }
         if (bad_values > 0) {
-            messages_.warn({FileLocation{file_},
-                            fmt::format("{}: {} negative or not finite: set to 0", of, counted(bad_values, "value"))});
+            sink_.warn({FileLocation{file_},
+                        fmt::format("{}: {} negative or not finite: set to 0", of, counted(bad_values, "value"))});
         }
     }
 
@@ -115,7 +114,7 @@ private:
 
     Scene& scene_;
     const std::string& file_;
-    Messages& messages_;
+    Sink& sink_;
     std::string of_; // the current material
     std::size_t clamped_ = 0;
     std::string first_clamped_;
@@ -123,8 +122,6 @@ private:
 
 } // namespace
 
-void validate_materials(Scene& scene, const std::string& file, Messages& messages) {
-    Checker(scene, file, messages).run();
-}
+void validate_materials(Scene& scene, const std::string& file, Sink& sink) { Checker(scene, file, sink).run(); }
 
 } // namespace pertev

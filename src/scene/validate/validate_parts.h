@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "scene/scene.h"
 
 namespace pertev {
@@ -12,7 +12,7 @@ namespace pertev {
 /// Clamps values to their ranges with a warning; throws Error(BadInput or OverLimit) for numbers that are not finite
 /// and for indices out of range. Pixels that are not finite, or negative light, become 0, with a warning that counts
 /// them.
-void validate_materials(Scene& scene, const std::string& file, Messages& messages);
+void validate_materials(Scene& scene, const std::string& file, Sink& sink);
 
 /// Checks nodes, skins and animations. Throws Error(BadInput) for an index out of range (including those of instances,
 /// cameras and lights into the nodes), cycles of nodes, a number that is not finite, a quaternion of length 0, times

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/limits.h"
+#include "base/sink.h"
 #include "formats/files/parse_number.h"
 #include "scene/scene_origin.h"
 #include "session/degrees.h"
@@ -50,13 +51,13 @@ void place_camera(const CameraChoice& choice, const Scene& scene, Camera& camera
 }
 
 /// Makes the camera for a scene without one and a choice without an eye.
-Camera make_camera(const CameraChoice& choice, const Scene& scene, float aspect, Messages& messages) {
-    if (!choice.target) return make_default_camera(scene, aspect, messages);
-    Messages unsaid; // discards messages about a view that is not used
+Camera make_camera(const CameraChoice& choice, const Scene& scene, float aspect, Sink& sink) {
+    if (!choice.target) return make_default_camera(scene, aspect, sink);
+    PartMessages unsaid(sink); // discards messages about a view that is not used
     const Camera camera = make_default_camera(scene, aspect, unsaid);
     const Vec3 eye = camera.world_from_camera.translation;
-    messages.make_up(fmt::format("the scene has no camera: a default eye looks at the target (`eye={}` `target={}`)",
-                                 position_text(scene, eye, 4), text_of(*choice.target)));
+    sink.make_up(fmt::format("the scene has no camera: a default eye looks at the target (`eye={}` `target={}`)",
+                             position_text(scene, eye, 4), text_of(*choice.target)));
     return camera;
 }
 
@@ -71,7 +72,7 @@ void flatten(const CameraChoice& choice, const Scene& scene, const Camera& befor
 
 /// If there is an aperture, but neither focus nor target was given, focuses the placed `camera` on what is in the
 /// middle of its picture, or else on the distance of the scene's middle, with a notice.
-void focus_in_the_middle(const CameraChoice& choice, const Scene& scene, Camera& camera, Messages& messages) {
+void focus_in_the_middle(const CameraChoice& choice, const Scene& scene, Camera& camera, Sink& sink) {
     const bool has_target = choice.target && !choice.is_aimed;
     if (!(choice.aperture.value_or(0) > 0) || choice.focus || has_target) return;
     const std::optional<float> seen = distance_in_the_middle(scene, camera);
@@ -80,7 +81,7 @@ void focus_in_the_middle(const CameraChoice& choice, const Scene& scene, Camera&
     const float away = length(middle - camera.world_from_camera.translation);
     const float distance = seen.value_or(max(away, 0x1p-40f));
     camera.focus_distance = rounded(distance, 4);
-    messages.make_up(
+    sink.make_up(
         {"aperture", "",
          fmt::format("without `focus` the lens focuses at {:.4g} m, {} (`focus={:.4g}`)", distance,
                      seen ? "the distance of the surface in the middle of the picture"
@@ -89,16 +90,16 @@ void focus_in_the_middle(const CameraChoice& choice, const Scene& scene, Camera&
 }
 
 /// Warns of parts of a choice without effect. `flattened` means that the camera's angle of view has become a height.
-void warn_of_useless_parts(const CameraChoice& choice, const Camera& camera, bool flattened, Messages& messages) {
+void warn_of_useless_parts(const CameraChoice& choice, const Camera& camera, bool flattened, Sink& sink) {
     const bool is_perspective = view_angle(camera) > 0;
     if (choice.view_height && is_perspective) {
-        messages.warn({"view_height", "", "the camera is perspective; it applies with `projection=orthographic`"});
+        sink.warn({"view_height", "", "the camera is perspective; it applies with `projection=orthographic`"});
     }
     if (choice.fov_deg && !is_perspective && (!flattened || choice.view_height)) {
-        messages.warn({"fov", "", "the camera is orthographic; set `view_height` instead"});
+        sink.warn({"fov", "", "the camera is orthographic; set `view_height` instead"});
     }
     if (choice.focus && camera.aperture_radius == 0) {
-        messages.warn({"focus", "", "the lens has no aperture, so that everything is in focus; set `aperture`"});
+        sink.warn({"focus", "", "the lens has no aperture, so that everything is in focus; set `aperture`"});
     }
 }
 
@@ -120,24 +121,24 @@ const Camera* scene_camera(const std::string& name, const Scene& scene) {
                 fmt::format("the scene has no such camera; it has:{}", known.empty() ? "\n  none" : known));
 }
 
-void aim_camera(CameraChoice& choice, const Scene& scene, Messages& messages) {
+void aim_camera(CameraChoice& choice, const Scene& scene, Sink& sink) {
     if (!choice.eye || choice.target) return;
     const Target target = target_from(scene, in_scene(scene, *choice.eye));
     choice.target = stated_position(scene, target.position, 6);
     choice.is_aimed = true;
-    messages.make_up({"eye", "",
-                      fmt::format("without `target` the camera looks {} (`eye={}` `target={}`)",
-                                  target.is_middle ? "at the middle of the scene" : "along the scene from its middle",
-                                  text_of(*choice.eye), position_text(scene, target.position, 6))});
+    sink.make_up({"eye", "",
+                  fmt::format("without `target` the camera looks {} (`eye={}` `target={}`)",
+                              target.is_middle ? "at the middle of the scene" : "along the scene from its middle",
+                              text_of(*choice.eye), position_text(scene, target.position, 6))});
 }
 
-Camera choose_camera(CameraChoice choice, const Scene& scene, float aspect, Messages& messages) {
-    aim_camera(choice, scene, messages);
+Camera choose_camera(CameraChoice choice, const Scene& scene, float aspect, Sink& sink) {
+    aim_camera(choice, scene, sink);
     Camera camera;
     if (const Camera* given = scene_camera(choice.camera, scene)) {
         camera = *given;
     } else if (!choice.places_camera()) {
-        camera = make_camera(choice, scene, aspect, messages);
+        camera = make_camera(choice, scene, aspect, sink);
     }
     Vec3& position = camera.world_from_camera.translation;
     position = rounded_to_file(scene, position); // so that numbers in the coordinates of the file state it to the bit
@@ -151,8 +152,8 @@ Camera choose_camera(CameraChoice choice, const Scene& scene, float aspect, Mess
     if (flattened && !choice.view_height) flatten(choice, scene, before, camera);
     if (choice.view_height) camera.ortho_height = *choice.view_height;
     set_lens(choice, camera);
-    focus_in_the_middle(choice, scene, camera, messages);
-    warn_of_useless_parts(choice, camera, flattened, messages);
+    focus_in_the_middle(choice, scene, camera, sink);
+    warn_of_useless_parts(choice, camera, flattened, sink);
     return camera;
 }
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "scene/scene.h"
 #include "settings/camera_choice.h"
 
@@ -17,11 +17,11 @@ const Camera* scene_camera(const std::string& name, const Scene& scene);
 
 /// Gives an eye without a target the middle of the scene as its target, with a notice. choose_camera() does so too;
 /// this is for those who record the target.
-void aim_camera(CameraChoice& choice, const Scene& scene, Messages& messages);
+void aim_camera(CameraChoice& choice, const Scene& scene, Sink& sink);
 
 /// The camera from the choice, the scene or the defaults, for a picture with the aspect ratio width / height. A part
 /// of the choice without effect on this camera gives a warning. The scene has passed validate(). Throws
 /// Error(BadInput).
-Camera choose_camera(CameraChoice choice, const Scene& scene, float aspect, Messages& messages);
+Camera choose_camera(CameraChoice choice, const Scene& scene, float aspect, Sink& sink);
 
 } // namespace pertev

@@ -19,11 +19,11 @@ bool has_own_camera(const CameraChoice& choice, const Scene& scene) {
 } // namespace
 
 MovingCamera::MovingCamera(CameraChoice choice, std::optional<CameraPath> path, const Scene& rest, float aspect,
-                           Messages& messages)
+                           Sink& sink)
     : choice_(std::move(choice)), path_(std::move(path)), aspect_(aspect) {
     const bool makes_it_up = !path_ && !choice_.places_camera() && !has_own_camera(choice_, rest);
-    aim_camera(choice_, rest, messages);
-    const Camera at_rest = choose_camera(choice_at(std::nullopt), rest, aspect, messages);
+    aim_camera(choice_, rest, sink);
+    const Camera at_rest = choose_camera(choice_at(std::nullopt), rest, aspect, sink);
     if (makes_it_up) made_up_ = at_rest;
     const bool is_focused = choice_.focus || (choice_.target && !choice_.is_aimed) || path_;
     if (choice_.aperture.value_or(0) > 0 && !is_focused) choice_.focus = at_rest.focus_distance;
@@ -47,9 +47,8 @@ CameraChoice MovingCamera::choice_at(std::optional<double> time_s) const {
 
 Camera MovingCamera::at(const Scene& scene, std::optional<double> time_s) const {
     if (made_up_) return *made_up_;
-    Messages already_reported;
     try {
-        return choose_camera(choice_at(time_s), scene, aspect_, already_reported);
+        return choose_camera(choice_at(time_s), scene, aspect_, nobody()); // messages were already reported
     } catch (const Error& error) {
         if (!path_) throw;
         Remark remark = error.remark();

@@ -15,8 +15,7 @@ class MovingCamera {
 public:
     /// Takes the scene at rest, which has passed validate(). With a `path`, `choice` names no eye, target or up. Throws
     /// as choose_camera.
-    MovingCamera(CameraChoice choice, std::optional<CameraPath> path, const Scene& rest, float aspect,
-                 Messages& messages);
+    MovingCamera(CameraChoice choice, std::optional<CameraPath> path, const Scene& rest, float aspect, Sink& sink);
 
     /// Returns the camera at a time; `scene` is that of the constructor at this time. Without a time a path is at its
     /// first key. Throws Error(BadInput) if a path's eye and target coincide, or the target lies along up.

@@ -21,7 +21,7 @@ namespace pertev {
 namespace {
 
 /// Returns the environment that the options set; nothing if they set none.
-std::optional<Environment> environment_of(const SceneOptions& options, Messages& messages) {
+std::optional<Environment> environment_of(const SceneOptions& options, Sink& sink) {
     Environment environment;
     if (Rgb color; parse_rgb(options.environment, color)) {
         if (!(is_finite(color) && color.r >= 0 && color.g >= 0 && color.b >= 0)) {
@@ -35,18 +35,18 @@ std::optional<Environment> environment_of(const SceneOptions& options, Messages&
         throw Error(ErrorCode::BadInput, "environment", options.environment,
                     "neither a file nor a radiance R,G,B such as 0.5,0.5,0.5");
     }
-    environment.image = read_environment_image(options.environment, messages);
+    environment.image = read_environment_image(options.environment, sink);
     return environment;
 }
 
-void turn_and_scale(const SceneOptions& options, Scene& scene, Messages& messages) {
+void turn_and_scale(const SceneOptions& options, Scene& scene, Sink& sink) {
     if (scene.environment) {
         scene.environment->rotation += options.environment_rotation_deg * kRadiansPerDegree;
         scene.environment->scale = options.environment_scale * scene.environment->scale;
         return;
     }
     const auto warn = [&](const char* setting) {
-        messages.warn({setting, "", "the scene has no environment; set `environment`"});
+        sink.warn({setting, "", "the scene has no environment; set `environment`"});
     };
     if (options.environment_rotation_deg != 0) warn("environment_rotation");
     if (options.environment_scale != 1) warn("environment_scale");
@@ -63,10 +63,10 @@ bool names_emitter_of_file(const Scene& scene, const EmitterStrength& emitter) {
            });
 }
 
-void show_back_faces(Scene& scene, Messages& messages) {
+void show_back_faces(Scene& scene, Sink& sink) {
     bool any_hidden = false;
     for (Material& material : scene.materials) any_hidden |= !std::exchange(material.double_sided, true);
-    if (!any_hidden) messages.warn({"show_back_faces", "", "no surface of the scene has a hidden back"});
+    if (!any_hidden) sink.warn({"show_back_faces", "", "no surface of the scene has a hidden back"});
 }
 
 /// Returns whether a ground is added. `light` is the light that was added. `around` describes the scene if that is a
@@ -92,20 +92,20 @@ std::string in_a_row(const std::vector<std::string>& list) {
 }
 
 /// Adds a notice of the animation that plays if the file has several and none was chosen.
-void report_animation(const Scene& scene, const std::string& file, Messages& messages) {
+void report_animation(const Scene& scene, const std::string& file, Sink& sink) {
     if (scene.clips.size() < 2) return;
     const std::vector<std::string> clips = list_clips(scene.clips);
-    messages.note({FileLocation{file}, fmt::format("the file has {} animations and plays the first, {}; `animation` "
-                                                   "(NAME, N or all) plays another or all of {}",
-                                                   clips.size(), shortened(clips.front()), in_a_row(clips))});
+    sink.note({FileLocation{file}, fmt::format("the file has {} animations and plays the first, {}; `animation` "
+                                               "(NAME, N or all) plays another or all of {}",
+                                               clips.size(), shortened(clips.front()), in_a_row(clips))});
 }
 
-void report_file_scene(const Scene& scene, const std::string& file, Messages& messages) {
+void report_file_scene(const Scene& scene, const std::string& file, Sink& sink) {
     if (scene.file_scenes.size() < 2) return;
     const std::vector<std::string> scenes = list_file_scenes(scene);
-    messages.note({FileLocation{file},
-                   fmt::format("the file has {} scenes and shows {}; `file_scene` (NAME or N) shows another of {}",
-                               scenes.size(), shortened(scenes[scene.file_scene]), in_a_row(scenes))});
+    sink.note({FileLocation{file},
+               fmt::format("the file has {} scenes and shows {}; `file_scene` (NAME or N) shows another of {}",
+                           scenes.size(), shortened(scenes[scene.file_scene]), in_a_row(scenes))});
 }
 
 } // namespace
@@ -144,28 +144,27 @@ std::string environment_text(const SceneOptions& options) {
     return fmt::format("{},{},{}", radiance.r, radiance.g, radiance.b);
 }
 
-Scene read_scene_and_emitters(const std::filesystem::path& path, const ReadOptions& options, Messages& messages) {
-    Scene scene = read_scene(path, options, messages);
-    if (options.file_scene.empty()) report_file_scene(scene, path.string(), messages);
+Scene read_scene_and_emitters(const std::filesystem::path& path, const ReadOptions& options, Sink& sink) {
+    Scene scene = read_scene(path, options, sink);
+    if (options.file_scene.empty()) report_file_scene(scene, path.string(), sink);
     if (!(options.space == FileSpace()) && defines_space(path)) {
-        messages.warn({FileLocation{path.string()},
-                       "the file is in metres with y up; `up_axis` and `unit` are for .obj and .ply"});
+        sink.warn({FileLocation{path.string()},
+                   "the file is in metres with y up; `up_axis` and `unit` are for .obj and .ply"});
     }
-    if (!options.two_sided_lights && !defines_emitter_sides(path))
-        report_emitter_fronts(scene, path.string(), messages);
+    if (!options.two_sided_lights && !defines_emitter_sides(path)) report_emitter_fronts(scene, path.string(), sink);
     return scene;
 }
 
-Scene open_scene(const SceneOptions& options, Messages& messages, SceneUse use, Ground ground, const ReadScene& read) {
+Scene open_scene(const SceneOptions& options, Sink& sink, SceneUse use, Ground ground, const ReadScene& read) {
     std::vector<EmitterStrength> emitters;
     for (const std::string& text : options.emitters) emitters.push_back(parse_emitter(text));
-    Scene scene = read ? read(messages) : read_scene_and_emitters(options.scene, read_options(options), messages);
-    if (options.animation.empty()) report_animation(scene, options.scene, messages);
+    Scene scene = read ? read(sink) : read_scene_and_emitters(options.scene, read_options(options), sink);
+    if (options.animation.empty()) report_animation(scene, options.scene, sink);
     if (options.two_sided_lights && std::ranges::none_of(scene.materials, &Material::is_emissive)) {
-        messages.warn({"two_sided_lights", "", "no surface of the scene emits light"});
+        sink.warn({"two_sided_lights", "", "no surface of the scene emits light"});
     }
-    if (options.show_back_faces) show_back_faces(scene, messages);
-    if (auto environment = environment_of(options, messages)) scene.environment = *std::move(environment);
+    if (options.show_back_faces) show_back_faces(scene, sink);
+    if (auto environment = environment_of(options, sink)) scene.environment = *std::move(environment);
     const double efficacy = lumens_per_watt(options.scene, static_cast<double>(options.efficacy));
     const bool has_light = !lacks_light(scene);
     const auto others = std::ranges::stable_partition(
@@ -174,20 +173,20 @@ Scene open_scene(const SceneOptions& options, Messages& messages, SceneUse use, 
     Surroundings around;
     // Someone who switches off the last light of a file wants it dark.
     const bool is_turned_off = has_light && lacks_light(scene);
-    const DefaultLight light = is_turned_off ? DefaultLight::None : add_default_light(scene, use, messages, &around);
+    const DefaultLight light = is_turned_off ? DefaultLight::None : add_default_light(scene, use, sink, &around);
     if (wants_ground(ground, scene, light, around)) {
         add_ground(scene);
-        messages.make_up("a default ground receives the shadow; `ground=off` leaves it out");
+        sink.make_up("a default ground receives the shadow; `ground=off` leaves it out");
     }
-    turn_and_scale(options, scene, messages);
+    turn_and_scale(options, scene, sink);
     set_emitters(scene, others, efficacy);
     return scene;
 }
 
-Scene open_scene(const std::string& scene, Messages& messages, SceneUse use) {
+Scene open_scene(const std::string& scene, Sink& sink, SceneUse use) {
     SceneOptions options; // a temporary makes g++ 12 warn of unset members
     options.scene = scene;
-    return open_scene(options, messages, use);
+    return open_scene(options, sink, use);
 }
 
 } // namespace pertev

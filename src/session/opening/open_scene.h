@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "formats/read_scene.h"
 #include "scene/scene.h"
 #include "session/set_emitters.h"
@@ -32,19 +32,19 @@ ReadOptions read_options(const SceneOptions& options);
 std::string environment_text(const SceneOptions& options);
 
 /// Gives a scene that has passed validate() in place of that of the file, for scenes that are made in memory.
-using ReadScene = std::function<Scene(Messages& messages)>;
+using ReadScene = std::function<Scene(Sink& sink)>;
 
 /// Reads the scene, with the environment of the options or, if it has no light, the default light, and a ground
 /// (session/survey/ground.h). An option without effect on this scene gives a warning. The result has passed
 /// validate(). Throws Error.
-Scene open_scene(const SceneOptions& options, Messages& messages, SceneUse use = SceneUse::Picture,
-                 Ground ground = Ground::Off, const ReadScene& read = {});
+Scene open_scene(const SceneOptions& options, Sink& sink, SceneUse use = SceneUse::Picture, Ground ground = Ground::Off,
+                 const ReadScene& read = {});
 /// Opens a scene with all other settings at their defaults.
-Scene open_scene(const std::string& scene, Messages& messages, SceneUse use = SceneUse::Picture);
+Scene open_scene(const std::string& scene, Sink& sink, SceneUse use = SceneUse::Picture);
 
 /// Reads a scene with `formats/read_scene.h` and adds nothing. A notice names the shown scene of a file with several.
 /// If the format cannot say which faces of an emitter emit, a notice names the emitters that emit on one side
 /// (session/survey/emitter_fronts.h). Throws Error.
-Scene read_scene_and_emitters(const std::filesystem::path& path, const ReadOptions& options, Messages& messages);
+Scene read_scene_and_emitters(const std::filesystem::path& path, const ReadOptions& options, Sink& sink);
 
 } // namespace pertev

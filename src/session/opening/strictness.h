@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "base/messages.h"
+#include "base/sink.h"
 
 namespace pertev {
 

@@ -71,15 +71,15 @@ Display choose_display(const PictureOptions& options, Session& session, Sink& si
     if (const auto physical = physical_exposure(options)) {
         const double efficacy = efficacy_of(options.scene);
         stops = exposure_stops(*physical, efficacy);
-        sink.messages().note(fmt::format("EV {:.2f} at ISO 100: exposed by {:+.2f} stops ({:g} lm/W)",
-                                         exposure_value(*physical), stops, efficacy));
+        sink.note(fmt::format("EV {:.2f} at ISO 100: exposed by {:+.2f} stops ({:g} lm/W)", exposure_value(*physical),
+                              stops, efficacy));
     } else if (const auto requested = requested_exposure(options)) {
         stops = *requested;
     } else {
         sink.set_work("metering");
         stops = session.meter(display.tone_map);
         const std::string_view name = name_of(display.tone_map);
-        sink.messages().note(fmt::format(
+        sink.note(fmt::format(
             "metered exposure: {:+.2f} stops, tone mapping by {} (`exposure={:.2f}` `tone_map={}` fixes both; "
             "`exposure=0` `tone_map=srgb` writes linear light in sRGB)",
             stops, name, stops, name));

@@ -48,23 +48,6 @@ void check_film(const PictureOptions& options, const RenderSettings& settings, c
     check_render_memory(film, settings, memory_to_render_in(queue, settings, max_memory_bytes(options.radiosity)));
 }
 
-/// Returns the messages with these indices and above.
-Messages messages_from(const Messages& messages, std::size_t first) {
-    Messages found;
-    for (const Message& message : std::span(messages.all()).subspan(first)) {
-        if (message.is_left_out) {
-            found.leave_out(message.remark);
-        } else if (message.is_made_up) {
-            found.make_up(message.remark);
-        } else if (message.is_warning) {
-            found.warn(message.remark);
-        } else {
-            found.note(message.remark);
-        }
-    }
-    return found;
-}
-
 /// Checks the options. A frame in real time has one sample by default.
 void check(PictureOptions& options, uint32_t verbs) {
     if (options.real_time && !options.is_given("spp")) options.render.samples = 1;
@@ -73,9 +56,9 @@ void check(PictureOptions& options, uint32_t verbs) {
 
 /// Returns the picture's settings, after `options` have taken what the scene's file suggests.
 RenderSettings take_settings(const RenderSetup& ready, PictureOptions& options, uint32_t verbs, const Scene& scene,
-                             Messages& messages) {
-    take_suggestions(scene, verbs, options, messages);
-    if (options.strict) refuse_what_is_left_out(messages, "nothing is rendered");
+                             Sink& sink) {
+    take_suggestions(scene, verbs, options, sink);
+    if (options.strict) refuse_what_is_left_out(sink.messages(), "nothing is rendered");
     RenderSettings settings = render_settings(options, scene);
     settings.tracers = ready.settings.tracers;
     return settings;
@@ -83,9 +66,9 @@ RenderSettings take_settings(const RenderSetup& ready, PictureOptions& options, 
 
 /// Returns the camera of the options in a scene at rest.
 MovingCamera camera_of(PictureOptions& options, const std::optional<CameraPath>& path, const RenderSettings& settings,
-                       const Scene& rest, Messages& messages) {
+                       const Scene& rest, Sink& sink) {
     fit_intrinsics({settings.width, settings.height}, options.scene.camera);
-    MovingCamera camera(options.scene.camera, path, rest, aspect_of(settings.width, settings.height), messages);
+    MovingCamera camera(options.scene.camera, path, rest, aspect_of(settings.width, settings.height), sink);
     const Camera at_rest = camera.at(rest, std::nullopt);
     check_camera(settings, at_rest);
     if (options.real_time) check_reconstruction(at_rest);
@@ -205,7 +188,7 @@ bool adapt_setup(RenderSetup& ready, const PictureOptions& before, PictureOption
     options = std::move(taken);
     messages.add_all(ready.of_light);
     messages.add_all(ready.of_camera);
-    sink.messages().add_all(messages);
+    sink.add_all(messages);
     return true;
 }
 
@@ -214,10 +197,9 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     check(options, verbs);
     read_camera_list(options);
     take_camera_from(options);
-    Messages& messages = sink.messages();
     std::optional<CameraPath> path;
     if (!options.camera_path.empty()) path = read_camera_path(options.camera_path);
-    ComingMachine machine(options.machine, messages);
+    ComingMachine machine(options.machine, sink);
     std::optional<TracerChoice> tracers; // a tracer that does not fit the device is refused before the scene is read
     if (!options.tracer.are_empty()) tracers = tracer_choice(options.tracer, machine.is_cuda());
     sink.report_messages();
@@ -227,18 +209,17 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     const bool shows_solution = is_solved(options.render.integrator) && !options.radiosity.solution.empty();
     const SceneUse use = shows_solution ? SceneUse::Measurement : SceneUse::Picture; // opened as for the solution
     ready->ground = ground_of(options);
-    const std::size_t known = messages.all().size();
-    Scene scene = open_scene(options.scene, messages, use, ready->ground, in_memory.read);
+    const std::size_t known = sink.messages().all().size();
+    Scene scene = open_scene(options.scene, sink, use, ready->ground, in_memory.read);
     if (in_memory.edit) in_memory.edit(scene);
-    ready->reading = messages_from(messages, known);
-    sink.check(); // the file was read to its end, and trees are built to theirs
+    ready->reading = sink.messages().since(known);
     RenderSettings& settings = ready->settings;
     settings.tracers = tracers;
-    settings = take_settings(*ready, options, verbs, scene, messages);
+    settings = take_settings(*ready, options, verbs, scene, sink);
     set_light(settings, scene, *ready);
     set_camera(options, verbs, path, scene, settings, *ready);
-    messages.add_all(ready->of_light);
-    messages.add_all(ready->of_camera);
+    sink.add_all(ready->of_light);
+    sink.add_all(ready->of_camera);
     ready->load_s = watch.seconds();
     // If it turns out not to be a GPU, the session makes what is missing.
     PrepareOptions prepare = prepare_options(settings, machine.may_be_cuda());
@@ -246,7 +227,7 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     if (!options.no_cache) prepare.bvh_cache = bvh_cache_folder();
     sink.set_work("building trees");
     ready->sequence = frame_range(options).value_or(FrameRange{.time_s = options.time_s, .shutter = shutter(options)});
-    ready->moving.emplace(std::move(scene), ready->sequence.time_of(ready->sequence.first), prepare, messages,
+    ready->moving.emplace(std::move(scene), ready->sequence.time_of(ready->sequence.first), prepare, sink,
                           ready->sequence.shutter);
     sink.check();
     ready->queue = machine.take();
@@ -298,20 +279,20 @@ std::size_t bytes_to_render(const PictureOptions& options, const PreparedScene& 
     return bytes;
 }
 
-void report_motion(const PictureOptions& options, const MovingScene& moving, Messages& messages) {
+void report_motion(const PictureOptions& options, const MovingScene& moving, Sink& sink) {
     const bool has_time = options.time_s || !options.frames.empty();
     if (moving.is_animated() && !has_time) {
-        messages.note({FileLocation{options.scene.scene},
-                       fmt::format("shown at rest; `time` shows it at a time of its {} (0 to {:.4g} s)",
-                                   counted(moving.scene().animations.size(), "animation"), moving.end_s())});
+        sink.note({FileLocation{options.scene.scene},
+                   fmt::format("shown at rest; `time` shows it at a time of its {} (0 to {:.4g} s)",
+                               counted(moving.scene().animations.size(), "animation"), moving.end_s())});
     }
     if (std::ranges::count(options.aovs, "motion") > 0 && options.frames.empty()) {
-        messages.note({"aov", "motion", "0 without `frames`, as there is no frame before"});
+        sink.note({"aov", "motion", "0 without `frames`, as there is no frame before"});
     }
     const bool camera_moves = !options.camera_path.empty() || options.turntable > 0;
     if (!moving.is_animated() && has_time && !camera_moves && !options.real_time) { // which gather light at rest
-        messages.warn({options.time_s ? "time" : "frames", "",
-                       "nothing moves in this scene (`time_limit` ends a render after a time)"});
+        sink.warn({options.time_s ? "time" : "frames", "",
+                   "nothing moves in this scene (`time_limit` ends a render after a time)"});
     }
 }
 

@@ -67,7 +67,7 @@ std::size_t bytes_to_render(const PictureOptions& options, const PreparedScene& 
 
 /// Says at which times the scene moves if the options show it at rest, and which options have no effect because
 /// nothing moves.
-void report_motion(const PictureOptions& options, const MovingScene& moving, Messages& messages);
+void report_motion(const PictureOptions& options, const MovingScene& moving, Sink& sink);
 
 /// Returns the record of the first frame's picture, with its camera but without its display. Frames in real time begin
 /// with it.

@@ -17,9 +17,9 @@ RenderResult render_samples(Session& session, Sink& sink) {
     }
     RenderResult result = session.result();
     if (result.hidden_back_share > 0.01) {
-        sink.messages().note(fmt::format("the camera looks through the backs of surfaces at {:.0f} % of the picture, "
-                                         "as they are not double sided (`show_back_faces` shows them)",
-                                         100 * result.hidden_back_share));
+        sink.note(fmt::format("the camera looks through the backs of surfaces at {:.0f} % of the picture, "
+                              "as they are not double sided (`show_back_faces` shows them)",
+                              100 * result.hidden_back_share));
     }
     return result;
 }

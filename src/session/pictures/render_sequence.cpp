@@ -25,19 +25,18 @@ void move_in_shutter(uint32_t frame, MovingScene& moving, const FrameCamera& cam
 }
 
 /// Goes to the frame to which motion vectors of `frame` refer.
-void show_frame_before(uint32_t frame, const FrameCamera& camera, MovingScene& moving, Session& session,
-                       Messages& messages) {
+void show_frame_before(uint32_t frame, const FrameCamera& camera, MovingScene& moving, Session& session, Sink& sink) {
     const std::optional<double> time_s = camera.sequence.time_before(frame);
-    go_to(time_s, moving, session, messages);
+    go_to(time_s, moving, session, sink);
     session.set_camera(camera_at(camera.camera, moving.scene(), time_s, camera.sequence.turn_before(frame)).camera);
     session.keep_as_before();
 }
 
 } // namespace
 
-void go_to(std::optional<double> time_s, MovingScene& moving, Session& session, Messages& messages) {
+void go_to(std::optional<double> time_s, MovingScene& moving, Session& session, Sink& sink) {
     if (!time_s) return;
-    if (const uint32_t parts = moving.set_time(*time_s, messages)) session.update_scene(moving.prepared(), parts);
+    if (const uint32_t parts = moving.set_time(*time_s, sink)) session.update_scene(moving.prepared(), parts);
 }
 
 CameraSource camera_at(const MovingCamera& camera, const Scene& scene, std::optional<double> time_s, double turn) {
@@ -61,8 +60,8 @@ void place_frame(uint32_t frame, MovingScene& moving, const FrameCamera& camera,
 }
 
 void go_to_frame(uint32_t frame, const FrameCamera& camera, MovingScene& moving, Session& session,
-                 PictureRecord& record, Messages& messages) {
-    go_to(camera.sequence.time_of(frame), moving, session, messages);
+                 PictureRecord& record, Sink& sink) {
+    go_to(camera.sequence.time_of(frame), moving, session, sink);
     place_frame(frame, moving, camera, record);
     session.set_camera(record.camera.camera);
     if (!camera.list.empty()) session.set_settings(record.settings);
@@ -72,8 +71,8 @@ RenderedFrame render_frame(uint32_t frame, const SequenceOfFrames& frames, Sink&
     auto& [camera, moving, record, session] = frames;
     const Stopwatch update;
     if ((record.settings.aovs & kAovMotion) != 0 && camera.list.empty())
-        show_frame_before(frame, camera, moving, session, sink.messages());
-    go_to_frame(frame, camera, moving, session, record, sink.messages());
+        show_frame_before(frame, camera, moving, session, sink);
+    go_to_frame(frame, camera, moving, session, record, sink);
     const double update_s = update.seconds();
     if (!record.frame) {
         session.leave_passes(true); // a frame without all its samples is worth nothing

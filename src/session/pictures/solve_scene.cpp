@@ -33,7 +33,7 @@ SolvedRadiosity solve_scene(const PreparedScene& prepared, const RadiosityOption
     check_memory(memory, settings, max_memory_bytes(options).value_or(machine_memory_bytes()));
     SolvedRadiosity solved = solve_radiosity(prepared, settings, sink);
     if (report.end) report.end(solved);
-    warn_of_limits(solved.stats, settings, sink.messages());
+    warn_of_limits(solved.stats, settings, sink);
     sink.report_messages();
     return solved;
 }
@@ -42,7 +42,7 @@ RadiosityDisplay radiosity_display(const PreparedScene& prepared, const Radiosit
                                    Sink& sink, const SolveReport& report) {
     RadiositySolution solution;
     if (!options.solution.empty()) {
-        solution = read_solution(options.solution, *prepared.scene, sink.messages());
+        solution = read_solution(options.solution, *prepared.scene, sink);
         sink.report_messages();
     } else {
         SolvedRadiosity solved = solve_scene(prepared, options, seed, sink, report);

@@ -92,11 +92,10 @@ private:
         uint32_t there = 0;
         while (there < with_history_ && is_there(sequence_.first + there)) ++there;
         if (there == 0) return;
-        sink_.messages().note(
-            there == 1 ? fmt::format("renders frame {} again for the history of those after it", sequence_.first)
-                       : fmt::format("renders frames {} to {} again for the history of those after "
-                                     "them",
-                                     sequence_.first, sequence_.first + there - 1));
+        sink_.note(there == 1 ? fmt::format("renders frame {} again for the history of those after it", sequence_.first)
+                              : fmt::format("renders frames {} to {} again for the history of those after "
+                                            "them",
+                                            sequence_.first, sequence_.first + there - 1));
         sink_.report_messages();
     }
 
@@ -142,7 +141,7 @@ private:
                 report_progress(made, now.made_share >= 1 ? now.share : 0);
                 return true;
             },
-            &sink_);
+            sink_);
         return render_frame(made.frame, frames_, part);
     }
 

@@ -122,7 +122,7 @@ Camera inside(const Scene& scene, const Surroundings& room, float aspect) {
 
 } // namespace
 
-Camera make_default_camera(const Scene& scene, float aspect, Messages& messages) {
+Camera make_default_camera(const Scene& scene, float aspect, Sink& sink) {
     Surroundings around = survey_surroundings(scene);
     if (around.bounds.is_empty()) around.bounds = {{-1, -1, -1}, {1, 1, 1}}; // everything is hidden at rest
     const char* what = "a view from outside";
@@ -142,8 +142,8 @@ Camera make_default_camera(const Scene& scene, float aspect, Messages& messages)
     }
     const Vec3 eye = camera.world_from_camera.translation;
     const Vec3 target = eye - camera.focus_distance * column(camera.world_from_camera, 2);
-    messages.make_up(fmt::format("the scene has no camera: {} (`eye={}` `target={}`)", what,
-                                 position_text(scene, eye, 4), position_text(scene, target, 4)));
+    sink.make_up(fmt::format("the scene has no camera: {} (`eye={}` `target={}`)", what, position_text(scene, eye, 4),
+                             position_text(scene, target, 4)));
     return camera;
 }
 

@@ -84,26 +84,27 @@ void add_emitters(Scene& scene, const Surroundings& room) {
 
 bool lacks_light(const Scene& scene) { return own_light(scene) == OwnLight::None; }
 
-DefaultLight add_default_light(Scene& scene, SceneUse use, Messages& messages, Surroundings* seen) {
+DefaultLight add_default_light(Scene& scene, SceneUse use, Sink& sink, Surroundings* seen) {
     const OwnLight own = own_light(scene);
     const bool may_be_weak = use == SceneUse::Picture && (own == OwnLight::Glowing || own == OwnLight::Punctual);
     const bool is_weak =
-        may_be_weak && (own == OwnLight::Glowing ? is_light_too_weak(scene) : lights_nothing_seen(scene));
+        may_be_weak && (own == OwnLight::Glowing ? is_light_too_weak(scene, sink) : lights_nothing_seen(scene, sink));
     if (own != OwnLight::None && !is_weak) return DefaultLight::None;
     const char* why = !is_weak                    ? "the scene has no light"
                       : own == OwnLight::Punctual ? "the lights of the scene reach nothing visible"
                                                   : "the emitters of the scene light too little of it";
+    sink.check();
     const Surroundings around = survey_surroundings(scene);
     if (seen != nullptr) *seen = around;
     if (around.is_dark) {
         add_emitters(scene, around);
-        messages.make_up(fmt::format("{}, a closed room: it gets a row of emitters", why));
+        sink.make_up(fmt::format("{}, a closed room: it gets a row of emitters", why));
         return DefaultLight::Emitters;
     }
     // Through the openings of a room, the clear sky's narrow sun shows more than soft boxes do.
     const bool is_thing = around.kind == SurroundingsKind::Object && use != SceneUse::Benchmark;
     scene.environment = is_thing ? make_studio() : make_clear_sky();
-    messages.make_up(fmt::format("{}: it gets a sky{}", why, is_weak ? " (`environment=0,0,0`: none)" : ""));
+    sink.make_up(fmt::format("{}: it gets a sky{}", why, is_weak ? " (`environment=0,0,0`: none)" : ""));
     return DefaultLight::Sky;
 }
 

@@ -2,7 +2,7 @@
 
 // Default light for a scene that has none, or too little to see by.
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "scene/scene.h"
 #include "session/survey/surroundings.h"
 
@@ -25,6 +25,6 @@ bool lacks_light(const Scene& scene);
 /// by, or its lights without extent reach nothing visible (weak_light.h). In a closed room, which no outside light
 /// enters, it adds a row of lights instead. A notice reports it. The scene has passed validate(). Throws
 /// Error(OverLimit) as prepare_scene() does. If it adds light, it writes the result of survey_surroundings() to `seen`.
-DefaultLight add_default_light(Scene& scene, SceneUse use, Messages& messages, Surroundings* seen = nullptr);
+DefaultLight add_default_light(Scene& scene, SceneUse use, Sink& sink, Surroundings* seen = nullptr);
 
 } // namespace pertev

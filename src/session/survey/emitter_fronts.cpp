@@ -46,12 +46,13 @@ float reach_of(const Bounds3& box, Vec3 from, Vec3 direction) {
 }
 
 void warn_of_turned_emitters(const Scene& scene, const std::vector<const Instance*>& emitters, const std::string& file,
-                             Messages& messages) {
+                             Sink& sink) {
     uint64_t triangles = 0;
     for (const Instance& instance : scene.instances) triangles += scene.meshes[instance.mesh].triangle_count();
     if (triangles > kMaxSceneTriangles) return;
     const Bounds3 box = bounds_of(scene);
     for (std::size_t i = 0; i < std::min(emitters.size(), kMaxEmitters); ++i) {
+        sink.check();
         const std::vector<SurveyRay> rays = rays_from(scene, *emitters[i]);
         if (rays.empty()) continue;
         const std::vector<SurveyHit> hits = cast_rays(scene, rays);
@@ -71,7 +72,7 @@ void warn_of_turned_emitters(const Scene& scene, const std::vector<const Instanc
         }
         if (2 * turned <= hits.size() / 2) continue; // most of the tested triangles
         const std::string distance_text = behind < kInfinity ? fmt::format("{:.3g} m", behind) : "most of the scene";
-        messages.warn(
+        sink.warn(
             {FileLocation{file}, fmt::format("the emitter {} shines at a surface {:.3g} m before its front and has {} "
                                              "behind it: flip its faces, or use `two_sided_lights`",
                                              shortened(emitters[i]->name), before, distance_text)});
@@ -80,7 +81,7 @@ void warn_of_turned_emitters(const Scene& scene, const std::vector<const Instanc
 
 } // namespace
 
-void report_emitter_fronts(const Scene& scene, const std::string& file, Messages& messages) {
+void report_emitter_fronts(const Scene& scene, const std::string& file, Sink& sink) {
     std::vector<const Instance*> emitters;
     std::string names;
     for (const Instance& instance : scene.instances) {
@@ -90,11 +91,11 @@ void report_emitter_fronts(const Scene& scene, const std::string& file, Messages
     }
     if (emitters.empty()) return;
     if (emitters.size() > kMaxNames) names += fmt::format(" and {} more", emitters.size() - kMaxNames);
-    messages.note({FileLocation{file},
-                   fmt::format("{} with light on the front only: {}; the front is where normals point or, without any, "
-                               "from where corners run counter-clockwise (`two_sided_lights`: both faces)",
-                               counted(emitters.size(), "emitter"), names)});
-    warn_of_turned_emitters(scene, emitters, file, messages);
+    sink.note({FileLocation{file},
+               fmt::format("{} with light on the front only: {}; the front is where normals point or, without any, "
+                           "from where corners run counter-clockwise (`two_sided_lights`: both faces)",
+                           counted(emitters.size(), "emitter"), names)});
+    warn_of_turned_emitters(scene, emitters, file, sink);
 }
 
 } // namespace pertev

@@ -1,5 +1,6 @@
 #include "session/survey/weak_light.h"
 
+#include "base/sink.h"
 #include "device/queue.h"
 #include "scene/pose/posed_scene.h"
 #include "session/meter_exposure.h"
@@ -15,14 +16,14 @@ constexpr float kBurnt = 16;                               // agx maps it to whi
 constexpr double kShareToSeeBy = 0.75, kMaxBurnt = 0.0625; // shares of the surfaces in the picture
 constexpr double kNextToNothing = 0.03125;
 
-SeenShares visible_shares(const Camera& camera, const Scene& scene) {
+SeenShares visible_shares(const Camera& camera, const Scene& scene, Sink& sink) {
     Queue queue = Queue::make_cpu();
     RenderSettings settings;
     settings.width = kWidth, settings.height = kHeight, settings.samples = kSamples;
     settings.filter = PixelFilter::Box;
     settings.transparent = true;
     settings.tracers = default_tracers(false, TreeBuild::Fast); // few rays need trees that are built quickly
-    Messages discarded;
+    PartMessages discarded(sink);
     const PreparedScene prepared = prepare_scene(scene, prepare_options(settings, false), discarded);
     settings.path.max_depth = kDepth;
     Session session(queue, prepared, camera, settings);
@@ -61,13 +62,13 @@ SeenShares visible_shares(const Camera& camera, const Scene& scene) {
 
 } // namespace
 
-SeenShares shares_seen(const Scene& scene) {
+SeenShares shares_seen(const Scene& scene, Sink& sink) {
     const bool has_camera = !scene.cameras.empty();
-    Messages discarded;
+    PartMessages discarded(sink);
     const Camera made_up =
         has_camera ? Camera() : make_default_camera(scene, static_cast<float>(kWidth) / kHeight, discarded);
     const auto shares_of = [&](const Scene& now) {
-        return visible_shares(has_camera ? now.cameras.front() : made_up, now);
+        return visible_shares(has_camera ? now.cameras.front() : made_up, now, sink);
     };
     if (scene.animations.empty()) return shares_of(scene);
     PosedScene posed(scene);
@@ -75,11 +76,11 @@ SeenShares shares_seen(const Scene& scene) {
     return shares_of(posed.scene());
 }
 
-bool is_light_too_weak(const Scene& scene) {
-    const SeenShares seen = shares_seen(scene);
+bool is_light_too_weak(const Scene& scene, Sink& sink) {
+    const SeenShares seen = shares_seen(scene, sink);
     return seen.lit < kShareToSeeBy || seen.burnt > kMaxBurnt;
 }
 
-bool lights_nothing_seen(const Scene& scene) { return shares_seen(scene).lit < kNextToNothing; }
+bool lights_nothing_seen(const Scene& scene, Sink& sink) { return shares_seen(scene, sink).lit < kNextToNothing; }
 
 } // namespace pertev

@@ -16,8 +16,6 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t bit_of(ImageFormat format) { return 1u << static_cast<uint32_t>(format); }
-
 /// The file that is written, however it is named: without links, also one to a file that is not there yet, "." and
 /// "..".
 std::filesystem::path canonical_path(const std::string& file) {
@@ -82,14 +80,14 @@ bool writes_tone_mapped(std::span<const std::string> outputs) {
     });
 }
 
-void note_number_signs(const std::string& output, Messages& messages) {
+void note_number_signs(const std::string& output, Sink& sink) {
     if (!names_frames(output)) return;
-    messages.note({"output", output,
-                   "# stands for a frame's number only with `frames` or `turntable`; here it is a part of the file's "
-                   "name"});
+    sink.note({"output", output,
+               "# stands for a frame's number only with `frames` or `turntable`; here it is a part of the file's "
+               "name"});
 }
 
-void check_outputs(const PictureOptions& options, std::span<const std::string> outputs, Messages& messages) {
+void check_outputs(const PictureOptions& options, std::span<const std::string> outputs, Sink& sink) {
     const std::optional<FrameRange> frames = frame_range(options);
     const PictureSize size = options.size.value_or(PictureSize{1280, 720}); // without one it is small enough, too
     uint32_t written = 0;
@@ -101,7 +99,7 @@ void check_outputs(const PictureOptions& options, std::span<const std::string> o
         }
         check_image_output(frames ? frame_file(output, frames->first, frames->names) : output, size.width, size.height);
         written |= bit_of(image_format_for(output));
-        if (!frames) note_number_signs(output, messages);
+        if (!frames) note_number_signs(output, sink);
     }
     refuse_twins(outputs, frames);
     refuse_unshown(options, written);
@@ -110,7 +108,7 @@ void check_outputs(const PictureOptions& options, std::span<const std::string> o
         if (!options.render.transparent || keeps_alpha) continue;
         Remark why("transparent", "", "this format has no alpha; the background becomes black");
         why.location = FileLocation{output};
-        messages.warn(std::move(why));
+        sink.warn(std::move(why));
     }
     if (!options.false_color.empty() && options.false_color_range.empty() && frames && writes_tone_mapped(outputs))
         refuse("false_color", options.false_color, "the frames of a sequence need one scale; set `false_color_range`");

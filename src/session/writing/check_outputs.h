@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "base/messages.h"
+#include "base/sink.h"
 #include "settings/picture_options.h"
 
 namespace pertev {
@@ -14,10 +14,10 @@ namespace pertev {
 bool writes_tone_mapped(std::span<const std::string> outputs);
 
 /// Notes that # in the name of a single output stands for a number where there are several.
-void note_number_signs(const std::string& output, Messages& messages);
+void note_number_signs(const std::string& output, Sink& sink);
 
 /// Throws Error for a name that cannot be written, for two names of one file, for a name that frames would share, and
 /// for a setting of the caller that no file shows (Setting::formats). Warns of alpha that a file cannot have.
-void check_outputs(const PictureOptions& options, std::span<const std::string> outputs, Messages& messages);
+void check_outputs(const PictureOptions& options, std::span<const std::string> outputs, Sink& sink);
 
 } // namespace pertev

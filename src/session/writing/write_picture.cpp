@@ -7,6 +7,7 @@
 #include "image/write_image.h"
 #include "image/write_jpeg.h"
 #include "image/write_png.h"
+#include "session/opening/strictness.h"
 
 namespace pertev {
 namespace {
@@ -81,6 +82,12 @@ std::string failures_of(const WrittenPicture& written) {
     for (const WrittenFile& file : written.files)
         text += (text.empty() || file.failure.empty() ? "" : "; ") + file.failure;
     return text;
+}
+
+void refuse_faults(const WrittenPicture& written, uint64_t invalid_samples, bool strict) {
+    if (const std::string failures = failures_of(written); !failures.empty())
+        throw Error(ErrorCode::FileWrite, failures);
+    if (strict) refuse_invalid_samples(invalid_samples);
 }
 
 std::vector<std::byte> encode_picture(ImageFormat format, const PictureRecord& record, RenderResult& result) {
