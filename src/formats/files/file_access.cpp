@@ -37,7 +37,7 @@ void check_is_name(const FileLocation& from, const std::string& reference) {
     if (reference.find('\0') != std::string::npos) throw refusal(from, reference, "a name that holds a zero byte");
 }
 
-fs::path portable(std::string reference) {
+fs::path portable_path(std::string reference) {
     std::replace(reference.begin(), reference.end(), '\\', '/');
     return reference;
 }
@@ -64,7 +64,7 @@ bool FileAccess::is_allowed(const fs::path& canonical) const {
 fs::path FileAccess::resolve(const FileLocation& from, const std::string& reference) const {
     check_is_name(from, reference);
     std::error_code ec;
-    const fs::path path = fs::weakly_canonical(folder_of(from) / portable(reference), ec);
+    const fs::path path = fs::weakly_canonical(folder_of(from) / portable_path(reference), ec);
     if (ec) throw refusal(from, reference, fmt::format("which cannot be opened: {}", ec.message()));
     // A symbolic link that remains after resolving is dangling; its future target is unknown.
     if (fs::is_symlink(fs::symlink_status(path, ec))) {
@@ -115,7 +115,7 @@ std::optional<fs::path> FileAccess::find_end_of(const fs::path& name, const File
 
 std::optional<fs::path> FileAccess::find(const FileLocation& from, const std::string& reference, Sink& sink) const {
     check_is_name(from, reference);
-    const fs::path name = portable(reference);
+    const fs::path name = portable_path(reference);
     const Located wanted = locate(folder_of(from) / name);
     if (wanted.is_there && wanted.is_allowed) return wanted.path;
     const std::optional<fs::path> found = find_end_of(name, from, sink);
