@@ -145,7 +145,7 @@ TEST_CASE("sampling of eight lanes has the bits of one") {
         check_lanes(sample_tent(x.all()), [&](uint32_t k) { return sample_tent(x.one[k]); });
         check_lanes(floor(other.all()), [&](uint32_t k) { return pertev::floor(other.one[k]); });
         check_lanes(lerp(x.all(), y.all(), other.all()),
-                    [&](uint32_t k) { return lerp(x.one[k], y.one[k], other.one[k]); });
+                    [&](uint32_t k) { return pertev::lerp(x.one[k], y.one[k], other.one[k]); });
         check_lanes(environment_direction<Floats8>(x.all(), true, y.all()),
                     [&](uint32_t k) { return environment_direction(x.one[k], true, y.one[k]); });
         check_lanes(rest_of<Floats8>(other.all(), other.all() + 1.0f, bits_of(x.all())),
