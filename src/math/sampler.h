@@ -32,9 +32,9 @@ enum class SamplerKind : uint8_t {
 /// Key of the random numbers of a sample; `Word` is for one path, or for eight (math/random.h).
 template <class Word>
 struct SampleKeyOf {
-    Word stream = {};  // a pixel of the picture, a photon, ...: its samples are stratified
-    Word sample = {};  // index among the samples of the stream
-    uint32_t seed = 0; // another seed gives another picture with the same expectation
+    Word stream = {}; // a pixel of the picture, a photon, ...: its samples are stratified
+    Word sample = {}; // index among the samples of the stream
+    Word seed = {};   // another seed gives another picture with the same expectation
 };
 using SampleKey = SampleKeyOf<uint32_t>;
 
@@ -141,7 +141,7 @@ struct GroupKeys {
 
 template <class Word>
 HD inline GroupKeys<Word> group_keys(SampleKeyOf<Word> key, std::type_identity_t<Word> group) {
-    const Hash3Of<Word> keys = hash_words<Word>(key.stream, group, Word{} + key.seed);
+    const Hash3Of<Word> keys = hash_words<Word>(key.stream, group, key.seed);
     // Scrambling the index shuffles the order of the points.
     return {reverse_bits(owen_scramble_reversed(reverse_bits(key.sample), keys.x)), keys};
 }
@@ -169,7 +169,7 @@ sample_bits(SamplerKind kind, std::type_identity_t<SampleKeyOf<Word>> key, std::
     case SamplerKind::Independent:
         break;
     }
-    const Hash4Of<Word> bits = hash_words<Word>(key.stream, key.sample, group, Word{} + key.seed);
+    const Hash4Of<Word> bits = hash_words<Word>(key.stream, key.sample, group, key.seed);
     return pair == Pair::First ? SampleBitsOf<Word>{bits.x, bits.y} : SampleBitsOf<Word>{bits.z, bits.w};
 }
 

@@ -46,6 +46,13 @@ struct CameraRays {
         const Vec2 on_lens = has_lens() ? sample_2d(sampler, key, kGroupLens) : Vec2{};
         return ray(line(corner_of(pixel), in_filter, on_lens), motion.moves() ? time(sampler, key) : kAtRest);
     }
+    /// Ray through the centre of `pixel`, without the lens.
+    HD Ray centre_ray(uint32_t pixel, float time) const {
+        const Vec2 corner = corner_of(pixel);
+        CameraView pinhole = view;
+        pinhole.aperture_radius = 0;
+        return ray(make_camera_line(pinhole, Vec2{corner.x + 0.5f, corner.y + 0.5f}, Vec2{0, 0}), time);
+    }
     /// Time of the sample with the random numbers of `key`, uniform over the open shutter, in [0, 1).
     HD float time(SamplerKind sampler, SampleKey key) const {
         return is_open ? sample_1d(sampler, key, kGroupLens, kNumberTime) : kAtRest;

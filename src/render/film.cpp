@@ -27,22 +27,27 @@ std::optional<FilmPart> join(const FilmPart& a, const FilmPart& b) {
 
 } // namespace
 
-Film::Film(Queue& queue, uint32_t width, uint32_t height, uint32_t aovs, std::vector<std::string> light_layers)
-    : queue_(&queue), window_{.width = width, .height = height} {
+Film::Film(Queue& queue, uint32_t width, uint32_t height, uint32_t aovs, std::vector<std::string> light_layers,
+           LayersAt layers_at)
+    : queue_(&queue), window_{.width = width, .height = height}, aovs_(aovs), layers_at_(layers_at) {
     const std::size_t pixels = std::size_t(width) * height;
     const auto take = [&]<class Target>(std::unique_ptr<Target> target, const Target*& taken) {
         taken = target.get();
         hold(std::move(target));
     };
-    take(std::make_unique<SumTarget>(queue, pixels, aovs, std::move(light_layers)), sums_);
+    const bool at_centre = layers_at == LayersAt::Centre;
+    if (at_centre && CentreTarget::channels(aovs) > 0) {
+        take(std::make_unique<CentreTarget>(queue, pixels, aovs), centres_);
+    }
+    take(std::make_unique<SumTarget>(queue, pixels, at_centre ? 0 : aovs, std::move(light_layers)), sums_);
     if ((aovs & kAovIds) != 0) take(std::make_unique<IdTarget>(queue, pixels, "film ids"), ids_);
     take(std::make_unique<InvalidTarget>(queue, 1, "invalid samples"), invalid_);
 }
 
-std::size_t Film::predicted_bytes(uint32_t width, uint32_t height, uint32_t aovs,
-                                  std::vector<std::string> light_layers) {
+std::size_t Film::predicted_bytes(uint32_t width, uint32_t height, uint32_t aovs, std::vector<std::string> light_layers,
+                                  LayersAt layers_at) {
     Queue queue = Queue::make_dry_run(false);
-    const Film film(queue, width, height, aovs, std::move(light_layers));
+    const Film film(queue, width, height, aovs, std::move(light_layers), layers_at);
     return queue.allocated_bytes();
 }
 
@@ -72,6 +77,28 @@ std::vector<PixelIds> Film::ids() const {
 }
 
 uint64_t Film::invalid_samples() const { return invalid_->elements().download()[0]; }
+
+void Film::picture_into(float* to, uint32_t pixels, bool transparent) const {
+    sums_->resolve_into(to, pixels, part_.samples.count(), 0, transparent ? 4 : 3, false);
+}
+
+void Film::layer_into(float* to, uint32_t pixels, AovBits group) const {
+    const AovGroup& of = aov_group(group);
+    const auto channels = static_cast<uint32_t>(channel_names(of).size());
+    if (centres_ == nullptr) {
+        return sums_->resolve_into(to, pixels, part_.samples.count(), channel_offset(aovs_, group), channels,
+                                   of.over_hits);
+    }
+    queue_->copy_on_device(to, centres_->arrays().of(group), std::size_t(pixels) * channels * sizeof(float));
+}
+
+CentreArrays Film::centres() const {
+    CentreArrays arrays;
+    if (layers_at_ == LayersAt::Samples) return arrays;
+    if (centres_ != nullptr) arrays = centres_->arrays();
+    if (ids_ != nullptr) arrays.ids = ids_->elements().data();
+    return arrays;
+}
 
 void Film::display(ToneMap kind, float exposure_stops, bool transparent) {
     PERTEV_CHECK(part_.samples.count() > 0);

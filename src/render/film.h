@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "device/buffer.h"
 #include "image/image.h"
+#include "render/centre_target.h"
 #include "render/sum_target.h"
 
 namespace pertev {
@@ -48,11 +49,13 @@ struct FilmPart {
 class Film {
 public:
     /// Makes a film that starts at zero. `aovs` are AovBits. `light_layers` are the names of the light layers, of three
-    /// channels each, that follow them (LightPathView).
-    Film(Queue& queue, uint32_t width, uint32_t height, uint32_t aovs, std::vector<std::string> light_layers = {});
+    /// channels each, that follow them (LightPathView). Samples add nothing to layers at centres.
+    Film(Queue& queue, uint32_t width, uint32_t height, uint32_t aovs, std::vector<std::string> light_layers = {},
+         LayersAt layers_at = LayersAt::Samples);
 
     static std::size_t predicted_bytes(uint32_t width, uint32_t height, uint32_t aovs,
-                                       std::vector<std::string> light_layers = {});
+                                       std::vector<std::string> light_layers = {},
+                                       LayersAt layers_at = LayersAt::Samples);
 
     /// Adds a target, which is cleared, added and saved with the film's own.
     void hold(std::unique_ptr<FilmTarget> target) { targets_.push_back(std::move(target)); }
@@ -61,7 +64,8 @@ public:
     FilmView view() const;
     uint32_t width() const { return window_.width; }
     uint32_t height() const { return window_.height; }
-    uint32_t aovs() const { return sums_->aovs(); }
+    uint32_t aovs() const { return aovs_; }
+    LayersAt layers_at() const { return layers_at_; }
     const std::vector<std::string>& light_layers() const { return sums_->light_layers(); }
     void clear();
 
@@ -87,6 +91,12 @@ public:
     Image picture(bool transparent) const {
         return sums_->picture(width(), part_.samples.count(), transparent ? 4 : 3);
     }
+    /// Computes picture(), and an auxiliary layer of layers(), of the first `pixels` pixels in memory of the film's
+    /// device. The work is queued.
+    void picture_into(float* to, uint32_t pixels, bool transparent) const;
+    void layer_into(float* to, uint32_t pixels, AovBits group) const;
+    /// The arrays of layers at centres with those of ids, for CentreLayers; all null at samples.
+    CentreArrays centres() const;
     /// Computes the bytes of tone_map_image(picture(transparent), kind, exposure_stops) on the device and starts
     /// their copy to the host.
     void display(ToneMap kind, float exposure_stops, bool transparent);
@@ -104,8 +114,11 @@ private:
     PixelWindow window_;
     FilmPart part_;
     std::vector<std::unique_ptr<FilmTarget>> targets_; // the film's own targets below come first
+    uint32_t aovs_;
+    LayersAt layers_at_;
     const SumTarget* sums_;
-    const IdTarget* ids_ = nullptr; // null without kAovIds
+    const CentreTarget* centres_ = nullptr; // null without layers at centres
+    const IdTarget* ids_ = nullptr;         // null without kAovIds
     const InvalidTarget* invalid_;
     std::unique_ptr<HostCopy> display_; // null before the first display()
 };

@@ -25,6 +25,10 @@ enum AovBits : uint32_t {
     kAovDistance = 64, // along the camera ray, metres
 };
 
+/// Auxiliary layers are evaluated at the samples, whose values the film sums, or at the centres of pixels
+/// (render/centre_layers.h).
+enum class LayersAt : uint8_t { Samples, Centre };
+
 inline constexpr uint32_t kFilmColorChannels = 4;
 inline constexpr uint32_t kFilmHits = 3; // index of the channel that counts hits
 

@@ -5,6 +5,7 @@
 namespace pertev {
 template void launch(Queue&, const char*, WorkCount, const AddSums&);
 template void launch(Queue&, const char*, WorkCount, const AddIds&);
+template void launch(Queue&, const char*, WorkCount, const AddMissing&);
 template void launch(Queue&, const char*, WorkCount, const AddCounts&);
 template void launch(Queue&, const char*, WorkCount, const AddFrames&);
 template void launch(Queue&, const char*, WorkCount, const ResolveFilm&);

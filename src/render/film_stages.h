@@ -28,6 +28,18 @@ struct AddCounts {
     HD void operator()(uint32_t i) const { to[i] += from[i]; }
 };
 
+/// The stage that takes values where there are none.
+struct AddMissing {
+    static constexpr uint32_t kMissing = 0xffffffffu; // bits
+
+    const float* from;
+    float* to;
+
+    HD void operator()(uint32_t i) const {
+        if (bits_of(to[i]) == kMissing) to[i] = from[i];
+    }
+};
+
 /// The stage that adds the ids of each pixel. Ids belong to sample 0: a film without it holds kNoHit, as if nothing was
 /// hit.
 struct AddIds {

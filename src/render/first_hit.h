@@ -39,7 +39,7 @@ HD inline void add_first_hit(const FilmView& film, uint32_t pixel, uint32_t samp
     }
     if ((film.aovs & kAovDepth) != 0) {
         add_channel(film, pixel, channel_offset(film.aovs, kAovDepth),
-                    dot(surface.position - ray.origin, picture.camera.axis_at(time)));
+                    dot(surface.position - ray.origin, picture.axis_at(pixel, time)));
     }
     if ((film.aovs & kAovDistance) != 0) {
         add_channel(film, pixel, channel_offset(film.aovs, kAovDistance), length(surface.position - ray.origin));

@@ -53,9 +53,13 @@ const void* SumTarget::display(uint64_t samples, ToneMap kind, float exposure_st
     return resolved_.data();
 }
 
+void SumTarget::resolve_into(float* to, uint32_t pixels, uint64_t samples, uint32_t first, uint32_t channels,
+                             bool over_hits) const {
+    launch(queue(), "resolve_film", pixels, ResolveFilm{view(), first, channels, over_hits, samples, to});
+}
+
 Image SumTarget::resolve(uint32_t width, uint64_t samples, uint32_t first, uint32_t channels, bool over_hits) const {
-    launch(queue(), "resolve_film", pixels_,
-           ResolveFilm{view(), first, channels, over_hits, samples, resolved_.data()});
+    resolve_into(resolved_.data(), pixels_, samples, first, channels, over_hits);
     Image image{width, pixels_ / width, channels, {}};
     image.pixels.resize(std::size_t(pixels_) * channels);
     queue().copy_to_host(image.pixels.data(), resolved_.data(), image.pixels.size() * sizeof(float));

@@ -27,6 +27,10 @@ public:
     /// Computes the bytes of Film::display, four per pixel, and returns where they lie on the device.
     const void* display(uint64_t samples, ToneMap kind, float exposure_stops, bool transparent) const;
 
+    /// Computes the means of the first `pixels` pixels on the device.
+    void resolve_into(float* to, uint32_t pixels, uint64_t samples, uint32_t first, uint32_t channels,
+                      bool over_hits) const;
+
     uint32_t aovs() const { return aovs_; }
     const std::vector<std::string>& light_layers() const { return light_layers_; }
 

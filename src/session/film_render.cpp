@@ -114,6 +114,7 @@ uint32_t FilmRender::render(SampleRange range, Sink& sink) {
     const bool on_cpu = !pictures_.queue().is_cuda(); // a GPU's passes are short
     if (has_steps && before == 0 && !steps_.begin(camera_, settings_, on_cpu ? &sink : nullptr)) return 0;
     Integrator& integrator = pictures_.begin(camera_, settings_, has_steps ? 1 : count, number_);
+    if (before == 0) pictures_.find_centres(camera_, settings_, into_film);
     const RayCounts rays_before = stats_.rays;
     const double seconds_before = stats_.render_seconds;
     const Stopwatch watch;

@@ -8,13 +8,17 @@ namespace pertev {
 
 bool is_film_of(const Film& film, const RenderSettings& settings) {
     return film.width() == settings.width && film.height() == settings.height && film.aovs() == settings.aovs &&
-           film.light_layers() == light_layers_of(settings);
+           film.layers_at() == settings.layers_at && film.light_layers() == light_layers_of(settings);
+}
+
+Film make_film(Queue& queue, const RenderSettings& settings) {
+    return {queue, settings.width, settings.height, settings.aovs, light_layers_of(settings), settings.layers_at};
 }
 
 Film& fit_film(Queue& queue, std::optional<Film>& film, const RenderSettings& settings, const AddTargets& add) {
     if (film && is_film_of(*film, settings)) return *film;
     film.reset(); // freed before the new one, so that two need not fit
-    Film made(queue, settings.width, settings.height, settings.aovs, light_layers_of(settings));
+    Film made = make_film(queue, settings);
     if (add) add(made);
     return film.emplace(std::move(made));
 }
@@ -55,6 +59,11 @@ Integrator& PictureRenderer::begin(const Camera& camera, const RenderSettings& s
                                    uint64_t number) {
     const PictureView picture = view_of(camera, settings); // first, because it checks that there is a scene
     check_camera(settings, camera);
+    return begin(picture, settings, samples, number);
+}
+
+Integrator& PictureRenderer::begin(const PictureView& picture, const RenderSettings& settings, uint32_t samples,
+                                   uint64_t number) {
     if (picture.camera.is_open) {
         check_shutter(settings);
         if (picture.camera.is_meter()) {
@@ -84,8 +93,16 @@ Integrator& PictureRenderer::begin(const Camera& camera, const RenderSettings& s
     return integrator;
 }
 
+void PictureRenderer::find_centres(const Camera& camera, const RenderSettings& settings, const Film& film) {
+    if (!has_centres(settings)) return;
+    const UseThreads use(queue().threads());
+    centres_.find(view_of(camera, settings), scene_.tracer(), settings.path.seed, film.view().window, film.centres());
+    queue().wait(); // the camera's keys may change
+}
+
 RenderResult PictureRenderer::render_separately(const Camera& camera, const RenderSettings& settings, uint32_t first) {
-    Film film(queue(), settings.width, settings.height, settings.aovs, light_layers_of(settings));
+    Film film = make_film(queue(), settings);
+    find_centres(camera, settings, film);
     Integrator& integrator = begin(camera, settings, settings.samples);
     integrator.render(first, settings.samples, film.view());
     film.set_samples({first, first + settings.samples});

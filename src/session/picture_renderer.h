@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "render/centre_layers.h"
 #include "render/filter_table.h"
 #include "render/noisy_frame.h"
 #include "render/picture_view.h"
@@ -18,6 +19,7 @@ namespace pertev {
 /// Adds targets to a new film, by Film::hold.
 using AddTargets = std::function<void(Film&)>;
 
+Film make_film(Queue& queue, const RenderSettings& settings);
 /// Returns `film` if it fits a picture of these settings, else replaces it by a new one without samples, for which
 /// `add` is called.
 Film& fit_film(Queue& queue, std::optional<Film>& film, const RenderSettings& settings, const AddTargets& add = {});
@@ -28,7 +30,7 @@ bool is_film_of(const Film& film, const RenderSettings& settings);
 class PictureRenderer {
 public:
     /// Makes a renderer of `scene`, which outlives it.
-    explicit PictureRenderer(DeviceScene& scene) : scene_(scene), filter_(scene.queue()) {}
+    explicit PictureRenderer(DeviceScene& scene) : scene_(scene), filter_(scene.queue()), centres_(scene.queue()) {}
 
     DeviceScene& scene() { return scene_; }
     Queue& queue() { return scene_.queue(); }
@@ -39,6 +41,12 @@ public:
     /// stands for a picture whose samples are not continued. Throws Error(BadInput) if the camera or the shutter is
     /// incompatible with the settings, and Error(OutOfMemory, DeviceFault).
     Integrator& begin(const Camera& camera, const RenderSettings& settings, uint32_t samples, uint64_t number = 0);
+    /// Does that for a view that the caller has made and whose cameras it has checked: of a batch, for example.
+    Integrator& begin(const PictureView& picture, const RenderSettings& settings, uint32_t samples,
+                      uint64_t number = 0);
+    /// Finds the layers at the centres of pixels, if the film has any. Throws Error(OutOfMemory, DeviceFault).
+    void find_centres(const Camera& camera, const RenderSettings& settings, const Film& film);
+    CentreLayers& centres() { return centres_; }
     /// Returns a number for a picture whose samples continue over several begin() calls. Pictures in between use
     /// another integrator if the one of the latest such picture has precomputed data.
     uint64_t new_number() { return ++last_number_; }
@@ -54,6 +62,7 @@ private:
 
     DeviceScene& scene_;
     FilterTable filter_;
+    CentreLayers centres_;
     Buffer<MotionKey> camera_motion_; // used while the shutter is open
     struct HeldIntegrator {
         std::unique_ptr<Integrator> integrator;

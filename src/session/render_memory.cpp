@@ -37,7 +37,8 @@ std::string limit_text(std::size_t bytes, const RenderSettings& settings, const 
 std::string advice(const RenderSettings& settings, bool is_cuda) {
     const std::vector<std::string> layer_names = light_layers_of(settings);
     const std::size_t layers = layer_names.size();
-    const std::size_t film = Film::predicted_bytes(settings.width, settings.height, settings.aovs, layer_names);
+    const std::size_t film =
+        Film::predicted_bytes(settings.width, settings.height, settings.aovs, layer_names, settings.layers_at);
     const WorkSize size = {
         .width = settings.width, .height = settings.height, .samples = settings.samples, .traverses_on_host = !is_cuda};
     const std::size_t own = predicted_bytes(settings, size, is_cuda);

@@ -13,8 +13,11 @@
 #include "denoise/upsampled_frame.h"
 #include "device_scene/scene_on_device.h"
 #include "integrators/kinds/make_integrator.h"
+#include "render/centre_layers.h"
 #include "render/film.h"
 #include "restir/restir.h"
+#include "session/camera_batch.h"
+#include "session/picture_renderer.h"
 #include "tracer/structure_on_device.h"
 
 namespace pertev {
@@ -27,7 +30,7 @@ class Tracing {
 public:
     /// Completes `size` with values that the scene and its tracers determine.
     Tracing(Queue& queue, const PreparedScene& scene, const RenderSettings& settings, WorkSize size)
-        : queue_(queue), scene_(queue, scene), integrator_(make_integrator(queue, settings)) {
+        : queue_(queue), scene_(queue, scene) {
         const TracerChoice tracers = tracers_of(settings, queue.is_cuda(), !scene.poses.empty());
         size.width = settings.width, size.height = settings.height;
         for (const Instance& instance : scene.scene->instances) {
@@ -35,10 +38,11 @@ public:
         }
         size.traverses_on_host = can_traverse_on_host(tracers, queue.is_cuda());
         size.has_times = scene.motions != nullptr;
-        integrator_->reserve(size);
+        if (size.samples > 0) integrator_ = make_integrator(queue, settings);
+        if (integrator_) integrator_->reserve(size);
         take_deforming_trees(scene, tracers);
         if (queue.is_cuda()) other_bytes_ += scene.structures->device_bytes(tracers);
-        if (!queue.is_cuda()) other_bytes_ += integrator_->max_host_bytes(size);
+        if (integrator_ && !queue.is_cuda()) other_bytes_ += integrator_->max_host_bytes(size);
     }
     std::size_t bytes() const { return queue_.allocated_bytes() + other_bytes_; }
 
@@ -77,7 +81,9 @@ std::size_t predicted_bytes(const PreparedScene& scene, const RenderSettings& se
     const uint32_t width = settings.width, height = settings.height;
     const bool denoises = settings.denoise != Denoise::None, splits = denoises && splits_light(scene);
     const Tracing tracing(queue, scene, settings, {.samples = denoises ? 1 : settings.samples, .splits_light = splits});
-    const Film film(queue, width, height, settings.aovs, light_layers_of(settings));
+    const Film film = make_film(queue, settings);
+    CentreLayers centres(queue);
+    if (has_centres(settings)) centres.reserve(uint64_t(width) * height, scene.motions != nullptr);
     std::optional<NoisyFrame> frame;
     std::optional<PictureDenoiser> denoiser;
     if (denoises) {
@@ -114,7 +120,27 @@ std::size_t predicted_frame_bytes(const PreparedScene& scene, const RenderSettin
         upsampled.emplace(queue, width, height);
     }
     std::optional<Film> film;
-    if (settings.aovs != 0) film.emplace(queue, width, height, settings.aovs);
+    CentreLayers centres(queue);
+    if (settings.aovs != 0)
+        film.emplace(queue, width, height, settings.aovs, std::vector<std::string>(), settings.layers_at);
+    if (has_centres(settings)) centres.reserve(uint64_t(width) * height, scene.motions != nullptr);
+    return tracing.bytes();
+}
+
+std::size_t predicted_batch_bytes(const PreparedScene& scene, const CameraBatch& batch, const RenderSettings& settings,
+                                  uint32_t at_once, bool on_cuda) {
+    Queue queue = Queue::make_dry_run(on_cuda);
+    const bool together = is_one_job(settings);
+    RenderSettings of_job = settings;
+    if (together) of_job.height *= at_once;
+    const Tracing tracing(queue, scene, of_job, {.samples = settings.samples});
+    const BatchMemory memory(queue, batch, settings, at_once);
+    std::optional<Film> of_picture;
+    if (!together) of_picture.emplace(make_film(queue, settings));
+    CentreLayers centres(queue);
+    if (has_centres(settings)) centres.reserve(uint64_t(of_job.width) * of_job.height, scene.motions != nullptr);
+    BatchArrays arrays;
+    arrays.fit(queue, settings, at_once);
     return tracing.bytes();
 }
 

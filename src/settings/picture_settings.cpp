@@ -49,6 +49,9 @@ std::vector<Setting> picture_settings() {
             Excludes{"ground=on"}, Mark::OpensScene),
         row("aov", "Picture", "NAME,...", FIELD(aovs), "Additional layers of EXR output.", Choices{aov_names()},
             In{kExr}, Mark::Common),
+        row("layers_at", "Picture", "WHERE", FIELD(render.layers_at),
+            "Where layers of aov are evaluated: at the samples, whose values are blended, or at the centres of pixels.",
+            In{kExr}, Needs{"aov"}, Recorded::Changed),
         row("false_color", "Picture", "NAME", FIELD(false_color),
             "The quantity that PNG and JPEG show in false colours with a scale: luminance in cd/m2, or illuminance of "
             "visible surfaces in lx. For illuminance, EXR and HDR hold irradiance in W/m2.",
@@ -63,7 +66,7 @@ std::vector<Setting> picture_settings() {
 
         row("spp", "Quality", "N", FIELD(render.samples),
             "The number of samples per pixel; four times as many halve the noise.", Range{1, kMaxSamplesPerPixel},
-            On{kShown | kMeasure | kBenchNoise | kBenchPictures}, Mark::Common,
+            On{kShown | kMeasure | kBenchNoise | kBenchCameras | kBenchPictures}, Mark::Common,
             Panel{"Samples a pixel", PanelGroup::Light}),
         row("integrator", "Quality", "NAME", integrator_field, "The light transport algorithm (docs/transport.md).",
             More{"path finds all light; direct and indirect are its parts straight from emitters and sky and by way of "

@@ -26,11 +26,12 @@ struct RenderSettings : IntegratorSettings {
     // Besides scene, camera, light and number of samples, the picture depends on these.
     uint32_t width = 1280, height = 720;
     PixelFilter filter = PixelFilter::BlackmanHarris;
-    float filter_radius = 0;         // pixels; 0 = the filter's default
-    uint32_t aovs = 0;               // AovBits
-    bool transparent = false;        // RGBA: the background is omitted, and alpha is the covered fraction of the
-                                     // pixel
-    Denoise denoise = Denoise::None; // the film does not change
+    float filter_radius = 0;                // pixels; 0 = the filter's default
+    uint32_t aovs = 0;                      // AovBits
+    LayersAt layers_at = LayersAt::Samples; // the place of these layers
+    bool transparent = false;               // RGBA: the background is omitted, and alpha is the covered fraction of the
+                                            // pixel
+    Denoise denoise = Denoise::None;        // the film does not change
     /// Maximum number of scatterings in real-time frames, if that is below path.max_depth; none: no separate limit.
     /// It does not affect the film.
     std::optional<uint32_t> frame_depth;
@@ -47,6 +48,11 @@ struct RenderSettings : IntegratorSettings {
 
 /// Returns the names of the requested layers of light paths.
 std::vector<std::string> light_layers_of(const RenderSettings& settings);
+
+/// Returns whether the film has layers at the centres of pixels.
+inline bool has_centres(const RenderSettings& settings) {
+    return settings.layers_at == LayersAt::Centre && (settings.aovs & ~uint32_t{kAovMotion}) != 0;
+}
 
 /// Returns the filter radius in pixels: the requested one, or the filter's default.
 inline float filter_radius_of(const RenderSettings& settings) {

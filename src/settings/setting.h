@@ -80,6 +80,7 @@ enum SettingVerbs : uint32_t {
     kBenchNoise = 1024,
     kBenchFrames = 2048,
     kBenchSequence = 4096,
+    kBenchCameras = 8192,
 };
 /// Names of verbs in the order of documents.
 inline constexpr ValueName<SettingVerbs> kVerbNames[] = {{kRender, "render"},
@@ -94,7 +95,8 @@ inline constexpr ValueName<SettingVerbs> kVerbNames[] = {{kRender, "render"},
                                                          {kBenchBuild, "bench build"},
                                                          {kBenchNoise, "bench noise"},
                                                          {kBenchFrames, "bench frames"},
-                                                         {kBenchSequence, "bench sequence"}};
+                                                         {kBenchSequence, "bench sequence"},
+                                                         {kBenchCameras, "bench cameras"}};
 
 /// Form in which a picture's file records a setting under its name.
 enum class Recorded : uint8_t {

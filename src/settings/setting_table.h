@@ -19,7 +19,7 @@ std::vector<Setting> picture_settings();    // content, method and display of a 
 std::vector<Setting> integrator_settings(); // settings of one or a few integrators
 std::vector<Setting> frame_settings();      // settings of real-time frames
 
-inline constexpr uint32_t kLooking = kRender | kView | kBenchNoise | kBenchFrames | kBenchSequence;
+inline constexpr uint32_t kLooking = kRender | kView | kBenchNoise | kBenchFrames | kBenchSequence | kBenchCameras;
 inline constexpr uint32_t kScenes = kLooking | kMeasure | kSolve;
 inline constexpr uint32_t kBenchPictures = kBench | kBenchRender;
 

@@ -29,6 +29,7 @@ inline constexpr ValueName<PixelFilter> kPixelFilters[] = {{PixelFilter::Box, "b
                                                            {PixelFilter::BlackmanHarris, "blackman-harris"}};
 inline constexpr ValueName<RestirLight> kRestirLights[] = {
     {RestirLight::Off, "off"}, {RestirLight::Direct, "di"}, {RestirLight::Indirect, "gi"}};
+inline constexpr ValueName<LayersAt> kLayerPlaces[] = {{LayersAt::Samples, "samples"}, {LayersAt::Centre, "centre"}};
 inline constexpr ValueName<Denoise> kDenoisers[] = {{Denoise::None, "none"}, {Denoise::Svgf, "svgf"}};
 /// Names of projections. A camera that measures irradiance (Projection::Cosine) cannot be selected.
 inline constexpr ValueName<Projection> kProjections[] = {{Projection::Perspective, "perspective"},
@@ -42,6 +43,7 @@ constexpr const auto& names_of_all(PathLight) { return kPathLights; }
 constexpr const auto& names_of_all(SamplerKind) { return kSamplers; }
 constexpr const auto& names_of_all(PixelFilter) { return kPixelFilters; }
 constexpr const auto& names_of_all(RestirLight) { return kRestirLights; }
+constexpr const auto& names_of_all(LayersAt) { return kLayerPlaces; }
 constexpr const auto& names_of_all(Denoise) { return kDenoisers; }
 constexpr const auto& names_of_all(Projection) { return kProjections; }
 constexpr const auto& names_of_all(PoseConvention) { return kPoseConventions; }

@@ -21,53 +21,15 @@
 #include "tests/support/options.h"
 #include "tests/support/random.h"
 #include "tests/support/render_scenes.h"
+#include "tests/support/rushing_scene.h"
 #include "tests/support/thrown_error.h"
 #include "tracer/traversal_kernels.h"
 
 using namespace pertev;
 
+using test::kHalfASecond, test::make_rushing_scene, test::rushing_camera;
+
 namespace {
-
-constexpr Shutter kHalfASecond = {-0.1, 0.4};
-
-/// The mixed scene, in which two spheres of one mesh, a lamp and a sheet go and turn. `moves`: or nothing does.
-Scene make_rushing_scene(bool moves = true) {
-    Scene scene = test::make_mixed_scene();
-    Messages messages;
-    validate(scene, "mixed", messages);
-    scene.nodes.resize(4);
-    const uint32_t instances[] = {1, 2, 5, 7};
-    scene.animations.emplace_back();
-    for (uint32_t node = 0; node < 4; ++node) {
-        Instance& instance = scene.instances[instances[node]];
-        instance.node = node;
-        instance.node_from_local = instance.world_from_local;
-        const float way = moves ? 1.0f : 0.0f, turn = moves ? 0.38268343f : 0.0f;
-        const auto n = static_cast<float>(node);
-        scene.animations[0].channels.push_back({node,
-                                                AnimatedPart::Translation,
-                                                Interpolation::Linear,
-                                                {0, 1},
-                                                {0, 0, 0, way * (0.8f - 0.4f * n), 0.3f * way, 0.2f * way}});
-        scene.animations[0].channels.push_back({node,
-                                                AnimatedPart::Rotation,
-                                                Interpolation::Linear,
-                                                {0, 1},
-                                                {0, 0, 0, 1, 0, turn, 0, moves ? 0.92387953f : 1.0f}});
-    }
-    validate(scene, "rushing", messages);
-    return scene;
-}
-
-/// The mixed scene's, which goes to the right and turns.
-Camera rushing_camera() {
-    Camera camera = test::mixed_scene_camera();
-    const Vec3 eye = camera.world_from_camera.translation;
-    camera.aperture_radius = 0.05f;
-    camera.focus_distance = 6;
-    camera.motion = {{{0, 0, 0, 1}, eye}, {{0, 0.02f, 0, 0.9998f}, eye + Vec3{0.3f, 0, 0}}};
-    return camera;
-}
 
 RenderSettings blurred_settings(IntegratorKind integrator) {
     RenderSettings settings = test::layered_settings();

@@ -194,6 +194,19 @@ class Bench(CliTest):
         self.refuse(2, *line, "--restir", "all", says=["--restir", "off", "di", "gi"])
         self.refuse(2, *line, "--spp", "4", says=["--spp"])
 
+    def test_batches_of_cameras_have_rates_beside_one_large_picture(self):
+        line = ["bench", "cameras", "cornell-box", "--device", "cpu", "--size", "8x8", "--spp", "2", "--pictures", "33", "--runs", "1"]
+        run = self.succeed(*line, "--json")
+        jobs = {event["job"]: event for event in run.events("cameras")}
+        self.assertEqual([(name, job["pictures"], job["samples"], job["max_depth"]) for name, job in jobs.items()],
+                         [("centres", 33, 0, 5), ("direct", 33, 1, 1), ("paths", 2, 2, 5)])
+        for job in jobs.values():
+            self.assertAlmostEqual(job["pictures_per_second"] * job["median_seconds"] / job["pictures"], 1, delta=1e-3)
+            self.assertGreater(job["rays_per_second"], 64 * job["pictures_per_second"] * (1 + job["samples"]) * 0.999)
+        self.assertIsNone(jobs["centres"]["in_turn_pictures_per_second"])
+        large = run.events("large_picture")[0]
+        self.assertAlmostEqual(large["ratio_of_batch"], jobs["paths"]["samples_per_second"] / large["samples_per_second"], delta=1e-3)
+
     def test_a_sequence_is_compared_with_another_denoiser_on_the_same_samples(self):
         line = ["bench", "sequence", "cornell-box", "--device", "cpu", "--size", "32x24", "--turntable", "90", "--frames", "0-2"]
         with tempfile.TemporaryDirectory() as folder:

@@ -22,6 +22,22 @@ class Layers(CliTest):
         width, height, layers = read_exr(self.path("x.exr"))
         return [{name: rows[y][x] for name, rows in layers.items()} for y in range(height) for x in range(width)]
 
+    def test_layers_at_centres_are_of_one_hit_and_samples_change_them_not(self):
+        write(self.path("floor.obj"), FLOOR)
+        pixels = self.pixels("floor.obj", 16, "--layers-at", "centre")
+        one = self.pixels("floor.obj", 1, "--layers-at", "centre", "--seed", "5")
+        names = [name for name in pixels[0] if "." in name]
+        self.assertEqual([[pixel[name] for name in names] for pixel in pixels], [[pixel[name] for name in names] for pixel in one])
+        self.assertNotEqual([pixel["R"] for pixel in pixels], [pixel["R"] for pixel in one])
+        for i, pixel in enumerate(pixels):
+            x, z = (i % 9 - 4) * 4 / 9, (i // 9 - 4) * 4 / 9
+            hit = max(abs(x), abs(z)) < 1
+            wanted = {"albedo.R": 0.5, "normal.Y": 1, "depth.Z": 3, "position.X": x, "position.Z": z}
+            for name, value in wanted.items():
+                self.assertAlmostEqual(pixel[name], value if hit else 0, places=5)
+            self.assertEqual(pixel["id.instance"] == NONE, not hit)
+        self.refuse(2, "render", "floor.obj", "-o", "y.exr", "--layers-at", "centre", says=["--aov"])
+
     def test_at_an_edge_only_hits_count_for_normal_depth_and_position(self):
         write(self.path("floor.obj"), FLOOR)
         first = self.pixels("floor.obj", 1, "--transparent")

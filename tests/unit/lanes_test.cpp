@@ -90,10 +90,10 @@ TEST_CASE("arithmetic and comparisons of eight lanes have the bits of one") {
             check_lanes(max(a, b), [&](uint32_t k) { return max(a[k], b[k]); });
             check_lanes(clamp(a, b, Floats8(2.0f)), [&](uint32_t k) { return clamp(a[k], b[k], 2.0f); });
             check_lanes(abs(a), [&](uint32_t k) { return pertev::abs(a[k]); });
-            check_lanes(copysign(a, b), [&](uint32_t k) { return copysign(a[k], b[k]); });
-            check_lanes(sqrt(a), [&](uint32_t k) { return sqrt(a[k]); });
+            check_lanes(copysign(a, b), [&](uint32_t k) { return pertev::copysign(a[k], b[k]); });
+            check_lanes(sqrt(a), [&](uint32_t k) { return pertev::sqrt(a[k]); });
             check_lanes(safe_sqrt(a), [&](uint32_t k) { return safe_sqrt(a[k]); });
-            check_lanes(fma(a, b, a), [&](uint32_t k) { return fma(a[k], b[k], a[k]); });
+            check_lanes(fma(a, b, a), [&](uint32_t k) { return pertev::fma(a[k], b[k], a[k]); });
             check_lanes(a < b, [&](uint32_t k) { return a[k] < b[k]; });
             check_lanes(a > b, [&](uint32_t k) { return a[k] > b[k]; });
             check_lanes(a <= b, [&](uint32_t k) { return a[k] <= b[k]; });
@@ -143,9 +143,9 @@ TEST_CASE("sampling of eight lanes has the bits of one") {
         check_lanes(sample_disk_polar(u).cosine, [&](uint32_t k) { return sample_disk_polar(one(k)).cosine; });
         check_lanes(sample_disk_polar(u).sine, [&](uint32_t k) { return sample_disk_polar(one(k)).sine; });
         check_lanes(sample_tent(x.all()), [&](uint32_t k) { return sample_tent(x.one[k]); });
-        check_lanes(floor(other.all()), [&](uint32_t k) { return floor(other.one[k]); });
+        check_lanes(floor(other.all()), [&](uint32_t k) { return pertev::floor(other.one[k]); });
         check_lanes(lerp(x.all(), y.all(), other.all()),
-                    [&](uint32_t k) { return lerp(x.one[k], y.one[k], other.one[k]); });
+                    [&](uint32_t k) { return pertev::lerp(x.one[k], y.one[k], other.one[k]); });
         check_lanes(environment_direction<Floats8>(x.all(), true, y.all()),
                     [&](uint32_t k) { return environment_direction(x.one[k], true, y.one[k]); });
         check_lanes(rest_of<Floats8>(other.all(), other.all() + 1.0f, bits_of(x.all())),

@@ -97,6 +97,8 @@ struct IntegratorDescriptor {
     bool rasterises_camera = false;
     /// True if its rays have a time, so that motion while a shutter is open is blurred.
     bool has_shutter = false;
+    /// True if it renders a batch of pictures (PictureView::batch) as one.
+    bool renders_batches = false;
     /// True if only point, spot and directional lights illuminate surfaces.
     bool needs_punctual_lights = false;
     /// True if it replaces an ambient light that was not given by the environment's mean.

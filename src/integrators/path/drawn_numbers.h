@@ -11,7 +11,7 @@ namespace pertev {
 inline void set_lane(SampleKeyOf<Words8>& keys, uint32_t lane, SampleKey key) {
     keys.stream[lane] = key.stream;
     keys.sample[lane] = key.sample;
-    keys.seed = key.seed;
+    keys.seed[lane] = key.seed;
 }
 
 /// Numbers of one of eight paths, with the interface that shade_vertex uses (vertex_numbers.h). `lobe` and `roulette`

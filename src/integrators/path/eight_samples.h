@@ -11,12 +11,22 @@ namespace pertev {
 /// Up to eight samples whose paths are to begin.
 class EightSamples {
 public:
-    EightSamples(const CameraRays& camera, const PathSettings& settings) : camera_(camera), settings_(settings) {}
+    EightSamples(const CameraRays& camera, const PathSettings& settings, const BatchView& batch = {})
+        : camera_(&camera), settings_(settings), batch_(batch) {}
 
     bool is_full() const { return count_ == kWords; }
+    /// Returns whether the pixel is in the same picture of a batch as the samples so far.
+    bool can_add(uint32_t pixel) const {
+        return count_ == 0 || !batch_.is_there() || &batch_.camera_of(pixel) == camera_;
+    }
     void add(uint32_t pixel, uint32_t sample) {
-        set_lane(keys_, count_, sample_key(settings_, pixel, sample));
-        const Vec2 corner = camera_.corner_of(pixel);
+        SampleKey key = sample_key(settings_, pixel, sample);
+        if (batch_.is_there()) {
+            key = batch_.key(pixel, sample);
+            camera_ = &batch_.camera_of(pixel);
+        }
+        set_lane(keys_, count_, key);
+        const Vec2 corner = camera_->corner_of(key.stream);
         corners_x_[count_] = corner.x, corners_y_[count_] = corner.y;
         pixels_[count_++] = pixel;
     }
@@ -28,12 +38,12 @@ public:
         store_lines(rows);
         Words8 times = {};
         static_assert(kNumberTime == 2);
-        if (camera_.is_open) times = draw(kGroupLens, Pair::Last).x;
+        if (camera_->is_open) times = draw(kGroupLens, Pair::Last).x;
         for (uint32_t i = 0; i < count_; ++i) {
-            const float time = camera_.is_open ? unit_interval(times[i]) : kAtRest;
+            const float time = camera_->is_open ? unit_interval(times[i]) : kAtRest;
             const float* const row = rows[i];
-            const Ray ray = camera_.ray({{row[0], row[1], row[2]}, {row[3], row[4], row[5]}}, time);
-            take(begin_path(camera_, pixels_[i], keys_.sample[i], ray, time));
+            const Ray ray = camera_->ray({{row[0], row[1], row[2]}, {row[3], row[4], row[5]}}, time);
+            take(begin_path(*camera_, pixels_[i], keys_.sample[i], ray, time));
         }
         count_ = 0;
     }
@@ -50,15 +60,16 @@ private:
     void store_lines(float (&rows)[kWords][8]) const {
         const Vec2Of<Floats8> corners = {Floats8::load(corners_x_), Floats8::load(corners_y_)};
         Vec2Of<Floats8> on_lens = {0.0f, 0.0f};
-        if (camera_.has_lens()) on_lens = unit_square(draw(kGroupLens));
-        const RayLineOf<Floats8> line = camera_.line(corners, unit_square(draw(kGroupCamera)), on_lens);
+        if (camera_->has_lens()) on_lens = unit_square(draw(kGroupLens));
+        const RayLineOf<Floats8> line = camera_->line(corners, unit_square(draw(kGroupCamera)), on_lens);
         const Vec3Of<Floats8>&from = line.origin, &to = line.direction;
         store_columns({from.x, from.y, from.z, to.x, to.y, to.z, to.z, to.z},
                       {rows[0], rows[1], rows[2], rows[3], rows[4], rows[5], rows[6], rows[7]});
     }
 
-    const CameraRays& camera_;
+    const CameraRays* camera_; // the camera of all lanes
     const PathSettings& settings_;
+    const BatchView batch_;
     SampleKeyOf<Words8> keys_; // lanes beyond `count_` hold previous samples or 0, whose rays are not used
     float corners_x_[kWords] = {}, corners_y_[kWords] = {};
     uint32_t pixels_[kWords];

@@ -4,14 +4,9 @@
 
 #include "integrators/path/path_settings.h"
 #include "integrators/path/path_state.h"
-#include "render/camera_rays.h"
+#include "render/batch_view.h"
 
 namespace pertev {
-
-/// Recomputes PathState::time of a path.
-HD inline float time_of(const CameraRays& camera, const PathSettings& settings, const PathState& path) {
-    return camera.time(settings.sampler, sample_key(settings, path.pixel, path.sample));
-}
 
 /// Starts a path; `ray` and `time` come from CameraRays for the sample.
 HD inline PathState begin_path(const CameraRays& camera, uint32_t pixel, uint32_t sample, const Ray& ray, float time) {
@@ -30,6 +25,14 @@ HD inline PathState generate_path(const CameraRays& camera, const PathSettings& 
     const SampleKey key = sample_key(settings, pixel, sample);
     return begin_path(camera, pixel, sample, camera.ray(pixel, settings.sampler, key),
                       camera.time(settings.sampler, key));
+}
+
+/// Starts a path of one picture of a batch; `pixel` is that of the tall picture.
+HD inline PathState generate_path(const BatchView& batch, SamplerKind sampler, uint32_t pixel, uint32_t sample) {
+    const BatchView::Place place = batch.place_of(pixel);
+    const CameraRays& camera = batch.cameras[place.picture];
+    const SampleKey key = {place.pixel, sample, batch.seeds[place.picture]};
+    return begin_path(camera, pixel, sample, camera.ray(place.pixel, sampler, key), camera.time(sampler, key));
 }
 
 } // namespace pertev

@@ -47,7 +47,8 @@ template <Features kFeatures, class Listener>
 template <class Listener, class Compiled>
 ShadeOnHost<Listener> choose_shading_on_host(const PathJob& job) {
     ShadeOnHost<Listener> shading = nullptr;
-    PERTEV_CHECK(Compiled::choose(features_for(job), [&]<Features kFeatures>() {
+    PERTEV_CHECK(Compiled::choose(features_for(job) & ~kBatched, [&]<Features kMask>() {
+        constexpr Features kFeatures = kMask | kBatched; // batches by the same code, because a host has the registers
         if constexpr (is_flattened<Listener>(kFeatures)) {
             shading = shade_flattened<kFeatures, Listener>;
         } else {

@@ -281,8 +281,15 @@ void PathIntegrator::launch_round(Wavefront& w, const Work& work) {
         }
         if (w.known.all_begun == 0) {
             const WorkCount fresh = {most, &counts->fresh};
-            launch(queue_, "generate_paths", fresh,
-                   GeneratePaths{work.job, work.samples, counts, last, any_alpha, paths});
+            const auto generate = [&]<bool kInBatch>() {
+                launch(queue_, "generate_paths", fresh,
+                       GeneratePaths<kInBatch>{work.job, work.samples, counts, last, any_alpha, paths});
+            };
+            if (picture_.batch.is_there()) {
+                generate.template operator()<true>();
+            } else {
+                generate.template operator()<false>();
+            }
             const HitQueueView camera_hits = {hits.records + last, hits.instances + last, -1};
             if (raster_) {
                 tracer_->timed(RayKind::Camera,

@@ -28,6 +28,7 @@ enum Feature : Features {
     kAlpha = 2,    // surfaces that a ray may pass, including emitters
     kLayered = 4,  // surfaces other than diffuse ones
     kMoving = 8,   // paths have a time
+    kBatched = 16, // several pictures (PictureView::batch); code without it renders one
 };
 inline constexpr Features kPlainDiffuse = 0, kDiffuse = kTextured | kAlpha, kAllMaterials = kDiffuse | kLayered;
 
@@ -55,10 +56,17 @@ inline Features features_of(ShadingVariant variant) {
 /// Returns the features that the job needs. A moving camera's depth is along its axis at the ray's time.
 inline Features features_for(const PathJob& job) {
     const PictureView& picture = job.picture;
-    const bool has_times =
-        picture.scene.motions.is_there() ||
-        (picture.camera.motion.moves() && !job.film.frame.is_there() && (job.film.aovs & kAovDepth) != 0);
-    return features_of(picture.scene.variant) | (has_times ? Features{kMoving} : 0);
+    const bool has_times = picture.scene.motions.is_there() ||
+                           (picture.camera.is_open && !job.film.frame.is_there() && (job.film.aovs & kAovDepth) != 0);
+    return features_of(picture.scene.variant) | (has_times ? Features{kMoving} : 0) |
+           (picture.batch.is_there() ? Features{kBatched} : 0);
+}
+
+/// Returns the key of the random numbers of a path.
+template <Features kFeatures>
+HD inline SampleKey sample_key(const PathJob& job, uint32_t pixel, uint32_t sample) {
+    if ((kFeatures & kBatched) != 0 && job.picture.batch.is_there()) return job.picture.batch.key(pixel, sample);
+    return sample_key(job.settings, pixel, sample);
 }
 
 /// The light selection of code for a mask of features (shading/light_set.h). A light tree is a feature, for which it
@@ -77,7 +85,8 @@ struct CompiledFor {
     }
 };
 using FilmFeatures = CompiledFor<kPlainDiffuse, kDiffuse, kAllMaterials, kPlainDiffuse | kMoving, kDiffuse | kMoving,
-                                 kAllMaterials | kMoving>;
+                                 kAllMaterials | kMoving, kPlainDiffuse | kBatched, kDiffuse | kBatched,
+                                 kAllMaterials | kBatched, kAllMaterials | kMoving | kBatched>;
 using FrameFeatures = CompiledFor<kPlainDiffuse, kDiffuse, kAllMaterials>;
 using LayerFeatures = CompiledFor<kAllMaterials, kAllMaterials | kMoving>;
 

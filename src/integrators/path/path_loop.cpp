@@ -53,8 +53,10 @@ protected:
 
     /// Key of the path's ray at its depth, for blended surfaces only.
     uint32_t key_of(const PathState& path, bool is_shadow) const {
-        return job_.picture.scene.any_alpha != 0 ? path_key(path, job_.settings.seed, is_shadow) : 0;
+        return job_.picture.scene.any_alpha != 0 ? coin_key(sample_of(path), path.depth, is_shadow) : 0;
     }
+
+    SampleKey sample_of(const PathState& path) const { return sample_key<kBatched>(job_, path.pixel, path.sample); }
 
     /// Random numbers of at most eight paths at their present vertices.
     VertexWords<Words8> draw_for(const uint32_t* which, uint32_t count) const {
@@ -63,7 +65,7 @@ protected:
         bool has_choices = job_.picture.scene.variant == ShadingVariant::General; // lobes have choices
         for (uint32_t lane = 0; lane < count; ++lane) {
             const PathState& path = paths_[which[lane]];
-            set_lane(keys, lane, sample_key(job_.settings, path.pixel, path.sample));
+            set_lane(keys, lane, sample_of(path));
             depths[lane] = path.depth;
             has_choices = has_choices || may_end_by_chance(job_.settings, path.depth + 1);
         }
@@ -222,13 +224,14 @@ template <class Listener>
 void render_group(const PathJob& job, const LoopTrees& trees, const BeginOrder& order, PixelRange range,
                   RayCounts& counts) {
     PathGroup<Listener> group(job, trees);
-    EightSamples samples(job.picture.camera, job.settings);
+    EightSamples samples(job.picture.camera, job.settings, job.picture.batch);
     const auto trace = [&](const PathState& path) {
         group.add(path);
         while (group.is_full()) group.advance(counts);
     };
     for (uint32_t i = range.begin; i < range.end; ++i) {
         const uint32_t pixel = order.pixel(i);
+        if (!samples.can_add(pixel)) samples.begin(trace);
         for (uint32_t k = 0; k < order.samples; ++k) {
             samples.add(pixel, order.first_sample + k);
             if (samples.is_full()) samples.begin(trace);

@@ -43,10 +43,10 @@ struct PathQueueView {
         const Ray ray = load_ray(rays + i);
         return begin_path(camera, bits_of(ray.t_min), bits_of(ray.t_max), ray, kAtRest);
     }
-    /// Stores a path that begins. `any_alpha` means that the coin's key is needed.
-    HD void store_begun(uint32_t i, const PathState& path, uint32_t seed, bool any_alpha) const {
+    /// Stores a path that begins. `any_alpha` means that the coin's key is needed, which `key` of its sample gives.
+    HD void store_begun(uint32_t i, const PathState& path, const SampleKey& key, bool any_alpha) const {
         store_ray(rays + i, {path.origin, float_of(path.pixel), path.direction, float_of(path.sample)});
-        if (any_alpha) keys[i] = path_key(path, seed, false);
+        if (any_alpha) keys[i] = coin_key(key, path.depth, false);
     }
 
     /// Loads a path that continues, without `start`, which only the tracer needs.
@@ -66,8 +66,8 @@ struct PathQueueView {
         path.rough_depth = depths >> 16;
         return path;
     }
-    HD void store(uint32_t i, const PathState& path, uint32_t seed, bool any_alpha) const {
-        store_begun(i, path, seed, any_alpha);
+    HD void store(uint32_t i, const PathState& path, const SampleKey& key, bool any_alpha) const {
+        store_begun(i, path, key, any_alpha);
         starts[i] = {path.start.instance, path.start.primitive};
         throughput[i] = {path.throughput.r, path.throughput.g, path.throughput.b,
                          float_of(path.depth | (path.rough_depth << 16))};

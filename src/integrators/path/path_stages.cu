@@ -4,7 +4,8 @@
 // Instantiations of stages that compile quickly; shading has its own files.
 namespace pertev {
 template void launch(Queue&, const char*, WorkCount, const PlanRound&);
-template void launch(Queue&, const char*, WorkCount, const GeneratePaths&);
+template void launch(Queue&, const char*, WorkCount, const GeneratePaths<false>&);
+template void launch(Queue&, const char*, WorkCount, const GeneratePaths<true>&);
 template void launch(Queue&, const char*, WorkCount, const AddLight<FilmListeners>&);
 template void launch(Queue&, const char*, WorkCount, const AddLight<PlainFrameListeners>&);
 template void launch(Queue&, const char*, WorkCount, const AddLight<FrameListeners>&);

@@ -40,6 +40,8 @@ struct PlanRound {
     }
 };
 
+/// The stage that begins paths, of one picture or of a batch.
+template <bool kInBatch>
 struct GeneratePaths {
     PathJob job;
     BeginOrder samples;
@@ -50,9 +52,16 @@ struct GeneratePaths {
 
     HD void operator()(uint32_t i) const {
         const PixelSample begun = samples.at(round->first + i);
-        const PathState path = generate_path(job.picture.camera, job.settings, begun.pixel, begun.sample);
-        paths.store_begun(last - i, path, job.settings.seed, any_alpha);
+        constexpr Features kFeatures = kInBatch ? Features{kBatched} : Features{0};
+        const PathState path = begin(begun);
+        paths.store_begun(last - i, path, sample_key<kFeatures>(job, path.pixel, path.sample), any_alpha);
         if (paths.times != nullptr) paths.times[last - i] = path.time;
+    }
+
+private:
+    HD PathState begin(const PixelSample& begun) const {
+        if (kInBatch) return generate_path(job.picture.batch, job.settings.sampler, begun.pixel, begun.sample);
+        return generate_path(job.picture.camera, job.settings, begun.pixel, begun.sample);
     }
 };
 
@@ -86,9 +95,10 @@ struct Shade {
             const bool begins = i >= round->going_on;
             const uint32_t slot = begins ? last - (i - round->going_on) : i;
             path = begins ? paths.load_begun(slot, job.picture.camera) : paths.load(slot);
-            if (kMoves) path.time = time_of(job.picture.camera, job.settings, path);
+            const SampleKey of_sample = sample_key<kFeatures>(job, path.pixel, path.sample);
+            if (kMoves) path.time = job.picture.camera.time(job.settings.sampler, of_sample);
             const Hit hit = hits.load(slot);
-            key = path_key(path, job.settings.seed, true);
+            key = coin_key(of_sample, path.depth, true);
             if (begins) {
                 listener.begins(path);
             } else {
@@ -96,7 +106,8 @@ struct Shade {
                 Listener::load(listened, slot, kept);
                 listener.take_up(kept);
             }
-            goes_on = shade_vertex<kFeatures>(job, path, hit, DrawOnDemand(), shadow, wants_shadow, listener);
+            const DrawOnDemand numbers = {(kFeatures & kBatched) != 0 ? &job.picture.batch : nullptr};
+            goes_on = shade_vertex<kFeatures>(job, path, hit, numbers, shadow, wants_shadow, listener);
         }
         const RoundSlots slots = append_to_round(lists, *round, last, goes_on, wants_shadow);
         if (!is_there) return;
@@ -104,7 +115,8 @@ struct Shade {
         listener.put_down(kept);
         if (!goes_on && !wants_shadow) return listener.ended(path.pixel, path.radiance, kept);
         if (goes_on) {
-            next.store(slots.path, path, job.settings.seed, job.picture.scene.any_alpha != 0);
+            next.store(slots.path, path, sample_key<kFeatures>(job, path.pixel, path.sample),
+                       job.picture.scene.any_alpha != 0);
             if (kMoves && next.times != nullptr) next.times[slots.path] = path.time;
         } else {
             next.store_ended(slots.path, path);

@@ -59,9 +59,4 @@ HD inline Word vertex_light_group(Word depth) {
     return depth == 0u ? from_camera : vertex_group(depth - 1u, kGroupScatter);
 }
 
-/// Key of the coin of blended surfaces for a path's ray at its depth; shadow rays have another one.
-HD inline uint32_t path_key(const PathState& path, uint32_t seed, bool is_shadow) {
-    return coin_key({path.pixel, path.sample, seed}, path.depth, is_shadow);
-}
-
 } // namespace pertev

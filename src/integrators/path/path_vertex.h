@@ -111,8 +111,8 @@ HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path
     const BsdfValue scattered = vertex.evaluate(light.wi);
     if (is_black(scattered.f)) return false;
     if ((kFeatures & kAlpha) != 0 && light.instance != kNoLight && scene.any_alpha != 0 &&
-        !AcceptHit{scene, {}, {}, path_key(path, settings.seed, true)}.passes_alpha(light.instance, light.primitive,
-                                                                                    light.b1, light.b2)) {
+        !AcceptHit{scene, {}, {}, coin_key(sample_key<kFeatures>(job, path.pixel, path.sample), path.depth, true)}
+             .passes_alpha(light.instance, light.primitive, light.b1, light.b2)) {
         return false; // transparent part of the light
     }
     float weight = 1;

@@ -51,16 +51,18 @@ struct WordTable {
 };
 
 /// Random numbers of the vertices.
-VertexWords<Words> draw_numbers(const PathSettings& settings, const LaneVertices& vertices) {
-    WordTable streams, samples, depths;
+VertexWords<Words> draw_numbers(const PathJob& job, const LaneVertices& vertices) {
+    const PathSettings& settings = job.settings;
+    WordTable streams, samples, seeds, depths;
     bool has_choices = false; // roulette
     for (uint32_t lane = 0; lane < kLanes; ++lane) {
         const PathState& path = *vertices.paths[lane];
-        const SampleKey key = sample_key(settings, path.pixel, path.sample);
-        streams.at[lane] = key.stream, samples.at[lane] = key.sample, depths.at[lane] = path.depth;
+        const SampleKey key = sample_key<kBatched>(job, path.pixel, path.sample);
+        streams.at[lane] = key.stream, samples.at[lane] = key.sample, seeds.at[lane] = key.seed;
+        depths.at[lane] = path.depth;
         has_choices = has_choices || may_end_by_chance(settings, path.depth + 1);
     }
-    const SampleKeyOf<Words> keys = {streams.get(), samples.get(), settings.seed};
+    const SampleKeyOf<Words> keys = {streams.get(), samples.get(), seeds.get()};
     return draw_vertex(settings.sampler, keys, depths.get(), has_choices);
 }
 
@@ -472,7 +474,7 @@ Paths load_paths(const LaneVertices& vertices) {
     const SceneView& scene = job.picture.scene;
     const unsigned all = (1u << vertices.count) - 1;
     const Paths paths = load_paths(vertices);
-    const VertexWords<Words> words = draw_numbers(job.settings, vertices);
+    const VertexWords<Words> words = draw_numbers(job, vertices);
     const Vec3s wo = -paths.direction;
     const Triangles triangles = load_triangles(scene, vertices);
     const Surfaces surfaces = make_surfaces(triangles, wo);

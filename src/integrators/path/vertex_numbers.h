@@ -5,6 +5,7 @@
 
 #include "integrators/path/path_settings.h"
 #include "integrators/path/path_state.h"
+#include "render/batch_view.h"
 
 namespace pertev {
 
@@ -25,8 +26,10 @@ HD inline VertexWords<Word> draw_vertex(SamplerKind kind, SampleKeyOf<Word> key,
     return words;
 }
 
-/// Draws each number on demand.
+/// Draws each number on demand, for one picture or for those of a batch.
 struct DrawOnDemand {
+    const BatchView* batch = nullptr; // null: there is one picture
+
     HD SampleBits light(const PathSettings& settings, const PathState& path) const {
         return sample_bits(settings.sampler, key_of(settings, path), vertex_light_group(path.depth), Pair::Last);
     }
@@ -41,10 +44,11 @@ struct DrawOnDemand {
     }
 
 private:
-    HD static SampleKey key_of(const PathSettings& settings, const PathState& path) {
+    HD SampleKey key_of(const PathSettings& settings, const PathState& path) const {
+        if (batch != nullptr) return batch->key(path.pixel, path.sample);
         return sample_key(settings, path.pixel, path.sample);
     }
-    HD static float choice(const PathSettings& settings, const PathState& path, uint32_t number) {
+    HD float choice(const PathSettings& settings, const PathState& path, uint32_t number) const {
         return sample_1d(settings.sampler, key_of(settings, path), vertex_group(path.depth, kGroupChoices), number);
     }
 };

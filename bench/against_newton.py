@@ -1,0 +1,144 @@
+#!/usr/bin/env python3
+"""Batches of small pictures beside Newton's camera sensor: `bench/against_newton.py PERTEV [--device cuda] [-o FILE.json]`.
+
+Needs PyPI's newton 1.8 with warp-lang, and PERTEV_SCENES (docs/scenes.md). The scene is grey Sponza at 128x128, by cameras that turn
+around and step aside as those of `pertev bench cameras` do. Jobs: depth, normals and ids at pixel centres; there, also colour in one
+direct light with its shadow, here with one sample of the sky and its shadow. Newton's arithmetic is fast and approximate, its light one
+direction. Rates are medians of pictures a second, without reading, trees and compiling.
+"""
+
+import argparse
+import json
+import math
+import os
+import pathlib
+import statistics
+import subprocess
+import tempfile
+import time
+
+import newton
+import numpy as np
+import warp as wp
+from contest import SPONZA, write_grey_obj
+from newton.sensors import SensorCamera
+
+SIZE = 128
+
+
+def triangles_of(obj):
+    vertices, indices = [], []
+    for line in obj.read_text().splitlines():
+        word, _, rest = line.partition(" ")
+        if word == "v":
+            vertices.append([float(x) for x in rest.split()[:3]])
+        elif word == "f":
+            corners = [int(corner) for corner in rest.split()]
+            corners = [c - 1 if c > 0 else len(vertices) + c for c in corners]
+            for second, third in zip(corners[1:], corners[2:]):
+                indices += [corners[0], second, third]
+    return np.array(vertices, np.float32), np.array(indices, np.int32)
+
+
+def transforms_of(count, size):
+    """Positions and quaternions of the cameras of `pertev bench cameras`."""
+    eye, target = np.array(SPONZA["eye"], float), np.array(SPONZA["target"], float)
+    z = (eye - target) / np.linalg.norm(eye - target)
+    x = np.cross([0, 1, 0], z)
+    x /= np.linalg.norm(x)
+    base = np.stack([x, np.cross(z, x), z], 1)
+    result = []
+    for k in range(count):
+        yaw = 2 * math.pi * (k * 0.6180339887 % 1)
+        aside = 0.04 * size * np.array([k * 0.7548776662 % 1 - 0.5, k * 0.5698402910 % 1 - 0.5, 0])
+        c, s = math.cos(yaw), math.sin(yaw)
+        turned = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]) @ base
+        q = wp.quat_from_matrix(wp.mat33(*turned.astype(np.float32).flatten()))
+        result.append([*(eye + turned @ aside), *q])
+    return np.array(result, np.float32)
+
+
+def rate_of(run, pictures, device, runs):
+    run()  # compiles
+    seconds = []
+    for _ in range(runs):
+        wp.synchronize_device(device)
+        start = time.perf_counter()
+        run()
+        wp.synchronize_device(device)
+        seconds.append(time.perf_counter() - start)
+    return pictures / statistics.median(seconds)
+
+
+def measure_newton(obj, pictures, device, runs):
+    vertices, indices = triangles_of(obj)
+    builder = newton.ModelBuilder(up_axis=newton.Axis.Y)
+    mesh = newton.Mesh(vertices, indices, compute_inertia=False, color=(0.7, 0.7, 0.7))
+    builder.add_shape_mesh(-1, mesh=mesh)
+    model = builder.finalize(device=device)
+    state, sensor = model.state(), SensorCamera(model)
+    sensor.create_default_light(enable_shadows=True)
+    rays = SensorCamera.compute_camera_rays_pinhole(SIZE, SIZE, camera_fov=math.radians(SPONZA["fov_y_deg"]), device=device)
+    size = float(np.linalg.norm(vertices.max(0) - vertices.min(0)))
+    transforms = wp.array(transforms_of(pictures, size), dtype=wp.transformf, device=device)
+    worlds = wp.zeros(pictures, dtype=wp.int32, device=device)
+    layers = {
+        "forward_depth_image": sensor.allocate_image_depth_forward(pictures, SIZE, SIZE),
+        "normal_image": sensor.allocate_image_normal(pictures, SIZE, SIZE),
+        "shape_index_image": sensor.allocate_image_shape_index(pictures, SIZE, SIZE),
+    }
+    color = sensor.allocate_image_color(pictures, SIZE, SIZE)
+    config = SensorCamera.RenderConfig(enable_shadows=True, enable_backface_culling=False, max_distance=1e6)
+
+    def render(**images):
+        sensor.update(state, transforms, rays, world_indices=worlds, render_config=config, **images)
+
+    rates = {
+        "centres": rate_of(lambda: render(**layers), pictures, device, runs),
+        "direct": rate_of(lambda: render(color_image=color, **layers), pictures, device, runs),
+    }
+    seen = layers["forward_depth_image"].numpy() > 0
+    return rates, float(seen.mean())
+
+
+def measure_pertev(program, obj, pictures, device, runs):
+    camera = ["--eye=" + ",".join(map(str, SPONZA["eye"])), "--target=" + ",".join(map(str, SPONZA["target"]))]
+    camera += ["--fov", str(SPONZA["fov_y_deg"]), "--environment", "1,1,1", "--size", f"{SIZE}x{SIZE}"]
+    flags = [*camera, "--pictures", str(pictures), "--runs", str(runs), "--device", device, "--json"]
+    lines = subprocess.run([program, "bench", "cameras", str(obj), *flags], check=True, capture_output=True, text=True).stdout
+    events = [json.loads(line) for line in lines.splitlines()]
+    return {row["job"]: row["pictures_per_second"] for row in events if row.get("event") == "cameras"}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("pertev", type=pathlib.Path)
+    parser.add_argument("--device", default="cpu", choices=["cpu", "cuda"])
+    parser.add_argument("--pictures", type=int, help="4096 in CUDA, 16 on the CPU")
+    parser.add_argument("--runs", type=int, default=5)
+    parser.add_argument("-o", "--output", type=pathlib.Path)
+    args = parser.parse_args()
+    pictures = args.pictures or (4096 if args.device == "cuda" else 16)
+    device = "cuda:0" if args.device == "cuda" else "cpu"
+    with tempfile.TemporaryDirectory() as folder:
+        obj = pathlib.Path(folder) / "sponza.obj"
+        write_grey_obj(pathlib.Path(os.environ["PERTEV_SCENES"]) / SPONZA["file"], obj, 0.7)
+        theirs, seen = measure_newton(obj, pictures, device, args.runs)
+        ours = measure_pertev(args.pertev.resolve(), obj, pictures, args.device, args.runs)
+    rows = [{"job": job, "pertev": ours[job], "newton": theirs[job], "ratio": ours[job] / theirs[job]} for job in theirs]
+    result = {
+        "device": wp.get_device(device).name,
+        "date": time.strftime("%Y-%m-%d"),
+        "newton": newton.__version__,
+        "warp": wp.__version__,
+        "pictures": pictures,
+        "share_of_pixels_that_newton_hits": seen,
+        "pictures_per_second": rows,
+    }
+    print(json.dumps(result, indent=1))
+    if args.output:
+        args.output.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
