@@ -113,7 +113,8 @@ def main():
     lines = [HEAD]
     lines += class_of("Result", core.Result, "", properties_of(core.Result))
     lines += class_of("Params", package.Params, "(Mapping[str, Any])")
-    made_of = takes_settings("__init__", ["self,", "source: _Text | None = None,", "*,", *PARTS], "None", rows, scene)
+    others = [row for row in rows if row["name"] != "environment"] # which may be an array too
+    made_of = takes_settings("__init__", ["self,", "source: _Text | None = None,", "*,", *PARTS], "None", others, scene)
     lines += class_of("Scene", scene, "", properties_of(core.Scene), properties_of(scene), made_of)
     lines += class_of("Session", session, "", properties_of(core.Session),
                       takes_settings("__init__", ["self,", "scene: Scene | _Text,", "*,", LAYERS], "None", all_rows, session),

@@ -60,7 +60,7 @@ class Scene(_core.Scene):
                  normal_texture, alpha_texture; alpha_mode, double_sided, two_sided_emission
     lights       kind "point", "spot" or "directional"; intensity, position, direction or transform, range; inner_cone and
                  outer_cone in degrees
-    environment  a colour, or an array of (height, width, 3) as environment maps have it
+    environment  a colour, an array of (height, width, 3) as environment maps have it, or a file
     cameras      eye and target (and up), or transform; fov in degrees; projection "perspective" or "orthographic" with
                  view_height; aperture, focus, aspect
     """
@@ -68,10 +68,13 @@ class Scene(_core.Scene):
     def __init__(self, source=None, *, meshes=None, materials=None, instances=None, lights=None, environment=None,
                  cameras=None, name="arrays", **values):
         check_process()
-        parts = {"meshes": meshes, "materials": materials, "instances": instances, "lights": lights,
-                 "environment": environment, "cameras": cameras}
-        if source is not None and any(part is not None for part in (*parts.values(),)):
+        parts = {"meshes": meshes, "materials": materials, "instances": instances, "lights": lights, "cameras": cameras}
+        if source is not None and any(part is not None for part in parts.values()):
             raise TypeError("a scene is of a file or of arrays")
+        is_setting = source is not None or isinstance(environment, (str, os.PathLike))
+        if is_setting:
+            values["environment"] = environment
+        parts["environment"] = None if is_setting else environment
         if source is None and (meshes is None or instances is None):
             raise TypeError("a scene of arrays needs meshes and instances")
         super().__init__(name if source is None else os.fspath(source), texts_of(values),

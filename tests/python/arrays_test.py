@@ -116,8 +116,12 @@ class Arrays(unittest.TestCase):
         image = numpy.zeros((8, 16, 3), numpy.float32)
         image[:4] = 1
         scene = pertev.Scene(**parts(lights=None, environment=image))
-        picture = pertev.render(scene, **SMALL, transparent=False)
+        picture = pertev.render(scene, **SMALL)
         self.assertGreater(picture.color.mean(), 0.1)
+        file = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory())) / "sky.exr"
+        pertev.write(file, image)
+        of_file = pertev.Scene(**parts(lights=None, environment=file))
+        self.assertEqual(pertev.render(of_file, **SMALL).hash, picture.hash)
         uniform = pertev.Scene(**parts(lights=None, environment=(0.5, 0.5, 0.5)))
         self.assertEqual(pertev.render(uniform, **SMALL).hash,
                          pertev.render(pertev.Scene(**parts(lights=None)), **SMALL, environment=(0.5, 0.5, 0.5)).hash)

@@ -4,7 +4,10 @@ import pathlib
 import sys
 import tempfile
 import threading
+import time
 import unittest
+
+import numpy
 
 import pertev
 
@@ -55,6 +58,19 @@ class KeptScene(unittest.TestCase):
         again = pertev.render(scene, **SMALL, environment=(1, 1, 1))
         self.assertNotEqual(first.info["load_seconds"], again.info["load_seconds"])
 
+    def test_a_call_costs_less_than_a_millisecond(self):
+        scene = pertev.load("cornell-box", size=(8, 8), spp=1, integrator="direct", device="cpu")
+        out = {"color": numpy.empty((8, 8, 3), numpy.float32)}
+        for values in ({}, {"out": out}, {"eye": True}):
+            costs = []
+            for number in range(50):
+                if "eye" in values: # another one each time
+                    values = {"eye": (0.1 + 0.001 * number, 0.3, -0.7), "target": (0, 0, 0)}
+                begun = time.perf_counter()
+                picture = pertev.render(scene, **values)
+                costs.append(time.perf_counter() - begun - picture.seconds)
+            self.assertLess(min(costs), 1e-3)
+
     def test_what_was_made_up_is_that_of_the_picture(self):
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "triangle.obj"
@@ -66,6 +82,9 @@ class KeptScene(unittest.TestCase):
                 self.assertEqual(kept.info["made_up"], fresh.info["made_up"])
 
     def test_settings_of_load_hold_for_all_pictures(self):
+        for given in ({"environment": (1, 0, 0)}, {"environment": "0,1,0", "seed": 3}):
+            self.assertEqual(pertev.render(pertev.load("cornell-box", **given), **SMALL).hash,
+                             pertev.render("cornell-box", **SMALL, **given).hash)
         scene = pertev.load("cornell-box", max_depth=1, spp=1)
         self.assertEqual(pertev.render(scene, size=(8, 8)).hash,
                          pertev.render("cornell-box", size=(8, 8), max_depth=1, spp=1).hash)

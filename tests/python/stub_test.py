@@ -22,14 +22,20 @@ class Stub(unittest.TestCase):
         names = {row["name"] for row in _core.settings()}
         self.assertEqual(set(types_of("load")), names)
         self.assertEqual(set(types_of("render")), names | {"layers", "output", "settings", "out"})
+        scene, session = (next(node for node in DEFINED[name].body if getattr(node, "name", "") == "__init__")
+                          for name in ("Scene", "Session"))
+        self.assertEqual(sorted(argument.arg for argument in scene.args.kwonlyargs),
+                         sorted(names | {"meshes", "materials", "instances", "lights", "cameras", "name"}))
         of_frames = {row["name"] for row in _core.frame_settings()}
-        made = next(node for node in DEFINED["Session"].body if getattr(node, "name", "") == "__init__")
-        self.assertEqual({argument.arg for argument in made.args.kwonlyargs}, names | of_frames | {"layers"})
+        self.assertEqual({argument.arg for argument in session.args.kwonlyargs}, names | of_frames | {"layers"})
         self.assertLessEqual({"frames", "turntable", "real_time", "fps", "restir"}, of_frames)
         self.assertNotIn("continue", of_frames)
         self.assertGreater(len(names), 60)
         self.assertEqual(names & {"frames", "continue", "real_time", "history", "restir"}, set())
         self.assertLessEqual({"time", "shutter", "spp", "lamp", "device"}, names)
+
+    def test_it_compiles(self):
+        compile(STUB, "__init__.pyi", "exec") # which refuses a parameter that is there twice
 
     def test_types(self):
         types = types_of("render")
