@@ -390,4 +390,8 @@ MUTATIONS = [
      ("src/session/session_bytes.cpp", "places_before(queue, scene.scene->instances.size(),", "places_before(queue, 0,")),
     ("a picture's sink gets no notice of hidden backs", "unit/hidden_back",
      ("src/session/pictures/render_samples.cpp", "if (result.hidden_back_share > 0.01)", "if (false)")),
+    ("guides of Open Image Denoise are sums of samples", "consistency/oidn",
+     ("src/denoise/oidn/oidn_stages.h", "mean.x + share * (next.x - mean.x)", "mean.x + next.x")),
+    ("what Open Image Denoise makes of a frame is shown with the next one too", "consistency/oidn",
+     ("src/denoise/reconstruction.cpp", "    instead_ = nullptr;\n", "")),
 ]

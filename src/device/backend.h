@@ -49,7 +49,8 @@ public:
     virtual bool is_cuda() const = 0;
     /// Returns whether the device only counts bytes (Queue::make_dry_run).
     virtual bool is_dry_run() const { return false; }
-    virtual void* stream() const = 0; // the current one, a cudaStream_t; null on the CPU
+    virtual int index() const { return 0; } // the CUDA device's
+    virtual void* stream() const = 0;       // the current one, a cudaStream_t; null on the CPU
     /// Directs later work to stream `index`. The CPU has only one.
     virtual void use_stream(int index) = 0;
     /// Makes stream `waiting` wait for the work queued on stream `other` so far.

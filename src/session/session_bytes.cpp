@@ -8,13 +8,14 @@
 #include <vector>
 
 #include "denoise/motion_vectors.h"
-#include "denoise/picture_denoiser.h"
+#include "denoise/oidn/oidn_frames.h"
 #include "denoise/reconstruction.h"
 #include "denoise/upsampled_frame.h"
 #include "device_scene/scene_on_device.h"
 #include "integrators/kinds/make_integrator.h"
 #include "render/film.h"
 #include "restir/restir.h"
+#include "session/post_steps.h"
 #include "tracer/structure_on_device.h"
 
 namespace pertev {
@@ -79,11 +80,8 @@ std::size_t predicted_bytes(const PreparedScene& scene, const RenderSettings& se
     const Tracing tracing(queue, scene, settings, {.samples = denoises ? 1 : settings.samples, .splits_light = splits});
     const Film film(queue, width, height, settings.aovs, light_layers_of(settings));
     std::optional<NoisyFrame> frame;
-    std::optional<PictureDenoiser> denoiser;
-    if (denoises) {
-        frame.emplace(queue, width, height, splits);
-        denoiser.emplace(queue, width, height);
-    }
+    if (denoises) frame.emplace(queue, width, height, splits);
+    const std::vector<std::unique_ptr<Denoiser>> denoisers = make_denoisers(queue, settings);
     std::optional<MotionVectorMemory> motion;
     Buffer<InstanceView> places_before;
     if ((settings.aovs & kAovMotion) != 0) {
@@ -113,6 +111,8 @@ std::size_t predicted_frame_bytes(const PreparedScene& scene, const RenderSettin
         features.emplace(queue, width, height, splits);
         upsampled.emplace(queue, width, height);
     }
+    std::optional<OidnFrames> denoiser;
+    if (reconstruction.denoiser == FrameDenoiser::Oidn) denoiser.emplace(queue, width, height);
     std::optional<Film> film;
     if (settings.aovs != 0) film.emplace(queue, width, height, settings.aovs);
     return tracing.bytes();

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/value_names.h"
+#include "denoise/reconstruction_settings.h"
 #include "image/tone_map_image.h"
 #include "radiosity/radiosity_settings.h"
 #include "restir/restir_settings.h"
@@ -28,7 +29,10 @@ inline constexpr ValueName<PixelFilter> kPixelFilters[] = {{PixelFilter::Box, "b
                                                            {PixelFilter::BlackmanHarris, "blackman-harris"}};
 inline constexpr ValueName<RestirLight> kRestirLights[] = {
     {RestirLight::Off, "off"}, {RestirLight::Direct, "di"}, {RestirLight::Indirect, "gi"}};
-inline constexpr ValueName<Denoise> kDenoisers[] = {{Denoise::None, "none"}, {Denoise::Svgf, "svgf"}};
+inline constexpr ValueName<Denoise> kDenoisers[] = {
+    {Denoise::None, "none"}, {Denoise::Svgf, "svgf"}, {Denoise::Oidn, "oidn"}};
+inline constexpr ValueName<FrameDenoiser> kFrameDenoisers[] = {{FrameDenoiser::Svgf, "svgf"},
+                                                               {FrameDenoiser::Oidn, "oidn"}};
 /// Names of projections. A camera that measures irradiance (Projection::Cosine) cannot be selected.
 inline constexpr ValueName<Projection> kProjections[] = {{Projection::Perspective, "perspective"},
                                                          {Projection::Orthographic, "orthographic"}};
@@ -38,6 +42,7 @@ constexpr const auto& names_of_all(SamplerKind) { return kSamplers; }
 constexpr const auto& names_of_all(PixelFilter) { return kPixelFilters; }
 constexpr const auto& names_of_all(RestirLight) { return kRestirLights; }
 constexpr const auto& names_of_all(Denoise) { return kDenoisers; }
+constexpr const auto& names_of_all(FrameDenoiser) { return kFrameDenoisers; }
 constexpr const auto& names_of_all(Projection) { return kProjections; }
 
 /// Returns the integrator's name; for the path integrator the name of the part of the light that it renders.

@@ -107,6 +107,7 @@ public:
     void make_current() const override { check_cuda(cudaSetDevice(index_), "cudaSetDevice"); }
     std::string name() const override { return name_; }
     bool is_cuda() const override { return true; }
+    int index() const override { return index_; }
     void* stream() const override { return current(); }
     void use_stream(int index) override { current_ = static_cast<std::size_t>(index); }
     void let_wait(int waiting, int other) override {
