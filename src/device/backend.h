@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace pertev {
 
@@ -81,6 +82,13 @@ std::string why_no_cuda(int index);
 /// call takes a tenth of a second, and starting a driver a quarter.
 bool may_have_cuda();
 int cuda_device_count();
+/// A CUDA device, for a list of them.
+struct CudaDevice {
+    std::string name;
+    int major = 0, minor = 0; // compute capability
+    std::size_t bytes = 0;    // memory
+};
+std::vector<CudaDevice> cuda_devices();
 /// Makes the backend of CUDA device `index`. Throws Error(BadInput) with the reason of why_no_cuda.
 std::unique_ptr<DeviceBackend> make_cuda_backend(int index);
 

@@ -229,6 +229,16 @@ int cuda_device_count() {
     return error == cudaSuccess ? count : 0;
 }
 
+std::vector<CudaDevice> cuda_devices() {
+    std::vector<CudaDevice> devices;
+    for (int index = 0; index < cuda_device_count(); ++index) {
+        cudaDeviceProp properties{};
+        if (cudaGetDeviceProperties(&properties, index) != cudaSuccess) properties.name[0] = '\0';
+        devices.push_back({properties.name, properties.major, properties.minor, properties.totalGlobalMem});
+    }
+    return devices;
+}
+
 bool may_have_cuda() {
     // The library that CUDA's runtime would load; it stays loaded.
     return ::dlopen("libcuda.so.1", RTLD_LAZY | RTLD_LOCAL | RTLD_NODELETE) != nullptr;
