@@ -139,7 +139,7 @@ check_tools() {
 
 # ---- CUDA -------------------------------------------------------------------------------------------------------
 
-nvcc="" nvcc_release="" cuda_architectures=90-real cuda_note=""
+nvcc="" nvcc_release="" cuda_architectures=${CUDAARCHS:-90-real} cuda_note=""
 driver="" gpu=""
 
 find_driver() {
@@ -153,8 +153,8 @@ find_driver() {
         driver=$(grep -oE 'Module.* [0-9]+\.[0-9]+(\.[0-9]+)*' /proc/driver/nvidia/version | head -n 1 |
             grep -oE '[0-9]+\.[0-9.]+$' || true)
     fi
-    # One architecture: this machine's GPU (all of them where they differ), or an H100 or H200.
-    if [[ -n $gpu ]]; then
+    # One architecture: this machine's GPU (all of them where they differ), or an H100 or H200; $CUDAARCHS overrules it.
+    if [[ -n $gpu && -z ${CUDAARCHS:-} ]]; then
         cuda_architectures=$(tr -d . <<<"$gpu" | sed 's/$/-real/' | paste -sd ';')
     fi
 }

@@ -49,4 +49,4 @@ list(TRANSFORM lobe_files PREPEND ${lobes}/)
 add_custom_command(OUTPUT ${lobe_files}
   COMMAND pertev_make_lobe_tables ${lobes} COMMENT "Integrating the tables of lobes" VERBATIM)
 target_sources(pertev_shading PRIVATE ${lobe_files})
-target_include_directories(pertev_shading PUBLIC ${PERTEV_GENERATED_DIR})
+target_include_directories(pertev_shading PUBLIC $<BUILD_INTERFACE:${PERTEV_GENERATED_DIR}>)

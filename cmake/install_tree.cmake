@@ -15,6 +15,7 @@ install(CODE "
   execute_process(COMMAND \${program} --man OUTPUT_FILE \${folder}/pertev.1 COMMAND_ERROR_IS_FATAL ANY)
   execute_process(COMMAND \${program} --completion bash OUTPUT_FILE \${folder}/pertev.bash COMMAND_ERROR_IS_FATAL ANY)
   execute_process(COMMAND \${program} --completion fish OUTPUT_FILE \${folder}/pertev.fish COMMAND_ERROR_IS_FATAL ANY)")
+install(FILES ${PROJECT_SOURCE_DIR}/packaging/pertev-view@.service DESTINATION lib/systemd/system)
 install(FILES ${PROJECT_BINARY_DIR}/pertev.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES ${PROJECT_BINARY_DIR}/pertev.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME pertev)
 install(FILES ${PROJECT_BINARY_DIR}/pertev.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)

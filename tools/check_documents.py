@@ -24,7 +24,7 @@ LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 COMMAND = re.compile(r"(?:build/bin/|bench/|tools/|tests/)[\w./-]+|pertev\b|\./setup\.sh|cmake|ctest|python3")
 TARGETS = re.compile(r"(?i)\b(?:was|were) asked for|\basked for were|\bhoped for\b|(?<![`|\w])S[58](?![`|\w])")
 FLAG = re.compile(r"(?<![\w/-])--[a-z][a-z-]*[a-z]")
-FOLDERS = ["src", "apps", "tests", "tools", "bench", "cmake", "docs", "scenes"]
+FOLDERS = ["src", "apps", "tests", "tools", "bench", "cmake", "docs", "examples", "packaging", "scenes"]
 # This section names files that do not exist yet.
 ON_PAPER = "## Thirteen changes on paper"
 

@@ -1,10 +1,18 @@
 #!/usr/bin/env bash
 # Gathers programs of a build folder with every library they load (but the C library's own) into one folder that runs
 # on another machine, whose libraries may be fewer or older: tools/make_portable.sh build OUT pertev pertev_tests ...
+# An OUT that ends with .tar.gz is that folder as an archive.
 # Licences go with them: ours, docs/notices.md, and those of the libraries' Debian packages. Needs patchelf.
 set -euo pipefail
 build=$1 out=$2
 shift 2
+archive=
+if [[ $out == *.tar.gz ]]; then
+    archive=$out
+    work=$(mktemp -d)
+    trap 'rm -rf "$work"' EXIT
+    out=$work/$(basename "$archive" .tar.gz)
+fi
 mkdir -p "$out/bin" "$out/lib" "$out/licences"
 root=$(cd "$(dirname "$0")/.." && pwd)
 cp "$root/LICENSE" "$root/docs/notices.md" "$out/licences/"
@@ -20,4 +28,5 @@ for program in "$@"; do
     patchelf --set-rpath '$ORIGIN/../lib' --force-rpath "$out/bin/$program"
 done
 for library in "$out"/lib/*; do patchelf --set-rpath '$ORIGIN' "$library"; done
-du -sh "$out" | cut -f1
+[[ -z $archive ]] || tar -C "$(dirname "$out")" -czf "$archive" "$(basename "$out")"
+du -sh "${archive:-$out}" | cut -f1

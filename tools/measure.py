@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Runs jobs of bench/jobs.json, keeps each measurement as JSON, and makes one page of all:
-tools/measure.py PERTEV SCENES OUT PART... [--count RAYS] [--oidn PROGRAM] [-- FLAG ...]
+tools/measure.py PERTEV SCENES OUT PART... [--count RAYS] [-- FLAG ...]
 
 SCENES is a folder laid out as docs/scenes.md says, OUT one for files. Parts are those of bench/jobs.json (noise, transport,
 lab, peers, profile, moving, still, start, record), or PART/JOB for one job; further flags go to each command (--device cuda). Jobs
@@ -12,7 +12,6 @@ import json
 import os
 import pathlib
 import shlex
-import shutil
 import statistics
 import subprocess
 import sys
@@ -90,15 +89,7 @@ def run_job(job, part, given, places, flags):
         with open(report.with_suffix(".csv"), "w", encoding="utf-8") as output:
             subprocess.run([*words_of(part["prefix"], places), *command], stdout=output, check=True)
         return []
-    if part.get("peer"):
-        samples = pathlib.Path(places["work"], "samples")
-        samples.mkdir()
-        subprocess.run([*command, "-q", "--write-samples", samples], check=True)
-        subprocess.run([sys.executable, OWN / "tools/denoise_by_oidn.py", samples, *shlex.split(given.oidn)], check=True)
-        command += ["--reference", "512", "--peer", str(samples)]
     subprocess.run([*command, *([] if "-o" in command else ["-q", "--report", report])], check=True)
-    if part.get("peer"):
-        shutil.rmtree(samples)
     return rows_of(report) if "columns" in part else []
 
 
@@ -111,7 +102,6 @@ def main():
         parser.add_argument(name)
     parser.add_argument("parts", nargs="+", metavar="part", help=", ".join(parts))
     parser.add_argument("--count", default="8294400", help="rays of a set of the record")
-    parser.add_argument("--oidn", default="", help="Open Image Denoise's program, with its options")
     given = parser.parse_args(own[:own.index("--")] if "--" in own else own)
     given.out = os.path.abspath(given.out)
     os.makedirs(given.out, exist_ok=True)

@@ -414,4 +414,8 @@ MUTATIONS = [
      ("src/render/connect_to_camera.h", "through.growth * of_straight", "of_straight")),
     ("a picture of a list has the camera of the first", "robust/cli_cameras",
      ("src/session/pictures/render_sequence.cpp", "&camera.list[frame];", "&camera.list[0];")),
+    ("guides of Open Image Denoise are sums of samples", "consistency/oidn",
+     ("src/denoise/oidn/oidn_stages.h", "mean.x + share * (next.x - mean.x)", "mean.x + next.x")),
+    ("what Open Image Denoise makes of a frame is shown with the next one too", "consistency/oidn",
+     ("src/denoise/reconstruction.cpp", "    instead_ = nullptr;\n", "")),
 ]

@@ -1,5 +1,5 @@
 // pertev bench sequence: how like the frames of a moving picture are to pictures of many samples, and how they flicker;
-// beside them another denoiser's, which is given each frame's samples alone (tools/denoise_by_oidn.py).
+// beside them what `denoise` makes of each frame's samples alone.
 
 #include <algorithm>
 #include <optional>
@@ -10,7 +10,6 @@
 #include "apps/cli/bench_parts.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
-#include "apps/cli/pfm_file.h"
 #include "apps/cli/report_radiosity.h"
 #include "base/limits.h"
 #include "image/flip.h"
@@ -21,6 +20,7 @@
 #include "session/pictures/prepare_render.h"
 #include "settings/parse_values.h"
 #include "settings/settings_file.h"
+#include "settings/value_names.h"
 
 namespace pertev {
 namespace {
@@ -28,7 +28,6 @@ namespace {
 struct SequenceFlags {
     RenderFlags render;
     uint32_t reference = 0;
-    std::string write_samples, peer;
 };
 
 /// Scores of one way of making frames, over a sequence.
@@ -60,35 +59,33 @@ struct Score {
 
 struct Scores {
     Score ours, sample;
-    std::optional<Score> peer;
+    std::optional<Score> denoised;
     double noise = 0; // HDR-FLIP of one half of the first reference's samples against the other
     // Scores of a half of each reference's samples against all of them, which differ as much as all of them do from the
     // truth: its flicker is what the references' own noise adds to the others'.
     Score half;
+    std::string denoiser; // RenderResult::denoiser
 };
 
-std::filesystem::path file_of(const std::string& folder, uint32_t frame, const char* kind) {
-    return std::filesystem::path(folder) / fmt::format("frame-{:04}{}.pfm", frame, kind);
+/// Samples of each pixel as `pertev render` takes them, others for each seed.
+RenderResult samples_of(Session& session, const RenderSettings& settings, uint32_t seed, uint32_t samples,
+                        Denoise denoise = Denoise::None) {
+    RenderSettings some = settings;
+    some.samples = samples;
+    some.denoise = denoise;
+    some.path.seed = seed;
+    return session.render_separately(session.camera(), some);
 }
 
-/// One sample a pixel as `pertev render` takes it, another one for each frame.
-RenderResult sample_of(Session& session, const RenderSettings& settings, uint32_t frame, uint32_t samples,
-                       uint32_t aovs) {
-    RenderSettings one = settings;
-    one.samples = samples;
-    one.aovs = aovs;
-    one.path.seed = frame;
-    return session.render_separately(session.camera(), one);
-}
-
-constexpr const char* kWays[] = {"samples", "frames", "peer"};
+constexpr const char* kWays[] = {"samples", "frames", "denoised"};
 
 Scores measure(RenderSetup& ready, Session& session, PictureRecord& record, const SequenceFlags& flags, float exposure,
                ToneMap tone_map, BenchReport& report, Reporter& reporter) {
     const ReconstructionSettings settings = flags.render.reconstruction.used();
     const RestirSettings restir = flags.render.reconstruction.sharing;
     Scores scores;
-    if (!flags.peer.empty()) scores.peer.emplace();
+    const Denoise denoise = ready.settings.denoise;
+    if (denoise != Denoise::None) scores.denoised.emplace();
     const FrameCamera camera = {*ready.camera, ready.sequence};
     for (uint32_t number = 0; number < ready.sequence.count(); ++number) {
         throw_if_interrupted();
@@ -97,26 +94,21 @@ Scores measure(RenderSetup& ready, Session& session, PictureRecord& record, cons
                           fmt::format("frame {} of {}", number + 1, ready.sequence.count()));
         go_to_frame(frame, camera, *ready.moving, session, record, reporter);
         session.render_frame(FrameRange::sample_of(frame), settings, restir);
-        const Image ours = session.frame().picture();
+        const std::optional<Image> instead = session.frame().shown_instead();
+        const Image ours = instead ? *instead : session.frame().picture();
         const auto shown = [&](const Image& picture) { return tone_map_image(picture, tone_map, exposure); };
-        const RenderResult sample = sample_of(session, ready.settings, number, 1, kAovAlbedo | kAovNormal);
-        if (!flags.write_samples.empty()) {
-            write_pfm(file_of(flags.write_samples, number, ""), sample.picture);
-            write_pfm(file_of(flags.write_samples, number, "-albedo"), layer_named(sample, "albedo"));
-            write_pfm(file_of(flags.write_samples, number, "-normal"), layer_named(sample, "normal"));
-        }
         if (flags.reference == 0) continue;
+        const RenderResult sample = samples_of(session, ready.settings, number, 1, denoise);
+        scores.denoiser = sample.denoiser;
         const uint32_t half = (flags.reference + 1) / 2;
-        const Image first = sample_of(session, ready.settings, 0x40000000u + number, half, 0).picture,
-                    second = sample_of(session, ready.settings, 0x80000000u + number, half, 0).picture,
+        const Image first = samples_of(session, ready.settings, 0x40000000u + number, half).picture,
+                    second = samples_of(session, ready.settings, 0x80000000u + number, half).picture,
                     reference = mean_of(first, second);
-        std::optional<Image> peer;
-        if (scores.peer) peer = read_pfm(file_of(flags.peer, number, "-denoised"), ours.width, ours.height);
         std::vector<const Image*> pictures = {&sample.picture, &ours};
-        if (peer) pictures.push_back(&*peer);
+        if (sample.denoised) pictures.push_back(&*sample.denoised);
         const std::vector<FlipResult> flips = hdr_flips(pictures, reference);
         const Rgba8Image shown_reference = shown(reference);
-        Score* const of[] = {&scores.sample, &scores.ours, scores.peer ? &*scores.peer : nullptr};
+        Score* const of[] = {&scores.sample, &scores.ours, scores.denoised ? &*scores.denoised : nullptr};
         for (std::size_t i = 0; i < pictures.size(); ++i) {
             of[i]->add(flips[i].mean, shown(*pictures[i]), shown_reference);
             if (number % 15 == 14) {
@@ -146,7 +138,9 @@ int bench_sequence(SequenceFlags& flags) {
     Reporter reporter(flags.render.report);
     flags.render.settings.read(flags.render, reporter);
     refuse(!frame_range(flags.render), {"frames", "", "the frames are missing; set `frames` or `turntable`"});
-    refuse(flags.reference == 0 && !flags.peer.empty(), {"peer", "", "the reference is missing; add --reference SPP"});
+    const std::string denoise(name_of(flags.render.render.denoise));
+    refuse(flags.reference == 0 && flags.render.render.denoise != Denoise::None,
+           {"denoise", denoise, "the reference is missing; add --reference SPP"});
     const std::unique_ptr<RenderSetup> ready =
         prepare_render(flags.render, kBenchSequence, reporter, report_solving(reporter));
     reporter.report_messages();
@@ -174,7 +168,8 @@ int bench_sequence(SequenceFlags& flags) {
                       {"reference_flicker", "flicker of their own noise", scores.half.mean_flicker(), "", "{:.5f}"},
                       {"ours", "", score(scores.ours)},
                       {"sample", "", score(scores.sample)},
-                      {"peer", "", scores.peer ? score(*scores.peer) : ResultCell()},
+                      {"denoised", "", scores.denoised ? score(*scores.denoised) : ResultCell()},
+                      {"denoiser", "denoiser", scores.denoiser.empty() ? denoise : scores.denoiser},
                       {"last_frame", "last frame", picture_hash(session.frame().picture()).hex()}});
     if (flags.reference > 0) {
         ResultTable table;
@@ -184,7 +179,7 @@ int bench_sequence(SequenceFlags& flags) {
             table.add(fields);
         };
         add(kWays[1], scores.ours);
-        if (scores.peer) add(kWays[2], *scores.peer);
+        if (scores.denoised) add(kWays[2], *scores.denoised);
         add(kWays[0], scores.sample);
         reporter.answer(text_of(table));
     }
@@ -196,10 +191,9 @@ int bench_sequence(SequenceFlags& flags) {
 
 void add_bench_sequence_command(CLI::App& bench, int& status) {
     const auto flags = std::make_shared<SequenceFlags>();
-    CLI::App& verb =
-        add_bench_verb(bench, "sequence",
-                       "Compare frames of a sequence with pictures of many samples, and with another denoiser's frames",
-                       [flags, &status] { status = bench_sequence(*flags); });
+    CLI::App& verb = add_bench_verb(
+        bench, "sequence", "Compare frames of a sequence with pictures of many samples, and with denoised samples",
+        [flags, &status] { status = bench_sequence(*flags); });
     flags->render.size = PictureSize{1280, 720};
     flags->render.render.path.max_depth = 4;
     add_scene_name(verb, flags->render.scene);
@@ -208,13 +202,6 @@ void add_bench_sequence_command(CLI::App& bench, int& status) {
                     "between frames is the flicker")
         ->type_name("SPP")
         ->check(whole_between(2, kMaxSamplesPerPixel));
-    verb.add_option("--write-samples", flags->write_samples,
-                    "write each frame's samples, albedo and normals as PFM into this\nfolder, for another denoiser")
-        ->type_name("FOLDER");
-    verb.add_option(
-            "--peer", flags->peer,
-            "compare another denoiser's output for these frames, in\nframe-0000-denoised.pfm and so on in this folder")
-        ->type_name("FOLDER");
     add_bench_report_flags(verb, flags->render.report);
     flags->render.settings.add(verb, kBenchSequence, flags->render);
 }

@@ -25,6 +25,7 @@
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/help.h"
 #include "apps/cli/interrupt.h"
+#include "apps/cli/list_devices.h"
 #include "apps/cli/report_error.h"
 #include "base/error.h"
 #include "base/version.h"
@@ -66,13 +67,27 @@ bool wants_json(int argc, char** argv) {
     return json;
 }
 
-/// Writes documents generated from the flags, if the line requests them.
+/// `help VERB` is `VERB --help`. Without such a verb it is a line that is not understood.
+void spell_out_help(const CLI::App& app, std::vector<std::string>& words) {
+    if (words.empty() || words[0] != "help") return;
+    words.erase(words.begin());
+    std::vector<const CLI::App*> verb = {&app};
+    for (const std::string& word : words) {
+        if (verb.empty()) return;
+        verb = verb.front()->get_subcommands([&](const CLI::App* below) { return below->get_name() == word; });
+    }
+    if (!verb.empty()) words.emplace_back("--help");
+}
+
+/// Writes documents generated from the flags, or the list of devices, if the line requests them.
 bool write_document(const CLI::App& app, const std::vector<std::string>& words) {
     if (words.empty()) return false;
     if (words[0] == "--man")
         std::cout << man_page(app);
     else if (words[0] == "--settings-document")
         std::cout << settings_document();
+    else if (words[0] == "--list-devices")
+        std::cout << list_devices();
     else if (words[0] == "--completion" && words.size() > 1)
         std::cout << completion(app, words[1]);
     else
@@ -85,7 +100,7 @@ int run(std::vector<std::string> words, bool json) {
     CLI::App app("Pertev: a path tracer for GPUs without ray-tracing hardware, and for CPUs.", "pertev");
     int status = 0;
     try {
-        app.set_version_flag("--version", fmt::format("pertev {} ({})", version(), git_commit()));
+        app.set_version_flag("-V,--version", fmt::format("pertev {} ({})", version(), git_commit()));
         app.formatter(std::make_shared<Help>(take_help_group(words)));
         app.require_subcommand(1);
         add_render_command(app, status);
@@ -96,6 +111,7 @@ int run(std::vector<std::string> words, bool json) {
         add_info_command(app, status);
         add_bench_command(app, status);
         add_lab_command(app, status);
+        app.add_flag("--list-devices")->description("Lists the devices that --device names, with their memory.");
         app.add_flag("--man")->description("Prints a man page.");
         app.add_flag("--settings-document")->description("Prints docs/settings.md.");
         app.add_option("--completion")
@@ -103,6 +119,7 @@ int run(std::vector<std::string> words, bool json) {
             ->type_name("bash|zsh|fish")
             ->check(one_of({"bash", "zsh", "fish"}));
         if (write_document(app, words)) return 0;
+        spell_out_help(app, words);
         std::ranges::reverse(words); // the order that CLI11 expects
         app.parse(std::move(words));
         return status;

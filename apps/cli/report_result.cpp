@@ -60,7 +60,9 @@ void report_result(const RenderResult& result, const WrittenPicture& written, co
         samples_per_second * 1e-6, rays_per_second * 1e-6, mebibytes(host_bytes),
         queue.is_cuda() ? fmt::format(" and {:.0f} MiB on the GPU", mebibytes(result.device_peak_bytes)) : "",
         counted(result.invalid_samples, "invalid sample"), written.hash,
-        result.denoised ? " (before denoising; the files are denoised)" : ""));
+        result.denoised ? fmt::format(" (before denoising; the files are denoised{}{})",
+                                      result.denoiser.empty() ? "" : " by ", result.denoiser)
+                        : ""));
     reporter.result(fmt::format(
         R"({{"event":"done","samples":{},"seconds":{:.6f},"total_seconds":{:.6f},"frames":{},"seconds_per_frame":{},"samples_per_second":{},"rays_per_second":{},"peak_bytes":{},"device_peak_bytes":{},"invalid_samples":{},{},"device":{},"interrupted":{}}})",
         result.samples, result.render_seconds, total_seconds, result.samples, json_number(frame_seconds),

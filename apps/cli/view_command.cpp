@@ -19,6 +19,7 @@
 #include "apps/cli/render_flags.h"
 #include "apps/cli/report_radiosity.h"
 #include "apps/cli/report_result.h"
+#include "apps/viewer/access_token.h"
 #include "apps/viewer/panel_phrases.h"
 #include "apps/viewer/session_frames.h"
 #include "apps/viewer/viewer.h"
@@ -49,6 +50,7 @@ struct ViewFlags {
     std::string host = "127.0.0.1";
     uint32_t port = 8080;
     bool no_browser = false;
+    std::string token_file, token;
     std::optional<uint32_t> moving_depth;
     std::string jpeg = "auto";
 };
@@ -87,8 +89,11 @@ void report_address(const ViewFlags& flags, const std::string& address, Reporter
             flags.host));
         reporter.report_messages();
     }
-    if (!reporter.json()) reporter.answer(fmt::format("Open {}\nCtrl-C ends the viewer.", address));
-    if (!flags.no_browser) open_browser(address);
+    const bool is_whole = flags.token.empty();
+    if (!reporter.json()) {
+        reporter.answer(fmt::format("Open {}{}\nCtrl-C ends the viewer.", address, is_whole ? "" : " with the token"));
+    }
+    if (is_whole && !flags.no_browser) open_browser(address);
 }
 
 /// The text of a scene's camera for --camera; empty where there is none.
@@ -205,6 +210,7 @@ int view(ViewFlags& flags) {
     Reporter reporter(flags.render.report);
     flags.render.settings.read(flags.render, reporter);
     check_host(flags.host);
+    flags.token = given_token(flags.token_file);
     const std::unique_ptr<RenderSetup> ready = prepare_render(flags.render, kView, reporter, report_solving(reporter));
     if (!makes_frames(ready->settings.integrator) && flags.render.reconstruction.has_frame_options()) {
         reporter.note({"integrator", std::string(integrator_name(ready->settings)),
@@ -260,7 +266,11 @@ int view(ViewFlags& flags) {
     reporter.set_work(""); // from now on nothing is said that was said before
     end_soon();
     run_viewer(
-        {.host = flags.host, .port = static_cast<uint16_t>(flags.port), .jpeg_queue = jpeg_queue.get()}, start, source,
+        {.host = flags.host,
+         .port = static_cast<uint16_t>(flags.port),
+         .token = flags.token,
+         .jpeg_queue = jpeg_queue.get()},
+        start, source,
         [&](const std::string& address) { report_address(flags, address, reporter); }, [] { return !interrupted(); });
     reporter.result(R"({"event":"done"})");
     return 0;
@@ -285,6 +295,10 @@ void add_view_command(CLI::App& app, int& status) {
         ->type_name("NAME")
         ->check(one_of({"auto", "cpu"}))
         ->capture_default_str()
+        ->group(group);
+    verb.add_option("--token-file", flags->token_file,
+                    "file with the address's token, for services; PERTEV_TOKEN\nholds one too (otherwise a new one)")
+        ->type_name("FILE")
         ->group(group);
     verb.add_flag("--no-browser", flags->no_browser, "do not open a browser")->group(group);
     add_whole(verb, "--moving-depth", flags->moving_depth,

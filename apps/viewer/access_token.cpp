@@ -2,9 +2,12 @@
 
 #include <sys/random.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <vector>
 
 #include "base/error.h"
+#include "base/read_file.h"
 
 namespace pertev {
 
@@ -17,6 +20,25 @@ std::string make_token(int bytes) {
     for (const unsigned char byte : random) {
         token += "0123456789abcdef"[byte >> 4];
         token += "0123456789abcdef"[byte & 15];
+    }
+    return token;
+}
+
+std::string given_token(const std::string& file) {
+    std::string token;
+    if (const char* const given = std::getenv("PERTEV_TOKEN"); file.empty() && given != nullptr) token = given;
+    if (file.empty() && token.empty()) return token;
+    if (!file.empty()) {
+        for (const std::byte byte : read_file(file)) token += static_cast<char>(byte);
+    }
+    token.erase(token.find_last_not_of(" \t\r\n") + 1);
+    constexpr std::size_t kFewest = 16, kMost = 128; // characters
+    const auto is_plain = [](char c) {
+        return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '-' || c == '_';
+    };
+    if (token.size() < kFewest || token.size() > kMost || !std::ranges::all_of(token, is_plain)) {
+        throw Error(ErrorCode::BadInput, file.empty() ? "PERTEV_TOKEN" : "token_file", file,
+                    "expected 16 to 128 letters, digits, - and _");
     }
     return token;
 }

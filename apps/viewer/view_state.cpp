@@ -13,6 +13,7 @@
 #include "apps/viewer/window_shape.h"
 #include "base/error.h"
 #include "base/limits.h"
+#include "denoise/oidn/oidn_library.h"
 #include "session/check_integrator.h"
 #include "session/degrees.h"
 #include "settings/parse_values.h"
@@ -266,9 +267,24 @@ std::vector<ViewSetting> own_settings() {
         [](ViewState& s, float v) { s.moving_depth = static_cast<uint32_t>(v); });
     choice(
         "denoiser", "Denoiser in motion", PanelGroup::Frames,
-        "svgf: frames are filtered and accumulated; off: frames show their samples", {"svgf", "off"},
-        [](const ViewState& s) { return s.options.reconstruction.none ? "off" : "svgf"; },
-        [](ViewState& s, const std::string& name) { s.options.reconstruction.none = name == "off"; });
+        "svgf: frames are filtered and accumulated; oidn: each is denoised by itself (Open Image Denoise); off: "
+        "frames show their samples",
+        {"svgf", "oidn", "off"},
+        [](const ViewState& s) {
+            const ReconstructionOptions& frames = s.options.reconstruction;
+            return frames.none ? std::string("off") : std::string(name_of(frames.settings.denoiser));
+        },
+        [](ViewState& s, const std::string& name) {
+            try {
+                if (name == "oidn") OidnLibrary::find("frame_denoiser");
+            } catch (const Error& error) {
+                return panel_phrase(error.remark());
+            }
+            ReconstructionOptions& frames = s.options.reconstruction;
+            frames.none = name == "off";
+            if (const auto denoiser = value_named<FrameDenoiser>(name)) frames.settings.denoiser = *denoiser;
+            return std::string();
+        });
     choice(
         "moving_scale", "Size in motion", PanelGroup::Frames, "automatic: as large as the frame rate permits",
         strings(kScaleNames),

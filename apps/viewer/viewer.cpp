@@ -65,14 +65,15 @@ std::string address_of(const std::string& host, uint16_t port, const std::string
 void run_viewer(const ViewerOptions& options, const ViewerStart& start, FrameSource& source,
                 const std::function<void(const std::string& address)>& listening,
                 const std::function<bool()>& goes_on) {
-    const ServerIdentity identity = {options.host, make_token(), "pertev-" + make_token(4), make_token()};
+    const bool is_given = !options.token.empty(); // and not for those who read what the program prints
+    const ServerIdentity identity = {options.host, is_given ? options.token : make_token(), "pertev-" + make_token(4), make_token()};
     Inbox inbox;
     inbox.raise(source.abandon(), source.hurry());
     inbox.expect(start.view);
     Audience audience(inbox, welcome_text(start));
     Reception reception(audience, inbox);
     WebServer server(options.host, options.port, identity, page_files(), reception, options.limits);
-    listening(address_of(options.host, server.port(), identity.token));
+    listening(address_of(options.host, server.port(), is_given ? "" : identity.token));
     const EndWatch watch(goes_on, source);
     // In order: the packer ends before the inbox closes, and that before the server ends.
     struct Closing {

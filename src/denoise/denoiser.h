@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "device_scene/scene_view.h"
@@ -31,6 +32,8 @@ public:
     /// Returns `picture`, linear RGB or RGBA, after this step; alpha stays. It is that of the samples since begin(), of
     /// which there is at least one, after the steps before this one.
     virtual Image apply(Image picture) = 0;
+    /// Names the library and device that make the picture, if it is outside the one-picture law; else empty.
+    virtual std::string name() const { return {}; }
 };
 
 /// Returns `picture` after all steps: each works on the result of the one before.

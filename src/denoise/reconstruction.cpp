@@ -73,6 +73,7 @@ SignalsView Reconstruction::filter(const NoisyFrame& frame, const CameraView& ca
     SignalsView a = {signals, signals + pixels},
                 b = {signals + 2 * std::size_t(pixels), signals + 3 * std::size_t(pixels)};
 
+    instead_ = nullptr;
     launch(*queue_, "split_signals", pixels, SplitSignals{noisy, a, now});
     const auto accumulate = [&]<bool kFollows>() {
         launch(*queue_, "accumulate_signals", pixels,
@@ -145,10 +146,15 @@ const Float4* Reconstruction::shown() const {
     return upsampled_ ? upsampled_->shown() : history(frames_).shown;
 }
 
-Image Reconstruction::picture() const {
+std::optional<Image> Reconstruction::shown_instead() const {
+    if (instead_ == nullptr) return std::nullopt;
+    return image_of(instead_);
+}
+
+Image Reconstruction::image_of(const Float4* picture) const {
     const std::size_t pixels = std::size_t(shown_width()) * shown_height();
     std::vector<Float4> colors(pixels);
-    queue_->copy_to_host(colors.data(), shown(), pixels * sizeof(Float4));
+    queue_->copy_to_host(colors.data(), picture, pixels * sizeof(Float4));
     Image image{shown_width(), shown_height(), 3, {}};
     image.pixels.reserve(3 * pixels);
     for (const Float4& p : colors) {
@@ -209,7 +215,8 @@ void Reconstruction::display(ToneMap tone_map, float exposure_stops) {
     display_bytes_ = size;
     auto* const signals = reinterpret_cast<uint8_t*>(wide_.data() + 2 * kOfHistory * std::size_t(width_) * height_);
     uint8_t* const bytes = upsampled_ ? upsampled_->byte_memory() : signals;
-    launch(*queue_, "show_picture", pixels, ShowPicture{shown(), tone_map, exposure_scale(exposure_stops), bytes});
+    launch(*queue_, "show_picture", pixels,
+           ShowPicture{instead_ != nullptr ? instead_ : shown(), tone_map, exposure_scale(exposure_stops), bytes});
     copy_timer_.start();
     display_->take(bytes);
     copy_timer_.stop();

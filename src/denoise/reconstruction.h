@@ -60,7 +60,13 @@ public:
     /// Device time of the last add(), in seconds. Waits for it.
     double seconds() const { return timer_.seconds(); }
     /// Picture of the last frame: RGB, linear.
-    Image picture() const;
+    Image picture() const { return image_of(shown()); }
+    /// The last frame in shown_color.
+    const Float4* shown() const;
+    /// Lets displays show `picture` (shown_color), which outlives that, in place of the last frame.
+    void show_instead(const Float4* picture) { instead_ = picture; }
+    /// Returns what displays show in its place; none without show_instead().
+    std::optional<Image> shown_instead() const;
     /// Computes the last frame's picture for a display, times 2^exposure_stops, and starts its copy to the host.
     void display(ToneMap tone_map, float exposure_stops);
     /// The picture of the last display().
@@ -85,7 +91,7 @@ private:
                        const PreviousScene& before, const TemporalGradientsView& change,
                        const ReconstructionSettings& settings, Float4*& memory);
     Vec2* positions_before() const { return narrow_.data() + 2 * std::size_t(width_) * height_; }
-    const Float4* shown() const;
+    Image image_of(const Float4* picture) const;
 
     Queue* queue_;
     uint32_t width_, height_, frames_ = 0;
@@ -95,6 +101,7 @@ private:
     Buffer<Vec2> narrow_;
     std::unique_ptr<HostCopy> display_; // null before the first display()
     std::size_t display_bytes_ = 0;
+    const Float4* instead_ = nullptr;         // null: displays show the last frame
     Buffer<Float4> layers_;                   // empty until they are requested
     std::optional<UpsampledFrame> upsampled_; // exists if the picture has another size than its light
 };

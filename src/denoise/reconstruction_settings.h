@@ -7,10 +7,17 @@
 
 namespace pertev {
 
+/// The filter of a frame's light.
+enum class FrameDenoiser : uint8_t {
+    Svgf, // wavelet passes
+    Oidn, // denoise/oidn/oidn_frames.h, after all else and outside the one-picture law
+};
+
 struct ReconstructionSettings {
+    FrameDenoiser denoiser = FrameDenoiser::Svgf;
     uint32_t history = 32;       // maximum number of frames of a mean, >= 1
-    uint32_t passes = 5;         // passes of the wavelet filter, [0, 8]; 0: none. Biased: blurs what guides do not
-                                 // show
+    uint32_t passes = 5;         // passes of the wavelet filter, [0, 8]; 0: none, as with Oidn. Biased: blurs what
+                                 // guides do not show
     bool clamp_fireflies = true; // biased: darkens samples far brighter than all their neighbours
     bool clamp_history = true;   // biased: clamps long means to recent frames, against ghosting
     bool follow_light = true; // if the scene moves, updates means by the change of light (temporal_gradients_view.h).
@@ -27,6 +34,7 @@ struct ReconstructionSettings {
 
 /// Returns `settings` without any filtering, clamping or history, so that the picture shows the raw samples.
 inline ReconstructionSettings of_samples_alone(ReconstructionSettings settings) {
+    settings.denoiser = FrameDenoiser::Svgf;
     settings.history = 1;
     settings.passes = 0;
     settings.clamp_fireflies = settings.clamp_history = settings.follow_light = settings.anti_alias = false;

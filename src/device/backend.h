@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace pertev {
 
@@ -49,7 +50,8 @@ public:
     virtual bool is_cuda() const = 0;
     /// Returns whether the device only counts bytes (Queue::make_dry_run).
     virtual bool is_dry_run() const { return false; }
-    virtual void* stream() const = 0; // the current one, a cudaStream_t; null on the CPU
+    virtual int index() const { return 0; } // the CUDA device's
+    virtual void* stream() const = 0;       // the current one, a cudaStream_t; null on the CPU
     /// Directs later work to stream `index`. The CPU has only one.
     virtual void use_stream(int index) = 0;
     /// Makes stream `waiting` wait for the work queued on stream `other` so far.
@@ -80,6 +82,13 @@ std::string why_no_cuda(int index);
 /// call takes a tenth of a second, and starting a driver a quarter.
 bool may_have_cuda();
 int cuda_device_count();
+/// A CUDA device, for a list of them.
+struct CudaDevice {
+    std::string name;
+    int major = 0, minor = 0; // compute capability
+    std::size_t bytes = 0;    // memory
+};
+std::vector<CudaDevice> cuda_devices();
 /// Makes the backend of CUDA device `index`. Throws Error(BadInput) with the reason of why_no_cuda.
 std::unique_ptr<DeviceBackend> make_cuda_backend(int index);
 

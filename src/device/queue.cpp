@@ -151,11 +151,10 @@ void Queue::free(void* memory) noexcept {
 
 #if !defined(PERTEV_HAS_CUDA)
 
-std::string why_no_cuda(int) {
-    return "this binary was built without CUDA (./setup.sh can build with it)";
-}
+std::string why_no_cuda(int) { return "this binary was built without CUDA (./setup.sh can build with it)"; }
 bool may_have_cuda() { return false; }
 int cuda_device_count() { return 0; }
+std::vector<CudaDevice> cuda_devices() { return {}; }
 std::unique_ptr<DeviceBackend> make_cuda_backend(int index) {
     throw Error(ErrorCode::BadInput, "device", fmt::format("cuda:{}", index), why_no_cuda(index));
 }

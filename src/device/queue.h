@@ -34,6 +34,8 @@ public:
     const Threads& threads() const { return threads_; }
     bool is_cuda() const { return backend_->is_cuda(); }
     bool is_dry_run() const { return backend_->is_dry_run(); }
+    /// Index of a CUDA device.
+    int device_index() const { return backend_->index(); }
     void* stream() const { return backend_->stream(); }
 
     static constexpr int kMaxStreams = 4;

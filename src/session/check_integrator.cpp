@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "denoise/oidn/oidn_library.h"
 #include "render/lens_distortion.h"
 #include "render/raster/pinhole.h"
 #include "settings/value_names.h"
@@ -93,6 +94,7 @@ void check_integrator(const RenderSettings& settings) {
                     fmt::format("the limit with `integrator={}` is {}", name, max_depth(settings.integrator)));
     }
     describe(settings.integrator).check(settings);
+    if (settings.denoise == Denoise::Oidn) OidnLibrary::find("denoise");
 }
 
 void check_shutter(const RenderSettings& settings) {

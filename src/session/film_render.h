@@ -55,6 +55,8 @@ public:
     }
     /// Returns the picture after the post steps; none if the settings request no step, or without samples.
     std::optional<Image> denoised();
+    /// The name of what denoised it (Denoiser::name).
+    std::string denoiser() const { return settings_.denoise == Denoise::None ? "" : steps_.names(); }
     std::vector<FilmLayer> layers() { return film().layers(); }
     /// Returns statistics, for which it reads two numbers from the device. The share of hidden backs is computed once
     /// per scene, camera and size.

@@ -45,7 +45,10 @@ Restir* FrameSequence::restir_for(const RestirSettings& settings, const RenderSe
 }
 
 bool FrameSequence::render(uint32_t number, const Camera& camera, const RenderSettings& settings,
-                           const ReconstructionSettings& reconstruction, const RestirSettings& restir, Sink& sink) {
+                           const ReconstructionSettings& requested, const RestirSettings& restir, Sink& sink) {
+    // It takes the noise of pixels to be independent, which a history's is not.
+    const bool by_oidn = requested.denoiser == FrameDenoiser::Oidn;
+    const ReconstructionSettings reconstruction = by_oidn ? of_samples_alone(requested) : requested;
     DeviceScene& scene = pictures_.scene();
     if (!makes_frames(settings.integrator)) {
         throw Error(ErrorCode::BadInput, "integrator", std::string(integrator_name(settings)),
@@ -106,9 +109,23 @@ bool FrameSequence::render(uint32_t number, const Camera& camera, const RenderSe
         reconstruction_->add(frame, light.camera.view, light.scene, before, change, reconstruction);
     }
     has_moved_ = false; // the frame is complete, whatever follows
+    if (by_oidn) {
+        denoise(features_ ? *features_ : frame);
+    } else {
+        oidn_.reset();
+    }
     const bool has_changed = std::exchange(scene_has_changed_, false);
     keep_light(number, camera, of_light, reconstruction.follow_light && has_changed);
     return true;
+}
+
+/// Denoises the last frame, whose hits are in `frame`, for displays.
+void FrameSequence::denoise(const NoisyFrame& frame) {
+    if (!oidn_ || !oidn_->fits(frame)) {
+        oidn_.reset(); // freed before the new one, so that two need not fit
+        oidn_.emplace(pictures_.queue(), frame.width(), frame.height());
+    }
+    reconstruction_->show_instead(oidn_->apply(reconstruction_->shown(), frame));
 }
 
 /// Renders sample `number` of each pixel of `frame`, at its size. Once `sink` stops, pixels are left out.
@@ -154,6 +171,8 @@ RenderResult FrameSequence::result(const Camera& camera, const RenderSettings& s
     result.rays = rays();
     result.invalid_samples = sample_.value().invalid_samples();
     result.picture = reconstruction().picture();
+    result.denoised = reconstruction().shown_instead();
+    if (oidn_) result.denoiser = oidn_->name();
     if (settings.aovs == 0) return result;
     RenderSettings of_layers = settings_of_frames(settings);
     of_layers.samples = 1;

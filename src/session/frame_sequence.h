@@ -7,6 +7,7 @@
 
 #include <optional>
 
+#include "denoise/oidn/oidn_frames.h"
 #include "denoise/reconstruction.h"
 #include "denoise/temporal_gradients.h"
 #include "device/device_timer.h"
@@ -25,10 +26,11 @@ public:
     /// Must be called before each change of the scene within a sequence. Throws Error(OutOfMemory).
     void scene_changes();
 
-    /// Renders sample `number` of each pixel and reconstructs the picture. `restir` is ignored if the path settings
-    /// request indirect light only, or a single light strategy. Another resolution_scale is a cut. Returns false, and
-    /// restarts the sequence, if `sink` stopped it, which only a CPU notices. Throws Error(OutOfMemory, DeviceFault),
-    /// and Error(BadInput) for an integrator without frames (makes_frames) or for an open shutter.
+    /// Renders sample `number` of each pixel and reconstructs the picture. What Open Image Denoise makes of it is only
+    /// displayed, and no frame depends on it. `restir` is ignored if the path settings request indirect light only, or
+    /// a single light strategy. Another resolution_scale is a cut. Returns false, and restarts the sequence, if `sink`
+    /// stopped it, which only a CPU notices. Throws Error(OutOfMemory, DeviceFault), and Error(BadInput) for an
+    /// integrator without frames (makes_frames), for an open shutter, or without the library.
     bool render(uint32_t number, const Camera& camera, const RenderSettings& settings,
                 const ReconstructionSettings& reconstruction, const RestirSettings& restir, Sink& sink = nobody());
 
@@ -57,6 +59,7 @@ public:
 private:
     void take_sample(uint32_t number, const Camera& camera, RenderSettings settings, NoisyFrame& frame,
                      Sink* sink = nullptr);
+    void denoise(const NoisyFrame& frame);
     TemporalGradientsView measure_gradients(const RenderSettings& of_light, const ReconstructionSettings& settings);
     void keep_light(uint32_t number, const Camera& camera, const RenderSettings& of_light, bool goes_on);
     Restir* restir_for(const RestirSettings& settings, const RenderSettings& of_light);
@@ -65,6 +68,7 @@ private:
     std::optional<NoisyFrame> sample_;
     std::optional<NoisyFrame> features_; // if light is found at a lower resolution
     std::optional<Reconstruction> reconstruction_;
+    std::optional<OidnFrames> oidn_; // if it denoises frames
     std::optional<Restir> restir_;
     RestirSettings restir_settings_;      // settings of the last frame
     DeviceTimer sharing_timer_;           // time of the last frame's reservoirs

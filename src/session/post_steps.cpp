@@ -1,12 +1,12 @@
 #include "session/post_steps.h"
 
 #include "base/error.h"
+#include "denoise/oidn/oidn_denoiser.h"
 #include "denoise/picture_denoiser.h"
 #include "device/launch.h"
 #include "render/add_frame_to_film.h"
 
 namespace pertev {
-namespace {
 
 std::vector<std::unique_ptr<Denoiser>> make_denoisers(Queue& queue, const RenderSettings& settings) {
     std::vector<std::unique_ptr<Denoiser>> denoisers;
@@ -16,11 +16,18 @@ std::vector<std::unique_ptr<Denoiser>> make_denoisers(Queue& queue, const Render
     case Denoise::Svgf:
         denoisers.push_back(std::make_unique<PictureDenoiser>(queue, settings.width, settings.height));
         break;
+    case Denoise::Oidn:
+        denoisers.push_back(std::make_unique<OidnDenoiser>(queue, settings.width, settings.height));
+        break;
     }
     return denoisers;
 }
 
-} // namespace
+std::string PostSteps::names() const {
+    std::string names;
+    for (const auto& denoiser : denoisers_) names += denoiser->name();
+    return names;
+}
 
 bool PostSteps::begin(const Camera& camera, const RenderSettings& settings, Sink* sink) {
     NoisyFrame& frame = fit_frame(pictures_.scene(), sample_, settings.width, settings.height);

@@ -12,6 +12,9 @@
 
 namespace pertev {
 
+/// Makes the steps that `settings` request. Throws Error(BadInput, OutOfMemory, DeviceFault).
+std::vector<std::unique_ptr<Denoiser>> make_denoisers(Queue& queue, const RenderSettings& settings);
+
 class PostSteps {
 public:
     /// Makes an object without steps; `pictures` outlives it.
@@ -26,6 +29,8 @@ public:
     void add(Integrator& integrator, uint32_t first, uint32_t count, const Film& film, Sink* sink);
     /// Returns `picture`, that of the film, after all steps. Throws Error(DeviceFault).
     Image apply(Image picture) { return apply_steps(denoisers_, std::move(picture)); }
+    /// The steps' Denoiser::name.
+    std::string names() const;
 
 private:
     PictureRenderer& pictures_;

@@ -54,12 +54,19 @@ void Session::cut() {
 }
 
 RenderResult Session::result() {
-    RenderResult result = {stats(), picture(), denoised(), layers(), film().ids()};
+    RenderResult result = {stats(), picture(), denoised(), film_.denoiser(), layers(), film().ids()};
     if ((settings().aovs & kAovMotion) != 0) {
         const AovGroup& group = aov_group(kAovMotion);
         result.layers.push_back({group.layer, channel_names(group), motion()});
     }
     return result;
+}
+
+RenderResult Session::render_separately(const Camera& camera, const RenderSettings& settings, uint32_t first) {
+    if (settings.denoise == Denoise::None) return pictures_.render_separately(camera, settings, first);
+    FilmRender film(pictures_, camera, settings);
+    film.render({first, first + settings.samples});
+    return {film.stats(), film.picture(), film.denoised(), film.denoiser(), film.layers(), film.film().ids()};
 }
 
 RenderResult render_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera,

@@ -95,10 +95,8 @@ public:
     void keep_as_before() { frames_.keep_as_before(camera()); }
     Image motion() { return frames_.motion(camera(), settings()); }
 
-    /// Renders another picture of the scene by PictureRenderer::render_separately. The film stays as it is.
-    RenderResult render_separately(const Camera& camera, const RenderSettings& settings, uint32_t first = 0) {
-        return pictures_.render_separately(camera, settings, first);
-    }
+    /// Renders another picture of the scene, of samples from `first` on. The film stays as it is.
+    RenderResult render_separately(const Camera& camera, const RenderSettings& settings, uint32_t first = 0);
     std::vector<RayWork> count_camera_work() { return pictures_.count_camera_work(camera(), settings()); }
 
     History history() const { return {film_.samples().end, previous_camera_, cuts_}; }

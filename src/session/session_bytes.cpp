@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "denoise/motion_vectors.h"
-#include "denoise/picture_denoiser.h"
+#include "denoise/oidn/oidn_frames.h"
 #include "denoise/reconstruction.h"
 #include "denoise/upsampled_frame.h"
 #include "device_scene/scene_on_device.h"
@@ -18,6 +18,7 @@
 #include "restir/restir.h"
 #include "session/camera_batch.h"
 #include "session/picture_renderer.h"
+#include "session/post_steps.h"
 #include "tracer/structure_on_device.h"
 
 namespace pertev {
@@ -85,11 +86,8 @@ std::size_t predicted_bytes(const PreparedScene& scene, const RenderSettings& se
     CentreLayers centres(queue);
     if (has_centres(settings)) centres.reserve(uint64_t(width) * height, scene.motions != nullptr);
     std::optional<NoisyFrame> frame;
-    std::optional<PictureDenoiser> denoiser;
-    if (denoises) {
-        frame.emplace(queue, width, height, splits);
-        denoiser.emplace(queue, width, height);
-    }
+    if (denoises) frame.emplace(queue, width, height, splits);
+    const std::vector<std::unique_ptr<Denoiser>> denoisers = make_denoisers(queue, settings);
     std::optional<MotionVectorMemory> motion;
     Buffer<InstanceView> places_before;
     if ((settings.aovs & kAovMotion) != 0) {
@@ -119,6 +117,8 @@ std::size_t predicted_frame_bytes(const PreparedScene& scene, const RenderSettin
         features.emplace(queue, width, height, splits);
         upsampled.emplace(queue, width, height);
     }
+    std::optional<OidnFrames> denoiser;
+    if (reconstruction.denoiser == FrameDenoiser::Oidn) denoiser.emplace(queue, width, height);
     std::optional<Film> film;
     CentreLayers centres(queue);
     if (settings.aovs != 0)

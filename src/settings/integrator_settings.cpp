@@ -105,6 +105,9 @@ std::vector<Setting> integrator_settings() {
 
 std::vector<Setting> frame_settings() {
     std::vector<Setting> rows = {
+        row("frame_denoiser", "Frames", "NAME", FIELD(reconstruction.settings.denoiser),
+            "The filter of frames: svgf, or oidn in fast quality of each frame's sample by itself, without history.",
+            Excludes{"no_reconstruction"}),
         row("no_reconstruction", "Frames", "", FIELD(reconstruction.none), "Frames are shown without reconstruction."),
         row(
             "no_firefly_clamping", "Frames", "",
@@ -143,11 +146,12 @@ std::vector<Setting> frame_settings() {
         row.verbs = kRender | kView | kBenchFrames | kBenchSequence;
         row.needs = "real_time";
     }
-    rows.insert(rows.begin(), row("real_time", "Frames", "", FIELD(real_time),
-                                  "Frames are rendered as the viewer does in motion: one sample per pixel each, "
-                                  "reconstructed with earlier frames. The settings below apply only to such frames.",
-                                  Of{integrators_that(makes_frames)}, Needs{"frames turntable"},
-                                  Excludes{"denoise!=none transparent shutter lpe false_color=illuminance aov=motion"}));
+    rows.insert(rows.begin(),
+                row("real_time", "Frames", "", FIELD(real_time),
+                    "Frames are rendered as the viewer does in motion: one sample per pixel each, "
+                    "reconstructed with earlier frames. The settings below apply only to such frames.",
+                    Of{integrators_that(makes_frames)}, Needs{"frames turntable"},
+                    Excludes{"denoise!=none transparent shutter lpe false_color=illuminance aov=motion"}));
     return rows;
 }
 

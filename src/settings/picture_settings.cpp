@@ -98,8 +98,8 @@ std::vector<Setting> picture_settings() {
             Above{0}, Unit{"s"}, Otherwise{"none"}, Excludes{"frames turntable cameras"}, Mark::NotKept, Mark::Common),
         row("denoise", "Quality", "NAME", FIELD(render.denoise),
             "The denoiser of pictures with few samples. It is biased; EXR output also has the picture before denoising "
-            "as the layer noisy.",
-            Excludes{"!none:max_depth=0"}, Recorded::Changed, Mark::Common),
+            "as the layer noisy. oidn is Open Image Denoise, whose bytes differ between devices.",
+            On{kRender | kBenchSequence}, Excludes{"!none:max_depth=0"}, Recorded::Changed, Mark::Common),
 
         row("build", "Tracing", "WHICH", FIELD(tracer.build),
             "The quality of the acceleration structure: fast builds fastest, best traces fastest. "

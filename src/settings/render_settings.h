@@ -19,6 +19,7 @@ namespace pertev {
 enum class Denoise : uint8_t {
     None,
     Svgf, // denoise/picture_denoiser.h
+    Oidn, // denoise/oidn/oidn_denoiser.h, outside the one-picture law
 };
 
 /// The integrator with its settings (IntegratorSettings), and further settings of a picture.
@@ -95,6 +96,7 @@ struct RenderStats {
 struct RenderResult : RenderStats {
     Image picture;                 // RGB or RGBA, linear: the film's
     std::optional<Image> denoised; // with the same channels, if the settings request it
+    std::string denoiser;          // Denoiser::name of what made it
     std::vector<FilmLayer> layers;
     std::vector<PixelIds> ids; // empty unless requested
 };

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/value_names.h"
+#include "denoise/reconstruction_settings.h"
 #include "image/tone_map_image.h"
 #include "radiosity/radiosity_settings.h"
 #include "restir/restir_settings.h"
@@ -30,7 +31,10 @@ inline constexpr ValueName<PixelFilter> kPixelFilters[] = {{PixelFilter::Box, "b
 inline constexpr ValueName<RestirLight> kRestirLights[] = {
     {RestirLight::Off, "off"}, {RestirLight::Direct, "di"}, {RestirLight::Indirect, "gi"}};
 inline constexpr ValueName<LayersAt> kLayerPlaces[] = {{LayersAt::Samples, "samples"}, {LayersAt::Centre, "centre"}};
-inline constexpr ValueName<Denoise> kDenoisers[] = {{Denoise::None, "none"}, {Denoise::Svgf, "svgf"}};
+inline constexpr ValueName<Denoise> kDenoisers[] = {
+    {Denoise::None, "none"}, {Denoise::Svgf, "svgf"}, {Denoise::Oidn, "oidn"}};
+inline constexpr ValueName<FrameDenoiser> kFrameDenoisers[] = {{FrameDenoiser::Svgf, "svgf"},
+                                                               {FrameDenoiser::Oidn, "oidn"}};
 /// Names of projections. A camera that measures irradiance (Projection::Cosine) cannot be selected.
 inline constexpr ValueName<Projection> kProjections[] = {{Projection::Perspective, "perspective"},
                                                          {Projection::Orthographic, "orthographic"}};
@@ -45,6 +49,7 @@ constexpr const auto& names_of_all(PixelFilter) { return kPixelFilters; }
 constexpr const auto& names_of_all(RestirLight) { return kRestirLights; }
 constexpr const auto& names_of_all(LayersAt) { return kLayerPlaces; }
 constexpr const auto& names_of_all(Denoise) { return kDenoisers; }
+constexpr const auto& names_of_all(FrameDenoiser) { return kFrameDenoisers; }
 constexpr const auto& names_of_all(Projection) { return kProjections; }
 constexpr const auto& names_of_all(PoseConvention) { return kPoseConventions; }
 constexpr const auto& names_of_all(LensModel) { return kLensModels; }

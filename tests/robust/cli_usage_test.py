@@ -57,6 +57,18 @@ class Flags(CliTest):
                     says=["2, 3: not understood; components of a vector are joined by commas: 1,2,3\n"])
         self.refuse(2, "bench", "cornell-box", says=["cornell-box: not understood; scenes are named by --scene\n"])
 
+    def test_help_before_a_verb_is_that_of_the_verb(self):
+        for verb in [[], ["render"], ["bench", "sequence"]]:
+            self.assertEqual(self.succeed("help", *verb).stdout, self.succeed(*verb, "--help").stdout)
+        self.refuse(2, "help", "rendr", says=["rendr: not understood"])
+
+    def test_version_and_devices_are_listed(self):
+        self.assertEqual(self.succeed("-V").stdout, self.succeed("--version").stdout)
+        lines = self.succeed("--list-devices").stdout.splitlines()
+        self.assertRegex(lines[-1], rf"^cpu +.+, \d+ MiB, {len(os.sched_getaffinity(0))} threads, (8|16) lanes$")
+        for line in lines[:-1]:  # CUDA_VISIBLE_DEVICES is empty, which a build without CUDA says otherwise
+            self.assertRegex(line, "^(no CUDA device: |cuda:\\d+ )")
+
     def test_an_empty_name_is_reported_as_empty(self):
         for line, what in [(["render", "", "-o", "x.png"], "SCENE"), (["render", "cornell-box", "-o", ""], "--output"),
                            (["info", ""], "FILE"), (["compare", "", "x.png"], "A"), (["compare", "x.png", ""], "B"),

@@ -51,7 +51,7 @@ class Viewer:
             self.address = found.group(0) if found else ""
         parts = urllib.parse.urlsplit(self.address)
         self.host, self.port = parts.hostname, parts.port
-        self.token = urllib.parse.parse_qs(parts.query)["token"][0]
+        self.token = urllib.parse.parse_qs(parts.query).get("token", [""])[0]
         self.cookie = ""
         return self
 

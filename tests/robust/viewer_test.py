@@ -8,6 +8,7 @@ import re
 import shlex
 import signal
 import socket
+import tempfile
 import time
 import unittest
 
@@ -78,6 +79,16 @@ class Access(WithViewer):
                 self.assertEqual(status, 403, target)
                 self.assertNotIn("set-cookie", headers)
                 self.assertLess(len(body), 200)
+
+    def test_a_given_token_opens_the_page_and_is_not_printed(self):
+        with tempfile.TemporaryDirectory() as folder:
+            token = os.path.join(folder, "token")
+            write(token, "0123456789abcdef-_XY\n")
+            with Viewer("--token-file", token) as viewer:
+                self.assertEqual(viewer.token, "")
+                self.assertEqual(viewer.get("/?token=", {"Host": f"127.0.0.1:{viewer.port}"})[0], 403)
+                viewer.token = "0123456789abcdef-_XY"
+                self.assertEqual(viewer.get("/")[0], 200)
 
     def test_only_local_host_names_are_accepted(self):
         port = self.viewer.port

@@ -1,13 +1,18 @@
 // Who may ask the viewer for what (apps/viewer/request_checks.h), and that no text breaks the checks.
 
+#include <cstdlib>
+
 #include <doctest/doctest.h>
 
 #include "apps/viewer/access_token.h"
 #include "apps/viewer/request_checks.h"
 #include "tests/support/options.h"
 #include "tests/support/random.h"
+#include "tests/support/thrown_error.h"
+#include "tests/support/write_text.h"
 
 using namespace pertev;
+using namespace pertev::test;
 
 namespace {
 
@@ -33,6 +38,31 @@ TEST_CASE("tokens have the requested length and differ") {
     CHECK(make_token().size() == 32);
     CHECK(make_token(4).size() == 8);
     CHECK(make_token() != make_token());
+}
+
+TEST_CASE(
+    "a given token comes from a file or the environment, and one that could be guessed or needs escapes is refused") {
+    const auto refused = [](const std::string& text) {
+        const std::filesystem::path file = scratch_folder() / "token";
+        write_text(file, text);
+        return is_about(thrown_error([&] { given_token(file); }), ErrorCode::BadInput, "token_file");
+    };
+    for (const char* text :
+         {"", "\n", "0123456789abcde", "0123456789abcdef&", "0123456789 abcdef", "0123456789abcdef\nx"}) {
+        CHECK_MESSAGE(refused(text), text);
+    }
+    CHECK(refused(std::string(129, 'a')));
+    const std::filesystem::path file = scratch_folder() / "token";
+    write_text(file, "ABCdef-_0123456789\r\n");
+    CHECK(given_token(file) == "ABCdef-_0123456789");
+    CHECK(given_token("") == "");
+    ::setenv("PERTEV_TOKEN", "0123456789abcdef", 1);
+    CHECK(given_token("") == "0123456789abcdef");
+    CHECK(given_token(file) == "ABCdef-_0123456789");
+    ::setenv("PERTEV_TOKEN", "short", 1);
+    CHECK(is_about(thrown_error([] { given_token(""); }), ErrorCode::BadInput, "PERTEV_TOKEN"));
+    ::unsetenv("PERTEV_TOKEN");
+    CHECK(thrown_error([] { given_token("/nowhere/token"); }).has_value());
 }
 
 TEST_CASE("the server's names are accepted in any case and with any port, and others are not") {

@@ -107,6 +107,7 @@ public:
     void make_current() const override { check_cuda(cudaSetDevice(index_), "cudaSetDevice"); }
     std::string name() const override { return name_; }
     bool is_cuda() const override { return true; }
+    int index() const override { return index_; }
     void* stream() const override { return current(); }
     void use_stream(int index) override { current_ = static_cast<std::size_t>(index); }
     void let_wait(int waiting, int other) override {
@@ -226,6 +227,16 @@ int cuda_device_count() {
     int count = 0;
     const cudaError_t error = cudaGetDeviceCount(&count); // without a driver it does not write its argument
     return error == cudaSuccess ? count : 0;
+}
+
+std::vector<CudaDevice> cuda_devices() {
+    std::vector<CudaDevice> devices;
+    for (int index = 0; index < cuda_device_count(); ++index) {
+        cudaDeviceProp properties{};
+        if (cudaGetDeviceProperties(&properties, index) != cudaSuccess) properties.name[0] = '\0';
+        devices.push_back({properties.name, properties.major, properties.minor, properties.totalGlobalMem});
+    }
+    return devices;
 }
 
 bool may_have_cuda() {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "denoise/oidn/oidn_library.h"
 #include "session/check_integrator.h"
 #include "session/frame_range.h"
 #include "session/opening/open_scene.h"
@@ -32,6 +33,7 @@ void check_options(const PictureOptions& options, uint32_t verbs) {
     check_settings(options, verbs);
     frame_range(options);
     check_real_time(options);
+    if (options.reconstruction.used().denoiser == FrameDenoiser::Oidn) OidnLibrary::find("frame_denoiser");
     requested_exposure(options);
     false_colors(options);
     const RenderSettings settings = light_settings(options);

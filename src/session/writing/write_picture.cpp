@@ -72,6 +72,7 @@ ExrMetadata metadata_of(const PictureRecord& record, const RenderResult& result,
     ExrMetadata metadata = picture_metadata(record, result, hash);
     const ExrMetadata names = id_metadata(record.scene, result.ids);
     metadata.insert(metadata.end(), names.begin(), names.end());
+    if (!result.denoiser.empty()) metadata.emplace_back("pertev.denoiser", result.denoiser);
     return metadata;
 }
 

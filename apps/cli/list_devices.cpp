@@ -1,0 +1,52 @@
+// pertev --list-devices
+
+#include "apps/cli/list_devices.h"
+
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "base/machine_memory.h"
+#include "base/parallel_for.h"
+#include "base/processor.h"
+#include "device/backend.h"
+
+namespace pertev {
+namespace {
+
+/// Returns the rest of the first line that begins with `key`, behind its colon; empty if there is none.
+std::string value_in(const char* file, const std::string& key) {
+    std::ifstream lines(file);
+    for (std::string line; std::getline(lines, line);) {
+        const std::size_t colon = line.find(": ");
+        if (line.starts_with(key) && colon != std::string::npos) return line.substr(colon + 2);
+    }
+    return {};
+}
+
+std::string driver_version() {
+    std::ifstream file("/sys/module/nvidia/version");
+    std::string version;
+    std::getline(file, version);
+    return version.empty() ? "" : fmt::format(", driver {}", version);
+}
+
+} // namespace
+
+std::string list_devices() {
+    std::string list;
+    int index = 0;
+    for (const CudaDevice& device : cuda_devices()) {
+        const std::string why_not = why_no_cuda(index);
+        list += fmt::format("cuda:{:<3} {}, {:.0f} MiB, compute capability {}.{}{}{}\n", index++, device.name,
+                            mebibytes(device.bytes), device.major, device.minor, driver_version(),
+                            why_not.empty() ? "" : fmt::format("; it cannot be used: {}", why_not));
+    }
+    if (index == 0) list += fmt::format("no CUDA device: {}\n", why_no_cuda(0));
+    const std::string name = value_in("/proc/cpuinfo", "model name");
+    return list + fmt::format("cpu      {}, {:.0f} MiB, {} threads, {} lanes\n", name.empty() ? "CPU" : name,
+                              mebibytes(machine_memory_bytes()), thread_count(),
+                              has_sixteen_lanes() ? kMaxLanes : kMaxLanes / 2);
+}
+
+} // namespace pertev

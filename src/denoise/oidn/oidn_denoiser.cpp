@@ -1,0 +1,38 @@
+#include "denoise/oidn/oidn_denoiser.h"
+
+#include "base/error.h"
+#include "denoise/oidn/oidn_stages.h"
+#include "device/launch.h"
+
+namespace pertev {
+
+void OidnDenoiser::add_features(const NoisyFrame& frame, const SceneView&) {
+    PERTEV_CHECK(frame.width() * frame.height() == pixels_);
+    launch(queue_, "mean_oidn_guides", pixels_,
+           MeanOidnGuides{frame.view(), filter_.albedo(), filter_.normal(), 1.0f / static_cast<float>(++features_)});
+}
+
+void OidnDenoiser::add(const NoisyFrame& frame, const SceneView& scene) {
+    if (samples_++ >= features_) add_features(frame, scene);
+}
+
+Image OidnDenoiser::apply(Image picture) {
+    PERTEV_CHECK(samples_ > 0 && picture.width * picture.height == pixels_ && picture.channels >= 3);
+    std::vector<Float4> colors(pixels_);
+    const float* from = picture.pixels.data();
+    for (Float4& color : colors) {
+        color = {from[0], from[1], from[2], 0};
+        from += picture.channels;
+    }
+    queue_.copy_to_device(filter_.color(), colors.data(), pixels_ * sizeof(Float4));
+    filter_.run();
+    queue_.copy_to_host(colors.data(), filter_.color(), pixels_ * sizeof(Float4));
+    float* to = picture.pixels.data();
+    for (const Float4& color : colors) {
+        to[0] = color.x, to[1] = color.y, to[2] = color.z;
+        to += picture.channels;
+    }
+    return picture;
+}
+
+} // namespace pertev

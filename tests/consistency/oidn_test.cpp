@@ -1,0 +1,257 @@
+// Open Image Denoise, which is loaded while the program runs: a stand-in for it (stand_in/oidn.cpp) tells how it is
+// called and fails where it is told to; libraries that do not fit are refused; film, layers and frames are what they
+// are without it. The library itself is in robust/cli_oidn_test.py.
+
+#include <dlfcn.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+#include <doctest/doctest.h>
+
+#include "denoise/oidn/oidn_filter.h"
+#include "formats/read_scene.h"
+#include "image/picture_hash.h"
+#include "session/session_bytes.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+#include "tests/support/thrown_error.h"
+
+using namespace pertev;
+using namespace pertev::test;
+
+namespace {
+
+/// The library that is found while this exists.
+class FoundLibrary {
+public:
+    explicit FoundLibrary(const char* path) {
+        if (const char* const value = std::getenv("PERTEV_OIDN")) before_ = value;
+        ::setenv("PERTEV_OIDN", path, 1);
+    }
+    ~FoundLibrary() {
+        if (before_) {
+            ::setenv("PERTEV_OIDN", before_->c_str(), 1);
+        } else {
+            ::unsetenv("PERTEV_OIDN");
+        }
+    }
+
+private:
+    std::optional<std::string> before_;
+};
+
+/// The stand-in, and its own controls.
+struct StandIn {
+    FoundLibrary found{PERTEV_OIDN_STAND_IN};
+    void* library = ::dlopen(PERTEV_OIDN_STAND_IN, RTLD_NOW);
+    ~StandIn() {
+        if (library == nullptr) return;
+        fail("", 0);
+        ::dlclose(library);
+    }
+    bool is_there() const {
+        if (library == nullptr) std::printf("skipped: %s is not there\n", PERTEV_OIDN_STAND_IN);
+        return library != nullptr;
+    }
+    void fail(const char* call, int with) {
+        reinterpret_cast<void (*)(const char*, int)>(::dlsym(library, "stand_in_fail"))(call, with);
+    }
+    int objects() { return reinterpret_cast<int (*)()>(::dlsym(library, "stand_in_objects"))(); }
+    int value(const char* name) {
+        return reinterpret_cast<int (*)(const char*)>(::dlsym(library, "stand_in_value"))(name);
+    }
+};
+
+RenderSettings small_settings(Denoise denoise) {
+    RenderSettings settings;
+    settings.width = 48, settings.height = 32;
+    settings.path.max_depth = 3;
+    settings.denoise = denoise;
+    return settings;
+}
+
+std::optional<Error> refusal_of(const char* path) {
+    const FoundLibrary found(path);
+    return thrown_error([] { OidnLibrary::find("denoise"); });
+}
+
+} // namespace
+
+TEST_CASE("a filter passes picture, guides, quality and threads, and all objects are released") {
+    StandIn stand_in;
+    if (!stand_in.is_there()) return;
+    Queue queue = requested_queue();
+    {
+        OidnFilter filter(queue, 3, 2, OidnQuality::Fast, "denoise");
+        CHECK(stand_in.objects() == 2);
+        CHECK(stand_in.value("quality") == 4);
+        CHECK(stand_in.value("hdr") == 1);
+        CHECK(stand_in.value("cleanAux") == 0);
+        CHECK(stand_in.value("setAffinity") == 0);
+        CHECK(stand_in.value("numThreads") == thread_count());
+        CHECK(filter.name() == "Open Image Denoise 2.5.1 on the CPU, fast quality");
+        std::vector<Float4> images;
+        for (float i = 0; i < 18; ++i) images.push_back({i, 10 * i, 100 * i, 7});
+        queue.copy_to_device(filter.color(), images.data(), images.size() * sizeof(Float4));
+        filter.run();
+        std::vector<Float4> made(6);
+        queue.copy_to_host(made.data(), filter.color(), made.size() * sizeof(Float4));
+        for (std::size_t i = 0; i < 6; ++i) {
+            const Float4 color = images[i], albedo = images[6 + i], normal = images[12 + i];
+            CHECK(made[i].x == 0.5f * color.x + 0.25f * albedo.x + 0.125f * normal.x);
+            CHECK(made[i].z == 0.5f * color.z + 0.25f * albedo.z + 0.125f * normal.z);
+        }
+    }
+    CHECK(stand_in.objects() == 0);
+    OidnFilter fine(queue, 3, 2, OidnQuality::High, "denoise");
+    CHECK(stand_in.value("quality") == 6);
+    CHECK(stand_in.value("cleanAux") == 1);
+}
+
+TEST_CASE("a library that is missing, lacks a function, has no device or is of another version is refused") {
+    if (!StandIn().is_there()) return;
+    for (const char* path : {"/nowhere", "/nowhere/x.so", "libz.so.1", "/", PERTEV_OIDN_LACKING, PERTEV_OIDN_OLD}) {
+        CAPTURE(path);
+        CHECK(is_about(refusal_of(path), ErrorCode::BadInput, "denoise", "oidn"));
+    }
+    CHECK(says(refusal_of(PERTEV_OIDN_LACKING), "oidnNewFilter"));
+    CHECK(says(refusal_of(PERTEV_OIDN_OLD), "1.4.3"));
+    CHECK(says(refusal_of("/nowhere"), "pip install pyoidn"));
+    CHECK(!refusal_of(PERTEV_OIDN_STAND_IN));
+    const std::filesystem::path folder = scratch_folder();
+    std::filesystem::create_directory(folder / "lib");
+    std::filesystem::create_symlink(PERTEV_OIDN_STAND_IN, folder / "lib/libOpenImageDenoise.so.2");
+    CHECK(!refusal_of(folder.c_str()));
+    CHECK(!refusal_of((folder / "lib").c_str()));
+    // Before anything is rendered, and after a library that was found.
+    const FoundLibrary none("/nowhere");
+    Queue queue = requested_queue();
+    Messages messages;
+    const Scene scene = make_furnace_scene(0.5f);
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    CHECK(is_about(thrown_error([&] { Session(queue, prepared, mixed_scene_camera(), small_settings(Denoise::Oidn)); }),
+                   ErrorCode::BadInput, "denoise", "oidn"));
+    Session session(queue, prepared, mixed_scene_camera(), small_settings(Denoise::None));
+    CHECK(is_about(thrown_error([&] { session.render_frame(0, {.denoiser = FrameDenoiser::Oidn}); }),
+                   ErrorCode::BadInput, "frame_denoiser", "oidn"));
+}
+
+TEST_CASE("a call that fails is an error of its kind, and nothing leaks") {
+    StandIn stand_in;
+    if (!stand_in.is_there()) return;
+    Queue queue = requested_queue();
+    const auto fault_of = [&](const char* call, int with) {
+        stand_in.fail(call, with);
+        const std::optional<Error> error =
+            thrown_error([&] { OidnFilter(queue, 4, 4, OidnQuality::High, "denoise").run(); });
+        stand_in.fail("", 0);
+        CHECK(stand_in.objects() == 0);
+        REQUIRE(error.has_value());
+        return error->code();
+    };
+    for (const char* call :
+         {"oidnNewDevice", "oidnCommitDevice", "oidnNewFilter", "oidnCommitFilter", "oidnExecuteFilter"}) {
+        CAPTURE(call);
+        OidnLibrary::find("denoise");
+        CHECK(fault_of(call, 4) == ErrorCode::OutOfMemory);
+        CHECK(fault_of(call, 1) == ErrorCode::DeviceFault);
+    }
+}
+
+TEST_CASE("Open Image Denoise is given means of guides, and film and layers are what they are without it") {
+    StandIn stand_in;
+    if (!stand_in.is_there()) return;
+    Messages messages;
+    const Scene scene = read_scene("cornell-box", {}, messages); // diffuse: its albedo is that of the layer
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Queue queue = requested_queue();
+    RenderSettings settings = small_settings(Denoise::Oidn);
+    settings.aovs = kAovAlbedo | kAovNormal;
+    settings.filter = PixelFilter::Box;
+    settings.transparent = true; // alpha is the share of samples that hit something
+    Session session(queue, prepared, scene.cameras.front(), settings);
+    session.render(7);
+    session.denoised(); // does not change the guides of more samples
+    session.render(9);
+    const RenderResult denoised = session.result();
+    CHECK(denoised.denoiser == "Open Image Denoise 2.5.1 on the CPU, high quality");
+    settings.denoise = Denoise::None;
+    session.set_settings(settings);
+    session.render(16);
+    const RenderResult plain = session.result();
+    CHECK(plain.denoiser.empty());
+    CHECK(!plain.denoised);
+    CHECK(picture_hash(denoised.picture) == picture_hash(plain.picture));
+    const Image &albedo = layer_named(plain, "albedo"), &normal = layer_named(plain, "normal");
+    CHECK(layer_named(denoised, "albedo").pixels == albedo.pixels);
+    float largest = 0;
+    for (std::size_t pixel = 0; pixel < albedo.pixels.size() / 3; ++pixel) {
+        const float *before = &plain.picture.pixels[4 * pixel], *made = &denoised.denoised.value().pixels[4 * pixel];
+        for (std::size_t c = 0; c < 3; ++c) { // the layer's normals are means over the samples that hit something
+            const float mean_normal = before[3] * normal.pixels[3 * pixel + c];
+            const float expected = 0.5f * before[c] + 0.25f * albedo.pixels[3 * pixel + c] + 0.125f * mean_normal;
+            largest = max(largest, abs(made[c] - expected));
+        }
+        if (made[3] != before[3]) FAIL("alpha of pixel ", pixel);
+    }
+    CHECK(largest < 1e-5f);
+}
+
+TEST_CASE("frames are denoised for displays alone, and depend on no denoised one") {
+    StandIn stand_in;
+    if (!stand_in.is_there()) return;
+    Messages messages;
+    const Scene scene = make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Queue queue = requested_queue();
+    for (const float scale : {1.0f, 0.5f}) {
+        const ReconstructionSettings by_oidn = {.denoiser = FrameDenoiser::Oidn, .resolution_scale = scale},
+                                     plain = of_samples_alone(by_oidn);
+        Session session(queue, prepared, mixed_scene_camera(), small_settings(Denoise::None)),
+            other(queue, prepared, mixed_scene_camera(), small_settings(Denoise::None));
+        for (uint32_t number = 0; number < 3; ++number) {
+            session.render_frame(number, by_oidn);
+            other.render_frame(number, plain);
+            const RenderResult made = session.frame_result();
+            CHECK(picture_hash(made.picture) == picture_hash(other.frame_result().picture));
+            CHECK(picture_hash(made.denoised.value()) != picture_hash(made.picture));
+            CHECK(made.denoiser == "Open Image Denoise 2.5.1 on the CPU, fast quality");
+        }
+        session.frame().display(ToneMap::Agx, 0);
+        other.frame().display(ToneMap::Agx, 0);
+        CHECK(session.frame().displayed().pixels != other.frame().displayed().pixels);
+        session.render_frame(3, plain);
+        other.render_frame(3, plain);
+        CHECK(!session.frame_result().denoised);
+        CHECK(picture_hash(session.frame_result().picture) == picture_hash(other.frame_result().picture));
+        session.frame().display(ToneMap::Agx, 0);
+        other.frame().display(ToneMap::Agx, 0);
+        CHECK(session.frame().displayed().pixels == other.frame().displayed().pixels);
+    }
+}
+
+TEST_CASE("memory for Open Image Denoise, but for its own, equals its prediction") {
+    StandIn stand_in;
+    if (!stand_in.is_there()) return;
+    Messages messages;
+    const Scene scene = make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Queue queue = requested_queue();
+    const auto bytes_of = [&](Denoise denoise) {
+        RenderSettings settings = small_settings(denoise);
+        settings.samples = 1;
+        Session session(queue, prepared, mixed_scene_camera(), settings);
+        session.render(1);
+        return queue.allocated_bytes() - predicted_bytes(prepared, settings, queue.is_cuda());
+    };
+    CHECK(bytes_of(Denoise::Oidn) == bytes_of(Denoise::None));
+    const auto frame_bytes_of = [&](FrameDenoiser denoiser) {
+        const RenderSettings settings = small_settings(Denoise::None);
+        const ReconstructionSettings frames = {.denoiser = denoiser};
+        Session session(queue, prepared, mixed_scene_camera(), settings);
+        session.render_frame(0, frames);
+        return queue.allocated_bytes() - predicted_frame_bytes(prepared, settings, frames, {}, queue.is_cuda());
+    };
+    CHECK(frame_bytes_of(FrameDenoiser::Oidn) == frame_bytes_of(FrameDenoiser::Svgf));
+}

@@ -1,0 +1,31 @@
+# Run by CTest (cmake -P): installs the library into a folder of its own, builds examples/find_package with it alone, and
+# compares its picture with the program's.
+set(prefix ${BUILD}/find_package_test)
+file(REMOVE_RECURSE ${prefix})
+execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix} --component development OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+file(GLOB_RECURSE installed ${prefix}/*)
+foreach(file IN LISTS installed)
+  if(file MATCHES "Targets.*\\.cmake$")
+    file(READ ${file} text)
+    string(FIND "${text}" ${SOURCE}/src found)
+    if(NOT found EQUAL -1)
+      message(FATAL_ERROR "${file} names the folder of the sources")
+    endif()
+  endif()
+endforeach()
+execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE}/examples/find_package -B ${prefix}/example -DCMAKE_PREFIX_PATH=${prefix}
+                -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_BUILD_TYPE=Release OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${CMAKE_COMMAND} --build ${prefix}/example OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${prefix}/example/example cornell-box ${prefix}/a.exr size 24x16 spp 3 device cpu
+                OUTPUT_VARIABLE hash OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${BUILD}/bin/pertev render cornell-box -o ${prefix}/b.exr --size 24x16 --spp 3 --device cpu --json
+                OUTPUT_VARIABLE said COMMAND_ERROR_IS_FATAL ANY)
+string(FIND "${said}" "\"hash\":\"${hash}\"" found)
+if(hash STREQUAL "" OR found EQUAL -1 OR NOT EXISTS ${prefix}/a.exr)
+  message(FATAL_ERROR "the example's picture has the hash '${hash}', not that of the program: ${said}")
+endif()
+execute_process(COMMAND ${prefix}/example/example cornell-box ${prefix}/c.exr no_such_setting 1 RESULT_VARIABLE status ERROR_QUIET)
+if(NOT status EQUAL 2)
+  message(FATAL_ERROR "a wrong setting ends with ${status}")
+endif()
+file(REMOVE_RECURSE ${prefix})
