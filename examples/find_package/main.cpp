@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
             const std::string value = argv[i + 1];
             pertev::set_value(options, *setting, {&value, 1});
         }
-        pertev::Sink sink;
+        pertev::Messages sink; // derive from Sink to show progress, or to stop
         const auto ready = pertev::prepare_render(options, pertev::kRender, sink);
         pertev::PictureRecord record = pertev::picture_record(options, *ready, sink.messages());
         pertev::Session session(*ready->queue, ready->prepared(), record.camera.camera, ready->settings);
