@@ -22,10 +22,11 @@ TEST_CASE("the present groups of channels follow each other in the order of thei
 }
 
 TEST_CASE("auxiliary layers are found by their names") {
-    CHECK(aov_names() == std::vector<std::string>{"albedo", "normal", "depth", "position", "ids", "motion"});
+    CHECK(aov_names() ==
+          std::vector<std::string>{"albedo", "normal", "depth", "position", "ids", "motion", "distance"});
     for (const std::string& name : aov_names()) CHECK(aov_group(aov_named(name).value()).name == name);
     CHECK_FALSE(aov_named("id").has_value());
     CHECK(channel_names(aov_group(kAovDepth)) == std::vector<std::string>{"Z"});
     CHECK(channel_names(aov_group(kAovIds)) == std::vector<std::string>{"instance", "primitive", "material"});
-    CHECK_THROWS_AS(aov_group(static_cast<AovBits>(64)), std::logic_error);
+    CHECK_THROWS_AS(aov_group(static_cast<AovBits>(128)), std::logic_error);
 }

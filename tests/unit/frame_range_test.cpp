@@ -12,6 +12,11 @@ TEST_CASE("each run of # in a file name becomes the frame number") {
     CHECK(frame_file("a#b/c#d##.exr", 3) == "a#b/c3d03.exr");
     CHECK(frame_file("###", 1) == "001");
     CHECK(names_frames("x#.png"));
+    const std::vector<std::string> names = {"left", "right #2"}; // two cameras
+    CHECK(frame_file("a{name}/v-##-{name}.exr", 1, names) == "a{name}/v-01-right #2.exr");
+    CHECK(frame_file("{name}.exr", 0) == "{name}.exr");
+    CHECK(names_frames("x/{name}.png"));
+    CHECK(!names_frames("{name}/x.png"));
     CHECK(!names_frames("x#/y.png"));
     CHECK(!names_frames("x.png"));
 }
