@@ -154,7 +154,7 @@ def render(path, measured, name, options):
         return "" if value is None else str(value).replace("|", "\\|").replace("*", "\\*")
 
     lines = ["| " + " | ".join(title(i, h) for i, h in enumerate(heads)) + " |",
-             "| " + " | ".join("---:" if n else "---" for n in numeric) + " |"]
+             "|" + "|".join("---:" if n else "---" for n in numeric) + "|"]
     lines += ["| " + " | ".join(cell(row[c]) for c in columns) + " |" for row in rows]
     return "\n" + "\n".join(lines) + "\n\n" + source_of(path, measured)
 
@@ -162,7 +162,7 @@ def render(path, measured, name, options):
 def figures(rows, read):
     """The table of bench/figures.json. In its texts {KEY} stands for a value of the row whose first cell is `row`, and {KEY / OTHER} for a
     ratio of two; without `row` a value is the geometric mean of the column."""
-    lines = ["| what | Pertev | beside | ratio | data |", "| --- | ---: | ---: | ---: | --- |"]
+    lines = ["| what | Pertev | beside | ratio | data |", "|---|---:|---:|---:|---|"]
     for one in rows:
         table = next(t for t in read(one["file"])["tables"] if t["name"] == one["table"])
         keys = [column["key"] for column in table["columns"]]

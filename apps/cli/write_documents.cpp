@@ -243,7 +243,7 @@ std::string settings_document() {
             group = setting.group;
             verbs = common_verbs(group);
             text += fmt::format("\n## {}\n\nVerbs, where a row names no others: {}.\n\n"
-                                "| setting | values | unit | default | |\n| --- | --- | --- | --- | --- |\n",
+                                "| setting | values | unit | default | |\n|---|---|---|---|---|\n",
                                 group, verbs);
         }
         std::string says = setting.sentence;
