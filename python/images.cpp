@@ -13,6 +13,9 @@
 #include "image/write_image.h"
 #include "python/array_argument.h"
 #include "python/python_sink.h"
+#include "python/result.h"
+#include "session/writing/check_outputs.h"
+#include "session/writing/write_picture.h"
 
 namespace nb = nanobind;
 
@@ -66,6 +69,18 @@ void write(const std::string& path, nb::handle array, const std::string& curve, 
     write_image(path, image, options);
 }
 
+/// Writes a result with all that the format holds: its layers and metadata too.
+void write_result(const std::string& path, const PythonResult& result, const std::string& curve, float exposure) {
+    PictureRecord record = *result.record;
+    const std::vector<std::string> paths = {path};
+    if (writes_tone_mapped(paths)) record.display = Display{curve_of(curve), exposure, {}};
+    RenderResult written = result.result; // which loses its layers
+    const nb::gil_scoped_release unlocked;
+    image_format_for(path);
+    const std::string failures = failures_of(write_picture(paths, record, written));
+    if (!failures.empty()) throw Error(ErrorCode::FileWrite, failures);
+}
+
 nb::object tone_map_array(nb::handle array, const std::string& curve, float exposure) {
     Rgba8Image image = tone_map_image(image_of(array, "picture"), curve_of(curve), exposure);
     return array_of(std::move(image.pixels), image.height, image.width, 4);
@@ -104,6 +119,7 @@ nb::dict compare(nb::handle picture, nb::handle reference, uint32_t blocks) {
 void define_images(nb::module_& module) {
     module.def("read", &read);
     module.def("write", &write);
+    module.def("write_result", &write_result);
     module.def("tone_map", &tone_map_array);
     module.def("compare", &compare);
 }

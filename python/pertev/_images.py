@@ -15,11 +15,13 @@ def read(path):
 
 
 def write(path, picture, *, curve="srgb", exposure=0.0):
-    """Writes a Result's `color`, or an array of (height, width) or with 1 to 4 channels, linear Rec. 709.
+    """Writes a Result, or an array of (height, width) or with 1 to 4 channels, linear Rec. 709.
 
-    .exr and .hdr hold its values; .png and .jpg show it by `curve` (as tone_map()) at `exposure` in stops.
+    .exr and .hdr hold its values, .exr also a Result's layers and metadata; .png and .jpg show it by `curve` (as
+    tone_map()) at `exposure` in stops.
     """
-    _core.write(os.fspath(path), _array(picture), curve, exposure)
+    writer = _core.write_result if isinstance(picture, _core.Result) else _core.write
+    writer(os.fspath(path), picture, curve, exposure)
 
 
 def tone_map(picture, *, curve="agx", exposure=0.0):

@@ -34,11 +34,25 @@ class Images(unittest.TestCase):
         info = program("info", self.folder / "a.exr")
         self.assertIn(self.picture.hash, json.dumps(info))
 
+    def test_a_result_is_written_with_layers_and_metadata(self):
+        picture = pertev.render("cornell-box", size=(24, 16), spp=2, device="cpu", layers=["depth", "ids"],
+                                output=self.folder / "a.exr")
+        pertev.write(self.folder / "b.exr", picture)
+        a, b = (program("info", self.folder / name)[-1] for name in ("a.exr", "b.exr"))
+        self.assertIn("depth", json.dumps(b))
+        self.assertIn("scene_hash", json.dumps(b))
+        self.assertEqual(json.dumps(a).replace("a.exr", ""), json.dumps(b).replace("b.exr", ""))
+        with self.assertRaises(pertev.InputError):
+            pertev.write(self.folder / "a.tga", picture)
+        with self.assertRaises(pertev.WriteError):
+            pertev.write("/nowhere/a.exr", picture)
+
     def test_shown_as_the_program_shows_it(self):
         pertev.render("cornell-box", size=(24, 16), spp=2, device="cpu", tone_map="agx", exposure=1.5,
                       output=self.folder / "a.png")
-        pertev.write(self.folder / "b.png", self.picture, curve="agx", exposure=1.5)
-        self.assertTrue((pertev.read(self.folder / "a.png") == pertev.read(self.folder / "b.png")).all())
+        for picture in (self.picture, self.picture.color):
+            pertev.write(self.folder / "b.png", picture, curve="agx", exposure=1.5)
+            self.assertTrue((pertev.read(self.folder / "a.png") == pertev.read(self.folder / "b.png")).all())
         shown = pertev.tone_map(self.picture, curve="agx", exposure=1.5)
         self.assertEqual((shown.shape, shown.dtype), ((16, 24, 4), numpy.uint8))
         pertev.write(self.folder / "c.png", self.picture, curve="srgb")
