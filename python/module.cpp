@@ -135,6 +135,65 @@ nb::object parameter(PythonScene& scene, const std::string& path) {
     return value ? array_of(*value) : nb::none();
 }
 
+/// Returns the rows of an array of numbers, each of `width` numbers or, of matrices, as many as they have.
+std::vector<std::vector<double>> rows_of(nb::handle value, const std::string& name) {
+    std::vector<std::vector<double>> rows;
+    if (value.is_none()) return rows;
+    const ArrayArgument array(value, name);
+    const std::vector<double> values = array.doubles();
+    const std::size_t count = array.length(0), each = values.size() / std::max<std::size_t>(count, 1);
+    for (std::size_t k = 0; k < count; ++k) {
+        rows.emplace_back(values.begin() + static_cast<std::ptrdiff_t>(k * each),
+                          values.begin() + static_cast<std::ptrdiff_t>((k + 1) * each));
+    }
+    return rows;
+}
+
+/// Returns the cameras of a call: `poses` (N, 4, 4) or (N, 3, 4), `intrinsics` (1 or N, 3, 3) or (1 or N, 4), and
+/// `seeds` (1 or N,), the last two of which may be None.
+CamerasArgument cameras_of(nb::handle poses, nb::handle intrinsics, nb::handle seeds, bool has_color) {
+    constexpr std::size_t kAny = ArrayArgument::kAny;
+    const ArrayArgument places(poses, "cameras");
+    if (!places.has_shape({kAny, 4, 4}) && !places.has_shape({kAny, 3, 4}))
+        places.fail("expected (N, 4, 4) or (N, 3, 4)");
+    CamerasArgument cameras;
+    cameras.poses = rows_of(poses, "cameras");
+    cameras.has_color = has_color;
+    const std::size_t count = cameras.poses.size();
+    if (count == 0) places.fail("there is no camera");
+    if (!intrinsics.is_none()) {
+        const ArrayArgument array(intrinsics, "K");
+        cameras.intrinsics = rows_of(intrinsics, "K");
+        const std::size_t rows = cameras.intrinsics.size();
+        const bool has_shape = array.has_shape({kAny, 3, 3}) || array.has_shape({kAny, 4});
+        if (!has_shape || (rows != 1 && rows != count))
+            array.fail("expected (3, 3), or (N, 3, 3) as there are cameras");
+    }
+    if (!seeds.is_none()) {
+        const ArrayArgument array(seeds, "seeds");
+        cameras.seeds = array.indices(std::size_t{1} << 32);
+        if (array.axes() != 1 || (cameras.seeds.size() != 1 && cameras.seeds.size() != count)) {
+            array.fail("expected one, or as many as there are cameras");
+        }
+    }
+    return cameras;
+}
+
+nb::object render_batch(PythonScene& scene, const std::string& settings_file, const SettingTexts& settings,
+                        nb::handle poses, nb::handle intrinsics, nb::handle seeds, bool has_color, nb::object out) {
+    const CamerasArgument cameras = cameras_of(poses, intrinsics, seeds, has_color);
+    if (out.is_none()) out = nb::cast(PythonBatch());
+    PythonBatch& batch = nb::cast<PythonBatch&>(out);
+    run_unlocked([&](PythonSink& sink) { scene.render_batch({settings_file, settings}, cameras, batch, sink); });
+    return out;
+}
+
+uint32_t batch_size(PythonScene& scene, const std::string& settings_file, const SettingTexts& settings,
+                    nb::handle poses, nb::handle intrinsics, bool has_color) {
+    const CamerasArgument cameras = cameras_of(poses, intrinsics, nb::none(), has_color);
+    return result_of([&](PythonSink& sink) { return scene.batch_size({settings_file, settings}, cameras, sink); });
+}
+
 bool set_parameter(PythonScene& scene, const std::string& path, nb::handle value) {
     const ArrayArgument array(value, path);
     PythonScene::Value given = {.shape = {}, .values = array.doubles()};
@@ -155,6 +214,10 @@ void define_scene(nb::module_& module) {
         .def("__init__", &make_scene, nb::arg("name"), nb::arg("settings"), nb::arg("parts").none())
         .def("_open", [](PythonScene& scene) { run_unlocked([&](PythonSink& sink) { scene.open(sink); }); })
         .def("_render", &render)
+        .def("_render_batch", &render_batch, nb::arg("file"), nb::arg("settings"), nb::arg("poses"),
+             nb::arg("intrinsics").none(), nb::arg("seeds").none(), nb::arg("has_color"), nb::arg("out").none())
+        .def("_batch_size", &batch_size, nb::arg("file"), nb::arg("settings"), nb::arg("poses"),
+             nb::arg("intrinsics").none(), nb::arg("has_color"))
         .def("_paths",
              [](PythonScene& scene) { return result_of([&](PythonSink& sink) { return scene.paths(sink); }); })
         .def("_value", &parameter)
@@ -207,6 +270,7 @@ NB_MODULE(_core, module) {
     });
     nb::set_leak_warnings(false); // a thread may still render when the interpreter ends
     define_result(module);
+    define_batch(module);
     module.def(
         "settings", [] { return settings_of(false); }, "The rows of the table of settings that a picture has");
     module.def(

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "image/picture_hash.h"
+#include "session/opening/strictness.h"
 #include "session/pictures/choose_display.h"
 #include "session/pictures/render_samples.h"
 #include "session/writing/check_outputs.h"
@@ -101,6 +102,20 @@ PythonResult PythonScene::render(const CallSettings& settings, const std::vector
     }
     refuse_faults(written, made.result.invalid_samples, options_.strict);
     return made;
+}
+
+void PythonScene::render_batch(const CallSettings& settings, const CamerasArgument& cameras, PythonBatch& batch,
+                               Sink& sink) {
+    const std::unique_lock turn = take_turn(sink);
+    Session& session = opened_.session(prepare(settings, {}, sink));
+    batch.render(opened_, session, cameras, options_, sink);
+    if (options_.strict) refuse_invalid_samples(batch.invalid_samples());
+}
+
+uint32_t PythonScene::batch_size(const CallSettings& settings, const CamerasArgument& cameras, Sink& sink) {
+    const std::unique_lock turn = take_turn(sink);
+    const PictureRecord& record = prepare(settings, {}, sink);
+    return size_of_chunk(opened_, cameras.settings_of(record.settings), cameras, options_);
 }
 
 std::vector<std::string> PythonScene::paths(Sink& sink) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "python/batch.h"
 #include "python/opened_scene.h"
 #include "python/result.h"
 
@@ -41,6 +42,11 @@ public:
     void open(Sink& sink);
     /// Renders a picture, and writes it to `outputs`. Throws Error.
     PythonResult render(const CallSettings& settings, const std::vector<std::string>& outputs, Sink& sink);
+
+    /// Renders a picture by each camera into `batch`, whose arrays are made if it has none. Throws Error.
+    void render_batch(const CallSettings& settings, const CamerasArgument& cameras, PythonBatch& batch, Sink& sink);
+    /// Returns how many pictures of a batch are rendered at once with the settings.
+    uint32_t batch_size(const CallSettings& settings, const CamerasArgument& cameras, Sink& sink);
 
     // Parameters (scene_parameters.h). All but edits() open the scene if it is not open. Null: there is none of this
     // path.

@@ -9,6 +9,7 @@
 
 import os
 
+from ._cameras import BatchResult, Cameras, DeviceArray, chunk_size, render_batch
 from ._core import Result, builtin_scenes
 from ._images import compare, read, tone_map, write
 from ._process import check_process
@@ -17,19 +18,24 @@ from ._settings import texts_of, with_layers
 from ._viewer import Viewer, view
 from .errors import DeviceError, Error, InputError, InterruptedRender, LimitError, MemoryLimitError, WriteError
 
-__all__ = ["DeviceError", "Error", "InputError", "InterruptedRender", "LimitError", "MemoryLimitError", "Params", "Result",
-           "Scene", "Session", "Viewer", "WriteError", "builtin_scenes", "compare", "load", "read", "render", "tone_map",
+__all__ = ["BatchResult", "Cameras", "DeviceArray", "DeviceError", "Error", "InputError", "InterruptedRender", "LimitError", "MemoryLimitError", "Params", "Result",
+           "Scene", "Session", "Viewer", "WriteError", "builtin_scenes", "compare", "load", "read", "render",
+           "render_chunks", "tone_map",
            "view", "write"]
 
 
-def render(scene, *, layers=(), output=(), settings=None, out=None, **values):
+def render(scene, *, cameras=None, seeds=None, color=True, layers=(), output=(), settings=None, out=None, **values):
     """Renders a picture of a scene and returns it as a Result.
 
     scene     what load() returns, or as its `scene`
-    layers    names of layers to render as well: "albedo", "normal", "depth", "position", "ids", "motion"
+    cameras   Cameras, or an array of poses (N, 4, 4): all pictures are one job, and the call returns a BatchResult
+    seeds     of these pictures: one for all or (N,); None: that of the setting
+    color     False with layers_at="centre": only layers are made
+    layers    names of layers to render as well: "albedo", "normal", "depth", "distance", "position", "ids", "motion"
     output    a file to write, or several: .exr .png .jpg .hdr
     settings  a file of settings, which `values` overrule
-    out       arrays to fill, by the names of the Result's attributes: {"color": array}
+    out       arrays to fill, by the names of the Result's attributes: {"color": array}; with `cameras` an earlier
+              BatchResult of the same scene, whose arrays are filled again
     values    any setting of docs/settings.md by its name: size=(640, 480), spp=64, eye=(0, 1, 3), device="cpu".
               None is as if it was not given.
 
@@ -39,8 +45,33 @@ def render(scene, *, layers=(), output=(), settings=None, out=None, **values):
     """
     check_process()
     used = scene if isinstance(scene, Scene) else Scene(scene)
+    if cameras is not None:
+        if output:
+            raise TypeError("output: pictures of many cameras are arrays; `pertev render --cameras` writes files")
+        return render_batch(used, cameras, seeds, color, os.fspath(settings or ""), with_layers(values, layers), out)
+    if seeds is not None or not color:
+        raise TypeError("seeds and color are for many `cameras`")
     outputs = [output] if isinstance(output, (str, os.PathLike)) else output
     made = used._render(os.fspath(settings or ""), texts_of(with_layers(values, layers)), [os.fspath(path) for path in outputs])
     if out is not None:
         made._fill(out)
     return made
+
+
+def render_chunks(scene, cameras, *, chunk=None, seeds=None, color=True, layers=(), settings=None, **values):
+    """Renders pictures by many cameras in parts, and yields a BatchResult for each.
+
+    chunk   the number of cameras of a part; None: as many as keep the device busy and fit into its memory
+
+    The other arguments are those of render(). A BatchResult that is no longer used frees its memory.
+    """
+    check_process()
+    used = scene if isinstance(scene, Scene) else Scene(scene)
+    cameras = cameras if isinstance(cameras, Cameras) else Cameras(cameras)
+    values, settings = with_layers(values, layers), os.fspath(settings or "")
+    if chunk is None:
+        chunk = chunk_size(used, cameras, color, settings, values)
+    one_for_all = seeds is None or isinstance(seeds, int) or len(seeds) == 1
+    for first in range(0, len(cameras), chunk):
+        part = slice(first, first + chunk)
+        yield render_batch(used, cameras[part], seeds if one_for_all else seeds[part], color, settings, values, None)

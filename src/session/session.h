@@ -99,6 +99,7 @@ public:
     RenderResult render_separately(const Camera& camera, const RenderSettings& settings, uint32_t first = 0);
     std::vector<RayWork> count_camera_work() { return pictures_.count_camera_work(camera(), settings()); }
 
+    PictureRenderer& pictures() { return pictures_; } // renders others of the scene, such as batches (BatchRender)
     History history() const { return {film_.samples().end, previous_camera_, cuts_}; }
     const Camera& camera() const { return film_.camera(); }
     const RenderSettings& settings() const { return film_.settings(); }

@@ -20,7 +20,7 @@ std::string with_triangle(const std::string& members) {
 
 std::string only_nodes(const std::string& members) { return R"({"asset":{"version":"2.0"},)" + members + "}"; }
 
-bool close(Vec3 a, Vec3 b) { return length(a - b) < 1e-6f; }
+bool same_place(Vec3 a, Vec3 b) { return length(a - b) < 1e-6f; }
 
 const std::string kQuarterTurnAboutZ = R"("rotation":[0,0,0.70710678,0.70710678])";
 
@@ -34,10 +34,10 @@ TEST_CASE("a node's transform is its parents' transforms times translation, rota
     CHECK(scene.instances[0].name == "child");
     const Transform& m = scene.instances[0].world_from_local;
     // Child: scaled, turned by 90 degrees, moved up by 5. Parent: turned again, moved right by 10.
-    CHECK(close(transform_point(m, {0, 0, 0}), {5, 0, 0}));
-    CHECK(close(transform_point(m, {1, 0, 0}), {3, 0, 0}));
-    CHECK(close(transform_point(m, {0, 1, 0}), {5, -3, 0}));
-    CHECK(close(transform_point(m, {0, 0, 1}), {5, 0, 4}));
+    CHECK(same_place(transform_point(m, {0, 0, 0}), {5, 0, 0}));
+    CHECK(same_place(transform_point(m, {1, 0, 0}), {3, 0, 0}));
+    CHECK(same_place(transform_point(m, {0, 1, 0}), {5, -3, 0}));
+    CHECK(same_place(transform_point(m, {0, 0, 1}), {5, 0, 4}));
 }
 
 TEST_CASE("a node's matrix is read column by column") {
@@ -67,7 +67,7 @@ TEST_CASE("EXT_mesh_gpu_instancing places one instance for each element, within 
     CHECK(scene.meshes.size() == 1);
     REQUIRE(scene.instances.size() == 2);
     CHECK(scene.instances[0].world_from_local == Transform{.translation = {1, 10, 0}});
-    CHECK(close(transform_point(scene.instances[1].world_from_local, {1, 1, 1}), {2 - 5, 10 - 6, 7}));
+    CHECK(same_place(transform_point(scene.instances[1].world_from_local, {1, 1, 1}), {2 - 5, 10 - 6, 7}));
 }
 
 TEST_CASE("the scene property chooses the nodes, and without scenes all are used") {
@@ -139,8 +139,8 @@ TEST_CASE("cameras keep their angle, height and aspect, and lose their node's sc
     CHECK(perspective.fov_y == 0.75f);
     CHECK(perspective.aspect == 1.5f);
     CHECK(perspective.world_from_camera.translation == Vec3{1, 2, 3});
-    CHECK(close(column(perspective.world_from_camera, 1), {1, 0, 0})); // +y turned to -x, mirrored by the scale
-    CHECK(close(column(perspective.world_from_camera, 2), {0, 0, 1}));
+    CHECK(same_place(column(perspective.world_from_camera, 1), {1, 0, 0})); // +y turned to -x, mirrored by the scale
+    CHECK(same_place(column(perspective.world_from_camera, 2), {0, 0, 1}));
     CHECK(determinant(perspective.world_from_camera) == doctest::Approx(1));
     CHECK(orthographic.name == "o");
     CHECK(orthographic.projection == Projection::Orthographic);
@@ -170,7 +170,7 @@ TEST_CASE("punctual lights shine along their node's -z, and candela and lux are 
     CHECK(scene.lights[0].range == 7.0f);
     CHECK(scene.lights[1].name == "s");
     CHECK(scene.lights[1].kind == LightKind::Spot);
-    CHECK(close(scene.lights[1].direction, {0, 1, 0})); // -z turned by +90 degrees about x
+    CHECK(same_place(scene.lights[1].direction, {0, 1, 0})); // -z turned by +90 degrees about x
     CHECK(scene.lights[1].intensity == Rgb{1, 1, 1});
     CHECK(scene.lights[1].cos_inner == doctest::Approx(std::cos(0.5)).epsilon(1e-6));
     CHECK(scene.lights[1].cos_outer == doctest::Approx(std::cos(1.0)).epsilon(1e-6));
@@ -278,10 +278,10 @@ TEST_CASE("a skinned mesh follows its joints and not its own node") {
     const Mesh& mesh = scene.meshes.at(0);
     CHECK(scene.instances.at(0).world_from_local == Transform());
     // Joint 0 with its inverse bind matrix lifts by 2 in y; joint 1 turns about z and lifts by 4 in z.
-    CHECK(close(mesh.positions[0], {0, 1, 2}));
-    CHECK(close(mesh.positions[1], {0, 1, 4}));
-    CHECK(close(mesh.positions[2], {-1, 0, 4}));
-    CHECK(close(mesh.normals[1], {0, 1, 0}));
+    CHECK(same_place(mesh.positions[0], {0, 1, 2}));
+    CHECK(same_place(mesh.positions[1], {0, 1, 4}));
+    CHECK(same_place(mesh.positions[2], {-1, 0, 4}));
+    CHECK(same_place(mesh.normals[1], {0, 1, 0}));
     CHECK(mesh.indices == std::vector<uint32_t>{0, 1, 2});
 }
 

@@ -34,7 +34,7 @@ struct RenderSetup {
     std::string hash;      // scene_hash() when it was read, if the setup is kept; empty: records take it themselves
     double load_s = 0;     // seconds of reading
     std::size_t bytes = 0; // that rendering takes on the device, as predicted
-    std::unique_ptr<Queue> queue;
+    std::shared_ptr<Queue> queue; // whoever keeps arrays on the device shares it
 
     const Scene& scene() const { return moving->scene(); }
     const PreparedScene& prepared() const { return moving->prepared(); }

@@ -1,0 +1,144 @@
+#include "python/batch.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/stopwatch.h"
+#include "session/batch_render.h"
+#include "session/opening/calibrated_camera.h"
+#include "session/opening/choose_camera.h"
+#include "session/render_memory.h"
+
+namespace pertev {
+namespace {
+
+/// Returns the cameras of the batch, all of which have the options' lens.
+CameraBatch batch_of(const CamerasArgument& cameras, const PictureOptions& options, const RenderSettings& settings,
+                     const Scene& scene, Sink& sink) {
+    CameraBatch batch = {.cameras = {}, .seeds = cameras.seeds};
+    const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
+    for (std::size_t k = 0; k < cameras.poses.size(); ++k) {
+        CameraChoice choice = options.scene.camera;
+        choice.pose = cameras.poses[k];
+        if (!cameras.intrinsics.empty()) choice.intrinsics = cameras.intrinsics[cameras.intrinsics.size() > 1 ? k : 0];
+        fit_intrinsics({settings.width, settings.height}, choice);
+        PartMessages unsaid(sink); // the first camera's messages were reported
+        batch.cameras.push_back(choose_camera(choice, scene, aspect, unsaid));
+        sink.check_at(k);
+    }
+    return batch;
+}
+
+uint64_t bytes_of_arrays(const RenderSettings& settings, std::size_t count) {
+    uint64_t values = settings.samples == 0 ? 0 : settings.transparent ? 4 : 3;
+    for (const AovGroup& group : kAovTable) {
+        if ((settings.aovs & group.bit) != 0) values += channel_names(group).size();
+    }
+    return sizeof(float) * values * settings.width * settings.height * count;
+}
+
+void copy_part(Queue& queue, void* to, const void* from, uint64_t first, uint64_t count, std::size_t bytes_each) {
+    queue.copy_on_device(static_cast<std::byte*>(to) + first * bytes_each, from, count * bytes_each);
+}
+
+} // namespace
+
+RenderSettings CamerasArgument::settings_of(RenderSettings settings) const {
+    if (!has_color) settings.samples = 0;
+    return settings;
+}
+
+uint32_t size_of_chunk(OpenedScene& opened, const RenderSettings& settings, const CamerasArgument& cameras,
+                       const PictureOptions& options) {
+    const RenderSetup& setup = *opened.setup();
+    CameraBatch batch = {.cameras = std::vector<Camera>(cameras.poses.size()), .seeds = cameras.seeds};
+    const MemoryLimit limit = memory_to_render_in(*setup.queue, settings, max_memory_bytes(options.radiosity));
+    return pictures_at_once(setup.prepared(), batch, settings, limit.bytes, setup.queue->is_cuda());
+}
+
+bool PythonBatch::fits(const RenderSettings& settings, const CamerasArgument& cameras, const Queue& queue) const {
+    uint32_t groups = 0;
+    for (const BatchArrays::Layer& layer : arrays_.layers) groups |= layer.group;
+    if (arrays_.ids.size() > 0) groups |= kAovIds;
+    const uint32_t channels = settings.samples == 0 ? 0 : settings.transparent ? 4 : 3;
+    return &queue == queue_.get() && settings.width == width_ && settings.height == height_ &&
+           cameras.poses.size() == arrays_.pictures && groups == settings.aovs && channels == color_channels_;
+}
+
+void PythonBatch::render(OpenedScene& opened, Session& session, const CamerasArgument& cameras,
+                         const PictureOptions& options, Sink& sink) {
+    const RenderSetup& setup = *opened.setup();
+    const RenderSettings settings = cameras.settings_of(session.settings());
+    Queue& queue = *setup.queue;
+    const auto count = static_cast<uint32_t>(cameras.poses.size());
+    const CameraBatch batch = batch_of(cameras, options, settings, setup.scene(), sink);
+    check_batch(batch, settings);
+    if (!is_empty() && !fits(settings, cameras, queue)) {
+        throw Error(ErrorCode::BadInput, "out", "",
+                    "its arrays are of other pictures: number, size, layers and scene must be the same");
+    }
+    const uint32_t at_once = size_of_chunk(opened, settings, cameras, options);
+    if (is_empty()) {
+        const std::size_t bytes = predicted_batch_bytes(setup.prepared(), batch, settings, at_once, queue.is_cuda()) +
+                                  (at_once < count ? bytes_of_arrays(settings, count) : 0);
+        const MemoryLimit limit = memory_to_render_in(queue, settings, max_memory_bytes(options.radiosity));
+        if (bytes > limit.bytes) {
+            throw Error(ErrorCode::OutOfMemory, "cameras", fmt::format("{}", count),
+                        fmt::format("{:.1f} GiB are needed and {:.1f} GiB are there; pertev.render_chunks() renders "
+                                    "them in parts",
+                                    static_cast<double>(bytes) / (1u << 30),
+                                    static_cast<double>(limit.bytes) / (1u << 30)));
+        }
+        queue_ = setup.queue;
+        width_ = settings.width, height_ = settings.height;
+        color_channels_ = settings.samples == 0 ? 0 : settings.transparent ? 4 : 3;
+    }
+    arrays_.fit(queue, settings, count);
+    const Stopwatch watch;
+    BatchRender render(session.pictures(), batch, settings, at_once);
+    if (at_once == count) {
+        render.next(arrays_, sink);
+    } else {
+        const uint64_t pixels = uint64_t(width_) * height_;
+        for (BatchArrays part; render.next(part, sink);) {
+            const uint64_t first = part.first * pixels, pixel_count = part.pictures * pixels;
+            if (color_channels_ > 0) {
+                copy_part(queue, arrays_.color.data(), part.color.data(), first, pixel_count,
+                          color_channels_ * sizeof(float));
+            }
+            for (std::size_t i = 0; i < part.layers.size(); ++i) {
+                copy_part(queue, arrays_.layers[i].values.data(), part.layers[i].values.data(), first, pixel_count,
+                          part.layers[i].channels * sizeof(float));
+            }
+            if (part.ids.size() > 0) {
+                copy_part(queue, arrays_.ids.data(), part.ids.data(), first, pixel_count, sizeof(PixelIds));
+            }
+        }
+    }
+    queue.wait();
+    sink.check();
+    arrays_.first = 0, arrays_.pictures = count;
+    invalid_samples_ = render.invalid_samples();
+    seconds_ = watch.seconds();
+}
+
+std::vector<PythonBatch::Array> PythonBatch::arrays() const {
+    std::vector<Array> all;
+    if (color_channels_ > 0) all.push_back({"color", arrays_.color.data(), color_channels_, true});
+    for (const BatchArrays::Layer& layer : arrays_.layers) {
+        all.push_back({aov_group(layer.group).name, layer.values.data(), layer.channels, true});
+    }
+    if (arrays_.ids.size() > 0) all.push_back({"ids", arrays_.ids.data(), 3, false});
+    return all;
+}
+
+std::vector<std::byte> PythonBatch::download(const Array& array) const {
+    std::vector<std::byte> bytes(sizeof(float) * array.channels * arrays_.pictures * height_ * width_);
+    queue_->copy_to_host(bytes.data(), array.values, bytes.size());
+    queue_->wait();
+    return bytes;
+}
+
+} // namespace pertev

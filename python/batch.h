@@ -1,0 +1,70 @@
+#pragma once
+
+// Pictures of one scene by many cameras, as Python sees them: arrays of all pictures, in the memory of the device that
+// rendered them.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nanobind/nanobind.h>
+
+#include "python/opened_scene.h"
+#include "session/camera_batch.h"
+
+namespace pertev {
+
+/// The cameras of a call. Whatever they leave open, such as the lens, is the same for all: that of the settings.
+struct CamerasArgument {
+    std::vector<std::vector<double>> poses;      // as the setting camera_pose has them
+    std::vector<std::vector<double>> intrinsics; // as the setting has them; one for all, one per camera, or none
+    std::vector<uint32_t> seeds;                 // one for all, one per camera, or none
+    bool has_color = true;                       // otherwise only layers at centres are made
+
+    /// Returns the settings of each picture.
+    RenderSettings settings_of(RenderSettings settings) const;
+};
+
+class PythonBatch {
+public:
+    /// Renders with the settings and the device of `session`, which is that of `opened`. The arrays are complete on
+    /// return. Those of an earlier call are filled again. Throws Error(BadInput) if they do not fit, and
+    /// Error(OutOfMemory, Interrupted, ...).
+    void render(OpenedScene& opened, Session& session, const CamerasArgument& cameras, const PictureOptions& options,
+                Sink& sink);
+
+    bool is_empty() const { return queue_ == nullptr; }
+    uint64_t invalid_samples() const { return invalid_samples_; }
+    double seconds() const { return seconds_; }
+    /// Number, height and width of the pictures.
+    std::vector<std::size_t> shape() const { return {arrays_.pictures, height_, width_}; }
+    const Queue& queue() const { return *queue_; }
+
+    struct Array {
+        std::string name; // a group of layers, or "color"
+        void* values;
+        std::size_t channels;
+        bool is_float; // otherwise uint32
+    };
+    std::vector<Array> arrays() const;
+    /// Returns the bytes of an array on the host.
+    std::vector<std::byte> download(const Array& array) const;
+
+private:
+    bool fits(const RenderSettings& settings, const CamerasArgument& cameras, const Queue& queue) const;
+
+    std::shared_ptr<Queue> queue_; // outlives the buffers
+    BatchArrays arrays_;
+    uint32_t width_ = 0, height_ = 0, color_channels_ = 0;
+    uint64_t invalid_samples_ = 0;
+    double seconds_ = 0;
+};
+
+/// Returns how many pictures are rendered at once.
+uint32_t size_of_chunk(OpenedScene& opened, const RenderSettings& settings, const CamerasArgument& cameras,
+                       const PictureOptions& options);
+
+void define_batch(nanobind::module_& module);
+
+} // namespace pertev

@@ -1,0 +1,134 @@
+// Arrays of batches for other packages: NumPy's where the CPU rendered, else arrays on the GPU by DLPack and
+// __cuda_array_interface__.
+
+#include <algorithm>
+
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "python/batch.h"
+
+namespace nb = nanobind;
+
+namespace pertev {
+namespace {
+
+/// An array in a GPU's memory. The work on it has ended, so no stream needs to wait for another.
+struct DeviceArray {
+    nb::object batch; // keeps the memory
+    std::vector<std::size_t> shape;
+    PythonBatch::Array array;
+    int device;
+
+    nb::object exported() const {
+        const auto type = array.is_float ? nb::dtype<float>() : nb::dtype<uint32_t>();
+        return nb::cast(nb::ndarray<>(array.values, shape.size(), shape.data(), batch, nullptr, type,
+                                      nb::device::cuda::value, device));
+    }
+};
+
+std::vector<std::size_t> shape_of(const PythonBatch& batch, const PythonBatch::Array& array) {
+    std::vector<std::size_t> shape = batch.shape();
+    if (array.channels > 1) shape.push_back(array.channels);
+    return shape;
+}
+
+nb::object array_of(const PythonBatch::Array& array, nb::handle self) {
+    const PythonBatch& batch = nb::cast<const PythonBatch&>(self);
+    const std::vector<std::size_t> shape = shape_of(batch, array);
+    if (batch.queue().is_cuda()) {
+        return nb::cast(DeviceArray{nb::borrow(self), shape, array, batch.queue().device_index()});
+    }
+    if (array.is_float) {
+        return nb::cast(
+            nb::ndarray<nb::numpy, float>(static_cast<float*>(array.values), shape.size(), shape.data(), self));
+    }
+    return nb::cast(
+        nb::ndarray<nb::numpy, uint32_t>(static_cast<uint32_t*>(array.values), shape.size(), shape.data(), self));
+}
+
+nb::object array_named(nb::handle self, const std::string& name) {
+    for (const PythonBatch::Array& array : nb::cast<const PythonBatch&>(self).arrays()) {
+        if (array.name == name) return array_of(array, self);
+    }
+    throw nb::attribute_error(fmt::format("there is no array '{}'; request it by layers=['{}']", name, name).c_str());
+}
+
+nb::dict arrays_of(nb::handle self) {
+    nb::dict arrays;
+    for (const PythonBatch::Array& array : nb::cast<const PythonBatch&>(self).arrays()) {
+        arrays[array.name.c_str()] = array_of(array, self);
+    }
+    return arrays;
+}
+
+/// Returns a copy of an array in the memory of the host, as NumPy's.
+nb::object host_copy(const DeviceArray& self) {
+    auto* bytes = new std::vector<std::byte>(nb::cast<const PythonBatch&>(self.batch).download(self.array));
+    const nb::capsule owner(bytes, [](void* p) noexcept { delete static_cast<std::vector<std::byte>*>(p); });
+    const auto type = self.array.is_float ? nb::dtype<float>() : nb::dtype<uint32_t>();
+    return nb::cast(nb::ndarray<nb::numpy>(bytes->data(), self.shape.size(), self.shape.data(), owner, nullptr, type));
+}
+
+nb::dict cuda_array_interface(const DeviceArray& self) {
+    nb::dict description;
+    description["shape"] = nb::tuple(nb::cast(self.shape));
+    description["typestr"] = self.array.is_float ? "<f4" : "<u4";
+    description["data"] = nb::make_tuple(reinterpret_cast<std::uintptr_t>(self.array.values), false);
+    description["version"] = 3;
+    description["strides"] = nb::none();
+    description["stream"] = nb::none();
+    return description;
+}
+
+} // namespace
+
+void define_batch(nb::module_& module) {
+    nb::class_<DeviceArray>(module, "DeviceArray", nb::is_final(),
+                            R"(An array in a GPU's memory, for PyTorch, JAX, CuPy or Warp.
+
+It has DLPack (`torch.from_dlpack(array)`) and `__cuda_array_interface__`, shares the memory of its BatchResult and keeps
+it. The work on it has ended, so that any stream may use it.)")
+        .def("__dlpack__",
+             [](const DeviceArray& self, const nb::kwargs& how) { return self.exported().attr("__dlpack__")(**how); })
+        .def("__dlpack_device__",
+             [](const DeviceArray& self) { return nb::make_tuple(int(nb::device::cuda::value), self.device); })
+        .def_prop_ro("__cuda_array_interface__", &cuda_array_interface)
+        .def("numpy", &host_copy, "A copy in the host's memory.")
+        .def_prop_ro("shape", [](const DeviceArray& self) { return nb::tuple(nb::cast(self.shape)); })
+        .def("__repr__", [](const DeviceArray& self) {
+            return fmt::format("<pertev.DeviceArray {} on cuda:{}>", self.array.name, self.device);
+        });
+    nb::class_<PythonBatch> batch(module, "BatchResult", nb::is_final(), R"(Pictures of one scene by many cameras.
+
+Arrays are of NumPy where the CPU rendered, else DeviceArrays, and share the memory of the result, which lives as long as one
+of them does. The first axis counts the cameras, and row 0 of a picture is the top.)");
+    struct Named {
+        const char *name, *text;
+    };
+    for (const Named& named :
+         {Named{"color", "float32 (N, height, width, 3), or 4 with transparent=True: linear Rec. 709"},
+          Named{"albedo", "float32 (N, height, width, 3): reflectance of the first surface"},
+          Named{"normal", "float32 (N, height, width, 3): its shading normal, world space"},
+          Named{"depth", "float32 (N, height, width): its distance along the camera's axis, metres"},
+          Named{"distance", "float32 (N, height, width): its distance along the ray, metres"},
+          Named{"position", "float32 (N, height, width, 3): its position in the file's coordinates, metres"},
+          Named{"ids", "uint32 (N, height, width, 3): its instance, primitive and material"}}) {
+        batch.def_prop_ro(
+            named.name, [name = named.name](nb::handle self) { return array_named(self, name); }, named.text);
+    }
+    batch.def(nb::init<>())
+        .def_prop_ro("arrays", &arrays_of, "All arrays by their names")
+        .def_prop_ro("seconds", &PythonBatch::seconds, "Seconds of rendering alone")
+        .def("__len__", [](const PythonBatch& self) { return self.is_empty() ? 0 : self.shape().front(); })
+        .def("__repr__", [](const PythonBatch& self) {
+            const std::vector<std::size_t> shape = self.shape();
+            return fmt::format("<pertev.BatchResult of {} pictures {}x{}>", shape[0], shape[2], shape[1]);
+        });
+}
+
+} // namespace pertev

@@ -1,0 +1,133 @@
+"""Tests of many cameras in one call: the bytes of each camera alone, chunks, arrays that are filled again, and errors."""
+
+import gc
+import sys
+import unittest
+
+import numpy
+import pertev
+
+PROGRAM = sys.argv.pop(1)
+DEVICE = sys.argv[sys.argv.index("--device") + 1] if "--device" in sys.argv else "cpu"
+if DEVICE != "cpu":
+    sys.argv[sys.argv.index("--device"):][:2] = []
+SMALL = {"size": (24, 16), "spp": 2}
+LAYERS = ["depth", "normal", "ids"]
+
+
+def poses(count):
+    """Cameras in the Cornell box that step aside and turn a little."""
+    made = numpy.tile(numpy.eye(4), (count, 1, 1))
+    for k in range(count):
+        angle = 0.05 * k
+        made[k, :3, :3] = [[numpy.cos(angle), 0, numpy.sin(angle)], [0, 1, 0], [-numpy.sin(angle), 0, numpy.cos(angle)]]
+        made[k, :3, 3] = [0.1 * k, 1, 3.5]
+    return made
+
+
+def host(array):
+    return array.numpy() if isinstance(array, pertev.DeviceArray) else array
+
+
+class Cameras(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scene = pertev.load("cornell-box", device=DEVICE)
+
+    def test_each_picture_has_the_bytes_of_its_camera_alone(self):
+        K = [[30, 0, 11], [0, 28, 9], [0, 0, 1]]
+        for more in ({}, {"layers_at": "centre"}, {"integrator": "bidirectional"}):
+            batch = pertev.render(self.scene, cameras=pertev.Cameras(poses(3), K), seeds=[4, 5, 6], layers=LAYERS, **SMALL, **more)
+            self.assertEqual((len(batch), batch.color.shape, batch.depth.shape), (3, (3, 16, 24, 3), (3, 16, 24)))
+            for k, pose in enumerate(poses(3)):
+                alone = pertev.render(self.scene, camera_pose=pose.ravel(), intrinsics=numpy.ravel(K), seed=4 + k, layers=LAYERS,
+                                      **SMALL, **more)
+                for name in ["color", *LAYERS]:
+                    self.assertEqual(host(getattr(batch, name))[k].tobytes(), getattr(alone, name).tobytes(), (name, k, more))
+
+    def test_one_K_or_one_for_each_camera(self):
+        K = numpy.array([[[30, 0, 12], [0, 30, 8], [0, 0, 1]], [[60, 0, 12], [0, 60, 8], [0, 0, 1]]])
+        both = host(pertev.render(self.scene, cameras=pertev.Cameras(poses(2), K), **SMALL).color)
+        for k in range(2):
+            one = host(pertev.render(self.scene, cameras=pertev.Cameras(poses(2), K[k]), **SMALL).color)
+            self.assertEqual(both[k].tobytes(), one[k].tobytes())
+            self.assertNotEqual(both[1 - k].tobytes(), one[1 - k].tobytes())
+
+    def test_the_axes_of_opencv(self):
+        turned = poses(2) @ numpy.diag([1, -1, -1, 1])
+        pictures = [host(pertev.render(self.scene, cameras=pertev.Cameras(of, convention=convention), **SMALL).color)
+                    for of, convention in ((poses(2), None), (turned, "opencv"))]
+        self.assertEqual(pictures[0].tobytes(), pictures[1].tobytes())
+
+    def test_chunks_are_the_parts_of_the_whole(self):
+        whole = pertev.render(self.scene, cameras=poses(5), seeds=numpy.arange(5), layers=LAYERS, **SMALL)
+        parts = list(pertev.render_chunks(self.scene, poses(5), chunk=2, seeds=numpy.arange(5), layers=LAYERS, **SMALL))
+        self.assertEqual([len(part) for part in parts], [2, 2, 1])
+        for name in ["color", *LAYERS]:
+            together = numpy.concatenate([host(getattr(part, name)) for part in parts])
+            self.assertEqual(host(getattr(whole, name)).tobytes(), together.tobytes())
+        self.assertEqual([len(part) for part in pertev.render_chunks(self.scene, poses(5), **SMALL)], [5])
+
+    def test_layers_without_color(self):
+        batch = pertev.render(self.scene, cameras=poses(2), color=False, layers=LAYERS, layers_at="centre", size=(24, 16))
+        self.assertEqual(sorted(batch.arrays), sorted(LAYERS))
+        with self.assertRaises(AttributeError):
+            batch.color
+        ids = host(batch.ids)
+        self.assertEqual((ids.dtype, ids.shape), (numpy.uint32, (2, 16, 24, 3)))
+        with self.assertRaises(pertev.InputError):
+            pertev.render(self.scene, cameras=poses(2), color=False, layers=LAYERS, size=(24, 16))
+
+    def test_arrays_outlive_the_scene_and_their_result(self):
+        scene = pertev.load("cornell-box", device=DEVICE)
+        color = pertev.render(scene, cameras=poses(2), **SMALL).color
+        before = host(color).tobytes()
+        del scene
+        gc.collect()
+        self.assertEqual(host(color).tobytes(), before)
+
+    def test_out_fills_the_same_memory_again(self):
+        first = pertev.render(self.scene, cameras=poses(2), layers=LAYERS, **SMALL)
+        color = first.color
+        before = host(color).copy()
+        again = pertev.render(self.scene, cameras=poses(3)[1:], layers=LAYERS, out=first, **SMALL)
+        self.assertIs(again, first)
+        self.assertEqual(before[1].tobytes(), host(color)[0].tobytes())
+        for other in ({"cameras": poses(3)}, {"cameras": poses(2), "layers": []}):
+            with self.assertRaises(pertev.InputError) as refused:
+                pertev.render(self.scene, **{"layers": LAYERS, **other}, out=first, **SMALL)
+            self.assertEqual(refused.exception.setting, "out")
+
+    def test_wrong_arguments_are_named(self):
+        for arguments, name in [(({"cameras": numpy.eye(4)}), "cameras"), ({"cameras": numpy.zeros((0, 4, 4))}, "cameras"),
+                                ({"cameras": pertev.Cameras(poses(2), numpy.zeros((3, 3, 3)))}, "K"),
+                                ({"cameras": pertev.Cameras(poses(2), numpy.zeros((2, 2)))}, "K"),
+                                ({"cameras": poses(2), "seeds": [1, 2, 3]}, "seeds"),
+                                ({"cameras": poses(2), "seeds": [-1]}, "seeds"),
+                                ({"cameras": 0 * poses(2)}, "camera_pose"),
+                                ({"cameras": poses(2), "denoise": "svgf"}, "denoise")]:
+            with self.assertRaises(pertev.InputError) as refused:
+                pertev.render(self.scene, **arguments, **SMALL)
+            self.assertEqual(refused.exception.setting, name, arguments)
+        for arguments in ({"seeds": [1]}, {"color": False}, {"cameras": poses(1), "output": "x.png"}):
+            with self.assertRaises(TypeError):
+                pertev.render(self.scene, **arguments, **SMALL)
+
+    @unittest.skipIf(DEVICE == "cpu", "arrays on a GPU are those of CUDA")
+    def test_arrays_on_a_gpu(self):
+        batch = pertev.render(self.scene, cameras=poses(2), layers=LAYERS, **SMALL)
+        self.assertIsInstance(batch.color, pertev.DeviceArray)
+        description = batch.depth.__cuda_array_interface__
+        self.assertEqual((description["shape"], description["typestr"], description["version"]), ((2, 16, 24), "<f4", 3))
+        self.assertEqual(batch.color.__dlpack_device__()[0], 2)
+        try:
+            import torch
+        except ImportError:
+            self.skipTest("torch is not installed")
+        tensor = torch.from_dlpack(batch.color)
+        self.assertEqual((tensor.device.type, tensor.cpu().numpy().tobytes()), ("cuda", batch.color.numpy().tobytes()))
+        self.assertEqual(torch.as_tensor(batch.depth, device="cuda").data_ptr(), description["data"][0])
+
+
+if __name__ == "__main__":
+    unittest.main()
