@@ -28,8 +28,8 @@ struct Job {
     uint32_t pictures;
 };
 
-/// Cameras about `camera`, which turn around and step aside by up to a fiftieth of the scene's size. Fractions of
-/// multiples of irrational numbers spread evenly.
+/// Cameras about `camera`, which turn by up to 30 degrees, so that they see about what it sees, and step aside by up to
+/// a fiftieth of the scene's size. Fractions of multiples of irrational numbers spread evenly.
 CameraBatch cameras_about(const Camera& camera, uint32_t count, float scene_size) {
     CameraBatch batch;
     for (uint32_t k = 0; k < count; ++k) {
@@ -38,7 +38,7 @@ CameraBatch cameras_about(const Camera& camera, uint32_t count, float scene_size
             return static_cast<float>(at - static_cast<uint32_t>(at));
         };
         const Vec3 aside = {part_of(0.7548776662) - 0.5f, part_of(0.5698402910) - 0.5f, 0};
-        batch.cameras.push_back(moved(camera, 2 * kPi * part_of(0.6180339887), (0.04f * scene_size) * aside));
+        batch.cameras.push_back(moved(camera, kPi / 3 * (part_of(0.6180339887) - 0.5f), (0.04f * scene_size) * aside));
     }
     return batch;
 }
