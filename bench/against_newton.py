@@ -2,7 +2,7 @@
 """Batches of small pictures beside Newton's camera sensor: `bench/against_newton.py PERTEV [--device cuda] [-o FILE.json]`.
 
 Needs PyPI's newton 1.8 with warp-lang, and PERTEV_SCENES (docs/scenes.md). The scene is grey Sponza at 128x128, by cameras that turn
-around and step aside as those of `pertev bench cameras` do. Jobs: depth, normals and ids at pixel centres; there, also colour in one
+and step aside as those of `pertev bench cameras` do. Jobs: depth, normals and ids at pixel centres; there, also colour in one
 direct light with its shadow, here with one sample of the sky and its shadow. Newton's arithmetic is fast and approximate, its light one
 direction. Rates are medians of pictures a second, without reading, trees and compiling.
 """
@@ -49,7 +49,7 @@ def transforms_of(count, size):
     base = np.stack([x, np.cross(z, x), z], 1)
     result = []
     for k in range(count):
-        yaw = 2 * math.pi * (k * 0.6180339887 % 1)
+        yaw = math.pi / 3 * (k * 0.6180339887 % 1 - 0.5)
         aside = 0.04 * size * np.array([k * 0.7548776662 % 1 - 0.5, k * 0.5698402910 % 1 - 0.5, 0])
         c, s = math.cos(yaw), math.sin(yaw)
         turned = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]) @ base

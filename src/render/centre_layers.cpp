@@ -28,7 +28,7 @@ float*& CentreArrays::of(AovBits group) {
 }
 
 void CentreLayers::reserve(uint64_t pixels, bool has_times) {
-    const auto rays = static_cast<std::size_t>(std::min<uint64_t>(pixels, kAtOnce));
+    const auto rays = static_cast<std::size_t>(std::min<uint64_t>(pixels, at_once_));
     rays_.grow(queue_, rays, "rays through centres");
     keys_.grow(queue_, rays, "rays through centres");
     records_.grow(queue_, rays, "hits of centres");
@@ -44,8 +44,8 @@ void CentreLayers::find(const PictureView& picture, SceneTracer& tracer, uint32_
     uint32_t* const keys = scene.any_alpha != 0 ? keys_.data() : nullptr;
     float* const times = has_times ? times_.data() : nullptr;
     const HitQueueView hits = {records_.data(), instances_.data()};
-    for (uint32_t first = 0; first < window.count(); first += kAtOnce) {
-        const uint32_t count = std::min(window.count() - first, kAtOnce);
+    for (uint32_t first = 0; first < window.count(); first += at_once_) {
+        const uint32_t count = std::min(window.count() - first, at_once_);
         launch(queue_, "make_centre_rays", count,
                MakeCentreRays{picture, seed, window, first, rays_.data(), keys, times});
         tracer.find_hits(RayKind::Camera, {.rays = rays_.data(), .keys = keys, .times = times, .is_endless = true},

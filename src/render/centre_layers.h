@@ -7,20 +7,12 @@
 #include "device/buffer.h"
 #include "device_scene/moved_surface.h"
 #include "device_scene/ray_queue.h"
+#include "render/centre_arrays.h"
 #include "render/film_view.h"
 #include "render/picture_view.h"
 #include "tracer/scene_tracer.h"
 
 namespace pertev {
-
-/// Arrays of the layers of a window, one element per channel of each slot; null for those that are not wanted.
-struct CentreArrays {
-    float *albedo = nullptr, *normal = nullptr, *depth = nullptr, *position = nullptr, *distance = nullptr;
-    PixelIds* ids = nullptr;
-
-    /// The array of a group of sums.
-    float*& of(AovBits group);
-};
 
 /// The stage that makes the rays of slots [first, ...), with the pixel and the time in place of t_min and t_max.
 struct MakeCentreRays {
@@ -110,13 +102,11 @@ private:
     }
 };
 
-/// Finds the layers, by a few launches for up to kAtOnce pixels, and holds the memory for their rays.
+/// Finds the layers, by a few launches for many pixels, and holds the memory for their rays.
 class CentreLayers {
 public:
-    static constexpr uint32_t kAtOnce = 1u << 20;
-
     /// Makes an object without memory; `queue` outlives it.
-    explicit CentreLayers(Queue& queue) : queue_(queue) {}
+    explicit CentreLayers(Queue& queue) : queue_(queue), at_once_(queue.is_cuda() ? 1u << 20 : 1u << 15) {}
 
     /// Allocates what windows of up to `pixels` pixels need, with the times of rays if `has_times`, and keeps it.
     /// find() calls it. Throws Error(OutOfMemory).
@@ -128,6 +118,7 @@ public:
 
 private:
     Queue& queue_;
+    uint32_t at_once_; // pixels; a CPU keeps their rays in its caches
     Buffer<Ray> rays_;
     Buffer<uint32_t> keys_, instances_;
     Buffer<float> times_;

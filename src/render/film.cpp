@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "render/centre_target.h"
 
 namespace pertev {
 namespace {

@@ -12,10 +12,12 @@
 #include "base/error.h"
 #include "device/buffer.h"
 #include "image/image.h"
-#include "render/centre_target.h"
+#include "render/centre_arrays.h"
 #include "render/sum_target.h"
 
 namespace pertev {
+
+class CentreTarget; // render/centre_target.h
 
 /// Ids of the first hit of sample 0 of each pixel.
 class IdTarget : public ElementTarget<PixelIds, AddIds, 0xff> { // kNoHit

@@ -68,7 +68,7 @@ BatchMemory::BatchMemory(Queue& queue, const CameraBatch& batch, const RenderSet
 
 uint32_t pictures_at_once(const PreparedScene& scene, const CameraBatch& batch, const RenderSettings& settings,
                           std::size_t limit, bool on_cuda) {
-    const uint64_t pixels = uint64_t(settings.width) * settings.height, wanted = on_cuda ? 1u << 23 : 1u << 20;
+    const uint64_t pixels = uint64_t(settings.width) * settings.height, wanted = on_cuda ? 1u << 23 : 1u << 17;
     auto count = static_cast<uint32_t>(std::clamp<uint64_t>(wanted / pixels, 1, batch.count()));
     while (count > 1 && predicted_batch_bytes(scene, batch, settings, count, on_cuda) > limit) count = (count + 1) / 2;
     return count;
