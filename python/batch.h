@@ -17,8 +17,8 @@ namespace pertev {
 
 /// The cameras of a call. Whatever they leave open, such as the lens, is the same for all: that of the settings.
 struct CamerasArgument {
-    std::vector<std::vector<double>> poses;      // as the setting camera_pose has them
-    std::vector<std::vector<double>> intrinsics; // as the setting has them; one for all, one per camera, or none
+    std::vector<std::vector<double>> poses;      // numbers of the setting camera_pose, by camera
+    std::vector<std::vector<double>> intrinsics; // numbers of this setting: one for all, one per camera, or none
     std::vector<uint32_t> seeds;                 // one for all, one per camera, or none
     bool has_color = true;                       // otherwise only layers at centres are made
 

@@ -26,8 +26,8 @@ struct DeviceArray {
 
     nb::object exported() const {
         const auto type = array.is_float ? nb::dtype<float>() : nb::dtype<uint32_t>();
-        return nb::cast(nb::ndarray<>(array.values, shape.size(), shape.data(), batch, nullptr, type,
-                                      nb::device::cuda::value, device));
+        return nb::cast(nb::ndarray<nb::array_api>(array.values, shape.size(), shape.data(), batch, nullptr, type,
+                                                   nb::device::cuda::value, device));
     }
 };
 

@@ -10,7 +10,7 @@ import pertev
 PROGRAM = sys.argv.pop(1)
 DEVICE = sys.argv[sys.argv.index("--device") + 1] if "--device" in sys.argv else "cpu"
 if DEVICE != "cpu":
-    sys.argv[sys.argv.index("--device"):][:2] = []
+    del sys.argv[sys.argv.index("--device"):sys.argv.index("--device") + 2]
 SMALL = {"size": (24, 16), "spp": 2}
 LAYERS = ["depth", "normal", "ids"]
 
