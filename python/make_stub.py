@@ -35,12 +35,23 @@ def builtin_scenes() -> list[str]: ...
 
 # Types of members and functions by their names, where nothing in the package tells them.
 MEMBERS = {"ids": "NDArray[numpy.uint32]", "layers": "dict[str, NDArray[Any]]", "info": "dict[str, Any]", "hash": "str",
-           "samples": "int", "seconds": "float", "name": "str", "params": "Params", "frame": "int | None"}
+           "samples": "int", "seconds": "float", "name": "str", "params": "Params", "frame": "int | None",
+           "arrays": "dict[str, Any]", "shape": "tuple[int, ...]", "__cuda_array_interface__": "dict[str, Any]"}
+OF_BATCHES = {"color": "Any", "albedo": "Any", "normal": "Any", "depth": "Any", "distance": "Any", "position": "Any", "ids": "Any"}
 SIGNATURES = {
     "read": "(path: _Text) -> _Floats",
     "write": '(path: _Text, picture: _Picture, *, curve: _Curve = "srgb", exposure: float = 0.0) -> None',
     "tone_map": '(picture: _Picture, *, curve: _Curve = "agx", exposure: float = 0.0) -> NDArray[numpy.uint8]',
     "compare": "(picture: _Picture | _Text, reference: _Picture | _Text, *, blocks: int = 1) -> dict[str, float | bool]",
+    "DeviceArray.__dlpack__": "(self, **how: Any) -> Any",
+    "DeviceArray.__dlpack_device__": "(self) -> tuple[int, int]",
+    "DeviceArray.numpy": "(self) -> NDArray[Any]",
+    "BatchResult.__len__": "(self) -> int",
+    "Cameras.__init__": "(self, poses: Any, K: Any = None, *, convention: Literal['opengl', 'opencv', 'blender'] | None = None, "
+                        "intrinsics_size: tuple[int, int] | str | None = None, "
+                        "lens: Literal['opencv', 'fisheye'] | None = None, distortion: Sequence[float] | None = None) -> None",
+    "Cameras.__len__": "(self) -> int",
+    "Cameras.__getitem__": "(self, part: slice) -> Cameras",
     "Params.__init__": "(self, scene: Scene) -> None",
     "Params.__getitem__": "(self, path: str) -> Any",
     "Params.__setitem__": "(self, path: str, value: Any) -> None",
@@ -58,6 +69,7 @@ PARTS = ["meshes: _Parts | None = None,", "materials: _Parts | None = None,", "i
          "lights: _Parts | None = None,", "environment: Any = None,", "cameras: _Parts | None = None,",
          'name: str = "arrays",']
 LAYERS = "layers: str | Sequence[str] = (),"
+BATCH = ["seeds: int | Sequence[int] | Any = None,", "color: bool = True,", LAYERS]
 
 
 def type_of(row):
@@ -83,11 +95,11 @@ def takes_settings(name, first, returned, rows, thing):
     yield ""
 
 
-def properties_of(kind):
+def properties_of(kind, types=MEMBERS):
     for name, value in vars(kind).items():
-        if not name.startswith("_") and not callable(value):
+        if (not name.startswith("_") or name in types) and not callable(value):
             yield "@property"
-            yield f"def {name}(self) -> {MEMBERS.get(name, '_Floats')}:"
+            yield f"def {name}(self) -> {types.get(name, '_Floats')}:"
             yield doc_of(value, "    ")
 
 
@@ -112,6 +124,9 @@ def main():
     scene, session, viewer = package.Scene, package.Session, package.Viewer
     lines = [HEAD]
     lines += class_of("Result", core.Result, "", properties_of(core.Result))
+    lines += class_of("DeviceArray", core.DeviceArray, "", properties_of(core.DeviceArray))
+    lines += class_of("BatchResult", core.BatchResult, "", properties_of(core.BatchResult, {**MEMBERS, **OF_BATCHES}))
+    lines += class_of("Cameras", package.Cameras, "", ["poses: Any", "K: Any", "settings: dict[str, Any]"])
     lines += class_of("Params", package.Params, "(Mapping[str, Any])")
     others = [row for row in rows if row["name"] != "environment"] # which may be an array too
     made_of = takes_settings("__init__", ["self,", "source: _Text | None = None,", "*,", *PARTS], "None", others, scene)
@@ -121,9 +136,12 @@ def main():
                       takes_settings("set", ["self,", "*,"], "None", all_rows, session.set))
     lines += class_of("Viewer", viewer, "", ["url: str"])
     lines += takes_settings("load", ["scene: _Text,", "*,"], "Scene", rows, package.load)
-    lines += takes_settings("render", ["scene: Scene | _Text,", "*,", LAYERS, "output: _Text | Sequence[_Text] = (),",
-                                       "settings: _Text | None = None,", "out: Mapping[str, Any] | None = None,"],
-                            "Result", rows, package.render)
+    lines += takes_settings("render", ["scene: Scene | _Text,", "*,", "cameras: Cameras | Any = None,", *BATCH,
+                                       "output: _Text | Sequence[_Text] = (),", "settings: _Text | None = None,",
+                                       "out: Mapping[str, Any] | BatchResult | None = None,"], "Any", rows, package.render)
+    lines += takes_settings("render_chunks", ["scene: Scene | _Text,", "cameras: Cameras | Any,", "*,",
+                                              "chunk: int | None = None,", *BATCH, "settings: _Text | None = None,"],
+                            "Iterator[BatchResult]", rows, package.render_chunks)
     lines += takes_settings("view", ["scene: Scene | _Text,", "*,", "port: int = 0,"], "Viewer", rows, package.view)
     for name in ("read", "write", "tone_map", "compare"):
         lines += [f"def {name}{SIGNATURES[name]}:", doc_of(getattr(package, name), "    "), ""]

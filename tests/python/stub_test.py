@@ -21,7 +21,7 @@ class Stub(unittest.TestCase):
     def test_all_settings(self):
         names = {row["name"] for row in _core.settings()}
         self.assertEqual(set(types_of("load")), names)
-        self.assertEqual(set(types_of("render")), names | {"layers", "output", "settings", "out"})
+        self.assertEqual(set(types_of("render")), names | {"layers", "output", "settings", "out", "cameras", "seeds", "color"})
         scene, session = (next(node for node in DEFINED[name].body if getattr(node, "name", "") == "__init__")
                           for name in ("Scene", "Session"))
         self.assertEqual(sorted(argument.arg for argument in scene.args.kwonlyargs),
@@ -46,7 +46,8 @@ class Stub(unittest.TestCase):
         self.assertIn("'bidirectional'", types["integrator"])
 
     def test_members(self):
-        for kind in (pertev.Result, pertev.Scene, pertev.Params, pertev.Session, pertev.Viewer):
+        for kind in (pertev.Result, pertev.Scene, pertev.Params, pertev.Session, pertev.Viewer, pertev.BatchResult,
+                     pertev.DeviceArray):
             of_stub = {node.name for node in DEFINED[kind.__name__].body if isinstance(node, ast.FunctionDef)}
             own = {name for base in kind.__mro__ if base.__module__.startswith("pertev") for name in vars(base)}
             self.assertEqual({name for name in of_stub if not name.startswith("_")},

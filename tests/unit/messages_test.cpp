@@ -44,7 +44,7 @@ TEST_CASE("a user's sink gets the messages of parts and ends them") {
     } own;
     ProgressSink heard = part_of(own, 0, 0.5);
     heard.leave_out({"eye", "", "looks at itself"});
-    CHECK(own.texts == std::vector<std::string>{"`eye` looks at itself"});
+    CHECK(own.texts == std::vector<std::string>{Remark("eye", "", "looks at itself").text()});
     PartMessages unheard(own);
     unheard.make_up("a sky");
     CHECK(own.texts.size() == 1);
