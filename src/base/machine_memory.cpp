@@ -3,18 +3,23 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdint>
 #include <fstream>
 #include <string>
+#include <system_error>
 
 namespace pertev {
 namespace {
 
-/// The number at the start of a file; SIZE_MAX if there is none.
+/// The number at the start of a file; SIZE_MAX if there is none, as in a group without a limit ("max").
 std::size_t number_in(const std::filesystem::path& file) {
     std::ifstream in(file);
+    std::string text;
+    std::getline(in, text);
     std::size_t bytes = 0;
-    return in >> bytes ? bytes : SIZE_MAX;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), bytes);
+    return error == std::errc() ? bytes : SIZE_MAX;
 }
 
 /// Returns the minimum limit, in bytes, of a group and all of its ancestors.
