@@ -16,12 +16,13 @@ LAYERS = ["depth", "normal", "ids"]
 
 
 def poses(count):
-    """Cameras in the Cornell box that step aside and turn a little."""
+    """Cameras before the Cornell box, which lies behind the world's origin, that step aside and turn a little."""
     made = numpy.tile(numpy.eye(4), (count, 1, 1))
     for k in range(count):
         angle = 0.05 * k
-        made[k, :3, :3] = [[numpy.cos(angle), 0, numpy.sin(angle)], [0, 1, 0], [-numpy.sin(angle), 0, numpy.cos(angle)]]
-        made[k, :3, 3] = [0.1 * k, 1, 3.5]
+        turned = [[numpy.cos(angle), 0, numpy.sin(angle)], [0, 1, 0], [-numpy.sin(angle), 0, numpy.cos(angle)]]
+        made[k, :3, :3] = numpy.diag([-1, 1, -1]) @ turned
+        made[k, :3, 3] = [0.278 + 0.03 * k, 0.273, -0.8]
     return made
 
 
@@ -35,10 +36,12 @@ class Cameras(unittest.TestCase):
         cls.scene = pertev.load("cornell-box", device=DEVICE)
 
     def test_each_picture_has_the_bytes_of_its_camera_alone(self):
-        K = [[30, 0, 11], [0, 28, 9], [0, 0, 1]]
+        K = [[22, 0, 11], [0, 20, 9], [0, 0, 1]]
         for more in ({}, {"layers_at": "centre"}, {"integrator": "bidirectional"}):
             batch = pertev.render(self.scene, cameras=pertev.Cameras(poses(3), K), seeds=[4, 5, 6], layers=LAYERS, **SMALL, **more)
             self.assertEqual((len(batch), batch.color.shape, batch.depth.shape), (3, (3, 16, 24, 3), (3, 16, 24)))
+            self.assertGreater(host(batch.color).mean(axis=(1, 2, 3)).min(), 0.01)
+            self.assertGreater(numpy.median(host(batch.depth)), 0.8)
             for k, pose in enumerate(poses(3)):
                 alone = pertev.render(self.scene, camera_pose=pose.ravel(), intrinsics=numpy.ravel(K), seed=4 + k, layers=LAYERS,
                                       **SMALL, **more)
@@ -46,7 +49,7 @@ class Cameras(unittest.TestCase):
                     self.assertEqual(host(getattr(batch, name))[k].tobytes(), getattr(alone, name).tobytes(), (name, k, more))
 
     def test_one_K_or_one_for_each_camera(self):
-        K = numpy.array([[[30, 0, 12], [0, 30, 8], [0, 0, 1]], [[60, 0, 12], [0, 60, 8], [0, 0, 1]]])
+        K = numpy.array([[[20, 0, 12], [0, 20, 8], [0, 0, 1]], [[40, 0, 12], [0, 40, 8], [0, 0, 1]]])
         both = host(pertev.render(self.scene, cameras=pertev.Cameras(poses(2), K), **SMALL).color)
         for k in range(2):
             one = host(pertev.render(self.scene, cameras=pertev.Cameras(poses(2), K[k]), **SMALL).color)
