@@ -1,7 +1,5 @@
 """Many cameras in one call."""
 
-import numpy
-
 from . import _core
 from ._settings import texts_of
 
@@ -27,17 +25,20 @@ class Cameras:
 
     def __getitem__(self, part):
         """The cameras of a slice."""
-        few = Cameras(self.poses[part], self.K)
-        if self.K is not None and len(numpy.shape(self.K)) > 1 and numpy.shape(self.K) != (3, 3):
-            few.K = self.K[part]
+        few = Cameras(self.poses[part], self.K if self._has_one_K() else self.K[part])
         few.settings = self.settings
         return few
 
+    def _has_one_K(self):
+        import numpy  # which `import pertev` does without
+
+        return self.K is None or numpy.shape(self.K) in ((3, 3), (4,))
+
     def _arguments(self):
         """Returns the intrinsics as one row per camera or for all, and the settings of the first camera, which stand for all."""
-        K = self.K
-        if K is not None and numpy.shape(K) in ((3, 3), (4,)):
-            K = [K]
+        import numpy
+
+        K = [self.K] if self.K is not None and self._has_one_K() else self.K
         first = {"camera_pose": numpy.asarray(self.poses[0], dtype=float).ravel() if len(self.poses) else None,
                  "intrinsics": None if K is None else numpy.asarray(K[0], dtype=float).ravel()}
         return K, {**first, **self.settings}
