@@ -10,6 +10,7 @@
 
 #include "device_scene/scene_view.h"
 #include "image/image.h"
+#include "math/float4.h"
 #include "render/camera_view.h"
 #include "render/noisy_frame.h"
 
@@ -35,6 +36,16 @@ public:
     /// Names the library and device that make the picture, if it is outside the one-picture law; else empty.
     virtual std::string name() const { return {}; }
 };
+
+/// Returns `image` with these colours of its pixels; alpha stays.
+inline Image with_colors(Image image, std::span<const Float4> colors) {
+    float* to = image.pixels.data();
+    for (const Float4& color : colors) {
+        to[0] = color.x, to[1] = color.y, to[2] = color.z;
+        to += image.channels;
+    }
+    return image;
+}
 
 /// Returns `picture` after all steps: each works on the result of the one before.
 inline Image apply_steps(std::span<const std::unique_ptr<Denoiser>> steps, Image picture) {

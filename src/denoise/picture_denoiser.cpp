@@ -85,12 +85,7 @@ Image PictureDenoiser::apply(Image picture) {
            ComposeSamples{sums_, from, static_cast<float>(features_), has_gloss_, to.diffuse});
     std::vector<Float4> shown(pixels);
     queue_->copy_to_host(shown.data(), to.diffuse, pixels * sizeof(Float4));
-    float* pixel = picture.pixels.data();
-    for (const Float4& p : shown) {
-        pixel[0] = p.x, pixel[1] = p.y, pixel[2] = p.z;
-        pixel += picture.channels;
-    }
-    return picture;
+    return with_colors(std::move(picture), shown);
 }
 
 } // namespace pertev

@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "session/session.h"
+#include "tests/support/calibrations.h"
 #include "tests/support/flat_scenes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
@@ -69,43 +70,14 @@ TEST_CASE("a picture through a lens is the same by loop, wavefront and device, a
 }
 
 TEST_CASE("small emitters appear where OpenCV projects them, within a tenth of a pixel") {
-    constexpr Vec3 kPlaces[] = {{0.1f, 0.2f, -2},      {0.5f, -0.4f, -1.5f}, {-0.6f, 0.3f, -1.2f},
-                                {-0.2f, -0.5f, -3.0f}, {0.9f, 0.5f, -2.5f},  {0, 0, -1}};
-    struct Case {
-        LensModel lens;
-        std::vector<double> distortion;
-        double focal_x, focal_y;
-        Vec2 seen[6]; // by cv2.projectPoints or cv2.fisheye.projectPoints, 1280x720
-    };
-    const Case cases[] = {{LensModel::OpenCv,
-                           {-0.28, 0.07, 0.001, -0.0005},
-                           900,
-                           990,
-                           {{694.826117f, 251.382542f},
-                            {935.368637f, 601.376961f},
-                            {236.158203f, 122.77373f},
-                            {590.498473f, 513.621225f},
-                            {958.943699f, 161.322337f},
-                            {650, 350}}},
-                          {LensModel::Fisheye,
-                           {-0.02, 0.005, -0.003, 0.0005},
-                           400,
-                           440,
-                           {{669.912363f, 306.192801f},
-                            {775.623852f, 460.54899f},
-                            {468.525328f, 250.188931f},
-                            {623.630859f, 422.515138f},
-                            {786.196432f, 266.768847f},
-                            {650, 350}}}};
     Scene scene;
-    for (const Vec3 place : kPlaces) {
+    for (const Vec3 place : test::kPoints) {
         const float half = 0.005f * -place.z;
         test::add(scene, test::sheet(place, {half, 0, 0}, {0, half, 0}), {{.emission = {1, 1, 1}}, "lamp"});
     }
     Queue queue = test::requested_queue();
-    for (const Case& c : cases) {
-        Camera camera = through({}, c.lens, c.distortion);
-        camera.intrinsics = Intrinsics{c.focal_x, c.focal_y, 650, 350, 1280, 720};
+    for (const test::Calibration& calibration : {test::kCalibrations[0], test::kCalibrations[3]}) {
+        const Camera camera = test::camera_of(calibration);
         RenderSettings settings;
         settings.width = 640, settings.height = 360, settings.samples = 64; // half the calibration's size
         settings.filter = PixelFilter::Box;
@@ -113,7 +85,7 @@ TEST_CASE("small emitters appear where OpenCV projects them, within a tenth of a
         const Image picture = test::render(queue, scene, camera, settings).picture;
         for (int i = 0; i < 6; ++i) {
             CAPTURE(i);
-            const double x = 0.5 * double(c.seen[i].x), y = 0.5 * double(c.seen[i].y);
+            const double x = 0.5 * double(calibration.seen[i].x), y = 0.5 * double(calibration.seen[i].y);
             double sum = 0, sum_x = 0, sum_y = 0;
             for (uint32_t row = uint32_t(y) - 8; row < uint32_t(y) + 8; ++row) {
                 for (uint32_t column = uint32_t(x) - 8; column < uint32_t(x) + 8; ++column) {

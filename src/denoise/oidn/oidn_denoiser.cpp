@@ -27,12 +27,7 @@ Image OidnDenoiser::apply(Image picture) {
     queue_.copy_to_device(filter_.color(), colors.data(), pixels_ * sizeof(Float4));
     filter_.run();
     queue_.copy_to_host(colors.data(), filter_.color(), pixels_ * sizeof(Float4));
-    float* to = picture.pixels.data();
-    for (const Float4& color : colors) {
-        to[0] = color.x, to[1] = color.y, to[2] = color.z;
-        to += picture.channels;
-    }
-    return picture;
+    return with_colors(std::move(picture), colors);
 }
 
 } // namespace pertev
