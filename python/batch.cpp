@@ -31,12 +31,20 @@ CameraBatch batch_of(const CamerasArgument& cameras, const PictureOptions& optio
     return batch;
 }
 
-uint64_t bytes_of_arrays(const RenderSettings& settings, std::size_t count) {
-    uint64_t values = settings.samples == 0 ? 0 : settings.transparent ? 4 : 3;
-    for (const AovGroup& group : kAovTable) {
-        if ((settings.aovs & group.bit) != 0) values += channel_names(group).size();
-    }
-    return sizeof(float) * values * settings.width * settings.height * count;
+uint32_t color_channels_of(const RenderSettings& settings) {
+    return settings.samples == 0 ? 0 : settings.transparent ? 4 : 3;
+}
+
+/// Returns the bytes of the arrays of `count` pictures.
+std::size_t bytes_of_arrays(const RenderSettings& settings, uint32_t count, bool on_cuda) {
+    Queue queue = Queue::make_dry_run(on_cuda);
+    BatchArrays arrays;
+    arrays.fit(queue, settings, count);
+    return queue.allocated_bytes();
+}
+
+MemoryLimit limit_of(const RenderSetup& setup, const RenderSettings& settings, const PictureOptions& options) {
+    return memory_to_render_in(*setup.queue, settings, max_memory_bytes(options.radiosity));
 }
 
 void copy_part(Queue& queue, void* to, const void* from, uint64_t first, uint64_t count, std::size_t bytes_each) {
@@ -54,17 +62,17 @@ uint32_t size_of_chunk(OpenedScene& opened, const RenderSettings& settings, cons
                        const PictureOptions& options) {
     const RenderSetup& setup = *opened.setup();
     CameraBatch batch = {.cameras = std::vector<Camera>(cameras.poses.size()), .seeds = cameras.seeds};
-    const MemoryLimit limit = memory_to_render_in(*setup.queue, settings, max_memory_bytes(options.radiosity));
-    return pictures_at_once(setup.prepared(), batch, settings, limit.bytes, setup.queue->is_cuda());
+    return pictures_at_once(setup.prepared(), batch, settings, limit_of(setup, settings, options).bytes,
+                            setup.queue->is_cuda());
 }
 
 bool PythonBatch::fits(const RenderSettings& settings, const CamerasArgument& cameras, const Queue& queue) const {
     uint32_t groups = 0;
     for (const BatchArrays::Layer& layer : arrays_.layers) groups |= layer.group;
     if (arrays_.ids.size() > 0) groups |= kAovIds;
-    const uint32_t channels = settings.samples == 0 ? 0 : settings.transparent ? 4 : 3;
     return &queue == queue_.get() && settings.width == width_ && settings.height == height_ &&
-           cameras.poses.size() == arrays_.pictures && groups == settings.aovs && channels == color_channels_;
+           cameras.poses.size() == arrays_.pictures && groups == settings.aovs &&
+           color_channels_of(settings) == color_channels_;
 }
 
 void PythonBatch::render(OpenedScene& opened, Session& session, const CamerasArgument& cameras,
@@ -82,8 +90,8 @@ void PythonBatch::render(OpenedScene& opened, Session& session, const CamerasArg
     const uint32_t at_once = size_of_chunk(opened, settings, cameras, options);
     if (is_empty()) {
         const std::size_t bytes = predicted_batch_bytes(setup.prepared(), batch, settings, at_once, queue.is_cuda()) +
-                                  (at_once < count ? bytes_of_arrays(settings, count) : 0);
-        const MemoryLimit limit = memory_to_render_in(queue, settings, max_memory_bytes(options.radiosity));
+                                  (at_once < count ? bytes_of_arrays(settings, count, queue.is_cuda()) : 0);
+        const MemoryLimit limit = limit_of(setup, settings, options);
         if (bytes > limit.bytes) {
             throw Error(ErrorCode::OutOfMemory, "cameras", fmt::format("{}", count),
                         fmt::format("{:.1f} GiB are needed and {:.1f} GiB are there; pertev.render_chunks() renders "
@@ -93,7 +101,7 @@ void PythonBatch::render(OpenedScene& opened, Session& session, const CamerasArg
         }
         queue_ = setup.queue;
         width_ = settings.width, height_ = settings.height;
-        color_channels_ = settings.samples == 0 ? 0 : settings.transparent ? 4 : 3;
+        color_channels_ = color_channels_of(settings);
     }
     arrays_.fit(queue, settings, count);
     const Stopwatch watch;

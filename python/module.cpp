@@ -135,11 +135,9 @@ nb::object parameter(PythonScene& scene, const std::string& path) {
     return value ? array_of(*value) : nb::none();
 }
 
-/// Returns the rows of an array of numbers, each of `width` numbers or, of matrices, as many as they have.
-std::vector<std::vector<double>> rows_of(nb::handle value, const std::string& name) {
+/// Returns the numbers of each element of the first axis.
+std::vector<std::vector<double>> rows_of(const ArrayArgument& array) {
     std::vector<std::vector<double>> rows;
-    if (value.is_none()) return rows;
-    const ArrayArgument array(value, name);
     const std::vector<double> values = array.doubles();
     const std::size_t count = array.length(0), each = values.size() / std::max<std::size_t>(count, 1);
     for (std::size_t k = 0; k < count; ++k) {
@@ -157,13 +155,13 @@ CamerasArgument cameras_of(nb::handle poses, nb::handle intrinsics, nb::handle s
     if (!places.has_shape({kAny, 4, 4}) && !places.has_shape({kAny, 3, 4}))
         places.fail("expected (N, 4, 4) or (N, 3, 4)");
     CamerasArgument cameras;
-    cameras.poses = rows_of(poses, "cameras");
+    cameras.poses = rows_of(places);
     cameras.has_color = has_color;
     const std::size_t count = cameras.poses.size();
     if (count == 0) places.fail("there is no camera");
     if (!intrinsics.is_none()) {
         const ArrayArgument array(intrinsics, "K");
-        cameras.intrinsics = rows_of(intrinsics, "K");
+        cameras.intrinsics = rows_of(array);
         const std::size_t rows = cameras.intrinsics.size();
         const bool has_shape = array.has_shape({kAny, 3, 3}) || array.has_shape({kAny, 4});
         if (!has_shape || (rows != 1 && rows != count))
