@@ -52,7 +52,7 @@ void CentreLayers::find(const PictureView& picture, SceneTracer& tracer, uint32_
                          count, hits);
         const auto store = [&]<ShadingVariant kVariant, bool kMoves>() {
             launch(queue_, "store_centres", count,
-                   StoreCentres<kVariant, kMoves>{picture, rays_.data(), hits, first, into});
+                   StoreCentres<kVariant, kMoves>{picture, rays_.data(), hits, window, into});
         };
         if (has_times) {
             store.template operator()<ShadingVariant::General, true>();

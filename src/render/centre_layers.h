@@ -7,6 +7,7 @@
 #include "device/buffer.h"
 #include "device_scene/moved_surface.h"
 #include "device_scene/ray_queue.h"
+#include "render/begin_order.h"
 #include "render/centre_arrays.h"
 #include "render/film_view.h"
 #include "render/picture_view.h"
@@ -14,7 +15,8 @@
 
 namespace pertev {
 
-/// The stage that makes the rays of slots [first, ...), with the pixel and the time in place of t_min and t_max.
+/// The stage that makes the rays [first, ...) in the order of BeginOrder, with the pixel and the time in place of t_min
+/// and t_max.
 struct MakeCentreRays {
     PictureView picture;
     uint32_t seed; // the seed, unless the picture is a batch
@@ -25,7 +27,7 @@ struct MakeCentreRays {
     float* times;   // null if nothing but cameras moves
 
     HD void operator()(uint32_t i) const {
-        const uint32_t pixel = window.pixel_at(FilmSlot{first + i});
+        const uint32_t pixel = BeginOrder{window, 0, 1}.pixel(first + i);
         const BatchView& batch = picture.batch;
         if (!batch.is_there()) return store(i, pixel, picture.camera, {pixel, 0, seed});
         store(i, pixel, batch.camera_of(pixel), batch.key(pixel, 0));
@@ -41,21 +43,21 @@ private:
     }
 };
 
-/// The stage that stores the layers of slots [first, ...). The features are as in make_surface and MovedHit.
+/// The stage that stores the layers of these rays' pixels. The features are as in make_surface and MovedHit.
 template <ShadingVariant kVariant, bool kMoves>
 struct StoreCentres {
     PictureView picture;
     const Ray* rays;
     HitQueueView hits;
-    uint32_t first;
+    PixelWindow window;
     CentreArrays into;
 
     HD void operator()(uint32_t i) const {
         const Hit hit = hits.load(i);
-        const uint64_t slot = uint64_t(first) + i;
+        const Ray ray = load_ray(rays + i);
+        const auto slot = static_cast<uint64_t>(window.slot_of(bits_of(ray.t_min)));
         const SceneView& scene = picture.scene;
         if (shows_background(scene, hit.instance)) return store_none(slot);
-        const Ray ray = load_ray(rays + i);
         const float time = ray.t_max;
         const MovedHit moved(scene, hit, kMoves ? time : kAtRest);
         const InstanceView& instance = scene.instances[hit.instance];
