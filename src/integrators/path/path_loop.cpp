@@ -138,7 +138,7 @@ public:
         for (uint32_t k = 0; k < missed; ++k) shade(missed_[k], none, 0);
         add_light();
         counts.shadow += shadows_;
-        keep_those_that_go_on();
+        compact();
         counts.bounce += going_on_;
     }
 
@@ -198,7 +198,7 @@ private:
         }
     }
 
-    void keep_those_that_go_on() {
+    void compact() {
         going_on_ = 0;
         for (uint32_t i = 0; i < count_; ++i) {
             if (!goes_on_[i]) {
