@@ -196,7 +196,7 @@ MUTATIONS = [
     ("the farthest child may be one that the ray does not enter", "unit/flight_stack",
      ("src/trace/wide/flight_stack.h", "_mm_and_si128(keys_of(children), in_of(children))", "keys_of(children)")),
     ("rays in flight never begin at their far ends", "unit/flight_stack",
-     ("src/trace/wide/traversals_in_flight.h", "entered, flight.visitor.goes_far_first());", "entered, false);")),
+     ("src/trace/wide/traversals_in_flight.h", "entered, flight.visitor.visits_far_first());", "entered, false);")),
     ("quantised boxes are not grown", "consistency/wide_traversals",
      ("src/trace/intersect/compressed_boxes.h", "fma(0x1p-7f, s, grow)", "fma(-0.5f, s, grow)")),
     ("the entry of a compressed traversal's group is rounded up", "consistency/wide_traversals",

@@ -160,7 +160,7 @@ private:
         if (!connect_to_camera(camera, surface.position, lens, seen)) return;
         const AcceptHit accept = {scene.picture.scene, {}, {}, 0};
         if (scene.picture.scene.any_hidden_back != 0 &&
-            AcceptCameraHit{accept, seen.direction}.meets_hidden_back(hit.instance, hit.primitive)) {
+            AcceptCameraHit{accept, seen.direction}.hits_hidden_back(hit.instance, hit.primitive)) {
             return; // the camera sees through its back
         }
         const Vec3 wo = -seen.direction;
