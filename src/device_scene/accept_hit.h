@@ -121,7 +121,7 @@ struct AcceptCameraHit {
         if (accept.scene.instances[instance].hides_back == 0) return false;
         const uint32_t motion = accept.scene.motions.of(instance);
         const Vec3 at_rest =
-            motion == kNoMotion ? direction : accept.scene.motions.at(motion, accept.time).turn_back(direction);
+            motion == kNoMotion ? direction : accept.scene.motions.at(motion, accept.time).rotate_back(direction);
         return hides_side(accept.scene, at_rest, instance, primitive);
     }
 };

@@ -49,7 +49,7 @@ struct MovedLine {
 };
 HD_CALL inline MovedLine moved_back(const SceneView* scene, uint32_t motion, const float* time, const Ray* ray) {
     const RigidMotion now = scene->motions.at(motion, time != nullptr ? *time : kAtRest);
-    return {now.move_back(ray->origin), now.turn_back(ray->direction)};
+    return {now.move_back(ray->origin), now.rotate_back(ray->direction)};
 }
 
 /// Acceptance for scenes whose surfaces are all opaque and without culled backs. It is separate because the traversal

@@ -263,7 +263,7 @@ void PosedScene::check_placements(double time_s) const {
         const Instance& instance = scene_.instances[i];
         if (!instance_moves_[i] || instance.is_hidden || is_left[instance.mesh]) continue;
         const Bounds3& local = bounds_[instance.mesh];
-        if (local.is_empty() || lies_near(instance.world_from_local, local)) continue;
+        if (local.is_empty() || is_within_limits(instance.world_from_local, local)) continue;
         throw Error(ErrorCode::OverLimit, "time", fmt::format("{}", time_s),
                     fmt::format("{} lies beyond 2^40 metres then; scale the scene down",
                                 numbered("instance", i, instance.name, origin_of(instance))));
@@ -277,7 +277,7 @@ void PosedScene::place_cameras() {
         camera.ortho_height = cameras_[i].ortho_height;
         if (camera.node == kNoNode || !node_moves_[camera.node]) continue;
         const std::optional<Transform> rigid = without_scale(world_from_node_[camera.node]);
-        const bool stands = rigid && lies_near(*rigid, Bounds3{{0, 0, 0}, {0, 0, 0}});
+        const bool stands = rigid && is_within_limits(*rigid, Bounds3{{0, 0, 0}, {0, 0, 0}});
         camera.world_from_camera = stands ? *rigid : cameras_at_rest_[i].world_from_camera;
         camera.world_from_camera.translation = rounded_to_file(scene_, camera.world_from_camera.translation);
     }
@@ -294,7 +294,7 @@ void PosedScene::place_lights() {
         if (light.node != kNoNode && node_moves_[light.node]) {
             bool stands = place_light(world_from_node_[light.node], light);
             light.direction = normalize_safely(light.direction);
-            stands = stands && lies_near(make_translation(light.position), Bounds3{{0, 0, 0}, {0, 0, 0}});
+            stands = stands && is_within_limits(make_translation(light.position), Bounds3{{0, 0, 0}, {0, 0, 0}});
             if (!stands) {
                 light = rest;
                 light.intensity = {0, 0, 0};
