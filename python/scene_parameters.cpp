@@ -98,7 +98,7 @@ std::string why_no_aim(const Scene& scene, uint32_t, std::span<const double> val
 }
 
 void set_light(Scene& scene, uint32_t i, std::span<const double> values) {
-    place_light(transform_of(values, scene.origin_in_file), scene.lights[i]);
+    transform_light(transform_of(values, scene.origin_in_file), scene.lights[i]);
     scene.lights[i].direction = normalize_safely(scene.lights[i].direction);
 }
 

@@ -94,12 +94,12 @@ SceneUpdate PosedScene::set_time(double time_s) {
     }
     if (!is_animated()) return {};
     read_channels(time_s);
-    place_nodes();
-    place_instances();
+    update_nodes();
+    update_instances();
     shape_meshes();
     check_placements(time_s);
-    place_cameras();
-    place_lights();
+    update_cameras();
+    update_lights();
     return take_changes();
 }
 
@@ -130,8 +130,8 @@ PosedScene::Placements PosedScene::placements_at(double time_s) {
     const auto cameras = cameras_, placed_cameras = scene_.cameras;
     const auto lights = lights_;
     read_channels(time_s);
-    place_nodes();
-    place_cameras();
+    update_nodes();
+    update_cameras();
     Placements placements = {std::vector<std::optional<Transform>>(scene_.instances.size()), scene_.cameras};
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
         const Instance& instance = scene_.instances[i];
@@ -194,7 +194,7 @@ void PosedScene::read_channels(double time_s) {
     }
 }
 
-void PosedScene::place_nodes() {
+void PosedScene::update_nodes() {
     for (const uint32_t node : parents_first_) {
         if (!node_moves_[node]) continue; // stays at rest
         const DoubleTransform* matrix = std::get_if<DoubleTransform>(&scene_.nodes[node].pose);
@@ -242,7 +242,7 @@ void PosedScene::shape_meshes() {
     }
 }
 
-void PosedScene::place_instances() {
+void PosedScene::update_instances() {
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
         Instance& instance = scene_.instances[i];
         if (!instance_moves_[i] || scene_.nodes[instance.node].skin != kNoSkin) continue;
@@ -270,7 +270,7 @@ void PosedScene::check_placements(double time_s) const {
     }
 }
 
-void PosedScene::place_cameras() {
+void PosedScene::update_cameras() {
     for (std::size_t i = 0; i < scene_.cameras.size(); ++i) {
         Camera& camera = scene_.cameras[i];
         camera.fov_y = cameras_[i].fov_y;
@@ -283,7 +283,7 @@ void PosedScene::place_cameras() {
     }
 }
 
-void PosedScene::place_lights() {
+void PosedScene::update_lights() {
     for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
         const Light& rest = lights_at_rest_[i];
         Light light = rest;
@@ -292,7 +292,7 @@ void PosedScene::place_lights() {
         light.cos_inner = lights_[i].cos_inner;
         light.cos_outer = min(lights_[i].cos_outer, light.cos_inner - kSharpestEdge);
         if (light.node != kNoNode && node_moves_[light.node]) {
-            bool stands = place_light(world_from_node_[light.node], light);
+            bool stands = transform_light(world_from_node_[light.node], light);
             light.direction = normalize_safely(light.direction);
             stands = stands && is_within_limits(make_translation(light.position), Bounds3{{0, 0, 0}, {0, 0, 0}});
             if (!stands) {

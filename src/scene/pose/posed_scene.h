@@ -55,12 +55,12 @@ private:
     void drop_shapes_at_rest();
     void find_shapes_to_leave();
     void read_channels(double time_s);
-    void place_nodes();
-    void place_instances();
+    void update_nodes();
+    void update_instances();
     void shape_meshes();
     void check_placements(double time_s) const;
-    void place_cameras();
-    void place_lights();
+    void update_cameras();
+    void update_lights();
     SceneUpdate take_changes();
 
     Scene scene_;
