@@ -463,7 +463,7 @@ TEST_CASE("a render that a sink stops adds nothing unfinished, and the next pict
     settings.pass_samples = 1;
     session.set_settings(settings);
     CHECK(session.render(3, test::AskedSink(0)) == 1); // a pass is finished once there is a sample to lose
-    session.leave_passes(true);
+    session.interrupt_passes(true);
     CHECK(session.render(3, test::AskedSink(1)) == 0);
     CHECK(session.history().samples == 2);
     Session fresh(queue, mixed.prepared, camera_at(0), settings);
