@@ -118,7 +118,7 @@ Light light_of(ArgumentFields& fields, DoubleVec3 origin) {
     light.kind = static_cast<LightKind>(fields.one_of("kind", "point", {"point", "spot", "directional"}));
     const LightParts parts = parts_of(light.kind);
     fields.color("intensity", light.intensity);
-    if (const auto transform = fields.transform("transform")) place_light(transform_of(*transform, origin), light);
+    if (const auto transform = fields.transform("transform")) transform_light(transform_of(*transform, origin), light);
     if (parts.position) {
         if (const auto at = fields.point("position")) light.position = to_float(*at - origin);
         fields.number("range", light.range);

@@ -84,7 +84,7 @@ std::vector<Property> of_materials() {
 std::string why_no_place(const Scene& scene, uint32_t i, std::span<const double> values) {
     const Transform placed = transform_of(values, scene.origin_in_file);
     if (is_singular(placed)) return "the transform is singular";
-    const bool is_near = lies_near(placed, bounds_of(scene.meshes[scene.instances[i].mesh]));
+    const bool is_near = is_within_limits(placed, bounds_of(scene.meshes[scene.instances[i].mesh]));
     return is_near ? "" : "the instance lies beyond 2^40 metres then";
 }
 
@@ -98,7 +98,7 @@ std::string why_no_aim(const Scene& scene, uint32_t, std::span<const double> val
 }
 
 void set_light(Scene& scene, uint32_t i, std::span<const double> values) {
-    place_light(transform_of(values, scene.origin_in_file), scene.lights[i]);
+    transform_light(transform_of(values, scene.origin_in_file), scene.lights[i]);
     scene.lights[i].direction = normalize_safely(scene.lights[i].direction);
 }
 

@@ -114,7 +114,7 @@ int bench_build(BuildFlags& flags) {
     flags.settings.read(flags, reporter);
     const std::vector<std::string> scenes = check_record_scenes(flags.scenes);
     listen_for_interrupt();
-    const std::unique_ptr<Queue> queue = take_machine(flags.machine, reporter);
+    const std::unique_ptr<Queue> queue = open_queue(flags.machine, reporter);
     BenchReport report(reporter, flags.report, *queue, "Trees built on the device");
     for (const std::string& scene : scenes) bench_scene(scene, *queue, flags, reporter, report);
     report.write();

@@ -115,7 +115,7 @@ int bench_scenes(PictureFlags& flags) {
     for (const std::string& scene : scenes) check_bench_scene(scene);
     listen_for_interrupt();
     std::vector<std::unique_ptr<Queue>> queues;
-    queues.push_back(take_machine(flags.machine, reporter));
+    queues.push_back(open_queue(flags.machine, reporter));
     if (flags.machine.device == "auto" && queues.front()->is_cuda()) queues.push_back(choose_device("cpu", reporter));
     reporter.report_messages();
     BenchReport report(reporter, flags.report, *queues.front(), "Loading, building and rendering");

@@ -175,7 +175,7 @@ int bench_rays(RaysFlags& flags) {
     flags.settings.read(flags, reporter);
     const std::vector<std::string> scenes = check_record_scenes(flags.scenes);
     listen_for_interrupt();
-    const std::unique_ptr<Queue> queue = take_machine(flags.machine, reporter);
+    const std::unique_ptr<Queue> queue = open_queue(flags.machine, reporter);
     const TracerChoice choice = tracer_choice(flags.tracer, queue->is_cuda()).value(); // there is one: of the best tree
     BenchReport report(reporter, flags.report, *queue, "Rays of the record");
     std::vector<double> ratios;

@@ -92,7 +92,7 @@ Scores measure(RenderSetup& ready, Session& session, PictureRecord& record, cons
         const uint32_t frame = ready.sequence.first + number;
         reporter.progress((number + 1.0) / ready.sequence.count(),
                           fmt::format("frame {} of {}", number + 1, ready.sequence.count()));
-        go_to_frame(frame, camera, *ready.moving, session, record, reporter);
+        seek_frame(frame, camera, *ready.moving, session, record, reporter);
         session.render_frame(FrameRange::sample_of(frame), settings, restir);
         const std::optional<Image> instead = session.frame().shown_instead();
         const Image ours = instead ? *instead : session.frame().picture();

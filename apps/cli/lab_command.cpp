@@ -137,7 +137,7 @@ int run(LabFlags& flags) {
     if (!flags.thesis && !flags.transport && flags.scene.scene.empty()) {
         throw Error(ErrorCode::BadInput, "scene", "", "it is required (or --thesis, or --transport)");
     }
-    const std::unique_ptr<Queue> queue = take_machine(flags.machine, reporter);
+    const std::unique_ptr<Queue> queue = open_queue(flags.machine, reporter);
     if (flags.transport) {
         reporter.set_work("loading");
         return run_transport_command(*queue, flags, flags.of_transport, flags.output, reporter);

@@ -71,7 +71,7 @@ int measure(MeasureFlags& flags) {
     Reporter reporter(flags.report);
     flags.settings.read(flags, reporter);
     const MeterPoint point = point_of(flags); // before anything is read
-    ComingMachine machine(flags.machine, reporter);
+    StartingMachine machine(flags.machine, reporter);
     reporter.report_messages();
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
     const RenderSettings& settings = flags.render;

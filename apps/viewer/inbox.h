@@ -102,7 +102,7 @@ private:
         if (message.kind == MessageKind::Set) {
             is_taken = set_view_setting(after, message.name, message.value).empty();
         } else if (message.kind == MessageKind::Shape) {
-            is_taken = take_window_shape(after, message.width, message.height);
+            is_taken = resize_to_window(after, message.width, message.height);
         }
         if (!is_taken) return Effect::None;
         const ViewState before = std::exchange(expected_, std::move(after));

@@ -99,8 +99,8 @@ void RenderLoop::steer(const Steer& requested) {
         return;
     }
     if (message.kind == MessageKind::Shape) {
-        if (!take_window_shape(view_, message.width, message.height)) return;
-        take_window_shape(shown_, message.width, message.height);
+        if (!resize_to_window(view_, message.width, message.height)) return;
+        resize_to_window(shown_, message.width, message.height);
         camera_.fit(aspect_of(view_.options.render.width, view_.options.render.height), view_.lens);
         shown_.lens = view_.lens;
         is_done_ = false;
@@ -125,10 +125,10 @@ void RenderLoop::steer(const Steer& requested) {
     case MessageKind::Pick:
         return pick(requested);
     case MessageKind::Home:
-        camera_.go_home(clock_.time_s, view_.lens);
+        camera_.return_to_start(clock_.time_s, view_.lens);
         break;
     case MessageKind::Camera:
-        camera_.take_scene_camera(message.index, clock_.time_s, view_.lens);
+        camera_.use_scene_camera(message.index, clock_.time_s, view_.lens);
         break;
     case MessageKind::Play:
     case MessageKind::Time:
@@ -157,7 +157,7 @@ void RenderLoop::steer(const Steer& requested) {
 
 void RenderLoop::steer_time(const ClientMessage& message) {
     if (message.kind == MessageKind::Time) {
-        clock_.go_to(static_cast<double>(message.at));
+        clock_.seek(static_cast<double>(message.at));
         moved_at_s_ = now_s_();
     } else {
         clock_.speed = std::max(static_cast<double>(message.speed), kSlowestTime);
@@ -191,7 +191,7 @@ void RenderLoop::steer_path(const Steer& requested) {
 }
 
 /// Advances time since the last call, if it runs.
-void RenderLoop::let_time_pass() {
+void RenderLoop::advance_time() {
     const double now = now_s_(), passed = now - std::exchange(clocked_at_s_, now);
     if (time_runs()) clock_.advance(std::min(passed, kLongestStep));
 }
@@ -207,7 +207,7 @@ void RenderLoop::follow_time() {
     if (!clock_.time_s || clock_.time_s == followed_s_) return;
     followed_s_.reset();
     if (start_.is_animated) source_.set_time(*clock_.time_s);
-    camera_.go_to(clock_.time_s, view_.lens);
+    camera_.seek(clock_.time_s, view_.lens);
     followed_s_ = clock_.time_s;
 }
 
@@ -262,7 +262,7 @@ std::optional<ShownFrame> RenderLoop::next_frame(const FrameRequest& wanted) {
 }
 
 void RenderLoop::show_next() {
-    let_time_pass();
+    advance_time();
     try {
         follow_time();
     } catch (const Error& error) {

@@ -33,7 +33,7 @@ struct SceneClock {
         plays = on;
     }
 
-    void go_to(double to_s) { time_s = std::clamp(to_s, 0.0, end_s); }
+    void seek(double to_s) { time_s = std::clamp(to_s, 0.0, end_s); }
 };
 
 } // namespace pertev

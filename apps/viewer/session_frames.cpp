@@ -425,7 +425,7 @@ std::optional<ShownFrame> SessionFrames::make_next(const FrameRequest& request) 
     const bool is_slow = growth_.is_slow(), is_short = was_begun && growth_.is_short(sample_s_);
     const std::atomic<bool>& stops = is_slow ? hurry_ : abandon_;
     FlagSink flag(is_of_movement ? nullptr : &stops);
-    session_.leave_passes(!is_short);
+    session_.interrupt_passes(!is_short);
     const RayCounts rays_before = session_.rays();
     const Stopwatch render;
     ShownFrame frame;

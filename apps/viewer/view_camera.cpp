@@ -104,7 +104,7 @@ CameraSource ViewCamera::on_path(double time_s) const {
     return source;
 }
 
-void ViewCamera::go_to(std::optional<double> time_s, Camera& lens) {
+void ViewCamera::seek(std::optional<double> time_s, Camera& lens) {
     if (is_own_) return;
     switch (guide_) {
     case Guide::Start:
@@ -122,7 +122,7 @@ void ViewCamera::go_to(std::optional<double> time_s, Camera& lens) {
     }
 }
 
-void ViewCamera::go_home(std::optional<double> time_s, Camera& lens) {
+void ViewCamera::return_to_start(std::optional<double> time_s, Camera& lens) {
     if (is_path_of_file_) {
         lens = start_.camera;
         follow_path(time_s, lens);
@@ -134,7 +134,7 @@ void ViewCamera::go_home(std::optional<double> time_s, Camera& lens) {
     pose_ = start_.pose;
     is_own_ = false;
     if (aspect_ > 0) fit(aspect_, lens);
-    go_to(time_s, lens);
+    seek(time_s, lens);
 }
 
 void ViewCamera::fit(float aspect, Camera& lens) {
@@ -142,7 +142,7 @@ void ViewCamera::fit(float aspect, Camera& lens) {
     if (start_.framed && guide_ == Guide::Start && !is_own_) place(start_.framed(aspect), lens);
 }
 
-bool ViewCamera::take_scene_camera(uint32_t index, std::optional<double> time_s, Camera& lens) {
+bool ViewCamera::use_scene_camera(uint32_t index, std::optional<double> time_s, Camera& lens) {
     if (index >= scene_.cameras.size()) return false;
     guide_ = Guide::SceneCamera;
     index_ = index;
@@ -150,7 +150,7 @@ bool ViewCamera::take_scene_camera(uint32_t index, std::optional<double> time_s,
     pose_ = start_.pose; // for its viewing distance
     place({.camera = scene_.cameras[index]}, lens);
     lens = base_;
-    go_to(time_s, lens);
+    seek(time_s, lens);
     return true;
 }
 
@@ -161,7 +161,7 @@ bool ViewCamera::follow_path(std::optional<double> time_s, Camera& lens) {
     is_own_ = false;
     base_ = start_.camera;
     pose_ = start_.pose;
-    go_to(time_s, lens);
+    seek(time_s, lens);
     lens.fov_y = base_.fov_y; // keys define these
     lens.focus_distance = base_.focus_distance;
     return true;

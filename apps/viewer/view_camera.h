@@ -35,7 +35,7 @@ class ViewCamera {
 public:
     static constexpr std::size_t kMaxKeys = 100;
 
-    /// `start` and `scene` outlive the camera. `scene` is at the clock's time whenever go_to() is called.
+    /// `start` and `scene` outlive the camera. `scene` is at the clock's time whenever seek() is called.
     ViewCamera(const StartCamera& start, const Scene& scene);
 
     /// The camera with this lens at its position.
@@ -54,13 +54,13 @@ public:
 
     // Each of these sets the lens of the camera's new guide; of a path all but the aperture.
 
-    void go_home(std::optional<double> time_s, Camera& lens);
+    void return_to_start(std::optional<double> time_s, Camera& lens);
     /// Returns false if there is no such camera.
-    bool take_scene_camera(uint32_t index, std::optional<double> time_s, Camera& lens);
+    bool use_scene_camera(uint32_t index, std::optional<double> time_s, Camera& lens);
     /// Returns false if it has no keys.
     bool follow_path(std::optional<double> time_s, Camera& lens);
     /// Moves the guide to `time_s`. Changes of the lens by the user are kept.
-    void go_to(std::optional<double> time_s, Camera& lens);
+    void seek(std::optional<double> time_s, Camera& lens);
 
     /// The aspect ratio has changed: a default view shows the whole scene again.
     void fit(float aspect, Camera& lens);

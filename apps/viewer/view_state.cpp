@@ -353,7 +353,7 @@ bool is_shown_otherwise(const ViewState& before, const ViewState& after) {
            before.finds_exposure != after.finds_exposure;
 }
 
-bool take_window_shape(ViewState& state, uint32_t width, uint32_t height) {
+bool resize_to_window(ViewState& state, uint32_t width, uint32_t height) {
     if (state.window_pixels == 0) return false;
     const PictureSize now = size_for_window(width, height, state.window_pixels);
     const PictureSize before = {std::exchange(state.options.render.width, now.width),

@@ -82,7 +82,7 @@ bool is_shown_otherwise(const ViewState& before, const ViewState& after);
 
 /// Gives the picture the shape of a window of this size in pixels, unless its size was requested. Returns whether the
 /// size has changed.
-bool take_window_shape(ViewState& state, uint32_t width, uint32_t height);
+bool resize_to_window(ViewState& state, uint32_t width, uint32_t height);
 
 /// Changes a setting by name. Returns empty on success, else why nothing was changed.
 std::string set_view_setting(ViewState& state, const std::string& name, const SettingValue& value);

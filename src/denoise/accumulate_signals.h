@@ -48,7 +48,7 @@ struct AccumulateSignals {
             const Reprojection then =
                 reproject_surface(with_straight_lenses(cameras), scene, scene_before, centre, frame.hit[pixel]);
             was_at[pixel] = then.pixel;
-            taps = find_taps(before, cameras, then.pixel, max(then.depth, 1e-20f), normal, kSeenAlike, object);
+            taps = find_taps(before, cameras, then.pixel, max(then.depth, 1e-20f), normal, kMinNormalCosine, object);
             if constexpr (kFollows) {
                 step = light_step(change, then.pixel, normal, object);
                 longest_diffuse =

@@ -19,7 +19,7 @@ struct CompareLight {
         const Float4 normal = after.normal[i], normal_before = before.normal[i];
         const uint32_t object = bits_of(after.hit[i].x);
         const bool is_same = object != kNoHit && bits_of(before.hit[i].x) == object &&
-                             is_seen_alike(normal_before, normal.w, vec3_of(normal));
+                             is_similar_surface(normal_before, normal.w, vec3_of(normal));
         guide[i] = pack({vec3_of(normal), after.albedo[i].w, normal.w, is_same ? object : kNoHit});
         was[i] = signals_of(before, i);
         is[i] = signals_of(after, i);

@@ -44,7 +44,7 @@ HD inline Taps find_taps(const HistoryView& before, const FrameCameras& cameras,
         const Float4 then = before.guide[py * w + px];
         if (object_of(then) != object) return false;
         if (!(dot(normal_of(then), normal) > min_cosine)) return false;
-        return !(depth > 0) || is_depth_alike(depth_of(then), depth);
+        return !(depth > 0) || is_similar_depth(depth_of(then), depth);
     };
     const float left = floor(x), top = floor(y), in_x = x - left, in_y = y - top;
     const int column = to_int(left, -1, w), row = to_int(top, -1, h);

@@ -55,7 +55,7 @@ public:
     /// Directs later work to stream `index`. The CPU has only one.
     virtual void use_stream(int index) = 0;
     /// Makes stream `waiting` wait for the work queued on stream `other` so far.
-    virtual void let_wait(int waiting, int other) = 0;
+    virtual void make_stream_wait(int waiting, int other) = 0;
     virtual std::size_t free_bytes() const = 0;
 
     /// Allocates device memory. Returns null if there is not enough; throws Error(DeviceFault) for any other failure.

@@ -47,7 +47,7 @@ public:
     bool is_cuda() const override { return false; }
     void* stream() const override { return nullptr; }
     void use_stream(int) override {}
-    void let_wait(int, int) override {}
+    void make_stream_wait(int, int) override {}
     std::size_t free_bytes() const override {
         return static_cast<std::size_t>(::sysconf(_SC_AVPHYS_PAGES)) *
                static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
@@ -79,7 +79,7 @@ public:
     bool is_dry_run() const override { return true; }
     void* stream() const override { return nullptr; }
     void use_stream(int) override {}
-    void let_wait(int, int) override {}
+    void make_stream_wait(int, int) override {}
     std::size_t free_bytes() const override { return SIZE_MAX; }
     void* allocate(std::size_t bytes) override {
         const std::uintptr_t at = next_; // aligned and unique, like a memory address

@@ -59,7 +59,7 @@ public:
         Queue& queue_;
     };
     /// Makes stream `waiting` wait for the work queued on stream `other` so far.
-    void let_wait(int waiting, int other) { backend_->let_wait(waiting, other); }
+    void make_stream_wait(int waiting, int other) { backend_->make_stream_wait(waiting, other); }
     /// Number of concurrent streams.
     int streams() const { return streams_; }
     /// While it exists, launches, fills and waits use stream `index`. The only copy allowed is a Readback; uploads and
@@ -128,10 +128,10 @@ private:
     explicit Queue(std::unique_ptr<DeviceBackend> backend) : backend_(std::move(backend)) {}
     void fork_streams(int count) {
         streams_ = count;
-        for (int i = 1; i < count; ++i) backend_->let_wait(i, 0);
+        for (int i = 1; i < count; ++i) backend_->make_stream_wait(i, 0);
     }
     void join_streams() {
-        for (int i = 1; i < streams_; ++i) backend_->let_wait(0, i);
+        for (int i = 1; i < streams_; ++i) backend_->make_stream_wait(0, i);
         streams_ = 1;
     }
     void use_stream(int index) {

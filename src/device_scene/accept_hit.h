@@ -114,14 +114,14 @@ struct AcceptCameraHit {
 
     HD Ray move_back(uint32_t motion, const Ray& ray) const { return accept.move_back(motion, ray); }
     HD bool operator()(uint32_t instance, uint32_t primitive, float u, float v) const {
-        return !meets_hidden_back(instance, primitive) && accept(instance, primitive, u, v);
+        return !hits_hidden_back(instance, primitive) && accept(instance, primitive, u, v);
     }
 
-    HD bool meets_hidden_back(uint32_t instance, uint32_t primitive) const {
+    HD bool hits_hidden_back(uint32_t instance, uint32_t primitive) const {
         if (accept.scene.instances[instance].hides_back == 0) return false;
         const uint32_t motion = accept.scene.motions.of(instance);
         const Vec3 at_rest =
-            motion == kNoMotion ? direction : accept.scene.motions.at(motion, accept.time).turn_back(direction);
+            motion == kNoMotion ? direction : accept.scene.motions.at(motion, accept.time).rotate_back(direction);
         return hides_side(accept.scene, at_rest, instance, primitive);
     }
 };

@@ -38,7 +38,7 @@ HD_CALL inline bool passes_surface(const SceneView* scene, const Ray* ray, uint3
 HD_CALL inline bool passes_moved_surface(const SceneView* scene, const Ray* ray, uint32_t key, bool hides_backs,
                                          const float* time, uint32_t instance, uint32_t primitive, float u, float v) {
     const AcceptHit accept{*scene, {}, {}, key, time != nullptr ? *time : kAtRest};
-    if (hides_backs && AcceptCameraHit{accept, ray->direction}.meets_hidden_back(instance, primitive)) return true;
+    if (hides_backs && AcceptCameraHit{accept, ray->direction}.hits_hidden_back(instance, primitive)) return true;
     return scene->any_alpha != 0 && !accept.passes_alpha(instance, primitive, u, v);
 }
 
@@ -49,7 +49,7 @@ struct MovedLine {
 };
 HD_CALL inline MovedLine moved_back(const SceneView* scene, uint32_t motion, const float* time, const Ray* ray) {
     const RigidMotion now = scene->motions.at(motion, time != nullptr ? *time : kAtRest);
-    return {now.move_back(ray->origin), now.turn_back(ray->direction)};
+    return {now.move_back(ray->origin), now.rotate_back(ray->direction)};
 }
 
 /// Acceptance for scenes whose surfaces are all opaque and without culled backs. It is separate because the traversal

@@ -18,11 +18,11 @@ HD inline bool is_moving(const SceneView& scene) {
 
 HD inline void move_surface(const RigidMotion& motion, Surface& surface) {
     const float error = motion.error(surface.position);
-    surface.error = motion.turn_sizes(surface.error) + Vec3{error, error, error};
+    surface.error = motion.rotate_extents(surface.error) + Vec3{error, error, error};
     surface.position = motion.move(surface.position);
-    surface.geometric_normal = motion.turn(surface.geometric_normal);
+    surface.geometric_normal = motion.rotate(surface.geometric_normal);
     Frame& frame = surface.frame;
-    frame = {motion.turn(frame.tangent), motion.turn(frame.bitangent), motion.turn(frame.normal)};
+    frame = {motion.rotate(frame.tangent), motion.rotate(frame.bitangent), motion.rotate(frame.normal)};
 }
 
 /// The position of a hit's instance at the ray's time. The surface is made at the position at rest, for the ray moved
@@ -39,7 +39,7 @@ struct MovedHit {
         moves = number != kNoMotion && time >= 0;
         if (moves) motion = scene.motions.at(number, time);
     }
-    HD Vec3 back(Vec3 direction) const { return moves ? motion.turn_back(direction) : direction; }
+    HD Vec3 back(Vec3 direction) const { return moves ? motion.rotate_back(direction) : direction; }
     HD void move(Surface& surface) const {
         if (moves) move_surface(motion, surface);
     }

@@ -29,7 +29,7 @@ using PointOnTriangle = PointOnTriangleOf<float>;
 /// Moves the position (u, v) inwards if one of its three weights is below `least` (in [0, 1/4]). Each weight is then
 /// at least 2/3 of that; nothing changes if none is below it.
 template <class T = float>
-HD inline PointOnTriangleOf<T> keep_off_edges(T u, T v, T least) {
+HD inline PointOnTriangleOf<T> inset_barycentrics(T u, T v, T least) {
     const T w = 1.0f - u - v;
     const MaskOf<T> is_near = !(min(w, min(u, v)) >= least);
     if (!any(is_near)) return {u, v};

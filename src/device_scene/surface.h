@@ -182,7 +182,7 @@ HD inline void place_hit(WorldTriangleOf<T>& triangle, const PlacementOf<T>& pla
 
     triangle.error = hit_error(placement, triangle.at(u, v), triangle.ab, triangle.ac);
     const T least = (16.0f * inv) * max_component(triangle.error) / max(length(across), T(0x1p-4f));
-    const PointOnTriangleOf<T> uv = keep_off_edges(u, v, min(least, T(0.25f)));
+    const PointOnTriangleOf<T> uv = inset_barycentrics(u, v, min(least, T(0.25f)));
     triangle.position = triangle.at(uv.u, uv.v);
 }
 

@@ -35,7 +35,7 @@ public:
     void set_settings(const Settings& settings) { settings_ = settings; }
 
 protected:
-    bool goes_by_loop(const WorkSize& size) const { return in_loop_ && size.traverses_on_host; }
+    bool uses_loop(const WorkSize& size) const { return in_loop_ && size.traverses_on_host; }
     /// Returns the trees that the loop traverses for the current picture, or null if it does not run by the loop.
     const HostTrees* trees_of_loop() const { return in_loop_ ? tracer_->host_trees() : nullptr; }
     bool is_abandoned() const { return sink_ != nullptr && sink_->should_stop(); }
@@ -60,7 +60,7 @@ protected:
     static constexpr uint32_t kLoopCount = 256; // minimum number of pixels that a thread of the loop takes at once
     /// Calls work(begin, end) with ranges of [0, count) on all threads and adds up the rays that the calls return.
     template <class Work>
-    void share_out(uint64_t count, uint64_t least, const Work& work) {
+    void trace_ranges(uint64_t count, uint64_t least, const Work& work) {
         const UseThreads use(queue_.threads());
         std::atomic<uint64_t> bounces{0}, shadows{0};
         parallel_for_ranges(count, least, [&](uint64_t begin, uint64_t end) {

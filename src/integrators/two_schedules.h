@@ -157,7 +157,7 @@ protected:
         if (begin >= end) return;
         Job part = job;
         if (const HostTrees* trees = Base::trees_of_loop()) {
-            Base::share_out(end - begin, uint64_t(kLoopCount) * of_pixel, [&](uint64_t from, uint64_t to) {
+            Base::trace_ranges(end - begin, uint64_t(kLoopCount) * of_pixel, [&](uint64_t from, uint64_t to) {
                 Job own = job;
                 Thread thread(*trees, own, loop_capacity);
                 run_in_parts(thread.schedule, own, begin + from, begin + to, loop_capacity.count, run);

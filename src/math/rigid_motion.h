@@ -28,16 +28,16 @@ struct MotionKey {
 };
 static_assert(sizeof(MotionKey) == 32);
 
-/// A motion at one time: p maps to turn(p - pivot) + position.
+/// A motion at one time: p maps to rotate(p - pivot) + position.
 struct RigidMotion {
     Vec3 row0 = {1, 0, 0}, row1 = {0, 1, 0}, row2 = {0, 0, 1}; // rows of the rotation
     Vec3 pivot = {0, 0, 0}, position = {0, 0, 0};
 
-    HD Vec3 turn(Vec3 v) const { return {dot(row0, v), dot(row1, v), dot(row2, v)}; }
-    HD Vec3 turn_back(Vec3 v) const { return v.x * row0 + v.y * row1 + v.z * row2; }
-    HD Vec3 turn_sizes(Vec3 v) const { return {dot(abs(row0), v), dot(abs(row1), v), dot(abs(row2), v)}; }
-    HD Vec3 move(Vec3 p) const { return turn(p - pivot) + position; }
-    HD Vec3 move_back(Vec3 p) const { return turn_back(p - position) + pivot; }
+    HD Vec3 rotate(Vec3 v) const { return {dot(row0, v), dot(row1, v), dot(row2, v)}; }
+    HD Vec3 rotate_back(Vec3 v) const { return v.x * row0 + v.y * row1 + v.z * row2; }
+    HD Vec3 rotate_extents(Vec3 v) const { return {dot(abs(row0), v), dot(abs(row1), v), dot(abs(row2), v)}; }
+    HD Vec3 move(Vec3 p) const { return rotate(p - pivot) + position; }
+    HD Vec3 move_back(Vec3 p) const { return rotate_back(p - position) + pivot; }
 
     /// Bound of the rounding error of move() for `p` followed by move_back(), for all components, metres: for each of
     /// the two, rows are off by 6 units of 2^-24, a rotation adds 3 and the sums 2, of at most the sum of all

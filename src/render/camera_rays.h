@@ -58,7 +58,7 @@ struct CameraRays {
         return is_open ? sample_1d(sampler, key, kGroupLens, kNumberTime) : kAtRest;
     }
     /// The axis at a ray's time.
-    HD Vec3 axis_at(float time) const { return motion.moves() ? motion.at(time).turn(axis) : axis; }
+    HD Vec3 axis_at(float time) const { return motion.moves() ? motion.at(time).rotate(axis) : axis; }
     /// Density of the direction in 1/sr for a light meter, whose rays count as scattered by a white surface; otherwise
     /// 0.
     HD float pdf_of_surface(Vec3 direction) const {
@@ -70,7 +70,7 @@ struct CameraRays {
 private:
     HD Ray moved(const Ray& still, float time) const {
         const RigidMotion now = motion.at(time);
-        return {now.move(still.origin), still.t_min, normalize(now.turn(still.direction)), still.t_max};
+        return {now.move(still.origin), still.t_min, normalize(now.rotate(still.direction)), still.t_max};
     }
 };
 

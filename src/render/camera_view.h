@@ -31,7 +31,7 @@ struct CameraView {
 /// The origin of a camera ray that does not exist, because the lens shows nothing at that place of the picture. The ray
 /// leads away from every scene, so nothing blocks it, and it brings no light.
 inline constexpr float kNowhere = 0x1p44f;
-HD inline bool is_nowhere(Vec3 origin) { return max_component(abs(origin)) > 0x1p42f; }
+HD inline bool is_outside_lens(Vec3 origin) { return max_component(abs(origin)) > 0x1p42f; }
 
 /// Half the height of the view: at distance 1, or in metres for parallel rays.
 float half_view_height(const Camera& camera);
@@ -143,7 +143,7 @@ HD inline bool is_projected(const CameraView& camera, float depth) {
 HD inline Vec2 reproject_far(const CameraView& now, const CameraView& before, Vec2 pixel) {
     if (has_parallel_rays(now.projection)) return pixel;
     const Ray ray = make_camera_ray(now, pixel, {0, 0});
-    if (is_nowhere(ray.origin)) return pixel;
+    if (is_outside_lens(ray.origin)) return pixel;
     return project_point(before, before.world_from_camera.translation + ray.direction).pixel;
 }
 

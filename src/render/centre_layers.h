@@ -74,7 +74,7 @@ struct StoreCentres {
             const Vec3 still = shading_frame<kVariant>(scene, instance, mesh, material, triangle, hit,
                                                        front_normal(instance, mesh, triangle), wo, tilt)
                                    .normal;
-            const Vec3 normal = kMoves && moved.moves ? moved.motion.turn(still) : still;
+            const Vec3 normal = kMoves && moved.moves ? moved.motion.rotate(still) : still;
             store(into.normal, slot, dot(normal, ray.direction) > 0 ? -normal : normal);
         }
         const Vec3 at_rest = triangle.at(hit.u, hit.v); // on the ray; WorldTriangle::position is kept off edges

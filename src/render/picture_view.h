@@ -15,7 +15,7 @@ struct PictureView {
     BatchView batch = {};         // if it is there, `camera` has the size of the tall picture and no place
 
     /// Returns whether a camera ray from `origin` that hits nothing is black.
-    HD bool hides_background(Vec3 origin) const { return hide_background || is_nowhere(origin); }
+    HD bool hides_background(Vec3 origin) const { return hide_background || is_outside_lens(origin); }
     /// The camera's axis for a pixel at a ray's time.
     HD Vec3 axis_at(uint32_t pixel, float time) const {
         if (!batch.is_there()) return camera.axis_at(time);

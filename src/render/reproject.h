@@ -64,13 +64,13 @@ HD inline Reprojection reproject_surface(const FrameCameras& cameras, const Scen
 }
 
 /// Minimum cosine of two normals that may belong to the same surface.
-inline constexpr float kSeenAlike = 0.5f;
-HD inline bool is_depth_alike(float seen, float depth) { return abs(seen - depth) <= 0.05f * depth; }
+inline constexpr float kMinNormalCosine = 0.5f;
+HD inline bool is_similar_depth(float seen, float depth) { return abs(seen - depth) <= 0.05f * depth; }
 
 /// Returns whether a pixel with this normal and depth (GBufferView::normal) shows approximately the surface at `depth`
 /// with this normal; otherwise it is disoccluded.
-HD inline bool is_seen_alike(Float4 seen, float depth, Vec3 normal) {
-    return is_depth_alike(seen.w, depth) && dot(vec3_of(seen), normal) > kSeenAlike;
+HD inline bool is_similar_surface(Float4 seen, float depth, Vec3 normal) {
+    return is_similar_depth(seen.w, depth) && dot(vec3_of(seen), normal) > kMinNormalCosine;
 }
 
 } // namespace pertev

@@ -38,7 +38,7 @@ struct FindBefore {
                 const uint32_t there = static_cast<uint32_t>(to_int(p.y, 0, static_cast<int>(height) - 1)) * width +
                                        static_cast<uint32_t>(to_int(p.x, 0, static_cast<int>(width) - 1));
                 if (bits_of(last.hit[there].x) == object && at.depth > 0 &&
-                    is_seen_alike(last.normal[there], at.depth, vec3_of(now.normal[pixel]))) {
+                    is_similar_surface(last.normal[there], at.depth, vec3_of(now.normal[pixel]))) {
                     found.pixels[0] = there;
                 }
             }
@@ -69,7 +69,7 @@ struct FindNeighbours {
                           to_y = y + to_int(floor(offset.y + 0.5f), -height, height);
                 if ((to_x == x && to_y == y) || to_x < 0 || to_y < 0 || to_x >= width || to_y >= height) continue;
                 const uint32_t there = static_cast<uint32_t>(to_y * width + to_x);
-                if (!here.is_there(there) || !is_seen_alike(normal[there], own.w, vec3_of(own))) continue;
+                if (!here.is_there(there) || !is_similar_surface(normal[there], own.w, vec3_of(own))) continue;
                 found.pixels[count++] = there;
             }
         }

@@ -57,7 +57,7 @@ inline constexpr float kSharpestEdge = 0x1p-24f;
 
 /// Places `light` at the origin of a node, shining along the node's -z; scaling does not affect its strength. Returns
 /// false if the direction is lost.
-inline bool place_light(const Transform& world_from_node, Light& light) {
+inline bool transform_light(const Transform& world_from_node, Light& light) {
     light.position = world_from_node.translation;
     light.direction = normalize(-column(world_from_node, 2));
     return !parts_of(light.kind).direction || is_finite(light.direction);

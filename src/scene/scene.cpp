@@ -31,7 +31,7 @@ Bounds3 bounds_of(const Mesh& mesh) {
     return bounds;
 }
 
-bool lies_near(const Transform& world_from_local, const Bounds3& local) {
+bool is_within_limits(const Transform& world_from_local, const Bounds3& local) {
     for (int corner = 0; corner < 8; ++corner) {
         const Vec3 p = transform_point(world_from_local, corner_of(local, corner));
         if (!(is_finite(p) && max_component(abs(p)) <= kMaxCoordinate)) return false;

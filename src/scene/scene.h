@@ -88,7 +88,7 @@ inline bool is_skewed(const Transform& world_from_local) {
 inline bool is_mirroring(const Transform& world_from_local) { return determinant(world_from_local) < 0; }
 
 /// Returns whether all of `local` lies within kMaxCoordinate after the transform.
-bool lies_near(const Transform& world_from_local, const Bounds3& local);
+bool is_within_limits(const Transform& world_from_local, const Bounds3& local);
 
 /// World-space box of all instances that are neither hidden nor background.
 Bounds3 bounds_of(const Scene& scene);

@@ -82,7 +82,7 @@ void set_origin(const DoubleBounds3& box, Scene& scene) {
     scene.is_far = largest(scene.origin_in_file) > kFarSizes * longest_side(box);
 }
 
-void take_off_centre(Scene& scene) {
+void subtract_centre(Scene& scene) {
     for (Instance& instance : scene.instances) {
         if (is_singular(instance.world_from_local)) instance.is_hidden = true;
     }

@@ -28,7 +28,7 @@ void set_origin(const DoubleBounds3& box, Scene& scene);
 
 /// Moves a scene in the coordinates of its file to the middle of its box at rest: instances, cameras, lights, and
 /// vertices with joints are placed again by the nodes.
-void take_off_centre(Scene& scene);
+void subtract_centre(Scene& scene);
 
 /// Converts a position of the scene to the coordinates of the file, and back; the latter rounds.
 inline DoubleVec3 in_file(const Scene& scene, Vec3 p) { return scene.origin_in_file + to_double(p); }

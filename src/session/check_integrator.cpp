@@ -26,7 +26,7 @@ auto is_unlit_in(const Scene& scene) {
 bool is_all_unlit(const Scene& scene) { return std::ranges::all_of(scene.instances, is_unlit_in(scene)); }
 /// Returns whether the scene has unlit surfaces. Paths carry their colour on, though they are no lights.
 bool has_unlit(const Scene& scene) { return std::ranges::any_of(scene.instances, is_unlit_in(scene)); }
-bool gives_light(const Environment& environment) {
+bool emits_light(const Environment& environment) {
     const Rgb scale = environment.scale;
     if (environment.image.pixels.empty()) return max_component(scale) > 0;
     const std::vector<float>& pixels = environment.image.pixels;
@@ -37,7 +37,7 @@ bool gives_light(const Environment& environment) {
 }
 bool has_any_light(const Scene& scene) {
     return has_punctual_light(scene) || has_emitter(scene) || is_all_unlit(scene) ||
-           (scene.environment && gives_light(*scene.environment));
+           (scene.environment && emits_light(*scene.environment));
 }
 /// A list such as "no emitter, no point, spot or directional light, no environment".
 std::string no_lights_of(const Scene& scene) {
@@ -57,12 +57,12 @@ bool lacks_lights(const RenderSettings& settings, const Scene& scene) {
     return wants_lights && settings.path.max_depth > 0 && !has_punctual_light(scene) && !is_all_unlit(scene);
 }
 bool has_own_ambient(const RenderSettings& settings, const Scene& scene) {
-    return describe(settings.integrator).has_mean_ambient && scene.environment && gives_light(*scene.environment);
+    return describe(settings.integrator).has_mean_ambient && scene.environment && emits_light(*scene.environment);
 }
 
 /// A phrase such as "this scene has only emitters".
 std::string lights_of(const Scene& scene) {
-    const bool has_environment = scene.environment && gives_light(*scene.environment);
+    const bool has_environment = scene.environment && emits_light(*scene.environment);
     const std::string others =
         fmt::format("{}{}{}", has_emitter(scene) ? "emitters" : "",
                     has_emitter(scene) && has_environment ? " and " : "", has_environment ? "an environment" : "");

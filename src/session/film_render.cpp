@@ -118,7 +118,7 @@ uint32_t FilmRender::render(SampleRange range, Sink& sink) {
     const RayCounts rays_before = stats_.rays;
     const double seconds_before = stats_.render_seconds;
     const Stopwatch watch;
-    const bool is_apart = leaves_passes_ && on_cpu && before > 0 && !has_steps;
+    const bool is_apart = interrupts_passes_ && on_cpu && before > 0 && !has_steps;
     if (!is_apart) pass_film_.reset();
     Film& into = is_apart ? fit_film(pictures_.queue(), pass_film_, settings_, add_targets_) : into_film;
     bool makes = false;
@@ -136,7 +136,7 @@ uint32_t FilmRender::render(SampleRange range, Sink& sink) {
                                integrator.rays());
         };
         const uint32_t pass = next_pass(settings_, count - done, done, watch.seconds());
-        Sink* const stops = on_cpu && (leaves_passes_ || (before == 0 && done == 0)) ? &sink : nullptr;
+        Sink* const stops = on_cpu && (interrupts_passes_ || (before == 0 && done == 0)) ? &sink : nullptr;
         integrator.stop_with(stops);
         uint32_t added = pass;
         try {

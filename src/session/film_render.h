@@ -34,13 +34,13 @@ public:
     /// (Integrator::render_while), the sink also hears of it during passes, with the samples in the film so far, and
     /// while an integrator precomputes (Integrator::prepare), with the share that is done. Returns the number of
     /// samples added: at least one if one was requested and fits, but none if the sink stopped before there was one.
-    /// A CPU stops at once while there is no sample to lose; later it finishes the pass, unless leave_passes() was
+    /// A CPU stops at once while there is no sample to lose; later it finishes the pass, unless interrupt_passes() was
     /// called. Throws what PictureRenderer::begin and the sink throw; the film then holds all passes that were done
     /// before.
     uint32_t render(SampleRange range, Sink& sink = nobody());
     /// Lets a CPU leave any pass unfinished when a sink stops. Samples of the call are then lost. Those that the film
     /// had before are kept: each pass goes through a second film, which doubles the memory.
-    void leave_passes(bool leaves) { leaves_passes_ = leaves; }
+    void interrupt_passes(bool leaves) { interrupts_passes_ = leaves; }
 
     /// Returns the film of the current picture. It is all zero before the first sample.
     Film& film();
@@ -79,7 +79,7 @@ private:
     RenderStats stats_;             // without the values that stats() reads from the device
     std::optional<double> hidden_back_share_;
     uint64_t number_; // number of the picture (PictureRenderer::new_number)
-    bool leaves_passes_ = false;
+    bool interrupts_passes_ = false;
 };
 
 } // namespace pertev

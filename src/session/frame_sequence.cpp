@@ -81,7 +81,7 @@ bool FrameSequence::render(uint32_t number, const Camera& camera, const RenderSe
     const TemporalGradientsView change = measure_gradients(of_light, reconstruction);
     frame.leave(shared != nullptr ? shared->first_bounce() : FirstBounceView{});
     Sink* const stops = pictures_.queue().is_cuda() ? nullptr : &sink; // a GPU's samples are short
-    take_sample(number, camera, of_light, frame, stops);
+    render_sample(number, camera, of_light, frame, stops);
     if (stops != nullptr && sink.should_stop()) { // parts of the sample may be missing
         cut();
         return false;
@@ -100,7 +100,7 @@ bool FrameSequence::render(uint32_t number, const Camera& camera, const RenderSe
         of_features.height = settings.height;
         of_features.path.max_depth = 0;
         NoisyFrame& features = fit_frame(scene, features_, settings.width, settings.height);
-        take_sample(number, camera, of_features, features);
+        render_sample(number, camera, of_features, features);
         const CameraView feature_camera = pictures_.view_of(camera, of_features).camera.view;
         reconstruction_->add_upsampled(frame, light.camera.view, features, feature_camera, light.scene, before, change,
                                        reconstruction);
@@ -115,7 +115,7 @@ bool FrameSequence::render(uint32_t number, const Camera& camera, const RenderSe
         oidn_.reset();
     }
     const bool has_changed = std::exchange(scene_has_changed_, false);
-    keep_light(number, camera, of_light, reconstruction.follow_light && has_changed);
+    store_light(number, camera, of_light, reconstruction.follow_light && has_changed);
     return true;
 }
 
@@ -129,8 +129,8 @@ void FrameSequence::denoise(const NoisyFrame& frame) {
 }
 
 /// Renders sample `number` of each pixel of `frame`, at its size. Once `sink` stops, pixels are left out.
-void FrameSequence::take_sample(uint32_t number, const Camera& camera, RenderSettings settings, NoisyFrame& frame,
-                                Sink* sink) {
+void FrameSequence::render_sample(uint32_t number, const Camera& camera, RenderSettings settings, NoisyFrame& frame,
+                                  Sink* sink) {
     settings.width = frame.width();
     settings.height = frame.height();
     Integrator& integrator = pictures_.begin(camera, settings, 1);
@@ -152,16 +152,16 @@ TemporalGradientsView FrameSequence::measure_gradients(const RenderSettings& of_
     const bool is_known = settings.follow_light && scene_has_changed_ && before && reconstruction_->frames() > 0 &&
                           before->path == of_light.path;
     if (!is_known) return {};
-    take_sample(before->number, before->camera, of_light, temporal_gradients_->after());
+    render_sample(before->number, before->camera, of_light, temporal_gradients_->after());
     return temporal_gradients_->compare();
 }
 
 /// Renders a small picture of the scene for the gradients of the next frame if `goes_on`, because motion usually
 /// continues.
-void FrameSequence::keep_light(uint32_t number, const Camera& camera, const RenderSettings& of_light, bool goes_on) {
+void FrameSequence::store_light(uint32_t number, const Camera& camera, const RenderSettings& of_light, bool goes_on) {
     light_before_.reset();
     if (!goes_on) return;
-    take_sample(number, camera, of_light, temporal_gradients_->before());
+    render_sample(number, camera, of_light, temporal_gradients_->before());
     light_before_ = {camera, number, of_light.path};
 }
 
@@ -191,7 +191,7 @@ FrameTones FrameSequence::tones() const {
     return reconstruction_.value().tones(features_ ? *features_ : sample_.value());
 }
 
-void FrameSequence::keep_as_before(const Camera& camera) {
+void FrameSequence::store_previous(const Camera& camera) {
     if (reconstruction_) reconstruction_->cut();
     pictures_.scene().keep_instances();
     has_moved_ = true;

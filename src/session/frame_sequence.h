@@ -51,17 +51,17 @@ public:
 
     /// Makes the present scene, seen by `camera`, the reference of motion(). Reconstruction restarts. Throws
     /// Error(OutOfMemory).
-    void keep_as_before(const Camera& camera);
-    /// Returns the motion of each pixel since keep_as_before(), in pixels to the right and up; 0 after a cut
+    void store_previous(const Camera& camera);
+    /// Returns the motion of each pixel since store_previous(), in pixels to the right and up; 0 after a cut
     /// (denoise/motion_vectors.h). Throws Error(OutOfMemory, DeviceFault).
     Image motion(const Camera& camera, const RenderSettings& settings);
 
 private:
-    void take_sample(uint32_t number, const Camera& camera, RenderSettings settings, NoisyFrame& frame,
-                     Sink* sink = nullptr);
+    void render_sample(uint32_t number, const Camera& camera, RenderSettings settings, NoisyFrame& frame,
+                       Sink* sink = nullptr);
     void denoise(const NoisyFrame& frame);
     TemporalGradientsView measure_gradients(const RenderSettings& of_light, const ReconstructionSettings& settings);
-    void keep_light(uint32_t number, const Camera& camera, const RenderSettings& of_light, bool goes_on);
+    void store_light(uint32_t number, const Camera& camera, const RenderSettings& of_light, bool goes_on);
     Restir* restir_for(const RestirSettings& settings, const RenderSettings& of_light);
 
     PictureRenderer& pictures_;
@@ -74,7 +74,7 @@ private:
     DeviceTimer sharing_timer_;           // time of the last frame's reservoirs
     bool has_moved_ = false;              // whether the scene has moved since the last frame and holds its previous
                                           // positions
-    std::optional<Camera> camera_before_; // camera of keep_as_before()
+    std::optional<Camera> camera_before_; // camera of store_previous()
     bool scene_has_changed_ = false;      // since the last frame
     std::optional<TemporalGradients> temporal_gradients_;
     /// The frame whose scene temporal_gradients_ shows.

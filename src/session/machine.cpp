@@ -32,15 +32,15 @@ int cuda_index(const std::string& name) {
 } // namespace
 
 std::unique_ptr<Queue> choose_device(const std::string& name, Sink& sink) {
-    return ComingMachine({.device = name}, sink).take();
+    return StartingMachine({.device = name}, sink).take();
 }
 
-std::unique_ptr<Queue> take_machine(const MachineOptions& options, Sink& sink) {
+std::unique_ptr<Queue> open_queue(const MachineOptions& options, Sink& sink) {
     if (options.threads > 0) set_thread_count(static_cast<int>(options.threads));
     return choose_device(options.device, sink);
 }
 
-ComingMachine::ComingMachine(const MachineOptions& options, Sink& sink) : name_(options.device), sink_(sink) {
+StartingMachine::StartingMachine(const MachineOptions& options, Sink& sink) : name_(options.device), sink_(sink) {
     if (options.threads > 0) set_thread_count(static_cast<int>(options.threads));
     if (name_ == "cpu") {
         queue_ = std::make_unique<Queue>(Queue::make_cpu());
@@ -66,7 +66,7 @@ ComingMachine::ComingMachine(const MachineOptions& options, Sink& sink) : name_(
     });
 }
 
-bool ComingMachine::is_cuda() {
+bool StartingMachine::is_cuda() {
     if (!is_cuda_) {
         const std::string reason = why_no_gpu_.get();
         is_cuda_ = reason.empty();
@@ -76,13 +76,13 @@ bool ComingMachine::is_cuda() {
     return *is_cuda_;
 }
 
-bool ComingMachine::may_be_cuda() {
+bool StartingMachine::may_be_cuda() {
     const bool is_known =
         is_cuda_.has_value() || why_no_gpu_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
     return is_known || !may_have_cuda() ? is_cuda() : true;
 }
 
-std::unique_ptr<Queue> ComingMachine::take() {
+std::unique_ptr<Queue> StartingMachine::take() {
     is_cuda(); // for its notice
     return queue_ ? std::move(queue_) : coming_.get();
 }

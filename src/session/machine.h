@@ -18,14 +18,14 @@ namespace pertev {
 std::unique_ptr<Queue> choose_device(const std::string& name, Sink& sink);
 
 /// Sets the number of threads that work for the calling thread, and returns the queue of choose_device.
-std::unique_ptr<Queue> take_machine(const MachineOptions& options, Sink& sink);
+std::unique_ptr<Queue> open_queue(const MachineOptions& options, Sink& sink);
 
 /// Takes the machine while its user reads a scene, because starting a GPU's driver takes as long as that. If there is
 /// no driver, a named GPU is refused at once; everything else is known later.
-class ComingMachine {
+class StartingMachine {
 public:
     /// Starts to take the machine; `sink` outlives it. Throws as choose_device.
-    ComingMachine(const MachineOptions& options, Sink& sink);
+    StartingMachine(const MachineOptions& options, Sink& sink);
 
     /// Waits until the device is known. Throws Error(BadInput) if a named GPU cannot be used.
     bool is_cuda();

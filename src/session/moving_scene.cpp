@@ -80,7 +80,7 @@ std::shared_ptr<const MotionKeys> MovingScene::motions_at(double time_s) {
         std::vector<std::optional<Transform>> of_things;
         for (const uint32_t i : instances) {
             const std::optional<Transform>& placement = placements.instances[i];
-            if (placement && !lies_near(*placement, bounds_of(now.meshes[now.instances[i].mesh]))) {
+            if (placement && !is_within_limits(*placement, bounds_of(now.meshes[now.instances[i].mesh]))) {
                 throw Error(
                     ErrorCode::OverLimit, "shutter", "",
                     fmt::format("instance {} lies beyond 2^40 metres at {} s, while it is open; scale the scene down",

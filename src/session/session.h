@@ -68,7 +68,7 @@ public:
         return film_.render({first, first + std::min(samples, kMaxSamplesPerPixel - first)}, sink);
     }
     uint32_t render(uint32_t samples, Sink&& sink) { return render(samples, sink); }
-    void leave_passes(bool leaves) { film_.leave_passes(leaves); }
+    void interrupt_passes(bool leaves) { film_.interrupt_passes(leaves); }
 
     /// Returns the film of the current picture. It is all zero before the first sample.
     const Film& film() { return film_.film(); }
@@ -92,7 +92,7 @@ public:
     Reconstruction& frame() { return frames_.reconstruction(); }
     RenderResult frame_result() { return frames_.result(camera(), settings()); }
     /// Makes the present scene and camera the reference of motion vectors (kAovMotion).
-    void keep_as_before() { frames_.keep_as_before(camera()); }
+    void store_previous() { frames_.store_previous(camera()); }
     Image motion() { return frames_.motion(camera(), settings()); }
 
     /// Renders another picture of the scene, of samples from `first` on. The film stays as it is.

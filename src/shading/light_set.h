@@ -262,9 +262,9 @@ struct SampleOfKind {
             const auto motion = emitters(view.triangles[light].instance);
             const Vec3 from_point = motion.move_back(context.point);
             if (!triangle_light_at<kTextures>(view, light, pmf, from_point, b, sample)) return false;
-            sample.wi = motion.turn(sample.wi);
+            sample.wi = motion.rotate(sample.wi);
             sample.light_point = motion.move(sample.light_point);
-            sample.light_normal = motion.turn(sample.light_normal);
+            sample.light_normal = motion.rotate(sample.light_normal);
             return true;
         }
     }

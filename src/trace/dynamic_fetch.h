@@ -9,9 +9,9 @@
 // Besides the common interface (trace/traverse_scene.h), such a traversal has
 //   State(State::Slot[State::kSlots])                  the state of a ray, initially done; is_done(), stop()
 //   start(tree, ray, visitor, state)                   puts the ray at the root
-//   turn(tree, ray, instance, state, visitor, counter, lanes, working)    advances it; returns true if the visitor
-//                                                      ended the traversal. `lanes` make this turn together, `working`
-//                                                      of them have an active ray; the turn does nothing for the others
+//   step(tree, ray, instance, state, visitor, counter, lanes, working)    advances it; returns true if the visitor
+//                                                      ended the traversal. `lanes` take this step together, `working`
+//                                                      of them have an active ray; the step does nothing for the others
 //
 // Source: Aila, Laine, Karras, "Understanding the Efficiency of Ray Traversal on GPUs - Kepler and Fermi Addendum",
 // 2012.
@@ -107,7 +107,7 @@ __global__ void __launch_bounds__(kTraversalThreads, kBlocksWanted<Scene>)
         const auto count_working = [&] { return count_lanes(ballot(kWarp, !state.is_done())); };
         for (int working = count_working(); working != 0;) { // by all lanes, because votes of a whole warp are
                                                              // cheapest
-            state.turn(scene, ray, search.visitor, counter, kWarp, working);
+            state.step(scene, ray, search.visitor, counter, kWarp, working);
             working = count_working();
             if (count != 0 && working < Traversal::State::kRefillBelow) break;
         }

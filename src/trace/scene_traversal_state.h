@@ -29,11 +29,11 @@ struct SceneTraversalState<Traversal, SingleTree<typename Traversal::Tree>> {
     HD void start(const Scene& scene, const Ray& ray, const Visitor& visitor) {
         Traversal::start(scene.baked, ray, visitor, state);
     }
-    /// Takes one turn. All of `lanes` must call it together; it does nothing for those that are done.
+    /// Takes one step. All of `lanes` must call it together; it does nothing for those that are done.
     template <class Visitor, class Counter>
-    HD void turn(const Scene& scene, const Ray& ray, Visitor& visitor, const Counter& counter, LaneMask lanes,
+    HD void step(const Scene& scene, const Ray& ray, Visitor& visitor, const Counter& counter, LaneMask lanes,
                  int working) {
-        if (Traversal::turn(scene.baked, ray, kNoHit, state, visitor, counter, lanes, working)) state.stop();
+        if (Traversal::step(scene.baked, ray, kNoHit, state, visitor, counter, lanes, working)) state.stop();
     }
 };
 
@@ -58,12 +58,12 @@ struct SceneTraversalState<Traversal, SceneTrees<typename Traversal::Tree>> {
         top = {scene.tlas_root};
         Traversal::start(tree, local, visitor, state);
     }
-    /// Takes one turn. All of `lanes` must call it together; it does nothing for those that are done.
+    /// Takes one step. All of `lanes` must call it together; it does nothing for those that are done.
     template <class Visitor, class Counter>
-    HD void turn(const Scene& scene, const Ray& ray, Visitor& visitor, const Counter& counter, LaneMask lanes,
+    HD void step(const Scene& scene, const Ray& ray, Visitor& visitor, const Counter& counter, LaneMask lanes,
                  int working) {
         if (state.is_done() && top.link != kNoLink) next_tree(scene, ray, visitor, counter);
-        if (Traversal::turn(tree, local, instance, state, visitor, counter, lanes, working)) {
+        if (Traversal::step(tree, local, instance, state, visitor, counter, lanes, working)) {
             state.stop();
             top.link = kNoLink;
         }
@@ -72,7 +72,7 @@ struct SceneTraversalState<Traversal, SceneTrees<typename Traversal::Tree>> {
 private:
     template <class Visitor, class Counter>
     HD void next_tree(const Scene& scene, const Ray& ray, const Visitor& visitor, const Counter& counter) {
-        if (instance != kNoHit) leave_leaf(top, tlas_stack, visitor.limit());
+        if (instance != kNoHit) finish_leaf(top, tlas_stack, visitor.limit());
         if (top.link == kNoLink) return;
         const RayBoxes boxes = make_ray_boxes(ray.origin, ray.direction, scene.tlas_reach, scene.tlas_growth);
         const uint32_t leaf = next_leaf(top, scene.tlas_nodes, boxes, ray.t_min, visitor.limit(), tlas_stack, counter);

@@ -43,7 +43,7 @@ HD inline Ray transform_ray(const Transform& local_from_world, const Ray& ray) {
 
 /// Moves the ray to the rest position of an instance that has moved by `motion`, before its transform.
 HD inline Ray move_back(const RigidMotion& motion, const Ray& ray) {
-    return {motion.move_back(ray.origin), ray.t_min, motion.turn_back(ray.direction), ray.t_max};
+    return {motion.move_back(ray.origin), ray.t_min, motion.rotate_back(ray.direction), ray.t_max};
 }
 
 /// Transforms the ray to an instance's space at the ray's time. A scene with motions needs an Accept that knows the

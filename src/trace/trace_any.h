@@ -25,7 +25,7 @@ struct AnyVisitor {
 
     HD float limit() const { return t_max; }
     HD bool is_done() const { return found; }
-    HD bool goes_far_first() const { return !(t_max < kInfinity); }
+    HD bool visits_far_first() const { return !(t_max < kInfinity); }
     HD bool visit(uint32_t instance, uint32_t primitive, const TriangleHit& hit) {
         found = accept(instance, primitive, hit.u, hit.v);
         return found;

@@ -22,7 +22,7 @@ struct ClosestVisitor {
 
     HD float limit() const { return best.t; }
     HD bool is_done() const { return false; }
-    HD static constexpr bool goes_far_first() { return false; }
+    HD static constexpr bool visits_far_first() { return false; }
     HD bool visit(uint32_t instance, uint32_t primitive, const TriangleHit& hit) {
         // Bit operations in place of branches, because lanes of a warp that differ here would be serialized.
         const bool lower = (instance < best.instance) | ((instance == best.instance) & (primitive < best.primitive));

@@ -4,7 +4,7 @@
 // any-hit searches differ only in the visitor:
 //   float limit() const                              boxes with a greater entry parameter are skipped
 //   bool visit(instance, primitive, TriangleHit)     receives each candidate; returns true to end the traversal
-//   bool goes_far_first() const                      whether far children should come first (trace_any.h); used by
+//   bool visits_far_first() const                      whether far children should come first (trace_any.h); used by
 //                                                    CompressedTraversal, traverse_wide.h and traversals_in_flight.h
 // The set of triangles that a visitor receives may differ between structures; its result must not.
 
@@ -43,7 +43,7 @@ HD inline void traverse_scene(const SceneTrees<typename Traversal::Tree>& scene,
     uint32_t instance = kNoHit;
     for (;;) { // one mesh per turn, so that a kernel has one copy of the inner traversal, and a warp reconverges here
         if (Traversal::traverse(tree, local, instance, visitor, counter)) return;
-        if (instance != kNoHit) leave_leaf(top, tlas_stack, visitor.limit());
+        if (instance != kNoHit) finish_leaf(top, tlas_stack, visitor.limit());
         if (top.link == kNoLink) return;
         // Recomputed in each turn, which is cheaper than keeping it in registers through the inner traversal.
         const RayBoxes boxes = make_ray_boxes(ray.origin, ray.direction, scene.tlas_reach, scene.tlas_growth);

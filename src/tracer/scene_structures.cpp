@@ -40,7 +40,7 @@ Tlas tlas_over(std::span<const PlacedBvh> placed, const std::map<uint32_t, Bound
         const auto bounds = bounds_of_trees.find(tree.blas);
         if (bounds == bounds_of_trees.end()) continue;
         tree.local_bounds = bounds->second;
-        if (tree.local_bounds.is_empty() || lies_near(tree.world_from_local, tree.local_bounds)) continue;
+        if (tree.local_bounds.is_empty() || is_within_limits(tree.world_from_local, tree.local_bounds)) continue;
         throw Error(ErrorCode::OverLimit, "scene", "",
                     fmt::format("instance {} lies beyond 2^40 metres with its moved vertices; scale the scene down",
                                 tree.instance));

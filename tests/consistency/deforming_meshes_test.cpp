@@ -305,13 +305,13 @@ Image motion_of_frame(Queue& queue, const RenderSettings& settings, int first, i
     Messages messages;
     MovingScene moving(make_bending_scene(), 0.1, {}, messages);
     Session session(queue, moving.prepared(), camera_of_bending(), settings);
-    const auto go_to = [&](double time_s) {
+    const auto seek = [&](double time_s) {
         if (const uint32_t parts = moving.set_time(time_s, messages)) session.update_scene(moving.prepared(), parts);
     };
     for (int frame = first; frame <= k; ++frame) {
-        go_to((frame - 1) / 8.0);
-        session.keep_as_before();
-        go_to(frame / 8.0);
+        seek((frame - 1) / 8.0);
+        session.store_previous();
+        seek(frame / 8.0);
     }
     return session.motion();
 }

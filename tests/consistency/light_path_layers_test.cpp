@@ -28,7 +28,7 @@ constexpr const char* kLightLayers[] = {"seen=LE",       "direct=L[DG]E",       
 std::shared_ptr<const LightPathLayers> light_layers_in(const Scene& scene, std::span<const std::string> texts) {
     std::vector<LightPathExpression> expressions;
     for (const std::string& text : texts) expressions.push_back(parse_light_path(text));
-    return std::make_shared<const LightPathLayers>(put_to_scene(std::move(expressions), scene));
+    return std::make_shared<const LightPathLayers>(bind_to_scene(std::move(expressions), scene));
 }
 
 RenderSettings with_light_layers(const Scene& scene) {

@@ -277,7 +277,7 @@ TEST_CASE(
     std::vector<LightPathExpression> expressions;
     for (const char* text : {"direct=L[DG]E", "all=L.*E"}) expressions.push_back(parse_light_path(text));
     settings.light_paths =
-        std::make_shared<const LightPathLayers>(put_to_scene(std::move(expressions), moving.scene()));
+        std::make_shared<const LightPathLayers>(bind_to_scene(std::move(expressions), moving.scene()));
     Queue cpu = Queue::make_cpu();
     const Hash128 loop = picture_of(cpu, moving.prepared(), rushing_camera(), settings);
     settings.body = PathBody::Wavefront;

@@ -98,7 +98,7 @@ struct PostponingTraversal {
         for (uint32_t turns = 0; !place.is_done(); ++turns) {
             const bool waits = place.nodes.is_empty();
             const bool alone = waits || (!kAlways && hash_word(bits_of(ray.direction.x) + turns) % 4 == 0);
-            if (Traversal::turn(bvh, ray, instance, place, visitor, counter, kAlone, alone ? 1 : 32)) return true;
+            if (Traversal::step(bvh, ray, instance, place, visitor, counter, kAlone, alone ? 1 : 32)) return true;
             max_entries = max(max_entries, place.size);
         }
         return false;

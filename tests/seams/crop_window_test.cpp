@@ -140,7 +140,7 @@ TEST_CASE("a film of a window has the bytes of the whole picture's layers of lig
     IntegratorSettings settings;
     settings.path.sampler = SamplerKind::Independent;
     settings.light_paths = std::make_shared<const LightPathLayers>(
-        put_to_scene({parse_light_path("lamps=L<'lamp'>.*E"), parse_light_path("once=L.E")}, scene));
+        bind_to_scene({parse_light_path("lamps=L<'lamp'>.*E"), parse_light_path("once=L.E")}, scene));
     Queue queue = test::requested_queue();
     for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
         settings.body = body;

@@ -25,7 +25,7 @@ struct BlindingWorld {
         settings.width = 32, settings.height = 20, settings.samples = 5;
         settings.aovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
         settings.light_paths = std::make_shared<const LightPathLayers>(
-            put_to_scene({parse_light_path("sky=L<'environment'>.*E"), parse_light_path("once=L.E")}, scene));
+            bind_to_scene({parse_light_path("sky=L<'environment'>.*E"), parse_light_path("once=L.E")}, scene));
     }
 };
 

@@ -30,10 +30,10 @@ struct RoundRays {
 template <class Listener>
 struct RoundPath {
     PathState state;
-    typename Listener::Kept kept;
+    typename Listener::PathData kept;
     typename Listener::ShadowData shadow_data;
     Rgb connection_light; // light of the shadow ray
-    bool goes_on, wants_shadow;
+    bool goes_on, has_shadow_ray;
 };
 
 template <class Listener>
@@ -70,23 +70,23 @@ struct ShadeRound {
 
     HD void operator()(uint32_t i) const {
         RoundPath<Listener>& path = view.paths[i];
-        path.wants_shadow = false;
+        path.has_shadow_ray = false;
         view.shadows.store_none(i);
         if (!path.goes_on) return;
         Listener listener(job);
         if (path.state.depth == 0) {
             listener.begins(path.state);
         } else {
-            listener.take_up(path.kept);
+            listener.restore(path.kept);
         }
         ShadowRay shadow;
         const Hit hit = view.hits.load(i);
         path.goes_on =
-            shade_vertex<kFeatures>(job, path.state, hit, DrawOnDemand(), shadow, path.wants_shadow, listener);
-        listener.put_down(path.kept);
+            shade_vertex<kFeatures>(job, path.state, hit, DrawOnDemand(), shadow, path.has_shadow_ray, listener);
+        listener.save(path.kept);
         view.store_ray(i);
-        if (!path.wants_shadow) return;
-        listener.hand_over(path.shadow_data);
+        if (!path.has_shadow_ray) return;
+        listener.save_shadow_data(path.shadow_data);
         path.connection_light = shadow.contribution;
         view.shadows.store(i, {shadow.origin, 0, shadow.direction, shadow.t_max}, shadow.start, shadow.target);
     }
@@ -99,7 +99,7 @@ struct AddRoundLight {
 
     HD void operator()(uint32_t i) const {
         RoundPath<Listener>& path = view.paths[i];
-        if (!path.wants_shadow || view.occlusions.instances[i] != kNoHit) return;
+        if (!path.has_shadow_ray || view.occlusions.instances[i] != kNoHit) return;
         path.state.radiance += path.connection_light;
         Listener(job).arrived(path.kept, path.shadow_data, path.connection_light);
     }

@@ -70,14 +70,14 @@ struct DensityJob : PathJob {
 };
 class DensityListener : public PathListener<DensityListener> {
 public:
-    struct Kept {
+    struct PathData {
         Vec3 point, normal;
         bool lets_through;
     };
 
     HD explicit DensityListener(const DensityJob& job) : job_(job) {}
-    HD void take_up(const Kept& kept) { kept_ = kept; }
-    HD bool takes(const PathState& path, const EmitterPoint& point, float pdf) {
+    HD void restore(const PathData& kept) { kept_ = kept; }
+    HD bool removes_emission(const PathState& path, const EmitterPoint& point, float pdf) {
         if (path.bsdf_pdf > 0) {
             const float off = abs(pdf - density_of(point)) / pdf;
             atomic_add(off < 1e-3f ? job_.right : job_.wrong, 1u);
@@ -89,7 +89,7 @@ public:
         const Vec3 normal = at.surface.frame.normal;
         kept_ = {at.surface.position, dot(at.wo, normal) < 0 ? -normal : normal, at.surface.bsdf.lets_through()};
     }
-    HD void put_down(Kept& kept) const { kept = kept_; }
+    HD void save(PathData& kept) const { kept = kept_; }
 
 private:
     HD float density_of(const EmitterPoint& point) const {
@@ -106,7 +106,7 @@ private:
     }
 
     const DensityJob& job_;
-    Kept kept_ = {};
+    PathData kept_ = {};
 };
 
 using TableRounds = PathRounds<kPlainDiffuse, FilmListeners>;

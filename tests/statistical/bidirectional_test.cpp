@@ -169,7 +169,7 @@ TEST_CASE(
             RenderSettings settings = settings_of(c);
             settings.samples = c.samples_for(32);
             settings.light_paths = std::make_shared<const LightPathLayers>(
-                put_to_scene({parse_light_path("connected=LE|L.*[DG]E")}, c.scene));
+                bind_to_scene({parse_light_path("connected=LE|L.*[DG]E")}, c.scene));
             const test::PictureEstimate connected =
                 test::estimate_picture(queue, prepared, c.camera, settings, 24, 2000);
             CHECK(test::p_value(light, connected) > 0.001);
@@ -188,7 +188,7 @@ TEST_CASE("distributed ray tracing gives its light paths the brightness that pat
         RenderSettings settings = settings_of(c);
         settings.samples = 16;
         settings.light_paths = std::make_shared<const LightPathLayers>(
-            put_to_scene({parse_light_path("followed=L.?[GS]*E")}, c.scene)); // integrators/distributed/distributed.h
+            bind_to_scene({parse_light_path("followed=L.?[GS]*E")}, c.scene)); // integrators/distributed/distributed.h
         const test::PictureEstimate path = test::estimate_picture(queue, prepared, c.camera, settings, 24, 1000);
         settings.light_paths = nullptr;
         const test::PictureEstimate all = test::estimate_picture(queue, prepared, c.camera, settings, 24, 500);

@@ -16,7 +16,7 @@ namespace {
 void request_layers(RenderSettings& settings, std::initializer_list<const char*> texts, const Scene& scene) {
     std::vector<LightPathExpression> expressions;
     for (const char* text : texts) expressions.push_back(parse_light_path(text));
-    settings.light_paths = std::make_shared<const LightPathLayers>(put_to_scene(std::move(expressions), scene));
+    settings.light_paths = std::make_shared<const LightPathLayers>(bind_to_scene(std::move(expressions), scene));
 }
 
 /// A film's sums of floats that were added in another order.

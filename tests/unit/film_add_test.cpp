@@ -153,7 +153,7 @@ TEST_CASE("all films of a session have the targets that it was given, also those
     settings.pass_samples = 1;
     Session session(cpu, prepare_scene(scene, {}, messages), test::mixed_scene_camera(), settings);
     session.set_targets([&](Film& film) { film.hold(std::make_unique<CountTarget>(cpu, 5, "counts")); });
-    session.leave_passes(true);
+    session.interrupt_passes(true);
     for (const uint32_t width : {kWidth, kWidth + 1}) {
         settings.width = width;
         session.set_settings(settings);

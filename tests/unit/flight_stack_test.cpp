@@ -91,7 +91,7 @@ struct FirstSeen {
 
     float limit() const { return t_max; }
     bool is_done() const { return seen >= 0; }
-    bool goes_far_first() const { return is_far; }
+    bool visits_far_first() const { return is_far; }
     bool visit(uint32_t, uint32_t, const TriangleHit& hit) {
         seen = hit.t;
         return true;

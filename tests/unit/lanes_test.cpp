@@ -152,8 +152,10 @@ TEST_CASE("sampling of eight lanes has the bits of one") {
                     [&](uint32_t k) { return rest_of(other.one[k], other.one[k] + 1.0f, bits_of(x.one[k])); });
         check_lanes(power_heuristic(x.all(), other.all()),
                     [&](uint32_t k) { return power_heuristic(x.one[k], other.one[k]); });
-        const PointOnTriangleOf<Floats8> inside = keep_off_edges(x.all(), y.all(), other.all() * 0.05f);
-        const auto inside_one = [&](uint32_t k) { return keep_off_edges(x.one[k], y.one[k], other.one[k] * 0.05f); };
+        const PointOnTriangleOf<Floats8> inside = inset_barycentrics(x.all(), y.all(), other.all() * 0.05f);
+        const auto inside_one = [&](uint32_t k) {
+            return inset_barycentrics(x.one[k], y.one[k], other.one[k] * 0.05f);
+        };
         check_lanes(inside.u, [&](uint32_t k) { return inside_one(k).u; });
         check_lanes(inside.v, [&](uint32_t k) { return inside_one(k).v; });
     }

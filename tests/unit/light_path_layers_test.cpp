@@ -42,7 +42,7 @@ Scene make_named_scene() {
 LightPathLayers put_layers(std::initializer_list<const char*> texts, const Scene& scene) {
     std::vector<LightPathExpression> expressions;
     for (const char* text : texts) expressions.push_back(parse_light_path(text));
-    return put_to_scene(std::move(expressions), scene);
+    return bind_to_scene(std::move(expressions), scene);
 }
 
 /// Returns for wall, lamp and floor whether LD<filter>E lets light scatter there.
@@ -114,7 +114,7 @@ TEST_CASE("a render takes any number of layers") {
         CAPTURE(count);
         std::vector<LightPathExpression> expressions;
         for (uint32_t i = 0; i < count; ++i) expressions.push_back(parse_light_path(fmt::format("n{0}=LD{{{0}}}E", i)));
-        const LightPathLayers layers = put_to_scene(expressions, make_named_scene());
+        const LightPathLayers layers = bind_to_scene(expressions, make_named_scene());
         CHECK(layers.count() == count);
         uint16_t state = layers.automaton.start;
         for (uint32_t i = 0; i < count; ++i) {

@@ -65,8 +65,8 @@ TEST_CASE("a motion maps an object to its position at any time, and back") {
                 CHECK(distance(motion.move_back(now), rest) < static_cast<double>(2 * motion.error(rest)));
             }
             const Vec3 along = {0.3f, -0.2f, 0.9f};
-            CHECK(distance(motion.turn_back(motion.turn(along)), along) < 1e-6);
-            CHECK(length(motion.turn(along)) == doctest::Approx(length(along)).epsilon(1e-6));
+            CHECK(distance(motion.rotate_back(motion.rotate(along)), along) < 1e-6);
+            CHECK(length(motion.rotate(along)) == doctest::Approx(length(along)).epsilon(1e-6));
         }
         const RigidMotion at_rest = keys.view().at(0, kAtRest);
         CHECK(at_rest.move({1, 2, 3}) == Vec3{1, 2, 3});

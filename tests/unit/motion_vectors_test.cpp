@@ -51,7 +51,7 @@ TEST_CASE("an object that moves right and up has that motion in pixels") {
     scene.instances[1].world_from_local = make_translation({0, 0, -40});
     PreparedScene prepared = prepare_scene(scene, {}, messages);
     Session session(queue, prepared, camera, settings);
-    session.keep_as_before();
+    session.store_previous();
     scene.instances[0].world_from_local = make_translation({0.1f, 0.05f, 0});
     SceneUpdate update;
     update.moved_instances = {0};
@@ -77,7 +77,7 @@ TEST_CASE("a camera moving right moves near objects to the left, and a turning o
     const Camera camera = camera_of_ball();
     const RenderSettings settings = motion_settings();
     Session session(queue, prepare_scene(scene, {}, messages), camera, settings);
-    session.keep_as_before();
+    session.store_previous();
     Camera aside = camera;
     aside.world_from_camera.translation.x += 0.1f;
     session.set_camera(aside);
@@ -113,11 +113,11 @@ TEST_CASE("a picture without a previous frame has no motion, nor have surfaces t
     Camera away = camera;
     away.world_from_camera.row0.x = away.world_from_camera.row2.z = -1;
     session.set_camera(away);
-    session.keep_as_before();
+    session.store_previous();
     session.set_camera(camera);
     CHECK(largest(session.motion()) == 0);
     session.cut();
-    session.keep_as_before();
+    session.store_previous();
     CHECK(largest(session.motion()) < 1e-4f); // equal up to rounding
 
     scene.instances.push_back(scene.instances[0]);
@@ -125,7 +125,7 @@ TEST_CASE("a picture without a previous frame has no motion, nor have surfaces t
     scene.instances[0].is_hidden = true;
     prepared = prepare_scene(scene, {}, messages);
     session.set_scene(prepared);
-    session.keep_as_before();
+    session.store_previous();
     scene.instances[0].is_hidden = false;
     scene.instances[0].world_from_local = make_translation({0.5f, 0, 0});
     SceneUpdate update;
@@ -146,7 +146,7 @@ TEST_CASE("memory of motion vectors equals its prediction, and their bytes are t
         settings.body = body;
         const PreparedScene own = prepare_scene(scene, {}, notes);
         Session session(queue, own, test::mixed_scene_camera(), settings);
-        session.keep_as_before();
+        session.store_previous();
         Camera moved = test::mixed_scene_camera();
         moved.world_from_camera.translation.y += 0.2f;
         session.set_camera(moved);

@@ -18,7 +18,7 @@ namespace {
 /// Writes down what it is told, and the depth of the path then.
 class Witness : public PathListener<Witness> {
 public:
-    struct Kept {
+    struct PathData {
         uint32_t vertices = 0;
     };
     struct ShadowData {
@@ -27,7 +27,7 @@ public:
 
     explicit Witness(const PathJob&) {}
     void begins(const PathState&) { kept_ = {}; }
-    void take_up(const Kept& kept) { kept_ = kept; }
+    void restore(const PathData& kept) { kept_ = kept; }
     void vertex(const PathState& path, const Hit&, Surface&) {
         ++kept_.vertices;
         record("vertex", path);
@@ -42,8 +42,8 @@ public:
         shadow_data_ = {shadow.contribution};
     }
     void scattered(const PathState& path, const SurfaceVertex&, const BsdfSample&) { record("scattered", path); }
-    void put_down(Kept& kept) const { kept = kept_; }
-    void hand_over(ShadowData& shadow_data) const { shadow_data = shadow_data_; }
+    void save(PathData& kept) const { kept = kept_; }
+    void save_shadow_data(ShadowData& shadow_data) const { shadow_data = shadow_data_; }
 
     std::vector<std::string> events;
     Rgb found;
@@ -52,7 +52,7 @@ private:
     void record(const char* what, const PathState& path) {
         events.push_back(std::string(what) + " " + std::to_string(path.depth));
     }
-    Kept kept_;
+    PathData kept_;
     ShadowData shadow_data_;
 };
 
@@ -60,11 +60,11 @@ private:
 class Thief : public PathListener<Thief> {
 public:
     explicit Thief(const PathJob&) {}
-    bool takes(const PathState&, const EmitterPoint& point, float) {
+    bool removes_emission(const PathState&, const EmitterPoint& point, float) {
         point_ = point;
         return true;
     }
-    bool wants_direct(const PathState&, const Hit&, const Surface&) { return false; }
+    bool samples_direct(const PathState&, const Hit&, const Surface&) { return false; }
     EmitterPoint point_;
 };
 
@@ -136,20 +136,20 @@ TEST_CASE("path vertex: a listener gets a vertex's events in order and does not 
     CHECK(witness.events == std::vector<std::string>{"vertex 0", "emitted 0", "direct 0", "scattered 1"});
     CHECK(witness.found == Rgb{1, 2, 3});
 
-    Listeners<Witness>::Kept kept;
+    Listeners<Witness>::PathData kept;
     Listeners<Witness>::ShadowData shadow_data;
-    witness.put_down(kept);
-    witness.hand_over(shadow_data);
+    witness.save(kept);
+    witness.save_shadow_data(shadow_data);
     CHECK(kept.vertices == 1);
     CHECK(shadow_data.contribution == shadow_alone.contribution);
 
     Listeners<Witness> next(place.job);
-    next.take_up(kept);
+    next.restore(kept);
     CHECK_FALSE(
         shade_vertex<kPlainDiffuse>(place.job, heard, kNothing, DrawOnDemand(), shadow_heard, wants_heard, next));
     CHECK_FALSE(wants_heard);
     CHECK(next.events == std::vector<std::string>{"missed 1", "emitted 1"});
-    next.put_down(kept);
+    next.save(kept);
     CHECK(kept.vertices == 1);
 }
 

@@ -95,12 +95,13 @@ TEST_CASE("a point near an edge is moved inwards, and any other is kept to the b
         if (u + v > 1) u = 1 - u, v = 1 - v;
         if (i % 3 == 0) u = i % 2 == 0 ? 0.0f : least * random.unit();
         if (i % 5 == 0) v = 1 - u; // the third weight is 0, or a unit off
-        const PointOnTriangle place = keep_off_edges(u, v, least);
+        const PointOnTriangle place = inset_barycentrics(u, v, least);
         const float w = 1 - place.u - place.v;
         CHECK(min(w, min(place.u, place.v)) >= least / 1.5f - 0x1p-22f);
         CHECK(abs(place.u - u) <= 2 * least + 0x1p-22f);
         CHECK(abs(place.v - v) <= 2 * least + 0x1p-22f);
         if (u >= least && v >= least && 1 - u - v >= least) CHECK((place.u == u && place.v == v));
     }
-    CHECK(keep_off_edges(0.0f, 0.0f, 0.25f).u == doctest::Approx(1.0 / 6)); // from a corner: 1/4, 1/4 and 1, over 3/2
+    CHECK(inset_barycentrics(0.0f, 0.0f, 0.25f).u ==
+          doctest::Approx(1.0 / 6)); // from a corner: 1/4, 1/4 and 1, over 3/2
 }

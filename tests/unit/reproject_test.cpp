@@ -108,7 +108,7 @@ TEST_CASE("taps accept only the same object at a similar depth and normal") {
     before.guide = guide.data();
     const FrameCameras cameras = {{}, {}, kWidth, kHeight};
     const auto taps_at = [&](Vec2 place, float depth = 2, Vec3 n = {0, 0, 1}, uint32_t id = 7) {
-        return find_taps(before, cameras, place, depth, n, kSeenAlike, id);
+        return find_taps(before, cameras, place, depth, n, kMinNormalCosine, id);
     };
 
     const Taps all = taps_at({2, 1.5f}); // between pixels 1 and 2 of row 1

@@ -56,10 +56,10 @@ TEST_CASE("a node on the stack is visited if its entry equals the limit and drop
     TreeStack stack = {slots};
     stack.push(7, 1.0f), stack.push(8, 2.0f), stack.push(9, 2.0000002f);
     TreeTraversal traversal = {kNoLink, stack.size};
-    leave_leaf(traversal, slots, 2.0f);
+    finish_leaf(traversal, slots, 2.0f);
     CHECK(traversal.link == 8);
     CHECK(traversal.size == 1);
-    leave_leaf(traversal, slots, 0.5f);
+    finish_leaf(traversal, slots, 0.5f);
     CHECK(traversal.link == kNoLink);
     CHECK(traversal.size == 0);
 }

@@ -86,12 +86,12 @@ TEST_CASE("a picture has the window's aspect and at most the requested pixels an
         CHECK(across <= 1);
     }
     ViewState view;
-    CHECK_FALSE(take_window_shape(view, 64, 48)); // its size was asked for
+    CHECK_FALSE(resize_to_window(view, 64, 48)); // its size was asked for
     CHECK(view.options.render.width == 1280);
     view.window_pixels = 1280 * 720;
-    CHECK(take_window_shape(view, 640, 480));
+    CHECK(resize_to_window(view, 640, 480));
     CHECK(view.options.render.height == 480);
-    CHECK_FALSE(take_window_shape(view, 640, 480));
+    CHECK_FALSE(resize_to_window(view, 640, 480));
 }
 
 TEST_CASE("growing pictures precede the samples of a new view and do not affect the film") {

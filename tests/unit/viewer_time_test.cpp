@@ -55,7 +55,7 @@ TEST_CASE("time starts at 0, runs at its speed, loops or stops at its end and co
     CHECK_FALSE(clock.plays);
     clock.play(true);
     CHECK(clock.time_s == 0);
-    clock.go_to(9);
+    clock.seek(9);
     CHECK(clock.time_s == 4);
 }
 
@@ -67,21 +67,21 @@ TEST_CASE("time moves a scene's camera until a user moves it, and again after th
     CHECK(view.moves_with_time());
     scene.cameras[0].world_from_camera = look_at({1, 1, 5}, {0, 1, 0}, {0, 1, 0});
     scene.cameras[0].fov_y = 0.5f;
-    view.go_to(1.0, lens);
+    view.seek(1.0, lens);
     CHECK(view.camera(lens).world_from_camera == scene.cameras[0].world_from_camera);
     CHECK(lens.fov_y == 0.5f);
     lens.fov_y = 0.6f; // set by hand: it stays
     scene.cameras[0].fov_y = 0.4f;
-    view.go_to(1.5, lens);
+    view.seek(1.5, lens);
     CHECK(lens.fov_y == 0.6f);
     view.step(step_forward(), lens, 1);
     CHECK(view.is_own());
     CHECK_FALSE(view.moves_with_time());
     const Camera own = view.camera(lens);
     scene.cameras[0].world_from_camera = look_at({2, 1, 5}, {0, 1, 0}, {0, 1, 0});
-    view.go_to(2.0, lens);
+    view.seek(2.0, lens);
     CHECK(view.camera(lens) == own);
-    view.go_home(2.0, lens);
+    view.return_to_start(2.0, lens);
     CHECK(view.camera(lens).world_from_camera == scene.cameras[0].world_from_camera);
     CHECK(lens.fov_y == 0.4f);
     CHECK(view.moves_with_time());
@@ -123,7 +123,7 @@ TEST_CASE("recorded keys are ordered by time, and the camera passes through them
     CHECK(view.moves_with_time());
     CHECK(view.camera(lens).world_from_camera == first.world_from_camera);
     CHECK(view.camera(lens).fov_y == first.fov_y);
-    view.go_to(2.0, lens);
+    view.seek(2.0, lens);
     CHECK(view.camera(lens).world_from_camera == second.world_from_camera);
     CHECK(view.is_given_by_pose());
     CHECK(view.add_key(2, lens)); // in place of the one there
@@ -133,7 +133,7 @@ TEST_CASE("recorded keys are ordered by time, and the camera passes through them
     view.remove_key(0);
     CHECK(view.path().keys.empty());
     CHECK(view.camera(lens).world_from_camera == second.world_from_camera); // it stays where it is
-    view.go_home(2.0, lens);
+    view.return_to_start(2.0, lens);
     CHECK(view.camera(lens).world_from_camera == start.camera.world_from_camera);
     for (std::size_t i = 0; i < ViewCamera::kMaxKeys; ++i) CHECK(view.add_key(static_cast<float>(i), lens));
     CHECK_FALSE(view.add_key(1e6f, lens));
@@ -151,16 +151,16 @@ TEST_CASE("a path given at the start moves the camera, and home returns to that 
     Camera lens = start.camera;
     CHECK(view.moves_with_time());
     CHECK(view.path().keys[0].fov_deg > 0); // so that keys can join it
-    view.go_to(1.0, lens);
+    view.seek(1.0, lens);
     CHECK(view.camera(lens).world_from_camera.translation == Vec3{0, 0, 1});
     CHECK(view.camera(lens).fov_y == start.camera.fov_y);
     const Camera before = view.camera(lens);
-    view.go_to(1.5, lens); // through what it looks at: no view
+    view.seek(1.5, lens); // through what it looks at: no view
     CHECK(is_finite(view.camera(lens).world_from_camera.row0));
-    view.go_to(1.0, lens);
+    view.seek(1.0, lens);
     CHECK(view.camera(lens) == before);
     view.step(step_forward(), lens, 1);
-    view.go_home(1.0, lens);
+    view.return_to_start(1.0, lens);
     CHECK(view.camera(lens) == before);
 }
 
@@ -183,7 +183,7 @@ TEST_CASE("a default view adapts to the window's aspect until a user moves") {
     camera.fit(0.5f, lens);
     CHECK(away() == 8);
     CHECK(camera.is_given_by_pose()); // the flags give the same picture
-    camera.go_to(0.5, lens);          // time leaves it alone
+    camera.seek(0.5, lens);           // time leaves it alone
     CHECK(away() == 8);
     ClientMessage zoom;
     zoom.kind = MessageKind::Zoom;
@@ -193,7 +193,7 @@ TEST_CASE("a default view adapts to the window's aspect until a user moves") {
     CHECK(own < 8);
     camera.fit(1, lens);
     CHECK(away() == own);
-    camera.go_home(std::nullopt, lens);
+    camera.return_to_start(std::nullopt, lens);
     CHECK(away() == 4);
 }
 

@@ -61,7 +61,7 @@ HD inline uint32_t exchange(uint32_t* target, uint32_t value) {
 
 /// Moves from a node (leaves [first, last], not all) to its parent. Returns false if the other child has not arrived
 /// yet.
-HD inline bool go_up(const Climb& climb, LeafRange& range) {
+HD inline bool ascend(const Climb& climb, LeafRange& range) {
     const uint32_t n = climb.tree.count;
     const bool is_left =
         range.first == 0 || (range.last != n - 1 && is_deeper(climb.codes, range.last, range.first - 1));
@@ -79,7 +79,7 @@ HD inline bool go_up(const Climb& climb, LeafRange& range) {
 }
 
 /// Returns whether the node's clusters must be merged; otherwise its clusters are its leaves.
-HD inline bool needs_joining(const Climb& climb, const LeafRange& range) {
+HD inline bool needs_merging(const Climb& climb, const LeafRange& range) {
     return range.size() > climb.kept() || range.size() == climb.tree.count;
 }
 
@@ -156,8 +156,8 @@ struct ClimbFromLeaves {
 
     HD void operator()(uint32_t leaf) const {
         LeafRange range = {leaf, leaf, leaf};
-        while (range.size() < climb.tree.count && go_up(climb, range)) {
-            if (needs_joining(climb, range)) join_range(climb, range);
+        while (range.size() < climb.tree.count && ascend(climb, range)) {
+            if (needs_merging(climb, range)) join_range(climb, range);
         }
         if (climb.tree.count == 1) *climb.root = 0;
     }

@@ -110,7 +110,7 @@ public:
     int index() const override { return index_; }
     void* stream() const override { return current(); }
     void use_stream(int index) override { current_ = static_cast<std::size_t>(index); }
-    void let_wait(int waiting, int other) override {
+    void make_stream_wait(int waiting, int other) override {
         if (waiting == other) return;
         make_current();
         const auto both = static_cast<std::size_t>(std::max(waiting, other));

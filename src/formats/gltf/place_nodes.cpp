@@ -129,7 +129,7 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
         if (!is_near(world_from_node)) {
             throw node.error("the light lies beyond 2^40 metres");
         }
-        if (place_light(world_from_node, light)) {
+        if (transform_light(world_from_node, light)) {
             scene.lights.push_back(std::move(light));
         } else {
             sink.leave_out({node.location(), "the light's transform is singular; it is left out"});

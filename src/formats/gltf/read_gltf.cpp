@@ -73,7 +73,7 @@ Scene read_gltf(const std::filesystem::path& path, std::vector<std::byte> bytes,
     scene.nodes = nodes.take_nodes();
     gltf::read_node_shapes(document, buffers, scene, sink);
     gltf::place_nodes(document, buffers, nodes, meshes, scene, sink);
-    take_off_centre(scene);
+    subtract_centre(scene);
     gltf::read_animations(document, buffers, scene, sink);
     loader.load_into(scene, buffers.file_bytes());
     materials.convert_textures(justified_bytes(kFreeImageBytes, buffers.file_bytes()));

@@ -45,7 +45,7 @@ struct ShadeCameraSubpaths {
                 subpaths.present_owners[slot] = subpath;
             }
         }
-        go_on(surface, subpath, state, wo, key);
+        continue_subpath(surface, subpath, state, wo, key);
     }
 
 private:
@@ -104,8 +104,8 @@ private:
         return inverse * pdf_emission(lights.triangles[number], dot(light.light_normal, light.wi));
     }
 
-    HD INLINE_ON_DEVICE void go_on(const Surface& surface, uint32_t subpath, SubpathState& state, Vec3 wo,
-                                   SampleKey key) const {
+    HD INLINE_ON_DEVICE void continue_subpath(const Surface& surface, uint32_t subpath, SubpathState& state, Vec3 wo,
+                                              SampleKey key) const {
         const SubpathSettings& settings = scene.settings;
         const uint32_t choices = camera_group(state.depth(), kSubpathChoices);
         const ScatterDraw draw =

@@ -93,7 +93,7 @@ struct ShadeCacheSubpaths {
         }
         if (adds_light()) sample_direct_light(vertex, subpath, state);
         cache.ways[subpath] = way;
-        go_on(vertex, subpath, state, cache_state);
+        continue_subpath(vertex, subpath, state, cache_state);
     }
 
 private:
@@ -154,8 +154,8 @@ private:
                                   film_index(subpath, state));
     }
 
-    HD INLINE_ON_DEVICE void go_on(const Vertex& vertex, uint32_t subpath, SubpathState& state,
-                                   CacheState cache_state) const {
+    HD INLINE_ON_DEVICE void continue_subpath(const Vertex& vertex, uint32_t subpath, SubpathState& state,
+                                              CacheState cache_state) const {
         const Surface& surface = vertex.surface;
         const SubpathSettings& settings = scene.settings;
         const uint32_t choices = camera_group(state.depth(), kSubpathChoices);

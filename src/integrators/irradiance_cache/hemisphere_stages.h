@@ -143,7 +143,7 @@ struct BeginHemispheres {
         const SampleKey key = {state.pixel, state.sample, scene.settings.seed};
         Vec3 local = direction_in_cell(job.grid, cell, sample_2d(SamplerKind::Independent, key, kGroupCamera));
         local.z = side * local.z;
-        state.throughput = grey(let_in(surface.bsdf, side, local));
+        state.throughput = grey(coating_transmittance(surface.bsdf, side, local));
         if (surface.tilt > 0) local = raise_direction(local, surface.tilt).direction;
         const Vec3 wi = normalize(surface.frame.to_world(local));
         const bool is_before = (dot(surface.geometric_normal, wi) > 0) == (side > 0);

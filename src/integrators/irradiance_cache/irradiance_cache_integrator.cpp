@@ -21,7 +21,7 @@ void IrradianceCacheIntegrator::reserve(const WorkSize& size) {
     store_.allocate(size.pixels());
     counts_.grow(queue_, kCounts, "counts of irradiance caching");
     mirrored_.grow(queue_, 1, "counts of mirrors and emitters");
-    if (goes_by_loop(size)) return;
+    if (uses_loop(size)) return;
     // The wavefront holds the picture's samples or all rays of some records, at least of one.
     const uint32_t cells = cells_of(settings_.cache);
     const uint64_t wanted = std::max<uint64_t>(size.pixels(), uint64_t(cells) * 64);
@@ -158,7 +158,7 @@ bool IrradianceCacheIntegrator::make_hemispheres(CacheJob job, uint32_t records,
 void IrradianceCacheIntegrator::make_hemispheres_in_loop(const HostTrees& trees, const CacheJob& job, uint64_t begin,
                                                          uint64_t end) {
     const uint32_t cells = job.hemispheres.grid.cells();
-    share_out(end - begin, 1, [&](uint64_t from, uint64_t to) {
+    trace_ranges(end - begin, 1, [&](uint64_t from, uint64_t to) {
         CacheJob part = job;
         Thread thread(trees, part, {kLoopCount, cells});
         part.film = film_of_cells(part.cache, counts_.data() + kInvalid, cells);

@@ -120,12 +120,12 @@ HD inline CachePoint cache_point(const Surface& surface, float side, uint32_t sc
 }
 
 /// Radiance towards wo from the light of a record, by the diffuse base.
-HD inline Rgb sent_on(const Surface& surface, Vec3 wo, float side, Rgb light) {
+HD inline Rgb reflected_light(const Surface& surface, Vec3 wo, float side, Rgb light) {
     return diffuse_reflectance(surface.bsdf, surface.frame.to_local(wo), {0, 0, side}) * light;
 }
 
 /// Transmittance to the base along local wi, relative to that along the normal; 1 without a coating.
-HD inline float let_in(const Bsdf& bsdf, float side, Vec3 wi) {
+HD inline float coating_transmittance(const Bsdf& bsdf, float side, Vec3 wi) {
     if (bsdf.layer_count == 0) return 1;
     const float straight = max_component(diffuse_reflectance(bsdf, {0, 0, side}, {0, 0, side}));
     return straight > 0 ? max_component(diffuse_reflectance(bsdf, {0, 0, side}, wi)) / straight : 0.0f;

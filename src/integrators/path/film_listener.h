@@ -23,7 +23,7 @@ public:
     void vertex_in_lanes(const PathState& path, const Hit& hit) {
         if (path.depth == 0) add_first_hit(job_.film, path.pixel, path.sample, hit, job_.picture);
     }
-    HD void ended(uint32_t pixel, Rgb radiance, const Kept&) const { add_radiance(job_.film, pixel, radiance); }
+    HD void ended(uint32_t pixel, Rgb radiance, const PathData&) const { add_radiance(job_.film, pixel, radiance); }
 
 private:
     const PathJob& job_;

@@ -31,7 +31,7 @@ public:
     HD void emitted(const PathState& path, Rgb light) {
         if (path.depth == 0) film_.frame.emission[path.pixel] = {light.r, light.g, light.b, transmittance_};
     }
-    HD void ended(uint32_t pixel, Rgb radiance, const Kept&) const { store_sample(film_, pixel, radiance, {}); }
+    HD void ended(uint32_t pixel, Rgb radiance, const PathData&) const { store_sample(film_, pixel, radiance, {}); }
 
 private:
     HD void store_reflected(const PathState& path, const Hit& hit) const { film_.frame.gloss[path.pixel].w = hit.t; }
@@ -56,7 +56,7 @@ private:
 /// Separates the part of a path's radiance that diffuse lobes of its first vertex scatter, if a frame splits light.
 class LightSplit : public PathListener<LightSplit> {
 public:
-    struct Kept {
+    struct PathData {
         Float4 diffuse; // rgb; w: bits of the share of diffuse lobes in what the first vertex scattered, ten per
                         // colour
     };
@@ -68,7 +68,7 @@ public:
 
     static uint32_t depth_of_lanes(const PathJob& job) { return job.film.frame.splits_light() ? kNoLaneDepth : 0; }
     HD void begins(const PathState&) { kept_ = {}; }
-    HD void take_up(const Kept& kept) {
+    HD void restore(const PathData& kept) {
         kept_ = kept;
         first_ = unpacked(bits_of(kept.diffuse.w));
     }
@@ -88,26 +88,26 @@ public:
         if (!frame_.splits_light() || path.depth != 1) return;
         first_ = path.bsdf_pdf > 0 ? at.surface.diffuse_share(at.wo, path.direction) : Rgb{0, 0, 0};
     }
-    HD void put_down(Kept& kept) const {
+    HD void save(PathData& kept) const {
         kept = {{kept_.diffuse.x, kept_.diffuse.y, kept_.diffuse.z, float_of(packed(first_))}};
     }
-    HD void hand_over(ShadowData& shadow_data) const { shadow_data = shadow_data_; }
+    HD void save_shadow_data(ShadowData& shadow_data) const { shadow_data = shadow_data_; }
 
-    HD void arrived(Kept& kept, const ShadowData& shadow_data, Rgb) const {
+    HD void arrived(PathData& kept, const ShadowData& shadow_data, Rgb) const {
         Float4& d = kept.diffuse;
         d = {d.x + shadow_data.diffuse.r, d.y + shadow_data.diffuse.g, d.z + shadow_data.diffuse.b, d.w};
     }
-    HD void ended(uint32_t pixel, Rgb, const Kept& kept) const {
+    HD void ended(uint32_t pixel, Rgb, const PathData& kept) const {
         if (frame_.splits_light()) frame_.diffuse[pixel] = {kept.diffuse.x, kept.diffuse.y, kept.diffuse.z, 0};
     }
 
-    HD static void load(const ListenerQueues& queues, uint32_t i, Kept& kept) {
+    HD static void load(const ListenerQueues& queues, uint32_t i, PathData& kept) {
         if (queues.diffuse != nullptr) kept.diffuse = queues.diffuse[i];
     }
-    HD static void load_next(const ListenerQueues& queues, uint32_t i, Kept& kept) {
+    HD static void load_next(const ListenerQueues& queues, uint32_t i, PathData& kept) {
         if (queues.next_diffuse != nullptr) kept.diffuse = queues.next_diffuse[i];
     }
-    HD static void store_next(const ListenerQueues& queues, uint32_t i, const Kept& kept) {
+    HD static void store_next(const ListenerQueues& queues, uint32_t i, const PathData& kept) {
         if (queues.next_diffuse != nullptr) queues.next_diffuse[i] = kept.diffuse;
     }
     HD static void load_shadow_data(const ListenerQueues& queues, uint32_t i, ShadowData& shadow_data) {
@@ -133,7 +133,7 @@ private:
     }
 
     const NoisyFrameView& frame_;
-    Kept kept_ = {};
+    PathData kept_ = {};
     ShadowData shadow_data_ = {};
     Rgb first_ = {0, 0, 0}; // share of diffuse lobes in what the first vertex scattered
 };
@@ -156,7 +156,7 @@ public:
         if (leaves()) left().light[path.pixel] = {};
         if (records()) begin_bounce(path, {}, false);
     }
-    HD bool takes(const PathState& path, const EmitterPoint& point, float light_pdf) {
+    HD bool removes_emission(const PathState& path, const EmitterPoint& point, float light_pdf) {
         if (!leaves() || path.depth != 1 || !(light_pdf > 0)) return false;
         left().light[path.pixel] = point;
         return true;
@@ -167,7 +167,7 @@ public:
         const Rgb more = frame_.splits_light() ? light : (path.radiance + light) - path.radiance;
         left().add_sent(path.pixel, share_onwards(path.pixel) * more);
     }
-    HD bool wants_direct(const PathState& path, const Hit& hit, const Surface& surface) {
+    HD bool samples_direct(const PathState& path, const Hit& hit, const Surface& surface) {
         // Beneath coat or sheen, the light that leaves in one direction does not determine the light in another.
         is_bounce_ = records() && path.depth == 1 && path.bsdf_pdf > 0 && !surface.bsdf.is_stacked;
         if (is_bounce_) begin_bounce(path, hit, true);
@@ -183,9 +183,9 @@ public:
         const Rgb share = at.surface.diffuse_share(at.wo, path.direction);
         left().onwards[path.pixel] = {share.r, share.g, share.b, 0};
     }
-    HD void hand_over(ShadowData& shadow_data) const { shadow_data = shadow_data_; }
+    HD void save_shadow_data(ShadowData& shadow_data) const { shadow_data = shadow_data_; }
 
-    HD void arrived(Kept&, const ShadowData& shadow_data, Rgb) const {
+    HD void arrived(PathData&, const ShadowData& shadow_data, Rgb) const {
         if (records()) left().add_sent(shadow_data.pixel, shadow_data.sent);
     }
 

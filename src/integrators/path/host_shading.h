@@ -20,7 +20,7 @@ struct VertexShadow {
 /// Shades a vertex of a path and updates the listener's data of it. Sets whether the path continues and returns
 /// whether it needs a shadow ray.
 template <class Listener>
-using ShadeOnHost = bool (*)(const PathJob&, PathState&, typename Listener::Kept&, const Hit&, const DrawnNumbers&,
+using ShadeOnHost = bool (*)(const PathJob&, PathState&, typename Listener::PathData&, const Hit&, const DrawnNumbers&,
                              VertexShadow<Listener>, bool& goes_on);
 
 /// Returns the version with the least code that the job needs.

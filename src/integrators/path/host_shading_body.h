@@ -10,19 +10,19 @@
 namespace pertev {
 
 template <Features kFeatures, class Listener>
-inline bool shade_on_host(const PathJob& job, PathState& path, typename Listener::Kept& kept, const Hit& hit,
+inline bool shade_on_host(const PathJob& job, PathState& path, typename Listener::PathData& kept, const Hit& hit,
                           const DrawnNumbers& numbers, VertexShadow<Listener> shadow, bool& goes_on) {
     Listener listener(job);
     if (path.depth == 0) {
         listener.begins(path);
     } else {
-        listener.take_up(kept);
+        listener.restore(kept);
     }
-    bool wants_shadow = false;
-    goes_on = shade_vertex<kFeatures>(job, path, hit, numbers, shadow.ray, wants_shadow, listener);
-    listener.put_down(kept);
-    if (wants_shadow) listener.hand_over(shadow.data);
-    return wants_shadow;
+    bool has_shadow_ray = false;
+    goes_on = shade_vertex<kFeatures>(job, path, hit, numbers, shadow.ray, has_shadow_ray, listener);
+    listener.save(kept);
+    if (has_shadow_ray) listener.save_shadow_data(shadow.data);
+    return has_shadow_ray;
 }
 
 /// Returns whether code for a mask of features is inlined as a whole. By default g++ would leave a dozen calls, which
@@ -38,7 +38,7 @@ constexpr bool is_flattened([[maybe_unused]] Features features) {
 }
 
 template <Features kFeatures, class Listener>
-[[gnu::flatten]] bool shade_flattened(const PathJob& job, PathState& path, typename Listener::Kept& kept,
+[[gnu::flatten]] bool shade_flattened(const PathJob& job, PathState& path, typename Listener::PathData& kept,
                                       const Hit& hit, const DrawnNumbers& numbers, VertexShadow<Listener> shadow,
                                       bool& goes_on) {
     return shade_on_host<kFeatures, Listener>(job, path, kept, hit, numbers, shadow, goes_on);

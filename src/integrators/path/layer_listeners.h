@@ -29,7 +29,7 @@ public:
         surface.emission = {};
         surface.is_unlit = false;
     }
-    HD bool takes(const PathState& path, const EmitterPoint&, float) { return is_there_ && path.depth == 0; }
+    HD bool removes_emission(const PathState& path, const EmitterPoint&, float) { return is_there_ && path.depth == 0; }
 
 private:
     bool is_there_;
@@ -38,7 +38,7 @@ private:
 /// Adds light to the layers that the automaton selects (render/light_paths/light_path_view.h).
 class LightPaths : public PathListener<LightPaths> {
 public:
-    struct Kept {
+    struct PathData {
         LightPathState state; // state before the next vertex
     };
     struct ShadowData {
@@ -52,7 +52,7 @@ public:
     HD explicit LightPaths(const PathJob& job) : job_(job) {}
 
     HD void begins(const PathState&) { state_ = layers().begin(); }
-    HD void take_up(const Kept& kept) { state_ = kept.state; }
+    HD void restore(const PathData& kept) { state_ = kept.state; }
     HD void missed(const PathState&) { met_ = {kNoLight, kNoLight}; }
     HD void vertex(const PathState&, const Hit& hit, Surface&) { met_ = {hit.instance, hit.primitive}; }
     HD void emitted(const PathState& path, Rgb light) {
@@ -81,10 +81,10 @@ public:
         state_ = after_scattering(layers(), state_, layers().first_column(met_.instance), is_specular,
                                   sample.is_transmission, diffuse, u);
     }
-    HD void put_down(Kept& kept) const { kept = {state_}; }
-    HD void hand_over(ShadowData& shadow_data) const { shadow_data = shadow_data_; }
+    HD void save(PathData& kept) const { kept = {state_}; }
+    HD void save_shadow_data(ShadowData& shadow_data) const { shadow_data = shadow_data_; }
 
-    HD void arrived(Kept&, const ShadowData& shadow_data, Rgb contribution) const {
+    HD void arrived(PathData&, const ShadowData& shadow_data, Rgb contribution) const {
         if (!layers().is_there()) return;
         const auto after = [&](LobeClass lobe_class) {
             return layers().after(shadow_data.state, shadow_data.column + scattering_column(lobe_class, false));
@@ -94,13 +94,13 @@ public:
                      contribution - shadow_data.diffuse);
     }
 
-    HD static void load(const ListenerQueues& queues, uint32_t i, Kept& kept) {
+    HD static void load(const ListenerQueues& queues, uint32_t i, PathData& kept) {
         if (queues.states != nullptr) kept.state = {queues.states[i].x, queues.states[i].y};
     }
-    HD static void load_next(const ListenerQueues& queues, uint32_t i, Kept& kept) {
+    HD static void load_next(const ListenerQueues& queues, uint32_t i, PathData& kept) {
         if (queues.next_states != nullptr) kept.state = {queues.next_states[i].x, queues.next_states[i].y};
     }
-    HD static void store_next(const ListenerQueues& queues, uint32_t i, const Kept& kept) {
+    HD static void store_next(const ListenerQueues& queues, uint32_t i, const PathData& kept) {
         if (queues.next_states != nullptr) queues.next_states[i] = {kept.state.red_green, kept.state.blue};
     }
     HD static void load_shadow_data(const ListenerQueues& queues, uint32_t i, ShadowData& shadow_data) {

@@ -132,11 +132,11 @@ void PathIntegrator::reserve(const WorkSize& size) {
         uploaded_ = settings_.layers;
         if (uploaded_) layers_on_device_.emplace(queue_, *uploaded_);
     }
-    if (goes_by_loop(size)) return;
-    take_wavefronts(size.all(), {.has_times = size.has_times,
-                                 .has_layers = settings_.layers != nullptr,
-                                 .splits_light = size.splits_light,
-                                 .records_bounce = size.records_bounce});
+    if (uses_loop(size)) return;
+    allocate_wavefronts(size.all(), {.has_times = size.has_times,
+                                     .has_layers = settings_.layers != nullptr,
+                                     .splits_light = size.splits_light,
+                                     .records_bounce = size.records_bounce});
 }
 
 void PathIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) {
@@ -151,7 +151,7 @@ LightPathView PathIntegrator::layers_for(const FilmView& film) const {
     return layers_on_device_->view(film.aovs);
 }
 
-void PathIntegrator::take_wavefronts(uint64_t samples, const PathParts& parts) {
+void PathIntegrator::allocate_wavefronts(uint64_t samples, const PathParts& parts) {
     parts_.has_times |= parts.has_times;
     parts_.has_layers |= parts.has_layers;
     parts_.splits_light |= parts.splits_light;
@@ -197,7 +197,7 @@ void PathIntegrator::render_loop(uint32_t first, uint32_t count, const FilmView&
     PathJob job = job_for(film);
     job.film.is_exclusive = true; // all samples of a pixel are one thread's
     const TileRasterView* const raster = raster_ ? &raster_->view() : nullptr;
-    share_out(film.window.count(), kLoopCount, [&](uint64_t begin, uint64_t end) {
+    trace_ranges(film.window.count(), kLoopCount, [&](uint64_t begin, uint64_t end) {
         RayCounts counts;
         if (is_abandoned()) return counts;
         const PixelRange range = {static_cast<uint32_t>(begin), static_cast<uint32_t>(end)};
@@ -208,7 +208,7 @@ void PathIntegrator::render_loop(uint32_t first, uint32_t count, const FilmView&
 }
 
 void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const FilmView& film) {
-    take_wavefronts(
+    allocate_wavefronts(
         uint64_t(picture_.camera.width) * picture_.camera.height * count,
         {.splits_light = film.frame.splits_light(), .records_bounce = film.frame.first_bounce.records_bounce()});
     const Work work = {{film.window, first, count}, job_for(film)};
@@ -277,7 +277,8 @@ void PathIntegrator::launch_round(Wavefront& w, const Work& work) {
         w.seen.mark();
         if (w.round > 0) {
             tracer_->find_hits(RayKind::Bounce, paths.query(), {most, &counts->going_on}, hits, pool(RayKind::Bounce));
-            queue_.let_wait(w.path_stream, w.light_stream); // waits for radiance, and for slots of paths that end
+            queue_.make_stream_wait(w.path_stream,
+                                    w.light_stream); // waits for radiance, and for slots of paths that end
         }
         if (w.known.all_begun == 0) {
             const WorkCount fresh = {most, &counts->fresh};
@@ -304,7 +305,7 @@ void PathIntegrator::launch_round(Wavefront& w, const Work& work) {
                    Shade<kFeatures, Listener>{work.job, paths, next, hits, shadows, listened, counts, last});
         });
     }
-    queue_.let_wait(w.light_stream, w.path_stream);
+    queue_.make_stream_wait(w.light_stream, w.path_stream);
     const Queue::OnStream on(queue_, w.light_stream);
     const WorkCount shadow_rays = {most, &counts->shadows};
     tracer_->find_occlusions(shadows.query(), shadow_rays, {nullptr, shadows.keys}, // a ray's key has been used by then

@@ -64,7 +64,7 @@ private:
     };
     PathJob job_for(const FilmView& film) const;
     struct Wavefront;
-    void take_wavefronts(uint64_t samples, const PathParts& parts);
+    void allocate_wavefronts(uint64_t samples, const PathParts& parts);
     LightPathView layers_for(const FilmView& film) const;
     void launch_rounds(int going, const Work& work);
     void launch_round(Wavefront& wavefront, const Work& work);

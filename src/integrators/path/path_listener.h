@@ -2,9 +2,9 @@
 
 // Listeners receive more of a path's vertices than their light: for auxiliary layers, layers of light-path
 // expressions, frames of samples, ReSTIR, and the irradiance meter. A listener is a class with those of the functions
-// below that it needs; the others leave no code. Its data of a path up to the next vertex (Kept), and of a shadow ray
-// until it has been traced (ShadowData), are two plain structs. The CPU has arrays of them; a GPU's queues have arrays
-// of their parts (ListenerQueues), and the listener loads and stores them.
+// below that it needs; the others leave no code. Its data of a path up to the next vertex (PathData), and of a shadow
+// ray until it has been traced (ShadowData), are two plain structs. The CPU has arrays of them; a GPU's queues have
+// arrays of their parts (ListenerQueues), and the listener loads and stores them.
 
 #include "device_scene/ray_origin.h"
 #include "device_scene/surface.h"
@@ -57,13 +57,13 @@ inline constexpr uint32_t kNoLaneDepth = 0xffffffffu;
 /// one vertex of one path.
 template <class Self>
 struct PathListener {
-    struct Kept {};
+    struct PathData {};
     struct ShadowData {};
 
     /// Called before the vertex, for a path that starts at the camera (then nothing is kept yet) or continues.
     HD void begins(const PathState&) {}
     template <class K>
-    HD void take_up(const K&) {}
+    HD void restore(const K&) {}
     /// Called when the path's ray has hit a surface after path.depth scatterings.
     HD void vertex(const PathState&, const Hit&, Surface&) {}
     /// Least depth at which the host may shade vertices in lanes (shade_lanes.h): the listener then needs no more of
@@ -74,11 +74,11 @@ struct PathListener {
     HD void missed(const PathState&) {}
     /// Called before light at `point`, which the ray hit, is added; next-event estimation would have sampled it with
     /// density `light_pdf` (0: it could not). Returns true to take that light away from the path.
-    HD bool takes(const PathState&, const EmitterPoint&, float) { return false; }
+    HD bool removes_emission(const PathState&, const EmitterPoint&, float) { return false; }
     /// Called before light that the ray hit, possibly black, is added.
     HD void emitted(const PathState&, Rgb) {}
     /// Returns whether a vertex samples a light with a shadow ray.
-    HD bool wants_direct(const PathState&, const Hit&, const Surface&) { return true; }
+    HD bool samples_direct(const PathState&, const Hit&, const Surface&) { return true; }
     /// Called for a shadow ray along `wi`. The vertex is a SurfaceVertex, or that of a medium (medium.h).
     template <class Vertex>
     HD void direct(const PathState&, const Vertex&, Vec3, const ShadowRay&) {}
@@ -87,9 +87,9 @@ struct PathListener {
     HD void scattered(const PathState&, const Vertex&, const BsdfSample&) {}
     /// Called after the vertex to store the listener's data.
     template <class K>
-    HD void put_down(K&) const {}
+    HD void save(K&) const {}
     template <class A>
-    HD void hand_over(A&) const {}
+    HD void save_shadow_data(A&) const {}
 
     /// Called for an unoccluded shadow ray, whose contribution is added to the path.
     template <class K, class A>
@@ -114,7 +114,7 @@ struct PathListener {
 /// Several listeners as one; each is called in turn.
 template <class... Ls>
 struct Listeners : Ls... {
-    struct Kept : Ls::Kept... {};
+    struct PathData : Ls::PathData... {};
     struct ShadowData : Ls::ShadowData... {};
 
     template <class L>
@@ -123,7 +123,7 @@ struct Listeners : Ls... {
     template <class Job> // PathJob, or a class derived from it with data that a listener needs
     HD explicit Listeners(const Job& job) : Ls(job)... {}
     HD void begins(const PathState& path) { (Ls::begins(path), ...); }
-    HD void take_up(const Kept& kept) { (Ls::take_up(static_cast<const typename Ls::Kept&>(kept)), ...); }
+    HD void restore(const PathData& kept) { (Ls::restore(static_cast<const typename Ls::PathData&>(kept)), ...); }
     HD void vertex(const PathState& path, const Hit& hit, Surface& surface) { (Ls::vertex(path, hit, surface), ...); }
     static uint32_t depth_of_lanes(const PathJob& job) {
         uint32_t depth = 0;
@@ -132,12 +132,12 @@ struct Listeners : Ls... {
     }
     void vertex_in_lanes(const PathState& path, const Hit& hit) { (Ls::vertex_in_lanes(path, hit), ...); }
     HD void missed(const PathState& path) { (Ls::missed(path), ...); }
-    HD bool takes(const PathState& path, const EmitterPoint& point, [[maybe_unused]] float pdf) {
-        return (Ls::takes(path, point, pdf) || ...);
+    HD bool removes_emission(const PathState& path, const EmitterPoint& point, [[maybe_unused]] float pdf) {
+        return (Ls::removes_emission(path, point, pdf) || ...);
     }
     HD void emitted(const PathState& path, [[maybe_unused]] Rgb light) { (Ls::emitted(path, light), ...); }
-    HD bool wants_direct(const PathState& path, const Hit& hit, const Surface& surface) {
-        return (Ls::wants_direct(path, hit, surface) && ...);
+    HD bool samples_direct(const PathState& path, const Hit& hit, const Surface& surface) {
+        return (Ls::samples_direct(path, hit, surface) && ...);
     }
     template <class Vertex>
     HD INLINE_ON_DEVICE void direct(const PathState& path, const Vertex& at, [[maybe_unused]] Vec3 wi,
@@ -148,26 +148,26 @@ struct Listeners : Ls... {
     HD INLINE_ON_DEVICE void scattered(const PathState& path, const Vertex& at, const BsdfSample& sample) {
         (Ls::scattered(path, at, sample), ...);
     }
-    HD void put_down(Kept& kept) const { (Ls::put_down(static_cast<typename Ls::Kept&>(kept)), ...); }
-    HD void hand_over(ShadowData& shadow_data) const {
-        (Ls::hand_over(static_cast<typename Ls::ShadowData&>(shadow_data)), ...);
+    HD void save(PathData& kept) const { (Ls::save(static_cast<typename Ls::PathData&>(kept)), ...); }
+    HD void save_shadow_data(ShadowData& shadow_data) const {
+        (Ls::save_shadow_data(static_cast<typename Ls::ShadowData&>(shadow_data)), ...);
     }
-    HD void arrived(Kept& kept, const ShadowData& shadow_data, Rgb light) const {
-        (Ls::arrived(static_cast<typename Ls::Kept&>(kept), static_cast<const typename Ls::ShadowData&>(shadow_data),
-                     light),
+    HD void arrived(PathData& kept, const ShadowData& shadow_data, Rgb light) const {
+        (Ls::arrived(static_cast<typename Ls::PathData&>(kept),
+                     static_cast<const typename Ls::ShadowData&>(shadow_data), light),
          ...);
     }
-    HD void ended(uint32_t pixel, Rgb radiance, const Kept& kept) const {
-        (Ls::ended(pixel, radiance, static_cast<const typename Ls::Kept&>(kept)), ...);
+    HD void ended(uint32_t pixel, Rgb radiance, const PathData& kept) const {
+        (Ls::ended(pixel, radiance, static_cast<const typename Ls::PathData&>(kept)), ...);
     }
-    HD static void load(const ListenerQueues& queues, uint32_t i, Kept& kept) {
-        (Ls::load(queues, i, static_cast<typename Ls::Kept&>(kept)), ...);
+    HD static void load(const ListenerQueues& queues, uint32_t i, PathData& kept) {
+        (Ls::load(queues, i, static_cast<typename Ls::PathData&>(kept)), ...);
     }
-    HD static void load_next(const ListenerQueues& queues, uint32_t i, Kept& kept) {
-        (Ls::load_next(queues, i, static_cast<typename Ls::Kept&>(kept)), ...);
+    HD static void load_next(const ListenerQueues& queues, uint32_t i, PathData& kept) {
+        (Ls::load_next(queues, i, static_cast<typename Ls::PathData&>(kept)), ...);
     }
-    HD static void store_next(const ListenerQueues& queues, uint32_t i, const Kept& kept) {
-        (Ls::store_next(queues, i, static_cast<const typename Ls::Kept&>(kept)), ...);
+    HD static void store_next(const ListenerQueues& queues, uint32_t i, const PathData& kept) {
+        (Ls::store_next(queues, i, static_cast<const typename Ls::PathData&>(kept)), ...);
     }
     HD static void load_shadow_data(const ListenerQueues& queues, uint32_t i, ShadowData& shadow_data) {
         (Ls::load_shadow_data(queues, i, static_cast<typename Ls::ShadowData&>(shadow_data)), ...);

@@ -138,7 +138,7 @@ public:
         for (uint32_t k = 0; k < missed; ++k) shade(missed_[k], none, 0);
         add_light();
         counts.shadow += shadows_;
-        keep_those_that_go_on();
+        compact();
         counts.bounce += going_on_;
     }
 
@@ -160,7 +160,7 @@ private:
             for (uint32_t lane = 0; lane < vertices.count; ++lane) {
                 const uint32_t i = which[first + lane];
                 goes_on_[i] = (results.goes_on >> lane & 1) != 0;
-                if ((results.wants_shadow >> lane & 1) == 0) continue;
+                if ((results.has_shadow_ray >> lane & 1) == 0) continue;
                 shadow_data_[shadows_] = {};
                 shadow_keys_[shadows_] = 0, shadow_paths_[shadows_++] = i;
             }
@@ -180,10 +180,10 @@ private:
     /// Shades the vertex of path i, or its miss, with the numbers of a lane.
     void shade(uint32_t i, const VertexWords<Words8>& words, uint32_t lane) {
         const uint32_t key = key_of(paths_[i], true);
-        const bool wants_shadow =
+        const bool has_shadow_ray =
             shade_(job_, paths_[i], kept_[i], hits_[i], DrawnNumbers(words, lane),
                    VertexShadow<Listener>{shadow_rays_[shadows_], shadow_data_[shadows_]}, goes_on_[i]);
-        if (!wants_shadow) return;
+        if (!has_shadow_ray) return;
         shadow_keys_[shadows_] = key, shadow_paths_[shadows_++] = i;
     }
 
@@ -198,7 +198,7 @@ private:
         }
     }
 
-    void keep_those_that_go_on() {
+    void compact() {
         going_on_ = 0;
         for (uint32_t i = 0; i < count_; ++i) {
             if (!goes_on_[i]) {
@@ -216,7 +216,7 @@ private:
     const VertexShading& lanes_ = vertex_shading();
     uint32_t together_[kPaths], alone_[kPaths], missed_[kPaths]; // paths in lanes, one by one, and without a hit
     bool goes_on_[kPaths];
-    typename Listener::Kept kept_[kPaths];
+    typename Listener::PathData kept_[kPaths];
     typename Listener::ShadowData shadow_data_[kPaths]; // the listener's data of shadow_rays_
 };
 

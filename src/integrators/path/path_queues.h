@@ -127,9 +127,9 @@ using RoundAppend = BlockAppend<3>;
 
 /// Reserves the slots of a vertex. `last` is the slot of the first path that ends after its shadow ray.
 HD inline RoundSlots append_to_round(const RoundAppend& lists, RoundCounts& round, uint32_t last, bool goes_on,
-                                     bool wants_shadow) {
-    const bool ends = wants_shadow && !goes_on;
-    const ListSlots<3> slots = lists.take({&round.next, &round.ended, &round.shadows}, {goes_on, ends, wants_shadow});
+                                     bool has_shadow_ray) {
+    const bool ends = has_shadow_ray && !goes_on;
+    const ListSlots<3> slots = lists.take({&round.next, &round.ended, &round.shadows}, {goes_on, ends, has_shadow_ray});
     return {ends ? last - slots.at[1] : slots.at[0], slots.at[2]};
 }
 

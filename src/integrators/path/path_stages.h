@@ -90,7 +90,7 @@ struct Shade {
         PathState path;
         ShadowRay shadow;
         uint32_t key = 0;
-        bool goes_on = false, wants_shadow = false;
+        bool goes_on = false, has_shadow_ray = false;
         if (is_there) {
             const bool begins = i >= round->going_on;
             const uint32_t slot = begins ? last - (i - round->going_on) : i;
@@ -102,18 +102,18 @@ struct Shade {
             if (begins) {
                 listener.begins(path);
             } else {
-                typename Listener::Kept kept{};
+                typename Listener::PathData kept{};
                 Listener::load(listened, slot, kept);
-                listener.take_up(kept);
+                listener.restore(kept);
             }
             const DrawOnDemand numbers = {(kFeatures & kBatched) != 0 ? &job.picture.batch : nullptr};
-            goes_on = shade_vertex<kFeatures>(job, path, hit, numbers, shadow, wants_shadow, listener);
+            goes_on = shade_vertex<kFeatures>(job, path, hit, numbers, shadow, has_shadow_ray, listener);
         }
-        const RoundSlots slots = append_to_round(lists, *round, last, goes_on, wants_shadow);
+        const RoundSlots slots = append_to_round(lists, *round, last, goes_on, has_shadow_ray);
         if (!is_there) return;
-        typename Listener::Kept kept{};
-        listener.put_down(kept);
-        if (!goes_on && !wants_shadow) return listener.ended(path.pixel, path.radiance, kept);
+        typename Listener::PathData kept{};
+        listener.save(kept);
+        if (!goes_on && !has_shadow_ray) return listener.ended(path.pixel, path.radiance, kept);
         if (goes_on) {
             next.store(slots.path, path, sample_key<kFeatures>(job, path.pixel, path.sample),
                        job.picture.scene.any_alpha != 0);
@@ -122,11 +122,11 @@ struct Shade {
             next.store_ended(slots.path, path);
         }
         Listener::store_next(listened, slots.path, kept);
-        if (!wants_shadow) return;
+        if (!has_shadow_ray) return;
         shadows.store(slots.shadow, shadow, slots.path | (goes_on ? 0 : kEndsPath), key);
         if (kMoves && shadows.times != nullptr) shadows.times[slots.shadow] = path.time;
         typename Listener::ShadowData shadow_data{};
-        listener.hand_over(shadow_data);
+        listener.save_shadow_data(shadow_data);
         Listener::store_shadow_data(listened, slots.shadow, shadow_data);
     }
 };
@@ -145,7 +145,7 @@ struct AddLight {
         const bool arrives = shadows.keys[i] == kNoHit, ends = (bits_of(c.w) & kEndsPath) != 0;
         if (!arrives && !ends) return;
         const Listener listener(job);
-        typename Listener::Kept kept{};
+        typename Listener::PathData kept{};
         Listener::load_next(listened, slot, kept);
         const Float4 before = next.radiance[slot];
         Rgb radiance = {before.x, before.y, before.z};

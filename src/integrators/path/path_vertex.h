@@ -68,7 +68,7 @@ HD INLINE_ON_DEVICE void add_background(const PathJob& job, PathState& path, Lis
     if (lights.has_environment() && !(path.depth == 0 && job.picture.hides_background(path.origin))) {
         const EnvironmentHit seen =
             find_environment<LightChoice<kFeatures>>(lights, context_before(path), path.direction, path.bsdf_pdf > 0);
-        if (!listener.takes(path, environment_point(path.direction), seen.pdf)) {
+        if (!listener.removes_emission(path, environment_point(path.direction), seen.pdf)) {
             light = emitted_light(job.settings, path, seen.radiance, seen.pdf);
         }
     }
@@ -85,7 +85,7 @@ HD INLINE_ON_DEVICE void add_surface_emission(const PathJob& job, PathState& pat
         const float light_pdf = path.bsdf_pdf > 0 ? pdf_direct<LightChoice<kFeatures>>(job.picture.scene, kMoves,
                                                                                        context_before(path), surface)
                                                   : 0.0f;
-        if (!listener.takes(path, {hit.instance, hit.primitive, hit.u, hit.v}, light_pdf)) {
+        if (!listener.removes_emission(path, {hit.instance, hit.primitive, hit.u, hit.v}, light_pdf)) {
             light = emitted_light(job.settings, path, surface.emission, light_pdf);
         }
     }
@@ -189,28 +189,28 @@ HD INLINE_ON_DEVICE Surface make_vertex(const SceneView& scene, const PathState&
 /// Shades a vertex in a medium, which the path's ray reached before any surface.
 template <Features kFeatures, class Vertex, class Numbers, class Listener>
 HD INLINE_ON_DEVICE bool shade_in_medium(const PathJob& job, PathState& path, const Vertex& vertex,
-                                         const Numbers& numbers, ShadowRay& shadow, bool& wants_shadow,
+                                         const Numbers& numbers, ShadowRay& shadow, bool& has_shadow_ray,
                                          Listener& listener) {
     listener.missed(path);
     if (path.depth >= job.settings.max_depth) return false;
-    wants_shadow =
+    has_shadow_ray =
         sample_direct<kFeatures>(job, path, vertex, vertex.light_context(path.time), numbers, shadow, listener);
     path.normal = {0, 0, 0};
     return sample_scattering(job.settings, path, vertex, numbers, listener);
 }
 
 /// Shades the result of the path's ray: `hit`, or a miss if hit.instance is kNoHit. Returns whether the path
-/// continues; `wants_shadow` says whether `shadow` was written. `numbers` is DrawOnDemand or DrawnNumbers.
+/// continues; `has_shadow_ray` says whether `shadow` was written. `numbers` is DrawOnDemand or DrawnNumbers.
 template <Features kFeatures, class Numbers, class Listener>
 HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const Hit& hit, const Numbers& numbers,
-                                      ShadowRay& shadow, bool& wants_shadow, Listener& listener) {
+                                      ShadowRay& shadow, bool& has_shadow_ray, Listener& listener) {
     const SceneView& scene = job.picture.scene;
-    wants_shadow = false;
+    has_shadow_ray = false;
     if constexpr (!Medium<kFeatures>::kIsVacuum) {
         typename Medium<kFeatures>::Vertex vertex;
         const float distance = hit.instance == kNoHit ? kInfinity : hit.t;
-        if (Medium<kFeatures>(scene).meets(job.settings, path, distance, vertex)) {
-            return shade_in_medium<kFeatures>(job, path, vertex, numbers, shadow, wants_shadow, listener);
+        if (Medium<kFeatures>(scene).scatters(job.settings, path, distance, vertex)) {
+            return shade_in_medium<kFeatures>(job, path, vertex, numbers, shadow, has_shadow_ray, listener);
         }
     }
     if (hit.instance == kNoHit) {
@@ -224,8 +224,8 @@ HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const
     if (surface.is_unlit || path.depth >= job.settings.max_depth) return false;
     const SurfaceVertex vertex = {surface, -path.direction};
     const LightContext context = vertex.light_context(path.time);
-    wants_shadow = listener.wants_direct(path, hit, surface) &&
-                   sample_direct<kFeatures>(job, path, vertex, context, numbers, shadow, listener);
+    has_shadow_ray = listener.samples_direct(path, hit, surface) &&
+                     sample_direct<kFeatures>(job, path, vertex, context, numbers, shadow, listener);
     if constexpr (LightChoice<kFeatures>::kReadsNormal) path.normal = context.normal;
     return sample_scattering(job.settings, path, vertex, numbers, listener);
 }

@@ -23,8 +23,8 @@ struct LaneVertices {
 
 /// Results of vertices; one bit for each lane, that of lane 0 first.
 struct LaneResults {
-    unsigned goes_on = 0;      // the path continues; it has been moved to its next ray
-    unsigned wants_shadow = 0; // has a shadow ray
+    unsigned goes_on = 0;        // the path continues; it has been moved to its next ray
+    unsigned has_shadow_ray = 0; // has a shadow ray
 };
 
 /// A function that shades vertices, and how many it takes at a time.

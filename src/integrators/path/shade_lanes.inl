@@ -487,7 +487,7 @@ Paths load_paths(const LaneVertices& vertices) {
     const Vec3s wo_local = surfaces.frame.to_local(wo);
     LaneResults results;
     if (scene.lights.has_lights()) {
-        results.wants_shadow =
+        results.has_shadow_ray =
             sample_direct(job, scatter, paths, surfaces, wo, wo_local, vertices, words.light, shadows);
     }
     results.goes_on = sample_scattering(job.settings, scatter, paths, surfaces, wo, wo_local, vertices, words);

@@ -102,7 +102,7 @@ struct ShadeGather {
             gather.store(atomic_add(&subpaths.counts->vertices, 1u),
                          {hit, ray.direction, state.throughput, state.pixel, depth, !turns});
         }
-        go_on(vertex, subpath, state, gather_state, nearness);
+        continue_subpath(vertex, subpath, state, gather_state, nearness);
     }
 
 private:
@@ -168,8 +168,8 @@ private:
     }
 
     /// Continues or ends the subpath. `nearness` is the result of sample_direct_light.
-    HD INLINE_ON_DEVICE void go_on(const Vertex& vertex, uint32_t subpath, SubpathState& state,
-                                   GatherState gather_state, float nearness) const {
+    HD INLINE_ON_DEVICE void continue_subpath(const Vertex& vertex, uint32_t subpath, SubpathState& state,
+                                              GatherState gather_state, float nearness) const {
         const Surface& surface = vertex.surface;
         const SubpathSettings& settings = scene.settings;
         const uint32_t choices = camera_group(state.depth(), kSubpathChoices);

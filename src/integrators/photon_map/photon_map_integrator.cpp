@@ -25,7 +25,7 @@ void PhotonMapIntegrator::reserve(const WorkSize& size) {
     const PhotonMapSettings& map = settings_.map;
     maps_.allocate(map, settings_.subpaths.max_depth);
     targets_.grow(queue_, kMaxTargets, "targets of photons");
-    if (goes_by_loop(size)) return;
+    if (uses_loop(size)) return;
     const uint64_t subpaths =
         std::max<uint64_t>(size.pixels(), 2 * uint64_t(map.photons)); // camera subpaths or photons
     allocate_capacity(capacity_within(kMaxBytes, std::min<uint64_t>(subpaths, batch_),

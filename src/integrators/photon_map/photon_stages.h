@@ -110,7 +110,7 @@ struct ShadePhotons {
         if (surface.is_unlit || is_black(state.throughput)) return;
         if (is_kept) keep(surface, subpath, state, -ray.direction, is_caustic);
         if (state.depth() + 1 < scene.settings.max_depth && !(is_caustic && !surface.bsdf.has_delta())) {
-            go_on(surface, subpath, state, -ray.direction, is_caustic);
+            continue_subpath(surface, subpath, state, -ray.direction, is_caustic);
         }
     }
 
@@ -127,8 +127,8 @@ private:
             {surface.position, wi, dot(normal, wi) < 0 ? -normal : normal, power, state.pixel, state.depth()},
             is_caustic);
     }
-    HD INLINE_ON_DEVICE void go_on(const Surface& surface, uint32_t subpath, SubpathState& state, Vec3 wi,
-                                   bool is_caustic) const {
+    HD INLINE_ON_DEVICE void continue_subpath(const Surface& surface, uint32_t subpath, SubpathState& state, Vec3 wi,
+                                              bool is_caustic) const {
         const SubpathSettings& settings = scene.settings;
         const SampleKey key = pass.key(state.pixel, settings.seed);
         const uint32_t choices = particle_group(state.depth(), kSubpathChoices);

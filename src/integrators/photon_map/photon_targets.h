@@ -119,7 +119,7 @@ struct AimFromKind {
         if (triangle.is_two_sided == 0 ? triangle.is_mirrored != 0 : dot(normal, direction.to) < 0) normal = -normal;
         const float cosine = dot(normal, direction.to);
         if (!(cosine > 0)) return false; // the target is behind the emitter
-        leave_emitter(triangle, emission, normal, direction.to, freely.particle);
+        start_particle(triangle, emission, normal, direction.to, freely.particle);
         freely.particle.power = (cosine / (emission.pdf * direction.pdf)) * emission.radiance;
         return true;
     }

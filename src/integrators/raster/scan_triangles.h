@@ -73,7 +73,7 @@ struct TriangleScan {
                 transform_point(placed.world_from_local, corner) - picture.camera.view.world_from_camera.translation;
         }
         const AcceptCameraHit accept = {{scene, {}, {}, 0}, direction};
-        return !accept.meets_hidden_back(corners.instance, corners.primitive);
+        return !accept.hits_hidden_back(corners.instance, corners.primitive);
     }
     HD void scan(int32_t row) const {
         const SamplePosition position = pass.sample_position();

@@ -36,7 +36,7 @@ private:
 
 template <class Algorithm>
 void RayTreeIntegrator<Algorithm>::reserve(const WorkSize& size) {
-    if (goes_by_loop(size)) return;
+    if (uses_loop(size)) return;
     allocate_capacity(capacity_for(settings_, size.has_times, kMaxBytes, std::min<uint64_t>(size.all(), batch_)),
                       "ray trees");
 }

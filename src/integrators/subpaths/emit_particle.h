@@ -66,8 +66,8 @@ HD inline bool find_emission_point(const SceneView& scene, uint32_t light, Vec2 
 }
 
 /// Makes the ray from that point, on the side of `normal`.
-HD inline void leave_emitter(const EmissiveTriangle& triangle, const EmissionPoint& emission, Vec3 normal,
-                             Vec3 direction, Particle& particle) {
+HD inline void start_particle(const EmissiveTriangle& triangle, const EmissionPoint& emission, Vec3 normal,
+                              Vec3 direction, Particle& particle) {
     particle.ray = {offset_ray_origin(emission.point, light_point_error(emission.point), normal, direction), 0,
                     direction, kInfinity};
     particle.start = {triangle.instance, triangle.primitive};
@@ -95,7 +95,7 @@ struct EmitFromKind {
         const Vec3 local = sample_cosine_hemisphere(about);
         const float pdf = pdf_emission(triangle, local.z);
         if (!(pdf > 0)) return false;
-        leave_emitter(triangle, emission, normal, normalize(make_frame(normal).to_world(local)), particle);
+        start_particle(triangle, emission, normal, normalize(make_frame(normal).to_world(local)), particle);
         particle.power = (local.z / (emission.pdf * pdf)) * emission.radiance;
         particle.mis = {square(1.0f / pdf), min(square(local.z / (emission.pdf * pdf)), kMaxWeightSum)};
         return true;

@@ -145,7 +145,7 @@ struct ShadeParticles {
         }
         const SampleKey key = particle_sample_key(scene, state.pixel, state.sample);
         if (can_be_connected) connect_to_lens(surface, hit, subpath, state, -ray.direction, key);
-        if (state.depth() + 1 < settings.max_depth) go_on(surface, subpath, state, -ray.direction, key);
+        if (state.depth() + 1 < settings.max_depth) continue_subpath(surface, subpath, state, -ray.direction, key);
     }
 
 private:
@@ -160,7 +160,7 @@ private:
         if (!connect_to_camera(camera, surface.position, lens, seen)) return;
         const AcceptHit accept = {scene.picture.scene, {}, {}, 0};
         if (scene.picture.scene.any_hidden_back != 0 &&
-            AcceptCameraHit{accept, seen.direction}.meets_hidden_back(hit.instance, hit.primitive)) {
+            AcceptCameraHit{accept, seen.direction}.hits_hidden_back(hit.instance, hit.primitive)) {
             return; // the camera sees through its back
         }
         const Vec3 wo = -seen.direction;
@@ -185,8 +185,8 @@ private:
         subpaths.queue_connection(slot, connection, state.pixel);
         subpaths.connection_rasters[slot] = seen.raster;
     }
-    HD INLINE_ON_DEVICE void go_on(const Surface& surface, uint32_t subpath, SubpathState& state, Vec3 wi,
-                                   SampleKey key) const {
+    HD INLINE_ON_DEVICE void continue_subpath(const Surface& surface, uint32_t subpath, SubpathState& state, Vec3 wi,
+                                              SampleKey key) const {
         const SubpathSettings& settings = scene.settings;
         const uint32_t choices = particle_group(state.depth(), kSubpathChoices);
         const ScatterDraw draw =

@@ -28,7 +28,7 @@ private:
 
 template <class Algorithm>
 void SubpathIntegrator<Algorithm>::reserve(const WorkSize& size) {
-    if (goes_by_loop(size)) return;
+    if (uses_loop(size)) return;
     allocate_capacity(capacity_for(settings_, kMaxBytes, std::min<uint64_t>(size.all(), batch_)), "light paths");
 }
 

@@ -105,7 +105,7 @@ void check_layers(std::span<const LightPathExpression> expressions) {
     }
 }
 
-LightPathLayers put_to_scene(std::vector<LightPathExpression> expressions, const Scene& scene) {
+LightPathLayers bind_to_scene(std::vector<LightPathExpression> expressions, const Scene& scene) {
     check_layers(expressions);
     LightPathLayers layers;
     LightPathTags tags;

@@ -30,6 +30,6 @@ void check_layers(std::span<const LightPathExpression> expressions);
 
 /// Makes the layers of expressions for a scene. Names are those of scene/names.h. Throws Error(BadInput) with a caret
 /// for a name that nothing has, and as check_layers and make_automaton.
-LightPathLayers put_to_scene(std::vector<LightPathExpression> expressions, const Scene& scene);
+LightPathLayers bind_to_scene(std::vector<LightPathExpression> expressions, const Scene& scene);
 
 } // namespace pertev

@@ -94,13 +94,13 @@ SceneUpdate PosedScene::set_time(double time_s) {
     }
     if (!is_animated()) return {};
     read_channels(time_s);
-    place_nodes();
-    place_instances();
+    update_nodes();
+    update_instances();
     shape_meshes();
     check_placements(time_s);
-    place_cameras();
-    place_lights();
-    return take_changes();
+    update_cameras();
+    update_lights();
+    return collect_changes();
 }
 
 SceneUpdate PosedScene::edit(const std::function<SceneUpdate(Scene&)>& edit) {
@@ -130,8 +130,8 @@ PosedScene::Placements PosedScene::placements_at(double time_s) {
     const auto cameras = cameras_, placed_cameras = scene_.cameras;
     const auto lights = lights_;
     read_channels(time_s);
-    place_nodes();
-    place_cameras();
+    update_nodes();
+    update_cameras();
     Placements placements = {std::vector<std::optional<Transform>>(scene_.instances.size()), scene_.cameras};
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
         const Instance& instance = scene_.instances[i];
@@ -194,7 +194,7 @@ void PosedScene::read_channels(double time_s) {
     }
 }
 
-void PosedScene::place_nodes() {
+void PosedScene::update_nodes() {
     for (const uint32_t node : parents_first_) {
         if (!node_moves_[node]) continue; // stays at rest
         const DoubleTransform* matrix = std::get_if<DoubleTransform>(&scene_.nodes[node].pose);
@@ -242,7 +242,7 @@ void PosedScene::shape_meshes() {
     }
 }
 
-void PosedScene::place_instances() {
+void PosedScene::update_instances() {
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
         Instance& instance = scene_.instances[i];
         if (!instance_moves_[i] || scene_.nodes[instance.node].skin != kNoSkin) continue;
@@ -263,27 +263,27 @@ void PosedScene::check_placements(double time_s) const {
         const Instance& instance = scene_.instances[i];
         if (!instance_moves_[i] || instance.is_hidden || is_left[instance.mesh]) continue;
         const Bounds3& local = bounds_[instance.mesh];
-        if (local.is_empty() || lies_near(instance.world_from_local, local)) continue;
+        if (local.is_empty() || is_within_limits(instance.world_from_local, local)) continue;
         throw Error(ErrorCode::OverLimit, "time", fmt::format("{}", time_s),
                     fmt::format("{} lies beyond 2^40 metres then; scale the scene down",
                                 numbered("instance", i, instance.name, origin_of(instance))));
     }
 }
 
-void PosedScene::place_cameras() {
+void PosedScene::update_cameras() {
     for (std::size_t i = 0; i < scene_.cameras.size(); ++i) {
         Camera& camera = scene_.cameras[i];
         camera.fov_y = cameras_[i].fov_y;
         camera.ortho_height = cameras_[i].ortho_height;
         if (camera.node == kNoNode || !node_moves_[camera.node]) continue;
         const std::optional<Transform> rigid = without_scale(world_from_node_[camera.node]);
-        const bool stands = rigid && lies_near(*rigid, Bounds3{{0, 0, 0}, {0, 0, 0}});
+        const bool stands = rigid && is_within_limits(*rigid, Bounds3{{0, 0, 0}, {0, 0, 0}});
         camera.world_from_camera = stands ? *rigid : cameras_at_rest_[i].world_from_camera;
         camera.world_from_camera.translation = rounded_to_file(scene_, camera.world_from_camera.translation);
     }
 }
 
-void PosedScene::place_lights() {
+void PosedScene::update_lights() {
     for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
         const Light& rest = lights_at_rest_[i];
         Light light = rest;
@@ -292,9 +292,9 @@ void PosedScene::place_lights() {
         light.cos_inner = lights_[i].cos_inner;
         light.cos_outer = min(lights_[i].cos_outer, light.cos_inner - kSharpestEdge);
         if (light.node != kNoNode && node_moves_[light.node]) {
-            bool stands = place_light(world_from_node_[light.node], light);
+            bool stands = transform_light(world_from_node_[light.node], light);
             light.direction = normalize_safely(light.direction);
-            stands = stands && lies_near(make_translation(light.position), Bounds3{{0, 0, 0}, {0, 0, 0}});
+            stands = stands && is_within_limits(make_translation(light.position), Bounds3{{0, 0, 0}, {0, 0, 0}});
             if (!stands) {
                 light = rest;
                 light.intensity = {0, 0, 0};
@@ -311,7 +311,7 @@ void PosedScene::place_lights() {
     }
 }
 
-SceneUpdate PosedScene::take_changes() {
+SceneUpdate PosedScene::collect_changes() {
     SceneUpdate update = {numbers_of(moved_), numbers_of(deformed_), numbers_of(replaced_),
                           lights_changed_,    poses_changed_,        false};
     for (std::vector<bool>* flags : {&moved_, &deformed_, &replaced_}) flags->assign(flags->size(), false);

@@ -55,13 +55,13 @@ private:
     void drop_shapes_at_rest();
     void find_shapes_to_leave();
     void read_channels(double time_s);
-    void place_nodes();
-    void place_instances();
+    void update_nodes();
+    void update_instances();
     void shape_meshes();
     void check_placements(double time_s) const;
-    void place_cameras();
-    void place_lights();
-    SceneUpdate take_changes();
+    void update_cameras();
+    void update_lights();
+    SceneUpdate collect_changes();
 
     Scene scene_;
     std::vector<Camera> cameras_at_rest_;

@@ -209,7 +209,7 @@ private:
     static std::string fault_of_transform(const Instance& instance, const Bounds3& local) {
         const Transform& m = instance.world_from_local;
         if (!is_finite(m)) return "has a transform that is not finite";
-        return local.is_empty() || lies_near(m, local) ? "" : kTooFar;
+        return local.is_empty() || is_within_limits(m, local) ? "" : kTooFar;
     }
 
     static bool is_near(Vec3 p) { return is_finite(p) && max_component(abs(p)) <= kMaxCoordinate; }

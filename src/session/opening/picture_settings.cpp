@@ -62,7 +62,7 @@ RenderSettings render_settings(const PictureOptions& options, const Scene& scene
     RenderSettings settings = light_settings(options);
     if (settings.light_paths) {
         settings.light_paths =
-            std::make_shared<const LightPathLayers>(put_to_scene(settings.light_paths->expressions, scene));
+            std::make_shared<const LightPathLayers>(bind_to_scene(settings.light_paths->expressions, scene));
     }
     settings.heights = read_height_maps(height_maps(options), scene);
     set_size(options, scene, settings);

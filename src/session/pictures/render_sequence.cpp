@@ -27,14 +27,14 @@ void move_in_shutter(uint32_t frame, MovingScene& moving, const FrameCamera& cam
 /// Goes to the frame to which motion vectors of `frame` refer.
 void show_frame_before(uint32_t frame, const FrameCamera& camera, MovingScene& moving, Session& session, Sink& sink) {
     const std::optional<double> time_s = camera.sequence.time_before(frame);
-    go_to(time_s, moving, session, sink);
+    seek(time_s, moving, session, sink);
     session.set_camera(camera_at(camera.camera, moving.scene(), time_s, camera.sequence.turn_before(frame)).camera);
-    session.keep_as_before();
+    session.store_previous();
 }
 
 } // namespace
 
-void go_to(std::optional<double> time_s, MovingScene& moving, Session& session, Sink& sink) {
+void seek(std::optional<double> time_s, MovingScene& moving, Session& session, Sink& sink) {
     if (!time_s) return;
     if (const uint32_t parts = moving.set_time(*time_s, sink)) session.update_scene(moving.prepared(), parts);
 }
@@ -59,9 +59,9 @@ void place_frame(uint32_t frame, MovingScene& moving, const FrameCamera& camera,
     if (camera.sequence.shutter) move_in_shutter(frame, moving, camera, record.camera.camera);
 }
 
-void go_to_frame(uint32_t frame, const FrameCamera& camera, MovingScene& moving, Session& session,
-                 PictureRecord& record, Sink& sink) {
-    go_to(camera.sequence.time_of(frame), moving, session, sink);
+void seek_frame(uint32_t frame, const FrameCamera& camera, MovingScene& moving, Session& session, PictureRecord& record,
+                Sink& sink) {
+    seek(camera.sequence.time_of(frame), moving, session, sink);
     place_frame(frame, moving, camera, record);
     session.set_camera(record.camera.camera);
     if (!camera.list.empty()) session.set_settings(record.settings);
@@ -72,10 +72,10 @@ RenderedFrame render_frame(uint32_t frame, const SequenceOfFrames& frames, Sink&
     const Stopwatch update;
     if ((record.settings.aovs & kAovMotion) != 0 && camera.list.empty())
         show_frame_before(frame, camera, moving, session, sink);
-    go_to_frame(frame, camera, moving, session, record, sink);
+    seek_frame(frame, camera, moving, session, record, sink);
     const double update_s = update.seconds();
     if (!record.frame) {
-        session.leave_passes(true); // a frame without all its samples is worth nothing
+        session.interrupt_passes(true); // a frame without all its samples is worth nothing
         session.render(record.settings.samples, sink);
         return {session.result(), update_s};
     }

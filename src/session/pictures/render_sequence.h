@@ -27,15 +27,15 @@ struct FrameCamera {
 };
 
 /// Moves the session's scene to a time, if there is one. Throws as MovingScene::set_time and Session::update_scene.
-void go_to(std::optional<double> time_s, MovingScene& moving, Session& session, Sink& sink);
+void seek(std::optional<double> time_s, MovingScene& moving, Session& session, Sink& sink);
 /// Returns the camera at a time, and after a fraction of a revolution.
 CameraSource camera_at(const MovingCamera& camera, const Scene& scene, std::optional<double> time_s, double turn);
 /// Sets the camera, its size and the time of `frame` in `record`; `moving` is at that time. The camera moves while a
 /// shutter is open.
 void place_frame(uint32_t frame, MovingScene& moving, const FrameCamera& camera, PictureRecord& record);
-/// Moves scene, camera and record to `frame`. Throws as go_to.
-void go_to_frame(uint32_t frame, const FrameCamera& camera, MovingScene& moving, Session& session,
-                 PictureRecord& record, Sink& sink);
+/// Moves scene, camera and record to `frame`. Throws as seek.
+void seek_frame(uint32_t frame, const FrameCamera& camera, MovingScene& moving, Session& session, PictureRecord& record,
+                Sink& sink);
 
 /// Everything needed to render any frame. `record` describes the last one.
 struct SequenceOfFrames {
@@ -49,7 +49,7 @@ struct RenderedFrame {
     double update_s = 0; // seconds for the update of the scene
 };
 /// Goes to `frame` and renders it: in real time if the record has a frame, else as a picture with its samples. Throws
-/// as go_to and Session::render.
+/// as seek and Session::render.
 RenderedFrame render_frame(uint32_t frame, const SequenceOfFrames& frames, Sink& sink);
 
 } // namespace pertev

@@ -32,7 +32,7 @@ struct OctantTraversal {
         const int octant = octant_of_lanes(boxes.segment.inv);
         uint32_t link = bvh.root;
         for (;;) {
-            link = go_down(octant, bvh, link, boxes, stack, counter);
+            link = descend(octant, bvh, link, boxes, stack, counter);
             if (link == kNoLink) return false;
             const float before = visitor.limit();
             if (test_leaf<Tests>(bvh, link, ray, prepared, instance, visitor, counter)) return true;
@@ -59,33 +59,33 @@ private:
     }
 
     template <class Counter>
-    HD static uint32_t go_down(int octant, const BvhView& bvh, uint32_t link, const RayOctantBoxes& boxes, Stack& stack,
+    HD static uint32_t descend(int octant, const BvhView& bvh, uint32_t link, const RayOctantBoxes& boxes, Stack& stack,
                                const Counter& counter) {
         switch (octant) {
         case 0:
-            return go_down<0>(bvh, link, boxes, stack, counter);
+            return descend<0>(bvh, link, boxes, stack, counter);
         case 1:
-            return go_down<1>(bvh, link, boxes, stack, counter);
+            return descend<1>(bvh, link, boxes, stack, counter);
         case 2:
-            return go_down<2>(bvh, link, boxes, stack, counter);
+            return descend<2>(bvh, link, boxes, stack, counter);
         case 3:
-            return go_down<3>(bvh, link, boxes, stack, counter);
+            return descend<3>(bvh, link, boxes, stack, counter);
         case 4:
-            return go_down<4>(bvh, link, boxes, stack, counter);
+            return descend<4>(bvh, link, boxes, stack, counter);
         case 5:
-            return go_down<5>(bvh, link, boxes, stack, counter);
+            return descend<5>(bvh, link, boxes, stack, counter);
         case 6:
-            return go_down<6>(bvh, link, boxes, stack, counter);
+            return descend<6>(bvh, link, boxes, stack, counter);
         case 7:
-            return go_down<7>(bvh, link, boxes, stack, counter);
+            return descend<7>(bvh, link, boxes, stack, counter);
         default:
-            return go_down<kAnyOctant>(bvh, link, boxes, stack, counter);
+            return descend<kAnyOctant>(bvh, link, boxes, stack, counter);
         }
     }
 
     /// Descends to the next leaf; kNoLink at the end.
     template <int kOctant, class Counter>
-    HD static uint32_t go_down(const BvhView& bvh, uint32_t link, const RayOctantBoxes& boxes, Stack& stack,
+    HD static uint32_t descend(const BvhView& bvh, uint32_t link, const RayOctantBoxes& boxes, Stack& stack,
                                const Counter& counter) {
         const float end = boxes.segment.end;
         while (!(link & kLeafBit)) {

@@ -8,7 +8,7 @@
 // nothing is postponed and the nodes tested are those of WhileWhileTraversal.
 
 #include "trace/binary/while_while_traversal.h"
-#include "trace/traversal/traverse_by_turns.h"
+#include "trace/traversal/traverse_by_steps.h"
 #include "trace/warps/warp_vote.h"
 
 namespace pertev {
@@ -27,13 +27,13 @@ struct SpeculativeTraversal {
     template <class Visitor, class Counter>
     HD static bool traverse(const Tree& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
                             const Counter& counter) {
-        return traverse_by_turns<SpeculativeTraversal>(bvh, ray, instance, visitor, counter);
+        return traverse_by_steps<SpeculativeTraversal>(bvh, ray, instance, visitor, counter);
     }
 
     /// Descends until all lanes that run together have found a leaf, then tests the leaves. Returns true if the
     /// visitor ended it.
     template <class Visitor, class Counter>
-    HD static bool turn(const Tree& bvh, const Ray& ray, uint32_t instance, State& state, Visitor& visitor,
+    HD static bool step(const Tree& bvh, const Ray& ray, uint32_t instance, State& state, Visitor& visitor,
                         const Counter& counter, LaneMask, int) {
         uint32_t link = state.link, postponed = kNoLink;
         while (!(link & kLeafBit)) {

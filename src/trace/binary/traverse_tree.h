@@ -41,7 +41,7 @@ HD inline uint32_t next_leaf(TreeTraversal& traversal, const BvhNode* nodes, con
 }
 
 /// Continues with the top of the stack after a leaf.
-HD inline void leave_leaf(TreeTraversal& traversal, TreeStack::Slot* slots, float t_limit) {
+HD inline void finish_leaf(TreeTraversal& traversal, TreeStack::Slot* slots, float t_limit) {
     TreeStack stack = {slots, traversal.size};
     traversal.link = stack.pop(t_limit);
     traversal.size = stack.size;

@@ -8,7 +8,7 @@
 #include "trace/binary/traversal_stack.h"
 #include "trace/intersect/test_leaf.h"
 #include "trace/traversal/traversal_options.h"
-#include "trace/traversal/traverse_by_turns.h"
+#include "trace/traversal/traverse_by_steps.h"
 #include "trace/warps/warp_vote.h"
 
 namespace pertev {
@@ -53,12 +53,12 @@ struct WhileWhileTraversal {
     template <class Visitor, class Counter>
     HD static bool traverse(const Tree& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
                             const Counter& counter) {
-        return traverse_by_turns<WhileWhileTraversal>(bvh, ray, instance, visitor, counter);
+        return traverse_by_steps<WhileWhileTraversal>(bvh, ray, instance, visitor, counter);
     }
 
     /// Descends to the next leaf and tests its triangles. Returns true if the visitor ended the traversal.
     template <class Visitor, class Counter>
-    HD static bool turn(const Tree& bvh, const Ray& ray, uint32_t instance, State& state, Visitor& visitor,
+    HD static bool step(const Tree& bvh, const Ray& ray, uint32_t instance, State& state, Visitor& visitor,
                         const Counter& counter, LaneMask, int) {
         uint32_t link = state.link;
         while (!(link & kLeafBit)) {

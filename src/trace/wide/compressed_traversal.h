@@ -26,7 +26,7 @@
 #include "trace/intersect/compressed_boxes.h"
 #include "trace/intersect/load_bvh.h"
 #include "trace/traversal/traversal_options.h"
-#include "trace/traversal/traverse_by_turns.h"
+#include "trace/traversal/traverse_by_steps.h"
 #include "trace/warps/warp_vote.h"
 
 namespace pertev {
@@ -134,14 +134,14 @@ struct CompressedTraversal {
     template <class Visitor, class Counter>
     HD static bool traverse(const CompressedBvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
                             const Counter& counter) {
-        return traverse_by_turns<CompressedTraversal>(bvh, ray, instance, visitor, counter);
+        return traverse_by_steps<CompressedTraversal>(bvh, ray, instance, visitor, counter);
     }
 
     /// Puts the ray at the root.
     template <class Visitor>
     HD static void start(const CompressedBvhView& bvh, const Ray& ray, const Visitor& visitor, State& state) {
         state.segment = make_ray_segment<Tests>(ray, bvh.bounds_max_abs, skip_beyond<kOptions>(visitor, ray));
-        if (State::kEitherWay) state.order = slot_order(state.segment.inv, visitor.goes_far_first());
+        if (State::kEitherWay) state.order = slot_order(state.segment.inv, visitor.visits_far_first());
         state.prepared = Tests::make_triangles(ray);
         state.size = 0;
         state.nodes = {0, 1u << 24 | (bvh.nodes == nullptr ? 0u : 1u)}; // slot 0 of a node above the root
@@ -151,7 +151,7 @@ struct CompressedTraversal {
     /// Tests one node, and the postponed triangles if enough of the lanes that run together have some. Returns true
     /// if the visitor ended the traversal.
     template <class Visitor, class Counter>
-    HD static bool turn(const CompressedBvhView& bvh, const Ray& ray, uint32_t instance, State& state, Visitor& visitor,
+    HD static bool step(const CompressedBvhView& bvh, const Ray& ray, uint32_t instance, State& state, Visitor& visitor,
                         const Counter& counter, LaneMask lanes, int working) {
         if (!state.nodes.is_empty()) step_down(bvh, ray, state, counter);
         const int enough = lanes_for_triangles(working);

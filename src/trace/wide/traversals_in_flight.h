@@ -89,7 +89,7 @@ private:
     }
 
     /// Pops the next entry and prefetches its memory. Returns true for a leaf.
-    [[gnu::always_inline]] bool go_on(Flight& flight) const {
+    [[gnu::always_inline]] bool advance(Flight& flight) const {
         const WideEntry entry = flight.stack.pop();
         const bool is_leaf = (entry.link & kLeafBit) != 0;
         const auto* const node = reinterpret_cast<const char*>(bvh_.nodes + entry.link);
@@ -109,8 +109,8 @@ private:
             const __m256 t_limit = _mm256_set1_ps(skip_beyond<kOptions>(flight.visitor, flight.ray));
             const EnteredChildren entered =
                 enters_children(flight.wide, node, _mm256_set1_ps(flight.ray.t_min), t_limit);
-            flight.stack.template push<kOptions>(node, entered, flight.visitor.goes_far_first());
-            const bool is_leaf = go_on(flight);
+            flight.stack.template push<kOptions>(node, entered, flight.visitor.visits_far_first());
+            const bool is_leaf = advance(flight);
             at_leaves.add_if(is_leaf, &flight);
             at_nodes.flights[left] = &flight;
             left += is_leaf ? 0 : 1;
@@ -131,7 +131,7 @@ private:
             }
             const float limit = skip_beyond<kOptions>(flight.visitor, flight.ray);
             if (kOptions.rta && limit < before) flight.stack.shorten(limit);
-            const bool is_leaf = go_on(flight);
+            const bool is_leaf = advance(flight);
             at_nodes.add_if(!is_leaf, &flight);
             at_leaves.flights[left] = &flight;
             left += is_leaf ? 1 : 0;

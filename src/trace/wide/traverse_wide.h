@@ -200,7 +200,7 @@ template <TraversalOptions kOptions, class Visitor, class Counter>
             const WideBvhNode<kWideChildren>& node = bvh.nodes[at.link];
             counter.add_node(&node);
             const __m256 t_limit = _mm256_set1_ps(skip_beyond<kOptions>(visitor, ray));
-            if (enter_node<kOptions>(node, wide, t_min, t_limit, visitor.goes_far_first(), stack, size, at)) continue;
+            if (enter_node<kOptions>(node, wide, t_min, t_limit, visitor.visits_far_first(), stack, size, at)) continue;
         } else if (leaf.test_all(bvh.triangles + (at.link & ~kLeafBit), at.count, instance, visitor, counter)) {
             return true;
         }
