@@ -111,6 +111,9 @@ class DataLoader(Example):
             self.assertEqual((tuple(color.shape), tuple(depth.shape)), ((3, 3, 12, 16), (3, 12, 16)))
             self.assertTrue(torch.equal(color, here[0]) and torch.equal(depth, here[1]))
         self.assertFalse(torch.equal(batches[0][0], batches[1][0]))
+        forked = torch.utils.data.DataLoader(views, batch_size=None, num_workers=1, multiprocessing_context="fork")
+        with self.assertRaises(pertev.DeviceError):
+            next(iter(forked))
         errors = list(example.learn([views[0]] * 12, "cpu"))
         self.assertLess(errors[-1], 0.5 * errors[0])
 
