@@ -9,15 +9,15 @@
 #include "session/batch_render.h"
 #include "session/opening/calibrated_camera.h"
 #include "session/opening/choose_camera.h"
-#include "session/render_memory.h"
 
 namespace pertev {
 namespace {
 
-/// Returns the cameras of the batch, all of which have the options' lens.
+/// Returns the cameras of the batch, all of which have the options' lens. A single picture has the camera `own`.
 CameraBatch batch_of(const CamerasArgument& cameras, const PictureOptions& options, const RenderSettings& settings,
-                     const Scene& scene, Sink& sink) {
+                     const Scene& scene, const Camera& own, Sink& sink) {
     CameraBatch batch = {.cameras = {}, .seeds = cameras.seeds};
+    if (cameras.is_single) batch.cameras = {own};
     const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
     for (std::size_t k = 0; k < cameras.poses.size(); ++k) {
         CameraChoice choice = options.scene.camera;
@@ -44,7 +44,7 @@ std::size_t bytes_of_arrays(const RenderSettings& settings, uint32_t count, bool
 }
 
 MemoryLimit limit_of(const RenderSetup& setup, const RenderSettings& settings, const PictureOptions& options) {
-    return memory_to_render_in(*setup.queue, settings, max_memory_bytes(options.radiosity));
+    return batch_memory(*setup.queue, settings, max_memory_bytes(options.radiosity));
 }
 
 void copy_part(Queue& queue, void* to, const void* from, uint64_t first, uint64_t count, std::size_t bytes_each) {
@@ -61,7 +61,7 @@ RenderSettings CamerasArgument::settings_of(RenderSettings settings) const {
 uint32_t size_of_chunk(OpenedScene& opened, const RenderSettings& settings, const CamerasArgument& cameras,
                        const PictureOptions& options) {
     const RenderSetup& setup = *opened.setup();
-    CameraBatch batch = {.cameras = std::vector<Camera>(cameras.poses.size()), .seeds = cameras.seeds};
+    CameraBatch batch = {.cameras = std::vector<Camera>(cameras.count()), .seeds = cameras.seeds};
     return pictures_at_once(setup.prepared(), batch, settings, limit_of(setup, settings, options).bytes,
                             setup.queue->is_cuda());
 }
@@ -71,7 +71,7 @@ bool PythonBatch::fits(const RenderSettings& settings, const CamerasArgument& ca
     for (const BatchArrays::Layer& layer : arrays_.layers) groups |= layer.group;
     if (arrays_.ids.size() > 0) groups |= kAovIds;
     return &queue == queue_.get() && settings.width == width_ && settings.height == height_ &&
-           cameras.poses.size() == arrays_.pictures && groups == settings.aovs &&
+           cameras.count() == arrays_.pictures && cameras.is_single == is_single_ && groups == settings.aovs &&
            color_channels_of(settings) == color_channels_;
 }
 
@@ -80,8 +80,8 @@ void PythonBatch::render(OpenedScene& opened, Session& session, const CamerasArg
     const RenderSetup& setup = *opened.setup();
     const RenderSettings settings = cameras.settings_of(session.settings());
     Queue& queue = *setup.queue;
-    const auto count = static_cast<uint32_t>(cameras.poses.size());
-    const CameraBatch batch = batch_of(cameras, options, settings, setup.scene(), sink);
+    const auto count = static_cast<uint32_t>(cameras.count());
+    const CameraBatch batch = batch_of(cameras, options, settings, setup.scene(), session.camera(), sink);
     check_batch(batch, settings);
     if (!is_empty() && !fits(settings, cameras, queue)) {
         throw Error(ErrorCode::BadInput, "out", "",
@@ -102,6 +102,7 @@ void PythonBatch::render(OpenedScene& opened, Session& session, const CamerasArg
         queue_ = setup.queue;
         width_ = settings.width, height_ = settings.height;
         color_channels_ = color_channels_of(settings);
+        is_single_ = cameras.is_single;
     }
     arrays_.fit(queue, settings, count);
     const Stopwatch watch;
@@ -130,6 +131,11 @@ void PythonBatch::render(OpenedScene& opened, Session& session, const CamerasArg
     arrays_.first = 0, arrays_.pictures = count;
     invalid_samples_ = render.invalid_samples();
     seconds_ = watch.seconds();
+}
+
+std::vector<std::size_t> PythonBatch::shape() const {
+    if (is_single_) return {height_, width_};
+    return {arrays_.pictures, height_, width_};
 }
 
 std::vector<PythonBatch::Array> PythonBatch::arrays() const {

@@ -16,11 +16,15 @@
 namespace pertev {
 
 /// The cameras of a call. Whatever they leave open, such as the lens, is the same for all: that of the settings.
+/// Without poses there is one picture, by the camera of the settings.
 struct CamerasArgument {
     std::vector<std::vector<double>> poses;      // numbers of the setting camera_pose, by camera
     std::vector<std::vector<double>> intrinsics; // numbers of this setting: one for all, one per camera, or none
     std::vector<uint32_t> seeds;                 // one for all, one per camera, or none
     bool has_color = true;                       // otherwise only layers at centres are made
+    bool is_single = false;                      // there are no poses
+
+    std::size_t count() const { return is_single ? 1 : poses.size(); }
 
     /// Returns the settings of each picture.
     RenderSettings settings_of(RenderSettings settings) const;
@@ -37,8 +41,9 @@ public:
     bool is_empty() const { return queue_ == nullptr; }
     uint64_t invalid_samples() const { return invalid_samples_; }
     double seconds() const { return seconds_; }
-    /// Number, height and width of the pictures.
-    std::vector<std::size_t> shape() const { return {arrays_.pictures, height_, width_}; }
+    std::size_t count() const { return arrays_.pictures; }
+    /// Number, height and width of the pictures; a single picture has no number.
+    std::vector<std::size_t> shape() const;
     const Queue& queue() const { return *queue_; }
 
     struct Array {
@@ -57,6 +62,7 @@ private:
     std::shared_ptr<Queue> queue_; // outlives the buffers
     BatchArrays arrays_;
     uint32_t width_ = 0, height_ = 0, color_channels_ = 0;
+    bool is_single_ = false;
     uint64_t invalid_samples_ = 0;
     double seconds_ = 0;
 };

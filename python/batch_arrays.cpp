@@ -98,15 +98,23 @@ it. The work on it has ended, so that any stream may use it.)")
         .def("__dlpack_device__",
              [](const DeviceArray& self) { return nb::make_tuple(int(nb::device::cuda::value), self.device); })
         .def_prop_ro("__cuda_array_interface__", &cuda_array_interface)
-        .def("numpy", &host_copy, "A copy in the host's memory.")
+        .def("numpy", &host_copy, "A copy in the host's memory; numpy.asarray() makes one too.")
+        .def(
+            "__array__",
+            [](const DeviceArray& self, const nb::object& dtype, const nb::object&) {
+                const nb::object copy = host_copy(self);
+                return dtype.is_none() ? copy : nb::object(copy.attr("astype")(dtype));
+            },
+            nb::arg("dtype") = nb::none(), nb::arg("copy") = nb::none())
         .def_prop_ro("shape", [](const DeviceArray& self) { return nb::tuple(nb::cast(self.shape)); })
         .def("__repr__", [](const DeviceArray& self) {
             return fmt::format("<pertev.DeviceArray {} on cuda:{}>", self.array.name, self.device);
         });
-    nb::class_<PythonBatch> batch(module, "BatchResult", nb::is_final(), R"(Pictures of one scene by many cameras.
+    nb::class_<PythonBatch> batch(module, "BatchResult", nb::is_final(),
+                                  R"(Pictures of one scene by many cameras, or one on the device.
 
 Arrays are of NumPy where the CPU rendered, else DeviceArrays, and share the memory of the result, which lives as long as one
-of them does. The first axis counts the cameras, and row 0 of a picture is the top.)");
+of them does. The first axis counts the cameras (a single picture has no such axis), and row 0 of a picture is the top.)");
     struct Named {
         const char *name, *text;
     };
@@ -124,10 +132,11 @@ of them does. The first axis counts the cameras, and row 0 of a picture is the t
     batch.def(nb::init<>())
         .def_prop_ro("arrays", &arrays_of, "All arrays by their names")
         .def_prop_ro("seconds", &PythonBatch::seconds, "Seconds of rendering alone")
-        .def("__len__", [](const PythonBatch& self) { return self.is_empty() ? 0 : self.shape().front(); })
+        .def("__len__", &PythonBatch::count)
         .def("__repr__", [](const PythonBatch& self) {
             const std::vector<std::size_t> shape = self.shape();
-            return fmt::format("<pertev.BatchResult of {} pictures {}x{}>", shape[0], shape[2], shape[1]);
+            return fmt::format("<pertev.BatchResult of {} pictures {}x{}>", self.count(), shape.back(),
+                               shape[shape.size() - 2]);
         });
 }
 

@@ -12,6 +12,7 @@
 #include "image/tone_map_image.h"
 #include "image/write_image.h"
 #include "python/array_argument.h"
+#include "python/owned_array.h"
 #include "python/python_sink.h"
 #include "python/result.h"
 #include "session/writing/check_outputs.h"
@@ -34,14 +35,6 @@ Image image_of(nb::handle value, const std::string& name) {
             static_cast<uint32_t>(channels), array.floats()};
 }
 
-template <class Value>
-nb::object array_of(std::vector<Value> pixels, std::size_t height, std::size_t width, std::size_t channels) {
-    auto* const kept = new std::vector<Value>(std::move(pixels));
-    const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<Value>*>(p); });
-    const std::size_t shape[] = {height, width, channels};
-    return nb::cast(nb::ndarray<nb::numpy, Value>(kept->data(), 3, shape, owner));
-}
-
 nb::object read(const std::string& path) {
     Messages messages;
     Image image;
@@ -50,7 +43,7 @@ nb::object read(const std::string& path) {
         image = read_image(path, messages);
     }
     log_messages(messages);
-    return array_of(std::move(image.pixels), image.height, image.width, image.channels);
+    return owned_array(std::move(image.pixels), {image.height, image.width, image.channels});
 }
 
 ToneMap curve_of(const std::string& name) {
@@ -83,7 +76,7 @@ void write_result(const std::string& path, const PythonResult& result, const std
 
 nb::object tone_map_array(nb::handle array, const std::string& curve, float exposure) {
     Rgba8Image image = tone_map_image(image_of(array, "picture"), curve_of(curve), exposure);
-    return array_of(std::move(image.pixels), image.height, image.width, 4);
+    return owned_array(std::move(image.pixels), {image.height, image.width, 4});
 }
 
 nb::dict compare(nb::handle picture, nb::handle reference, uint32_t blocks) {

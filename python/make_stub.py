@@ -36,10 +36,13 @@ def builtin_scenes() -> list[str]: ...
 # Types of members and functions by their names, where nothing in the package tells them.
 MEMBERS = {"ids": "NDArray[numpy.uint32]", "layers": "dict[str, NDArray[Any]]", "info": "dict[str, Any]", "hash": "str",
            "samples": "int", "seconds": "float", "name": "str", "params": "Params", "frame": "int | None",
-           "arrays": "dict[str, Any]", "shape": "tuple[int, ...]", "__cuda_array_interface__": "dict[str, Any]"}
+           "pose": "NDArray[numpy.float64]", "K": "NDArray[numpy.float64]", "bounds": "NDArray[numpy.float64]",
+           "instance_names": "list[str]", "material_names": "list[str]", "arrays": "dict[str, Any]", "shape": "tuple[int, ...]", "__cuda_array_interface__": "dict[str, Any]"}
 OF_BATCHES = {"color": "Any", "albedo": "Any", "normal": "Any", "depth": "Any", "distance": "Any", "position": "Any", "ids": "Any"}
 SIGNATURES = {
     "read": "(path: _Text) -> _Floats",
+    "read_cameras": "(path: _Text, *, size: tuple[int, int] | None = None, "
+                    "convention: Literal['opengl', 'opencv', 'blender'] | None = None) -> Cameras",
     "write": '(path: _Text, picture: _Picture, *, curve: _Curve = "srgb", exposure: float = 0.0) -> None',
     "tone_map": '(picture: _Picture, *, curve: _Curve = "agx", exposure: float = 0.0) -> NDArray[numpy.uint8]',
     "compare": "(picture: _Picture | _Text, reference: _Picture | _Text, *, blocks: int = 1) -> dict[str, float | bool]",
@@ -126,7 +129,7 @@ def main():
     lines += class_of("Result", core.Result, "", properties_of(core.Result))
     lines += class_of("DeviceArray", core.DeviceArray, "", properties_of(core.DeviceArray))
     lines += class_of("BatchResult", core.BatchResult, "", properties_of(core.BatchResult, {**MEMBERS, **OF_BATCHES}))
-    lines += class_of("Cameras", package.Cameras, "", ["poses: Any", "K: Any", "settings: dict[str, Any]"])
+    lines += class_of("Cameras", package.Cameras, "", ["poses: Any", "K: Any", "settings: dict[str, Any]", "names: list[str] | None"])
     lines += class_of("Params", package.Params, "(Mapping[str, Any])")
     others = [row for row in rows if row["name"] != "environment"] # which may be an array too
     made_of = takes_settings("__init__", ["self,", "source: _Text | None = None,", "*,", *PARTS], "None", others, scene)
@@ -138,12 +141,13 @@ def main():
     lines += takes_settings("load", ["scene: _Text,", "*,"], "Scene", rows, package.load)
     lines += takes_settings("render", ["scene: Scene | _Text,", "*,", "cameras: Cameras | Any = None,", *BATCH,
                                        "output: _Text | Sequence[_Text] = (),", "settings: _Text | None = None,",
-                                       "out: Mapping[str, Any] | BatchResult | None = None,"], "Any", rows, package.render)
+                                       "out: Mapping[str, Any] | BatchResult | None = None,", "on_device: bool = False,"],
+                            "Any", rows, package.render)
     lines += takes_settings("render_chunks", ["scene: Scene | _Text,", "cameras: Cameras | Any,", "*,",
                                               "chunk: int | None = None,", *BATCH, "settings: _Text | None = None,"],
                             "Iterator[BatchResult]", rows, package.render_chunks)
     lines += takes_settings("view", ["scene: Scene | _Text,", "*,", "port: int = 0,"], "Viewer", rows, package.view)
-    for name in ("read", "write", "tone_map", "compare"):
+    for name in ("read", "read_cameras", "write", "tone_map", "compare"):
         lines += [f"def {name}{SIGNATURES[name]}:", doc_of(getattr(package, name), "    "), ""]
     print("\n".join(lines))
 

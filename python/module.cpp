@@ -9,6 +9,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
@@ -16,14 +17,17 @@
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "formats/builtin_scenes.h"
+#include "formats/cameras/read_cameras.h"
 #include "python/array_argument.h"
 #include "python/contents_hash.h"
 #include "python/images.h"
+#include "python/owned_array.h"
 #include "python/python_sink.h"
 #include "python/result.h"
 #include "python/scene.h"
 #include "python/scene_arrays.h"
 #include "python/session.h"
+#include "scene/scene_origin.h"
 #include "settings/setting_table.h"
 
 namespace nb = nanobind;
@@ -124,10 +128,8 @@ void make_scene(PythonScene* scene, const std::string& name, const SettingTexts&
 }
 
 nb::object array_of(const PythonScene::Value& value) {
-    auto* values = new std::vector<double>(value.values);
-    const nb::capsule owner(values, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
-    if (value.shape.empty()) return nb::float_(values->front());
-    return nb::cast(nb::ndarray<nb::numpy, double>(values->data(), value.shape.size(), value.shape.data(), owner));
+    if (value.shape.empty()) return nb::float_(value.values.front());
+    return owned_array(value.values, value.shape);
 }
 
 nb::object parameter(PythonScene& scene, const std::string& path) {
@@ -148,9 +150,10 @@ std::vector<std::vector<double>> rows_of(const ArrayArgument& array) {
 }
 
 /// Returns the cameras of a call: `poses` (N, 4, 4) or (N, 3, 4), `intrinsics` (1 or N, 3, 3) or (1 or N, 4), and
-/// `seeds` (1 or N,), the last two of which may be None.
+/// `seeds` (1 or N,), each of which may be None; without poses it is a single picture.
 CamerasArgument cameras_of(nb::handle poses, nb::handle intrinsics, nb::handle seeds, bool has_color) {
     constexpr std::size_t kAny = ArrayArgument::kAny;
+    if (poses.is_none()) return {.poses = {}, .intrinsics = {}, .seeds = {}, .has_color = has_color, .is_single = true};
     const ArrayArgument places(poses, "cameras");
     if (!places.has_shape({kAny, 4, 4}) && !places.has_shape({kAny, 3, 4}))
         places.fail("expected (N, 4, 4) or (N, 3, 4)");
@@ -207,12 +210,36 @@ nb::dict edits_of(PythonScene& scene) {
     return edits;
 }
 
+/// Returns the names of instances and of materials.
+std::pair<std::vector<std::string>, std::vector<std::string>> names_of(PythonScene& scene) {
+    return result_of([&](PythonSink& sink) {
+        SceneSource source;
+        scene.with_opened(sink, [&](const Scene& opened) { name_ids(opened, source); });
+        return std::pair(source.instances, source.materials);
+    });
+}
+
+nb::object bounds_of_scene(PythonScene& scene) {
+    const std::vector<double> corners = result_of([&](PythonSink& sink) {
+        std::vector<double> values;
+        scene.with_opened(sink, [&](const Scene& opened) {
+            const Bounds3 bounds = bounds_of(opened);
+            for (const Vec3 corner : {bounds.lo, bounds.hi}) {
+                const DoubleVec3 p = in_file(opened, corner);
+                values.insert(values.end(), {p.x, p.y, p.z});
+            }
+        });
+        return values;
+    });
+    return owned_array(corners, {2, 3});
+}
+
 void define_scene(nb::module_& module) {
     nb::class_<PythonScene>(module, "Scene")
         .def("__init__", &make_scene, nb::arg("name"), nb::arg("settings"), nb::arg("parts").none())
         .def("_open", [](PythonScene& scene) { run_unlocked([&](PythonSink& sink) { scene.open(sink); }); })
         .def("_render", &render)
-        .def("_render_batch", &render_batch, nb::arg("file"), nb::arg("settings"), nb::arg("poses"),
+        .def("_render_batch", &render_batch, nb::arg("file"), nb::arg("settings"), nb::arg("poses").none(),
              nb::arg("intrinsics").none(), nb::arg("seeds").none(), nb::arg("has_color"), nb::arg("out").none())
         .def("_batch_size", &batch_size, nb::arg("file"), nb::arg("settings"), nb::arg("poses"),
              nb::arg("intrinsics").none(), nb::arg("has_color"))
@@ -221,6 +248,14 @@ void define_scene(nb::module_& module) {
         .def("_value", &parameter)
         .def("_set_value", &set_parameter)
         .def("_edits", &edits_of)
+        .def_prop_ro(
+            "instance_names", [](PythonScene& scene) { return names_of(scene).first; },
+            "Names of the instances; an id of the layer `ids` is the index of one")
+        .def_prop_ro(
+            "material_names", [](PythonScene& scene) { return names_of(scene).second; },
+            "Names of the materials, by their ids")
+        .def_prop_ro("bounds", &bounds_of_scene,
+                     "float64 (2, 3): the least and the greatest corner of the box of all instances, metres")
         .def_prop_ro("_settings", &PythonScene::settings)
         .def_prop_ro("name", &PythonScene::name, "The file, or the name of a built-in scene or of a scene of arrays")
         .def("__repr__", [](const PythonScene& scene) { return "<pertev.Scene " + scene.name() + ">"; });
@@ -231,6 +266,17 @@ void define_scene(nb::module_& module) {
         .def("_set", &PythonSession::set)
         .def("reset", &PythonSession::reset, "Forgets earlier frames, so that the next one is the first.")
         .def_prop_ro("frame", &PythonSession::frame, "Number of the next frame; None before the first");
+}
+
+/// Returns the name of each camera of a file, and the settings that state it.
+std::vector<std::pair<std::string, std::map<std::string, std::string>>>
+cameras_of_file(const std::string& path, uint32_t width, uint32_t height) {
+    std::vector<std::pair<std::string, std::map<std::string, std::string>>> cameras;
+    for (const CameraOfFile& camera : read_cameras(path, width, height)) {
+        auto& [name, settings] = cameras.emplace_back(camera.name, std::map<std::string, std::string>());
+        for (const SuggestedSetting& setting : camera.settings) settings[setting.name] = setting.text;
+    }
+    return cameras;
 }
 
 /// Raises the package's exception for the error's code, with its parts as attributes.
@@ -273,6 +319,7 @@ NB_MODULE(_core, module) {
         "settings", [] { return settings_of(false); }, "The rows of the table of settings that a picture has");
     module.def(
         "frame_settings", [] { return settings_of(true); }, "Further rows, which only frames have");
+    module.def("read_cameras", &cameras_of_file);
     module.def("builtin_scenes", &builtin_scene_names, "Names of the scenes that are part of Pertev");
     define_scene(module);
     define_images(module);

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cstring>
-#include <map>
 #include <span>
 
 #include <nanobind/ndarray.h>
-#include <nanobind/stl/map.h>
 #include <nanobind/stl/string.h>
 
 #include <fmt/format.h>
@@ -17,7 +15,9 @@
 #include "image/picture_hash.h"
 #include "image/tone_map_image.h"
 #include "image/write_png.h"
-
+#include "python/owned_array.h"
+#include "python/transform_values.h"
+#include "render/camera_view.h"
 #include "render/film_channels.h"
 #include "session/writing/metadata_json.h"
 
@@ -108,22 +108,39 @@ std::span<const std::byte> bytes_of(PythonResult& self, const std::string& name,
 }
 
 /// Copies arrays of the result into the caller's.
-void fill(PythonResult& self, const std::map<std::string, nb::ndarray<nb::c_contig, nb::device::cpu>>& out) {
-    for (const auto& [name, array] : out) {
+void fill(PythonResult& self, const nb::dict& out) {
+    for (const auto& [key, value] : out) {
+        const std::string name = nb::cast<std::string>(nb::str(key));
         std::vector<std::size_t> shape;
         const std::span<const std::byte> bytes = bytes_of(self, name, shape);
-        const bool is_its_type = array.dtype() == (name == "ids" ? nb::dtype<uint32_t>() : nb::dtype<float>());
-        bool is_its_shape = array.ndim() == shape.size();
-        for (std::size_t axis = 0; is_its_shape && axis < shape.size(); ++axis) {
-            is_its_shape = array.shape(axis) == shape[axis];
-        }
-        if (!is_its_type || !is_its_shape) {
+        nb::ndarray<nb::c_contig, nb::device::cpu> array;
+        bool fits = nb::try_cast(value, array, false) && array.ndim() == shape.size() &&
+                    array.dtype() == (name == "ids" ? nb::dtype<uint32_t>() : nb::dtype<float>());
+        for (std::size_t axis = 0; fits && axis < shape.size(); ++axis) fits = array.shape(axis) == shape[axis];
+        if (!fits) {
             throw Error(ErrorCode::BadInput, "out", name,
-                        fmt::format("expected an array of {} of shape ({})", name == "ids" ? "uint32" : "float32",
-                                    fmt::join(shape, ", ")));
+                        fmt::format("expected an array of {} of shape ({}), in the CPU's memory and in the order of C",
+                                    name == "ids" ? "uint32" : "float32", fmt::join(shape, ", ")));
         }
         std::memcpy(array.data(), bytes.data(), bytes.size());
     }
+}
+
+nb::object pose_of(const PythonResult& self) {
+    const CameraSource& source = self.record->camera;
+    return owned_array(values_of(source.camera.world_from_camera, source.origin), {4, 4});
+}
+
+nb::object intrinsics_of(const PythonResult& self) {
+    const Camera& camera = self.record->camera.camera;
+    if (has_parallel_rays(camera.projection)) throw nb::attribute_error("a camera with parallel rays has no K");
+    const auto width = static_cast<double>(self.record->settings.width),
+               height = static_cast<double>(self.record->settings.height);
+    const double focal = 0.5 * height / static_cast<double>(half_view_height(camera));
+    const Intrinsics k = camera.intrinsics.value_or(
+        Intrinsics{focal, focal, 0.5 * width, 0.5 * height, self.record->settings.width, self.record->settings.height});
+    const double x = width / k.width, y = height / k.height;
+    return owned_array<double>({x * k.focal_x, 0, x * k.centre_x, 0, y * k.focal_y, y * k.centre_y, 0, 0, 1}, {3, 3});
 }
 
 /// Returns the picture as PNG for notebooks, at the exposure that fits it.
@@ -164,6 +181,7 @@ Arrays share the memory of the result, which lives as long as one of them does. 
          {Named{"albedo", "albedo", "float32 (height, width, 3): reflectance of the first surface"},
           Named{"normal", "normal", "float32 (height, width, 3): its shading normal, world space"},
           Named{"depth", "depth", "float32 (height, width): its distance along the camera's axis, metres"},
+          Named{"distance", "distance", "float32 (height, width): its distance along the ray, metres"},
           Named{"position", "position", "float32 (height, width, 3): its position in the file's coordinates, metres"},
           Named{"ids", "id", "uint32 (height, width, 3): its instance, primitive and material"}}) {
         result.def_prop_ro(
@@ -172,7 +190,12 @@ Arrays share the memory of the result, which lives as long as one of them does. 
     result.def_prop_ro("info", &info_of, "The metadata that an EXR of this picture has, without their prefix");
     result.def_prop_ro("hash", &PythonResult::known_hash,
                        "The picture's hash, as `pertev render` and `pertev info` print it");
-    result.def("_fill", &fill, nb::arg("out").noconvert());
+    result.def_prop_ro(
+        "pose", &pose_of,
+        "float64 (4, 4): the camera's place and axes, world from camera; it looks along -z, and y is up");
+    result.def_prop_ro("K", &intrinsics_of,
+                       "float64 (3, 3): focal lengths and principal point in pixels from the upper left corner");
+    result.def("_fill", &fill);
     result.def("_repr_png_", &png_of);
     result.def_prop_ro(
         "samples", [](const PythonResult& self) { return self.result.samples; },

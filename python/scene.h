@@ -59,6 +59,17 @@ public:
     /// Changes a parameter of what is rendered from now on. Throws Error(BadInput) for values that it cannot have.
     bool set_value(const std::string& path, const Value& value, Sink& sink);
 
+    /// Calls `work` with the scene as it was last rendered, with all changes since; opens it if it is not open.
+    template <class Work>
+    void with_opened(Sink& sink, const Work& work) {
+        const std::unique_lock turn = take_turn(sink);
+        if (opened_.setup() == nullptr || edits_ != source_.edit_count) {
+            PictureOptions options = options_of({}, sink);
+            opened_.prepare(options, source_, sink);
+        }
+        work(opened_.setup()->scene());
+    }
+
     /// Returns what was changed, by path.
     std::map<std::string, Value> edits(Sink& sink);
 

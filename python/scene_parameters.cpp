@@ -18,7 +18,7 @@
 namespace pertev {
 namespace {
 
-constexpr std::string_view kOwners[] = {"materials", "instances", "lights", "cameras"};
+constexpr std::string_view kOwners[] = {"materials", "instances", "lights", "cameras", "environment"};
 
 /// A parameter of some kind of owner.
 struct Property {
@@ -211,8 +211,31 @@ std::vector<Property> of_cameras() {
         of_member<kFocus>("focus", 0x1p-40)};
 }
 
+std::vector<Property> of_environment() {
+    return {
+        {.name = "scale",
+         .shape = {3},
+         .low = 0,
+         .is_there = is_anything,
+         .get = [](const Scene& scene, uint32_t) { return numbers(scene.environment->scale); },
+         .set =
+             [](Scene& scene, uint32_t, std::span<const double> v) {
+                 scene.environment->scale = {float(v[0]), float(v[1]), float(v[2])};
+             }},
+        {.name = "rotation",
+         .shape = {},
+         .low = -1e6,
+         .high = 1e6,
+         .is_there = is_anything,
+         .get = [](const Scene& scene,
+                   uint32_t) { return std::vector{double(scene.environment->rotation) / double(kRadiansPerDegree)}; },
+         .set = [](Scene& scene, uint32_t,
+                   std::span<const double> v) { scene.environment->rotation = float(v[0]) * kRadiansPerDegree; }}};
+}
+
 const std::vector<Property>& properties_of(ParameterOwner owner) {
-    static const std::vector<Property> all[] = {of_materials(), of_instances(), of_lights(), of_cameras()};
+    static const std::vector<Property> all[] = {of_materials(), of_instances(), of_lights(), of_cameras(),
+                                                of_environment()};
     return all[static_cast<std::size_t>(owner)];
 }
 
@@ -222,7 +245,8 @@ const Property& property_of(const SceneParameter& parameter) {
 
 /// Returns whether an animation changes what is set.
 bool is_animated(const Scene& scene, const SceneParameter& parameter) {
-    if (scene.animations.empty() || parameter.owner == ParameterOwner::Material) return false;
+    const bool is_still = parameter.owner == ParameterOwner::Material || parameter.owner == ParameterOwner::Environment;
+    if (scene.animations.empty() || is_still) return false;
     if (parameter.owner == ParameterOwner::Instance) return may_move(scene)[parameter.index];
     const bool is_light = parameter.owner == ParameterOwner::Light;
     const uint32_t node = is_light ? scene.lights[parameter.index].node : scene.cameras[parameter.index].node;
@@ -259,6 +283,7 @@ SceneParameters::SceneParameters(const Scene& scene) {
     list(ParameterOwner::Instance, scene.instances);
     list(ParameterOwner::Light, scene.lights);
     list(ParameterOwner::Camera, scene.cameras);
+    if (scene.environment) owners_[static_cast<std::size_t>(ParameterOwner::Environment)] = {{""}, {{"", 0}}};
 }
 
 std::vector<std::string> SceneParameters::paths(const Scene& scene) const {
@@ -267,7 +292,8 @@ std::vector<std::string> SceneParameters::paths(const Scene& scene) const {
         for (uint32_t i = 0; i < owners_[owner].names.size(); ++i) {
             for (const Property& property : properties_of(static_cast<ParameterOwner>(owner))) {
                 if (!property.is_there(scene, i)) continue;
-                paths.push_back(fmt::format("{}/{}/{}", kOwners[owner], owners_[owner].names[i], property.name));
+                const std::string& name = owners_[owner].names[i];
+                paths.push_back(fmt::format("{}/{}{}{}", kOwners[owner], name, name.empty() ? "" : "/", property.name));
             }
         }
     }
@@ -276,11 +302,12 @@ std::vector<std::string> SceneParameters::paths(const Scene& scene) const {
 
 std::optional<SceneParameter> SceneParameters::find(const Scene& scene, std::string_view path) const {
     const std::size_t first = path.find('/'), last = path.rfind('/');
-    if (first == std::string_view::npos || first == last) return std::nullopt;
+    if (first == std::string_view::npos) return std::nullopt;
     const auto owner = std::ranges::find(kOwners, path.substr(0, first));
     if (owner == std::end(kOwners)) return std::nullopt;
     const auto kind = static_cast<std::size_t>(owner - std::begin(kOwners));
-    const auto index = owners_[kind].indices.find(std::string(path.substr(first + 1, last - first - 1)));
+    const std::string_view name = first == last ? "" : path.substr(first + 1, last - first - 1);
+    const auto index = owners_[kind].indices.find(std::string(name));
     if (index == owners_[kind].indices.end()) return std::nullopt;
     for (const Property& property : properties_of(static_cast<ParameterOwner>(kind))) {
         if (property.name != path.substr(last + 1) || !property.is_there(scene, index->second)) continue;
@@ -331,6 +358,9 @@ SceneUpdate write_parameter(Scene& scene, const SceneParameter& parameter, std::
         update.lights_changed = true;
         break;
     case ParameterOwner::Camera:
+        break;
+    case ParameterOwner::Environment:
+        update.environment_changed = true;
         break;
     }
     return update;

@@ -1,7 +1,8 @@
 #pragma once
 
 // Numbers of a scene that a caller may change between pictures, by paths such as "materials/gold/roughness". An object
-// without a name of its own has its number there. Everything is in the coordinates of the file.
+// without a name of its own has its number there, and the environment has neither: "environment/scale". Everything is
+// in the coordinates of the file.
 
 #include <cstdint>
 #include <optional>
@@ -16,7 +17,7 @@
 
 namespace pertev {
 
-enum class ParameterOwner : uint8_t { Material, Instance, Light, Camera };
+enum class ParameterOwner : uint8_t { Material, Instance, Light, Camera, Environment };
 
 struct SceneParameter {
     ParameterOwner owner = ParameterOwner::Material;
@@ -38,7 +39,7 @@ private:
         std::vector<std::string> names;
         std::unordered_map<std::string, uint32_t> indices;
     };
-    Owners owners_[4]; // by ParameterOwner
+    Owners owners_[5]; // by ParameterOwner
 };
 
 /// Returns the lengths of the axes: none of a number, 3 of a colour or vector, 4 and 4 of a transform.

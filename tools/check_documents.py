@@ -112,9 +112,9 @@ def script_faults(name, command):
     """Faults of the scripts that a command names, and of the flags that it gives to one."""
     words = re.sub(r"^[A-Z_]+=\S+ ", "", command).partition(" -- ")[0].split()
     for word in words:
-        if word.startswith(("tools/", "tests/", "bench/", "./")) and not any((ROOT / f"{word}{end}").exists() for end in ("", ".cpp")):
+        if word.startswith(("tools/", "tests/", "bench/", "examples/", "./")) and not any((ROOT / f"{word}{end}").exists() for end in ("", ".cpp")):
             yield f"{name}: {word} is not there: {command}"
-    script = next((ROOT / word for word in words if re.match(r"(?:tools|tests|bench)/\S+\.(?:py|sh)$", word)), None)
+    script = next((ROOT / word for word in words if re.match(r"(?:tools|tests|bench|examples)/\S+\.(?:py|sh)$", word)), None)
     if script and script.exists():
         _, code = parts_of(script)
         yield from (f"{name}: {script.name} has no {flag}: {command}" for flag in FLAG.findall(" ".join(words)) if flag not in code)
@@ -231,6 +231,7 @@ def self_test():
     assert len(list(change_faults(table.format(2), {"a/b.h"}))) == 1 and len(list(change_faults(table.format(3), {"a/b.h", "c.h"}))) == 1
     assert list(command_faults("x", "a `tools/check_sizes.py --none` b", [])) and list(command_faults("x", "    tools/none.py a", [])) and list(command_faults("x", "    cmake --preset none", ["cpu"]))
     assert list(script_faults("x", "tools/check_sizes.py --none")) and list(script_faults("x", "bench/none a"))
+    assert list(script_faults("x", "python3 examples/turntable.py a --none")) and not list(script_faults("x", "python3 examples/turntable.py --fps 3"))
     assert not list(script_faults("x", "tools/check_sizes.py -- --none")) and not list(script_faults("x", "bench/trace_bench"))
     assert list(own_faults("x", "tools/none.py or --none", "", "")) and not list(own_faults("x", "--a-b, --c", '"--a-b"', '"--c"'))
     assert list(named_faults("x", "// see tools/none.py")) and not list(named_faults("x", "// bench/jobs.json has it"))

@@ -91,7 +91,7 @@ int bench_cameras(CamerasFlags& flags) {
     DeviceScene on_device(*queue);
     on_device.set(prepared, settings);
     PictureRenderer renderer(on_device);
-    const std::size_t limit = queue->is_cuda() ? queue->free_bytes() + queue->allocated_bytes() : SIZE_MAX;
+    const std::size_t limit = batch_memory(*queue, settings, {}).bytes;
     double samples_per_second = 0;
     for (const Job& job : {centres, direct, paths}) {
         reporter.set_work(fmt::format("measuring {}", job.name));

@@ -16,6 +16,7 @@
 #include "math/portable_math.h"
 #include "session/check_integrator.h"
 #include "session/machine.h"
+#include "session/opening/calibrated_camera.h"
 #include "session/opening/choose_camera.h"
 #include "session/opening/open_scene.h"
 #include "session/opening/picture_settings.h"
@@ -96,6 +97,7 @@ std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, SettingVerb
     flags.settings.read(flags, reporter); // before anything is read
     check_options(flags, verb);
     listen_for_interrupt();
+    take_camera_from(flags);
     auto benched = std::make_unique<BenchedScene>();
     benched->queue = open_queue(flags.machine, reporter);
     reporter.report_messages();
@@ -104,9 +106,11 @@ std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, SettingVerb
     if (flags.strict) refuse_what_is_left_out(reporter, "nothing is measured");
     const RenderSettings& settings = benched->settings = render_settings(flags, benched->scene);
     check_light(settings, benched->scene, reporter);
+    fit_intrinsics({settings.width, settings.height}, flags.scene.camera);
     benched->camera =
         choose_camera(flags.scene.camera, benched->scene, aspect_of(settings.width, settings.height), reporter);
     check_camera(settings, benched->camera);
+    if (verb == kBenchFrames) check_reconstruction(benched->camera);
     throw_if_interrupted();
     reporter.set_work("building trees");
     benched->prepared = prepare_scene(benched->scene, {}, reporter);

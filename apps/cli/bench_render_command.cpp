@@ -96,7 +96,7 @@ int bench_job(JobFlags& flags) {
 
     Session session(*queue, prepared, camera, settings);
     render_again(session, 1); // clocks, caches, the driver's first launch
-    double render_s = 0;      // of all runs
+    double render_s = 0;      // the sum over the runs, then the mean
     uint32_t runs = 0;
     do { // pictures of a millisecond are timed one after the other
         render_again(session, settings.samples);

@@ -26,6 +26,7 @@
 #include "lab/record_scenes.h"
 #include "lab/run_lab.h"
 #include "session/machine.h"
+#include "session/opening/calibrated_camera.h"
 #include "session/opening/strictness.h"
 
 namespace pertev {
@@ -137,12 +138,14 @@ int run(LabFlags& flags) {
     if (!flags.thesis && !flags.transport && flags.scene.scene.empty()) {
         throw Error(ErrorCode::BadInput, "scene", "", "it is required (or --thesis, or --transport)");
     }
+    take_camera_from(flags);
     const std::unique_ptr<Queue> queue = open_queue(flags.machine, reporter);
     if (flags.transport) {
         reporter.set_work("loading");
         return run_transport_command(*queue, flags, flags.of_transport, flags.output, reporter);
     }
     LabSettings settings = lab_settings(flags, queue->is_cuda());
+    fit_intrinsics({settings.width, settings.height}, flags.scene.camera);
     reporter.set_work("loading");
     if (flags.thesis) return run_thesis(*queue, flags.scene, settings, flags.output, reporter);
 

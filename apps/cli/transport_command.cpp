@@ -22,6 +22,7 @@
 #include "lab/run_transport.h"
 #include "lab/transport_light.h"
 #include "lab/transport_tables.h"
+#include "session/opening/calibrated_camera.h"
 #include "session/survey/default_light.h"
 #include "settings/value_names.h"
 
@@ -126,9 +127,10 @@ void write_pictures(const std::filesystem::path& folder, std::size_t number, Tra
 
 int run_transport_command(Queue& queue, const PictureOptions& options, const TransportFlags& flags,
                           const std::string& output, Reporter& reporter) {
-    const SceneOptions& scene = options.scene;
+    SceneOptions scene = options.scene;
     const std::vector<const TransportPreset*> presets = presets_of(scene, flags);
     TransportSettings settings = settings_of(options, flags, queue.is_cuda(), reporter);
+    fit_intrinsics({settings.picture.width, settings.picture.height}, scene.camera);
     std::vector<Subject> subjects; // all are read before the first is measured
     for (const TransportPreset* preset : presets) {
         subjects.push_back(

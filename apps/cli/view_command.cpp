@@ -152,7 +152,8 @@ void let_time_move(const ViewFlags& flags, const RenderSetup& ready, ViewerStart
     }
     start.camera.moves = start.is_animated || turntable > 0;
     const SceneOptions& scene = flags.render.scene;
-    const bool is_made_up = ready.scene().cameras.empty() && !scene.camera.eye && flags.render.camera_path.empty();
+    const bool is_made_up =
+        ready.scene().cameras.empty() && !scene.camera.places_camera() && flags.render.camera_path.empty();
     if (is_made_up && turntable == 0 && !moving.is_animated()) {
         start.camera.framed = [&ready, choice = scene.camera](float aspect) {
             const MovingCamera framed(choice, std::nullopt, ready.scene(), aspect, nobody()); // already reported
@@ -235,7 +236,7 @@ int view(ViewFlags& flags) {
     start.options = flags.render;
     start.view.options = flags.render;
     start.view.options.render = ready->settings;
-    if (!flags.render.size) {
+    if (!flags.render.size && !camera.intrinsics) { // which hold for pictures of one shape
         start.view.window_pixels = uint64_t(ready->settings.width) * ready->settings.height;
     }
     start.view.display = choose_display(flags.render, session, reporter);
@@ -270,8 +271,8 @@ int view(ViewFlags& flags) {
          .port = static_cast<uint16_t>(flags.port),
          .token = flags.token,
          .jpeg_queue = jpeg_queue.get()},
-        start, source,
-        [&](const std::string& address) { report_address(flags, address, reporter); }, [] { return !interrupted(); });
+        start, source, [&](const std::string& address) { report_address(flags, address, reporter); },
+        [] { return !interrupted(); });
     reporter.result(R"({"event":"done"})");
     return 0;
 }

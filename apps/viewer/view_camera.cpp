@@ -54,6 +54,10 @@ ViewCamera::ViewCamera(const StartCamera& start, const Scene& scene)
 
 Camera ViewCamera::camera(const Camera& lens) const {
     Camera camera = base_;
+    if (camera.intrinsics && lens.fov_y != base_.fov_y) { // the slider zooms
+        const double zoom = static_cast<double>(tan(0.5f * base_.fov_y) / tan(0.5f * lens.fov_y));
+        camera.intrinsics->focal_x *= zoom, camera.intrinsics->focal_y *= zoom;
+    }
     camera.fov_y = lens.fov_y;
     camera.aperture_radius = lens.aperture_radius;
     camera.focus_distance = lens.focus_distance;

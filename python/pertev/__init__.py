@@ -9,7 +9,7 @@
 
 import os
 
-from ._cameras import BatchResult, Cameras, DeviceArray, chunk_size, render_batch
+from ._cameras import BatchResult, Cameras, DeviceArray, chunk_size, read_cameras, render_batch
 from ._core import Result, builtin_scenes
 from ._images import compare, read, tone_map, write
 from ._process import check_process
@@ -18,24 +18,25 @@ from ._settings import texts_of, with_layers
 from ._viewer import Viewer, view
 from .errors import DeviceError, Error, InputError, InterruptedRender, LimitError, MemoryLimitError, WriteError
 
-__all__ = ["BatchResult", "Cameras", "DeviceArray", "DeviceError", "Error", "InputError", "InterruptedRender", "LimitError", "MemoryLimitError", "Params", "Result",
-           "Scene", "Session", "Viewer", "WriteError", "builtin_scenes", "compare", "load", "read", "render",
-           "render_chunks", "tone_map",
-           "view", "write"]
+__all__ = ["BatchResult", "Cameras", "DeviceArray", "DeviceError", "Error", "InputError", "InterruptedRender", "LimitError",
+           "MemoryLimitError", "Params", "Result", "Scene", "Session", "Viewer", "WriteError", "builtin_scenes", "compare",
+           "load", "read", "read_cameras", "render", "render_chunks", "tone_map", "view", "write"]
 
 
-def render(scene, *, cameras=None, seeds=None, color=True, layers=(), output=(), settings=None, out=None, **values):
+def render(scene, *, cameras=None, seeds=None, color=True, layers=(), output=(), settings=None, out=None, on_device=False,
+           **values):
     """Renders a picture of a scene and returns it as a Result.
 
     scene     what load() returns, or as its `scene`
     cameras   Cameras, or an array of poses (N, 4, 4): all pictures are one job, and the call returns a BatchResult
     seeds     of these pictures: one for all or (N,); None: that of the setting
-    color     False with layers_at="centre": only layers are made
+    color     False with layers_at="centre" and many cameras or `on_device`: only layers are made
     layers    names of layers to render as well: "albedo", "normal", "depth", "distance", "position", "ids", "motion"
     output    a file to write, or several: .exr .png .jpg .hdr
     settings  a file of settings, which `values` overrule
-    out       arrays to fill, by the names of the Result's attributes: {"color": array}; with `cameras` an earlier
-              BatchResult of the same scene, whose arrays are filled again
+    out       arrays to fill, by the names of the Result's attributes: {"color": array}; with `cameras` or `on_device`
+              an earlier BatchResult of the same scene, whose arrays are filled again
+    on_device True: the arrays stay in the memory of the device, and the call returns them as a BatchResult
     values    any setting of docs/settings.md by its name: size=(640, 480), spp=64, eye=(0, 1, 3), device="cpu".
               None is as if it was not given.
 
@@ -45,12 +46,12 @@ def render(scene, *, cameras=None, seeds=None, color=True, layers=(), output=(),
     """
     check_process()
     used = scene if isinstance(scene, Scene) else Scene(scene)
-    if cameras is not None:
+    if cameras is not None or on_device:
         if output:
-            raise TypeError("output: pictures of many cameras are arrays; `pertev render --cameras` writes files")
+            raise TypeError("output: pictures of many cameras or on the device are arrays; `pertev render` writes files")
         return render_batch(used, cameras, seeds, color, os.fspath(settings or ""), with_layers(values, layers), out)
     if seeds is not None or not color:
-        raise TypeError("seeds and color are for many `cameras`")
+        raise TypeError("seeds and color are for many `cameras`, or for `on_device`")
     outputs = [output] if isinstance(output, (str, os.PathLike)) else output
     made = used._render(os.fspath(settings or ""), texts_of(with_layers(values, layers)), [os.fspath(path) for path in outputs])
     if out is not None:

@@ -13,7 +13,8 @@ class Params(collections.abc.Mapping):
     """Values of a scene by paths such as "materials/gold/roughness"; what is set holds for all pictures from then on.
 
     Paths are materials/NAME/..., instances/NAME/transform, lights/NAME/... and cameras/NAME/..., with an object's number
-    in place of a name that it lacks or shares. Transforms are 4x4, world from local, in the coordinates of the file.
+    in place of a name that it lacks or shares, environment/scale (a factor for each channel) and environment/rotation
+    (degrees). Transforms are 4x4, world from local, in the coordinates of the file.
     """
 
     def __init__(self, scene):

@@ -46,8 +46,10 @@ SceneTriangles changed_triangles(const Scene& scene, const MeshPlacement& placem
     return triangles;
 }
 
-void update_lights(const PreparedScene& before, const Scene& scene, Sink& sink, PreparedScene& after) {
-    after.lights = build_light_set(scene, srgb_decode_table().data(), sink, after.centre, before.lights.environment);
+void update_lights(const PreparedScene& before, const Scene& scene, const SceneUpdate& update, Sink& sink,
+                   PreparedScene& after) {
+    const auto environment = update.environment_changed ? nullptr : before.lights.environment;
+    after.lights = build_light_set(scene, srgb_decode_table().data(), sink, after.centre, environment);
     balance_lights(after, srgb_decode_table().data());
 }
 
@@ -59,7 +61,7 @@ PreparedScene update_scene(const PreparedScene& before, const Scene& scene, cons
     if (update.keeps_surfaces() && motions == before.motions) {
         PreparedScene after = before;
         after.scene = &scene;
-        if (update.lights_changed) update_lights(before, scene, sink, after);
+        if (update.lights_changed || update.environment_changed) update_lights(before, scene, update, sink, after);
         after.build_seconds = watch.seconds();
         return after;
     }
@@ -82,7 +84,7 @@ PreparedScene update_scene(const PreparedScene& before, const Scene& scene, cons
     after.structures = before.structures->updated(after.trees, after.tlas, changes, triangles);
     after.triangles = after.trees.triangle_count();
     after.build_seconds = watch.seconds();
-    update_lights(before, scene, sink, after);
+    update_lights(before, scene, update, sink, after);
     return after;
 }
 
@@ -94,6 +96,7 @@ bool changes_prepared(const SceneUpdate& update) {
 
 uint32_t parts_of(const SceneUpdate& update) {
     uint32_t parts = update.lights_changed ? kPartLights : 0u;
+    if (update.environment_changed) parts |= kPartLights | kPartEnvironment;
     if (update.materials_changed) parts |= kPartMaterials;
     if (update.poses_changed) parts |= kPartPoses;
     if (!update.keeps_surfaces()) parts |= kPartLights | kPartTrees | kPartInstances;

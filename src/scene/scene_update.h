@@ -17,12 +17,15 @@ struct SceneUpdate {
     bool poses_changed = false;            // PosedScene::poses changed; the rest of Scene changed only as stated
                                            // above
     bool materials_changed = false;        // numbers of materials (visit_parameters)
+    bool environment_changed = false;      // Scene::environment, which is there as before
 
     /// Returns whether surfaces are where they were, but for poses.
     bool keeps_surfaces() const {
         return moved_instances.empty() && deformed_meshes.empty() && replaced_meshes.empty();
     }
-    bool is_empty() const { return keeps_surfaces() && !lights_changed && !poses_changed && !materials_changed; }
+    bool is_empty() const {
+        return keeps_surfaces() && !lights_changed && !poses_changed && !materials_changed && !environment_changed;
+    }
     SceneUpdate& operator+=(const SceneUpdate& other) {
         const auto add = [](std::vector<uint32_t>& to, const std::vector<uint32_t>& from) {
             to.insert(to.end(), from.begin(), from.end());
@@ -33,6 +36,7 @@ struct SceneUpdate {
         lights_changed |= other.lights_changed;
         materials_changed |= other.materials_changed;
         poses_changed |= other.poses_changed;
+        environment_changed |= other.environment_changed;
         return *this;
     }
 };

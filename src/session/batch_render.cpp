@@ -9,7 +9,7 @@
 namespace pertev {
 namespace {
 
-constexpr uint64_t kAtOnce = 1u << 27; // samples of a pass on a GPU, so that a sink is heard several times a second
+constexpr uint64_t kAtOnce = 1u << 27, kAtOnceOnCpu = 1u << 20; // samples of a pass, so that a sink is heard soon
 
 CameraBatch checked(CameraBatch batch, const RenderSettings& settings) {
     check_batch(batch, settings);
@@ -97,8 +97,8 @@ bool BatchRender::add_samples(const PictureView& picture, Sink& sink) {
     view.window.height = picture.camera.height; // the last chunk may be smaller
     const bool on_cuda = pictures_.queue().is_cuda();
     const uint32_t samples = settings_.samples;
-    const uint32_t most =
-        on_cuda ? static_cast<uint32_t>(std::clamp<uint64_t>(kAtOnce / view.window.count(), 1, samples)) : samples;
+    const uint64_t at_once = on_cuda ? kAtOnce : kAtOnceOnCpu;
+    const auto most = static_cast<uint32_t>(std::clamp<uint64_t>(at_once / view.window.count(), 1, samples));
     Integrator& integrator = pictures_.begin(picture, settings_, most);
     integrator.stop_with(on_cuda ? nullptr : &sink);
     const double before = done_, now = view.window.count() / (picture.batch.pixels * 1.0);

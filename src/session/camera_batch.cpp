@@ -66,6 +66,12 @@ BatchMemory::BatchMemory(Queue& queue, const CameraBatch& batch, const RenderSet
     film.emplace(queue, settings.width, settings.height * at_once, aovs);
 }
 
+MemoryLimit batch_memory(const Queue& queue, const RenderSettings& settings, std::optional<std::size_t> requested) {
+    MemoryLimit limit = memory_to_render_in(queue, settings, requested);
+    if (queue.is_cuda() && !requested) limit.bytes = queue.free_bytes() + queue.allocated_bytes();
+    return limit;
+}
+
 uint32_t pictures_at_once(const PreparedScene& scene, const CameraBatch& batch, const RenderSettings& settings,
                           std::size_t limit, bool on_cuda) {
     const uint64_t pixels = uint64_t(settings.width) * settings.height, wanted = on_cuda ? 1u << 23 : 1u << 17;

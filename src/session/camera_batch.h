@@ -8,6 +8,7 @@
 
 #include "device/buffer.h"
 #include "render/batch_view.h"
+#include "session/render_memory.h"
 #include "settings/render_settings.h"
 
 namespace pertev {
@@ -63,6 +64,9 @@ struct BatchMemory {
 /// one set of arrays.
 std::size_t predicted_batch_bytes(const PreparedScene& scene, const CameraBatch& batch, const RenderSettings& settings,
                                   uint32_t at_once, bool on_cuda);
+/// Returns the memory that a scene and a batch may take: `requested`, or on a GPU what is free together with what the
+/// queue has taken, and on the CPU as memory_to_render_in.
+MemoryLimit batch_memory(const Queue& queue, const RenderSettings& settings, std::optional<std::size_t> requested);
 /// Returns how many pictures to render at once: as many as keep the device busy, or fewer if they would exceed `limit`
 /// bytes, but at least one.
 uint32_t pictures_at_once(const PreparedScene& scene, const CameraBatch& batch, const RenderSettings& settings,

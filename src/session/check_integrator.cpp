@@ -106,7 +106,7 @@ void check_shutter(const RenderSettings& settings) {
 }
 
 void check_camera(const RenderSettings& settings, const Camera& camera) {
-    if (settings.denoise != Denoise::None) check_reconstruction(camera);
+    if (settings.denoise == Denoise::Svgf) check_reconstruction(camera);
     if (!rasterises_camera(settings.integrator)) return;
     const std::string why = why_no_raster(camera);
     refuse(!why.empty(), "integrator", integrator_name(settings), why);
@@ -114,7 +114,7 @@ void check_camera(const RenderSettings& settings, const Camera& camera) {
 
 void check_reconstruction(const Camera& camera) {
     refuse(!has_straight_lens(camera), "distortion", "",
-           "real-time frames and denoising need a lens that draws straight lines");
+           "frames in real time and `denoise=svgf` need a lens that draws straight lines");
 }
 
 std::optional<Remark> why_dark(const RenderSettings& settings, const Scene& scene) {

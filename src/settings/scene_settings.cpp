@@ -10,6 +10,7 @@ namespace pertev {
 #define FIELD PERTEV_SETTING_FIELD
 
 std::vector<Setting> scene_settings() {
+    constexpr uint32_t kDistorted = kRender | kBenchNoise | kBenchCameras | kLab; // others reconstruct frames
     return {
         row("file_scene", "File", "NAME|N", FIELD(scene.file_scene),
             "The scene of a glTF file that has several, by name or by number from 0.", Otherwise{"the file's default"},
@@ -54,29 +55,29 @@ std::vector<Setting> scene_settings() {
             Excludes{"aperture=0"}, Recorded::AsUsed, Panel{"Focus distance, m", PanelGroup::Camera, 0.1}),
         row("camera_pose", "Camera", "NUMBERS", FIELD(scene.camera.pose),
             "The camera's place and axes in the world: the matrix world from camera, 16 or 12 numbers row by row.",
-            Counts{{12, 16}}, Excludes{"eye target up camera_path"}),
+            Counts{{12, 16}}, On{kLooking | kLab}, Excludes{"eye target up camera_path"}),
         row("convention", "Camera", "NAME", FIELD(scene.camera.convention),
             "The axes of camera_pose, and of NeRF's cameras: opengl (y up, looks along -z), opencv (y down, looks "
             "along z) or blender (opengl's, in a world with z up).",
-            Otherwise{"opengl"}, Needs{"camera_pose cameras"}),
+            Otherwise{"opengl"}, On{kLooking | kLab}, Needs{"camera_pose cameras"}),
         row("intrinsics", "Camera", "FX,FY,CX,CY", FIELD(scene.camera.intrinsics),
             "Focal lengths and principal point in pixels from the picture's upper left corner, or the nine numbers of "
             "K. The first pixel's centre is 0.5,0.5 (in OpenCV 0,0).",
-            Counts{{4, 9}}, Needs{"size intrinsics_size"}, Excludes{"fov view_height projection=orthographic"},
-            Recorded::AsUsed),
+            Counts{{4, 9}}, On{kLooking | kLab}, Needs{"size intrinsics_size"},
+            Excludes{"fov view_height projection=orthographic"}, Recorded::AsUsed),
         row("intrinsics_size", "Camera", "WIDTHxHEIGHT", FIELD(scene.camera.intrinsics_size),
             "The picture's size for which intrinsics hold; they scale with width and height.",
-            Otherwise{"the picture's own"}, Needs{"intrinsics"}, Recorded::AsUsed),
+            Otherwise{"the picture's own"}, On{kLooking | kLab}, Needs{"intrinsics"}, Recorded::AsUsed),
         row("lens", "Camera", "NAME", FIELD(scene.camera.lens),
             "The model of the lens: opencv, or fisheye (Kannala and Brandt, as cv::fisheye).", Otherwise{"opencv"},
-            Excludes{"projection=orthographic fisheye:aperture fisheye:denoise!=none fisheye:real_time"},
+            On{kDistorted}, Excludes{"projection=orthographic fisheye:aperture fisheye:denoise=svgf fisheye:real_time"},
             Recorded::AsUsed),
         row("distortion", "Camera", "K1,K2,...", FIELD(scene.camera.distortion),
             "The lens's coefficients: k1,k2,p1,p2[,k3[,k4,k5,k6]], or of a fisheye k1,k2,k3,k4.", Counts{{4, 5, 8}},
-            Excludes{"projection=orthographic denoise!=none real_time"}, Recorded::AsUsed),
+            On{kDistorted}, Excludes{"projection=orthographic denoise=svgf real_time"}, Recorded::AsUsed),
         row("camera_from", "Camera", "FILE", FIELD(scene.camera.camera_from),
             "An EXR of Pertev's whose camera is used, to the bit, but for what other settings say.",
-            Excludes{"camera camera_path"}, Mark::Name),
+            On{kLooking | kLab}, Excludes{"camera camera_path"}, Mark::Name),
 
         row("environment", "Environment", "FILE|R,G,B", FIELD(scene.environment),
             "Light from infinitely far away: an .hdr or .exr panorama, or a radiance R,G,B.", On{kScenes}, Mark::Common,

@@ -255,6 +255,12 @@ TEST_CASE("a batch takes the memory that was predicted, and a limit makes its ch
     CHECK(pictures_at_once(prepared, batch, settings, of_two, false) == 2);
     CHECK(pictures_at_once(prepared, batch, settings, of_two - 1, false) == 1);
     CHECK(pictures_at_once(prepared, batch, settings, 0, false) == 1);
+    Queue queue = test::requested_queue();
+    const Buffer<float> taken(queue, 1 << 20, "of the test");
+    CHECK(batch_memory(queue, settings, 12345).bytes == 12345);
+    const std::size_t of_cpu = memory_to_render_in(queue, settings, {}).bytes;
+    CHECK(batch_memory(queue, settings, {}).bytes ==
+          (queue.is_cuda() ? queue.free_bytes() + queue.allocated_bytes() : of_cpu));
 }
 
 TEST_CASE("a batch that stops goes on with the chunk that it stopped in, and a caller may keep arrays") {

@@ -64,6 +64,12 @@ std::vector<Step> steps() {
           .replaced_meshes = {},
           .lights_changed = true,
           .materials_changed = true}},
+        {"the environment is dimmed and turned",
+         [](Scene& scene) {
+             scene.environment->scale = {0.5f, 0.25f, 0.125f};
+             scene.environment->rotation += 1;
+         },
+         {.moved_instances = {}, .deformed_meshes = {}, .replaced_meshes = {}, .environment_changed = true}},
         {"all at once",
          [](Scene& scene) {
              scene.instances[2].world_from_local.translation.y += 0.125f;

@@ -1,7 +1,10 @@
 """Tests of many cameras in one call: the bytes of each camera alone, chunks, arrays that are filled again, and errors."""
 
 import gc
+import json
+import pathlib
 import sys
+import tempfile
 import unittest
 
 import numpy
@@ -115,6 +118,77 @@ class Cameras(unittest.TestCase):
         for arguments in ({"seeds": [1]}, {"color": False}, {"cameras": poses(1), "output": "x.png"}):
             with self.assertRaises(TypeError):
                 pertev.render(self.scene, **arguments, **SMALL)
+
+    def test_a_single_picture_on_the_device(self):
+        for more in ({}, {"layers_at": "centre", "seed": 3}, {"transparent": True}, {"integrator": "bidirectional"},
+                     {"lens": "fisheye", "layers_at": "centre"}):
+            here = pertev.render(self.scene, layers=LAYERS, **SMALL, **more)
+            there = pertev.render(self.scene, on_device=True, layers=LAYERS, **SMALL, **more)
+            self.assertEqual((there.color.shape, there.depth.shape), (here.color.shape, (16, 24)))
+            self.assertEqual(type(there.color), numpy.ndarray if DEVICE == "cpu" else pertev.DeviceArray)
+            for name in ["color", *LAYERS]:
+                self.assertEqual(host(getattr(there, name)).tobytes(), getattr(here, name).tobytes(), (name, more))
+        first = pertev.render(self.scene, on_device=True, **SMALL)
+        color = first.color
+        self.assertIs(pertev.render(self.scene, on_device=True, seed=9, out=first, **SMALL), first)
+        self.assertEqual(host(color).tobytes(), pertev.render(self.scene, seed=9, **SMALL).color.tobytes())
+        for arguments in ({"denoise": "svgf"}, {"layers": ["depth"], "out": first}, {"cameras": poses(1), "out": first}):
+            with self.assertRaises(pertev.InputError):
+                pertev.render(self.scene, on_device=True, **arguments, **SMALL)
+        with self.assertRaises(TypeError):
+            pertev.render(self.scene, on_device=True, output="x.png", **SMALL)
+
+    def test_asarray_copies_from_any_device(self):
+        color = pertev.render(self.scene, cameras=poses(1), **SMALL).color
+        self.assertEqual(numpy.asarray(color).tobytes(), host(color).tobytes())
+        self.assertEqual(numpy.asarray(color, dtype=numpy.float64).dtype, numpy.float64)
+
+    def test_a_picture_has_its_camera(self):
+        picture = pertev.render(self.scene, **SMALL)
+        again = pertev.render(self.scene, cameras=pertev.Cameras(picture.pose[None], picture.K), layers="depth", **SMALL)
+        self.assertEqual(picture.pose[:3, 3].tolist(), numpy.float32([0.278, 0.273, -0.8]).tolist())
+        self.assertTrue((picture.pose[:3, :3] == numpy.diag([-1, 1, -1])).all())
+        self.assertAlmostEqual(numpy.degrees(2 * numpy.arctan(8 / picture.K[1, 1])), 39.3076, 3)
+        self.assertLess(pertev.compare(host(again.color)[0], picture)["rel_mse"], 1e-3)
+        K = [[22, 0, 11], [0, 20, 9], [0, 0, 1.0]]
+        of_half = pertev.render(self.scene, intrinsics=numpy.ravel(K), intrinsics_size=(48, 32), **SMALL).K
+        self.assertEqual(of_half.tolist(), [[11, 0, 5.5], [0, 10, 4.5], [0, 0, 1]])
+        with self.assertRaises(AttributeError):
+            pertev.render(self.scene, projection="orthographic", **SMALL).K
+
+    def test_names_and_box_of_a_scene(self):
+        picture = pertev.render(self.scene, layers="ids", layers_at="centre", filter="box", **SMALL)
+        seen = [number for number in numpy.unique(picture.ids[..., 0]).tolist() if number != 0xFFFFFFFF]
+        self.assertEqual({str(number): self.scene.instance_names[number] for number in seen}, picture.info["instances"])
+        self.assertEqual(self.scene.material_names, ["white", "green", "red", "light"])
+        self.assertTrue(numpy.allclose(self.scene.bounds, [[0, 0, 0], [0.556, 0.5488, 0.5592]], atol=0.004))
+        box = pertev.Scene(meshes={"a": {"vertices": [[0, 0, 0], [1, 0, 0], [0, 2, 0]], "faces": [[0, 1, 2]]}},
+                           instances={"one": {"mesh": "a"}, "two": {"mesh": "a"}}, ground="off")
+        moved = numpy.eye(4)
+        moved[:3, 3] = 1, 2, 3
+        box.params["instances/two/transform"] = moved
+        self.assertEqual((box.instance_names, box.bounds.tolist()), (["one", "two"], [[0, 0, 0], [2, 4, 3]]))
+
+    def test_cameras_of_files(self):
+        path = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory())) / "views.json"
+
+        def read(*cameras, **more):
+            path.write_text(json.dumps({"cameras": cameras, **more}))
+            return pertev.read_cameras(path)
+
+        views = [{"name": f"view {k}", "camera_pose": pose[:3].tolist(), "intrinsics": [22, 20, 11, 9]} for k, pose in enumerate(poses(3))]
+        cameras = read(*views, intrinsics_size="24x16", distortion=[0.1, 0, 0, 0])
+        self.assertEqual((cameras.names, cameras[1:].names), (["view 0", "view 1", "view 2"], ["view 1", "view 2"]))
+        self.assertTrue((cameras.poses == poses(3)).all() and (cameras.K == [22, 20, 11, 9]).all())
+        own = pertev.Cameras(poses(3), [22, 20, 11, 9], distortion=[0.1, 0, 0, 0])
+        of_file, of_arrays = (host(pertev.render(self.scene, cameras=of, **SMALL).color) for of in (cameras, own))
+        self.assertEqual(of_file.tobytes(), of_arrays.tobytes())
+        for wrong in ([{"eye": [0, 0, 0]}], [{**views[0], "lens": "fisheye"}, views[1]], [views[0], {"name": "b"}],
+                      [{**views[0], "fov": 40}]):
+            with self.assertRaises(pertev.InputError):
+                read(*wrong)
+        with self.assertRaises(pertev.InputError):
+            pertev.read_cameras(path.with_name("none.json"))
 
     @unittest.skipIf(DEVICE == "cpu", "arrays on a GPU are those of CUDA")
     def test_arrays_on_a_gpu(self):

@@ -139,6 +139,30 @@ class Params(unittest.TestCase):
         scene.params["materials/glow/emission"] = (1, 1, 1)
         self.assertEqual(pertev.render(scene, **SMALL).hash, lit)
 
+    def test_the_environment(self):
+        picture = numpy.zeros((8, 16, 3), numpy.float32)
+        picture[:4, :6] = (4, 2, 1)
+        sky = pathlib.Path(self.folder.name) / "sky.exr"
+        pertev.write(sky, picture)
+        scene = pertev.load(self.file(), environment=sky)
+        self.assertEqual((scene.params["environment/scale"].tolist(), scene.params["environment/rotation"]), ([1, 1, 1], 0))
+        pertev.render(scene, **SMALL)
+        for values in ({"environment_scale": 2.5}, {"environment_rotation": 75}, {"environment_scale": 0.5, "environment_rotation": 200}):
+            scene.params["environment/scale"] = numpy.full(3, values.get("environment_scale", 1))
+            scene.params["environment/rotation"] = values.get("environment_rotation", 0)
+            changed = pertev.render(scene, **SMALL)
+            fresh = pertev.render(self.file(), environment=sky, **SMALL, **values)
+            self.assertEqual(changed.hash, fresh.hash)
+        self.assertEqual(changed.info["load_seconds"], pertev.render(scene, **SMALL, seed=2).info["load_seconds"])
+        uniform = pertev.load(self.file(), environment=(1, 1, 1))
+        pertev.render(uniform, **SMALL)
+        uniform.params["environment/scale"] = (0.25, 0.5, 1)
+        self.assertEqual(pertev.render(uniform, **SMALL).hash, pertev.render(self.file(), environment=(0.25, 0.5, 1), **SMALL).hash)
+        self.assertNotIn("environment/scale", pertev.load(self.file()).params)
+        with self.assertRaises(pertev.InputError) as caught:
+            uniform.params["environment/scale"] = (-1, 0, 0)
+        self.assertEqual(caught.exception.setting, "environment/scale")
+
     def test_cameras(self):
         scene = pertev.load(self.file())
         pertev.render(scene, **SMALL)

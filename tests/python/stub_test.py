@@ -21,7 +21,8 @@ class Stub(unittest.TestCase):
     def test_all_settings(self):
         names = {row["name"] for row in _core.settings()}
         self.assertEqual(set(types_of("load")), names)
-        self.assertEqual(set(types_of("render")), names | {"layers", "output", "settings", "out", "cameras", "seeds", "color"})
+        self.assertEqual(set(types_of("render")), names | {"layers", "output", "settings", "out", "cameras", "seeds", "color",
+                                                     "on_device"})
         scene, session = (next(node for node in DEFINED[name].body if getattr(node, "name", "") == "__init__")
                           for name in ("Scene", "Session"))
         self.assertEqual(sorted(argument.arg for argument in scene.args.kwonlyargs),

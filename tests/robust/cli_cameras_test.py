@@ -4,6 +4,7 @@ import json
 import math
 import os
 
+from cli_lab_run import rows_of
 from cli_run import CliTest, as_flag, main, read_exr, read_png, write
 
 VIEW = ["--eye", "0.3,0.35,-0.7", "--target", "0.2,0.25,0.3", "--fov", "40"]  # into the box
@@ -58,6 +59,30 @@ class CamerasOfCalibrations(CliTest):
         self.assertAlmostEqual(rows["depth.Z"][8][8], rows["distance.Z"][8][8], delta=0.01)
         aside = rows["distance.Z"][8][4] / rows["depth.Z"][8][4]
         self.assertAlmostEqual(aside, 1 / math.cos(math.atan(math.tan(math.radians(20)) * 8 / 17)), delta=0.002)
+
+    def test_other_verbs_take_calibrated_cameras(self):
+        pose = "--camera-pose=-1,0,0,0.3,0,1,0,0.35,0,0,-1,-0.8"
+        cameras = [["--eye", "0.3,0.35,-0.8", "--target", "0.3,0.35,0.2", "--fov", "40"], [pose, "--fov", "40"],
+                   [pose, "--intrinsics", "12,24,12,12", "--intrinsics-size", "24x24"], [pose, "--fov", "40", "--distortion", "0.3,0,0,0"]]
+        small = ["--size", "24x24", "--device", "cpu", "--json"]
+        noise = ["bench", "noise", "cornell-box", "--spp", "1", "--seeds", "2", *small]
+        lab = ["lab", "cornell-box", "--structures", "binned", "--traversals", "if-if", "--runs", "1", *small]
+
+        def found_by_noise(camera):
+            event = self.succeed(*noise, *camera).events("noise")[0]
+            return event["mean"], event["rel_mse"]
+
+        def found_by_lab(camera):
+            return [row["hit_share"] for row in rows_of(self.succeed(*lab, *camera).events("lab")[0], "sets")]
+
+        for found_by in (found_by_noise, found_by_lab):
+            found = [found_by(camera) for camera in cameras]
+            self.assertEqual(found[0], found[1])
+            self.assertNotIn(found[0], found[2:])
+        self.render(*VIEW[:4], "--lens", "fisheye", "--distortion", "0.1,0,0,0", output="fisheye.exr")
+        self.succeed(*noise, "--camera-from", "fisheye.exr")
+        for verb in (["bench", "frames"], ["bench", "sequence", "--turntable", "90", "--frames", "0-1"], ["view"]):
+            self.refuse(2, *verb[:2], "cornell-box", *verb[2:], "--device", "cpu", "--camera-from", "fisheye.exr", says=["distortion"])
 
     def test_what_excludes_each_other_is_refused(self):
         pose = ["--camera-pose", "1,0,0,0,0,1,0,1,0,0,1,4"]

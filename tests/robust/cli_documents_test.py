@@ -23,7 +23,7 @@ import check_documents  # pylint: disable=wrong-import-position
 
 PARSED = [r"^view ", r"--thesis", r"--rays record", r"--preset all", r"\$S/", r"--device cuda", r"^render cornell-box .*--size 480x480"]
 SMALL = {"--size": "24x16", "--spp": "1", "--seconds": "0.3", "--depths": "1-2", "--runs": "1", "--repetitions": "2", "--reference-spp": "2",
-         "--frames": "0-1"}
+         "--frames": "0-1", "--turntable": "2"}
 ADDED = {"render": ["--size", "--spp"], "lab": ["--size", "--runs"], "lab --transport": ["--size", "--seconds", "--repetitions", "--reference-spp"],
          "bench": ["--size", "--spp"], "bench noise": ["--size", "--spp"], "measure": ["--spp"]}
 BUILD = pathlib.Path(PROGRAM).resolve().parents[1]

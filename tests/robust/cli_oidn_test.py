@@ -50,6 +50,16 @@ class Denoised(CliTest):
         done = self.render("--aov", "albedo,normal", *arguments, size=SIZE, spp=spp, output=name)
         return done, read_exr(self.path(name))[2]
 
+    def test_pictures_through_distorting_lenses(self):
+        view = ["--eye", "0.278,0.273,-0.3", "--target", "0.278,0.273,0"]
+        for lens in (["--distortion", "0.2,0,0,0"], ["--lens", "fisheye"]):
+            _, noisy = self.picture("plain.exr", *view, *lens)
+            _, rows = self.picture("x.exr", *view, *lens, "--denoise", "oidn")
+            _, reference = self.picture("reference.exr", *view, *lens, "--seed", "9", spp=256)
+            self.assertEqual(layer(rows, "noisy"), layer(noisy, ""))
+            errors = [relative_error(layer(of, ""), layer(reference, "")) for of in (rows, noisy)]
+            self.assertLess(errors[0], 0.3 * errors[1], lens)
+
     def test_four_samples_come_far_nearer_to_the_reference_and_the_film_is_that_without(self):
         plain, noisy = self.picture("plain.exr")
         done, rows = self.picture("x.exr", "--denoise", "oidn")

@@ -2,6 +2,7 @@
 """`pertev view` as a program sees it: the picture takes the window's shape, grows on a slow machine, and keeps what it has;
 a second client is told why it does not steer; and nobody is told where files lie."""
 
+import math
 import os
 import select
 import time
@@ -55,6 +56,23 @@ class Shape(CliTest):
             state = client.done()
             self.assertNotIn("--size", state["flags"])
             self.assertIn(["Now", "size", "64 x 48"], state["rows"])
+
+    def test_a_calibrated_camera_keeps_its_shape_and_can_be_steered_and_zoomed(self):
+        words = ["--camera-pose=-1,0,0,0.25,0,1,0,0.3,0,0,-1,-0.75", "--intrinsics", "50,60,30,26", "--intrinsics-size", "64x48"]
+        with Viewer(*words, size="", spp=2) as viewer, Client(viewer) as client:
+            client.say(type="shape", width=100, height=100)
+            home = client.done()
+            self.assertEqual(home["hash"], self.render(*words, size="64x48", spp=2)["hash"])
+            client.set("fov", 30)
+            last = client.steer(type="move", right=1, up=0, forward=0, ms=100, pace="fast")
+            state = client.done(lambda s: s["values"]["fov"] == 30 and s["input"] >= last)
+            flags = state["flags"].replace("'", "").split()
+            self.assertNotEqual(state["hash"], home["hash"])
+            self.assertEqual(state["hash"], self.render(*flags, size="64x48", spp=2)["hash"])
+            focal = [float(number) for number in flags[flags.index("--intrinsics") + 1].split(",")]
+            self.assertAlmostEqual(focal[1], 24 / math.tan(math.radians(15)), 3)
+            self.assertAlmostEqual(focal[0] / focal[1], 50 / 60, 12)
+            self.assertEqual(focal[2:], [30, 26])
 
 
 class Keeps(CliTest):

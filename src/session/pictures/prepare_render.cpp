@@ -65,13 +65,13 @@ RenderSettings take_settings(const RenderSetup& ready, PictureOptions& options, 
 }
 
 /// Returns the camera of the options in a scene at rest.
-MovingCamera camera_of(PictureOptions& options, const std::optional<CameraPath>& path, const RenderSettings& settings,
-                       const Scene& rest, Sink& sink) {
+MovingCamera camera_of(PictureOptions& options, uint32_t verbs, const std::optional<CameraPath>& path,
+                       const RenderSettings& settings, const Scene& rest, Sink& sink) {
     fit_intrinsics({settings.width, settings.height}, options.scene.camera);
     MovingCamera camera(options.scene.camera, path, rest, aspect_of(settings.width, settings.height), sink);
     const Camera at_rest = camera.at(rest, std::nullopt);
     check_camera(settings, at_rest);
-    if (options.real_time) check_reconstruction(at_rest);
+    if (options.real_time || (verbs & (kView | kBenchSequence)) != 0) check_reconstruction(at_rest);
     return camera;
 }
 
@@ -84,11 +84,11 @@ void set_camera(PictureOptions& options, uint32_t verbs, const std::optional<Cam
         PictureOptions own = options_of_camera(options, i, verbs);
         set_size(own, rest, settings);
         Messages of_others; // which say the same again
-        MovingCamera camera = camera_of(own, path, settings, rest, i == 0 ? messages : of_others);
+        MovingCamera camera = camera_of(own, verbs, path, settings, rest, i == 0 ? messages : of_others);
         list.push_back({std::move(camera), {settings.width, settings.height}});
     }
     if (list.empty()) {
-        ready.camera.emplace(camera_of(options, path, settings, rest, messages));
+        ready.camera.emplace(camera_of(options, verbs, path, settings, rest, messages));
     } else {
         ready.camera = list.front().camera;
         settings.width = list.front().size.width, settings.height = list.front().size.height;

@@ -1,0 +1,144 @@
+"""Tests of errors: each is of its kind, and names the setting or the argument that is wrong, by Python's name."""
+
+import ctypes
+import pathlib
+import pickle
+import signal
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy
+
+import pertev
+
+sys.argv.pop(1)
+SMALL = {"size": (8, 6), "spp": 1, "device": "cpu"}
+POSES = numpy.tile(numpy.diag([-1.0, 1, -1, 1]), (2, 1, 1))
+
+
+class Elsewhere:
+    """An array that says by DLPack that it is in the memory of a GPU."""
+
+    def __init__(self, array):
+        self.array = array
+
+    def __dlpack__(self, **options):
+        capsule = self.array.__dlpack__()
+        ctypes.pythonapi.PyCapsule_GetPointer.restype = ctypes.c_void_p
+        ctypes.pythonapi.PyCapsule_GetPointer.argtypes = [ctypes.py_object, ctypes.c_char_p]
+        tensor = ctypes.pythonapi.PyCapsule_GetPointer(capsule, b"dltensor")
+        ctypes.c_int32.from_address(tensor + 8).value = 2 # behind the pointer: the kind of device, here CUDA
+        return capsule
+
+    def __dlpack_device__(self):
+        return (2, 0)
+
+
+def after(seconds):
+    """Presses Ctrl-C."""
+    threading.Timer(seconds, lambda: signal.raise_signal(signal.SIGINT)).start()
+
+
+class Errors(unittest.TestCase):
+    def setUp(self):
+        self.scene = pertev.load("cornell-box", device="cpu")
+
+    def refused(self, kind, setting, call):
+        with self.assertRaises(kind) as caught:
+            call()
+        self.assertEqual(caught.exception.setting, setting)
+        self.assertIsInstance(caught.exception, pertev.Error)
+        return caught.exception
+
+    def test_kinds(self):
+        folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+        (folder / "is a folder.png").mkdir()
+        for kind, of_python, setting, values in [
+                (pertev.InputError, ValueError, "max_depth", {"max_depth": "deep"}), (pertev.LimitError, ValueError, "size", {"size": (10**6, 10**6)}),
+                (pertev.MemoryLimitError, MemoryError, "max_memory", {"max_memory": 1, "size": (4096, 4096)})]:
+            with self.subTest(values):
+                error = self.refused(kind, setting, lambda: pertev.render(self.scene, **{**SMALL, **values}))
+                self.assertIsInstance(error, of_python)
+        with self.assertRaises(OSError) as caught:
+            pertev.write(folder / "is a folder.png", numpy.zeros((2, 2, 3)))
+        self.assertIsInstance(caught.exception, pertev.WriteError)
+        for kind, of_python in ((pertev.DeviceError, RuntimeError), (pertev.InterruptedRender, RuntimeError)):
+            self.assertTrue(issubclass(kind, of_python) and issubclass(kind, pertev.Error))
+
+    def test_settings_have_the_names_of_python(self):
+        for values, setting in [({"filter_radius": -1}, "filter_radius"), ({"layers": "deepness"}, "aov"), ({"eye": (1, 2)}, "eye"),
+                                ({"camera_pose": range(5)}, "camera_pose"), ({"device": "cuda:99"}, "device"),
+                                ({"false_color_range": "1", "false_color": "luminance"}, "false_color_range")]:
+            with self.subTest(values):
+                error = self.refused(pertev.InputError, setting, lambda: pertev.render(self.scene, **{**SMALL, **values}))
+                self.assertNotIn("--", str(error))
+
+    def test_shapes_types_and_devices_of_arrays(self):
+        mesh = {"vertices": numpy.eye(3), "faces": numpy.array([[0, 1, 2]])}
+        picture = numpy.zeros((4, 4, 3), numpy.float32)
+
+        def scene_of(**changes):
+            return lambda: pertev.Scene(meshes={"m": {**mesh, **changes}}, instances={"i": {"mesh": "m"}})
+
+        def batch_of(*arguments, **more):
+            return lambda: pertev.render(self.scene, cameras=pertev.Cameras(*arguments), **SMALL, **more)
+
+        for name, call in [("meshes/m/vertices", scene_of(vertices=Elsewhere(numpy.eye(3)))), ("meshes/m/faces", scene_of(faces=numpy.eye(3))),
+                           ("meshes/m/vertices", scene_of(vertices=numpy.eye(3, dtype=complex))), ("cameras", batch_of(POSES[:, :, :2])),
+                           ("K", batch_of(POSES, numpy.eye(2))), ("seeds", batch_of(POSES, seeds=[0.5, 1.5])),
+                           ("picture", lambda: pertev.tone_map(picture[None])), ("picture", lambda: pertev.tone_map(Elsewhere(picture)))]:
+            with self.subTest(name):
+                self.refused(pertev.InputError, name, call)
+
+    def test_arrays_to_fill(self):
+        read_only = numpy.empty((6, 8, 3), numpy.float32)
+        read_only.flags.writeable = False
+        for wrong in (numpy.empty((8, 6, 3), numpy.float32), numpy.empty((6, 8, 3)), numpy.empty((6, 8, 6), numpy.float32)[:, :, ::2],
+                      Elsewhere(numpy.empty((6, 8, 3), numpy.float32)), read_only, [1, 2], None):
+            error = self.refused(pertev.InputError, "out", lambda: pertev.render(self.scene, **SMALL, out={"color": wrong}))
+            self.assertEqual(error.value, "color")
+        self.refused(pertev.InputError, "out", lambda: pertev.render(self.scene, **SMALL, out={"depth": read_only}))
+
+    def test_what_is_not_pickled_says_so(self):
+        result = pertev.render(self.scene, **SMALL)
+        for thing in (result, pertev.Session(self.scene, **SMALL), pertev.render(self.scene, cameras=POSES, **SMALL)):
+            with self.assertRaises(TypeError):
+                pickle.dumps(thing)
+        cameras = pickle.loads(pickle.dumps(pertev.Cameras(POSES, [8, 8, 4, 3], convention="opencv")))
+        self.assertEqual((cameras.poses == POSES).all() and cameras.settings["convention"], "opencv")
+
+
+class Interrupts(unittest.TestCase):
+    def test_batches_and_frames_end_soon_and_can_go_on(self):
+        scene = pertev.load("cornell-box", device="cpu")
+        session = pertev.Session(scene, size=(16, 12))
+        first = next(session).hash
+        poses = numpy.repeat(POSES, 500, 0)
+        poses[:, :3, 3] = 0.278, 0.273, -0.8
+        for work in (lambda: pertev.render(scene, cameras=poses, size=(64, 64), spp=4096),
+                     lambda: pertev.render(scene, on_device=True, size=(640, 480), spp=65536), lambda: [0 for _ in session]):
+            begun = time.monotonic()
+            after(0.3)
+            with self.assertRaises(KeyboardInterrupt):
+                work()
+            self.assertLess(time.monotonic() - begun, 5)
+        session.reset()
+        self.assertEqual(next(session).hash, first)
+        self.assertEqual(pertev.render(scene, **SMALL).hash, pertev.render("cornell-box", **SMALL).hash)
+
+    def test_two_threads_are_at_work_at_the_same_time(self):
+        """Pictures of one thread are done while another is at work on a picture that takes five seconds."""
+        alone = [pertev.render("cornell-box", **SMALL, seed=seed).hash for seed in range(3)]
+        long = threading.Thread(target=lambda: pertev.render("cornell-box", size=(64, 48), spp=65536, time_limit=5, threads=1, device="cpu"))
+        long.start()
+        beside = [pertev.render("cornell-box", **SMALL, seed=seed, threads=1).hash for seed in range(3)]
+        self.assertTrue(long.is_alive())
+        self.assertEqual(beside, alone)
+        long.join()
+
+
+if __name__ == "__main__":
+    unittest.main()
