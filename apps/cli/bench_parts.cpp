@@ -97,7 +97,7 @@ std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, SettingVerb
     flags.settings.read(flags, reporter); // before anything is read
     check_options(flags, verb);
     listen_for_interrupt();
-    take_camera_from(flags);
+    apply_camera_from(flags);
     auto benched = std::make_unique<BenchedScene>();
     benched->queue = open_queue(flags.machine, reporter);
     reporter.report_messages();

@@ -138,7 +138,7 @@ int run(LabFlags& flags) {
     if (!flags.thesis && !flags.transport && flags.scene.scene.empty()) {
         throw Error(ErrorCode::BadInput, "scene", "", "it is required (or --thesis, or --transport)");
     }
-    take_camera_from(flags);
+    apply_camera_from(flags);
     const std::unique_ptr<Queue> queue = open_queue(flags.machine, reporter);
     if (flags.transport) {
         reporter.set_work("loading");
