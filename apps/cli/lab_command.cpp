@@ -138,6 +138,7 @@ int run(LabFlags& flags) {
         throw Error(ErrorCode::BadInput, "scene", "", "it is required (or --thesis, or --transport)");
     }
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, reporter);
+    const UseThreads threads(queue->threads());
     if (flags.transport) {
         reporter.set_work("loading");
         return run_transport_command(*queue, flags, flags.of_transport, flags.output, reporter);

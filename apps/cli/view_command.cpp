@@ -175,7 +175,7 @@ Pose start_pose(const PictureRecord& record, const Scene& scene, FrameSource& so
 std::unique_ptr<Queue> queue_for_jpeg(const ViewFlags& flags) {
     if (flags.jpeg == "cpu") return nullptr;
     try {
-        std::unique_ptr<Queue> queue = choose_device(flags.render.machine.device, nobody());
+        std::unique_ptr<Queue> queue = take_machine(flags.render.machine, nobody());
         return queue->is_cuda() ? std::move(queue) : nullptr;
     } catch (const Error&) { // it has no room for two
         return nullptr;
@@ -212,6 +212,7 @@ int view(ViewFlags& flags) {
     check_host(flags.host);
     flags.token = given_token(flags.token_file);
     const std::unique_ptr<RenderSetup> ready = prepare_render(flags.render, kView, reporter, report_solving(reporter));
+    const UseThreads threads(ready->queue->threads());
     if (!makes_frames(ready->settings.integrator) && flags.render.reconstruction.has_frame_options()) {
         reporter.note({"integrator", std::string(integrator_name(ready->settings)),
                        "its frames are not reconstructed; `restir` and `resolution_scale` apply once the "
@@ -270,8 +271,8 @@ int view(ViewFlags& flags) {
          .port = static_cast<uint16_t>(flags.port),
          .token = flags.token,
          .jpeg_queue = jpeg_queue.get()},
-        start, source,
-        [&](const std::string& address) { report_address(flags, address, reporter); }, [] { return !interrupted(); });
+        start, source, [&](const std::string& address) { report_address(flags, address, reporter); },
+        [] { return !interrupted(); });
     reporter.result(R"({"event":"done"})");
     return 0;
 }

@@ -68,11 +68,11 @@ TEST_CASE("an OBJ file's pieces, faces, vertices and pictures are read until the
     const fs::path folder = test::scratch_folder(), path = write_obj(folder);
     test::write_text(folder / "a.mtl", "newmtl m\nmap_Kd a.png\n");
     write_png(folder / "a.png", {.width = 1, .height = 1, .pixels = {255, 0, 0, 255}}, true);
-    set_thread_count(1);
     const int64_t pieces = 2, faces = kTriangles >> 16, corners = 3 * kTriangles >> 16, pictures = 1;
-    check_stops(pieces + faces + corners + pictures,
-                [&](Sink& sink) { read_obj(path, FileAccess(path, {}), {}, sink); });
-    set_thread_count(0);
+    check_stops(pieces + faces + corners + pictures, [&](Sink& sink) {
+        const UseThreads one(1);
+        read_obj(path, FileAccess(path, {}), {}, sink);
+    });
     StopsAt sink(3); // while another thread reads the materials
     const std::optional<Error> error = test::thrown_error([&] { read_obj(path, FileAccess(path, {}), {}, sink); });
     CHECK((error && error->code() == ErrorCode::Interrupted));

@@ -200,6 +200,7 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     std::optional<CameraPath> path;
     if (!options.camera_path.empty()) path = read_camera_path(options.camera_path);
     ComingMachine machine(options.machine, sink);
+    const UseThreads threads(machine.threads());
     std::optional<TracerChoice> tracers; // a tracer that does not fit the device is refused before the scene is read
     if (!options.tracer.are_empty()) tracers = tracer_choice(options.tracer, machine.is_cuda());
     sink.report_messages();
