@@ -1,7 +1,6 @@
 #include "tracer/scene_structures.h"
 
 #include <algorithm>
-#include <set>
 
 #include <fmt/format.h>
 
@@ -118,14 +117,6 @@ std::shared_ptr<const BuiltStructure> SceneStructures::get(const Combination& co
         built = std::make_shared<const BuiltStructure>(tlas_, kind, triangles);
     }
     return built;
-}
-
-std::size_t SceneStructures::device_bytes(const TracerChoice& choice) {
-    std::set<std::shared_ptr<const BuiltStructure>> structures;
-    for (const RayKind kind : kValuesOf<RayKind>) structures.insert(get(choice[kind]));
-    std::size_t bytes = 0;
-    for (const auto& structure : structures) bytes += structure->device_bytes();
-    return bytes;
 }
 
 } // namespace pertev

@@ -51,9 +51,6 @@ public:
         return all;
     }
 
-    /// Device memory, in bytes, of the structures of a choice. Missing ones are built.
-    std::size_t device_bytes(const TracerChoice& choice);
-
 private:
     const BinaryTrees& binary_trees(BvhBuilder builder);
 
