@@ -36,9 +36,9 @@ public:
     std::shared_ptr<SceneStructures> fitted(Queue& queue, std::span<const DeformedMesh> meshes,
                                             std::span<const PlacedBvh> placed);
 
-    /// Returns the structure that `combination` traverses; builds it at the first request. Thread-safe. Throws
-    /// Error(OverLimit), std::bad_alloc.
-    std::shared_ptr<const BuiltStructure> get(const Combination& combination);
+    /// Returns the structure that `combination` traverses; builds it at the first request, which `sink` may end.
+    /// Thread-safe. Throws Error(OverLimit), std::bad_alloc.
+    std::shared_ptr<const BuiltStructure> get(const Combination& combination, Sink& sink = nobody());
 
     /// Builder of the trees given to the constructor.
     BvhBuilder builder() const { return builder_; }

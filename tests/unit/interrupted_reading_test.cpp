@@ -5,6 +5,9 @@
 #include <atomic>
 
 #include "accel/builders/builders.h"
+#include "accel/builders/bvh_cache.h"
+#include "accel/bvh/compressed_bvh.h"
+#include "accel/bvh/wide_bvh.h"
 #include "base/parallel_for.h"
 #include "formats/gltf/read_gltf.h"
 #include "formats/obj/read_obj.h"
@@ -104,6 +107,26 @@ TEST_CASE("every builder ends at a check of its sink") {
         CAPTURE(name_of(builder));
         check_stops(1, [&](Sink& sink) { build_bvh(builder, triangles, {.sink = &sink}); });
     }
+}
+
+TEST_CASE("a tree is stored, read, and made wide until the sink ends it, and an ended store leaves no file") {
+    const std::vector<BvhTriangle> triangles = test::triangles_of(test::make_torus(500, 400));
+    const auto parts = static_cast<int64_t>(triangles.size() >> 16);
+    const Bvh bvh = build_bvh(triangles);
+    check_stops(4 * parts, [&](Sink& sink) { make_wide_bvh<8>(bvh, kSimdCollapse, sink); });
+    check_stops(5 * parts, [&](Sink& sink) { make_compressed_bvh(bvh, kCompressedCollapse, sink); });
+
+    const fs::path folder = test::scratch_folder() / "cache";
+    const Hash128 key = bvh_cache_key(triangles, {});
+    const BuiltTree tree = build_triangle_tree(triangles, {});
+    const auto store = [&](Sink& sink) { store_cached_bvh(key, folder, tree, triangles.size(), sink); };
+    check_stops(parts + 1, store);
+    fs::remove_all(folder);
+    StopsAt at_writing(parts + 1);
+    REQUIRE(test::thrown_error([&] { store(at_writing); }));
+    CHECK(fs::is_empty(folder));
+    store(nobody());
+    check_stops(2 * parts, [&](Sink& sink) { load_cached_bvh(key, folder, triangles, sink); });
 }
 
 TEST_CASE("the validation and the trees of a scene end at a check of the sink") {
