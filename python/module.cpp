@@ -87,7 +87,6 @@ void run_unlocked(Work work) {
     std::exception_ptr failure;
     {
         const nb::gil_scoped_release unlocked;
-        const UseThreads own{Threads()}; // a call's number of threads is not that of the next
         try {
             work(sink);
         } catch (...) {

@@ -115,6 +115,7 @@ int bench_build(BuildFlags& flags) {
     const std::vector<std::string> scenes = check_record_scenes(flags.scenes);
     listen_for_interrupt();
     const std::unique_ptr<Queue> queue = open_queue(flags.machine, reporter);
+    const UseThreads threads(queue->threads());
     BenchReport report(reporter, flags.report, *queue, "Trees built on the device");
     for (const std::string& scene : scenes) bench_scene(scene, *queue, flags, reporter, report);
     report.write();

@@ -116,7 +116,10 @@ int bench_scenes(PictureFlags& flags) {
     listen_for_interrupt();
     std::vector<std::unique_ptr<Queue>> queues;
     queues.push_back(open_queue(flags.machine, reporter));
-    if (flags.machine.device == "auto" && queues.front()->is_cuda()) queues.push_back(choose_device("cpu", reporter));
+    const UseThreads threads(queues.front()->threads());
+    if (flags.machine.device == "auto" && queues.front()->is_cuda()) {
+        queues.push_back(std::make_unique<Queue>(Queue::make_cpu()));
+    }
     reporter.report_messages();
     BenchReport report(reporter, flags.report, *queues.front(), "Loading, building and rendering");
     for (const std::string& scene : scenes) {

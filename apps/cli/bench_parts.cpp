@@ -100,6 +100,7 @@ std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, SettingVerb
     apply_camera_from(flags);
     auto benched = std::make_unique<BenchedScene>();
     benched->queue = open_queue(flags.machine, reporter);
+    const UseThreads threads(benched->queue->threads());
     reporter.report_messages();
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
     benched->scene = open_scene(flags.scene, reporter, SceneUse::Benchmark);

@@ -176,6 +176,7 @@ int bench_rays(RaysFlags& flags) {
     const std::vector<std::string> scenes = check_record_scenes(flags.scenes);
     listen_for_interrupt();
     const std::unique_ptr<Queue> queue = open_queue(flags.machine, reporter);
+    const UseThreads threads(queue->threads());
     const TracerChoice choice = tracer_choice(flags.tracer, queue->is_cuda()).value(); // there is one: of the best tree
     BenchReport report(reporter, flags.report, *queue, "Rays of the record");
     std::vector<double> ratios;

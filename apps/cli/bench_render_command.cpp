@@ -83,6 +83,7 @@ int bench_job(JobFlags& flags) {
     check_bench_scene(file);
     listen_for_interrupt();
     const std::unique_ptr<Queue> queue = open_queue(flags.picture.machine, reporter);
+    const UseThreads threads(queue->threads());
     settings.tracers = tracer_choice(flags.picture.tracer, queue->is_cuda());
     BenchReport report(reporter, flags.picture.report, *queue, "One job of the record");
     reporter.set_work(fmt::format("measuring {}", file));

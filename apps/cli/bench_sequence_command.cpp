@@ -143,6 +143,7 @@ int bench_sequence(SequenceFlags& flags) {
            {"denoise", denoise, "the reference is missing; add --reference SPP"});
     const std::unique_ptr<RenderSetup> ready =
         prepare_render(flags.render, kBenchSequence, reporter, report_solving(reporter));
+    const UseThreads threads(ready->queue->threads());
     reporter.report_messages();
     listen_for_interrupt();
     BenchReport report(reporter, flags.render.report, *ready->queue, "Frames of a moving picture");

@@ -140,6 +140,7 @@ int run(LabFlags& flags) {
     }
     apply_camera_from(flags);
     const std::unique_ptr<Queue> queue = open_queue(flags.machine, reporter);
+    const UseThreads threads(queue->threads());
     if (flags.transport) {
         reporter.set_work("loading");
         return run_transport_command(*queue, flags, flags.of_transport, flags.output, reporter);

@@ -72,6 +72,7 @@ int measure(MeasureFlags& flags) {
     flags.settings.read(flags, reporter);
     const MeterPoint point = point_of(flags); // before anything is read
     StartingMachine machine(flags.machine, reporter);
+    const UseThreads threads(machine.threads());
     reporter.report_messages();
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
     const RenderSettings& settings = flags.render;

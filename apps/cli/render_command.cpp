@@ -132,6 +132,7 @@ int render(RenderFlags& flags) {
     report_motion(flags, *ready->moving, reporter);
     const RenderSettings& settings = ready->settings;
     Queue& queue = *ready->queue;
+    const UseThreads threads(queue.threads());
     reporter.report_messages();
     listen_for_interrupt();
     report_start(flags, *ready, reporter);

@@ -48,7 +48,7 @@ int solve(SolveFlags& flags) {
     refuse_list(flags.output);
     note_number_signs(flags.output, reporter);
     check_writable(flags.output);
-    set_thread_count(static_cast<int>(flags.machine.threads));
+    const UseThreads threads(static_cast<int>(flags.machine.threads));
     const Stopwatch total_time;
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
     Scene scene = open_scene(flags.scene, reporter, SceneUse::Measurement);

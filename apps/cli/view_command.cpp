@@ -4,14 +4,11 @@
 #include <spawn.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <thread>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "apps/cli/commands.h"
 #include "apps/cli/flag_checks.h"
@@ -20,17 +17,11 @@
 #include "apps/cli/report_radiosity.h"
 #include "apps/cli/report_result.h"
 #include "apps/viewer/access_token.h"
-#include "apps/viewer/panel_phrases.h"
-#include "apps/viewer/session_frames.h"
+#include "apps/viewer/start_viewer.h"
 #include "apps/viewer/viewer.h"
 #include "base/error.h"
 #include "base/limits.h"
-#include "formats/files/file_choices.h"
-#include "formats/read_camera_path.h"
 #include "image/write_jpeg.h"
-#include "integrators/radiosity/radiosity_display_settings.h"
-#include "scene/scene_origin.h"
-#include "session/check_integrator.h"
 #include "session/machine.h"
 #include "session/pictures/choose_display.h"
 #include "session/pictures/prepare_render.h"
@@ -42,7 +33,6 @@ namespace pertev {
 namespace {
 
 constexpr double kFrameOnCpu = 0.12, kFrameOnGpu = 1.0 / 60; // seconds that a frame may take while the camera moves
-constexpr double kTurntableFps = 24;                         // the default of --frames
 constexpr auto kLongestEnd = std::chrono::milliseconds(800); // from Ctrl-C to the end
 
 struct ViewFlags {
@@ -96,106 +86,15 @@ void report_address(const ViewFlags& flags, const std::string& address, Reporter
     if (is_whole && !flags.no_browser) open_browser(address);
 }
 
-/// The text of a scene's camera for --camera; empty where there is none.
-std::string camera_name(const SceneOptions& options, const Scene& scene) {
-    if (!options.camera.camera.empty()) return options.camera.camera;
-    return scene.cameras.empty() ? "" : "0";
-}
-
-/// Turns as --turntable N does at 24 frames a second. Its places are said by eye, target and up, so that flags can say
-/// them too: but for rounding they are those of render's frames.
-CameraSource turned_camera(const RenderSetup& ready, double time_s) {
-    const double frames = std::fmod(time_s * kTurntableFps, ready.sequence.turntable);
-    CameraSource source = camera_at(*ready.camera, ready.scene(), time_s, frames / ready.sequence.turntable);
-    if (frames == 0) return source;
-    const Pose pose = pose_of(source.camera, {}, {}, source.camera.focus_distance);
-    source.camera.world_from_camera = look_at(pose.eye, pose.target, pose.up);
-    source.target = in_file(ready.scene(), pose.target);
-    source.up = pose.up;
-    return source;
-}
-
-/// Says in the panel which animation plays and which scene is shown, where the file has several, and by which words the
-/// others are chosen.
-void report_choices(const Scene& scene, ViewerStart& start) {
-    const auto report = [&](const char* label, const std::string& chosen, const std::vector<std::string>& all,
-                            const char* flag) {
-        if (chosen.empty()) return;
-        start.about.emplace_back(label, fmt::format("{} of {} ({})", chosen, fmt::join(all, ", "), flag));
-    };
-    report("animation", clip_choice(scene.clips), list_clips(scene.clips), "--animation");
-    report("scene of the file", file_scene_choice(scene), list_file_scenes(scene), "--file-scene");
-}
-
-/// Sets how time moves the camera, and when all motion ends.
-void let_time_move(const ViewFlags& flags, const RenderSetup& ready, ViewerStart& start) {
-    const MovingScene& moving = *ready.moving;
-    const uint32_t turntable = flags.render.turntable;
-    const bool is_still = moving.is_animated() && ready.settings.radiosity->solution != nullptr;
-    start.is_animated = moving.is_animated() && !is_still;
-    start.clock = {.end_s = is_still ? 0 : moving.end_s(), .time_s = moving.time_s(), .plays = !moving.time_s()};
-    if (is_still) {
-        start.still_s = moving.time_s();
-        start.why_still = fmt::format("stands {}: radiosity is solved for one time",
-                                      start.still_s ? fmt::format("at {:g} s", *start.still_s) : "as at rest");
-    }
-    if (!flags.render.camera_path.empty()) {
-        start.camera.path = read_camera_path(flags.render.camera_path);
-        start.clock.end_s = std::max(start.clock.end_s, start.camera.path.keys.back().time_s);
-    }
-    if (flags.render.scene.camera.focus) start.camera.focus_m = *flags.render.scene.camera.focus;
-    if (turntable > 0) {
-        start.clock.end_s = std::max(start.clock.end_s, turntable / kTurntableFps);
-        start.camera.at = [&ready](double time_s) { return turned_camera(ready, time_s); };
-    } else if (flags.render.camera_path.empty()) {
-        start.camera.at = [&ready](double time_s) { return camera_at(*ready.camera, ready.scene(), time_s, 0); };
-    }
-    start.camera.moves = start.is_animated || turntable > 0;
-    const SceneOptions& scene = flags.render.scene;
-    const bool is_made_up =
-        ready.scene().cameras.empty() && !scene.camera.places_camera() && flags.render.camera_path.empty();
-    if (is_made_up && turntable == 0 && !moving.is_animated()) {
-        start.camera.framed = [&ready, choice = scene.camera](float aspect) {
-            const MovingCamera framed(choice, std::nullopt, ready.scene(), aspect, nobody()); // already reported
-            return camera_at(framed, ready.scene(), std::nullopt, 0);
-        };
-    }
-}
-
-/// Returns the first pose. The view turns about the point in the middle of the picture, unless a target was given.
-Pose start_pose(const PictureRecord& record, const Scene& scene, FrameSource& source, float scene_size) {
-    const Camera& camera = record.camera.camera;
-    float distance = 0.5f * scene_size;
-    if (!record.camera.target) {
-        if (const auto point = source.pick(camera, 0.5f, 0.5f)) distance = max(point->distance, 1e-3f * scene_size);
-    }
-    return pose_of(record.camera, scene, distance);
-}
-
 /// Queue of the GPU that renders; null if the CPU encodes pictures.
 std::unique_ptr<Queue> queue_for_jpeg(const ViewFlags& flags) {
     if (flags.jpeg == "cpu") return nullptr;
     try {
-        std::unique_ptr<Queue> queue = choose_device(flags.render.machine.device, nobody());
+        std::unique_ptr<Queue> queue = open_queue(flags.render.machine, nobody());
         return queue->is_cuda() ? std::move(queue) : nullptr;
     } catch (const Error&) { // it has no room for two
         return nullptr;
     }
-}
-
-/// Integrators that would show the scene as black, and why.
-std::vector<std::pair<IntegratorKind, std::string>> dark_integrators(RenderSettings settings, const Scene& scene) {
-    std::vector<std::pair<IntegratorKind, std::string>> dark;
-    for (const std::string& name : integrator_names()) {
-        set_integrator(settings, name);
-        const std::optional<Remark> is_dark = why_dark(settings, scene);
-        std::string why = is_dark ? panel_phrase(*is_dark) : "";
-        if (why.empty() && is_solved(settings.integrator) && !settings.radiosity->solution) {
-            why = "radiosity is solved before anything is shown: start pertev view --integrator radiosity";
-        }
-        if (!why.empty()) dark.emplace_back(settings.integrator, std::move(why));
-    }
-    return dark;
 }
 
 /// After a request to end, the program ends in any case: nothing would be lost.
@@ -213,6 +112,7 @@ int view(ViewFlags& flags) {
     check_host(flags.host);
     flags.token = given_token(flags.token_file);
     const std::unique_ptr<RenderSetup> ready = prepare_render(flags.render, kView, reporter, report_solving(reporter));
+    const UseThreads threads(ready->queue->threads());
     if (!makes_frames(ready->settings.integrator) && flags.render.reconstruction.has_frame_options()) {
         reporter.note({"integrator", std::string(integrator_name(ready->settings)),
                        "its frames are not reconstructed; `restir` and `resolution_scale` apply once the "
@@ -224,39 +124,13 @@ int view(ViewFlags& flags) {
     reporter.report_messages();
     listen_for_interrupt();
     reporter.set_work("uploading the scene");
-    PictureRecord record = picture_record(flags.render, *ready, reporter.messages());
-    const Camera& camera = record.camera.camera;
-    Session session(*ready->queue, ready->prepared(), camera, ready->settings);
+    const PictureRecord record = picture_record(flags.render, *ready, reporter.messages());
+    Session session(*ready->queue, ready->prepared(), record.camera.camera, ready->settings);
     const bool on_cuda = ready->queue->is_cuda();
     SessionFrames source(session, *ready->moving, on_cuda ? kFrameOnGpu : kFrameOnCpu);
-    ViewerStart start;
-    start.scene = &ready->scene();
-    start.camera.camera = camera;
-    start.record = record;
-    start.options = flags.render;
-    start.view.options = flags.render;
-    start.view.options.render = ready->settings;
-    if (!flags.render.size && !camera.intrinsics) { // which hold for pictures of one shape
-        start.view.window_pixels = uint64_t(ready->settings.width) * ready->settings.height;
-    }
-    start.view.display = choose_display(flags.render, session, reporter);
-    start.view.finds_exposure = is_metered(flags.render);
-    report_display(start.view.display, start.view.finds_exposure, reporter);
-    start.view.dark = dark_integrators(ready->settings, ready->scene());
-    start.view.lens = camera;
-    start.view.on_cuda = on_cuda;
-    start.view.moving_depth =
-        flags.moving_depth.value_or(flags.render.is_given("max_depth") ? ready->settings.path.max_depth : kMovingDepth);
-    if (start.view.finds_exposure) {
-        source.begin_exposed({.camera = camera, .view = start.view}, start.view.display.exposure_stops);
-        start.view.display.exposure_stops = 0;
-    }
-    start.camera.name = camera_name(flags.render.scene, ready->scene());
-    const float size = length(bounds_of(ready->scene()).size());
-    start.speed = 0.12f * size;
-    start.camera.pose = start_pose(start.record, ready->scene(), source, size);
-    report_choices(ready->scene(), start);
-    let_time_move(flags, *ready, start);
+    const Display display = choose_display(flags.render, session, reporter);
+    report_display(display, is_metered(flags.render), reporter);
+    const ViewerStart start = start_viewer(flags.render, *ready, record, display, source, flags.moving_depth);
     if (!start.why_still.empty()) {
         reporter.note(
             {FileLocation{flags.render.scene.scene},

@@ -45,8 +45,8 @@ Rgba8Image shrunk(const Rgba8Image& picture, uint32_t factor) {
 
 Packer::Packer(Audience& audience, WebServer& server, std::function<double()> now_s, Queue* jpeg_queue)
     : audience_(audience), server_(server), now_s_(std::move(now_s)), jpeg_queue_(jpeg_queue),
-      thread_([this, threads = thread_count()] {
-          set_thread_count(threads);
+      thread_([this, threads = Threads()] {
+          const UseThreads use(threads);
           run();
       }) {}
 

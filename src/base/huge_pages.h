@@ -7,10 +7,12 @@
 #include <cstddef>
 #include <span>
 
+#include "base/sink.h"
+
 namespace pertev {
 
 /// Moves the part of `bytes` that fills whole pages of 2 MB into such pages, if possible. The bytes keep their
-/// addresses and values; any thread may read them meanwhile.
-void use_huge_pages(std::span<const std::byte> bytes);
+/// addresses and values; any thread may read them meanwhile. `sink` may end it.
+void use_huge_pages(std::span<const std::byte> bytes, Sink& sink = nobody());
 
 } // namespace pertev

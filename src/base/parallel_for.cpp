@@ -192,11 +192,11 @@ void parallel_invoke(const std::function<void()>& a, const std::function<void()>
 
 #endif
 
-void set_thread_count(int count) { t_team = count > 0 ? std::make_shared<ThreadTeam>(count) : nullptr; }
-
 Threads::Threads() {
     if (t_team != nullptr && t_team->count > 0) team_ = t_team;
 }
+
+Threads::Threads(int count) : team_(count > 0 ? std::make_shared<ThreadTeam>(count) : nullptr) {}
 
 UseThreads::UseThreads(const Threads& threads) : own_(std::exchange(t_team, threads.team_)) {}
 UseThreads::~UseThreads() { t_team = std::move(own_); }

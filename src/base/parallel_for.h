@@ -1,9 +1,9 @@
 #pragma once
 
-// Runs body(i) for each i in [0, count), in no fixed order, on the threads set by set_thread_count. The body runs
-// with the processor's default floating-point control register (round to nearest, no flush to zero), whatever the
-// caller's; that is restored. An exception thrown by the body is rethrown by the call. Backends: oneTBB, or
-// std::thread (PERTEV_THREADS=STD) for ThreadSanitizer, for which Debian's TBB is not instrumented.
+// Runs body(i) for each i in [0, count), in no fixed order, on the threads that work for the caller (UseThreads). The
+// body runs with the processor's default floating-point control register (round to nearest, no flush to zero),
+// whatever the caller's; that is restored. An exception thrown by the body is rethrown by the call. Backends: oneTBB,
+// or std::thread (PERTEV_THREADS=STD) for ThreadSanitizer, for which Debian's TBB is not instrumented.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,15 +12,17 @@
 
 namespace pertev {
 
-/// Sets how many threads work for the calling thread from now on; 0 means one per hardware thread.
-void set_thread_count(int count);
+/// Returns how many threads work for the calling thread.
 int thread_count();
 
 struct ThreadTeam;
-/// The threads that work for the thread that makes this. Copies share them.
+/// Threads that work together. Copies share them.
 class Threads {
 public:
+    /// Takes the threads that work for the calling thread; at first one per hardware thread.
     Threads();
+    /// Takes `count` new threads; 0 means one per hardware thread.
+    explicit Threads(int count);
 
 private:
     friend class UseThreads;
@@ -30,6 +32,7 @@ private:
 class UseThreads {
 public:
     explicit UseThreads(const Threads& threads);
+    explicit UseThreads(int count) : UseThreads(Threads(count)) {}
     ~UseThreads();
     UseThreads(const UseThreads&) = delete;
     UseThreads& operator=(const UseThreads&) = delete;

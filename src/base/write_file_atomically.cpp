@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <system_error>
 
@@ -34,9 +35,11 @@ void check(bool ok) {
     if (!ok) throw std::system_error(errno, std::generic_category());
 }
 
-void write_all(int fd, std::span<const std::byte> bytes) {
+void write_all(int fd, std::span<const std::byte> bytes, Sink& sink) {
+    constexpr std::size_t kAtOnce = std::size_t(1) << 24;
     while (!bytes.empty()) {
-        const ssize_t n = ::write(fd, bytes.data(), bytes.size());
+        sink.check();
+        const ssize_t n = ::write(fd, bytes.data(), std::min(bytes.size(), kAtOnce));
         if (n < 0 && errno == EINTR) continue;
         check(n > 0);
         bytes = bytes.subspan(static_cast<std::size_t>(n));
@@ -85,12 +88,12 @@ std::string temporary_name(const fs::path& target) {
     return (folder_of(target) / ("." + target.filename().string() + ".XXXXXX")).string();
 }
 
-void replace(const fs::path& target, std::span<const std::byte> bytes) {
+void replace(const fs::path& target, std::span<const std::byte> bytes, Sink& sink) {
     std::string temporary = temporary_name(target);
     const OpenFile file(::mkstemp(temporary.data()));
     check(file.fd() >= 0);
     try {
-        write_all(file.fd(), bytes);
+        write_all(file.fd(), bytes, sink);
         check(::fchmod(file.fd(), mode_for(target)) == 0 && ::fsync(file.fd()) == 0);
         check(::rename(temporary.c_str(), target.c_str()) == 0);
     } catch (...) {
@@ -108,9 +111,9 @@ void replace(const fs::path& target, std::span<const std::byte> bytes) {
 
 } // namespace
 
-void write_file_atomically(const fs::path& path, std::span<const std::byte> bytes) {
+void write_file_atomically(const fs::path& path, std::span<const std::byte> bytes, Sink& sink) {
     try {
-        replace(resolve_target(path), bytes);
+        replace(resolve_target(path), bytes, sink);
     } catch (const std::system_error& error) {
         rethrow(path, error);
     }

@@ -6,14 +6,16 @@
 #include <filesystem>
 #include <span>
 
+#include "base/sink.h"
+
 namespace pertev {
 
 /// Replaces `path` with `bytes`, all or nothing: after a crash, kill -9, power loss or a full disk at any moment,
 /// `path` holds either its old content or the new. Returns once the new content is on the disk. A symbolic link is
 /// followed; permissions are those of the replaced file, or the user's defaults. Throws Error(FileWrite), with the
 /// path and the system's reason, if that fails or if `path` is not a regular file (a device would be replaced, not
-/// written); nothing is left behind.
-void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
+/// written); nothing is left behind. `sink` may end it, which leaves the old content.
+void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes, Sink& sink = nobody());
 
 /// Throws the Error(FileWrite) that write_file_atomically would throw for a path that cannot be written. It is for
 /// use before a long render. Creates nothing that stays.

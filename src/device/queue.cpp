@@ -105,16 +105,14 @@ double mebibytes(std::size_t bytes) { return static_cast<double>(bytes) / (1024.
 
 } // namespace
 
-Queue Queue::make_cpu() { return Queue(std::make_unique<CpuBackend>()); }
+Queue Queue::make_cpu(const Threads& threads) { return Queue(std::make_unique<CpuBackend>(), threads); }
 
 Queue Queue::make_dry_run(bool is_cuda) { return Queue(std::make_unique<DryRunBackend>(is_cuda)); }
 
-Queue Queue::make_cuda(int index) { return Queue(make_cuda_backend(index)); }
+Queue Queue::make_cuda(int index, const Threads& threads) { return Queue(make_cuda_backend(index), threads); }
 
-Queue::Queue(Queue&& other) {
+Queue::Queue(Queue&& other) : backend_(std::move(other.backend_)), threads_(other.threads_) {
     PERTEV_CHECK(other.allocations_.empty());
-    backend_ = std::move(other.backend_);
-    threads_ = other.threads_;
 }
 
 void* Queue::allocate(std::size_t bytes, const std::string& name) {

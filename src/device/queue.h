@@ -21,16 +21,18 @@ namespace pertev {
 
 class Queue {
 public:
-    static Queue make_cpu();
-    /// Returns a queue of CUDA device `index`. Throws Error(BadInput) with the reason if the device cannot be used.
-    static Queue make_cuda(int index);
+    /// Returns a queue of the CPU, whose work these threads do.
+    static Queue make_cpu(const Threads& threads = {});
+    /// Returns a queue of CUDA device `index`; the threads do the host's part. Throws Error(BadInput) with the reason
+    /// if the device cannot be used.
+    static Queue make_cuda(int index, const Threads& threads = {});
     /// Returns a queue that counts the bytes of buffers and allocates no memory. Nothing may read a buffer's address,
     /// and nothing is copied, filled or launched. The count predicts the memory of the same code on a device.
     static Queue make_dry_run(bool is_cuda);
     /// Moves a queue that has not allocated memory; later its buffers would point to the old one.
     Queue(Queue&& other);
 
-    /// The threads that did the host's work for the thread that made the queue, and do it for the queue.
+    /// The threads that do the host's work for the queue, whichever thread uses it.
     const Threads& threads() const { return threads_; }
     bool is_cuda() const { return backend_->is_cuda(); }
     bool is_dry_run() const { return backend_->is_dry_run(); }
@@ -125,7 +127,8 @@ private:
         std::string name;
     };
 
-    explicit Queue(std::unique_ptr<DeviceBackend> backend) : backend_(std::move(backend)) {}
+    explicit Queue(std::unique_ptr<DeviceBackend> backend, const Threads& threads = {})
+        : backend_(std::move(backend)), threads_(threads) {}
     void fork_streams(int count) {
         streams_ = count;
         for (int i = 1; i < count; ++i) backend_->make_stream_wait(i, 0);

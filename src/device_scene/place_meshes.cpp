@@ -13,8 +13,9 @@ namespace {
 
 /// Writes the triangles of a mesh, transformed by `world_from_local`.
 void add_triangles(const Mesh& mesh, const Transform& world_from_local, uint32_t instance,
-                   std::span<BvhTriangle> triangles) {
+                   std::span<BvhTriangle> triangles, Sink& sink) {
     parallel_for(triangles.size(), 4096, [&](uint64_t i) {
+        sink.check_at(i);
         const uint32_t* v = &mesh.indices[3 * i];
         triangles[i] = {.a = transform_point(world_from_local, mesh.positions[v[0]]),
                         .primitive = static_cast<uint32_t>(i),
@@ -67,7 +68,7 @@ MeshPlacement place_meshes(const Scene& scene, Vec3 centre) {
     return placement;
 }
 
-std::vector<BvhTriangle> baked_triangles(const Scene& scene, const MeshPlacement& placement) {
+std::vector<BvhTriangle> baked_triangles(const Scene& scene, const MeshPlacement& placement, Sink& sink) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         if (placement.is_baked[i]) count += scene.meshes[scene.instances[i].mesh].triangle_count();
@@ -83,23 +84,23 @@ std::vector<BvhTriangle> baked_triangles(const Scene& scene, const MeshPlacement
         if (!placement.is_baked[i]) continue;
         const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
         add_triangles(mesh, moved_to(scene.instances[i].world_from_local, placement.centre), static_cast<uint32_t>(i),
-                      std::span(triangles).subspan(first, mesh.triangle_count()));
+                      std::span(triangles).subspan(first, mesh.triangle_count()), sink);
         first += mesh.triangle_count();
     }
     return triangles;
 }
 
-std::vector<BvhTriangle> mesh_triangles(const Mesh& mesh) {
+std::vector<BvhTriangle> mesh_triangles(const Mesh& mesh, Sink& sink) {
     std::vector<BvhTriangle> triangles(mesh.triangle_count());
-    add_triangles(mesh, Transform{}, 0, triangles);
+    add_triangles(mesh, Transform{}, 0, triangles, sink);
     return triangles;
 }
 
-SceneTriangles::SceneTriangles(const Scene& scene, const MeshPlacement& placement)
-    : baked(baked_triangles(scene, placement)), meshes(placement.mesh_tree_count) {
+SceneTriangles::SceneTriangles(const Scene& scene, const MeshPlacement& placement, Sink& sink)
+    : baked(baked_triangles(scene, placement, sink)), meshes(placement.mesh_tree_count) {
     for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
         const uint32_t tree = placement.blas_of_mesh[i];
-        if (tree != kBakedMesh) meshes[tree] = mesh_triangles(scene.meshes[i]);
+        if (tree != kBakedMesh) meshes[tree] = mesh_triangles(scene.meshes[i], sink);
     }
 }
 

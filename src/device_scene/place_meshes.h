@@ -10,6 +10,7 @@
 
 #include "accel/bvh/bvh.h"
 #include "accel/bvh/tlas.h"
+#include "base/sink.h"
 #include "scene/scene.h"
 
 namespace pertev {
@@ -36,10 +37,12 @@ Vec3 world_centre(const Scene& scene);
 /// `centre` is the origin of the world in which they are placed.
 MeshPlacement place_meshes(const Scene& scene, Vec3 centre = {0, 0, 0});
 
+// Triangles for builders, which `sink` may end.
+
 /// Triangles of all baked instances, in the translated world. Throws Error(OverLimit) if one tree cannot hold them.
-std::vector<BvhTriangle> baked_triangles(const Scene& scene, const MeshPlacement& placement);
+std::vector<BvhTriangle> baked_triangles(const Scene& scene, const MeshPlacement& placement, Sink& sink = nobody());
 /// The triangles of a mesh, in its own space.
-std::vector<BvhTriangle> mesh_triangles(const Mesh& mesh);
+std::vector<BvhTriangle> mesh_triangles(const Mesh& mesh, Sink& sink = nobody());
 
 /// A scene's triangles for builders.
 struct SceneTriangles {
@@ -47,7 +50,7 @@ struct SceneTriangles {
     std::vector<std::vector<BvhTriangle>> meshes; // [mesh with its own tree]
 
     SceneTriangles() = default;
-    SceneTriangles(const Scene& scene, const MeshPlacement& placement);
+    SceneTriangles(const Scene& scene, const MeshPlacement& placement, Sink& sink);
     uint64_t count() const;
     /// Triangles of a part: part 0 has the baked ones; the meshes follow.
     const std::vector<BvhTriangle>& part(std::size_t number) const { return number == 0 ? baked : meshes[number - 1]; }

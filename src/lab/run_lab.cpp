@@ -40,7 +40,7 @@ public:
     Lab(Queue& queue, const Scene& scene, const Camera& camera, const LabSettings& settings, Sink& sink,
         const std::function<void(const LabReport&)>& save)
         : queue_(queue), scene_(scene), camera_(camera), settings_(settings), sink_(sink), save_(save),
-          triangles_{{scene, place_meshes(scene)}, {}} {
+          triangles_{{scene, place_meshes(scene), sink}, {}} {
         report_ = {.scene = settings.scene,
                    .device = queue.device_name(),
                    .camera = settings.camera,

@@ -57,7 +57,7 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, S
                               counted(placement.copies, "instance"), placement.copied_triangles));
     }
 
-    const SceneTriangles triangles(scene, placement);
+    const SceneTriangles triangles(scene, placement, sink);
     const std::vector<BvhBuilder> builders = builders_for(options);
     for (std::size_t part = 0; part < triangles.parts(); ++part) {
         const std::vector<BvhTriangle>& list = triangles.part(part);
@@ -73,10 +73,7 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, S
     prepared.trees.build_s = watch.seconds();
     prepared.structures = std::make_shared<SceneStructures>(builders.front(), prepared.trees, prepared.tlas);
     if (options.tracers) {
-        for (const RayKind kind : kValuesOf<RayKind>) {
-            sink.check();
-            prepared.structures->get((*options.tracers)[kind]);
-        }
+        for (const RayKind kind : kValuesOf<RayKind>) prepared.structures->get((*options.tracers)[kind], sink);
     }
     prepared.build_seconds = watch.seconds();
 

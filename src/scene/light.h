@@ -2,11 +2,9 @@
 
 // Lights that are not surfaces: the three kinds of KHR_lights_punctual, and the environment.
 
-#include <algorithm>
 #include <cstdint>
 #include <string>
 
-#include "base/host_device.h"
 #include "image/image.h"
 #include "math/rgb.h"
 #include "math/transform.h"
@@ -32,7 +30,7 @@ struct Light {
 struct LightParts {
     bool position, direction, cone;
 };
-HD constexpr LightParts parts_of(LightKind kind) {
+constexpr LightParts parts_of(LightKind kind) {
     switch (kind) {
     case LightKind::Point:
         return {.position = true, .direction = false, .cone = false};
@@ -42,14 +40,6 @@ HD constexpr LightParts parts_of(LightKind kind) {
         break;
     }
     return {.position = false, .direction = true, .cone = false};
-}
-
-/// Flux of a light with a position, divided by 2 pi times its intensity. The edge of a cone is the square of a
-/// ramp in the cosine (shading/punctual_light.h), which contributes a third of its width.
-inline double breadth_of_beam(const LightParts& parts, float cos_inner, float cos_outer) {
-    if (!parts.cone) return 2;
-    const double inner = static_cast<double>(cos_inner);
-    return (1 - inner) + std::max(inner - static_cast<double>(cos_outer), 0.001) / 3;
 }
 
 /// The smallest difference between floats just below 1; the edge of a cone with two equal angles has this width.

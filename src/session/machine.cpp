@@ -31,19 +31,15 @@ int cuda_index(const std::string& name) {
 
 } // namespace
 
-std::unique_ptr<Queue> choose_device(const std::string& name, Sink& sink) {
-    return StartingMachine({.device = name}, sink).take();
-}
-
 std::unique_ptr<Queue> open_queue(const MachineOptions& options, Sink& sink) {
-    if (options.threads > 0) set_thread_count(static_cast<int>(options.threads));
-    return choose_device(options.device, sink);
+    return StartingMachine(options, sink).take();
 }
 
-StartingMachine::StartingMachine(const MachineOptions& options, Sink& sink) : name_(options.device), sink_(sink) {
-    if (options.threads > 0) set_thread_count(static_cast<int>(options.threads));
+StartingMachine::StartingMachine(const MachineOptions& options, Sink& sink)
+    : name_(options.device), sink_(sink),
+      threads_(options.threads > 0 ? Threads(static_cast<int>(options.threads)) : Threads()) {
     if (name_ == "cpu") {
-        queue_ = std::make_unique<Queue>(Queue::make_cpu());
+        queue_ = std::make_unique<Queue>(Queue::make_cpu(threads_));
         is_cuda_ = false;
         return;
     }
@@ -52,8 +48,7 @@ StartingMachine::StartingMachine(const MachineOptions& options, Sink& sink) : na
     if (!is_auto && !may_have_cuda()) refuse_device(name_, why_no_cuda(index));
     std::promise<std::string> why_no_gpu;
     why_no_gpu_ = why_no_gpu.get_future();
-    coming_ = std::async(std::launch::async, [index, own = Threads(), why_no_gpu = std::move(why_no_gpu)]() mutable {
-        const UseThreads use(own); // so that the queue has them
+    coming_ = std::async(std::launch::async, [index, own = threads_, why_no_gpu = std::move(why_no_gpu)]() mutable {
         std::string reason;
         try {
             reason = why_no_cuda(index);
@@ -62,7 +57,7 @@ StartingMachine::StartingMachine(const MachineOptions& options, Sink& sink) : na
             throw;
         }
         why_no_gpu.set_value(reason);
-        return std::make_unique<Queue>(reason.empty() ? Queue::make_cuda(index) : Queue::make_cpu());
+        return std::make_unique<Queue>(reason.empty() ? Queue::make_cuda(index, own) : Queue::make_cpu(own));
     });
 }
 

@@ -13,19 +13,20 @@
 
 namespace pertev {
 
-/// Returns the queue of the named device. `auto` is the first working CUDA device, else the CPU with a notice of the
-/// reason; `cpu` never touches CUDA. Throws Error(BadInput) with the reason if the device cannot be used.
-std::unique_ptr<Queue> choose_device(const std::string& name, Sink& sink);
-
-/// Sets the number of threads that work for the calling thread, and returns the queue of choose_device.
+/// Returns the queue of the named device, with its own threads if their number is given. `auto` is the first working
+/// CUDA device, else the CPU with a notice of the reason; `cpu` never touches CUDA. Throws Error(BadInput) with the
+/// reason if the device cannot be used.
 std::unique_ptr<Queue> open_queue(const MachineOptions& options, Sink& sink);
 
 /// Takes the machine while its user reads a scene, because starting a GPU's driver takes as long as that. If there is
 /// no driver, a named GPU is refused at once; everything else is known later.
 class StartingMachine {
 public:
-    /// Starts to take the machine; `sink` outlives it. Throws as choose_device.
+    /// Starts to take the machine; `sink` outlives it. Throws as open_queue.
     StartingMachine(const MachineOptions& options, Sink& sink);
+
+    /// The threads of the queue, which may read the scene too.
+    const Threads& threads() const { return threads_; }
 
     /// Waits until the device is known. Throws Error(BadInput) if a named GPU cannot be used.
     bool is_cuda();
@@ -39,6 +40,7 @@ public:
 private:
     std::string name_;
     Sink& sink_;
+    Threads threads_;
     std::future<std::string> why_no_gpu_;
     std::future<std::unique_ptr<Queue>> coming_;
     std::unique_ptr<Queue> queue_; // the CPU's queue, if the CPU is named

@@ -42,12 +42,18 @@ public:
         if (size.samples > 0) integrator_ = make_integrator(queue, settings);
         if (integrator_) integrator_->reserve(size);
         take_deforming_trees(scene, tracers);
-        if (queue.is_cuda()) other_bytes_ += scene.structures->device_bytes(tracers);
-        if (integrator_ && !queue.is_cuda()) other_bytes_ += integrator_->max_host_bytes(size);
+        if (queue.is_cuda()) take_structures(*scene.structures, tracers);
+        if (integrator_ && !queue.is_cuda()) host_bytes_ = integrator_->max_host_bytes(size);
     }
-    std::size_t bytes() const { return queue_.allocated_bytes() + other_bytes_; }
+    std::size_t bytes() const { return queue_.allocated_bytes() + host_bytes_; }
 
 private:
+    /// Copies the structures of a choice; missing ones are built.
+    void take_structures(SceneStructures& structures, const TracerChoice& tracers) {
+        std::set<std::shared_ptr<const BuiltStructure>> built;
+        for (const RayKind kind : kValuesOf<RayKind>) built.insert(structures.get(tracers[kind]));
+        for (const auto& structure : built) structures_.emplace_back(queue_, structure);
+    }
     /// Allocates the device's trees of meshes whose vertices move, and the top levels over them.
     void take_deforming_trees(const PreparedScene& scene, const TracerChoice& tracers) {
         std::set<TreeLayout> layouts;
@@ -70,9 +76,10 @@ private:
     Queue& queue_;
     SceneOnDevice scene_;
     std::unique_ptr<Integrator> integrator_;
+    std::vector<StructureOnDevice> structures_;
     std::vector<DeformingCompressed> trees_;
     std::vector<Buffer<std::byte>> top_levels_;
-    std::size_t other_bytes_ = 0; // known without a dry run: copies of trees, host memory
+    std::size_t host_bytes_ = 0; // known without a dry run
 };
 
 } // namespace

@@ -10,6 +10,7 @@
 #include "scene/names.h"
 #include "session/emitter_surface.h"
 #include "session/photometry.h"
+#include "shading/punctual_light.h"
 
 namespace pertev {
 namespace {
@@ -55,7 +56,7 @@ void set_light(const EmitterStrength& emitter, double lumens_per_watt, Light& li
     case EmitterUnit::Watt:
     case EmitterUnit::Lumen:
         if (is_far) break;
-        return set(lumens(emitter) / (2 * kPiDouble * breadth_of_beam(parts, light.cos_inner, light.cos_outer)));
+        return set(lumens(emitter) / punctual_power(light, 1, 0));
     case EmitterUnit::Candela:
         if (is_far) break;
         return set(emitter.value);

@@ -107,6 +107,10 @@ enum class Recorded : uint8_t {
     Changed,   // its value, if it is not the default
 };
 
+/// The part of a prepared render that another value of a setting changes. One that could be less costs time, and no
+/// picture.
+enum class Changes : uint8_t { Scene, Camera, Picture };
+
 /// Group of the viewer's panel, in the panel's order.
 enum class PanelGroup : uint8_t { Picture, Light, Frames, Camera, Rays };
 
@@ -142,10 +146,11 @@ struct Setting {
                                     // VALUE: or !VALUE: before it restricts the rule to some values of this setting
     uint32_t formats = 0;           // bits by ImageFormat of files that show it; 0: all
     Recorded recorded = Recorded::No;
-    bool is_kept = true;      // settings files contain it, because the picture depends on it
-    bool opens_scene = false; // takes effect before the scene's file is read, which thus cannot suggest it
-    bool is_common = false;   // used by most people
-    Panel panel = {};         // only if the viewer can change it between frames
+    Changes changes = Changes::Scene; // Scene: also its trees and the machine
+    bool is_kept = true;              // settings files contain it, because the picture depends on it
+    bool opens_scene = false;         // takes effect before the scene's file is read, which thus cannot suggest it
+    bool is_common = false;           // used by most people
+    Panel panel = {};                 // only if the viewer can change it between frames
 };
 
 /// Returns what `visit` returns for the field of a copy of the options, so that these stay as they are.

@@ -83,6 +83,7 @@ inline void put(Setting& s, Excludes excludes) { s.excludes = excludes.text; }
 inline void put(Setting& s, In in) { s.formats = in.formats; }
 inline void put(Setting& s, Panel panel) { s.panel = panel; }
 inline void put(Setting& s, Recorded recorded) { s.recorded = recorded; }
+inline void put(Setting& s, Changes changes) { s.changes = changes; }
 inline void put(Setting& s, Mark mark) {
     if (mark == Mark::Name) s.is_name = true;
     if (mark == Mark::NotKept) s.is_kept = false;

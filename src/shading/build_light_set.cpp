@@ -50,13 +50,6 @@ double triangle_power(const LightSetData& data, const Pyramids& pyramids, const 
     return untextured * pyramid.mean_over_triangle(ref, triangle.uv0, triangle.uv1, triangle.uv2);
 }
 
-double punctual_power(const PunctualLight& light, double radius) {
-    const double intensity = mean_of_channels(light.intensity);
-    const LightParts parts = parts_of(light.kind);
-    return parts.position ? 2 * kPiDouble * intensity * breadth_of_beam(parts, light.cos_inner, light.cos_outer)
-                          : kPiDouble * radius * radius * intensity;
-}
-
 double environment_power(const EnvironmentData& environment, double radius) {
     return 4 * kPiDouble * kPiDouble * radius * radius * mean_of_channels(environment.mean_radiance);
 }
@@ -266,7 +259,8 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
     };
     data.near_count = static_cast<uint32_t>(data.source_powers.size());
     for (const PunctualLight& light : data.punctual) {
-        add_source(punctual_power(light, radius), !parts_of(light.kind).position);
+        const double power = punctual_power(light, mean_of_channels(light.intensity), radius);
+        add_source(power, !parts_of(light.kind).position);
     }
     if (data.environment) add_source(environment_power(*data.environment, radius), true);
     share_draws(data, kEvenShare);

@@ -1,8 +1,9 @@
 #pragma once
 
-// Lights without extent: the light of each kind at a point, and the emission of particles. A new kind is a case in
-// parts_of (scene/light.h) and in punctual_falloff.
+// Lights without extent: the light of each kind at a point, the emission of particles with its density, and the power.
+// Each function has a switch without `default`, so that a new kind does not compile until each has a case.
 
+#include <algorithm>
 #include <cstdint>
 
 #include "base/host_device.h"
@@ -58,34 +59,112 @@ struct PunctualArrival {
 /// Finds the light that arrives at `from_point`. Returns false if nothing arrives: outside a cone or the range, or if
 /// the point is the light's position.
 HD inline bool find_punctual_light(const PunctualLight& light, Vec3 from_point, PunctualArrival& arrival) {
-    if (!parts_of(light.kind).position) {
-        arrival = {-light.direction, kInfinity, light.intensity};
+    switch (light.kind) {
+    case LightKind::Point:
+    case LightKind::Spot: {
+        const Vec3 to_light = light.position - from_point;
+        const float distance_squared = length_squared(to_light);
+        arrival.distance = sqrt(distance_squared);
+        arrival.wi = to_light / arrival.distance;
+        const float factor = punctual_falloff(light, arrival.wi, arrival.distance) / distance_squared;
+        if (!(factor > 0) || !is_finite(factor)) return false;
+        arrival.irradiance = factor * light.intensity;
         return true;
     }
-    const Vec3 to_light = light.position - from_point;
-    const float distance_squared = length_squared(to_light);
-    arrival.distance = sqrt(distance_squared);
-    arrival.wi = to_light / arrival.distance;
-    const float factor = punctual_falloff(light, arrival.wi, arrival.distance) / distance_squared;
-    if (!(factor > 0) || !is_finite(factor)) return false;
-    arrival.irradiance = factor * light.intensity;
+    case LightKind::Directional:
+        break;
+    }
+    arrival = {-light.direction, kInfinity, light.intensity};
     return true;
 }
 
-/// 1 - cosine of the half angle of a light with a position.
+/// A sphere around everything that rays can hit, in the translated world; distant light enters through its discs.
+struct WorldSphere {
+    Vec3 centre;
+    float radius = 0; // metres; 0 if the world is empty
+};
+
+/// Density of the points through which parallel rays enter, 1/m2.
+HD inline float pdf_disc(const WorldSphere& world) { return kInvPi / square(world.radius); }
+/// Samples a point outside the world, on the disc across `direction`.
+HD inline Vec3 sample_disc(const WorldSphere& world, Vec3 direction, Vec2 u) {
+    const Vec2 disc = sample_uniform_disk_concentric(u);
+    return world.centre + world.radius * make_frame(direction).to_world({disc.x, disc.y, -1});
+}
+
+/// 1 - cosine of the half angle in which a light emits; 0 if its light is parallel.
 HD inline float depth_of_beam(const PunctualLight& light) {
-    return parts_of(light.kind).cone ? 1.0f - light.cos_outer : 2.0f;
+    switch (light.kind) {
+    case LightKind::Point:
+        return 2;
+    case LightKind::Spot:
+        return 1.0f - light.cos_outer;
+    case LightKind::Directional:
+        break;
+    }
+    return 0;
 }
 
-/// Density of draw_beam, 1/sr.
-HD inline float pdf_beam(const PunctualLight& light) {
-    return parts_of(light.kind).cone ? pdf_uniform_cone(depth_of_beam(light)) : pdf_uniform_sphere();
+/// A ray of light that leaves a punctual light.
+struct PunctualEmission {
+    Vec3 from, direction; // metres, translated world; unit
+    float reach;          // metres; kInfinity: unlimited
+    float pdf;            // 1/sr; Directional: 1/m2, across its direction
+};
+
+/// Density of emit_from for a ray through the scene.
+HD inline float pdf_emission(const PunctualLight& light, const WorldSphere& world) {
+    switch (light.kind) {
+    case LightKind::Point:
+        return pdf_uniform_sphere();
+    case LightKind::Spot:
+        return pdf_uniform_cone(depth_of_beam(light));
+    case LightKind::Directional:
+        break;
+    }
+    return pdf_disc(world);
 }
 
-/// Samples a direction in which a light with a position emits.
-HD inline Vec3 draw_beam(const PunctualLight& light, Vec2 u) {
-    if (!parts_of(light.kind).cone) return sample_uniform_sphere(u);
-    return normalize(make_frame(light.direction).to_world(sample_uniform_cone(u, depth_of_beam(light))));
+/// Distance in metres beyond which a point or spot light gives no light; kInfinity: unlimited.
+HD inline float reach_of(const PunctualLight& light) { return light.range > 0 ? light.range : kInfinity; }
+
+/// Samples a ray that leaves the light.
+HD inline PunctualEmission emit_from(const PunctualLight& light, const WorldSphere& world, Vec2 u) {
+    const float pdf = pdf_emission(light, world);
+    switch (light.kind) {
+    case LightKind::Point:
+        return {light.position, sample_uniform_sphere(u), reach_of(light), pdf};
+    case LightKind::Spot: {
+        const Vec3 local = sample_uniform_cone(u, depth_of_beam(light));
+        return {light.position, normalize(make_frame(light.direction).to_world(local)), reach_of(light), pdf};
+    }
+    case LightKind::Directional:
+        break;
+    }
+    return {sample_disc(world, light.direction, u), light.direction, kInfinity, pdf};
+}
+
+/// Power of an emission, W, divided by its density and by `pmf`, the probability of the light.
+HD inline Rgb emitted_power(const PunctualLight& light, const PunctualEmission& emission, float pmf) {
+    return (punctual_falloff(light, -emission.direction, 0) / (pmf * emission.pdf)) * light.intensity;
+}
+
+/// Returns the power in watts of a Light or a PunctualLight with this intensity; for a directional light, what enters
+/// a disc of `radius` metres. The edge of a cone is the square of a ramp in the cosine, which contributes a third of
+/// its width.
+template <class AnyLight>
+double punctual_power(const AnyLight& light, double intensity, double radius) {
+    constexpr double pi = 3.141592653589793;
+    const double inner = static_cast<double>(light.cos_inner), outer = static_cast<double>(light.cos_outer);
+    switch (light.kind) {
+    case LightKind::Point:
+        return 2 * pi * intensity * 2;
+    case LightKind::Spot:
+        return 2 * pi * intensity * ((1 - inner) + std::max(inner - outer, 0.001) / 3);
+    case LightKind::Directional:
+        break;
+    }
+    return pi * radius * radius * intensity;
 }
 
 } // namespace pertev

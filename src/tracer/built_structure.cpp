@@ -140,7 +140,7 @@ void BuiltStructure::build(const Tlas& tlas, std::size_t count, const Before* be
 }
 
 BuiltStructure::BuiltStructure(const Tlas& tlas, StructureKind kind, TreeLayout layout, const BinaryTrees& trees,
-                               const Before* before) {
+                               const Before* before, Sink& sink) {
     figures_.name = name_of(kind);
     for (const auto& [value, suffix] : kSuffixes) {
         if (value == layout) figures_.name += suffix;
@@ -176,16 +176,16 @@ BuiltStructure::BuiltStructure(const Tlas& tlas, StructureKind kind, TreeLayout 
         convert([](const Bvh& bvh) { return make_woop_bvh(bvh); });
         break;
     case TreeLayout::Wide4:
-        convert([](const Bvh& bvh) { return make_wide_bvh<4>(bvh); });
+        convert([&](const Bvh& bvh) { return make_wide_bvh<4>(bvh, {}, sink); });
         break;
     case TreeLayout::Wide8:
-        convert([](const Bvh& bvh) { return make_wide_bvh<8>(bvh); });
+        convert([&](const Bvh& bvh) { return make_wide_bvh<8>(bvh, {}, sink); });
         break;
     case TreeLayout::Wide8Simd:
-        convert([](const Bvh& bvh) {
-            WideBvh<kWideChildren> wide = make_wide_bvh<kWideChildren>(bvh, kSimdCollapse);
-            use_huge_pages(std::as_bytes(std::span(wide.nodes)));
-            use_huge_pages(std::as_bytes(std::span(wide.triangles)));
+        convert([&](const Bvh& bvh) {
+            WideBvh<kWideChildren> wide = make_wide_bvh<kWideChildren>(bvh, kSimdCollapse, sink);
+            use_huge_pages(std::as_bytes(std::span(wide.nodes)), sink);
+            use_huge_pages(std::as_bytes(std::span(wide.triangles)), sink);
             return wide;
         });
         break;
@@ -197,7 +197,7 @@ BuiltStructure::BuiltStructure(const Tlas& tlas, StructureKind kind, TreeLayout 
             convert([&](const Bvh& bvh) { return build_compressed_bvh(queue, bvh.triangles); });
             break;
         }
-        convert([](const Bvh& bvh) { return make_compressed_bvh(bvh); });
+        convert([&](const Bvh& bvh) { return make_compressed_bvh(bvh, kCompressedCollapse, sink); });
         break;
     case TreeLayout::Kd:
     case TreeLayout::Octree:

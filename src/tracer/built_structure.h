@@ -67,9 +67,9 @@ public:
     };
 
     /// Makes a structure of the given layout from binary trees of the builder that `kind` names. `trees` need not
-    /// outlive the call. Throws Error(OverLimit), std::bad_alloc.
+    /// outlive the call. `sink` may end it. Throws Error(OverLimit), std::bad_alloc.
     BuiltStructure(const Tlas& tlas, StructureKind kind, TreeLayout layout, const BinaryTrees& trees,
-                   const Before* before = nullptr);
+                   const Before* before = nullptr, Sink& sink = nobody());
     /// Builds a kd-tree or an octree. Their planes are fixed in space, so deformed parts are rebuilt. Throws
     /// Error(OverLimit), std::bad_alloc.
     BuiltStructure(const Tlas& tlas, StructureKind kind, const SceneTriangles& triangles,

@@ -1,7 +1,6 @@
 #include "tracer/scene_structures.h"
 
 #include <algorithm>
-#include <set>
 
 #include <fmt/format.h>
 
@@ -105,27 +104,19 @@ const BinaryTrees& SceneStructures::binary_trees(BvhBuilder builder) {
     return binary_.emplace(builder, build_binary_trees(triangles, builder)).first->second;
 }
 
-std::shared_ptr<const BuiltStructure> SceneStructures::get(const Combination& combination) {
+std::shared_ptr<const BuiltStructure> SceneStructures::get(const Combination& combination, Sink& sink) {
     const std::lock_guard lock(mutex_);
     const StructureKind kind = combination.structure;
     const TreeLayout layout = layout_of(combination);
     auto& built = built_[{kind, layout}];
     if (built != nullptr) return built;
     if (const auto builder = builder_of(kind)) {
-        built = std::make_shared<const BuiltStructure>(tlas_, kind, layout, binary_trees(*builder));
+        built = std::make_shared<const BuiltStructure>(tlas_, kind, layout, binary_trees(*builder), nullptr, sink);
     } else {
         const SceneTriangles triangles = triangles_of(binary_.at(builder_));
         built = std::make_shared<const BuiltStructure>(tlas_, kind, triangles);
     }
     return built;
-}
-
-std::size_t SceneStructures::device_bytes(const TracerChoice& choice) {
-    std::set<std::shared_ptr<const BuiltStructure>> structures;
-    for (const RayKind kind : kValuesOf<RayKind>) structures.insert(get(choice[kind]));
-    std::size_t bytes = 0;
-    for (const auto& structure : structures) bytes += structure->device_bytes();
-    return bytes;
 }
 
 } // namespace pertev

@@ -36,9 +36,9 @@ public:
     std::shared_ptr<SceneStructures> fitted(Queue& queue, std::span<const DeformedMesh> meshes,
                                             std::span<const PlacedBvh> placed);
 
-    /// Returns the structure that `combination` traverses; builds it at the first request. Thread-safe. Throws
-    /// Error(OverLimit), std::bad_alloc.
-    std::shared_ptr<const BuiltStructure> get(const Combination& combination);
+    /// Returns the structure that `combination` traverses; builds it at the first request, which `sink` may end.
+    /// Thread-safe. Throws Error(OverLimit), std::bad_alloc.
+    std::shared_ptr<const BuiltStructure> get(const Combination& combination, Sink& sink = nobody());
 
     /// Builder of the trees given to the constructor.
     BvhBuilder builder() const { return builder_; }
@@ -50,9 +50,6 @@ public:
         all.extend(tlas_.bounds);
         return all;
     }
-
-    /// Device memory, in bytes, of the structures of a choice. Missing ones are built.
-    std::size_t device_bytes(const TracerChoice& choice);
 
 private:
     const BinaryTrees& binary_trees(BvhBuilder builder);

@@ -122,11 +122,9 @@ TEST_CASE("each picture of a batch has the hash of its camera alone, in chunks a
                 CHECK(hashes_of(cpu, *prepared, batch, settings, at_once) == alone);
             }
             for (const int threads : {1, 3}) {
-                set_thread_count(threads);
-                Queue few = Queue::make_cpu();
+                Queue few = Queue::make_cpu(Threads(threads));
                 CHECK(hashes_of(few, *prepared, batch, settings, 3) == alone);
             }
-            set_thread_count(0);
             settings.body = PathBody::Wavefront;
             settings.batch = 333; // paths in flight
             CHECK(hashes_of(cpu, *prepared, batch, settings, 3) == alone);

@@ -104,12 +104,10 @@ TEST_CASE("hybrid has the path tracer's picture of all kinds of surfaces, for an
     };
     check(queue);
     for (const int threads : {1, 5}) {
-        set_thread_count(threads);
         settings.pass_samples = 2;
-        Queue few = Queue::make_cpu();
+        Queue few = Queue::make_cpu(Threads(threads));
         check(few);
     }
-    set_thread_count(0);
     settings.body = PathBody::Wavefront;
     for (const uint32_t batch : {333u, 1u << 20}) {
         settings.batch = batch;

@@ -146,7 +146,7 @@ TEST_CASE("an interrupted laboratory keeps what it has measured") {
 }
 
 TEST_CASE("the laboratory can be stopped inside each stage of long work and reports its progress") {
-    set_thread_count(1); // pieces are as many rays as threads want
+    const UseThreads one(1); // pieces are as many rays as threads want
     Queue queue = Queue::make_cpu();
     const Scene scene = scene_of({"torus", triangles_of(make_torus(20, 10), 0), {}});
     LabSettings settings = all_combinations(false, false);
@@ -184,7 +184,6 @@ TEST_CASE("the laboratory can be stopped inside each stage of long work and repo
         CHECK(report.interrupted);
         CHECK_FALSE(has_findings(report));
     }
-    set_thread_count(0);
 }
 
 TEST_CASE("a scene without triangles is refused with a clear message") {

@@ -72,10 +72,9 @@ const Hash128& reference_layers_hash() {
 TEST_CASE("layers do not depend on threads, passes, schedules and batch sizes") {
     const RenderSettings settings = with_light_layers(test::make_mixed_scene());
     for (const int threads : {1, 5}) {
-        set_thread_count(threads);
+        const UseThreads use(threads);
         CHECK(cpu_layers_hash(settings) == reference_layers_hash());
     }
-    set_thread_count(0);
     RenderSettings other = settings;
     other.pass_samples = 1;
     CHECK(cpu_layers_hash(other) == reference_layers_hash());

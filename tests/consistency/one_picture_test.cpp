@@ -49,10 +49,9 @@ const Hash128& reference_hash() {
 TEST_CASE("the picture does not depend on the number of threads") {
     for (const int threads : {1, 2, 5}) {
         CAPTURE(threads);
-        set_thread_count(threads);
+        const UseThreads use(threads);
         CHECK(cpu_hash(odd_settings()) == reference_hash());
     }
-    set_thread_count(0);
 }
 
 TEST_CASE("the picture does not depend on how the samples are split into passes") {

@@ -1,6 +1,7 @@
 // The parts of a session stand alone: each renders without a Session, and gives the bytes that a Session gives. Two
 // sessions run side by side.
 
+#include <algorithm>
 #include <atomic>
 #include <stdexcept>
 #include <thread>
@@ -8,6 +9,7 @@
 #include <doctest/doctest.h>
 
 #include "base/parallel_for.h"
+#include "base/stopwatch.h"
 #include "image/picture_hash.h"
 #include "session/pictures/prepare_render.h"
 #include "session/session.h"
@@ -107,13 +109,31 @@ TEST_CASE("post steps refuse a film of a window") {
     CHECK_THROWS_AS(steps.add(integrator, 1, 1, film, nullptr), std::logic_error);
 }
 
+namespace {
+
+/// Returns how many threads do a queue's work at once. Each waits a while for `wanted` of them and one more.
+int most_at_once(const Queue& queue, int wanted) {
+    const UseThreads use(queue.threads());
+    std::atomic<int> now{0}, most{0};
+    parallel_for(16, 1, [&](uint64_t) {
+        const int here = ++now;
+        for (int seen = most; seen < here && !most.compare_exchange_weak(seen, here);) continue;
+        const Stopwatch watch;
+        while (most < wanted && watch.seconds() < 5) std::this_thread::yield();
+        while (most <= wanted && watch.seconds() < 0.002) std::this_thread::yield();
+        --now;
+    });
+    return most;
+}
+
+} // namespace
+
 TEST_CASE("two sessions with different thread counts run at once on two threads, and give the same bytes") {
     const MixedWorld world;
     const RenderSettings settings = part_settings();
-    const auto run = [&](int threads, uint32_t repeats, int& counted) {
-        set_thread_count(threads);
+    const auto run = [&](int threads, uint32_t repeats, int& most) {
         std::vector<Hash128> hashes;
-        Queue queue = Queue::make_cpu();
+        Queue queue = Queue::make_cpu(Threads(threads));
         Session session(queue, world.prepared, test::mixed_scene_camera(), settings);
         for (uint32_t repeat = 0; repeat < repeats; ++repeat) {
             session.cut();
@@ -121,17 +141,14 @@ TEST_CASE("two sessions with different thread counts run at once on two threads,
             session.render_frame(repeat, {});
             hashes.push_back(picture_hash(session.picture()));
             hashes.push_back(picture_hash(session.frame().picture()));
+            most = std::max(most, most_at_once(queue, threads));
         }
-        std::atomic<int> in_body{0}; // a thread that helps has the count of the thread that it helps
-        parallel_for(64, 1, [&](uint64_t) { in_body = thread_count(); });
-        counted = thread_count() == in_body ? in_body.load() : -1;
         return hashes;
     };
     constexpr uint32_t kRepeats = 6;
     int alone = 0, of_one = 0, of_three = 0;
-    std::vector<Hash128> expected, by_one, by_three;
-    std::thread before([&] { expected = run(2, kRepeats, alone); });
-    before.join();
+    const std::vector<Hash128> expected = run(2, kRepeats, alone);
+    std::vector<Hash128> by_one, by_three;
     std::thread one([&] { by_one = run(1, kRepeats, of_one); });
     std::thread three([&] { by_three = run(3, kRepeats, of_three); });
     one.join();

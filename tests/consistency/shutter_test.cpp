@@ -68,12 +68,10 @@ TEST_CASE("pictures with motion blur do not depend on threads, schedules, paths 
         CHECK(picture_of(queue, moving.prepared(), test::mixed_scene_camera(), settings) != reference);
 
         for (const int threads : {1, 5}) {
-            set_thread_count(threads);
-            Queue few = Queue::make_cpu();
+            Queue few = Queue::make_cpu(Threads(threads));
             CHECK(picture_of(few, moving.prepared(), camera, settings) == reference);
             settings.pass_samples = 3;
         }
-        set_thread_count(0);
         settings.body = PathBody::Wavefront;
         for (const uint32_t batch : {333u, 1u << 20}) { // less than a picture; all
             settings.batch = batch;

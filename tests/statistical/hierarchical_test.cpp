@@ -152,7 +152,7 @@ TEST_CASE("links over the limit are refined again with a larger error and give t
     REQUIRE(fine.links > 4 * coarse.links);
     HierarchicalSolution at_once;
     for (const int threads : {1, 3}) {
-        set_thread_count(threads);
+        const UseThreads use(threads);
         const HierarchicalSolution limited = solve(0.05f, fine.links / 2);
         CHECK(limited.links <= fine.links / 2);
         const float factor = limited.link_error / 0.05f;
@@ -163,7 +163,6 @@ TEST_CASE("links over the limit are refined again with a larger error and give t
         CHECK(at_once.irradiance == limited.irradiance);
         CHECK(at_once.irradiance != fine.irradiance);
     }
-    set_thread_count(0);
     const auto error = test::thrown_error([&] { solve(0.05f, 0); });
     CHECK(test::is_about(error, ErrorCode::OverLimit, "solver", "hierarchical"));
 }
@@ -206,10 +205,9 @@ TEST_CASE("links do not depend on the number of threads") {
     const Scene scene = room_with_boxes();
     const Hash128 reference = solved_by(scene, RadiositySolver::Hierarchical, 0.5f, 0.1f).solution.hash();
     for (const int threads : {1, 5}) {
-        set_thread_count(threads);
+        const UseThreads use(threads);
         CHECK(solved_by(scene, RadiositySolver::Hierarchical, 0.5f, 0.1f).solution.hash() == reference);
     }
-    set_thread_count(0);
     CHECK(solved_by(scene, RadiositySolver::Hierarchical, 0.5f, 0.2f).solution.hash() != reference);
 }
 

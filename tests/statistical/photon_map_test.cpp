@@ -113,9 +113,7 @@ TEST_CASE("photon mapping has at most a 60th of path tracing's error on a causti
     camera.world_from_camera = look_at({0, 0.6f, 2}, {-0.25f, 0, -0.1f}, {0, 1, 0});
     camera.fov_y = 0.14f;
     Queue all_threads = Queue::make_cpu();
-    set_thread_count(1); // threads that wait for each other take time of the CPU too
-    Queue one_thread = Queue::make_cpu();
-    set_thread_count(0);
+    Queue one_thread = Queue::make_cpu(Threads(1)); // threads that wait for each other take time of the CPU too
     Queue* queue = &all_threads;
     const auto render = [&](IntegratorKind integrator, uint32_t samples, uint32_t seed) {
         RenderSettings settings;

@@ -55,12 +55,10 @@ inline void check_same(const CheckedPicture& a, const CheckedPicture& b) {
 inline CheckedPicture check_one_picture(const Scene& scene, RenderSettings settings) {
     Queue queue = Queue::make_cpu();
     const CheckedPicture reference = checked_picture(queue, scene, settings);
-    set_thread_count(1);
-    check_same(checked_picture(queue, scene, settings), reference);
-    set_thread_count(5);
+    Queue one = Queue::make_cpu(Threads(1)), five = Queue::make_cpu(Threads(5));
+    check_same(checked_picture(one, scene, settings), reference);
     settings.pass_samples = 3;
-    check_same(checked_picture(queue, scene, settings), reference);
-    set_thread_count(0);
+    check_same(checked_picture(five, scene, settings), reference);
     settings.body = PathBody::Wavefront;
     for (const uint32_t batch : {333u, 1u << 20}) { // less than a picture; all
         settings.batch = batch;

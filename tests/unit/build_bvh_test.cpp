@@ -136,16 +136,17 @@ TEST_CASE("the builder keeps flags that it does not own") {
 
 TEST_CASE("the tree does not depend on the number of threads") {
     const std::vector<BvhTriangle> triangles = random_triangles(200000, 0.01f, 1);
-    set_thread_count(1);
-    const Bvh one = build_bvh(triangles);
+    const auto built_by = [&](int threads) {
+        const UseThreads use(threads);
+        return build_bvh(triangles);
+    };
+    const Bvh one = built_by(1);
     for (const int threads : {2, 5}) {
-        set_thread_count(threads);
-        const Bvh more = build_bvh(triangles);
+        const Bvh more = built_by(threads);
         CHECK(same_bytes(one.nodes, more.nodes));
         CHECK(same_bytes(one.triangles, more.triangles));
         CHECK(one.sah_cost == more.sah_cost);
     }
-    set_thread_count(0);
     CHECK(!find_fault(one));
 }
 

@@ -57,16 +57,16 @@ TEST_CASE("no builder's tree depends on the number of threads") {
     for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {
         CAPTURE(name_of(builder));
         for (const std::vector<BvhTriangle>& triangles : meshes) {
-            set_thread_count(1);
-            const Bvh one = build_bvh(builder, triangles);
-            set_thread_count(5);
-            const Bvh more = build_bvh(builder, triangles);
+            const auto built_by = [&](int threads) {
+                const UseThreads use(threads);
+                return build_bvh(builder, triangles);
+            };
+            const Bvh one = built_by(1), more = built_by(5);
             CHECK(same_bytes(one.nodes, more.nodes));
             CHECK(same_bytes(one.triangles, more.triangles));
             CHECK(one.sah_cost == more.sah_cost);
         }
     }
-    set_thread_count(0);
 }
 
 TEST_CASE("traversals of any builder's tree match brute force bit for bit") {

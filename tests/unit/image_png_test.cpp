@@ -198,10 +198,9 @@ TEST_CASE("a PNG written by several threads holds the picture, and its bytes do 
         for (std::size_t i = 0; i < image.pixels.size(); ++i)
             is_same = is_same && read.pixels[i] == (i % 4 == 3 ? 255 : image.pixels[i]);
         CHECK(is_same);
-        set_thread_count(1);
+        const UseThreads one(1);
         CHECK(encode_png(image, true) == whole);
         CHECK(encode_png(image) == opaque);
-        set_thread_count(0);
     }
 }
 

@@ -5,6 +5,9 @@
 #include <atomic>
 
 #include "accel/builders/builders.h"
+#include "accel/builders/bvh_cache.h"
+#include "accel/bvh/compressed_bvh.h"
+#include "accel/bvh/wide_bvh.h"
 #include "base/parallel_for.h"
 #include "formats/gltf/read_gltf.h"
 #include "formats/obj/read_obj.h"
@@ -68,11 +71,11 @@ TEST_CASE("an OBJ file's pieces, faces, vertices and pictures are read until the
     const fs::path folder = test::scratch_folder(), path = write_obj(folder);
     test::write_text(folder / "a.mtl", "newmtl m\nmap_Kd a.png\n");
     write_png(folder / "a.png", {.width = 1, .height = 1, .pixels = {255, 0, 0, 255}}, true);
-    set_thread_count(1);
     const int64_t pieces = 2, faces = kTriangles >> 16, corners = 3 * kTriangles >> 16, pictures = 1;
-    check_stops(pieces + faces + corners + pictures,
-                [&](Sink& sink) { read_obj(path, FileAccess(path, {}), {}, sink); });
-    set_thread_count(0);
+    check_stops(pieces + faces + corners + pictures, [&](Sink& sink) {
+        const UseThreads one(1);
+        read_obj(path, FileAccess(path, {}), {}, sink);
+    });
     StopsAt sink(3); // while another thread reads the materials
     const std::optional<Error> error = test::thrown_error([&] { read_obj(path, FileAccess(path, {}), {}, sink); });
     CHECK((error && error->code() == ErrorCode::Interrupted));
@@ -104,6 +107,26 @@ TEST_CASE("every builder ends at a check of its sink") {
         CAPTURE(name_of(builder));
         check_stops(1, [&](Sink& sink) { build_bvh(builder, triangles, {.sink = &sink}); });
     }
+}
+
+TEST_CASE("a tree is stored, read, and made wide until the sink ends it, and an ended store leaves no file") {
+    const std::vector<BvhTriangle> triangles = test::triangles_of(test::make_torus(500, 400));
+    const auto parts = static_cast<int64_t>(triangles.size() >> 16);
+    const Bvh bvh = build_bvh(triangles);
+    check_stops(4 * parts, [&](Sink& sink) { make_wide_bvh<8>(bvh, kSimdCollapse, sink); });
+    check_stops(5 * parts, [&](Sink& sink) { make_compressed_bvh(bvh, kCompressedCollapse, sink); });
+
+    const fs::path folder = test::scratch_folder() / "cache";
+    const Hash128 key = bvh_cache_key(triangles, {});
+    const BuiltTree tree = build_triangle_tree(triangles, {});
+    const auto store = [&](Sink& sink) { store_cached_bvh(key, folder, tree, triangles.size(), sink); };
+    check_stops(parts + 1, store);
+    fs::remove_all(folder);
+    StopsAt at_writing(parts + 1);
+    REQUIRE(test::thrown_error([&] { store(at_writing); }));
+    CHECK(fs::is_empty(folder));
+    store(nobody());
+    check_stops(2 * parts, [&](Sink& sink) { load_cached_bvh(key, folder, triangles, sink); });
 }
 
 TEST_CASE("the validation and the trees of a scene end at a check of the sink") {

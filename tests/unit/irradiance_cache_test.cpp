@@ -198,9 +198,8 @@ TEST_CASE("the time to space records grows linearly with their number for all ra
         CHECK(clamped.size() == count);
         return seconds;
     };
-    set_thread_count(1);
+    const UseThreads one(1);
     const double few = seconds_for(1 << 12), many = seconds_for(1 << 15);
-    set_thread_count(0);
     CAPTURE(few);
     CAPTURE(many);
     CHECK(many < 32 * few); // 64 where each looks at all

@@ -53,11 +53,11 @@ TEST_CASE("kd-trees over stress meshes are valid and respect their limits") {
 TEST_CASE("a kd-tree does not depend on the number of threads") {
     const auto mesh = make_soup(static_cast<uint32_t>(effort(20000, 200000)), 0);
     for (const KdSplit split : {KdSplit::SpatialMedian, KdSplit::Sah}) {
-        set_thread_count(1);
-        const KdTree one = build_kd_tree(mesh, {.split = split});
-        set_thread_count(4);
-        const KdTree four = build_kd_tree(mesh, {.split = split});
-        set_thread_count(0);
+        const auto built_by = [&](int threads) {
+            const UseThreads use(threads);
+            return build_kd_tree(mesh, {.split = split});
+        };
+        const KdTree one = built_by(1), four = built_by(4);
         CHECK(same(one, four));
         CHECK(one.nodes.size() > 1000);
     }

@@ -68,11 +68,11 @@ TEST_CASE("an octree holds a point, a line, and bounds of any position and size 
 
 TEST_CASE("an octree does not depend on the number of threads") {
     const auto mesh = make_soup(static_cast<uint32_t>(effort(30000, 200000)), 0);
-    set_thread_count(1);
-    const Octree one = build_octree(mesh);
-    set_thread_count(4);
-    const Octree four = build_octree(mesh);
-    set_thread_count(0);
+    const auto built_by = [&](int threads) {
+        const UseThreads use(threads);
+        return build_octree(mesh);
+    };
+    const Octree one = built_by(1), four = built_by(4);
     CHECK(!find_fault(four));
     CHECK(one.nodes.size() > mesh.size() / 16);
     CHECK(one.depth == four.depth);

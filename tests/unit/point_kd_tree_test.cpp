@@ -44,11 +44,11 @@ TEST_CASE("a kd-tree over points visits few of them and does not depend on the n
     Random random(6);
     std::vector<Vec3> points;
     for (uint32_t i = 0; i < effort(100'000, 2'000'000); ++i) points.push_back(random.point(-1, 1));
-    set_thread_count(1);
-    const PointKdTree tree = build_point_kd_tree(points);
-    set_thread_count(4);
-    const PointKdTree again = build_point_kd_tree(points);
-    set_thread_count(0);
+    const auto built_by = [&](int threads) {
+        const UseThreads use(threads);
+        return build_point_kd_tree(points);
+    };
+    const PointKdTree tree = built_by(1), again = built_by(4);
     CHECK(std::memcmp(tree.nodes.data(), again.nodes.data(), points.size() * sizeof(PointKdNode)) == 0);
     struct Counting {
         NearestPoints nearest;

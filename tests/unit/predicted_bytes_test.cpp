@@ -34,10 +34,9 @@ std::size_t bytes_of(const Scene& scene) {
     const SceneOnDevice on_device(queue, prepared);
     CHECK(queue.allocated_bytes() == predicted);
     const TracerChoice choice = default_tracers(queue.is_cuda());
-    const std::size_t structures = queue.is_cuda() ? prepared.structures->device_bytes(choice) : 0;
-    const SceneTracer tracer(queue, *prepared.structures, choice);
-    CHECK(queue.allocated_bytes() ==
-          predicted + structures + sizeof(SceneView) + 3 * Queue::kMaxStreams * sizeof(uint32_t)); // and pools
+    Queue counting = Queue::make_dry_run(queue.is_cuda());
+    const SceneTracer tracer(queue, *prepared.structures, choice), counted(counting, *prepared.structures, choice);
+    CHECK(queue.allocated_bytes() == predicted + counting.allocated_bytes());
     return predicted;
 }
 

@@ -101,25 +101,26 @@ TEST_CASE("a number is read back as it was when requested, whatever follows") {
     }
 }
 
-TEST_CASE("the CPU's queues have the threads with which they were made, on one thread or on another") {
+TEST_CASE("a queue of the CPU keeps its own number of threads, whichever thread uses it") {
     const int own = thread_count();
     const auto counted_by = [](Queue& queue) {
         int count = 0;
         launch(queue, "count_threads", 1, test::CountThreads{&count});
         return count;
     };
-    Queue any = Queue::make_cpu();
-    set_thread_count(1);
-    Queue one = Queue::make_cpu();
-    set_thread_count(3);
-    Queue three = Queue::make_cpu();
-    CHECK(counted_by(any) == own); // it was made when no count was set
-    CHECK(counted_by(one) == 1);
-    CHECK(thread_count() == 3);
-    set_thread_count(0);
-    CHECK(counted_by(three) == 3);
-    CHECK(counted_by(one) == 1);
+    Queue any = Queue::make_cpu(), one = Queue::make_cpu(Threads(1)), three = Queue::make_cpu(Threads(3));
     CHECK(counted_by(any) == own);
+    CHECK(counted_by(one) == 1);
+    CHECK(counted_by(three) == 3);
+    CHECK(thread_count() == own);
+    {
+        const UseThreads two(2);
+        Queue of_caller = Queue::make_cpu();
+        CHECK(thread_count() == 2);
+        CHECK(counted_by(of_caller) == 2);
+        CHECK(counted_by(three) == 3);
+        CHECK(thread_count() == 2);
+    }
     CHECK(thread_count() == own);
     Queue moved = std::move(three);
     int elsewhere = 0;

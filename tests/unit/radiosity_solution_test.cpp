@@ -352,10 +352,9 @@ TEST_CASE("a solution's bytes depend on its settings and not on threads") {
         settings.solver = solver;
         const Hash128 reference = solution_of(scene, settings).hash();
         for (const int threads : {1, 5}) {
-            set_thread_count(threads);
+            const UseThreads use(threads);
             CHECK(solution_of(scene, settings).hash() == reference);
         }
-        set_thread_count(0);
         settings.seed = 1;
         CHECK(solution_of(scene, settings).hash() != reference);
     }

@@ -88,14 +88,6 @@ bool same_bits(const std::vector<RaySet>& a, const std::vector<RaySet>& b) {
     });
 }
 
-struct ThreadCount {
-    explicit ThreadCount(int count) : before(thread_count()) { set_thread_count(count); }
-    ~ThreadCount() { set_thread_count(before); }
-    ThreadCount(const ThreadCount&) = delete;
-    ThreadCount& operator=(const ThreadCount&) = delete;
-    int before;
-};
-
 /// The distribution of sqrt(u1) about the normal, without the sets' own code.
 double cosine_to(Vec3 direction, Vec3 normal) { return static_cast<double>(dot(direction, normal)); }
 
@@ -261,11 +253,11 @@ TEST_CASE("ray sets are the same for any number of threads") {
     const uint32_t count = 40000; // more than two of the chunks that are counted at once
     std::vector<RaySet> alone;
     {
-        const ThreadCount one(1);
+        const UseThreads one(1);
         alone = make_record_ray_sets(traced.job(144, 256), count);
     }
     for (const int threads : {2, 5}) {
-        const ThreadCount several(threads);
+        const UseThreads several(threads);
         CHECK(same_bits(alone, make_record_ray_sets(traced.job(144, 256), count)));
     }
 }

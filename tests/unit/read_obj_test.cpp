@@ -446,9 +446,8 @@ TEST_CASE("mtl: messages of several files come after those of the geometry, in a
         CHECK(messages.left_out()[1].find("bad.mtl:2") != std::string::npos);
     }
     const Loaded at_once = load_with("mtllib a.mtl\n" + kTriangle + faces);
-    set_thread_count(1);
+    const UseThreads one(1);
     const Loaded in_turns = load_with("mtllib a.mtl\n" + kTriangle + faces);
-    set_thread_count(0);
     CHECK(in_turns.scene.images.size() == at_once.scene.images.size());
     CHECK(in_turns.messages.all().size() == at_once.messages.all().size());
 }

@@ -64,7 +64,7 @@ TEST_CASE("a tree refitted to unmoved triangles equals the built one") {
     for (const BvhBuilder builder : {BvhBuilder::Binned, BvhBuilder::Reinsertion}) {
         const Bvh built = build_bvh(builder, triangles);
         for (const int threads : {1, 5}) {
-            set_thread_count(threads);
+            const UseThreads use(threads);
             const Bvh refitted = refit_bvh(refit_bvh(built, deformed(triangles)), triangles);
             CHECK(std::memcmp(refitted.nodes.data(), built.nodes.data(), built.nodes.size() * sizeof(BvhNode)) == 0);
             CHECK(std::memcmp(refitted.triangles.data(), built.triangles.data(),
@@ -73,7 +73,6 @@ TEST_CASE("a tree refitted to unmoved triangles equals the built one") {
             CHECK(refitted.sah_cost == doctest::Approx(built.sah_cost).epsilon(1e-4));
         }
     }
-    set_thread_count(0);
 }
 
 TEST_CASE("a tree is not refitted to other triangles, and trees with split triangles are refused with the reason") {

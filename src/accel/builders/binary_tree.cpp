@@ -82,7 +82,7 @@ struct NodeSummary {
 std::vector<NodeSummary> choose_leaves(const BinaryTree& tree, const BvhBuildSettings& settings) {
     const auto max_leaf = static_cast<std::size_t>(settings.max_leaf);
     std::vector<NodeSummary> summaries(tree.nodes.size());
-    visit_upwards(tree, [&](uint32_t at) {
+    visit_upwards(tree, *settings.sink, [&](uint32_t at) {
         thread_local std::vector<uint32_t> held;
         const BinaryNode& node = tree.nodes[at];
         NodeSummary& summary = summaries[at];
@@ -107,7 +107,7 @@ std::vector<NodeSummary> choose_leaves(const BinaryTree& tree, const BvhBuildSet
 class Flattener {
 public:
     Flattener(const BinaryTree& tree, const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings)
-        : tree_(tree), triangles_(triangles), summaries_(choose_leaves(tree, settings)) {}
+        : tree_(tree), triangles_(triangles), summaries_(choose_leaves(tree, settings)), sink_(*settings.sink) {}
 
     Bvh run() {
         const BinaryNode& root = tree_.nodes[tree_.root];
@@ -127,6 +127,7 @@ public:
             level = std::move(next);
         }
         parallel_for(level.size(), 1, [&](uint64_t i) {
+            sink_.check();
             std::vector<NodeSlot> pending = {level[i]};
             while (!pending.empty()) {
                 const NodeSlot at = pending.back();
@@ -178,13 +179,14 @@ private:
     const BinaryTree& tree_;
     const std::vector<BvhTriangle>& triangles_;
     const std::vector<NodeSummary> summaries_;
+    Sink& sink_;
     Bvh bvh_;
 };
 
 /// Number of inner nodes on the longest path down.
-int depth_of(const BinaryTree& tree) {
+int depth_of(const BinaryTree& tree, Sink& sink) {
     std::vector<int> depth(tree.nodes.size());
-    visit_upwards(tree, [&](uint32_t at) {
+    visit_upwards(tree, sink, [&](uint32_t at) {
         const BinaryNode& node = tree.nodes[at];
         depth[at] = node.is_leaf() ? 0 : 1 + std::max(depth[node.child[0]], depth[node.child[1]]);
     });
@@ -199,8 +201,8 @@ void check_reference_count(uint64_t count) {
                 fmt::format("{} triangles in one tree; the limit is {}", count, kMaxBvhTriangles));
 }
 
-void limit_depth(BinaryTree& tree, int max_depth) {
-    if (tree.root == kNoLink || depth_of(tree) <= max_depth) return;
+void limit_depth(BinaryTree& tree, int max_depth, Sink& sink) {
+    if (tree.root == kNoLink || depth_of(tree, sink) <= max_depth) return;
     std::vector<uint32_t> height(tree.nodes.size()), leaves(tree.nodes.size());
     const std::vector<uint32_t> order = nodes_downwards(tree, tree.root);
     for (const uint32_t at : std::views::reverse(order)) {
@@ -236,9 +238,7 @@ float cost_with_leaves(const BinaryTree& tree, const BvhBuildSettings& settings)
 Bvh make_bvh(BinaryTree tree, const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings) {
     PERTEV_CHECK(settings.max_leaf >= 1);
     if (tree.root == kNoLink) return {};
-    settings.sink->check();
-    limit_depth(tree, kMaxBvhDepth);
-    settings.sink->check();
+    limit_depth(tree, kMaxBvhDepth, *settings.sink);
     return Flattener(tree, triangles, settings).run();
 }
 

@@ -65,8 +65,8 @@ inline int longest_axis(const Bounds3& box) {
 void check_reference_count(uint64_t count);
 
 /// Rebuilds by object medians every part of the tree that is too deep, so that no path has more than max_depth inner
-/// nodes. Leaves keep their boxes. max_depth >= levels_needed(number of leaves).
-void limit_depth(BinaryTree& tree, int max_depth);
+/// nodes. Leaves keep their boxes. max_depth >= levels_needed(number of leaves). `sink` may end it.
+void limit_depth(BinaryTree& tree, int max_depth, Sink& sink = nobody());
 
 /// SAH cost of the tree that make_bvh would make, times the half area of its root, without the effect of limiting the
 /// depth.

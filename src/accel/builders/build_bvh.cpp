@@ -24,7 +24,7 @@ BuiltTree build_triangle_tree(const std::vector<BvhTriangle>& triangles, const B
     return build_tree(references_of(triangles), settings);
 }
 
-Bvh make_bvh(BuiltTree tree, const std::vector<BvhTriangle>& triangles) {
+Bvh make_bvh(BuiltTree tree, const std::vector<BvhTriangle>& triangles, Sink& sink) {
     Bvh bvh{.nodes = std::move(tree.nodes),
             .triangles = std::vector<BvhTriangle>(tree.order.size()),
             .root = tree.root,
@@ -32,6 +32,7 @@ Bvh make_bvh(BuiltTree tree, const std::vector<BvhTriangle>& triangles) {
             .depth = tree.depth,
             .sah_cost = tree.sah_cost};
     parallel_for(tree.order.size(), kGrain, [&](uint64_t i) {
+        sink.check_at(i);
         BvhTriangle t = triangles[tree.order[i]];
         t.flags = tree.is_last[i] ? t.flags | kLastInLeaf : t.flags & ~kLastInLeaf;
         bvh.triangles[i] = t;
@@ -40,7 +41,7 @@ Bvh make_bvh(BuiltTree tree, const std::vector<BvhTriangle>& triangles) {
 }
 
 Bvh build_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings) {
-    return make_bvh(build_triangle_tree(triangles, settings), triangles);
+    return make_bvh(build_triangle_tree(triangles, settings), triangles, *settings.sink);
 }
 
 } // namespace pertev

@@ -73,18 +73,23 @@ struct Unusable {
 };
 
 template <class T>
-void read_values(std::ifstream& file, std::span<T> values) {
-    file.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(values.size_bytes()));
+void read_values(std::ifstream& file, std::span<T> values, Sink& sink) {
+    constexpr std::size_t kAtOnce = 1 << 18;
+    for (; !values.empty() && file; values = values.subspan(std::min(kAtOnce, values.size()))) {
+        sink.check();
+        const std::span<T> part = values.first(std::min(kAtOnce, values.size()));
+        file.read(reinterpret_cast<char*>(part.data()), static_cast<std::streamsize>(part.size_bytes()));
+    }
     if (!file) throw Unusable{"it cannot be read to its end"};
 }
 
 /// Reads a tree and validates every number of the file before it is used.
-BuiltTree read_tree(const fs::path& path, const Hash128& key, std::size_t triangle_count) {
+BuiltTree read_tree(const fs::path& path, const Hash128& key, std::size_t triangle_count, Sink& sink) {
     const uint64_t size = fs::file_size(path);
     std::ifstream file(path, std::ios::binary);
     Header header;
     if (size < sizeof header) throw Unusable{"it is cut short"};
-    read_values(file, std::span(&header, 1));
+    read_values(file, std::span(&header, 1), sink);
     if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) throw Unusable{"it is not a tree that Pertev wrote"};
     if (header.byte_order != kByteOrder || header.version != kVersion) throw Unusable{"another version wrote it"};
     if (!(header.key == key) || header.triangle_count != triangle_count) throw Unusable{"it belongs to another mesh"};
@@ -96,14 +101,15 @@ BuiltTree read_tree(const fs::path& path, const Hash128& key, std::size_t triang
     BuiltTree tree;
     tree.nodes.resize(header.node_count);
     tree.order.resize(header.order_count);
-    read_values(file, std::span(tree.nodes));
-    read_values(file, std::span(tree.order));
+    read_values(file, std::span(tree.nodes), sink);
+    read_values(file, std::span(tree.order), sink);
     if (!(checksum_of(header, tree.nodes, tree.order) == header.checksum)) throw Unusable{"its checksum is wrong"};
 
     tree.is_last.resize(tree.order.size());
     std::vector<bool> seen(triangle_count);
     std::size_t missing = triangle_count;
     for (std::size_t i = 0; i < tree.order.size(); ++i) {
+        sink.check_at(i);
         tree.is_last[i] = (tree.order[i] & kEndOfLeaf) != 0;
         tree.order[i] &= ~kEndOfLeaf;
         if (tree.order[i] >= triangle_count) throw Unusable{"its order of triangles is broken"};
@@ -158,9 +164,13 @@ void remove_oldest(const fs::path& folder, uint64_t max_bytes) {
 BuiltTree build_by_position(BvhBuilder builder, const std::vector<BvhTriangle>& triangles,
                             const BvhBuildSettings& settings) {
     if (builder == BvhBuilder::Binned) return build_triangle_tree(triangles, settings);
-    std::vector<BvhTriangle> numbered = triangles; // each triangle carries its number, so that the tree's order can
-                                                   // be read from it
-    for (std::size_t i = 0; i < numbered.size(); ++i) numbered[i].primitive = static_cast<uint32_t>(i);
+    std::vector<BvhTriangle> numbered; // each triangle carries its number, so that the tree's order can be read from it
+    numbered.reserve(triangles.size());
+    for (const BvhTriangle& triangle : triangles) {
+        const auto number = static_cast<uint32_t>(numbered.size());
+        settings.sink->check_at(number);
+        numbered.emplace_back(triangle).primitive = number;
+    }
     Bvh bvh = build_bvh(builder, numbered, settings);
     BuiltTree tree = {.nodes = std::move(bvh.nodes),
                       .order = std::vector<uint32_t>(bvh.triangles.size()),
@@ -170,6 +180,7 @@ BuiltTree build_by_position(BvhBuilder builder, const std::vector<BvhTriangle>& 
                       .depth = bvh.depth,
                       .sah_cost = bvh.sah_cost};
     for (std::size_t i = 0; i < bvh.triangles.size(); ++i) {
+        settings.sink->check_at(i);
         tree.order[i] = bvh.triangles[i].primitive;
         tree.is_last[i] = (bvh.triangles[i].flags & kLastInLeaf) != 0;
     }
@@ -199,8 +210,8 @@ std::optional<Bvh> load_cached_bvh(const Hash128& key, const fs::path& folder,
     try {
         if (!fs::exists(path)) return std::nullopt;
         if (!fs::is_regular_file(path)) throw Unusable{"it is not a regular file"};
-        Bvh bvh = make_bvh(read_tree(path, key, triangles.size()), triangles);
-        if (const auto fault = find_broken_link(bvh)) throw Unusable{*fault};
+        Bvh bvh = make_bvh(read_tree(path, key, triangles.size(), sink), triangles, sink);
+        if (const auto fault = find_broken_link(bvh, sink)) throw Unusable{*fault};
         std::error_code ignored; // a read-only cache can still be read
         fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);
         return bvh;
@@ -215,7 +226,10 @@ std::optional<Bvh> load_cached_bvh(const Hash128& key, const fs::path& folder,
 void store_cached_bvh(const Hash128& key, const fs::path& folder, const BuiltTree& tree, std::size_t triangle_count,
                       Sink& sink, uint64_t max_bytes) {
     std::vector<uint32_t> order(tree.order.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = tree.order[i] | (tree.is_last[i] ? kEndOfLeaf : 0u);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        sink.check_at(i);
+        order[i] = tree.order[i] | (tree.is_last[i] ? kEndOfLeaf : 0u);
+    }
     Header header = {.magic = {},
                      .byte_order = kByteOrder,
                      .version = kVersion,
@@ -240,12 +254,13 @@ void store_cached_bvh(const Hash128& key, const fs::path& folder, const BuiltTre
     }
     try {
         fs::create_directories(folder);
-        write_file_atomically(file_of(key, folder), bytes);
+        write_file_atomically(file_of(key, folder), bytes, sink);
         remove_oldest(folder, max_bytes);
     } catch (const fs::filesystem_error& error) {
         sink.warn({FileLocation{folder.string()},
                    fmt::format("the structure cache cannot be written: {}", error.code().message())});
     } catch (const Error& error) {
+        if (error.code() == ErrorCode::Interrupted) throw;
         sink.warn(
             {FileLocation{folder.string()}, fmt::format("the structure cache cannot be written: {}", error.what())});
     }
@@ -266,9 +281,8 @@ Bvh load_or_build_bvh(const std::vector<BvhTriangle>& triangles, std::span<const
         return std::move(*bvh);
     }
     BuiltTree tree = build_by_position(builder, triangles, settings);
-    sink.check();
     store_cached_bvh(key_of(hash, settings, builder), *folder, tree, triangles.size(), sink);
-    return make_bvh(std::move(tree), triangles);
+    return make_bvh(std::move(tree), triangles, sink);
 }
 
 } // namespace pertev

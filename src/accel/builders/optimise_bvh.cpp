@@ -18,7 +18,7 @@ namespace {
 /// Returns the tree with one triangle per leaf and references by position. A box that holds only a part of its
 /// triangle is kept. Leaves come first, ordered by triangle, then the old nodes, then those that join the triangles
 /// of an old leaf.
-BinaryTree unfold(const Bvh& bvh) {
+BinaryTree unfold(const Bvh& bvh, Sink& sink) {
     BinaryTree tree;
     const auto triangles = static_cast<uint32_t>(bvh.triangles.size()), inner = static_cast<uint32_t>(bvh.nodes.size());
     const std::vector<BuildReference> boxes = references_of(bvh.triangles);
@@ -26,6 +26,7 @@ BinaryTree unfold(const Bvh& bvh) {
     tree.references.resize(triangles);
     std::vector<uint32_t> leaves_before(triangles); // [triangle] leaves that end before it
     for (uint32_t i = 1; i < triangles; ++i) {
+        sink.check_at(i);
         leaves_before[i] = leaves_before[i - 1] + (bvh.triangles[i - 1].flags & kLastInLeaf);
     }
     const auto add_leaf = [&](uint32_t link, const Bounds3& box) {
@@ -47,6 +48,7 @@ BinaryTree unfold(const Bvh& bvh) {
     }
     tree.root = triangles + bvh.root;
     parallel_for(inner, 1024, [&](uint64_t i) {
+        sink.check_at(i);
         const BvhNode& node = bvh.nodes[i];
         for (int k = 0; k < 2; ++k) {
             const uint32_t link = node.child[k];
@@ -54,7 +56,7 @@ BinaryTree unfold(const Bvh& bvh) {
                 link & kLeafBit ? add_leaf(link, child_bounds(node, k)) : triangles + link;
         }
     });
-    visit_upwards(tree, [&](uint32_t at) {
+    visit_upwards(tree, sink, [&](uint32_t at) {
         BinaryNode& node = tree.nodes[at];
         if (!node.is_leaf()) node = make_inner(tree, node.child[0], node.child[1]);
     });
@@ -66,12 +68,12 @@ BinaryTree unfold(const Bvh& bvh) {
 Bvh optimise_bvh(const Bvh& bvh, const BvhBuildSettings& settings, const ReinsertionSettings& reinsertion) {
     PERTEV_CHECK(reinsertion.passes >= 0 && reinsertion.part > 0 && reinsertion.part <= 1);
     if (bvh.root == kNoLink) return {};
-    BinaryTree tree = unfold(bvh);
+    BinaryTree tree = unfold(bvh, *settings.sink);
     const float cost_before = cost_with_leaves(tree, settings);
     reinsert_subtrees(tree, reinsertion, *settings.sink);
     // The sum of areas is not exactly the cost with leaves of several triangles.
     const bool better = cost_with_leaves(tree, settings) < cost_before;
-    return make_bvh(better ? std::move(tree) : unfold(bvh), bvh.triangles, settings);
+    return make_bvh(better ? std::move(tree) : unfold(bvh, *settings.sink), bvh.triangles, settings);
 }
 
 Bvh build_spatial_reinsertion_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings) {

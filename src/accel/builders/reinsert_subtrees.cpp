@@ -27,10 +27,10 @@ struct Move {
 
 class Reinserter {
 public:
-    explicit Reinserter(BinaryTree& tree)
-        : nodes_(tree.nodes), tree_(tree), parent_(tree.nodes.size(), kNoLink), own_(tree.nodes.size()),
+    Reinserter(BinaryTree& tree, Sink& sink)
+        : nodes_(tree.nodes), tree_(tree), sink_(sink), parent_(tree.nodes.size(), kNoLink), own_(tree.nodes.size()),
           lock_(tree.nodes.size()) {
-        visit_upwards(tree, [&](uint32_t at) {
+        visit_upwards(tree, sink, [&](uint32_t at) {
             if (nodes_[at].is_leaf()) return;
             for (const uint32_t child : nodes_[at].child) parent_[child] = at;
         });
@@ -51,10 +51,10 @@ public:
     /// Tries to move about the fraction `part` of the nodes, those with the largest boxes, because they have the most
     /// to gain. Nodes whose move is blocked by moves with a higher gain are tried again as long as enough of them
     /// succeed.
-    void pass(float part, Sink& sink) {
+    void pass(float part) {
         std::vector<uint32_t> nodes = largest_nodes(part);
         while (!nodes.empty()) {
-            const std::size_t made = round(nodes, sink);
+            const std::size_t made = round(nodes);
             if (made * kWorthAnother < nodes.size()) return;
         }
     }
@@ -77,14 +77,15 @@ private:
 
     /// Makes the moves of `nodes` that no better move conflicts with, and leaves the blocked ones in `nodes`. Returns
     /// the number of moves made.
-    std::size_t round(std::vector<uint32_t>& nodes, Sink& sink) {
+    std::size_t round(std::vector<uint32_t>& nodes) {
         std::vector<Move> moves(nodes.size());
         parallel_for(nodes.size(), 64, [&](uint64_t i) {
-            sink.check_at(i);
+            sink_.check_at(i);
             if (can_move(nodes[i])) moves[i] = find_move(nodes[i]);
         });
         std::erase_if(moves, [](const Move& move) { return move.target == kNoLink; });
         parallel_for(moves.size(), kReinsertChunk, [&](uint64_t i) {
+            sink_.check_at(i);
             own_[moves[i].node] = key_of(moves[i]);
             for_each_link(moves[i], [&](uint32_t at) { raise(lock_[at], key_of(moves[i])); });
         });
@@ -97,6 +98,7 @@ private:
         nodes.clear();
         std::vector<uint32_t> changed; // nodes whose children changed
         for (std::size_t i = 0; i < moves.size(); ++i) {
+            sink_.check_at(i);
             if (is_first[i] == 0) {
                 nodes.push_back(moves[i].node);
             } else {
@@ -114,7 +116,7 @@ private:
     /// Updates boxes from the nodes whose children changed upwards. `changed` lists these nodes, and kNoLink.
     void refit(const std::vector<uint32_t>& changed) {
         if (changed.size() > nodes_.size() / kFewChanges) {
-            return visit_upwards(tree_, [&](uint32_t at) {
+            return visit_upwards(tree_, sink_, [&](uint32_t at) {
                 if (!nodes_[at].is_leaf()) refit_node(at);
             });
         }
@@ -239,6 +241,7 @@ private:
 
     std::vector<BinaryNode>& nodes_;
     BinaryTree& tree_;
+    Sink& sink_;
     std::vector<uint32_t> parent_;
     std::vector<uint64_t> own_;               // [node] key of its own move in this round, else 0
     std::vector<std::atomic<uint64_t>> lock_; // [node] highest key of the moves that change its links, else 0
@@ -248,11 +251,11 @@ private:
 
 void reinsert_subtrees(BinaryTree& tree, const ReinsertionSettings& settings, Sink& sink) {
     if (tree.root == kNoLink) return;
-    Reinserter reinserter(tree);
+    Reinserter reinserter(tree, sink);
     double before = reinserter.total_area();
     const double enough = static_cast<double>(settings.min_gain) * before;
     for (int pass = 0; pass < settings.passes; ++pass) {
-        reinserter.pass(settings.part, sink);
+        reinserter.pass(settings.part);
         const double after = reinserter.total_area();
         if (before - after <= enough) break;
         before = after;

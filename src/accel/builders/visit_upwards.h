@@ -50,11 +50,12 @@ inline std::vector<uint32_t> nodes_downwards(const BinaryTree& tree, uint32_t ro
     return order;
 }
 
-/// Calls visit(node) for every reachable node, children first.
+/// Calls visit(node) for every reachable node, children first. `sink` may end it.
 template <class Visit>
-void visit_upwards(const BinaryTree& tree, const Visit& visit) {
+void visit_upwards(const BinaryTree& tree, Sink& sink, const Visit& visit) {
     const CrossCut cut = cut_across(tree);
     parallel_for(cut.roots.size(), 1, [&](uint64_t i) {
+        sink.check();
         for (const uint32_t at : std::views::reverse(nodes_downwards(tree, cut.roots[i]))) visit(at);
     });
     for (const uint32_t at : std::views::reverse(cut.above)) visit(at);

@@ -254,6 +254,7 @@ private:
             const Pending at = pending.back();
             pending.pop_back();
             const auto index = static_cast<uint32_t>(tree.nodes.size());
+            settings_.sink->check_at(index);
             if (at.parent != kNoLink) tree.nodes[at.parent].child[at.k] = index;
             BvhNode node = sparse_[at.sparse];
             tree.depth = std::max(tree.depth, at.depth);

@@ -8,7 +8,7 @@
 
 namespace pertev {
 
-std::optional<std::string> find_broken_link(const Bvh& bvh) {
+std::optional<std::string> find_broken_link(const Bvh& bvh, Sink& sink) {
     if (bvh.root == kNoLink) {
         if (!bvh.nodes.empty() || !bvh.triangles.empty()) return "no root, but nodes or triangles";
         return std::nullopt;
@@ -37,6 +37,7 @@ std::optional<std::string> find_broken_link(const Bvh& bvh) {
             continue;
         }
         if (at.link >= bvh.nodes.size()) return fmt::format("a link to node {} of {}", at.link, bvh.nodes.size());
+        sink.check_at(nodes);
         if (node_seen[at.link]) return fmt::format("node {} is reached twice", at.link);
         node_seen[at.link] = true;
         ++nodes;

@@ -29,19 +29,19 @@ Bounds3 piece_box(const std::vector<BvhTriangle>& triangles, uint32_t first, uin
 
 } // namespace
 
-CollapsedTree::CollapsedTree(const Bvh& bvh, const CollapseSettings& settings, int width)
+CollapsedTree::CollapsedTree(const Bvh& bvh, const CollapseSettings& settings, int width, Sink& sink)
     : settings_(settings), width_(width) {
     PERTEV_CHECK(width >= 2 && width <= kMaxWidth);
     PERTEV_CHECK(settings.max_leaf >= 1 && settings.triangles_at_once >= 1);
     PERTEV_CHECK(settings.node_cost >= 0 && settings.triangle_cost >= 0);
     if (bvh.root == kNoLink) return;
-    add_subtrees(bvh);
-    join_runs();
-    plan();
+    add_subtrees(bvh, sink);
+    join_runs(sink);
+    plan(sink);
 }
 
 /// Adds subtrees in depth-first order, each left child right after its parent.
-void CollapsedTree::add_subtrees(const Bvh& bvh) {
+void CollapsedTree::add_subtrees(const Bvh& bvh, Sink& sink) {
     struct Pending {
         uint32_t link, count, parent; // parent is kNoLink for a left child and for the root
         Bounds3 box;
@@ -52,6 +52,7 @@ void CollapsedTree::add_subtrees(const Bvh& bvh) {
         Pending at = pending.back();
         pending.pop_back();
         const auto index = static_cast<uint32_t>(subtrees_.size());
+        sink.check_at(index);
         if (at.parent != kNoLink) subtrees_[at.parent].right = index;
         Subtree& subtree = subtrees_.emplace_back();
         subtree.box = at.box;
@@ -72,9 +73,10 @@ void CollapsedTree::add_subtrees(const Bvh& bvh) {
 }
 
 /// Finds the subtrees that could be one leaf: few triangles that form one run. The builder may have swapped children.
-void CollapsedTree::join_runs() {
+void CollapsedTree::join_runs(Sink& sink) {
     const auto most = static_cast<uint32_t>(settings_.max_leaf);
     for (std::size_t i = subtrees_.size(); i-- > 0;) {
+        sink.check_at(i);
         Subtree& subtree = subtrees_[i];
         if (subtree.right == 0) continue;
         const Subtree &left = subtrees_[i + 1], &right = subtrees_[subtree.right];
@@ -91,10 +93,11 @@ float CollapsedTree::leaf_cost(const CollapseSettings& settings, uint32_t count)
     return settings.triangle_cost * static_cast<float>(steps);
 }
 
-void CollapsedTree::plan() {
+void CollapsedTree::plan(Sink& sink) {
     plans_.resize(subtrees_.size());
     std::vector<Costs> stack; // costs of subtrees whose parent comes later; a left child is on top of its sibling
     for (std::size_t i = subtrees_.size(); i-- > 0;) {
+        sink.check_at(i);
         const auto index = static_cast<uint32_t>(i);
         if (subtrees_[i].right == 0) {
             stack.push_back(plan_subtree(index, nullptr, nullptr));

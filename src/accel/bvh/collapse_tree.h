@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "accel/bvh/bvh.h"
+#include "base/sink.h"
 
 namespace pertev {
 
@@ -31,8 +32,8 @@ public:
         uint32_t first = 0, count = 0; // range of triangles; count 0 if they are not one run or too many for a leaf
     };
 
-    /// `width` is the number of children per node, in [2, kMaxWidth].
-    CollapsedTree(const Bvh& bvh, const CollapseSettings& settings, int width);
+    /// `width` is the number of children per node, in [2, kMaxWidth]. `sink` may end it.
+    CollapsedTree(const Bvh& bvh, const CollapseSettings& settings, int width, Sink& sink);
 
     /// All subtrees, of which the first is the whole tree; empty if there are no triangles.
     const std::vector<Subtree>& subtrees() const { return subtrees_; }
@@ -54,9 +55,9 @@ private:
         float roots[kMaxWidth]; // [i] least cost of the subtree as at most i trees; [0] is unused
     };
 
-    void add_subtrees(const Bvh& bvh);
-    void join_runs();
-    void plan();
+    void add_subtrees(const Bvh& bvh, Sink& sink);
+    void join_runs(Sink& sink);
+    void plan(Sink& sink);
     Costs plan_subtree(uint32_t index, const Costs* left, const Costs* right);
     void expand(uint32_t subtree, int roots, uint32_t (&children)[kMaxWidth], int& count) const;
 

@@ -69,7 +69,7 @@ CompressedBvhView view_of(const CompressedBvh& bvh) {
     return {bvh.nodes.data(), bvh.triangles.data(), bvh.bounds.max_abs()};
 }
 
-CompressedBvh compress(const WideBvh<8>& wide) {
+CompressedBvh compress(const WideBvh<8>& wide, Sink& sink) {
     CompressedBvh result;
     result.bounds = wide.bounds;
     result.depth = wide.depth;
@@ -79,7 +79,10 @@ CompressedBvh compress(const WideBvh<8>& wide) {
         int child[8];
     };
     std::vector<Slots> slots(wide.nodes.size());
-    parallel_for(slots.size(), kNodesAtOnce, [&](uint64_t i) { assign_slots(wide.nodes[i], slots[i].child); });
+    parallel_for(slots.size(), kNodesAtOnce, [&](uint64_t i) {
+        sink.check_at(i);
+        assign_slots(wide.nodes[i], slots[i].child);
+    });
 
     // Assigns positions to nodes and their triangles.
     std::vector<uint32_t> wide_of = {0};
@@ -90,6 +93,7 @@ CompressedBvh compress(const WideBvh<8>& wide) {
     while (!pending.empty()) {
         const uint32_t at = pending.back();
         pending.pop_back();
+        sink.check_at(at);
         const WideBvhNode<8>& from = wide.nodes[wide_of[at]];
         CompressedBvhNode& node = result.nodes[at];
         node.child_base = static_cast<uint32_t>(wide_of.size());
@@ -111,6 +115,7 @@ CompressedBvh compress(const WideBvh<8>& wide) {
 
     result.triangles.resize(triangles);
     parallel_for(wide_of.size(), kNodesAtOnce, [&](uint64_t i) {
+        sink.check_at(i);
         CompressedBvhNode& node = result.nodes[i];
         const WideBvhNode<8>& from = wide.nodes[wide_of[i]];
         const Slots& of = slots[wide_of[i]];
@@ -129,9 +134,9 @@ CompressedBvh compress(const WideBvh<8>& wide) {
     return result;
 }
 
-CompressedBvh make_compressed_bvh(const Bvh& bvh, const CollapseSettings& settings) {
+CompressedBvh make_compressed_bvh(const Bvh& bvh, const CollapseSettings& settings, Sink& sink) {
     PERTEV_CHECK(settings.max_leaf <= kCompressedLeaf);
-    return compress(make_wide_bvh<8>(bvh, settings));
+    return compress(make_wide_bvh<8>(bvh, settings, sink), sink);
 }
 
 } // namespace pertev

@@ -74,10 +74,11 @@ CompressedBvhView view_of(const CompressedBvh& bvh);
 
 /// Compresses a wide tree whose leaves hold at most kCompressedLeaf triangles. The result does not depend on the
 /// number of threads.
-CompressedBvh compress(const WideBvh<8>& wide);
+CompressedBvh compress(const WideBvh<8>& wide, Sink& sink = nobody());
 
 /// Collapses a binary tree with the least cost and compresses it. max_leaf is at most kCompressedLeaf.
-CompressedBvh make_compressed_bvh(const Bvh& bvh, const CollapseSettings& settings = kCompressedCollapse);
+CompressedBvh make_compressed_bvh(const Bvh& bvh, const CollapseSettings& settings = kCompressedCollapse,
+                                  Sink& sink = nobody());
 
 /// Sets the grid for `slots`, of which at least one is not empty, and quantizes them outwards.
 void set_boxes(CompressedBvhNode& node, const Bounds3 (&slots)[8]);

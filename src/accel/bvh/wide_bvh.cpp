@@ -44,8 +44,8 @@ WideBvhNode<kWidth> make_node(const CollapsedTree& tree, uint32_t subtree) {
 
 /// Assembles nodes, depth and cost, without triangles.
 template <int kWidth>
-WideBvh<kWidth> assemble(const Bvh& bvh, const CollapseSettings& settings) {
-    const CollapsedTree tree(bvh, settings, kWidth);
+WideBvh<kWidth> assemble(const Bvh& bvh, const CollapseSettings& settings, Sink& sink) {
+    const CollapsedTree tree(bvh, settings, kWidth, sink);
     WideBvh<kWidth> wide;
     wide.bounds = bvh.bounds;
     if (tree.subtrees().empty()) return wide;
@@ -59,6 +59,7 @@ WideBvh<kWidth> assemble(const Bvh& bvh, const CollapseSettings& settings) {
         const Pending at = pending.back();
         pending.pop_back();
         const auto index = static_cast<uint32_t>(wide.nodes.size());
+        sink.check_at(index);
         if (at.parent != kNoLink) wide.nodes[at.parent].child[at.k] = index;
         const WideBvhNode<kWidth>& node = wide.nodes.emplace_back(make_node<kWidth>(tree, at.subtree));
         wide.depth = max(wide.depth, at.depth);
@@ -85,10 +86,13 @@ WideBvh<kWidth> assemble(const Bvh& bvh, const CollapseSettings& settings) {
 } // namespace
 
 template <int kWidth>
-WideBvh<kWidth> make_wide_bvh(const Bvh& bvh, const CollapseSettings& settings) {
-    WideBvh<kWidth> wide = assemble<kWidth>(bvh, settings);
-    wide.triangles = bvh.triangles;
-    for (BvhTriangle& t : wide.triangles) t.flags &= ~kLastInLeaf;
+WideBvh<kWidth> make_wide_bvh(const Bvh& bvh, const CollapseSettings& settings, Sink& sink) {
+    WideBvh<kWidth> wide = assemble<kWidth>(bvh, settings, sink);
+    wide.triangles.reserve(bvh.triangles.size());
+    for (const BvhTriangle& t : bvh.triangles) {
+        sink.check_at(wide.triangles.size());
+        wide.triangles.emplace_back(t).flags &= ~kLastInLeaf;
+    }
     for (const WideBvhNode<kWidth>& node : wide.nodes) {
         for (int k = 0; k < kWidth; ++k) {
             if (node.count[k] != 0)
@@ -98,7 +102,7 @@ WideBvh<kWidth> make_wide_bvh(const Bvh& bvh, const CollapseSettings& settings) 
     return wide;
 }
 
-template WideBvh<4> make_wide_bvh(const Bvh&, const CollapseSettings&);
-template WideBvh<8> make_wide_bvh(const Bvh&, const CollapseSettings&);
+template WideBvh<4> make_wide_bvh(const Bvh&, const CollapseSettings&, Sink&);
+template WideBvh<8> make_wide_bvh(const Bvh&, const CollapseSettings&, Sink&);
 
 } // namespace pertev

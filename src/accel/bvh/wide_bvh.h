@@ -55,7 +55,7 @@ WideBvhView<kWidth> view_of(const WideBvh<kWidth>& bvh) {
 /// Makes the wide tree; kWidth is 4 or 8. Throws Error(OverLimit) if splitting leaves longer than max_leaf makes it
 /// deeper than the traversal stack allows.
 template <int kWidth>
-WideBvh<kWidth> make_wide_bvh(const Bvh& bvh, const CollapseSettings& settings = {});
+WideBvh<kWidth> make_wide_bvh(const Bvh& bvh, const CollapseSettings& settings = {}, Sink& sink = nobody());
 
 /// Parameters for the CPU's SIMD unit (trace/wide/traverse_wide.h): eight boxes at a time, and four triangles for about
 /// twice the cost of a node's boxes.

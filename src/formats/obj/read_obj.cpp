@@ -155,8 +155,8 @@ public:
     void start(const ObjMaterialFiles& line) {
         if (thread_count() == 1) return;
         try {
-            first_ = std::async(std::launch::async, [this, line, threads = thread_count()] {
-                set_thread_count(threads);
+            first_ = std::async(std::launch::async, [this, line, threads = Threads()] {
+                const UseThreads use(threads);
                 read(line);
                 loader_.decode();
             });

@@ -124,23 +124,22 @@ struct AimFromKind {
         return true;
     }
     HD bool punctual(uint32_t number, float pmf) const {
-        const PunctualLight& light = freely.scene.lights.punctual[number];
-        Particle& particle = freely.particle;
-        const bool has_position = parts_of(light.kind).position;
-        const bool is_aimed =
-            has_position ? depth_of_cones(targets, light.position) < depth_of_beam(light) : are_narrow();
-        if (!is_aimed) return freely.punctual(number, pmf);
         if (!(pmf > 0)) return false;
-        if (has_position) {
+        const PunctualLight& light = freely.scene.lights.punctual[number];
+        switch (light.kind) {
+        case LightKind::Point:
+        case LightKind::Spot: {
+            if (!(depth_of_cones(targets, light.position) < depth_of_beam(light))) break;
             const Direction direction = draw_direction(targets, light.position, freely.u);
-            particle.ray = {light.position, 0, direction.to, light.range > 0 ? light.range : kInfinity};
-            particle.power = (punctual_falloff(light, -direction.to, 0) / (pmf * direction.pdf)) * light.intensity;
-        } else {
-            const Start start = draw_start(targets, freely.world, light.direction, freely.u);
-            particle.ray = {start.from, 0, light.direction, kInfinity};
-            particle.power = (1.0f / (pmf * start.pdf)) * light.intensity;
+            return freely.punctual(light, {light.position, direction.to, reach_of(light), direction.pdf}, pmf);
         }
-        return true;
+        case LightKind::Directional: {
+            if (!are_narrow()) break;
+            const Start start = draw_start(targets, freely.world, light.direction, freely.u);
+            return freely.punctual(light, {start.from, light.direction, kInfinity, start.pdf}, pmf);
+        }
+        }
+        return freely.punctual(number, pmf);
     }
     HD bool environment(float pmf, SampleBits bits) const {
         if (!are_narrow()) return freely.environment(pmf, bits);

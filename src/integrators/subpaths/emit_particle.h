@@ -32,8 +32,6 @@ HD inline float pdf_position(const EmissiveTriangle& triangle) {
     const float pdf = 2.0f * triangle.pmf / length(cross(triangle.ab, triangle.ac));
     return is_finite(pdf) ? pdf : 0.0f;
 }
-/// Density of the points through which parallel rays enter, 1/m2.
-HD inline float pdf_disc(const WorldSphere& world) { return kInvPi / square(world.radius); }
 
 /// Attenuation, [0, 1], of a point or spot light at `distance` metres if its range is `t_max`.
 HD inline float left_at(float distance, float t_max) {
@@ -103,19 +101,15 @@ struct EmitFromKind {
     HD bool punctual(uint32_t number, float pmf) const {
         if (!(pmf > 0)) return false;
         const PunctualLight& light = scene.lights.punctual[number];
-        float pdf = 0;
-        if (parts_of(light.kind).position) {
-            pdf = pdf_beam(light);
-            if (!(pdf > 0) || !is_finite(pdf)) return false;
-            const Vec3 direction = draw_beam(light, u);
-            particle.ray = {light.position, 0, direction, light.range > 0 ? light.range : kInfinity};
-            particle.power = (punctual_falloff(light, -direction, 0) / (pmf * pdf)) * light.intensity;
-        } else {
-            pdf = pdf_disc(world);
-            from_disc(light.direction);
-            particle.power = (1.0f / (pmf * pdf)) * light.intensity;
-        }
-        particle.mis = {square(1.0f / pdf), 0};
+        const PunctualEmission emission = emit_from(light, world, u);
+        if (!(emission.pdf > 0) || !is_finite(emission.pdf)) return false;
+        particle.is_from_far = !(depth_of_beam(light) > 0);
+        particle.mis = {square(1.0f / emission.pdf), 0};
+        return punctual(light, emission, pmf);
+    }
+    HD bool punctual(const PunctualLight& light, const PunctualEmission& emission, float pmf) const {
+        particle.ray = {emission.from, 0, emission.direction, emission.reach};
+        particle.power = emitted_power(light, emission, pmf);
         return true;
     }
     HD bool environment(float pmf, SampleBits bits) const {
@@ -123,19 +117,11 @@ struct EmitFromKind {
         if (!(pmf > 0) || !sample_environment(scene.lights.environment, bits, sample)) return false;
         const float pdf = pmf * sample.pdf, through_disc = pdf_disc(world);
         if (!(pdf > 0)) return false;
-        from_disc(-sample.wi);
+        particle.ray = {sample_disc(world, -sample.wi, u), 0, -sample.wi, kInfinity};
+        particle.is_from_far = true;
         particle.power = (1.0f / (pdf * through_disc)) * sample.radiance;
         particle.mis = {square(1.0f / through_disc), min(square(1.0f / (pdf * through_disc)), kMaxWeightSum)};
         return true;
-    }
-
-private:
-    /// Starts outside the world, at the point of the disc across `direction` that `u` selects.
-    HD void from_disc(Vec3 direction) const {
-        const Vec2 disc = sample_uniform_disk_concentric(u);
-        const Vec3 across = world.radius * make_frame(direction).to_world({disc.x, disc.y, -1});
-        particle.ray = {world.centre + across, 0, direction, kInfinity};
-        particle.is_from_far = true;
     }
 };
 

@@ -22,12 +22,6 @@ struct SubpathSettings {
 /// Largest max_depth of `integrator=bidirectional`, because vertices of light subpaths are stored, 48 bytes each.
 inline constexpr uint32_t kMaxConnectedDepth = 255;
 
-/// A sphere around everything that rays can hit, in the translated world; distant light enters through its discs.
-struct WorldSphere {
-    Vec3 centre;
-    float radius = 0; // metres; 0 if the world is empty
-};
-
 /// Random numbers of a camera subpath, in groups of four (math/sampler.h), as in path tracing:
 ///   camera         position in the pixel, then the light of vertex 0
 ///   lens           position on the lens

@@ -1,7 +1,6 @@
 #include "session/pictures/prepare_render.h"
 
 #include <algorithm>
-#include <span>
 
 #include <fmt/format.h>
 
@@ -112,17 +111,6 @@ void set_light(const RenderSettings& settings, const Scene& rest, RenderSetup& r
     ready.of_light = std::move(messages);
 }
 
-constexpr std::string_view kOfCameras[] = {
-    "camera",      "eye",        "target",     "up",   "fov",        "projection",      "view_height", "aperture",
-    "camera_pose", "convention", "intrinsics", "lens", "distortion", "intrinsics_size", "focus",       "camera_from"};
-
-/// Settings that change neither the scene that is read, nor its trees, nor the machine, besides those of cameras. A
-/// setting that is missing here costs time, and no picture.
-constexpr std::string_view kOfPictures[] = {"size",      "spp",        "seed",        "sampler",      "filter",
-                                            "clamp",     "integrator", "aov",         "time",         "filter_radius",
-                                            "max_depth", "denoise",    "transparent", "lpe",          "tone_map",
-                                            "exposure",  "iso",        "f_number",    "shutter_time", "time_limit"};
-
 /// Returns whether the choice leaves nothing open that is decided in the scene at rest.
 bool is_whole(const PictureOptions& options, const Scene& scene) {
     const CameraChoice& choice = options.scene.camera;
@@ -136,18 +124,15 @@ bool is_whole(const PictureOptions& options, const Scene& scene) {
 
 bool adapt_setup(RenderSetup& ready, const PictureOptions& before, PictureOptions& options, uint32_t verbs,
                  Sink& sink) {
-    const auto is_among = [](std::span<const std::string_view> names, const Setting& setting) {
-        return std::ranges::find(names, setting.name) != names.end();
-    };
     const Ground ground = ground_of(options);
     const bool has_same_ground = ground == ready.ground || (ground == Ground::Off && !has_ground(ready.scene()));
     if (options.scene.scene != before.scene.scene || !has_same_ground || !options.cameras.empty()) return false;
     bool has_same_camera = !ready.must_choose && options.scene.camera.camera_from.empty();
     for (const Setting& setting : all_settings()) {
         const bool is_given = before.is_given(setting.name) || options.is_given(setting.name);
-        if (!is_given || is_among(kOfPictures, setting)) continue;
+        if (!is_given || setting.changes == Changes::Picture) continue;
         if (texts_of(before, setting) == texts_of(options, setting)) continue;
-        if (!is_among(kOfCameras, setting)) return false;
+        if (setting.changes == Changes::Scene) return false;
         has_same_camera = false;
     }
     check(options, verbs);
@@ -200,6 +185,7 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     std::optional<CameraPath> path;
     if (!options.camera_path.empty()) path = read_camera_path(options.camera_path);
     StartingMachine machine(options.machine, sink);
+    const UseThreads threads(machine.threads());
     std::optional<TracerChoice> tracers; // a tracer that does not fit the device is refused before the scene is read
     if (!options.tracer.are_empty()) tracers = tracer_choice(options.tracer, machine.is_cuda());
     sink.report_messages();
