@@ -32,7 +32,7 @@ const SceneParameters& OpenedScene::parameters() {
 }
 
 /// Changes the opened scene as its source was since. Returns false if it must be opened again.
-bool OpenedScene::take_edits(const EditedScene& source, Sink& sink) {
+bool OpenedScene::apply_edits(const EditedScene& source, Sink& sink) {
     if (edits_ == source.edit_count) return true;
     MovingScene& moving = *setup_->moving;
     std::vector<std::pair<SceneParameter, const std::vector<double>*>> news;
@@ -76,7 +76,7 @@ void OpenedScene::open(PictureOptions& options, const EditedScene& source, Sink&
 
 void OpenedScene::prepare(PictureOptions& options, const EditedScene& source, Sink& sink) {
     const PictureOptions asked = options; // without what the scene's file suggests
-    const bool is_open = setup_ && take_edits(source, sink) && adapt_setup(*setup_, used_, options, kRender, sink);
+    const bool is_open = setup_ && apply_edits(source, sink) && adapt_setup(*setup_, used_, options, kRender, sink);
     if (!is_open) {
         session_.reset();
         try {

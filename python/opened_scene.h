@@ -48,7 +48,7 @@ public:
     Session& session(const PictureRecord& record);
 
 private:
-    bool take_edits(const EditedScene& source, Sink& sink);
+    bool apply_edits(const EditedScene& source, Sink& sink);
     void open(PictureOptions& options, const EditedScene& source, Sink& sink);
 
     PictureOptions used_; // options that setup_ was made or last adapted by

@@ -39,7 +39,7 @@ void set_all(PictureOptions& options, const SettingTexts& settings) {
 
 } // namespace
 
-std::unique_lock<std::timed_mutex> PythonScene::take_turn(Sink& sink) {
+std::unique_lock<std::timed_mutex> PythonScene::wait_for_turn(Sink& sink) {
     std::unique_lock turn(turn_, std::defer_lock);
     while (!turn.try_lock_for(std::chrono::milliseconds(20))) sink.check();
     return turn;
@@ -61,7 +61,7 @@ void PythonScene::open_in_turn(Sink& sink) {
 }
 
 void PythonScene::open(Sink& sink) {
-    const std::unique_lock turn = take_turn(sink);
+    const std::unique_lock turn = wait_for_turn(sink);
     open_in_turn(sink);
 }
 
@@ -84,7 +84,7 @@ const PictureRecord& PythonScene::prepare(const CallSettings& settings, const st
 }
 
 PythonResult PythonScene::render(const CallSettings& settings, const std::vector<std::string>& outputs, Sink& sink) {
-    const std::unique_lock turn = take_turn(sink);
+    const std::unique_lock turn = wait_for_turn(sink);
     Session& session = opened_.session(prepare(settings, outputs, sink));
     session.cut();
     if (writes_tone_mapped(outputs)) {
@@ -106,26 +106,26 @@ PythonResult PythonScene::render(const CallSettings& settings, const std::vector
 
 void PythonScene::render_batch(const CallSettings& settings, const CamerasArgument& cameras, PythonBatch& batch,
                                Sink& sink) {
-    const std::unique_lock turn = take_turn(sink);
+    const std::unique_lock turn = wait_for_turn(sink);
     Session& session = opened_.session(prepare(settings, {}, sink));
     batch.render(opened_, session, cameras, options_, sink);
     if (options_.strict) refuse_invalid_samples(batch.invalid_samples());
 }
 
 uint32_t PythonScene::batch_size(const CallSettings& settings, const CamerasArgument& cameras, Sink& sink) {
-    const std::unique_lock turn = take_turn(sink);
+    const std::unique_lock turn = wait_for_turn(sink);
     const PictureRecord& record = prepare(settings, {}, sink);
     return size_of_chunk(opened_, cameras.settings_of(record.settings), cameras, options_);
 }
 
 std::vector<std::string> PythonScene::paths(Sink& sink) {
-    const std::unique_lock turn = take_turn(sink);
+    const std::unique_lock turn = wait_for_turn(sink);
     open_in_turn(sink);
     return opened_.parameters().paths(opened_.setup()->scene());
 }
 
 std::optional<PythonScene::Value> PythonScene::value(const std::string& path, Sink& sink) {
-    const std::unique_lock turn = take_turn(sink);
+    const std::unique_lock turn = wait_for_turn(sink);
     open_in_turn(sink);
     const Scene& scene = opened_.setup()->scene();
     const auto parameter = opened_.parameters().find(scene, path);
@@ -136,7 +136,7 @@ std::optional<PythonScene::Value> PythonScene::value(const std::string& path, Si
 }
 
 bool PythonScene::set_value(const std::string& path, const Value& value, Sink& sink) {
-    const std::unique_lock turn = take_turn(sink);
+    const std::unique_lock turn = wait_for_turn(sink);
     open_in_turn(sink);
     const Scene& scene = opened_.setup()->scene();
     const auto parameter = opened_.parameters().find(scene, path);
@@ -152,7 +152,7 @@ bool PythonScene::set_value(const std::string& path, const Value& value, Sink& s
 }
 
 std::map<std::string, PythonScene::Value> PythonScene::edits(Sink& sink) {
-    const std::unique_lock turn = take_turn(sink);
+    const std::unique_lock turn = wait_for_turn(sink);
     std::map<std::string, Value> values;
     for (const auto& [path, edit] : source_.edits) {
         const std::size_t size = edit.values.size();

@@ -65,13 +65,13 @@ public:
     /// Calls `work` with the source while no other thread changes it.
     template <class Work>
     auto with_source(Sink& sink, const Work& work) {
-        const std::unique_lock turn = take_turn(sink);
+        const std::unique_lock turn = wait_for_turn(sink);
         return work(static_cast<const EditedScene&>(source_));
     }
 
 private:
     /// Waits until no other thread uses the scene. Throws Error(Interrupted) if the sink stops.
-    std::unique_lock<std::timed_mutex> take_turn(Sink& sink);
+    std::unique_lock<std::timed_mutex> wait_for_turn(Sink& sink);
     void open_in_turn(Sink& sink);
     const PictureRecord& prepare(const CallSettings& settings, const std::vector<std::string>& outputs, Sink& sink);
 

@@ -78,7 +78,7 @@ public:
             if (turns_left_ > 0) make_reference();
             for (uint32_t repetition = 0; repetition < settings_.repetitions; ++repetition) {
                 for (TransportRow& row : report_.rows) {
-                    if (row.refused.empty()) take_turn(row, repetition);
+                    if (row.refused.empty()) run_repetition(row, repetition);
                 }
             }
         } catch (const TransportStopped&) {
@@ -209,7 +209,7 @@ private:
     }
 
     /// Runs one repetition of one integrator.
-    void take_turn(TransportRow& row, uint32_t number) {
+    void run_repetition(TransportRow& row, uint32_t number) {
         const Stopwatch watch;
         const std::string doing = fmt::format("{}, {} of {}", row.name, number + 1, settings_.repetitions);
         turns_left_ -= 1;

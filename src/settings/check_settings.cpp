@@ -114,7 +114,7 @@ std::string overruled_setting(const SettingConflict& conflict, const PictureOpti
     return "";
 }
 
-void take_suggestions(const Scene& scene, uint32_t verbs, PictureOptions& options, Sink& sink) {
+void apply_suggestions(const Scene& scene, uint32_t verbs, PictureOptions& options, Sink& sink) {
     for (const SuggestedSetting& suggested : scene.suggested) {
         if (options.is_given(suggested.name)) continue;
         if (options.real_time && suggested.name == "spp") continue; // real-time frames have one sample

@@ -43,6 +43,6 @@ std::string overruled_setting(const SettingConflict& conflict, const PictureOpti
 /// Adds to `options` the settings of `verbs` that a scene's file suggests, in its order, except for those that were
 /// given and those in conflict with them. Unknown settings, invalid values, and settings by which files are opened
 /// are skipped with a warning, because the file is open already.
-void take_suggestions(const Scene& scene, uint32_t verbs, PictureOptions& options, Sink& sink);
+void apply_suggestions(const Scene& scene, uint32_t verbs, PictureOptions& options, Sink& sink);
 
 } // namespace pertev

@@ -70,7 +70,7 @@ Camera read_back(const std::filesystem::path& path, const std::vector<std::pair<
     PictureOptions options;
     options.scene.camera.camera_from = path.string();
     for (const auto& [name, text] : more) set_value(options, *find_setting(name), {&text, 1});
-    take_camera_from(options);
+    apply_camera_from(options);
     return made_of(options.scene.camera, scene);
 }
 
@@ -210,7 +210,7 @@ TEST_CASE("the metadata of a picture give its camera back to the bit") {
         camera.intrinsics.reset();
         PictureOptions options;
         options.scene.camera.camera_from = written_camera(source).string();
-        take_camera_from(options);
+        apply_camera_from(options);
         CHECK(options.size == PictureSize{40, 30});
     }
 }

@@ -307,7 +307,7 @@ TEST_CASE("a scene file's suggestions hold unless a given setting excludes them"
     options.given["seed"] = SettingOrigin::Caller;
     options.render.path.seed = 3;
     Messages messages;
-    take_suggestions(scene, kRender, options, messages);
+    apply_suggestions(scene, kRender, options, messages);
     CHECK(options.render.samples == 64);
     CHECK(options.size == PictureSize{320, 240});
     CHECK(options.render.integrator == IntegratorKind::PhotonMap);
@@ -323,13 +323,13 @@ TEST_CASE("a scene file's suggestions hold unless a given setting excludes them"
     PictureOptions real_time;
     real_time.real_time = true;
     real_time.render.samples = 1;
-    take_suggestions(scene, kRender, real_time, messages);
+    apply_suggestions(scene, kRender, real_time, messages);
     CHECK(real_time.render.samples == 1);
 
     PictureOptions whitted;
     whitted.render.integrator = IntegratorKind::Whitted;
     whitted.given["integrator"] = SettingOrigin::File;
-    take_suggestions(scene, kRender, whitted, messages);
+    apply_suggestions(scene, kRender, whitted, messages);
     CHECK(whitted.render.integrator == IntegratorKind::Whitted);
     CHECK_FALSE(whitted.is_given("photons"));
     CHECK(whitted.given.at("ambient") == SettingOrigin::Scene);

@@ -100,7 +100,7 @@ SceneUpdate PosedScene::set_time(double time_s) {
     check_placements(time_s);
     update_cameras();
     update_lights();
-    return take_changes();
+    return collect_changes();
 }
 
 SceneUpdate PosedScene::edit(const std::function<SceneUpdate(Scene&)>& edit) {
@@ -311,7 +311,7 @@ void PosedScene::update_lights() {
     }
 }
 
-SceneUpdate PosedScene::take_changes() {
+SceneUpdate PosedScene::collect_changes() {
     SceneUpdate update = {numbers_of(moved_), numbers_of(deformed_), numbers_of(replaced_),
                           lights_changed_,    poses_changed_,        false};
     for (std::vector<bool>* flags : {&moved_, &deformed_, &replaced_}) flags->assign(flags->size(), false);

@@ -61,7 +61,7 @@ private:
     void check_placements(double time_s) const;
     void update_cameras();
     void update_lights();
-    SceneUpdate take_changes();
+    SceneUpdate collect_changes();
 
     Scene scene_;
     std::vector<Camera> cameras_at_rest_;

@@ -126,7 +126,7 @@ void fit_intrinsics(PictureSize picture, CameraChoice& choice) {
                             picture.width, picture.height));
 }
 
-void take_camera_from(PictureOptions& options) {
+void apply_camera_from(PictureOptions& options) {
     CameraChoice& choice = options.scene.camera;
     if (choice.camera_from.empty()) return;
     const ExrFile file = read_exr(choice.camera_from);

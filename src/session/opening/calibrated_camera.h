@@ -22,6 +22,6 @@ void fit_intrinsics(PictureSize picture, CameraChoice& choice);
 
 /// Reads the file of `camera_from`, if there is one, and fills in its camera, except for what is given, and the
 /// picture's size if none is. Throws Error(BadInput).
-void take_camera_from(PictureOptions& options);
+void apply_camera_from(PictureOptions& options);
 
 } // namespace pertev

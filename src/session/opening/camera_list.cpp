@@ -38,7 +38,7 @@ PictureOptions options_of_camera(const PictureOptions& options, uint32_t number,
         }
     }
     if (const auto conflict = find_conflict(own, verbs)) refuse(remark_of(*conflict, own));
-    take_camera_from(own);
+    apply_camera_from(own);
     return own;
 }
 

@@ -57,7 +57,7 @@ void check(PictureOptions& options, uint32_t verbs) {
 /// Returns the picture's settings, after `options` have taken what the scene's file suggests.
 RenderSettings take_settings(const RenderSetup& ready, PictureOptions& options, uint32_t verbs, const Scene& scene,
                              Sink& sink) {
-    take_suggestions(scene, verbs, options, sink);
+    apply_suggestions(scene, verbs, options, sink);
     if (options.strict) refuse_what_is_left_out(sink.messages(), "nothing is rendered");
     RenderSettings settings = render_settings(options, scene);
     settings.tracers = ready.settings.tracers;
@@ -153,7 +153,7 @@ bool adapt_setup(RenderSetup& ready, const PictureOptions& before, PictureOption
     check(options, verbs);
     if (options.strict) refuse_what_is_left_out(sink.messages(), "nothing is rendered");
     PictureOptions taken = options;
-    take_camera_from(taken);
+    apply_camera_from(taken);
     Messages messages;
     MovingScene& moving = *ready.moving;
     RenderSettings settings = take_settings(ready, taken, verbs, moving.scene(), messages);
@@ -196,7 +196,7 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
                                             const SolveReport& report, const SceneInMemory& in_memory) {
     check(options, verbs);
     read_camera_list(options);
-    take_camera_from(options);
+    apply_camera_from(options);
     std::optional<CameraPath> path;
     if (!options.camera_path.empty()) path = read_camera_path(options.camera_path);
     StartingMachine machine(options.machine, sink);
