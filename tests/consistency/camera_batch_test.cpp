@@ -9,11 +9,11 @@
 #include "session/batch_render.h"
 #include "session/moving_scene.h"
 #include "session/session.h"
-#include "tests/support/asked_sink.h"
 #include "tests/support/flat_scenes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 #include "tests/support/rushing_scene.h"
+#include "tests/support/stop_after.h"
 #include "tests/support/thrown_error.h"
 
 using namespace pertev;
@@ -268,7 +268,7 @@ TEST_CASE("a batch that stops goes on with the chunk that it stopped in, and a c
     Pictures on(queue, prepared, settings);
     BatchRender render(on.pictures, batch, settings, 2);
     BatchArrays arrays;
-    test::AskedSink stops(0);
+    test::StopAfter stops(0);
     CHECK(!render.next(arrays, stops));
     CHECK(render.done() == 0);
     REQUIRE(render.next(arrays));

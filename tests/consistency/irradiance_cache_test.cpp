@@ -11,9 +11,9 @@
 #include "integrators/irradiance_cache/irradiance_cache_settings.h"
 #include "integrators/irradiance_cache/record_store.h"
 #include "session/session.h"
-#include "tests/support/asked_sink.h"
 #include "tests/support/check_one_picture.h"
 #include "tests/support/flat_scenes.h"
+#include "tests/support/stop_after.h"
 
 using namespace pertev;
 
@@ -281,8 +281,8 @@ TEST_CASE("an overture can be stopped by a sink or a time limit, and leaves no t
             CHECK(session.stats().invalid_samples == 0);
         }
         if (!queue.is_cuda()) { // which asks within a part
-            CHECK(session.render(2, test::AskedSink(0)) == 0);
-            CHECK(session.render(2, test::AskedSink(5)) == 0);
+            CHECK(session.render(2, test::StopAfter(0)) == 0);
+            CHECK(session.render(2, test::StopAfter(5)) == 0);
         }
         RenderSettings short_of_time = settings;
         short_of_time.time_limit_s = 1e-9;

@@ -11,9 +11,9 @@
 #include "image/picture_hash.h"
 #include "session/pictures/prepare_render.h"
 #include "session/session.h"
-#include "tests/support/asked_sink.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
+#include "tests/support/stop_after.h"
 #include "tests/support/thrown_error.h"
 
 using namespace pertev;
@@ -149,13 +149,13 @@ TEST_CASE("a sink stops the preparation of a picture between its steps") {
     options.machine.device = "cpu";
     options.no_cache = true;
     for (const int step : {0, 1}) { // after reading, and after building trees
-        test::AskedSink stops(step);
+        test::StopAfter stops(step);
         const auto error = test::thrown_error([&] { prepare_render(options, kRender, stops, {}); });
         REQUIRE(error.has_value());
         CHECK(error->code() == ErrorCode::Interrupted);
         CHECK(stops.asked == step + 1);
     }
-    test::AskedSink never;
+    test::StopAfter never;
     CHECK(prepare_render(options, kRender, never, {})->scene().instances.size() > 1);
 }
 
@@ -166,7 +166,7 @@ TEST_CASE("a frame that a sink stops is discarded, and the next one begins a seq
     Session session(queue, world.prepared, test::mixed_scene_camera(), settings);
     Session fresh(queue, world.prepared, test::mixed_scene_camera(), settings);
     REQUIRE(session.render_frame(0, {}));
-    test::AskedSink stops(0);
+    test::StopAfter stops(0);
     CHECK(!session.render_frame(1, {}, {}, stops));
     REQUIRE(session.render_frame(2, {}));
     REQUIRE(fresh.render_frame(2, {}));

@@ -9,9 +9,9 @@
 #include "base/parallel_for.h"
 #include "session/session.h"
 #include "session/session_bytes.h"
-#include "tests/support/asked_sink.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
+#include "tests/support/stop_after.h"
 
 namespace pertev::test {
 
@@ -79,7 +79,7 @@ inline CheckedPicture check_one_picture(const Scene& scene, RenderSettings setti
 inline void check_goes_on(Session& session, Queue& queue, const Scene& scene, const RenderSettings& settings,
                           const Camera& camera = camera_with_lens()) {
     session.set_settings(settings);
-    if (!queue.is_cuda()) CHECK(session.render(settings.samples, AskedSink(0)) == 0);
+    if (!queue.is_cuda()) CHECK(session.render(settings.samples, StopAfter(0)) == 0);
     ProgressSink until_first([](const Progress& now) { return now.samples_done == 0; });
     CHECK(session.render(settings.samples, until_first) == 1);
     RenderSettings short_of_time = settings;

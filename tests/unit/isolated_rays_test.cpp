@@ -3,9 +3,9 @@
 #include <doctest/doctest.h>
 
 #include "lab/isolated_rays.h"
-#include "tests/support/asked_sink.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
+#include "tests/support/stop_after.h"
 
 using namespace pertev;
 
@@ -24,14 +24,14 @@ TEST_CASE("rays of each kind have a rate, and the sink can stop the measurement"
     const TracerChoice choice = default_tracers(queue.is_cuda());
     const PreparedScene prepared =
         prepare_scene(scene, {.bvh = {}, .bvh_cache = {}, .tracers = choice, .keep_coordinates = true}, messages);
-    test::AskedSink sink;
+    test::StopAfter sink;
     const IsolatedRates rates =
         measure_isolated_rays(queue, scene, test::mixed_scene_camera(), prepared, choice, 1000, sink);
     CHECK(rates.camera > 0);
     CHECK(rates.bounce > 0);
     CHECK(rates.shadow > 0);
     CHECK(sink.asked > 5);
-    test::AskedSink stops(3);
+    test::StopAfter stops(3);
     CHECK_THROWS_AS(measure_isolated_rays(queue, scene, test::mixed_scene_camera(), prepared, choice, 1000, stops),
                     Error);
 }

@@ -12,12 +12,12 @@
 #include "integrators/kinds/make_integrator.h"
 #include "radiosity/corner_light.h"
 #include "radiosity/solve_memory.h"
-#include "tests/support/asked_sink.h"
 #include "tests/support/cpu_seconds.h"
 #include "tests/support/options.h"
 #include "tests/support/radiosity_scenes.h"
 #include "tests/support/random.h"
 #include "tests/support/render_scenes.h"
+#include "tests/support/stop_after.h"
 #include "tests/support/thrown_error.h"
 
 using namespace pertev;
@@ -381,7 +381,7 @@ TEST_CASE("a scene that cannot be solved is refused") {
     const auto error = test::thrown_error([&] { solve_radiosity(prepared, quick_settings(), stop); });
     CHECK(error.has_value());
     CHECK(error->code() == ErrorCode::Interrupted);
-    test::AskedSink asked(0); // stops without progress
+    test::StopAfter asked(0); // stops without progress
     const auto again = test::thrown_error([&] { solve_radiosity(prepared, quick_settings(), asked); });
     CHECK(again->code() == ErrorCode::Interrupted);
 }

@@ -16,10 +16,10 @@
 #include "render/update_scene.h"
 #include "session/session.h"
 #include "session/session_bytes.h"
-#include "tests/support/asked_sink.h"
 #include "tests/support/meshes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
+#include "tests/support/stop_after.h"
 
 using namespace pertev;
 
@@ -457,14 +457,14 @@ TEST_CASE("a render that a sink stops adds nothing unfinished, and the next pict
     RenderSettings settings = queued_settings();
     settings.body = PathBody::Loop;
     Session session(queue, mixed.prepared, camera_at(0), settings);
-    CHECK(session.render(3, test::AskedSink(1)) == 0); // while the first pass is under way
+    CHECK(session.render(3, test::StopAfter(1)) == 0); // while the first pass is under way
     CHECK(session.history().samples == 0);
     CHECK(session.render(1) == 1);
     settings.pass_samples = 1;
     session.set_settings(settings);
-    CHECK(session.render(3, test::AskedSink(0)) == 1); // a pass is finished once there is a sample to lose
+    CHECK(session.render(3, test::StopAfter(0)) == 1); // a pass is finished once there is a sample to lose
     session.interrupt_passes(true);
-    CHECK(session.render(3, test::AskedSink(1)) == 0);
+    CHECK(session.render(3, test::StopAfter(1)) == 0);
     CHECK(session.history().samples == 2);
     Session fresh(queue, mixed.prepared, camera_at(0), settings);
     fresh.render(2);
@@ -479,6 +479,6 @@ TEST_CASE("a render that a sink stops adds nothing unfinished, and the next pict
     CHECK(session.render(9, InSecondPass()) == 0); // samples of the call are not kept
     settings.denoise = Denoise::Svgf;
     session.set_settings(settings);
-    CHECK(session.render(2, test::AskedSink(3)) == 0); // while surfaces are passed to the denoiser
+    CHECK(session.render(2, test::StopAfter(3)) == 0); // while surfaces are passed to the denoiser
     CHECK(session.history().samples == 0);
 }

@@ -9,8 +9,8 @@
 
 namespace pertev::test {
 
-struct AskedSink final : Sink {
-    explicit AskedSink(int times = INT_MAX) : most(times) {}
+struct StopAfter final : Sink {
+    explicit StopAfter(int times = INT_MAX) : most(times) {}
     bool should_stop() override { return ++asked > most; }
     int most;
     std::atomic<int> asked = 0;
