@@ -25,8 +25,9 @@ add_custom_command(OUTPUT ${PERTEV_GENERATED_DIR}/builtin_scenes.cpp
   COMMENT "Embedding the built-in scenes" VERBATIM)
 target_sources(pertev_formats PRIVATE ${PERTEV_GENERATED_DIR}/builtin_scenes.cpp)
 
-# The laboratory's page, and the table of what is measured.
-file(GLOB embedded_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/lab/page/* ${PROJECT_SOURCE_DIR}/bench/jobs.json)
+# The laboratory's page, and the tables of what is measured and of what other programs reached.
+file(GLOB embedded_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/lab/page/* ${PROJECT_SOURCE_DIR}/bench/jobs.json
+     ${PROJECT_SOURCE_DIR}/bench/figures.json)
 list(JOIN embedded_files "|" embedded_list)
 add_custom_command(OUTPUT ${PERTEV_GENERATED_DIR}/embedded_files.cpp
   DEPENDS ${embedded_files} ${PROJECT_SOURCE_DIR}/cmake/embed_files.cmake

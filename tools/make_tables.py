@@ -6,7 +6,7 @@
     tools/make_tables.py --self-test
 
 A document has `<!-- table: results/FILE.json NAME -->` ... `<!-- end -->`. After the name may stand `columns=KEY,KEY` and
-`where=KEY:VALUE|VALUE`, which select columns and rows. `<!-- figures -->` ... `<!-- end -->` holds the rows of bench/figures.json.
+`where=KEY:VALUE|VALUE`, which select columns and rows. `<!-- figures -->` ... `<!-- end -->` holds the `table` of bench/figures.json.
 Numbers keep the digits that the JSON has. A unit that all columns of figures share stands once, in the head of the first column.
 
 `date` is when a file was measured; a day alone is that on which the commit `recorded` brought the last of its figures. `program`
@@ -97,6 +97,20 @@ def origin_faults(measured):
         yield "a device has a driver"
 
 
+def peer_faults(files, peers):
+    """Messages about figures of other programs in a measurement that are not those of bench/figures.json, to the digits that are written."""
+    kept = [("results/jobs_h200.json", "jobs", "jobs", {"mitsuba_3_9": ("mitsuba", 1e-6), "pbrt_v4": ("pbrt", 1e-6)}),
+            ("results/device_builds_h200.json", "builds", "scenes", {key: (f"{key}_s", 1e3) for key in ("optix_fast_trace", "optix_fast_build")})]
+    for name, table, group, columns in kept:
+        table = next(one for one in files[name]["tables"] if one["name"] == table)
+        keys = [column["key"] for column in table["columns"]]
+        for row, reached in zip(table["rows"], peers[group].values(), strict=True):
+            for key, (source, unit) in columns.items():
+                figure = row[keys.index(key)]
+                if abs(figure - unit * reached[source]) > 0.02 * figure:
+                    yield f"{name}: {row[0]}: {key} is {figure}, in bench/figures.json {unit * reached[source]:g}"
+
+
 def unknown_commits(files):
     """Messages about commits that Git has not got; none where there is no Git, or not its whole history."""
     named = [(name, commit) for name, measured in files.items() for key in ("program", "recorded")
@@ -160,7 +174,7 @@ def render(path, measured, name, options):
 
 
 def figures(rows, read):
-    """The table of bench/figures.json. In its texts {KEY} stands for a value of the row whose first cell is `row`, and {KEY / OTHER} for a
+    """The `table` of bench/figures.json. In its texts {KEY} stands for a value of the row whose first cell is `row`, and {KEY / OTHER} for a
     ratio of two; without `row` a value is the geometric mean of the column."""
     lines = ["| what | Pertev | beside | ratio | data |", "|---|---:|---:|---:|---|"]
     for one in rows:
@@ -183,7 +197,7 @@ def figures(rows, read):
 
 def remade(text, read):
     text = MARKER.sub(lambda m: m[1] + render(m[2], read(m[2]), m[3], m[4]) + m[6], text)
-    return FIGURES.sub(lambda m: m[1] + figures(json.loads((ROOT / "bench/figures.json").read_text(encoding="utf-8")), read) + m[3], text)
+    return FIGURES.sub(lambda m: m[1] + figures(json.loads((ROOT / "bench/figures.json").read_text(encoding="utf-8"))["table"], read) + m[3], text)
 
 
 def self_test():
@@ -205,6 +219,10 @@ def self_test():
     assert faults_of("x", {**good, "unknown": {"date": "Why."}}) and faults_of("x", {**good, "recorded": "0adaae0"})
     assert not faults_of("x", {**good, "date": "2026-11-26", "recorded": "0adaae0"})
     assert unknown_commits({}) == [] and len(unknown_commits({"x": {"recorded": "0" * 9}})) in (0, 1)
+    tables = {"results/jobs_h200.json": {"tables": [{"name": "jobs", "columns": [{"key": key} for key in ("j", "mitsuba_3_9", "pbrt_v4")], "rows": [["S", 9.5, 7]]}]},
+              "results/device_builds_h200.json": {"tables": [{"name": "builds", "columns": [], "rows": []}]}}
+    for mitsuba, count in ((9.5e6, 0), (9.0e6, 1)):
+        assert len(list(peer_faults(tables, {"jobs": {"S": {"mitsuba": mitsuba, "pbrt": 7e6}}, "scenes": {}}))) == count
     text = render("results/x.json", good, "a", "")
     one_unit = {**good, "tables": [{**good["tables"][0], "columns": [{**column, "unit": "s" if k else None} for k, column in enumerate(good["tables"][0]["columns"])]}]}
     assert "| scene, s | rays | seconds |" in render("results/x.json", one_unit, "a", "")
@@ -235,6 +253,7 @@ def main(arguments):
         seen[name] = load(path.read_text(encoding="utf-8"))
         faults += faults_of(name, seen[name])
     faults += unknown_commits(seen)
+    faults += peer_faults(seen, json.loads((ROOT / "bench/figures.json").read_text(encoding="utf-8")))
     for document in sorted([*(ROOT / "docs").glob("*.md"), ROOT / "README.md"]):
         text = document.read_text(encoding="utf-8")
         if text.count("<!-- table:") != len(MARKER.findall(text)):

@@ -22,21 +22,24 @@ uint32_t count_of(const JsonValue& value, std::string_view key) {
 }
 double number_of(const JsonValue& value, std::string_view key) { return value.at(key).to_double(); }
 
-RecordScene scene_of(const JsonValue& value) {
-    RecordScene scene = {.name = value.string_or("name", ""),
+RecordScene scene_of(const JsonValue& value, const JsonValue& figures) {
+    const std::string name(value.string_or("name", ""));
+    const JsonValue reached = figures.at("scenes").at(name), rays = reached.at("rays");
+    RecordScene scene = {.name = name,
                          .file = value.string_or("file", ""),
                          .triangles = count_of(value, "triangles"),
                          .view = view_of(value),
-                         .optix_fast_trace_s = number_of(value, "optix_fast_trace_s"),
-                         .optix_fast_build_s = number_of(value, "optix_fast_build_s")};
+                         .optix_fast_trace_s = number_of(reached, "optix_fast_trace_s"),
+                         .optix_fast_build_s = number_of(reached, "optix_fast_build_s")};
     for (const JsonValue& set : value.elements_of("sets")) {
-        scene.sets.push_back({set.string_or("name", ""), number_of(set, "hit_share"), number_of(set, "nodes"),
-                              number_of(set, "triangles"), number_of(set, "best_rays_per_second")});
+        const std::string kind(set.string_or("name", ""));
+        scene.sets.push_back({kind, number_of(set, "hit_share"), number_of(set, "nodes"), number_of(set, "triangles"),
+                              number_of(rays.at(kind), "best_rays_per_second")});
     }
     return scene;
 }
 
-RecordJob job_of(const JsonValue& value, const std::vector<RecordScene>& scenes) {
+RecordJob job_of(const JsonValue& value, const std::vector<RecordScene>& scenes, const JsonValue& figures) {
     RecordJob job = {.name = value.string_or("name", ""),
                      .filter = value_named<PixelFilter>(value.at("filter").to_string()).value(),
                      .width = count_of(value, "width"),
@@ -44,10 +47,12 @@ RecordJob job_of(const JsonValue& value, const std::vector<RecordScene>& scenes)
                      .samples = count_of(value, "samples"),
                      .max_depth = count_of(value, "max_depth"),
                      .triangles = value.at("triangles").to_unsigned(),
-                     .mean = number_of(value, "mean"),
-                     .mitsuba = number_of(value, "mitsuba"),
-                     .cycles = number_of(value, "cycles"),
-                     .pbrt = number_of(value, "pbrt")};
+                     .mean = number_of(value, "mean")};
+    if (const auto reached = figures.at("jobs").find(job.name)) {
+        job.mitsuba = number_of(*reached, "mitsuba");
+        job.cycles = number_of(*reached, "cycles");
+        job.pbrt = number_of(*reached, "pbrt");
+    }
     if (value.find("reflectance")) job.reflectance = value.at("reflectance").to_float();
     if (value.find("eye")) job.view = view_of(value);
     if (value.find("scene")) job.view = find_named(scenes, value.at("scene").to_string())->view;
@@ -66,11 +71,11 @@ TransportPreset preset_of(const JsonValue& value) {
 }
 
 Record read_record() {
-    const JobTable table;
-    const JsonValue& root = table.root();
-    Record read = {.device = root.string_or("device", "")};
-    for (const JsonValue& value : root.elements_of("scenes")) read.scenes.push_back(scene_of(value));
-    for (const JsonValue& value : root.elements_of("jobs")) read.jobs.push_back(job_of(value, read.scenes));
+    const JobTable table, others("figures.json");
+    const JsonValue &root = table.root(), &figures = others.root();
+    Record read = {.device = figures.string_or("device", "")};
+    for (const JsonValue& value : root.elements_of("scenes")) read.scenes.push_back(scene_of(value, figures));
+    for (const JsonValue& value : root.elements_of("jobs")) read.jobs.push_back(job_of(value, read.scenes, figures));
     for (const JsonValue& value : root.elements_of("presets")) read.presets.push_back(preset_of(value));
     return read;
 }

@@ -1,8 +1,8 @@
 #pragma once
 
-// The table of jobs, bench/jobs.json, which the build puts into the program: scenes whose rays other tracers were
-// timed on, jobs that other renderers were timed on, scenes that show what each integrator is good at, and what other
-// programs reached on one card.
+// The tables bench/jobs.json and bench/figures.json: scenes whose rays other tracers were timed on, jobs that other
+// renderers were timed on, scenes that show what each integrator is good at, and what other programs reached on one
+// card.
 
 #include <array>
 #include <optional>

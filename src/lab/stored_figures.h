@@ -1,6 +1,6 @@
 #pragma once
 
-// Comparison with stored figures (bench/jobs.json): what public tracers, builders and renderers reached on one
+// Comparison with stored figures (bench/figures.json): what public tracers, builders and renderers reached on one
 // NVIDIA H200 at what `pertev bench rays`, `build` and `render` measure. A run is on the record only if device, scene
 // and job are those of the figure:
 // - the device has the card's very name: "NVIDIA H200 NVL" is another card, and a slice of one has a name of its own;
