@@ -7,7 +7,7 @@ speaks of internal targets, or a picture has no licence in docs/notices.md.
     tools/check_documents.py --links      asks for the documents' external links instead
     tools/check_documents.py --self-test
 
-tests/robust/cli_documents_test.py runs the commands that commands() finds, and looks at the verbs and flags of own_commands().
+tests/robust/cli_documents_test.py runs the commands that commands() finds, or asks their programs what they would do, and looks at the verbs and flags of own_commands().
 """
 
 import ast
@@ -21,7 +21,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 MOST_WORDS, MOST_FILES_OF_TOUR = 40_000, 40
 SOURCE = re.compile(r"`([\w./-]+\.(?:h|inl|cpp|cu|py|sh|js|md|cmake))`")
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
-COMMAND = re.compile(r"(?:build/bin/|bench/|tools/|tests/)[\w./-]+|pertev\b|\./setup\.sh|cmake|ctest|python3")
+COMMAND = re.compile(r"(?:build/bin/|bench/|tools/|tests/)[\w./-]+|pertev\b|\./setup\.sh|cmake|ctest|ninja|python3")
 TARGETS = re.compile(r"(?i)\b(?:was|were) asked for|\basked for were|\bhoped for\b|(?<![`|\w])S[58](?![`|\w])")
 FLAG = re.compile(r"(?<![\w/-])--[a-z][a-z-]*[a-z]")
 FOLDERS = ["src", "apps", "tests", "tools", "bench", "cmake", "docs", "examples", "packaging", "scenes"]
@@ -106,7 +106,8 @@ def script_faults(name, command):
 
 def command_faults(name, text, presets):
     """Faults of scripts and presets that commands name. The test runs the commands of the program itself."""
-    for command in commands(text):
+    sentences = re.findall(r"(?<!`)`((?:tools|tests|bench)/[^`]*)`", "\n".join(without_fences(text)))
+    for command in [*commands(text), *sentences]:
         yield from script_faults(name, command)
         if match := re.search(r"--preset (\S+)", command):
             if command.startswith("cmake") and match[1] not in presets:
@@ -208,7 +209,7 @@ def self_test():
     assert not list(link_faults(here, "[a](tour.md#some) [b](https://x.y)", lambda _: "# Some"))
     assert list(source_faults("x", "`render/none.h`", ["src/render/film.h"]))
     assert not list(source_faults("x", "`render/film.h` `film.h` `src/render/film.h`", ["src/render/film.h"]))
-    assert list(command_faults("x", "    tools/none.py a", [])) and list(command_faults("x", "    cmake --preset none", ["cpu"]))
+    assert list(command_faults("x", "a `tools/check_sizes.py --none` b", [])) and list(command_faults("x", "    tools/none.py a", [])) and list(command_faults("x", "    cmake --preset none", ["cpu"]))
     assert list(script_faults("x", "tools/check_sizes.py --none")) and list(script_faults("x", "bench/none a"))
     assert not list(script_faults("x", "tools/check_sizes.py -- --none")) and not list(script_faults("x", "bench/trace_bench"))
     assert list(own_faults("x", "tools/none.py or --none", "", "")) and not list(own_faults("x", "--a-b, --c", '"--a-b"', '"--c"'))

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Each command of README.md, CONTRIBUTING.md and docs/ that begins with the program is run, on small stand-ins for the files that it names and at
 small sizes. Commands in PARSED take too long, or need a server, a GPU or a public scene; of these the verb and the flags must exist.
-`tools/check_documents.py` looks at links, scripts and presets."""
+Other programs' commands are asked what they would do: CTest which tests it would run, CMake for its presets, Ninja for its targets, scripts
+for their help, which has their flags. `tools/check_documents.py` looks at links and at scripts in sentences."""
 
 import functools
 import json
@@ -14,7 +15,7 @@ import subprocess
 import sys
 import unittest
 
-from cli_run import CliTest
+from cli_run import CliTest, PROGRAM
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
@@ -25,6 +26,8 @@ SMALL = {"--size": "24x16", "--spp": "1", "--seconds": "0.3", "--depths": "1-2",
          "--frames": "0-1"}
 ADDED = {"render": ["--size", "--spp"], "lab": ["--size", "--runs"], "lab --transport": ["--size", "--seconds", "--repetitions", "--reference-spp"],
          "bench": ["--size", "--spp"], "bench noise": ["--size", "--spp"], "measure": ["--spp"]}
+BUILD = pathlib.Path(PROGRAM).resolve().parents[1]
+ALONE = {"tools/make_tables.py": ["--check"]} # it writes otherwise
 QUICK = {"solve radiosity": ["--patch-size", "0.3", "--patch-rays", "16"], "lab": ["--no-heat-maps"],
          "bench": ["--device", "cpu"], "lab --transport": []}
 
@@ -124,13 +127,49 @@ class Commands(CliTest):
         self.assertIn("--restir", self.flags_of("view"))
         self.assertEqual(self.run_pertev(*made_small(shlex.split("render cornell-box -o a.png --no-such-flag"))).status, 2)
 
-    def test_scripts_in_tools_state_their_usage(self):
-        named = {word for document in check_documents.documents(ROOT)
-                 for command in check_documents.commands(document.read_text(encoding="utf-8"))
-                 for word in command.split() if word.startswith("tools/")}
-        self.assertGreater(len(named), 3)
-        for name in named:
-            self.assertTrue(os.access(ROOT / name, os.X_OK), f"{name} is not executable")
+    def said(self, *command):
+        """What a command says that must succeed, in the folder of the sources."""
+        done = subprocess.run([str(word) for word in command], cwd=ROOT, capture_output=True, text=True, check=False, timeout=120)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return done.stdout
+
+    def check_other(self, words):
+        """A command of another program would do something. Scripts without arguments only read, but for ALONE."""
+        program, flags = words[0], [word.split("=")[0] for word in words if word.startswith("--")]
+        if program == "ctest":
+            listed = self.said("ctest", *[BUILD if word == "build" else word for word in words[1:]], "-N")
+            self.assertGreater(int(re.search(r"Total Tests: (\d+)", listed)[1]), 0)
+        elif program == "cmake":
+            presets = self.said("cmake", *(["--build"] if "--build" in words else []), "--list-presets")
+            self.assertIn(f'"{words[words.index("--preset") + 1]}"', presets)
+        elif program == "ninja":
+            self.said("ninja", "-C", BUILD, "-t", "query", words[-1])
+        elif re.match(r"build/bin/pertev_\w*tests$", program):
+            name = program.rpartition("/")[2]
+            if (BUILD / "bin" / name).exists():
+                chosen = [word for word in words if word.startswith("--test-case")]
+                self.assertGreater(int(re.search(r"filters: (\d+)", self.said(BUILD / "bin" / name, "--count", *chosen))[1]), 0)
+            else:
+                self.said("ninja", "-C", BUILD, "-t", "query", name)
+        elif program == "./setup.sh" or program.endswith(".py"):
+            usage = self.said(*([sys.executable] if program.endswith(".py") else []), ROOT / program, *(["--help"] if program == "./setup.sh" or words[1:] else ALONE.get(program, [])))
+            self.assertFalse([flag for flag in flags if flag not in usage])
+        else:
+            self.said("bash", "-n", ROOT / program)
+
+    @unittest.skipUnless((BUILD / "build.ninja").exists() and (BUILD / "CTestTestfile.cmake").exists(), "needs the folder of a build")
+    def test_commands_of_other_programs_would_do_something(self):
+        asked = set()
+        for document in check_documents.documents(ROOT):
+            for command in check_documents.commands(document.read_text(encoding="utf-8")):
+                words = shlex.split(re.sub(r"^[A-Z_]+=\S+ ", "", command))
+                if words[0] not in ("pertev", "build/bin/pertev"):
+                    with self.subTest(document=document.name, command=command):
+                        self.assertTrue(not words[0].startswith(("tools/", "./")) or os.access(ROOT / words[0], os.X_OK), "not executable")
+                        words = words[1:] if words[0] == "python3" else words
+                        self.check_other(words)
+                        asked.add(words[0])
+        self.assertGreaterEqual(asked, {"ctest", "cmake", "ninja", "./setup.sh", "tools/measure.py", "build/bin/pertev_tests"})
 
 
 if __name__ == "__main__":
