@@ -7,7 +7,8 @@ speaks of internal targets, or a picture has no licence in docs/notices.md.
     tools/check_documents.py --links      asks for the documents' external links instead
     tools/check_documents.py --self-test
 
-tests/robust/cli_documents_test.py runs the commands that commands() finds, or asks their programs what they would do, and looks at the verbs and flags of own_commands().
+tests/robust/cli_documents_test.py runs the commands that commands() finds, or asks their programs what they would do. It looks at the verbs
+and flags of own_commands().
 """
 
 import ast
@@ -25,7 +26,7 @@ COMMAND = re.compile(r"(?:build/bin/|bench/|tools/|tests/)[\w./-]+|pertev\b|\./s
 TARGETS = re.compile(r"(?i)\b(?:was|were) asked for|\basked for were|\bhoped for\b|(?<![`|\w])S[58](?![`|\w])")
 FLAG = re.compile(r"(?<![\w/-])--[a-z][a-z-]*[a-z]")
 FOLDERS = ["src", "apps", "tests", "tools", "bench", "cmake", "docs", "examples", "packaging", "scenes"]
-# This section names files that do not exist yet.
+# This section's table has new files, which do not exist yet, and existing files that a change touches, with their number.
 ON_PAPER = "## Fourteen changes on paper"
 
 
@@ -82,14 +83,29 @@ def link_faults(document, text, read):
             yield f"{document.name}: {path or document.name} has no heading #{anchor}"
 
 
+def ends_of(tracked):
+    """The paths of files below any of their folders."""
+    return {"/".join(path.split("/")[i:]) for path in tracked for i in range(path.count("/") + 1)}
+
+
 def source_faults(name, text, tracked):
     for script in sorted(set(re.findall(r"`((?:tools|tests|bench)/[\w./]+)[ `]", text))):
         if not (ROOT / script).exists() and not (ROOT / f"{script}.cpp").exists():
             yield f"{name}: {script} is not there"
-    ends = {"/".join(path.split("/")[i:]) for path in tracked for i in range(path.count("/") + 1)}
+    ends = ends_of(tracked)
     for source in sorted({name.removeprefix("./") for name in SOURCE.findall(text.split(ON_PAPER)[0])}):
         if source not in ends and not re.search(r"NAME|FAMILY|[a-z]+_lobe\.h$", source):
             yield f"{name}: no file is called {source}"
+
+
+def change_faults(text, ends):
+    """Faults of the table of changes: files to be touched that are not there, and numbers that are not those of the files."""
+    for row in re.findall(r"(?m)^\| (?!change )(.*) \| .* \| (\d+(?: \([^|]*?\))?: .*) \|$", text.split(ON_PAPER)[-1]):
+        for part in row[1].split("; "):
+            names = re.findall(r"`([\w./]+\.(?:h|cpp|txt|toml|sh))`", part)
+            yield from (f"architecture.md: {row[0]}: {name} is not there" for name in names if name not in ends)
+            if (number := re.match(r"(\d+)(?: \([^)]*\))?:", part)) and int(number[1]) != len(names):
+                yield f"architecture.md: {row[0]}: {number[1]} files are {len(names)}"
 
 
 def script_faults(name, command):
@@ -185,6 +201,8 @@ def faults_of_all():
         if document.name != "CHANGELOG.md": # it names files that are gone
             yield from source_faults(document.name, text, tracked)
         yield from command_faults(document.name, text, presets)
+        if document.name == "architecture.md":
+            yield from change_faults(text, ends_of(tracked))
         yield from (f"{document.name}: an internal target or a job's number: {match[0]}" for match in TARGETS.finditer(text))
         if document.name == "tour.md" and len(set(SOURCE.findall(text))) > MOST_FILES_OF_TOUR:
             yield f"tour.md names {len(set(SOURCE.findall(text)))} files; {MOST_FILES_OF_TOUR} is the most"
@@ -209,6 +227,8 @@ def self_test():
     assert not list(link_faults(here, "[a](tour.md#some) [b](https://x.y)", lambda _: "# Some"))
     assert list(source_faults("x", "`render/none.h`", ["src/render/film.h"]))
     assert not list(source_faults("x", "`render/film.h` `film.h` `src/render/film.h`", ["src/render/film.h"]))
+    table = ON_PAPER + "\n| change | own | outside |\n| x | `new.h` | {}: `a/b.h`, `c.h` |\n"
+    assert len(list(change_faults(table.format(2), {"a/b.h"}))) == 1 and len(list(change_faults(table.format(3), {"a/b.h", "c.h"}))) == 1
     assert list(command_faults("x", "a `tools/check_sizes.py --none` b", [])) and list(command_faults("x", "    tools/none.py a", [])) and list(command_faults("x", "    cmake --preset none", ["cpu"]))
     assert list(script_faults("x", "tools/check_sizes.py --none")) and list(script_faults("x", "bench/none a"))
     assert not list(script_faults("x", "tools/check_sizes.py -- --none")) and not list(script_faults("x", "bench/trace_bench"))
