@@ -80,25 +80,25 @@ class Clips(CliTest):
     def test_the_error_for_an_unknown_animation_lists_the_known_ones(self):
         write(self.path("still.gltf"), gltf([]))
         write(self.path("floor.obj"), "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n")
-        for words, says in [("jump", ["--animation jump: no such",  "go", "rise", "2 (twin)", "3 (twin)", "4"]), ("7", ["--animation 7: no such"]),
-                            ("twin", ["--animation twin: 2 animations are called so", "number", "2 (twin)"]), ("-1", ["--animation -1: no such"])]:
+        for words, says in [("jump", ["--animation jump: ", "go", "rise", "2 (twin)", "3 (twin)", "4"]), ("7", ["--animation 7: "]),
+                            ("twin", ["--animation twin: ", "2 (twin)", "3 (twin)"]), ("-1", ["--animation -1: "])]:
             self.refuse(2, "render", "m.gltf", "-o", "x.png", *TINY, "--time", "1", f"--animation={words}", says=["m.gltf", *says])
         for scene in ["still.gltf", "floor.obj", "cornell-box"]:
             for words in ["go", "0", "all"]:
-                self.refuse(2, "render", scene, "-o", "x.png", *TINY, "--animation", words, says=[scene, "has no animations"])
+                self.refuse(2, "render", scene, "-o", "x.png", *TINY, "--animation", words, says=[scene, "--animation"])
         self.refuse(2, "render", "m.gltf", "-o", "x.png", "--animation", "", says=["--animation"])
 
     def test_a_notice_names_the_animation_that_plays_by_default(self):
-        def said(*arguments, scene="m.gltf"):
-            return self.succeed("render", scene, "-o", "x.png", *TINY, *arguments).stderr
+        def notices(about, *arguments, scene="m.gltf"):
+            return [event["reason"] for event in self.remarks("render", scene, "-o", "x.png", *TINY, *arguments, about=about)]
 
-        self.assertRegex(said("--time", "1"), "7 animations.* go; --animation ")
-        self.assertIn("2 (twin), 3 (twin), 4, 1, dim", said("--time", "1"))
-        for text in [said("--time", "1", "--animation", "rise"), said("--time", "1", scene="alone-0.gltf")]:
-            self.assertNotIn("--animation", text)
-        self.assertIn("its 1 animation (0 to 2 s)", said())
-        self.assertIn("its 1 animation (0 to 3 s)", said("--animation", "4"))
-        self.assertIn("its 7 animations (0 to 4 s)", said("--animation", "all"))
+        (which,) = notices("animation", "--time", "1")
+        self.assertRegex(which, r"\b7\b.*\bgo\b.*2 \(twin\), 3 \(twin\), 4, 1, dim")
+        self.assertEqual(notices("animation", "--time", "1", "--animation", "rise"), [])
+        self.assertEqual(notices("animation", "--time", "1", scene="alone-0.gltf"), [])
+        for arguments, end in [([], 2), (["--animation", "4"], 3), (["--animation", "all"], 4)]:
+            (times,) = notices("time", *arguments)
+            self.assertIn(f"0 to {end} s", times)
         told = self.info("m.gltf")
         self.assertEqual(told["animations"], ["go (2 s)", "rise (1 s)", "2 (twin) (1 s)", "3 (twin) (4 s)", "4 (3 s)", "1 (1 s)",
                                               "dim (1 s)"])
@@ -180,13 +180,13 @@ class FileScenes(CliTest):
             self.assertEqual(self.info("one.exr")["pertev.file_scene"], told)
 
     def test_a_notice_names_the_scene_that_is_shown_and_an_unknown_one_is_refused(self):
-        shown = self.succeed("render", "second.gltf", "-o", "x.png", *TINY).stderr
-        self.assertRegex(shown, "3 scenes.*--file-scene .* one, two, 2")
-        self.assertNotIn("--file-scene", self.succeed("render", "m.gltf", "-o", "x.png", *TINY, "--file-scene", "0").stderr)
-        self.refuse(2, "render", "m.gltf", "-o", "y.png", "--file-scene", "three", says=["m.gltf: --file-scene three: no such scene", "one", "two"])
-        self.refuse(2, "render", "cornell-box", "-o", "y.png", "--file-scene", "three", says=["cornell-box: --file-scene three: no such scene"])
+        (shown,) = self.remarks("render", "second.gltf", "-o", "x.png", *TINY, about="file_scene")
+        self.assertRegex(shown["reason"], r"\b3\b.* one, two, 2")
+        self.assertEqual(self.remarks("render", "m.gltf", "-o", "x.png", *TINY, "--file-scene", "0", about="file_scene"), [])
+        self.refuse(2, "render", "m.gltf", "-o", "y.png", "--file-scene", "three", says=["m.gltf: --file-scene three: ", "one", "two"])
+        self.refuse(2, "render", "cornell-box", "-o", "y.png", "--file-scene", "three", says=["cornell-box: --file-scene three: "])
         write(self.path("floor.obj"), "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n")
-        self.refuse(2, "info", "floor.obj", "--file-scene", "0", says=["floor.obj", "has no scenes"])
+        self.refuse(2, "info", "floor.obj", "--file-scene", "0", says=["floor.obj", "--file-scene"])
         self.refuse(2, "info", "x.png", "--file-scene", "0", says=["--file-scene", "x.png"])
 
     def test_info_and_lab_use_the_chosen_scene_of_the_file(self):

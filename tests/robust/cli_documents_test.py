@@ -128,7 +128,7 @@ class Commands(CliTest):
         self.assertEqual(self.run_pertev(*made_small(shlex.split("render cornell-box -o a.png --no-such-flag"))).status, 2)
 
     def said(self, *command):
-        """What a command says that must succeed, in the folder of the sources."""
+        """The output of a command in the folder of the sources, which must succeed."""
         done = subprocess.run([str(word) for word in command], cwd=ROOT, capture_output=True, text=True, check=False, timeout=120)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         return done.stdout

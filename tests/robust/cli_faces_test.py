@@ -28,8 +28,10 @@ class FacesTest(CliTest):
         write(self.path("lamp.obj"), LAMP)
         write(self.path("sheet.gltf"), gltf_with_cameras())  # nothing in it is double sided
 
-    def said(self, *arguments):
-        return self.succeed("render", *arguments, "-o", "x.png", "--size", "16x16", "--spp", "1", "--device", "cpu").stderr
+    def told(self, about, *arguments):
+        """Kind, file and reason of each remark about a setting."""
+        return [(event["event"], event.get("place", {}).get("file"), event["reason"]) for event in self.remarks(
+            "render", *arguments, "-o", "x.png", "--size", "16x16", "--spp", "1", "--device", "cpu", about=about)]
 
     def mean(self, *arguments, scene):
         self.render(*arguments, scene=scene, output="x.exr", spp=8)
@@ -45,11 +47,11 @@ class FacesTest(CliTest):
         self.assertGreater(both, front + 0.1)
 
     def test_one_sided_emitters_of_an_obj_are_reported_with_the_flag_for_two_sides(self):
-        said = self.said("lamp.obj")
-        self.assertRegex(said, r"note: lamp\.obj: 1 emitter with light on the front only: bulb; .*--two-sided-lights")
-        self.assertNotIn("turn its faces round", said)
-        self.assertNotIn("bulb", self.said("lamp.obj", "--two-sided-lights"))
-        self.assertNotIn("on the front only", self.said("cornell-box"))
+        ((kind, file, reason),) = self.told("two_sided_lights", "lamp.obj")  # no warning of fronts beside it
+        self.assertEqual((kind, file), ("notice", "lamp.obj"))
+        self.assertRegex(reason, r"\b1\b.*\bbulb\b")
+        self.assertEqual(self.told("two_sided_lights", "lamp.obj", "--two-sided-lights"), [])
+        self.assertEqual(self.told("two_sided_lights", "cornell-box"), [])
 
     def test_the_camera_sees_through_back_faces_unless_they_are_requested(self):
         hidden = self.render(*FROM_BEHIND, scene="sheet.gltf")["hash"]
@@ -59,19 +61,18 @@ class FacesTest(CliTest):
         self.mean(*FROM_BEHIND, "--show-back-faces", scene="sheet.gltf")
 
     def test_a_view_through_back_faces_is_reported_with_the_flag_that_shows_them(self):
-        said = self.said("sheet.gltf", *FROM_BEHIND)
-        self.assertRegex(said, r"note: the camera looks through the backs of surfaces at \d+ % of the picture.*"
-                               r"--show-back-faces")
+        ((kind, _, reason),) = self.told("show_back_faces", "sheet.gltf", *FROM_BEHIND)
+        self.assertEqual(kind, "notice")
+        self.assertRegex(reason, r"\b\d+ %")
         for quiet in [["sheet.gltf"], ["sheet.gltf", *FROM_BEHIND, "--show-back-faces"],
                       ["sheet.gltf", "--eye", "0,0,-60", "--target", "0,0,0"], ["lamp.obj", *FROM_ABOVE]]:
-            self.assertNotIn("looks through", self.said(*quiet), quiet)
-        shares = {self.said("sheet.gltf", *FROM_BEHIND, "--threads", threads).split("surfaces at ")[1].split(" %")[0]
-                  for threads in [1, 2]}
-        self.assertEqual(len(shares), 1)
+            self.assertEqual(self.told("show_back_faces", *quiet), [], quiet)
+        for threads in [1, 2]:
+            self.assertEqual(self.told("show_back_faces", "sheet.gltf", *FROM_BEHIND, "--threads", threads)[0][2], reason)
 
     def test_face_flags_without_effect_on_a_scene_cause_a_warning(self):
-        self.assertIn("warning: --two-sided-lights: ", self.said("sheet.gltf", "--two-sided-lights"))
-        self.assertIn("warning: --show-back-faces: ", self.said("lamp.obj", "--show-back-faces"))
+        for flag, scene in [("two-sided-lights", "sheet.gltf"), ("show-back-faces", "lamp.obj")]:
+            self.assertEqual([kind for kind, _, _ in self.told(flag.replace("-", "_"), scene, "--" + flag)], ["warning"])
 
 
 if __name__ == "__main__":

@@ -78,7 +78,7 @@ class Integrators(CliTest):
                 "irradiance_cache", "--accuracy", "0.02", "--hemisphere-rays", "4096"]  # hours of records
         for flags in [[], ["--json"]]:
             began = time.monotonic()
-            outcome = self.refuse(75, *long, "--time-limit", "0.5", *flags, says=["--time-limit 0.5", "no sample was finished"])
+            outcome = self.refuse(75, *long, "--time-limit", "0.5", *flags, says=["--time-limit 0.5"])
             self.assertLess(time.monotonic() - began, 30, outcome)
             for kind in [signal.SIGINT, signal.SIGTERM]:
                 self.check_nothing_is_kept(kind, *long)
@@ -119,7 +119,7 @@ class Integrators(CliTest):
         write(self.path("lit.gltf"), lit_triangle())
         flags = ["render", "lit.gltf", *VIEW, "-o", "x.exr", "--integrator", "reyes", "--size", "32x24", "--spp", "1", "--device",
                  DEVICE]
-        self.refuse(3, *flags, "--displacement", "skin=heights.png,1000", says=["--displacement", "smaller SCALE"], timeout=120)
+        self.refuse(3, *flags, "--displacement", "skin=heights.png,1000", says=["--displacement"], timeout=120)
         self.succeed(*flags, "--displacement", "skin=heights.png,0.2")
 
     def test_each_layer_changes_the_hash_of_layers(self):

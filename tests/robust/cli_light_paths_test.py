@@ -57,12 +57,12 @@ class Layers(CliTest):
         self.succeed("render", "cornell-box", "-o", "x.exr", *flags, "--max-memory", repr(bytes / 2**20))
         os.remove(self.path("x.exr"))
         self.refuse(4, "render", "cornell-box", "-o", "x.exr", *flags, "--max-memory", repr((bytes - 1) / 2**20),
-                    says=["--max-memory", "100 layers of --lpe", "smaller --size"])
+                    says=["--max-memory", "100 layers of --lpe", "--size"])
         self.refuse(4, "render", "cornell-box", "-o", "x.exr", "--size", "32768x32768", *flags[2:],
-                    says=["the render takes", " has ", "100 layers of --lpe"])  # more than any machine has: 4.8 TiB
+                    says=["100 layers of --lpe"])  # more than any machine has: 4.8 TiB
         for verb in ("view cornell-box", "bench noise cornell-box", "bench frames cornell-box",
                      "bench sequence cornell-box --turntable 2"):
-            self.refuse(4, *verb.split(), "--device", "cpu", "--max-memory", "5", says=["--max-memory: ", "allows 5.0 MiB"])
+            self.refuse(4, *verb.split(), "--device", "cpu", "--max-memory", "5", says=["--max-memory: ", "5.0 MiB"])
 
     def test_wrong_expressions_are_reported_before_anything_is_rendered(self):
         def refuse(status, *flags, says):

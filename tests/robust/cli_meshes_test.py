@@ -37,8 +37,9 @@ class Meshes(CliTest):
         for value, expected in zip(mean, right):
             self.assertAlmostEqual(value, expected, delta=delta, msg=f"{mean}, not {right}")
 
-    def said(self, scene, *flags):
-        return self.succeed("render", scene, "-o", "x.exr", "--size", "8x8", "--spp", "1", *VIEW, *flags).stderr
+    def warnings_of(self, scene):
+        picture = ["-o", "x.png", "--size", "8x8", "--spp", "1", "--device", "cpu"]
+        return [event for event in self.remarks("render", scene, *picture) if event["event"] == "warning"]
 
     def test_unit_and_up_axis_convert_a_file_and_are_in_the_metadata(self):
         pictures = set()
@@ -67,19 +68,21 @@ class Meshes(CliTest):
         self.succeed(*frames, "--unit", "mm", "--continue")
         self.refuse(2, *frames, "--unit", "cm", "--continue", says=["--unit"])
         self.refuse(2, *frames, "--continue", says=["--unit"])
-        said = self.said("cornell-box", "--unit", "mm")
-        self.assertIn("cornell-box: the file is in metres with y up", said)
+        (warning,) = self.remarks("render", "cornell-box", "-o", "x.png", "--size", "8x8", "--spp", "1", "--unit", "mm", about="unit")
+        self.assertEqual((warning["event"], warning["place"]), ("warning", {"file": "cornell-box"}))
 
     def test_files_are_found_with_another_case_or_in_another_folder(self):
         write_png(self.path("Plain.PNG"), (255, 0, 0))
         write(self.path("My Model.mtl"), "newmtl a\nKd 1 1 1\nmap_Kd C:\\Users\\someone\\plain.png -bm 1\n")
         write(self.path("a.obj"), "mtllib my model.MTL\n" + SQUARE.format("") + TEXTURED)
         self.assert_near(self.mean("a.obj"), RED)
-        said = self.said("a.obj")
-        self.assertIn("My Model.mtl is read", said)
-        self.assertIn("Plain.PNG is read", said)
+        of_obj, of_mtl = self.warnings_of("a.obj")
+        self.assertEqual((of_obj["place"]["line"], of_mtl["place"]["line"]), (1, 3))
+        self.assertIn(self.path("My Model.mtl"), of_obj["reason"])
+        self.assertIn(self.path("Plain.PNG"), of_mtl["reason"])
         write_png(self.path("plain.Png"), (0, 255, 0))
-        self.assertIn("2 files match", self.said("a.obj"))
+        candidates = self.warnings_of("a.obj")[1]["reason"]  # both, of which none is read
+        self.assertTrue(self.path("Plain.PNG") in candidates and self.path("plain.Png") in candidates)
 
     def test_ply_files_have_colours_in_bytes_and_textures(self):
         write(self.path("bytes.obj"), SQUARE.format(" 255 128 0") + "f 1 2 3 4\n")
@@ -94,9 +97,11 @@ class Meshes(CliTest):
         for statement in ["Tr 1", "d 0"]:
             write(self.path("a.mtl"), f"newmtl ghost\nKd 1 0 0\n{statement}\n")
             write(self.path("a.obj"), "mtllib a.mtl\n" + SQUARE.format("") + "usemtl ghost\nf 1 2 3 4\n")
-            self.assertIn("ghost is invisible", self.said("a.obj"))
+            (warning,) = self.warnings_of("a.obj")
+            self.assertEqual(warning["place"], {"file": "a.obj"})
+            self.assertIn("ghost", warning["reason"])
         write(self.path("a.mtl"), "newmtl ghost\nKd 1 0 0\nd 1\nTr 1\n")
-        self.assertNotIn("invisible", self.said("a.obj"))
+        self.assertEqual(self.warnings_of("a.obj"), [])
         self.assert_near(self.mean("a.obj"), RED)
 
     def test_exr_metadata_map_ids_to_object_names(self):

@@ -64,7 +64,7 @@ class Denoised(CliTest):
         self.assertEqual(told["pertev.hash"], plain["hash"])
         self.assertNotIn("pertev.denoiser", self.info("plain.exr"))
         said = self.succeed("render", "cornell-box", "-o", "y.exr", "--size", SIZE, "--spp", "4", "--denoise", "oidn", "--device", DEVICE)
-        self.assertIn("before denoising; the files are denoised by Open Image Denoise 2.", said.stdout + said.stderr)
+        self.assertIn("Open Image Denoise 2.", said.stdout + said.stderr)
 
     def test_it_makes_what_pyoidn_makes_of_the_same_layers(self):
         python = next((path for path in [sys.executable, *glob.glob(os.path.join(LIBRARY, "../../../../../../bin/python3"))]

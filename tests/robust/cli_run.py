@@ -107,6 +107,12 @@ class CliTest(unittest.TestCase):
         self.assertEqual(outcome.status, 0, outcome)
         return outcome
 
+    def remarks(self, *arguments, about=None, **options):
+        """The notices and warnings of a command that succeeds, in JSON: all, or those that name the setting `about`."""
+        events = self.succeed(*arguments, "--json", **options).events()
+        return [event for event in events if event["event"] in ("notice", "warning")
+                and (about is None or about == event.get("setting") or about in event.get("settings", {}))]
+
     def refuse(self, status, *arguments, says=(), **options):
         """Ends with this status, says each of `says` on stderr, with --json in an object, and leaves the folder as it
         was."""

@@ -152,7 +152,7 @@ class WhatIsWritten(CliTest):
             arguments = ["render", "hills.obj", "-o", "x.png", "--size", "16x16", "--spp", "1", "--device", "cpu", "--json",
                          *UNMETERED]
             outcome = self.succeed(*arguments, **options)
-            self.assertIn("cache cannot be written", outcome.stdout)
+            self.assertEqual(len([event for event in outcome.events("warning") if "place" in event]), 1)
             self.assertEqual(outcome.events("done")[0]["hash"], whole)
 
         check_warning(preexec_fn=limit_files)
@@ -423,7 +423,6 @@ class WhatIsCompared(CliTest):
         other = self.succeed("compare", "a.exr", "b.exr", "--json").events("compare")[0]
         self.assertFalse(other["equal"])
         self.assertGreater(min(other[key] for key in ["rel_mse", "mse", "flip", "hdr_flip"]), 0)
-        self.assertIn("the same to the last bit", self.succeed("compare", "a.exr", "a.exr").stdout)
 
     def test_pictures_that_differ_only_in_alpha_are_reported_so(self):
         self.render(output="a.exr")

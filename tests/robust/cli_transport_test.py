@@ -42,7 +42,7 @@ class Transport(CliTest):
         self.assertGreater(scene["reference_rel_mse"], 0)
         repetitions = rows_of(report, "repetitions")
         self.assertEqual(len(repetitions), 2 * 3 * 3 + 1)
-        self.assertRegex(repetitions[-1]["refused"], "^only point, spot .* only emitters")
+        self.assertTrue(repetitions[-1]["refused"])
         self.assertIsNone(repetitions[-1]["rel_mse"])
         rows = list(csv.DictReader(self.read("new/out/transport.csv").splitlines()))
         self.assertEqual(len(rows), len(repetitions))

@@ -85,10 +85,11 @@ TEST_CASE("a file named with a path of another machine is found in the folder of
     CHECK(access.find(at(f.file), "D:/t.png", messages) == f.scene / "textures/t.png");
     CHECK(access.find(at(f.file), "t.png", messages) == f.scene / "textures/t.png");
     REQUIRE(messages.all().size() == 5);
-    CHECK(messages.all()[2].text.find("\"C:/models/textures\" are missing") != std::string::npos);
-    CHECK(messages.all()[2].text.find("in \"textures\" are read") != std::string::npos);
-    CHECK(messages.all()[4].text.find("there is no \"t.png\"; " + (f.scene / "textures/t.png").string() + " is read") !=
-          std::string::npos);
+    const auto names = [&](std::size_t i, const std::string& name) {
+        return messages.all()[i].text.find(name) != std::string::npos;
+    };
+    CHECK((names(2, "\"C:/models/textures\"") && names(2, "\"textures\"")));
+    CHECK((names(4, "\"t.png\"") && names(4, (f.scene / "textures/t.png").string())));
     for (const Message& message : messages.all()) CHECK(message.is_warning);
 }
 
@@ -107,7 +108,9 @@ TEST_CASE("the file whose path has the longest common end with a name is found, 
     const std::size_t before = messages.all().size();
     CHECK(!access.find(at(f.file), "C:/p/wood/x.png", messages)); // a's or b's
     REQUIRE(messages.all().size() == before + 1);
-    CHECK(messages.all().back().text.find("2 files match") != std::string::npos);
+    for (const char* candidate : {"a/wood/x.png", "b/wood/x.png"}) {
+        CHECK(messages.all().back().text.find((f.scene / candidate).string()) != std::string::npos);
+    }
 }
 
 TEST_CASE("a name in another case is found if only one file matches, with a message that names it") {
@@ -157,11 +160,12 @@ TEST_CASE("a file outside is replaced by one of that name below with a warning, 
     CHECK(access.find(at(f.scene / "textures" / "b.mtl"), (f.other / "t.png").string(), messages) ==
           f.scene / "textures/t.png");
     REQUIRE(messages.all().size() == 2);
-    CHECK(messages.all()[0].text.find("\"/no such home/artist\" are outside") != std::string::npos);
+    CHECK(messages.all()[0].text.find("\"/no such home/artist\"") != std::string::npos);
     const auto error = test::thrown_error([&] {
         (void)access.find(FileLocation{f.file.string(), 7}, "../scene2/u.png", messages);
     });
-    CHECK(test::says(error, "a.obj:7: refers to"));
+    REQUIRE(error);
+    CHECK(error->location() == FileLocation{f.file.string(), 7});
     CHECK(test::says(error, "`allow_path=" + f.other.string() + "`"));
 
     fs::create_symlink(f.other / "u.png", f.scene / "u.png"); // a sibling may lead outside too

@@ -246,7 +246,6 @@ TEST_CASE("an automaton that takes too long to build is refused") {
         const auto error = test::thrown_error([&] { with_steps(enough); });
         if (!error) break;
         REQUIRE(test::is_about(error, ErrorCode::OverLimit, "lpe"));
-        REQUIRE(test::says(error, "takes too long"));
     }
     CHECK(enough > 100);
     const LightPathAutomaton least = with_steps(kMaxLightPathSteps), larger = with_steps(enough);

@@ -285,10 +285,10 @@ TEST_CASE("an unsuitable reference is refused before anything is rendered") {
         small.settings.reference = std::move(reference);
         return test::bad_input_message([&] { small.run(); });
     };
-    CHECK(message({8, 16, 3, std::vector<float>(8 * 16 * 3)}).find("it is 8x16") != std::string::npos);
+    CHECK(message({8, 16, 3, std::vector<float>(8 * 16 * 3)}).find("8x16") != std::string::npos);
     Image bad = {16, 16, 3, std::vector<float>(16 * 16 * 3)};
     bad.pixels[5] = std::numeric_limits<float>::infinity();
-    CHECK(message(bad).find("not finite") != std::string::npos);
+    CHECK(message(bad).find("given.exr") != std::string::npos);
     small.settings.reference.reset();
     small.settings.reference_integrator = "cast";
     CHECK(test::is_about(test::thrown_error([&] { small.run(); }), ErrorCode::BadInput, "reference", "cast"));

@@ -343,7 +343,7 @@ TEST_CASE("the position layer is in the file's coordinates, and relative to the 
 
 TEST_CASE("positions beyond 2^40 m are refused for any origin") {
     const std::string beyond = "v 4e12 0 0\nv 4.1e12 0 0\nv 4e12 1e11 0\nf 1 2 3\n";
-    CHECK(test::says(test::thrown_error([&] { load("beyond.obj", beyond); }), "beyond 2^40 metres"));
+    CHECK(test::says(test::thrown_error([&] { load("beyond.obj", beyond); }), "2^40"));
 }
 
 } // namespace scene_origin_test

@@ -61,11 +61,12 @@ TEST_CASE("an error about a value names the setting, the value and what would be
         CHECK(!error.reason().starts_with(text)); // front ends say it once
         return error;
     };
-    CHECK(thrown("spp", "0").reason().starts_with("not a whole number"));
-    CHECK(thrown("integrator", "pathh").reason().starts_with("not one of"));
-    CHECK(thrown("fov", "wide").reason().starts_with("not a number"));
-    CHECK(thrown("size", "12by9").reason().starts_with("expected WIDTHxHEIGHT"));
-    CHECK(thrown("eye", "1,2").reason().starts_with("expected three numbers"));
+    for (const auto& [name, text] : std::initializer_list<std::pair<const char*, const char*>>{
+             {"spp", "0"}, {"integrator", "pathh"}, {"fov", "wide"}, {"size", "12by9"}, {"eye", "1,2"}}) {
+        CHECK(thrown(name, text).code() == ErrorCode::BadInput);
+    }
+    CHECK(thrown("integrator", "pathh").reason().find("path, ") != std::string::npos); // the names that there are
+    CHECK(thrown("size", "12by9").reason().find("WIDTHxHEIGHT") != std::string::npos);
     CHECK(thrown("eye", "1e30,0,0").code() == ErrorCode::OverLimit);
 }
 
