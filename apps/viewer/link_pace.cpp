@@ -34,7 +34,7 @@ bool LinkPace::acknowledged(uint32_t frame, double now_s, double client_s) {
     const bool is_piece = found->is_piece;
     if (!is_piece) {
         round_trip_s_ = std::max(now_s - found->at_s, 1e-6);
-        learn(static_cast<double>(found->bytes), round_trip_s_);
+        estimate_rate(static_cast<double>(found->bytes), round_trip_s_);
         hold(client_s);
     }
     // While two are in flight, the second arrives one transfer time after the first.
@@ -48,7 +48,7 @@ bool LinkPace::acknowledged(uint32_t frame, double now_s, double client_s) {
     return true;
 }
 
-void LinkPace::learn(double bytes, double seconds) {
+void LinkPace::estimate_rate(double bytes, double seconds) {
     const double share = bytes_ == 0 ? 1 : kMemory;
     bytes_ += share * (bytes - bytes_);
     seconds_ += share * (seconds - seconds_);

@@ -43,7 +43,7 @@ private:
         double at_s;
         bool is_piece;
     };
-    void learn(double bytes, double seconds);
+    void estimate_rate(double bytes, double seconds);
     void adapt(double bytes);
     void hold(double client_s);
 

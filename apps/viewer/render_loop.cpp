@@ -191,7 +191,7 @@ void RenderLoop::steer_path(const Steer& requested) {
 }
 
 /// Advances time since the last call, if it runs.
-void RenderLoop::let_time_pass() {
+void RenderLoop::advance_time() {
     const double now = now_s_(), passed = now - std::exchange(clocked_at_s_, now);
     if (time_runs()) clock_.advance(std::min(passed, kLongestStep));
 }
@@ -262,7 +262,7 @@ std::optional<ShownFrame> RenderLoop::next_frame(const FrameRequest& wanted) {
 }
 
 void RenderLoop::show_next() {
-    let_time_pass();
+    advance_time();
     try {
         follow_time();
     } catch (const Error& error) {

@@ -31,7 +31,7 @@ private:
     void pick(const Steer& steer);
     void report_error(uint32_t client, const Error& error);
     void set(const Steer& steer);
-    void let_time_pass();
+    void advance_time();
     void follow_time();
     std::optional<ShownFrame> next_frame(const FrameRequest& request);
     void show_next();

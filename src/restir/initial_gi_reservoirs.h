@@ -39,7 +39,7 @@ struct MakeInitialGiReservoirs {
         if (!(transmittance > 0)) return;
         const Rgb share = surface.diffuse_share(-direction, seen.wi);
         if (is_black(share)) return;
-        take_out(pixel, share * found);
+        subtract_from_sample(pixel, share * found);
         taken.count = 1;
         taken.side = seen.side;
         taken.sent =
@@ -50,7 +50,7 @@ struct MakeInitialGiReservoirs {
 
 private:
     /// Subtracts the light from the sample. The diffuse part contains the same light, rounded by its share.
-    HD void take_out(uint32_t pixel, Rgb light) const {
+    HD void subtract_from_sample(uint32_t pixel, Rgb light) const {
         Rgb diffuse = light;
         if (film.frame.splits_light()) {
             const Float4 there = film.frame.diffuse[pixel];

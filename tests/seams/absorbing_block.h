@@ -40,7 +40,7 @@ struct AbsorbingBlock {
 
     HD explicit AbsorbingBlock(const SceneView&) {}
 
-    HD bool meets(const PathSettings& settings, PathState& path, float distance, Vertex& vertex) const {
+    HD bool scatters(const PathSettings& settings, PathState& path, float distance, Vertex& vertex) const {
         const Part part = part_within(path.origin, path.direction, distance);
         if constexpr (kScatters) {
             const SampleKey key = sample_key(settings, path.pixel, path.sample);

@@ -263,8 +263,10 @@ void Document::check_extensions(Sink& sink) const {
     };
     check("extensionsRequired", "requires");
     check("extensionsUsed", "uses");
-    const auto is_news = [&](std::string_view name) { return !is_known_extension(name) && !reported.contains(name); };
-    for (const auto& [name, json] : root().extensions_within(is_news)) {
+    const auto is_unreported = [&](std::string_view name) {
+        return !is_known_extension(name) && !reported.contains(name);
+    };
+    for (const auto& [name, json] : root().extensions_within(is_unreported)) {
         if (!reported.insert(name).second) continue;
         sink.leave_out({json.location(),
                         fmt::format("the extension {} is not supported, not listed in \"extensionsUsed\", and left out",

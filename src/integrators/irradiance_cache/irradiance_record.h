@@ -120,7 +120,7 @@ HD inline CachePoint cache_point(const Surface& surface, float side, uint32_t sc
 }
 
 /// Radiance towards wo from the light of a record, by the diffuse base.
-HD inline Rgb sent_on(const Surface& surface, Vec3 wo, float side, Rgb light) {
+HD inline Rgb reflected_light(const Surface& surface, Vec3 wo, float side, Rgb light) {
     return diffuse_reflectance(surface.bsdf, surface.frame.to_local(wo), {0, 0, side}) * light;
 }
 

@@ -29,7 +29,7 @@ struct LookUpRadiance {
         const CachedLight found = look_up(records, cache_point(surface, cached.side, lookup.scatterings));
         SubpathState& state = subpaths.states[lookup.subpath];
         if (found.weight > 0) {
-            add_radiance(film, state.pixel, lookup.throughput * sent_on(surface, wo, cached.side, found.light));
+            add_radiance(film, state.pixel, lookup.throughput * reflected_light(surface, wo, cached.side, found.light));
             return;
         }
         atomic_add(missed, 1);

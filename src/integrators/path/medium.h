@@ -6,7 +6,7 @@
 //   explicit Medium(const SceneView&)
 //   Vertex                                      a scattering in the medium, with the functions of SurfaceVertex
 //                                               (path_listener.h) for a phase function in place of a BSDF
-//   bool meets(settings, path, distance, vertex)
+//   bool scatters(settings, path, distance, vertex)
 //                                               Traces the path's ray through the medium for at most `distance` metres
 //                                               (kInfinity: it hits no surface) and weights path.throughput. Returns
 //                                               whether it scatters before that, and then sets `vertex`.

@@ -209,7 +209,7 @@ HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const
     if constexpr (!Medium<kFeatures>::kIsVacuum) {
         typename Medium<kFeatures>::Vertex vertex;
         const float distance = hit.instance == kNoHit ? kInfinity : hit.t;
-        if (Medium<kFeatures>(scene).meets(job.settings, path, distance, vertex)) {
+        if (Medium<kFeatures>(scene).scatters(job.settings, path, distance, vertex)) {
             return shade_in_medium<kFeatures>(job, path, vertex, numbers, shadow, has_shadow_ray, listener);
         }
     }

@@ -114,7 +114,7 @@ private:
         return dot(surface.geometric_normal, wo) < 0 ? -surface.geometric_normal : surface.geometric_normal;
     }
     /// Scattered power f(wo, wi) power of photon `number`, W/sr.
-    HD static Rgb sent_on(const PhotonMapView& map, const Receiver& receiver, uint32_t number) {
+    HD static Rgb reflected_light(const PhotonMapView& map, const Receiver& receiver, uint32_t number) {
         const Float4 power = map.photons.powers[number], way = map.photons.ways[number];
         if (bits_of(power.w) > receiver.max_scatterings) return {};
         if (!(dot(unpack_normal(bits_of(way.w)), receiver.normal) > 0.7071f)) return {};
@@ -129,7 +129,7 @@ private:
     HD void visit(const PhotonMapView& map, const Receiver& receiver, FixedSum* sums, Share share = {}) const {
         if (map.count == 0) return;
         const auto add_light = [&](const NearPoint& near) {
-            const Rgb light = sent_on(map, receiver, near.index);
+            const Rgb light = reflected_light(map, receiver, near.index);
             if (is_black(light)) return;
             if (!(max_component(light) <= kMaxSampleValue)) {
                 atomic_add(film.invalid, 1);
@@ -158,7 +158,7 @@ private:
         if (count == gather.nearest_count) radius_squared = nearest[--count].distance_squared;
         if (!(radius_squared >= square(kMinPhotonRadius))) return {}; // all at one point
         Rgb all = {};
-        for (uint32_t k = 0; k < count; ++k) all += sent_on(map, receiver, nearest[k].index);
+        for (uint32_t k = 0; k < count; ++k) all += reflected_light(map, receiver, nearest[k].index);
         return (kInvPi / radius_squared) * all;
     }
 };

@@ -134,8 +134,8 @@ bool ReyesIntegrator::hide(const ReyesPass& pass, const std::function<bool()>& g
             if (!goes_on()) return false;
             since_request = {};
         }
-        const bool is_news = kPass == HidingPass::FindNearest ? round % kRoundsPerUpdate == 0 : round == 0;
-        if (is_news) launch(queue_, "find_far", pass.samples.pixels(), FindFar{pass.samples});
+        const bool updates = kPass == HidingPass::FindNearest ? round % kRoundsPerUpdate == 0 : round == 0;
+        if (updates) launch(queue_, "find_far", pass.samples.pixels(), FindFar{pass.samples});
         const uint32_t taken = pieces_at_once(height);
         const uint32_t more = taken == height ? std::min(kMaxUnderWay - taken, triangles - begun) : 0;
         launch(queue_, "take_pieces", taken + more, TakePieces{pieces, height, taken, begun});

@@ -179,7 +179,7 @@ void list_corners(TangentGroups& groups) {
     }
 }
 
-std::vector<BorrowedTangent> find_lenders(const std::vector<uint32_t>& welded, const Triangles& triangles) {
+std::vector<BorrowedTangent> find_tangent_sources(const std::vector<uint32_t>& welded, const Triangles& triangles) {
     std::vector<BorrowedTangent> borrowed;
     const auto is_two_equal = [&](std::size_t corner) { return triangles.kind[corner / 3] == TriangleKind::TwoEqual; };
     std::vector<uint32_t> first; // [vertex] a corner of a triangle with three positions
@@ -205,7 +205,7 @@ TangentGroups make_tangent_groups(const TangentMesh& mesh) {
     const std::vector<uint32_t> neighbour = find_neighbours(welded, triangles);
     Grouping(neighbour, triangles, groups).run();
     list_corners(groups);
-    groups.borrowed = find_lenders(welded, triangles);
+    groups.borrowed = find_tangent_sources(welded, triangles);
     return groups;
 }
 

@@ -21,7 +21,7 @@ struct RayPack {
     float distance[kWidth], facing[kWidth]; // `facing` is above 0 on the front
 };
 
-bool meets(const Bounds3& box, const LocalRay& ray) {
+bool hits_box(const Bounds3& box, const LocalRay& ray) {
     float from = 0, to = kInfinity;
     for (int k = 0; k < 3; ++k) {
         const float o = component(ray.origin, k), d = component(ray.direction, k);
@@ -38,7 +38,7 @@ bool meets(const Bounds3& box, const LocalRay& ray) {
 
 /// Updates the hits of rays by a triangle, without branches, so that the compiler vectorizes it. If a front and a back
 /// are at one distance the front counts, so that the order of threads does not matter.
-void meet_triangle(Vec3 a, Vec3 ab, Vec3 ac, bool has_back, RayPack& rays) {
+void hit_triangle(Vec3 a, Vec3 ab, Vec3 ac, bool has_back, RayPack& rays) {
     for (std::size_t k = 0; k < RayPack::kWidth; ++k) {
         const Vec3 direction = {rays.dx[k], rays.dy[k], rays.dz[k]};
         const Vec3 p = cross(direction, ac);
@@ -73,7 +73,7 @@ void cast_at_mesh(const Mesh& mesh, bool has_back, const std::vector<LocalRay>& 
         for (uint64_t i = 3 * begin; i < 3 * end; i += 3) {
             const Vec3 a = mesh.positions[mesh.indices[i]];
             const Vec3 ab = mesh.positions[mesh.indices[i + 1]] - a, ac = mesh.positions[mesh.indices[i + 2]] - a;
-            for (RayPack& of_eight : packs) meet_triangle(a, ab, ac, has_back, of_eight);
+            for (RayPack& of_eight : packs) hit_triangle(a, ab, ac, has_back, of_eight);
         }
         const std::lock_guard lock(merging);
         for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -104,7 +104,7 @@ std::vector<SurveyHit> cast_rays(const Scene& scene, std::span<const SurveyRay> 
         for (std::size_t i = 0; i < rays.size(); ++i) {
             const LocalRay ray = {transform_point(local_from_world, rays[i].origin),
                                   transform_vector(local_from_world, rays[i].direction), i};
-            if (meets(bounds[instance.mesh], ray)) local.push_back(ray);
+            if (hits_box(bounds[instance.mesh], ray)) local.push_back(ray);
         }
         if (local.empty()) continue;
         const bool has_back = backs == Backs::All || material.double_sided;
