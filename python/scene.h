@@ -62,7 +62,7 @@ public:
     /// Calls `work` with the scene as it was last rendered, with all changes since; opens it if it is not open.
     template <class Work>
     void with_opened(Sink& sink, const Work& work) {
-        const std::unique_lock turn = take_turn(sink);
+        const std::unique_lock turn = wait_for_turn(sink);
         if (opened_.setup() == nullptr || edits_ != source_.edit_count) {
             PictureOptions options = options_of({}, sink);
             opened_.prepare(options, source_, sink);
