@@ -15,16 +15,14 @@ if [[ $out == *.tar.gz ]]; then
 fi
 mkdir -p "$out/bin" "$out/lib" "$out/licences"
 root=$(cd "$(dirname "$0")/.." && pwd)
+source "$root/tools/bundled_libraries.sh"
 cp "$root/LICENSE" "$root/docs/notices.md" "$out/licences/"
 for program in "$@"; do
     cp "$build/bin/$program" "$out/bin/"
     strip "$out/bin/$program"
-    ldd "$build/bin/$program" | awk '$2 == "=>" && $3 ~ /^\// { print $3 }' |
-        grep -vE '/(libc|libm|libdl|libpthread|librt|ld-linux[^/]*)\.so' | while read -r library; do
-        cp -Ln "$library" "$out/lib/"
-        package=$(dpkg -S "*/$(basename "$(readlink -f "$library")")" 2>/dev/null | cut -d: -f1 | head -1) || true
-        [[ ! -f /usr/share/doc/$package/copyright ]] || cp "/usr/share/doc/$package/copyright" "$out/licences/$package"
-    done
+    mapfile -t libraries < <(libraries_of "$build/bin/$program")
+    cp -Ln "${libraries[@]}" "$out/lib/"
+    copy_licences "$out/licences" "${libraries[@]}"
     patchelf --set-rpath '$ORIGIN/../lib' --force-rpath "$out/bin/$program"
 done
 for library in "$out"/lib/*; do patchelf --set-rpath '$ORIGIN' "$library"; done

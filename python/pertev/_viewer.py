@@ -4,7 +4,6 @@ import json
 import os
 import shutil
 import subprocess
-import sysconfig
 import threading
 
 from . import _core
@@ -14,7 +13,7 @@ from .errors import Error
 
 def _program():
     """Returns the program: that of $PERTEV_PROGRAM, the one installed with this package, or the one on the path."""
-    beside = os.path.join(sysconfig.get_path("scripts"), "pertev")
+    beside = os.path.join(os.path.dirname(__file__), "..", "pertev_program", "pertev")
     found = os.environ.get("PERTEV_PROGRAM") or (beside if os.path.exists(beside) else shutil.which("pertev"))
     if not found:
         raise Error("there is no program 'pertev'; set PERTEV_PROGRAM to it")

@@ -18,9 +18,15 @@
 namespace pertev::hploc {
 
 inline constexpr uint32_t kClimbThreads = 32, kEmitThreads = 128, kAllLanes = 0xffffffffu;
-// Leaves 80 registers per thread without spills. More blocks with fewer registers, or blocks of four warps, are as
-// fast.
+// Blocks per multiprocessor. 25 leave 80 registers per thread without spills; more with fewer registers, or blocks of
+// four warps, are as fast. Some architectures hold fewer at once, and ptxas refuses more.
+#if defined(__CUDA_ARCH__) && (__CUDA_ARCH__ == 750 || __CUDA_ARCH__ == 860 || __CUDA_ARCH__ == 870)
+inline constexpr uint32_t kClimbBlocks = 16;
+#elif defined(__CUDA_ARCH__) && (__CUDA_ARCH__ == 890 || __CUDA_ARCH__ >= 1200)
+inline constexpr uint32_t kClimbBlocks = 24;
+#else
 inline constexpr uint32_t kClimbBlocks = 25;
+#endif
 inline constexpr uint32_t kNodesAtOnce = 32 / kMaxWidth; // nodes that a warp makes at once
 
 /// The clusters that a warp merges, in order: {corner of the box, node} and {other corner, name}.
@@ -111,11 +117,11 @@ __device__ inline void climb_together(const Climb& climb, WarpClusters& all) {
                 if (n == 1) *climb.root = 0;
                 climbs = false;
             } else {
-                if (needs_joining(climb, range))
+                if (needs_merging(climb, range))
                     __threadfence(); // the warp's writes must be visible before its
                                      // arrival is counted
-                climbs = go_up(climb, range);
-                joins = climbs && needs_joining(climb, range);
+                climbs = ascend(climb, range);
+                joins = climbs && needs_merging(climb, range);
                 if (joins) __threadfence();
             }
         }
