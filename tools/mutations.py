@@ -2,7 +2,7 @@
 file, text that is there once, and its replacement."""
 
 MUTATIONS = [
-    ("shadow rays without a time", "consistency/shutter", ("src/integrators/path/path_loop.cpp", "paths_[shadow_paths_[i]].time}", "kAtRest}")),
+    ("shadow rays without a time", "consistency/shutter", ("src/integrators/path/path_loop.inl", "paths_[shadow_paths_[i]].time}", "kAtRest}")),
     ("weights without the ways that end earlier", "statistical/bidirectional",
      ("src/integrators/subpaths/subpath_memory.h", "last + earlier * squared_density(reverse_pdf)", "last + 0.0f * earlier * squared_density(reverse_pdf)")),
     ("half of a shadow ray's diffuse light counted as glossy", "statistical/light_paths",
@@ -385,7 +385,7 @@ MUTATIONS = [
      ("src/integrators/path/vertex_numbers.h", "sample_bits<Word>(kind, key, vertex_light_group(depth), Pair::Last)",
       "sample_bits<Word>(kind, key, vertex_group(depth, kGroupScatter), Pair::Last)")),
     ("choices that are not drawn where a path may end by chance", "consistency/one_picture",
-     ("src/integrators/path/path_loop.cpp", "has_choices || may_end_by_chance(job_.settings, path.depth + 1)", "has_choices")),
+     ("src/integrators/path/path_loop.inl", "has_choices || may_end_by_chance(job_.settings, path.depth + 1)", "has_choices")),
     ("a piece of an OBJ file that does not know the material before it", "unit/parse_obj",
      ("src/formats/obj/obj_pieces.cpp", "found[i].material.value_or(before.key.material)", "before.key.material")),
     ("an OBJ file cut within a statement of two lines", "unit/parse_obj",
