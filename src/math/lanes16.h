@@ -81,6 +81,7 @@ struct Floats16 : LaneArithmetic<Floats16> {
     }
     friend Floats16 sqrt(Floats16 a) { return _mm512_sqrt_ps(a.v); }
     friend Floats16 fma(Floats16 a, Floats16 b, Floats16 c) { return _mm512_fmadd_ps(a.v, b.v, c.v); }
+    friend Floats16 floor(Floats16 a) { return _mm512_floor_ps(a.v); }
     friend Words16 truncate_to_word(Floats16 a) { return reinterpret_cast<Words16>(_mm512_cvttps_epi32(a.v)); }
 
 private:
@@ -98,6 +99,10 @@ struct NumberTraits<Floats16> {
 template <>
 inline Floats16 float_of<Floats16>(Words16 bits) {
     return reinterpret_cast<__m512>(bits);
+}
+template <>
+inline Floats16 gather<Floats16>(const float* from, Words16 indices) {
+    return _mm512_i32gather_ps(reinterpret_cast<__m512i>(indices), from, 4);
 }
 
 inline void load_columns(const std::array<const float*, 16>& rows, Floats16 (&columns)[8]) {

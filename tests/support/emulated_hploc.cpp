@@ -48,6 +48,8 @@ inline float __uint_as_float(uint32_t x) { return __builtin_bit_cast(float, x); 
 #define __shared__ static // for kernels that are not run here: only their bodies are, with their own memory
 #include "tracer/hploc/warp_kernels.h"
 
+#include "base/remark.cpp" // which the sink of a build's settings calls
+
 #undef pertev
 
 namespace pertev::test {

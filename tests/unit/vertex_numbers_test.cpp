@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "integrators/path/eight_samples.h"
+#include "integrators/path/lane_samples.h"
 #include "math/transform.h"
 #include "render/pixel_filter.h"
 #include "tests/support/random.h"
@@ -120,7 +120,7 @@ TEST_CASE("vertex numbers: eight paths begun at once equal those begun one by on
                 camera.view.aperture_radius = aperture;
                 camera.is_open = is_open;
                 camera.motion = is_open ? MotionTrack{keys, {0, 0, 0}, 1} : MotionTrack{};
-                EightSamples samples(camera, settings);
+                LaneSamples<Floats8> samples(camera, settings);
                 for (const uint32_t count : {8u, 3u, 0u, 1u}) { // lanes without a sample change no other
                     for (uint32_t i = 0; i < count; ++i) samples.add(path_of(i, count).pixel, path_of(i, count).sample);
                     CHECK(samples.is_full() == (count == kWords));

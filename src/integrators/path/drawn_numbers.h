@@ -7,8 +7,9 @@
 
 namespace pertev {
 
-/// Sets the sample of one of eight lanes.
-inline void set_lane(SampleKeyOf<Words8>& keys, uint32_t lane, SampleKey key) {
+/// Sets the sample of a lane.
+template <class Words>
+void set_lane(SampleKeyOf<Words>& keys, uint32_t lane, SampleKey key) {
     keys.stream[lane] = key.stream;
     keys.sample[lane] = key.sample;
     keys.seed[lane] = key.seed;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Path tracing; this file orders the stages. It has two bodies: a loop in which each CPU thread renders 128 paths
+// Path tracing; this file orders the stages. It has two bodies: a loop in which each CPU thread renders 512 paths
 // side by side (integrators/path/path_loop.h), and a wavefront over queues. They call the same functions and give the
 // same bytes (tests/consistency/one_picture_test.cpp).
 //

@@ -1,6 +1,6 @@
 #pragma once
 
-// Starts eight paths at once (generate_path.h starts one). Host only.
+// Starts eight or sixteen paths at once (generate_path.h starts one). Host only.
 
 #include "integrators/path/drawn_numbers.h"
 #include "integrators/path/generate_path.h"
@@ -8,13 +8,17 @@
 
 namespace pertev {
 
-/// Up to eight samples whose paths are to begin.
-class EightSamples {
+/// Samples whose paths are to begin, up to as many as `Floats`, Floats8 or Floats16, has lanes.
+template <class Floats>
+class LaneSamples {
+    static constexpr uint32_t kLanes = Floats::kLanes;
+    using Words = WordOf<Floats>;
+
 public:
-    EightSamples(const CameraRays& camera, const PathSettings& settings, const BatchView& batch = {})
+    LaneSamples(const CameraRays& camera, const PathSettings& settings, const BatchView& batch = {})
         : camera_(&camera), settings_(settings), batch_(batch) {}
 
-    bool is_full() const { return count_ == kWords; }
+    bool is_full() const { return count_ == kLanes; }
     /// Returns whether the pixel is in the same picture of a batch as the samples so far.
     bool can_add(uint32_t pixel) const {
         return count_ == 0 || !batch_.is_there() || &batch_.camera_of(pixel) == camera_;
@@ -34,9 +38,9 @@ public:
     /// Passes each path to `take`, in the order in which they were added, and becomes empty.
     template <class Take>
     void begin(const Take& take) {
-        alignas(32) float rows[kWords][8];
+        alignas(64) float rows[kLanes][8];
         store_lines(rows);
-        Words8 times = {};
+        Words times = {};
         static_assert(kNumberTime == 2);
         if (camera_->is_open) times = draw(kGroupLens, Pair::Last).x;
         for (uint32_t i = 0; i < count_; ++i) {
@@ -49,30 +53,31 @@ public:
     }
 
 private:
-    SampleBitsOf<Words8> draw(CameraGroup group, Pair pair = Pair::First) const {
-        return sample_bits<Words8>(settings_.sampler, keys_, Words8{} + uint32_t{group}, pair);
+    SampleBitsOf<Words> draw(CameraGroup group, Pair pair = Pair::First) const {
+        return sample_bits<Words>(settings_.sampler, keys_, Words{} + uint32_t{group}, pair);
     }
-    static Vec2Of<Floats8> unit_square(const SampleBitsOf<Words8>& bits) {
-        return {unit_interval<Floats8>(bits.x), unit_interval<Floats8>(bits.y)};
+    static Vec2Of<Floats> unit_square(const SampleBitsOf<Words>& bits) {
+        return {unit_interval<Floats>(bits.x), unit_interval<Floats>(bits.y)};
     }
 
     /// Stores origins and directions of the camera's rays, before its motion, in rows.
-    void store_lines(float (&rows)[kWords][8]) const {
-        const Vec2Of<Floats8> corners = {Floats8::load(corners_x_), Floats8::load(corners_y_)};
-        Vec2Of<Floats8> on_lens = {0.0f, 0.0f};
+    void store_lines(float (&rows)[kLanes][8]) const {
+        const Vec2Of<Floats> corners = {Floats::load(corners_x_), Floats::load(corners_y_)};
+        Vec2Of<Floats> on_lens = {0.0f, 0.0f};
         if (camera_->has_lens()) on_lens = unit_square(draw(kGroupLens));
-        const RayLineOf<Floats8> line = camera_->line(corners, unit_square(draw(kGroupCamera)), on_lens);
-        const Vec3Of<Floats8>&from = line.origin, &to = line.direction;
-        store_columns({from.x, from.y, from.z, to.x, to.y, to.z, to.z, to.z},
-                      {rows[0], rows[1], rows[2], rows[3], rows[4], rows[5], rows[6], rows[7]});
+        const RayLineOf<Floats> line = camera_->line(corners, unit_square(draw(kGroupCamera)), on_lens);
+        const Vec3Of<Floats>&from = line.origin, &to = line.direction;
+        std::array<float*, kLanes> to_rows;
+        for (uint32_t lane = 0; lane < kLanes; ++lane) to_rows[lane] = rows[lane];
+        store_columns({from.x, from.y, from.z, to.x, to.y, to.z, to.z, to.z}, to_rows);
     }
 
     const CameraRays* camera_; // the camera of all lanes
     const PathSettings& settings_;
     const BatchView batch_;
-    SampleKeyOf<Words8> keys_; // lanes beyond `count_` hold previous samples or 0, whose rays are not used
-    float corners_x_[kWords] = {}, corners_y_[kWords] = {};
-    uint32_t pixels_[kWords];
+    SampleKeyOf<Words> keys_; // lanes beyond `count_` hold previous samples or 0, whose rays are not used
+    float corners_x_[kLanes] = {}, corners_y_[kLanes] = {};
+    uint32_t pixels_[kLanes];
     uint32_t count_ = 0;
 };
 

@@ -1,0 +1,208 @@
+// Vertices that are shaded in eight or sixteen lanes have the bits of shade_vertex for each path alone: what is
+// emitted, the shadow ray with the direct light, and the scattered path.
+
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "device_scene/scene_on_device.h"
+#include "integrators/path/path_vertex.h"
+#include "integrators/path/shade_lanes.h"
+#include "render/prepare_scene.h"
+#include "tests/support/flat_scenes.h"
+#include "tests/support/random.h"
+
+using namespace pertev;
+
+namespace {
+
+constexpr uint32_t kTriangles = 8, kMaxDepth = 4;
+
+/// Triangles in random places, thin ones too. Their vertex normals, if any, are apart, opposite or zero.
+Mesh scattered_triangles(test::Random& random, bool has_normals) {
+    Mesh mesh;
+    for (uint32_t i = 0; i < 3 * kTriangles; ++i) {
+        const bool is_thin = i % 3 == 2 && random.below(4) == 0;
+        mesh.positions.push_back(is_thin ? mesh.positions.back() + random.point(-1e-4f, 1e-4f) : random.point(-1, 1));
+        mesh.indices.push_back(i);
+        if (has_normals) mesh.normals.push_back(random.below(8) == 0 ? Vec3{0, 0, 0} : random.direction());
+        const auto channel = [&] { return random.below(4) == 0 ? 0.0f : random.unit(); };
+        const float red = channel(), green = channel();
+        if (has_normals) mesh.colors.push_back({red, green, channel(), 1});
+    }
+    return mesh;
+}
+
+/// Smooth and flat triangles, baked and instanced, mirrored or not, of each material: white, black, grey, and
+/// emitters of one and of two faces.
+Scene scattered_scene(test::Random& random, const std::optional<Environment>& environment) {
+    Scene scene;
+    scene.materials = {test::white(1), test::white(0), test::white(0.4f), test::white(0.3f), test::white(0)};
+    scene.materials[3].emission = {3, 0, 1}, scene.materials[4].emission = {0.5f, 2, 0};
+    scene.materials[4].two_sided_emission = true;
+    scene.meshes = {scattered_triangles(random, true), scattered_triangles(random, false)};
+    const auto place = [&](uint32_t mesh, uint32_t material, float scale) {
+        Transform placed;
+        placed.row0.x = scale, placed.row1.z = 0.3f * scale, placed.translation = random.point(-3, 3);
+        scene.instances.push_back({"", mesh, material, placed});
+    };
+    for (uint32_t material = 0; material < scene.materials.size(); ++material) {
+        for (const uint32_t mesh : {0u, 1u}) place(mesh, material, mesh == 0 ? -1.5f : 2.0f);
+    }
+    scene.meshes.push_back(scattered_triangles(random, true)); // used once: baked
+    place(2, 2, -1.0f);
+    scene.lights = {test::point_light({0, 4, 0}, {9, 3, 5}), test::point_light({2, 1, 1}, {5, 5, 5})};
+    scene.lights[1].kind = LightKind::Spot, scene.lights[1].cos_outer = 0.1f;
+    scene.lights.push_back({.kind = LightKind::Directional, .direction = {0.6f, -0.8f, 0}});
+    scene.environment = environment;
+    return scene;
+}
+
+struct PreparedJob {
+    Scene scene;
+    Messages messages;
+    Queue queue = Queue::make_cpu();
+    PreparedScene prepared;
+    SceneOnDevice device;
+    PathJob job = {};
+
+    explicit PreparedJob(Scene s)
+        : scene(std::move(s)), prepared(prepare_scene(scene, {}, messages)), device(queue, prepared) {
+        job.picture.scene = device.view();
+    }
+};
+
+/// Draws a path and what it hits: inside triangles, on edges and at corners; straight, grazing and along the plane.
+void draw_vertex_of(test::Random& random, const SceneView& scene, PathState& path, Hit& hit) {
+    hit = {.t = random.within(0.1f, 5), .instance = random.below(scene.instance_count), .primitive = {}};
+    hit.primitive = random.below(kTriangles);
+    hit.u = random.below(4) == 0 ? 0.5f * static_cast<float>(random.below(3)) : random.unit();
+    hit.v = random.below(4) == 0 ? 0.0f : (1 - hit.u) * random.unit();
+    const InstanceView& instance = scene.instances[hit.instance];
+    const WorldTriangle triangle = world_triangle(instance, scene.meshes[instance.mesh], hit);
+    const uint32_t way = random.below(6);
+    path = {};
+    path.direction = random.direction();
+    if (way == 0) path.direction = -triangle.normal;
+    if (way == 1) path.direction = normalize(triangle.ab + 1e-5f * random.direction());
+    if (way == 2) path.direction = normalize(triangle.ab);
+    path.origin = triangle.position - hit.t * path.direction;
+    path.depth = random.below(kMaxDepth + 2);
+    path.rough_depth = random.below(path.depth + 1);
+    const float throughputs[] = {0, 1, 1e-30f, 1e6f, random.unit(), random.unit()};
+    for (float* channel : {&path.throughput.r, &path.throughput.g, &path.throughput.b}) {
+        *channel = throughputs[random.below(6)];
+    }
+    path.radiance = {random.unit(), 0, random.unit()};
+    const float densities[] = {0, 1e-30f, 1e30f, random.unit(), 4 * random.unit()}; // 0: camera, or delta lobe
+    path.bsdf_pdf = densities[random.below(5)];
+    path.pixel = random.below(1u << 20), path.sample = random.below(1u << random.below(20));
+}
+
+/// Returns whether both have the same bits, or are NaN, whose bits say nothing.
+bool is_same(float a, float b) { return bits_of(a) == bits_of(b) || (a != a && b != b); }
+bool is_same(Vec3 a, Vec3 b) { return is_same(a.x, b.x) && is_same(a.y, b.y) && is_same(a.z, b.z); }
+bool is_same(Rgb a, Rgb b) { return is_same(Vec3{a.r, a.g, a.b}, Vec3{b.r, b.g, b.b}); }
+bool is_same(TriangleId a, TriangleId b) { return a.instance == b.instance && a.primitive == b.primitive; }
+
+/// Counts what vertices did, because all of it is to occur.
+struct Counts {
+    uint32_t went_on = 0, ended_early = 0, shadows = 0, to_triangles = 0, without_end = 0, emitted = 0;
+};
+
+/// Shades `count` random vertices in lanes and one by one.
+void check_vertices(const VertexShading& shading, const PathJob& job, test::Random& random, uint32_t count,
+                    Counts& counts) {
+    PathState before[kMaxLanes], paths[kMaxLanes];
+    Hit hits[kMaxLanes];
+    ShadowRay shadows[kMaxLanes];
+    LaneVertices vertices = {.count = count, .paths = {}, .hits = {}};
+    for (uint32_t lane = 0; lane < shading.lanes; ++lane) {
+        if (lane < count) draw_vertex_of(random, job.picture.scene, before[lane], hits[lane]);
+        paths[lane] = before[lane];
+        const uint32_t from = min(lane, count - 1);
+        vertices.paths[lane] = paths + from, vertices.hits[lane] = hits + from;
+    }
+    const LaneResults results = shading.shade(job, vertices, shadows);
+    CHECK((results.goes_on | results.has_shadow_ray) < 1u << count);
+    const ShadowRay* shadow = shadows;
+    for (uint32_t lane = 0; lane < count; ++lane) {
+        PathState path = before[lane];
+        ShadowRay expected;
+        bool has_shadow_ray = false;
+        Listeners<> nobody(job);
+        const bool goes_on =
+            shade_vertex<kPlainDiffuse>(job, path, hits[lane], DrawOnDemand(), expected, has_shadow_ray, nobody);
+        CAPTURE(lane);
+        CAPTURE(path.depth);
+        CHECK(is_same(paths[lane].radiance, path.radiance));
+        REQUIRE(((results.has_shadow_ray >> lane & 1) != 0) == has_shadow_ray);
+        CHECK(((results.goes_on >> lane & 1) != 0) == goes_on);
+        counts.emitted += path.radiance == before[lane].radiance ? 0 : 1;
+        counts.ended_early += !goes_on && before[lane].depth < kMaxDepth ? 1 : 0;
+        if (goes_on) {
+            ++counts.went_on;
+            CHECK(is_same(paths[lane].origin, path.origin));
+            CHECK(is_same(paths[lane].direction, path.direction));
+            CHECK(is_same(paths[lane].throughput, path.throughput));
+            CHECK(is_same(paths[lane].bsdf_pdf, path.bsdf_pdf));
+            CHECK(is_same(paths[lane].start, path.start));
+            CHECK(paths[lane].depth == path.depth);
+            CHECK(paths[lane].rough_depth == path.rough_depth);
+        }
+        if (!has_shadow_ray) continue;
+        ++counts.shadows;
+        counts.to_triangles += expected.target.instance == kNoLight ? 0 : 1;
+        counts.without_end += expected.t_max == kInfinity ? 1 : 0;
+        CHECK(is_same(shadow->origin, expected.origin));
+        CHECK(is_same(shadow->direction, expected.direction));
+        CHECK(is_same(shadow->t_max, expected.t_max));
+        CHECK(is_same(shadow->start, expected.start));
+        CHECK(is_same(shadow->target, expected.target));
+        CHECK(is_same(shadow->contribution, expected.contribution));
+        ++shadow;
+    }
+}
+
+std::vector<PathSettings> settings_of_tests() {
+    std::vector<PathSettings> settings(4, PathSettings{.max_depth = kMaxDepth});
+    settings[1].clamp = 0.2f, settings[1].roulette = Roulette::Throughput, settings[1].roulette_depth = 1;
+    settings[2].sampler = SamplerKind::Independent, settings[2].roulette = Roulette::NearCubeRoot;
+    settings[3].roulette_depth = 100, settings[3].seed = 5;
+    return settings;
+}
+
+void check_all_vertices(const VertexShading& shading) {
+    test::Random random(7);
+    Environment panorama;
+    panorama.image = {4, 2, 3, {}};
+    for (uint32_t i = 0; i < 24; ++i) panorama.image.pixels.push_back(i % 5 == 0 ? 0.0f : random.unit());
+    Counts counts;
+    for (const std::optional<Environment>& environment :
+         {std::optional<Environment>{}, std::optional{Environment{{}, {0.3f, 0.4f, 0.6f}, 1.0f}},
+          std::optional{Environment{{}, {0, 0, 0}, 0}}, std::optional{panorama}}) {
+        PreparedJob of(scattered_scene(random, environment));
+        for (const PathSettings& settings : settings_of_tests()) {
+            of.job.settings = settings;
+            REQUIRE(can_shade_lanes(of.job));
+            for (uint32_t round = 0; round < 60; ++round) {
+                check_vertices(shading, of.job, random, 1 + round % shading.lanes, counts);
+                check_vertices(shading, of.job, random, shading.lanes, counts);
+            }
+        }
+    }
+    for (const uint32_t some : {counts.went_on, counts.ended_early, counts.shadows, counts.to_triangles,
+                                counts.without_end, counts.emitted}) {
+        CHECK(some > 200);
+    }
+}
+
+} // namespace
+
+TEST_CASE("shade lanes: eight vertices have the bits of each alone") { check_all_vertices(kShadingOf8); }
+
+#if defined(PERTEV_HAS_16_LANES)
+TEST_CASE("shade lanes: sixteen vertices have the bits of each alone") {
+    if (has_sixteen_lanes()) check_all_vertices(kShadingOf16);
+}
+#endif
