@@ -66,6 +66,11 @@ class DataSet(Example):
             self.assertTrue((count == (arrays["ids"][..., 0] != 0xFFFFFFFF)).all())
             self.assertGreater(count.mean(), 0.5)
 
+    def test_run_lengths_begin_outside_the_mask(self):
+        rle_of = importlib.import_module("dataset").rle_of
+        for mask, counts in [([[0, 1], [0, 1]], [2, 2]), ([[1, 0], [0, 1]], [0, 1, 2, 1]), ([[1, 1], [1, 1]], [0, 4]), ([[0, 0], [0, 0]], [4])]:
+            self.assertEqual(rle_of(numpy.array(mask, bool)), {"size": [2, 2], "counts": counts})
+
     def test_pixels_of_the_back_wall_lie_in_its_plane(self):
         scene = pertev.load("cornell-box")
         wall, z = scene.instance_names.index("back wall"), scene.bounds[1, 2]
@@ -110,7 +115,7 @@ class DataLoader(Example):
             here = views[number]
             self.assertEqual((tuple(color.shape), tuple(depth.shape)), ((3, 3, 12, 16), (3, 12, 16)))
             self.assertTrue(torch.equal(color, here[0]) and torch.equal(depth, here[1]))
-        self.assertFalse(torch.equal(batches[0][0], batches[1][0]))
+        self.assertFalse(torch.equal(batches[0][1], batches[1][1]))
         forked = torch.utils.data.DataLoader(views, batch_size=None, num_workers=1, multiprocessing_context="fork")
         with self.assertRaises(pertev.DeviceError):
             next(iter(forked))
