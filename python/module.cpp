@@ -65,16 +65,17 @@ nb::dict row_of(const Setting& setting) {
 }
 
 /// Returns the settings of a single picture, or those of frames: `frames`, `turntable` and what needs these, but for
-/// `continue`, which is about files.
+/// those that are about files: `continue`, and parts.
 std::vector<nb::dict> settings_of(bool frames) {
     std::vector<nb::dict> rows;
     std::set<std::string, std::less<>> of_sequences = {"frames", "turntable", "cameras"};
+    const std::set<std::string_view> of_files = {"continue", "samples", "part", "part_base"};
     for (const Setting& setting : all_settings()) {
         const std::vector<std::string> needs = words_of(setting.needs);
         const auto is_of_sequences = [&](const std::string& name) { return of_sequences.contains(name); };
         if (!needs.empty() && std::ranges::all_of(needs, is_of_sequences)) of_sequences.insert(setting.name);
         if ((setting.verbs & kRender) == 0 || is_of_sequences(setting.name) != frames) continue;
-        if (setting.name != std::string_view("continue")) rows.push_back(row_of(setting));
+        if (!of_files.contains(setting.name)) rows.push_back(row_of(setting));
     }
     return rows;
 }

@@ -75,8 +75,8 @@ constexpr std::string_view kJsonTexts[] = {"pertev.settings",  "pertev.made_up",
 nb::dict info_of(PythonResult& self) {
     nb::dict info;
     const nb::object parse = nb::module_::import_("json").attr("loads");
-    ExrMetadata metadata = picture_metadata(*self.record, self.result, self.known_hash());
-    for (const auto& entry : id_metadata(self.record->scene, self.result.ids)) metadata.push_back(entry);
+    const ExrMetadata metadata =
+        picture_metadata(facts_of(*self.record, self.result.ids), self.result, self.known_hash());
     for (const auto& entry : metadata) {
         const std::string_view name = entry.first;
         constexpr std::string_view kOurs = "pertev.";

@@ -12,6 +12,7 @@ namespace pertev {
 void add_render_command(CLI::App& app, int& status);
 void add_view_command(CLI::App& app, int& status);
 void add_compare_command(CLI::App& app, int& status);
+void add_merge_command(CLI::App& app, int& status);
 void add_measure_command(CLI::App& app, int& status);
 void add_solve_command(CLI::App& app, int& status);
 void add_info_command(CLI::App& app, int& status);

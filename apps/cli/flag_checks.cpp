@@ -45,7 +45,8 @@ void refuse_list(const std::string& output) {
     const std::size_t comma = output.find(',');
     if (comma == std::string::npos) return;
     const std::string first = output.substr(0, comma);
-    if (!is_picture_name(first) && std::filesystem::path(first).extension() != ".rad") return;
+    const std::filesystem::path extension = std::filesystem::path(first).extension();
+    if (!is_picture_name(first) && extension != ".rad" && extension != ".pvf") return;
     std::string each = output;
     for (std::size_t at = 0; (at = each.find(',', at)) != std::string::npos; at += 4) each.replace(at, 1, " -o ");
     throw Error(ErrorCode::BadInput, "output", output,

@@ -26,8 +26,11 @@
 #include "image/read_image.h"
 #include "radiosity/radiosity_solution.h"
 #include "scene/scene_origin.h"
+#include "session/film_file/film_file.h"
 #include "session/survey/default_light.h"
+#include "session/writing/check_outputs.h"
 #include "session/writing/metadata_json.h"
+#include "settings/settings_file.h"
 #include "shading/build_light_set.h"
 
 namespace pertev {
@@ -124,6 +127,18 @@ void describe_image(const InfoFlags& flags, Facts& facts, Sink& sink) {
     }
 }
 
+void describe_film(const InfoFlags& flags, Facts& facts) {
+    const FilmHeader header = FilmFileReader(flags.scene.scene).header();
+    const auto range = [](uint32_t first, uint32_t end) { return fmt::format("{}:{}", first, end); };
+    facts.add("width", header.width);
+    facts.add("height", header.height);
+    facts.add("rows", range(header.part.first_row, header.part.end_row));
+    facts.add("samples", range(header.part.samples.first, header.part.samples.end));
+    facts.add("spp", header.spp);
+    for (const ExrMetadata* entries : {&header.facts.settings, &header.facts.shown, &header.facts.origin})
+        for (const auto& entry : *entries) facts.add(entry, "");
+}
+
 /// Returns the settings that made a picture, with as many samples as it has. Throws Error(BadInput).
 std::string settings_of(const std::string& picture) {
     const ExrMetadata metadata = lower_case_extension(picture) == ".exr" ? read_exr(picture).metadata : ExrMetadata();
@@ -135,10 +150,7 @@ std::string settings_of(const std::string& picture) {
         }
         return std::visit([](const auto& value) { return fmt::format("{}", value); }, entry->second);
     };
-    const std::string json = value_of("pertev.settings"), key = R"("spp":)";
-    const std::size_t begin = std::min(json.find(key), json.size() - key.size()) + key.size();
-    return json.substr(0, begin) + value_of("pertev.spp") +
-           json.substr(std::min(json.find_first_of(",}", begin), json.size()));
+    return with_samples(value_of("pertev.settings"), value_of("pertev.spp"));
 }
 
 /// Lists the file's animations and scenes, and those that a render plays and shows by default.
@@ -226,6 +238,8 @@ int info(InfoFlags& flags) {
            {"file_scene", flags.scene.file_scene, fmt::format("applies to scenes; {} is none", name)});
     if (is_picture_name(name)) {
         describe_image(flags, facts, reporter);
+    } else if (is_film_name(name)) {
+        describe_film(flags, facts);
     } else if (is_scene_name(flags.scene.scene)) {
         describe_scene(flags, facts, reporter);
     } else if (is_solution(flags.scene.scene)) {
@@ -247,7 +261,7 @@ void add_info_command(CLI::App& app, int& status) {
     const auto flags = std::make_shared<InfoFlags>();
     verb.add_option("FILE", flags->scene.scene,
                     "a scene (.gltf .glb .obj .ply, or a built-in one:\n" + builtin_scene_list() +
-                        "),\na picture, or what solve has made")
+                        "),\na picture, a film file, or what solve has made")
         ->type_name("")
         ->check(file_name())
         ->required();

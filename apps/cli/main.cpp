@@ -104,6 +104,7 @@ int run(std::vector<std::string> words, bool json) {
         app.formatter(std::make_shared<Help>(take_help_group(words)));
         app.require_subcommand(1);
         add_render_command(app, status);
+        add_merge_command(app, status);
         add_view_command(app, status);
         add_compare_command(app, status);
         add_measure_command(app, status);

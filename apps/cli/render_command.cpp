@@ -17,6 +17,7 @@
 #include "base/machine_memory.h"
 #include "base/message_text.h"
 #include "base/stopwatch.h"
+#include "session/film_file/film_file.h"
 #include "session/opening/camera_list.h"
 #include "session/opening/strictness.h"
 #include "session/pictures/choose_display.h"
@@ -42,7 +43,7 @@ void report_start(const RenderFlags& flags, const RenderSetup& ready, Reporter& 
                                "rendering {}x{}, {} spp{} on {}, using {:.0f} MiB",
                                flags.scene.scene, counted(triangles, "triangle"), counted(instances, "instance"),
                                counted(prepared.lights.count(), "light"), ready.load_s, prepared.build_seconds,
-                               settings.width, settings.height, settings.samples,
+                               settings.width, settings.height, settings.range().count(),
                                flags.real_time ? " per frame, reconstructed," : "", device, mebibytes(ready.bytes)));
     reporter.event(fmt::format(
         R"({{"event":"scene","scene":{},"triangles":{},"instances":{},"lights":{},"load_seconds":{:.6f},"build_seconds":{:.6f}}})",
@@ -50,7 +51,7 @@ void report_start(const RenderFlags& flags, const RenderSetup& ready, Reporter& 
         prepared.build_seconds));
     reporter.event(
         fmt::format(R"({{"event":"picture","width":{},"height":{},"spp":{},"device":{},"predicted_bytes":{}}})",
-                    settings.width, settings.height, settings.samples, json_string(device), ready.bytes));
+                    settings.width, settings.height, settings.range().count(), json_string(device), ready.bytes));
 }
 
 std::string kept_text(const SequenceTally& tally) {
@@ -105,16 +106,26 @@ int render_frames(const RenderFlags& flags, const SequenceOfFrames& frames, Repo
     return cut_short ? exit_status(ErrorCode::Interrupted) : 0;
 }
 
-int write_one(const RenderFlags& flags, const RenderSettings& settings, PictureRecord& record,
+int write_one(const RenderFlags& flags, const RenderSettings& settings, const PictureRecord& record,
               std::optional<Session>& session, const Queue& queue, const Stopwatch& watch, Reporter& reporter) {
     RenderResult result = render_samples(*session, reporter);
-    session.reset(); // writing takes memory too
     reporter.end_progress();
-    const bool cut_short = interrupted() && result.samples < settings.samples;
-    if (cut_short) reporter.print(fmt::format("interrupted after {} of {} spp", result.samples, settings.samples));
+    const uint32_t samples = settings.range().count();
+    const bool cut_short = interrupted() && result.samples < samples;
+    if (cut_short) reporter.print(fmt::format("interrupted after {} of {} spp", result.samples, samples));
     reporter.report_messages();
     reporter.set_work("writing");
-    const WrittenPicture written = write_picture(flags.outputs, record, result);
+    const bool has_film = std::ranges::any_of(flags.outputs, is_film_name);
+    PictureFacts facts = facts_of(record, result.ids);
+    std::vector<WrittenFile> films;
+    if (has_film) {
+        const Film& film = session->film();
+        films = write_film_files(flags.outputs, film_header(flags, record, facts, result, film), film);
+    }
+    session.reset();                                             // writing takes memory too
+    if (!writes_tone_mapped(flags.outputs)) facts.shown.clear(); // which only film files have
+    WrittenPicture written = write_picture(flags.outputs, facts, result);
+    written.files.insert(written.files.end(), films.begin(), films.end());
     report_files(written, reporter);
     report_result(result, written, queue, watch.seconds(), cut_short, reporter);
     refuse_faults(written, result.invalid_samples, flags.strict);
@@ -140,7 +151,7 @@ int render(RenderFlags& flags) {
     report_camera(record.camera, reporter);
     reporter.set_work("uploading the scene");
     std::optional<Session> session(std::in_place, queue, ready->prepared(), record.camera.camera, settings);
-    if (writes_tone_mapped(flags.outputs)) {
+    if (writes_tone_mapped(flags.outputs) || std::ranges::any_of(flags.outputs, is_film_name)) {
         record.display = choose_display(flags, *session, reporter);
         report_display(*record.display, is_metered(flags), reporter);
     }
@@ -159,7 +170,7 @@ void add_render_command(CLI::App& app, int& status) {
     const auto flags = std::make_shared<RenderFlags>();
     add_scene_name(verb, flags->scene);
     verb.add_option("-o,--output", flags->outputs,
-                    "A picture file to write: .exr .png .jpg .hdr. It may be given again.")
+                    "A picture file to write: .exr .png .jpg .hdr, or .pvf for pertev merge. It may be given again.")
         ->type_name("FILE")
         ->allow_extra_args(false)
         ->check(file_name())

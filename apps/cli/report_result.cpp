@@ -53,6 +53,7 @@ void report_result(const RenderResult& result, const WrittenPicture& written, co
     const double rays_per_second = static_cast<double>(result.rays.total()) / result.render_seconds;
     const double frame_seconds = result.render_seconds / result.samples; // one sample of every pixel
     const uint64_t host_bytes = peak_memory_bytes();
+    if (result.samples == 0) reporter.print("this part has no samples");
     reporter.print(fmt::format(
         "{} spp in {:.2f} s ({:.2f} s in all), {:.4g} s a frame of 1 spp ({:.4g} frames/s), {:.2f} Msamples/s, {:.1f} "
         "Mrays/s, peak {:.0f} MiB{}, {}, picture {}{}",

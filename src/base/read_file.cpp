@@ -1,8 +1,6 @@
 #include "base/read_file.h"
 
 #include <cerrno>
-#include <cstdio>
-#include <memory>
 #include <span>
 #include <system_error>
 
@@ -15,26 +13,24 @@ namespace pertev {
 
 namespace {
 
-using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
-
 Error failure(const std::filesystem::path& path, const std::string& why) {
     return Error(ErrorCode::BadInput, FileLocation{path.string()}, fmt::format("cannot read: {}", why));
 }
 
-File open_file(const std::filesystem::path& path) {
+} // namespace
+
+InputFile open_file(const std::filesystem::path& path) {
     std::error_code ec;
     const auto status = std::filesystem::status(path, ec);
     if (!std::filesystem::exists(status)) throw failure(path, ec ? ec.message() : "no such file");
     if (!std::filesystem::is_regular_file(status)) throw failure(path, "it is not a regular file");
-    File file(std::fopen(path.c_str(), "rb"), &std::fclose);
+    InputFile file(std::fopen(path.c_str(), "rb"), &std::fclose);
     if (!file) throw failure(path, std::generic_category().message(errno));
     return file;
 }
 
-} // namespace
-
 std::vector<std::byte> read_file(const std::filesystem::path& path) {
-    const File file = open_file(path);
+    const InputFile file = open_file(path);
     std::error_code ec;
     std::vector<std::byte> bytes(std::filesystem::file_size(path, ec));
     if (ec) throw failure(path, ec.message());
@@ -46,7 +42,7 @@ std::vector<std::byte> read_file(const std::filesystem::path& path) {
 
 std::string hash_of_file(const std::filesystem::path& path) {
     if (std::error_code ec; !std::filesystem::is_regular_file(path, ec)) return "";
-    const File file = open_file(path);
+    const InputFile file = open_file(path);
     Hasher hasher;
     std::vector<std::byte> part(std::size_t(1) << 20);
     while (const std::size_t count = std::fread(part.data(), 1, part.size(), file.get())) {

@@ -88,7 +88,16 @@ std::string temporary_name(const fs::path& target) {
     return (folder_of(target) / ("." + target.filename().string() + ".XXXXXX")).string();
 }
 
+/// Throws before the disk is filled by a file that does not fit.
+void check_space(const fs::path& target, std::size_t size) {
+    std::error_code unknown;
+    const fs::space_info disk = fs::space(folder_of(target), unknown);
+    if (unknown || disk.capacity == 0 || disk.available >= size) return;
+    throw std::system_error(std::make_error_code(std::errc::no_space_on_device));
+}
+
 void replace(const fs::path& target, std::span<const std::byte> bytes, Sink& sink) {
+    check_space(target, bytes.size());
     std::string temporary = temporary_name(target);
     const OpenFile file(::mkstemp(temporary.data()));
     check(file.fd() >= 0);

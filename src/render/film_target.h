@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <span>
 #include <string>
 #include <vector>
@@ -46,9 +45,27 @@ public:
         static_cast<void>(width), static_cast<void>(samples);
         return {};
     }
-    virtual std::vector<std::byte> bytes() const = 0;
-    /// Restores the target from `bytes`. Throws std::logic_error if their number is wrong.
-    virtual void set_bytes(std::span<const std::byte> bytes) = 0;
+
+    /// Size of the contents, which do not depend on the device.
+    virtual std::size_t byte_count() const = 0;
+    /// Distance in bytes between two numbers of the same kind, such as the reds of two pixels. It divides byte_count().
+    virtual std::size_t stride() const = 0;
+    /// Copies the contents from byte `first` on to the host. `first` and the size are multiples of stride().
+    virtual void read(std::size_t first, std::span<std::byte> to) const = 0;
+    /// Adds such contents of another target, as add().
+    virtual void add_bytes(std::size_t first, std::span<const std::byte> from) = 0;
+
+    std::vector<std::byte> bytes() const {
+        std::vector<std::byte> all(byte_count());
+        read(0, all);
+        return all;
+    }
+    /// Restores the target from all its bytes. Throws std::logic_error if their number is wrong.
+    void set_bytes(std::span<const std::byte> all) {
+        PERTEV_CHECK(all.size() == byte_count());
+        clear();
+        add_bytes(0, all);
+    }
 };
 
 /// A target that is an array of elements, each with all bytes `kEmpty` at first. The stage `Add{from, to}` adds another
@@ -72,43 +89,56 @@ public:
 
     void add(const FilmTarget& other) override {
         PERTEV_CHECK(is_like(other));
-        const auto* const from = static_cast<const ElementTarget*>(&other);
-        const std::size_t all = elements_.size(), at_once = std::min(std::size_t(1) << 20, all);
-        const bool is_here = queue_ == from->queue_;
-        std::vector<T> on_host(is_here ? 0 : at_once);
-        Buffer<T> copy;
-        if (!is_here) copy = Buffer<T>(*queue_, at_once, "film to be added");
-        for (std::size_t first = 0; first < all; first += at_once) {
-            const std::size_t count = std::min(at_once, all - first);
-            const T* theirs = from->elements_.data() + first;
-            if (!is_here) {
-                from->queue_->copy_to_host(on_host.data(), theirs, count * sizeof(T));
-                copy.upload({on_host.data(), count});
-                theirs = copy.data();
+        const auto& from = static_cast<const ElementTarget&>(other);
+        const std::size_t all = elements_.size();
+        const bool is_here = queue_ == from.queue_;
+        std::vector<std::byte> on_host(is_here ? 0 : std::min(kAtOnce, all) * sizeof(T));
+        for (std::size_t first = 0; first < all; first += kAtOnce) {
+            const std::size_t count = std::min(kAtOnce, all - first);
+            if (is_here) {
+                add_elements(from.elements_.data() + first, first, count);
+            } else {
+                const std::span part(on_host.data(), count * sizeof(T));
+                from.copy_elements(first, part);
+                upload_and_add(first, part);
             }
-            launch(*queue_, "add_films", static_cast<uint32_t>(count), Add{theirs, elements_.data() + first});
         }
         queue_->wait(); // the copy must be finished before its source is freed
     }
 
-    std::vector<std::byte> bytes() const override {
-        const std::vector<T> values = elements_.download();
-        const auto raw = std::as_bytes(std::span<const T>(values));
-        return {raw.begin(), raw.end()};
+    std::size_t byte_count() const override { return elements_.size() * sizeof(T); }
+    std::size_t stride() const override { return sizeof(T); }
+    void read(std::size_t first, std::span<std::byte> to) const override {
+        PERTEV_CHECK(first % stride() == 0 && to.size() % stride() == 0 && first + to.size() <= byte_count());
+        copy_elements(first / sizeof(T), to);
     }
-
-    void set_bytes(std::span<const std::byte> bytes) override {
-        PERTEV_CHECK(bytes.size() == elements_.size() * sizeof(T));
-        std::vector<T> values(elements_.size());
-        if (!bytes.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
-        elements_.upload(values);
-        queue_->wait();
+    void add_bytes(std::size_t first, std::span<const std::byte> from) override {
+        PERTEV_CHECK(first % stride() == 0 && from.size() % stride() == 0 && first + from.size() <= byte_count());
+        for (std::size_t at = 0; at < from.size(); at += kAtOnce * sizeof(T)) {
+            const std::size_t size = std::min(kAtOnce * sizeof(T), from.size() - at);
+            upload_and_add((first + at) / sizeof(T), from.subspan(at, size));
+        }
     }
 
 protected:
     Queue& queue() const { return *queue_; }
 
 private:
+    static constexpr std::size_t kAtOnce = std::size_t(1) << 20; // elements
+
+    void add_elements(const T* from, std::size_t first, std::size_t count) {
+        launch(*queue_, "add_films", static_cast<uint32_t>(count), Add{from, elements_.data() + first});
+    }
+    void copy_elements(std::size_t first, std::span<std::byte> to) const {
+        if (!to.empty()) queue_->copy_to_host(to.data(), elements_.data() + first, to.size());
+    }
+    void upload_and_add(std::size_t first, std::span<const std::byte> from) {
+        const Buffer<T> copy(*queue_, from.size() / sizeof(T), "film to be added");
+        queue_->copy_to_device(copy.data(), from.data(), from.size());
+        add_elements(copy.data(), first, copy.size());
+        queue_->wait();
+    }
+
     Queue* queue_;
     const char* name_;
     Buffer<T> elements_;

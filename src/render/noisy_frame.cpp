@@ -55,32 +55,28 @@ bool NoisyFrame::is_like(const FilmTarget& other) const {
 
 void NoisyFrame::add(const FilmTarget& other) {
     PERTEV_CHECK(is_like(other));
-    const std::vector<std::byte> theirs = other.bytes();
-    NoisyFrame copy(*queue_, width_, height_, splits_light());
-    copy.set_bytes(theirs);
+    add_bytes(0, other.bytes());
+}
+
+void NoisyFrame::read(std::size_t first, std::span<std::byte> to) const {
+    PERTEV_CHECK(first == 0 && to.size() == byte_count());
+    queue_->copy_to_host(to.data(), view_.light, to.size() - sizeof(uint64_t));
+    const uint64_t invalid = invalid_samples();
+    std::memcpy(&to.back() + 1 - sizeof invalid, &invalid, sizeof invalid);
+}
+
+void NoisyFrame::add_bytes(std::size_t first, std::span<const std::byte> from) {
+    PERTEV_CHECK(first == 0 && from.size() == byte_count());
+    const NoisyFrame copy(*queue_, width_, height_, splits_light());
+    queue_->copy_to_device(copy.view_.light, from.data(), from.size() - sizeof(uint64_t));
     const uint32_t pixels = width_ * height_;
     launch(*queue_, "add_frames", pixels,
            AddFrames{copy.view_.light, view_.light, pixels, static_cast<uint32_t>(arrays(splits_light()))});
-    const uint64_t invalid = invalid_samples() + copy.invalid_samples();
+    uint64_t theirs = 0;
+    std::memcpy(&theirs, &from.back() + 1 - sizeof theirs, sizeof theirs);
+    const uint64_t invalid = invalid_samples() + theirs;
     invalid_.upload({&invalid, 1});
     queue_->wait(); // the copy must be finished before its source is freed
-}
-
-std::vector<std::byte> NoisyFrame::bytes() const {
-    std::vector<std::byte> bytes(count() * sizeof(Float4) + sizeof(uint64_t));
-    queue_->copy_to_host(bytes.data(), view_.light, bytes.size() - sizeof(uint64_t));
-    const uint64_t invalid = invalid_samples();
-    std::memcpy(bytes.data() + bytes.size() - sizeof invalid, &invalid, sizeof invalid);
-    return bytes;
-}
-
-void NoisyFrame::set_bytes(std::span<const std::byte> bytes) {
-    PERTEV_CHECK(bytes.size() == count() * sizeof(Float4) + sizeof(uint64_t));
-    queue_->copy_to_device(view_.light, bytes.data(), bytes.size() - sizeof(uint64_t));
-    uint64_t invalid = 0;
-    std::memcpy(&invalid, bytes.data() + bytes.size() - sizeof invalid, sizeof invalid);
-    invalid_.upload({&invalid, 1});
-    queue_->wait();
 }
 
 } // namespace pertev

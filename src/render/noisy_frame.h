@@ -27,8 +27,10 @@ public:
     bool is_like(const FilmTarget& other) const override;
     /// Takes the pixels that have had no sample here since clear(), which must have been called.
     void add(const FilmTarget& other) override;
-    std::vector<std::byte> bytes() const override;
-    void set_bytes(std::span<const std::byte> bytes) override;
+    std::size_t byte_count() const override { return count() * sizeof(Float4) + sizeof(uint64_t); }
+    std::size_t stride() const override { return byte_count(); } // it is read and added as a whole
+    void read(std::size_t first, std::span<std::byte> to) const override;
+    void add_bytes(std::size_t first, std::span<const std::byte> from) override;
 
     /// The film view to which an integrator adds samples.
     FilmView film_view() const;

@@ -17,6 +17,7 @@ public:
 
     void show(FilmView& view) const override;
     bool is_like(const FilmTarget& other) const override;
+    std::size_t stride() const override { return channels_ * sizeof(FixedSum); }
     /// Returns the auxiliary layers, then the light layers.
     std::vector<FilmLayer> layers(uint32_t width, uint64_t samples) const override;
 

@@ -72,7 +72,7 @@ RenderResult Session::render_separately(const Camera& camera, const RenderSettin
 RenderResult render_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera,
                             const RenderSettings& settings, Sink& sink) {
     Session session(queue, prepared, camera, settings);
-    session.render(settings.samples, sink);
+    session.render(settings.range(), sink);
     return session.result();
 }
 

@@ -65,8 +65,9 @@ public:
     /// Adds up to `samples` samples to each pixel; see FilmRender::render.
     uint32_t render(uint32_t samples, Sink& sink = nobody()) {
         const uint32_t first = film_.samples().end;
-        return film_.render({first, first + std::min(samples, kMaxSamplesPerPixel - first)}, sink);
+        return render(SampleRange{first, first + std::min(samples, kMaxSamplesPerPixel - first)}, sink);
     }
+    uint32_t render(SampleRange range, Sink& sink = nobody()) { return film_.render(range, sink); }
     uint32_t render(uint32_t samples, Sink&& sink) { return render(samples, sink); }
     void interrupt_passes(bool leaves) { film_.interrupt_passes(leaves); }
 

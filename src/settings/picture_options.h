@@ -97,6 +97,8 @@ struct PictureOptions {
     std::shared_ptr<const std::vector<CameraOfFile>> camera_list; // its cameras, once it is read
     double fps = 0;
     uint32_t turntable = 0;
+    std::string samples, part; // A:B; I/N, where I counts from part_base
+    uint32_t part_base = 1;
     bool goes_on = false; // continues a sequence that was interrupted
     bool real_time = false;
     ReconstructionOptions reconstruction;

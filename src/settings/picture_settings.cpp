@@ -104,6 +104,15 @@ std::vector<Setting> picture_settings() {
             On{kRender | kBenchSequence}, Excludes{"!none:max_depth=0"}, Recorded::Changed, Mark::Common,
             Changes::Picture),
 
+        row("samples", "Parts", "A:B", FIELD(samples),
+            "The samples of each pixel from number A, where the first is 0, to before B.",
+            Excludes{"spp part time_limit frames turntable cameras"}, Mark::NotKept),
+        row("part", "Parts", "I/N", FIELD(part),
+            "Part I of N parts of the samples, whose film files (.pvf) are merged.",
+            Excludes{"time_limit frames turntable cameras"}, Mark::NotKept),
+        row("part_base", "Parts", "B", FIELD(part_base), "The number of the first part.", Range{0, 1u << 31},
+            Needs{"part"}, Mark::NotKept),
+
         row("build", "Tracing", "WHICH", FIELD(tracer.build),
             "The quality of the acceleration structure: fast builds fastest, best traces fastest. "
             "No setting of this group changes the picture.",

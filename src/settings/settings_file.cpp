@@ -72,6 +72,15 @@ std::string settings_json(const PictureOptions& options, const std::string& hash
                        json_string(options.scene.scene), json_string(hash_of_scene), members);
 }
 
+std::string with_samples(const std::string& json, std::string_view samples) {
+    const std::string key = R"("spp":)";
+    const std::size_t found = json.find(key);
+    if (found == std::string::npos) return json;
+    const std::size_t begin = found + key.size();
+    return fmt::format("{}{}{}", json.substr(0, begin), samples,
+                       json.substr(std::min(json.find_first_of(",}", begin), json.size())));
+}
+
 std::string reconstruction_json(const ReconstructionOptions& options) {
     PictureOptions used;
     used.reconstruction = {.settings = options.used(), .sharing = options.sharing};

@@ -8,6 +8,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "base/sink.h"
 #include "settings/setting_table.h"
@@ -26,6 +27,9 @@ bool is_written(const PictureOptions& options, const Setting& setting);
 /// that is_written() names.
 std::string settings_json(const PictureOptions& options, const std::string& hash_of_scene,
                           std::span<const Setting> table = all_settings());
+
+/// Returns such an object of a picture that has `samples` per pixel; `json` as it is if it does not name them.
+std::string with_samples(const std::string& json, std::string_view samples);
 
 /// Returns the settings that determine a real-time frame besides those of its picture, as a JSON object.
 std::string reconstruction_json(const ReconstructionOptions& options);

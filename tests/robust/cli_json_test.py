@@ -31,7 +31,7 @@ class Errors(CliTest):
         return last
 
     def test_errors_of_the_command_line_are_json_objects_for_every_verb(self):
-        for verb in ["", "render", "measure", "solve radiosity", "info", "compare", "bench", "bench rays", "bench build", "bench render", "lab",
+        for verb in ["", "render", "measure", "solve radiosity", "info", "compare", "merge", "bench", "bench rays", "bench build", "bench render", "lab",
                      "lab --thesis"]:
             for rest, says in [("--foo --json", "--foo"), ("--json --foo", "--foo"), ("--json --threads", "--threads")]:
                 with self.subTest(verb=verb, rest=rest):

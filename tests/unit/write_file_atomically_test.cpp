@@ -2,9 +2,11 @@
 
 #include <sys/stat.h>
 
+#include <cerrno>
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <system_error>
 
 #include "base/error.h"
 #include "base/write_file_atomically.h"
@@ -35,6 +37,22 @@ TEST_CASE("writing replaces the whole file and leaves nothing else behind") {
     replace_text(folder / "a", "old, and longer");
     replace_text(folder / "a", "new");
     CHECK(read_text(folder / "a") == "new");
+    CHECK(files_in(folder) == 1);
+}
+
+TEST_CASE("a file that does not fit on the disk is refused before anything is written") {
+    const fs::path folder = test::scratch_folder();
+    replace_text(folder / "a", "old");
+    const std::byte first = {};
+    const std::span<const std::byte> too_much(&first, std::size_t(1) << 60);
+    try {
+        write_file_atomically(folder / "a", too_much);
+        FAIL("no error");
+    } catch (const Error& error) {
+        CHECK(error.code() == ErrorCode::FileWrite);
+        CHECK(error.reason().find(std::generic_category().message(ENOSPC)) != std::string::npos);
+    }
+    CHECK(read_text(folder / "a") == "old");
     CHECK(files_in(folder) == 1);
 }
 

@@ -1,6 +1,6 @@
 #include "formats/json/json_file.h"
 
-#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -10,10 +10,18 @@
 #include "formats/json/find_json_fault.h"
 
 namespace pertev {
+namespace {
 
-JsonFile::JsonFile(const std::filesystem::path& path) : name_(path.string()) {
-    const std::vector<std::byte> bytes = read_file(path);
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+/// The view is valid as long as the bytes.
+std::string_view as_text(const std::vector<std::byte>& bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+} // namespace
+
+JsonFile::JsonFile(const std::filesystem::path& path) : JsonFile(path.string(), as_text(read_file(path))) {}
+
+JsonFile::JsonFile(std::string name, std::string_view text) : name_(std::move(name)) {
     simdjson::dom::element element;
     if (!parser_.parse(simdjson::padded_string(text)).get(element)) {
         root_.emplace(name_, "", element);

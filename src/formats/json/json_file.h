@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "formats/json/json_value.h"
 
@@ -15,6 +16,8 @@ public:
     /// Reads and parses a file. Throws Error(BadInput) if it cannot be read or is not JSON, with the location of the
     /// first fault.
     explicit JsonFile(const std::filesystem::path& path);
+    /// Parses the text of a file, or of a part of it.
+    JsonFile(std::string name, std::string_view text);
     JsonFile(const JsonFile&) = delete; // its values point into it
     JsonFile& operator=(const JsonFile&) = delete;
 

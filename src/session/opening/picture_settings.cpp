@@ -8,6 +8,7 @@
 #include "session/check_integrator.h"
 #include "session/height_maps.h"
 #include "session/opening/choose_camera.h"
+#include "session/sample_range.h"
 #include "settings/value_names.h"
 
 namespace pertev {
@@ -66,6 +67,8 @@ RenderSettings render_settings(const PictureOptions& options, const Scene& scene
     }
     settings.heights = read_height_maps(height_maps(options), scene);
     set_size(options, scene, settings);
+    const SampleRange range = sample_range(options);
+    settings.first_sample = range.first, settings.samples = range.end;
     const std::size_t of_ids = (settings.aovs & kAovIds) != 0 ? 3 : 0;
     check_exr_row(settings.width, film_channel_count(settings.aovs) + of_ids + 3 * light_layers_of(settings).size());
     return settings;

@@ -11,6 +11,7 @@
 #include "session/opening/open_scene.h"
 #include "session/opening/picture_settings.h"
 #include "session/pictures/choose_display.h"
+#include "session/sample_range.h"
 #include "settings/check_settings.h"
 
 namespace pertev {
@@ -32,6 +33,7 @@ void check_solution(const std::string& file) {
 void check_options(const PictureOptions& options, uint32_t verbs) {
     check_settings(options, verbs);
     frame_range(options);
+    sample_range(options);
     check_real_time(options);
     if (options.reconstruction.used().denoiser == FrameDenoiser::Oidn) OidnLibrary::find("frame_denoiser");
     requested_exposure(options);

@@ -19,6 +19,7 @@
 #include "session/pictures/check_options.h"
 #include "session/pictures/frame_settings.h"
 #include "session/render_memory.h"
+#include "session/sample_range.h"
 #include "session/session_bytes.h"
 #include "session/survey/ground.h"
 #include "settings/check_settings.h"
@@ -47,9 +48,10 @@ void check_film(const PictureOptions& options, const RenderSettings& settings, c
     check_render_memory(film, settings, memory_to_render_in(queue, settings, max_memory_bytes(options.radiosity)));
 }
 
-/// Checks the options. A frame in real time has one sample by default.
+/// Checks the options. A frame in real time has one sample by default, and a picture of `samples` all before their end.
 void check(PictureOptions& options, uint32_t verbs) {
     if (options.real_time && !options.is_given("spp")) options.render.samples = 1;
+    if (!options.samples.empty()) options.render.samples = sample_range(options).end;
     check_options(options, verbs);
 }
 
@@ -238,6 +240,8 @@ void record_settings(const PictureOptions& options, const Scene& scene, uint32_t
     const Camera* const own = scene_camera(choice.camera, scene);
     const bool is_own = own != nullptr && !choice.places_camera() && options.camera_path.empty();
     auto origins = options.given; // the scene's own camera has no value that a settings file could contain
+    for (const char* name : {"part", "part_base"}) origins.erase(name); // the picture is that of all parts
+    if (const auto range = origins.extract("samples")) origins.try_emplace("spp", range.mapped());
     if (is_own) origins.try_emplace("camera", SettingOrigin::Scene);
     if (own != nullptr && own->aspect > 0) origins.try_emplace("size", SettingOrigin::Scene);
     source.by_default = source.by_scene = source.by_settings = source.by_caller = "";

@@ -8,7 +8,7 @@ namespace pertev {
 
 RenderResult render_samples(Session& session, Sink& sink) {
     const RenderSettings& settings = session.settings();
-    if (session.render(settings.samples, sink) == 0) {
+    if (settings.range().count() > 0 && session.render(settings.range(), sink) == 0) {
         if (sink.should_stop()) throw Error(ErrorCode::Interrupted, "interrupted before there was anything to keep");
         throw Error(ErrorCode::Interrupted, "time_limit", fmt::format("{:g}", settings.time_limit_s),
                     fmt::format("no sample was finished in this time, so nothing is written; `integrator={}` prepares "

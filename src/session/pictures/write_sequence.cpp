@@ -1,59 +1,22 @@
 #include "session/pictures/write_sequence.h"
 
-#include <algorithm>
-#include <span>
-#include <variant>
-
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "base/error.h"
-#include "base/hash.h"
-#include "base/read_file.h"
 #include "base/stopwatch.h"
 #include "image/picture_hash.h"
 #include "session/pictures/frame_settings.h"
+#include "session/writing/deciding_settings.h"
 #include "session/writing/sequence_record.h"
 
 namespace pertev {
 namespace {
 
-/// The hash of what a file of cameras says, wherever it lies.
-std::string hash_of_cameras(const std::vector<CameraOfFile>& cameras) {
-    std::string text;
-    for (const CameraOfFile& camera : cameras) {
-        text += camera.name + '\n';
-        for (const auto& [name, value] : camera.settings) text += fmt::format("{}={}\n", name, value);
-    }
-    Hasher hasher;
-    hasher.add(std::as_bytes(std::span(text)));
-    return hasher.result().hex();
-}
-
-/// Everything that decides the pictures: all settings but the frames, which may be others of the same sequence, and
-/// what the first frame's metadata say of them, which is the same however they were written.
-SequenceRecord::Settings settings_of(const PictureOptions& options, const FrameRange& sequence,
-                                     const PictureRecord& record) {
-    SequenceRecord::Settings settings = {{"first frame", fmt::format("{}", sequence.first)}};
-    const auto put = [&](const std::string& name, const std::string& value) {
-        const auto known = std::ranges::find(settings, name, &std::pair<std::string, std::string>::first);
-        known != settings.end() ? void(known->second = value) : void(settings.emplace_back(name, value));
-    };
-    for (const Setting& setting : all_settings()) {
-        if (setting.is_kept && (setting.verbs & kRender) != 0 && setting.name != std::string_view("frames"))
-            put(setting.name, fmt::format("{}", fmt::join(texts_of(options, setting), " ")));
-    }
-    put("animation", record.scene.animation); // even if the file has only one
-    put("file_scene", record.scene.file_scene);
-    constexpr std::string_view kPrefix = "pertev.";
-    for (const auto& [name, value] : settings_metadata(record))
-        put(name.substr(kPrefix.size()), std::visit([](const auto& v) { return fmt::format("{}", v); }, value));
-    put("size", fmt::format("{}x{}", record.settings.width, record.settings.height));
-    put("hash of camera_path", hash_of_file(options.camera_path));
-    put("hash of camera_from", hash_of_file(options.scene.camera.camera_from));
-    if (options.camera_list) put("cameras", hash_of_cameras(*options.camera_list));
-    put("hash of the scene's file", hash_of_file(options.scene.scene));
-    put("hash of environment", hash_of_file(options.scene.environment));
+/// Returns settings that are the same for all frames of a sequence, also if other frames were rendered before.
+DecidingSettings settings_of(const PictureOptions& options, const FrameRange& sequence, const PictureRecord& record) {
+    DecidingSettings settings = deciding_settings(options, record);
+    std::erase_if(settings, [](const auto& setting) { return setting.first == "frames"; });
+    settings.emplace(settings.begin(), "first frame", fmt::format("{}", sequence.first));
     return settings;
 }
 

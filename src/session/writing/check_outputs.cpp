@@ -9,9 +9,12 @@
 #include <fmt/ranges.h>
 
 #include "base/error.h"
+#include "base/file_extension.h"
+#include "base/write_file_atomically.h"
 #include "image/write_image.h"
 #include "session/frame_range.h"
 #include "settings/setting_table.h"
+#include "settings/value_names.h"
 
 namespace pertev {
 namespace {
@@ -71,10 +74,22 @@ void refuse_unshown(const PictureOptions& options, uint32_t written) {
         check("false_color", "luminance", find_setting("tone_map")->formats); // other files hold irradiance
 }
 
+/// Refuses a picture that a film file does not hold whole.
+void check_film_file(const PictureOptions& options, const std::string& output, bool has_frames) {
+    if (has_frames) refuse("output", output, "a film file holds one picture, not the frames of a sequence");
+    if (options.render.denoise != Denoise::None)
+        refuse("denoise", std::string(name_of(options.render.denoise)), "film files do not hold what it needs");
+    if (std::ranges::count(options.aovs, "motion") > 0) refuse("aov", "motion", "film files have no such layer");
+    check_writable(output);
+}
+
 } // namespace
+
+bool is_film_name(const std::string& output) { return lower_case_extension(output) == ".pvf"; }
 
 bool writes_tone_mapped(std::span<const std::string> outputs) {
     return std::ranges::any_of(outputs, [](const std::string& output) {
+        if (is_film_name(output)) return false;
         const ImageFormat format = image_format_for(output);
         return format == ImageFormat::Png || format == ImageFormat::Jpeg;
     });
@@ -97,6 +112,11 @@ void check_outputs(const PictureOptions& options, std::span<const std::string> o
                    "each frame needs a file of its own; a run of # in the name, as in frame-####.png, is the frame's "
                    "number, and {name} that of its camera");
         }
+        if (is_film_name(output)) {
+            check_film_file(options, output, frames.has_value());
+            written = ~0u;
+            continue;
+        }
         check_image_output(frames ? frame_file(output, frames->first, frames->names) : output, size.width, size.height);
         written |= bit_of(image_format_for(output));
         if (!frames) note_number_signs(output, sink);
@@ -104,6 +124,7 @@ void check_outputs(const PictureOptions& options, std::span<const std::string> o
     refuse_twins(outputs, frames);
     refuse_unshown(options, written);
     for (const std::string& output : outputs) {
+        if (is_film_name(output)) continue;
         const bool keeps_alpha = (find_setting("transparent")->formats & bit_of(image_format_for(output))) != 0;
         if (!options.render.transparent || keeps_alpha) continue;
         Remark why("transparent", "", "this format has no alpha; the background becomes black");

@@ -10,6 +10,8 @@
 
 namespace pertev {
 
+/// Returns whether the name is that of a film file (session/film_file/): .pvf, in either case.
+bool is_film_name(const std::string& output);
 /// Returns whether one of the files is tone-mapped: PNG or JPEG.
 bool writes_tone_mapped(std::span<const std::string> outputs);
 

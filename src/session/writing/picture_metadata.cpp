@@ -1,5 +1,6 @@
 #include "session/writing/picture_metadata.h"
 
+#include <algorithm>
 #include <set>
 
 #include <fmt/format.h>
@@ -211,27 +212,44 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
     return metadata;
 }
 
-ExrMetadata picture_metadata(const PictureRecord& record, const RenderStats& stats, const std::string& hash) {
-    ExrMetadata metadata = settings_metadata(record);
-    append(metadata, {{"pertev.spp", static_cast<int32_t>(stats.samples)},
-                      {"pertev.device", record.device},
-                      {"pertev.hash", hash},
-                      {"pertev.made_up", json_strings(record.scene.made_up)},
-                      {"pertev.left_out", json_strings(record.scene.left_out)},
-                      {"pertev.invalid_samples", static_cast<double>(stats.invalid_samples)},
-                      {"pertev.load_seconds", record.scene.load_seconds},
-                      {"pertev.build_seconds", record.scene.build_seconds},
-                      {"pertev.render_seconds", stats.render_seconds},
-                      {"pertev.rays", static_cast<double>(stats.rays.total())}});
+PictureFacts facts_of(const PictureRecord& record, std::span<const PixelIds> ids) {
+    PictureRecord not_shown = record;
+    not_shown.display.reset();
+    PictureFacts facts = {.settings = settings_metadata(not_shown),
+                          .shown = settings_metadata(record),
+                          .origin = {},
+                          .display = record.display,
+                          .transparent = record.settings.transparent};
+    std::erase_if(facts.shown, [&](const auto& entry) {
+        return std::ranges::find(facts.settings, entry.first, &ExrMetadata::value_type::first) != facts.settings.end();
+    });
     const SceneSource& scene = record.scene;
+    facts.origin = {{"pertev.device", record.device},
+                    {"pertev.made_up", json_strings(scene.made_up)},
+                    {"pertev.left_out", json_strings(scene.left_out)},
+                    {"pertev.load_seconds", scene.load_seconds},
+                    {"pertev.build_seconds", scene.build_seconds}};
     for (const auto& [name, text] : {std::pair("pertev.scene_hash", &scene.hash),
                                      {"pertev.settings", &scene.settings},
                                      {"pertev.by_default", &scene.by_default},
                                      {"pertev.by_scene", &scene.by_scene},
                                      {"pertev.by_settings", &scene.by_settings},
                                      {"pertev.by_caller", &scene.by_caller}}) {
-        if (!text->empty()) metadata.emplace_back(name, *text);
+        if (!text->empty()) facts.origin.emplace_back(name, *text);
     }
+    append(facts.origin, id_metadata(scene, ids));
+    return facts;
+}
+
+ExrMetadata picture_metadata(const PictureFacts& facts, const RenderStats& stats, const std::string& hash) {
+    ExrMetadata metadata = facts.settings;
+    append(metadata, facts.shown);
+    append(metadata, {{"pertev.spp", static_cast<int32_t>(stats.samples)},
+                      {"pertev.hash", hash},
+                      {"pertev.invalid_samples", static_cast<double>(stats.invalid_samples)},
+                      {"pertev.render_seconds", stats.render_seconds},
+                      {"pertev.rays", static_cast<double>(stats.rays.total())}});
+    append(metadata, facts.origin);
     return metadata;
 }
 

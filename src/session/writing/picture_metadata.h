@@ -99,7 +99,19 @@ void name_ids(const Scene& scene, SceneSource& source);
 /// names.
 ExrMetadata id_metadata(const SceneSource& source, std::span<const PixelIds> ids);
 
-/// Entries of settings_metadata, and of the results. `hash` is that of the film's picture, denoised or not.
-ExrMetadata picture_metadata(const PictureRecord& record, const RenderStats& stats, const std::string& hash);
+/// Holds all that a picture's files say of it besides its results. Film files keep it for the files of the merged
+/// picture.
+struct PictureFacts {
+    ExrMetadata settings;           // settings_metadata() without the display
+    ExrMetadata shown;              // entries of the display
+    ExrMetadata origin;             // device, messages, where settings came from; names of ids
+    std::optional<Display> display; // none: the picture is not displayed
+    bool transparent = false;
+};
+/// `ids` are those of the picture; none without a layer of ids.
+PictureFacts facts_of(const PictureRecord& record, std::span<const PixelIds> ids);
+
+/// Entries of the facts, and of the results. `hash` is that of the film's picture, denoised or not.
+ExrMetadata picture_metadata(const PictureFacts& facts, const RenderStats& stats, const std::string& hash);
 
 } // namespace pertev

@@ -10,7 +10,6 @@
 #include "base/write_file_atomically.h"
 #include "formats/json/json_file.h"
 #include "session/frame_range.h"
-#include "settings/setting_table.h"
 
 namespace pertev {
 namespace {
@@ -26,7 +25,8 @@ std::string json_object(const auto& entries) {
 
 } // namespace
 
-SequenceRecord::SequenceRecord(std::vector<std::string> outputs, Settings settings, std::vector<std::string> names)
+SequenceRecord::SequenceRecord(std::vector<std::string> outputs, DecidingSettings settings,
+                               std::vector<std::string> names)
     : outputs_(std::move(outputs)), names_(std::move(names)), settings_(std::move(settings)),
       path_(std::filesystem::path(outputs_.front()).replace_extension(".json")) {
     for (auto& [name, value] : settings_) value = utf8_text(value);
@@ -35,13 +35,13 @@ SequenceRecord::SequenceRecord(std::vector<std::string> outputs, Settings settin
 bool SequenceRecord::load() {
     if (std::error_code fault; !std::filesystem::exists(path_, fault)) return false;
     const JsonFile file(path_);
-    const gltf::JsonValue before = file.root().at("settings");
-    for (const auto& [name, value] : settings_) {
-        const std::string then = before.string_or(name, "");
-        if (then == value) continue;
-        Remark why(before.location(), fmt::format("the existing frames were made with {0}{1}{0} \"{2}\", not \"{3}\"; "
-                                                  "render them again without `continue`, or elsewhere",
-                                                  find_setting(name) != nullptr ? "`" : "", name, then, value));
+    const gltf::JsonValue settings = file.root().at("settings");
+    DecidingSettings before;
+    for (const auto& [name, value] : settings.members()) before.emplace_back(name, value.to_string());
+    if (const auto different = first_difference(before, settings_)) {
+        Remark why(settings.location(), fmt::format("the existing frames were made with {} \"{}\", not \"{}\"; "
+                                                    "render them again without `continue`, or elsewhere",
+                                                    different->name, different->before, different->after));
         why.setting = "continue";
         throw Error(ErrorCode::BadInput, std::move(why));
     }

@@ -10,18 +10,17 @@
 #include <filesystem>
 #include <map>
 #include <string>
-#include <utility>
 #include <vector>
+
+#include "session/writing/deciding_settings.h"
 
 namespace pertev {
 
 class SequenceRecord {
 public:
-    using Settings = std::vector<std::pair<std::string, std::string>>; // names and values
-
     /// Makes a record. `outputs` are patterns and `names` the cameras (session/frame_range.h); `settings` is everything
     /// that determines the frames' pictures.
-    SequenceRecord(std::vector<std::string> outputs, Settings settings, std::vector<std::string> names = {});
+    SequenceRecord(std::vector<std::string> outputs, DecidingSettings settings, std::vector<std::string> names = {});
 
     /// Path of the record: "frame-####.json" for "frame-####.png".
     const std::filesystem::path& path() const { return path_; }
@@ -39,7 +38,7 @@ public:
 
 private:
     std::vector<std::string> outputs_, names_;
-    Settings settings_;
+    DecidingSettings settings_;
     std::filesystem::path path_;
     std::map<std::string, std::string> hashes_; // by file name
     std::map<uint32_t, std::string> pictures_;  // hashes by frame

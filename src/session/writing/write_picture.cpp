@@ -8,6 +8,7 @@
 #include "image/write_jpeg.h"
 #include "image/write_png.h"
 #include "session/opening/strictness.h"
+#include "session/writing/check_outputs.h"
 
 namespace pertev {
 namespace {
@@ -68,10 +69,8 @@ std::string hash_of_layers(const std::vector<ExrLayer>& layers) {
     return hasher.result().hex();
 }
 
-ExrMetadata metadata_of(const PictureRecord& record, const RenderResult& result, const std::string& hash) {
-    ExrMetadata metadata = picture_metadata(record, result, hash);
-    const ExrMetadata names = id_metadata(record.scene, result.ids);
-    metadata.insert(metadata.end(), names.begin(), names.end());
+ExrMetadata metadata_of(const PictureFacts& facts, const RenderResult& result, const std::string& hash) {
+    ExrMetadata metadata = picture_metadata(facts, result, hash);
     if (!result.denoiser.empty()) metadata.emplace_back("pertev.denoiser", result.denoiser);
     return metadata;
 }
@@ -99,12 +98,17 @@ std::vector<std::byte> encode_picture(ImageFormat format, const PictureRecord& r
                           with_alpha);
     }
     PERTEV_CHECK(format == ImageFormat::Exr);
+    const PictureFacts facts = facts_of(record, result.ids);
     return encode_exr(beauty_of(result), take_layers(result),
-                      metadata_of(record, result, picture_hash(result.picture).hex()));
+                      metadata_of(facts, result, picture_hash(result.picture).hex()));
 }
 
 WrittenPicture write_picture(std::span<const std::string> paths, const PictureRecord& record, RenderResult& result) {
-    const Display display = record.display.value_or(Display{});
+    return write_picture(paths, facts_of(record, result.ids), result);
+}
+
+WrittenPicture write_picture(std::span<const std::string> paths, const PictureFacts& facts, RenderResult& result) {
+    const Display display = facts.display.value_or(Display{});
     const std::vector<ExrLayer> layers = take_layers(result);
     WrittenPicture written = {.hash = picture_hash(result.picture).hex(),
                               .layers_hash = hash_of_layers(layers),
@@ -112,10 +116,11 @@ WrittenPicture write_picture(std::span<const std::string> paths, const PictureRe
                               .files = {}};
     const WriteImageOptions options = {.tone_map = display.tone_map,
                                        .exposure_stops = display.exposure_stops,
-                                       .transparent = record.settings.transparent,
+                                       .transparent = facts.transparent,
                                        .layers = layers,
-                                       .metadata = metadata_of(record, result, written.hash)};
+                                       .metadata = metadata_of(facts, result, written.hash)};
     for (const std::string& path : paths) {
+        if (is_film_name(path)) continue;
         WrittenFile& file = written.files.emplace_back(WrittenFile{path, ""});
         try {
             const bool is_written =

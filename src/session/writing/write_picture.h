@@ -34,7 +34,9 @@ void refuse_faults(const WrittenPicture& written, uint64_t invalid_samples, bool
 std::vector<std::byte> encode_picture(ImageFormat format, const PictureRecord& record, RenderResult& result);
 
 /// Writes `result` to each of `paths`, whose extensions select the format (image/write_image.h), each atomically. A
-/// failure does not prevent the others from being written. Takes the layers out of `result`.
+/// failure does not prevent the others from being written. Takes the layers out of `result`. Film files are left to
+/// write_film_files().
+WrittenPicture write_picture(std::span<const std::string> paths, const PictureFacts& facts, RenderResult& result);
 WrittenPicture write_picture(std::span<const std::string> paths, const PictureRecord& record, RenderResult& result);
 
 } // namespace pertev

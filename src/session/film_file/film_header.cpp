@@ -1,0 +1,196 @@
+#include "session/film_file/film_header.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/json_text.h"
+#include "base/limits.h"
+#include "settings/value_names.h"
+
+namespace pertev {
+namespace {
+
+using gltf::JsonValue;
+
+/// All digits, also of a zero with a sign.
+std::string exact_number(double value) { return value == 0 && std::signbit(value) ? "-0.0" : fmt::format("{}", value); }
+std::string exact_number(float value) { return exact_number(static_cast<double>(value)); }
+
+// The types of metadata in the order of their variant.
+constexpr std::string_view kTypes[] = {"text", "whole", "float", "double"};
+
+std::string json_of_metadata(const ExrMetadata& metadata) {
+    std::vector<std::string> entries;
+    for (const auto& [name, value] : metadata) {
+        const std::string text = std::visit(
+            [](const auto& v) {
+                if constexpr (std::is_same_v<std::decay_t<decltype(v)>, std::string>)
+                    return json_string(v);
+                else if constexpr (std::is_same_v<std::decay_t<decltype(v)>, int32_t>)
+                    return fmt::format("{}", v);
+                else
+                    return exact_number(v);
+            },
+            value);
+        entries.push_back(fmt::format(R"({{"name":{},"{}":{}}})", json_string(name), kTypes[value.index()], text));
+    }
+    return fmt::format("[{}]", fmt::join(entries, ","));
+}
+
+ExrMetadata read_metadata(const JsonValue& list) {
+    ExrMetadata metadata;
+    for (const JsonValue& entry : list.elements()) {
+        std::string name(entry.at("name").to_string());
+        if (const auto text = entry.find("text")) {
+            metadata.emplace_back(std::move(name), std::string(text->to_string()));
+        } else if (const auto whole = entry.find("whole")) {
+            const double value = whole->to_double();
+            if (value != std::floor(value) || std::abs(value) > INT32_MAX) throw whole->error("not a whole number");
+            metadata.emplace_back(std::move(name), static_cast<int32_t>(value));
+        } else if (const auto number = entry.find("float")) {
+            metadata.emplace_back(std::move(name), number->to_float());
+        } else {
+            metadata.emplace_back(std::move(name), entry.at("double").to_double());
+        }
+    }
+    return metadata;
+}
+
+std::string json_of_display(const Display& display) {
+    std::string colors;
+    if (const auto& shown = display.false_colors) {
+        colors = fmt::format(R"(,"false_colors":{{"quantity":{},"unit":{},"factor":{},"least":{},"most":{}}})",
+                             json_string(shown->quantity), json_string(shown->unit), exact_number(shown->factor),
+                             exact_number(shown->least), exact_number(shown->most));
+    }
+    return fmt::format(R"({{"tone_map":"{}","exposure":{}{}}})", name_of(display.tone_map),
+                       exact_number(display.exposure_stops), colors);
+}
+
+template <NamedValue Value>
+Value read_name(const JsonValue& value) {
+    const auto named = value_named<Value>(value.to_string());
+    if (!named) throw value.error("unknown name");
+    return *named;
+}
+
+Display read_display(const JsonValue& value) {
+    Display display = {read_name<ToneMap>(value.at("tone_map")), value.at("exposure").to_float(), std::nullopt};
+    if (const auto colors = value.find("false_colors")) {
+        display.false_colors =
+            FalseColors{std::string(colors->at("quantity").to_string()), std::string(colors->at("unit").to_string()),
+                        colors->at("factor").to_float(), colors->at("least").to_float(), colors->at("most").to_float()};
+    }
+    return display;
+}
+
+uint32_t read_number(const JsonValue& value, uint64_t least, uint64_t most) {
+    const uint64_t number = value.to_unsigned();
+    if (number > most) throw Error(ErrorCode::OverLimit, value.location(), fmt::format("{} is over {}", number, most));
+    if (number < least) throw value.error(fmt::format("{} is under {}", number, least));
+    return static_cast<uint32_t>(number);
+}
+
+/// Reads [a, b] with a <= b <= `most`.
+std::pair<uint32_t, uint32_t> read_range(const JsonValue& value, uint32_t most) {
+    const std::vector<JsonValue> ends = value.elements();
+    if (ends.size() != 2) throw value.error("expected two numbers");
+    const uint32_t first = read_number(ends[0], 0, most), end = read_number(ends[1], 0, most);
+    if (first > end) throw value.error("expected the lower number first");
+    return {first, end};
+}
+
+/// The targets as other readers need them.
+std::string json_of_targets(const FilmHeader& header) {
+    Queue queue = Queue::make_dry_run(false);
+    std::vector<std::string> targets;
+    const Film film = header.make_film(queue);
+    for (const auto& target : film.targets()) {
+        targets.push_back(fmt::format(R"({{"name":{},"bytes":{},"stride":{}}})", json_string(target->name()),
+                                      target->byte_count(), target->stride()));
+    }
+    return fmt::format("[{}]", fmt::join(targets, ","));
+}
+
+} // namespace
+
+FilmHeader film_header(const PictureOptions& options, const PictureRecord& record, const PictureFacts& facts,
+                       const RenderStats& stats, const Film& film) {
+    FilmHeader header = {.settings = deciding_settings(options, record),
+                         .width = film.width(),
+                         .height = film.height(),
+                         .aovs = film.aovs(),
+                         .light_layers = film.light_layers(),
+                         .layers_at = film.layers_at(),
+                         .part = film.part(),
+                         .spp = options.render.samples,
+                         .facts = facts,
+                         .rays = stats.rays,
+                         .render_seconds = stats.render_seconds};
+    std::erase_if(header.settings,
+                  [](const auto& setting) { return setting.first == "spp" || setting.first == "scene"; });
+    if (header.part.is_empty()) {
+        const uint32_t first = record.settings.first_sample;
+        header.part = {0, film.height(), {first, first}};
+    }
+    return header;
+}
+
+std::string json_of(const FilmHeader& header) {
+    std::vector<std::string> settings, layers;
+    for (const auto& [name, value] : header.settings)
+        settings.push_back(fmt::format("{}:{}", json_string(name), json_string(value)));
+    for (const AovGroup& group : kAovTable)
+        if ((header.aovs & group.bit) != 0) layers.emplace_back(group.name);
+    const PictureFacts& facts = header.facts;
+    return fmt::format(
+        R"({{"settings":{{{}}},"size":[{},{}],"rows":[{},{}],"samples":[{},{}],"spp":{},"layers":{},"light_layers":{},"layers_at":"{}","targets":{},)"
+        R"("metadata":{},"display_metadata":{},"origin":{},"display":{},"transparent":{},"rays":{{"camera":{},"bounce":{},"shadow":{}}},"seconds":{}}})",
+        fmt::join(settings, ","), header.width, header.height, header.part.first_row, header.part.end_row,
+        header.part.samples.first, header.part.samples.end, header.spp, json_strings(layers),
+        json_strings(header.light_layers), name_of(header.layers_at), json_of_targets(header),
+        json_of_metadata(facts.settings), json_of_metadata(facts.shown), json_of_metadata(facts.origin),
+        facts.display ? json_of_display(*facts.display) : "null", facts.transparent, header.rays.camera,
+        header.rays.bounce, header.rays.shadow, exact_number(header.render_seconds));
+}
+
+FilmHeader read_film_header(const JsonValue& root) {
+    FilmHeader header;
+    for (const auto& [name, value] : root.at("settings").members())
+        header.settings.emplace_back(name, value.to_string());
+    const std::vector<JsonValue> size = root.at("size").elements();
+    if (size.size() != 2) throw root.at("size").error("expected two numbers");
+    header.width = read_number(size[0], 1, kMaxImageSide), header.height = read_number(size[1], 1, kMaxImageSide);
+    if (uint64_t(header.width) * header.height > kMaxImagePixels)
+        throw Error(ErrorCode::OverLimit, root.at("size").location(), "too many pixels");
+    std::tie(header.part.first_row, header.part.end_row) = read_range(root.at("rows"), header.height);
+    const auto [first, end] = read_range(root.at("samples"), kMaxSamplesPerPixel);
+    header.part.samples = {first, end};
+    header.spp = read_number(root.at("spp"), end, kMaxSamplesPerPixel);
+    for (const JsonValue& layer : root.at("layers").elements()) {
+        const auto aov = aov_named(layer.to_string());
+        if (!aov || *aov == kAovMotion) throw layer.error("unknown layer");
+        header.aovs |= *aov;
+    }
+    for (const JsonValue& layer : root.at("light_layers").elements())
+        header.light_layers.emplace_back(layer.to_string());
+    header.layers_at = read_name<LayersAt>(root.at("layers_at"));
+    if (json_of_targets(header) != root.at("targets").to_json())
+        throw root.at("targets").error("they are not those of these layers and this size");
+    header.facts = {.settings = read_metadata(root.at("metadata")),
+                    .shown = read_metadata(root.at("display_metadata")),
+                    .origin = read_metadata(root.at("origin")),
+                    .display = std::nullopt,
+                    .transparent = root.at("transparent").to_bool()};
+    if (const auto display = root.find("display")) header.facts.display = read_display(*display);
+    const JsonValue rays = root.at("rays");
+    header.rays = {rays.at("camera").to_unsigned(), rays.at("bounce").to_unsigned(), rays.at("shadow").to_unsigned()};
+    header.render_seconds = root.at("seconds").to_double();
+    return header;
+}
+
+} // namespace pertev

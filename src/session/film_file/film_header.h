@@ -1,0 +1,45 @@
+#pragma once
+
+// The header of a film file (docs/film_file.md): all that is known of a film besides its targets. Its JSON is read
+// strictly; whatever is missing or out of its limits is an Error with the place.
+
+#include <string>
+
+#include "formats/json/json_value.h"
+#include "session/writing/deciding_settings.h"
+
+namespace pertev {
+
+inline constexpr std::string_view kFilmFileMagic = "\x89PVF\r\n\x1a\n"; // text converters and 7 bits damage it
+inline constexpr uint32_t kFilmFileVersion = 1;
+inline constexpr uint32_t kMaxFilmHeaderBytes = 1u << 28;
+
+/// Number of elements of `stride` bytes in a block, except for a target's last.
+constexpr std::size_t film_block_elements(std::size_t stride) {
+    return std::clamp<std::size_t>((std::size_t(1) << 22) / stride, 1, std::size_t(1) << 15);
+}
+
+struct FilmHeader {
+    DecidingSettings settings; // without the number of samples, and without the name of the scene
+    uint32_t width = 0, height = 0;
+    uint32_t aovs = 0; // AovBits
+    std::vector<std::string> light_layers;
+    LayersAt layers_at = LayersAt::Samples;
+    FilmPart part;    // may be empty
+    uint32_t spp = 0; // samples of the whole picture
+    PictureFacts facts;
+    RayCounts rays;            // the rays that the part took
+    double render_seconds = 0; // time that the part took
+
+    Film make_film(Queue& queue) const { return {queue, width, height, aovs, light_layers, layers_at}; }
+};
+
+/// Makes the header of a film that was rendered by these options.
+FilmHeader film_header(const PictureOptions& options, const PictureRecord& record, const PictureFacts& facts,
+                       const RenderStats& stats, const Film& film);
+
+std::string json_of(const FilmHeader& header);
+/// Throws Error(BadInput, OverLimit).
+FilmHeader read_film_header(const gltf::JsonValue& root);
+
+} // namespace pertev

@@ -1,0 +1,47 @@
+#pragma once
+
+// Merges film files of one picture, in any order, into the film that one run would have made. Memory is that of one
+// film, however many files there are.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/sink.h"
+#include "session/film_file/film_file.h"
+
+namespace pertev {
+
+class FilmMerge {
+public:
+    /// Reads the headers. Throws Error(BadInput) for parts of different pictures, naming the first difference, for
+    /// parts that overlap, and, unless `is_partial`, if samples are missing; then each row needs as many samples as
+    /// all others. Throws as FilmFileReader.
+    FilmMerge(std::span<const std::string> files, bool is_partial);
+
+    /// Returns the header of the merged film. Its metadata are those of the part with the first samples.
+    const FilmHeader& header() const { return header_; }
+    /// Returns whether samples between those of the parts are missing, so that no film file can hold all of them.
+    bool has_gaps() const { return has_gaps_; }
+    /// Reads and adds all films. Throws as FilmFileReader, and Error(OutOfMemory, Interrupted).
+    Film film(Queue& queue, Sink& sink) const;
+
+private:
+    struct Part {
+        std::string file;
+        FilmPart of;
+        Hash128 header;
+    };
+    void take_header(const std::string& file, const FilmHeader& header);
+    void refuse_overlaps() const;
+    void check_rows(bool is_partial);
+
+    std::vector<Part> parts_;
+    FilmHeader header_;
+    bool has_gaps_ = false;
+};
+
+/// Returns the result of a merged film, as one run has it.
+RenderResult result_of(const FilmHeader& header, const Film& film);
+
+} // namespace pertev

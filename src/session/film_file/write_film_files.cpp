@@ -1,0 +1,74 @@
+#include <algorithm>
+
+#include "base/write_file_atomically.h"
+#include "session/film_file/film_file.h"
+#include "session/film_file/packed_block.h"
+#include "session/writing/check_outputs.h"
+
+namespace pertev {
+namespace {
+
+/// The bytes of a file, in the order of x86, which is the file's.
+class FilmBytes {
+public:
+    void add(std::span<const std::byte> bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
+    template <class T>
+    void add_value(const T& value) {
+        add(std::as_bytes(std::span(&value, 1)));
+    }
+    /// Adds the hash of all bytes from `first` on.
+    Hash128 add_hash(std::size_t first) {
+        Hasher hasher;
+        hasher.add(std::span<const std::byte>(bytes_).subspan(first));
+        const Hash128 hash = hasher.result();
+        add_value(hash.low), add_value(hash.high);
+        return hash;
+    }
+    void add_target(const FilmTarget& target) {
+        const std::size_t stride = target.stride(), most = film_block_elements(stride) * stride;
+        std::vector<std::byte> block;
+        for (std::size_t first = 0; first < target.byte_count(); first += most) {
+            block.resize(std::min(most, target.byte_count() - first));
+            target.read(first, block);
+            const std::vector<std::byte> packed = pack_block(block, stride);
+            const std::size_t begin = bytes_.size();
+            add_value(static_cast<uint32_t>(packed.size()));
+            add(packed);
+            add_hash(begin);
+        }
+    }
+    std::span<const std::byte> bytes() const { return bytes_; }
+
+private:
+    std::vector<std::byte> bytes_;
+};
+
+} // namespace
+
+std::vector<WrittenFile> write_film_files(std::span<const std::string> outputs, const FilmHeader& header,
+                                          const Film& film) {
+    std::vector<WrittenFile> written;
+    for (const std::string& path : outputs)
+        if (is_film_name(path)) written.push_back({path, ""});
+    if (written.empty()) return written;
+    FilmBytes file;
+    const std::string json = json_of(header);
+    PERTEV_CHECK(json.size() <= kMaxFilmHeaderBytes);
+    file.add(std::as_bytes(std::span(kFilmFileMagic)));
+    file.add_value(kFilmFileVersion);
+    file.add_value(static_cast<uint32_t>(json.size()));
+    file.add(std::as_bytes(std::span(json)));
+    file.add_hash(0);
+    for (const auto& target : film.targets()) file.add_target(*target);
+    file.add_hash(0);
+    for (WrittenFile& to : written) {
+        try {
+            write_file_atomically(to.path, file.bytes());
+        } catch (const Error& error) {
+            to.failure = error.what();
+        }
+    }
+    return written;
+}
+
+} // namespace pertev

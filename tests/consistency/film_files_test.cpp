@@ -1,0 +1,207 @@
+// Parts of a picture, written as film files and merged in any order, have the bytes of the film of one run, whatever
+// renders them; parts that do not make up one picture are refused.
+
+#include <algorithm>
+#include <cmath>
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include "image/picture_hash.h"
+#include "render/light_paths/light_path_layers.h"
+#include "session/film_file/merge_films.h"
+#include "session/film_render.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+#include "tests/support/thrown_error.h"
+
+using namespace pertev;
+
+namespace {
+
+using Files = std::vector<std::string>;
+
+/// Renders parts of a picture of a scene whose lamp is too bright for a film, so that there are invalid samples.
+class Renders {
+public:
+    Scene scene = test::make_mixed_scene();
+    RenderSettings settings;
+    PictureOptions options;
+
+    Renders() : folder_(test::scratch_folder()) {
+        scene.materials[5].emission = grey(0x1p41f);
+        settings.width = 32, settings.height = 20, settings.samples = 5;
+    }
+
+    /// Renders on the requested device.
+    std::unique_ptr<FilmRender> film(SampleRange range) {
+        if (!pictures_) {
+            Messages messages;
+            prepared_ = prepare_scene(scene, {}, messages);
+            scene_.set(prepared_, settings);
+            pictures_ = std::make_unique<PictureRenderer>(scene_);
+        }
+        auto film = std::make_unique<FilmRender>(*pictures_, test::mixed_scene_camera(), settings);
+        REQUIRE(film->render(range) == range.count());
+        return film;
+    }
+
+    /// Returns the name of the film file of these samples.
+    std::string file(SampleRange range) {
+        const auto rendered = film(range);
+        PictureRecord record;
+        record.scene.scene = "mixed";
+        record.scene.instances = {"first", "second"};
+        record.camera.camera = test::mixed_scene_camera();
+        record.settings = settings;
+        record.settings.first_sample = range.first;
+        record.display = Display{ToneMap::Aces, -0.0f, FalseColors{"luminance", "cd/m2", 683.1f, 0.1f, 1e5f}};
+        options.render.samples = settings.samples;
+        const Film& film = rendered->film();
+        const PictureFacts facts = facts_of(record, film.ids());
+        const Files names = {folder_ / fmt::format("{}-{}-{}.pvf", ++files_, range.first, range.end)};
+        const auto written =
+            write_film_files(names, film_header(options, record, facts, rendered->stats(), film), film);
+        REQUIRE(written.size() == 1);
+        REQUIRE(written[0].failure == "");
+        return names[0];
+    }
+
+    Queue queue = test::requested_queue();
+
+private:
+    std::filesystem::path folder_;
+    PreparedScene prepared_;
+    DeviceScene scene_{queue};
+    std::unique_ptr<PictureRenderer> pictures_;
+    int files_ = 0;
+};
+
+std::vector<std::vector<std::byte>> bytes_of(const Film& film) {
+    std::vector<std::vector<std::byte>> all;
+    for (const auto& target : film.targets()) all.push_back(target->bytes());
+    return all;
+}
+
+Film merged(const Files& files, bool is_partial = false) {
+    static Queue cpu = Queue::make_cpu();
+    return FilmMerge(files, is_partial).film(cpu, nobody());
+}
+
+std::string merge_refusal(const Files& files, bool is_partial = false) {
+    return test::bad_input_message([&] { FilmMerge(files, is_partial); });
+}
+
+void check_parts(Renders& renders, std::size_t targets) {
+    const auto whole = renders.film({0, 5});
+    const auto bytes = bytes_of(whole->film());
+    CHECK(bytes.size() == targets);
+    Files parts = {renders.file({0, 1}), renders.file({1, 1}), renders.file({1, 3}), renders.file({3, 5})};
+    std::ranges::sort(parts);
+    do {
+        const Film film = merged(parts);
+        CHECK(film.part() == whole->film().part());
+        CHECK(bytes_of(film) == bytes);
+    } while (std::ranges::next_permutation(parts).found);
+    CHECK(bytes_of(merged({renders.file({0, 5})})) == bytes);
+    const FilmMerge merge(parts, false);
+    static Queue cpu = Queue::make_cpu();
+    const Film film = merge.film(cpu, nobody());
+    const RenderResult result = result_of(merge.header(), film);
+    CHECK(picture_hash(result.picture) == picture_hash(whole->picture()));
+    CHECK(result.samples == 5);
+    CHECK(result.invalid_samples == whole->film().invalid_samples());
+    CHECK(result.rays.total() == whole->rays().total());
+    CHECK(result.layers.size() == whole->layers().size());
+}
+
+} // namespace
+
+TEST_CASE("merged parts by path have the bytes of one run, with layers, light paths and ids") {
+    Renders renders;
+    renders.settings.aovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
+    renders.settings.light_paths = std::make_shared<const LightPathLayers>(
+        put_to_scene({parse_light_path("sky=L<'environment'>.*E"), parse_light_path("once=L.E")}, renders.scene));
+    check_parts(renders, 3);
+    CHECK(renders.film({1, 2})->film().invalid_samples() > 0);
+}
+
+TEST_CASE("merged parts have the bytes of one run with layers at the centres of pixels and alpha") {
+    Renders renders;
+    renders.settings.aovs = kAovNormal | kAovIds;
+    renders.settings.layers_at = LayersAt::Centre;
+    renders.settings.transparent = true;
+    check_parts(renders, 4);
+}
+
+TEST_CASE("merged parts by other integrators have the bytes of one run") {
+    for (const IntegratorKind kind :
+         {IntegratorKind::Bidirectional, IntegratorKind::PhotonMap, IntegratorKind::Light, IntegratorKind::Whitted}) {
+        CAPTURE(static_cast<int>(kind));
+        Renders renders;
+        renders.settings.integrator = kind;
+        check_parts(renders, 2);
+    }
+}
+
+TEST_CASE("a merged film has the facts of the part with the first samples, and all samples may be written again") {
+    Renders renders;
+    renders.settings.aovs = kAovIds;
+    const Files parts = {renders.file({3, 5}), renders.file({0, 3})};
+    const FilmMerge merge(parts, false);
+    const FilmHeader first = FilmFileReader(parts[1]).header();
+    CHECK(merge.header().facts.origin == first.facts.origin);
+    CHECK(merge.header().facts.settings == first.facts.settings);
+    CHECK(std::ranges::find(first.facts.origin, "pertev.instances", &ExrMetadata::value_type::first) !=
+          first.facts.origin.end());
+    const Display& display = first.facts.display.value();
+    CHECK(display.tone_map == ToneMap::Aces);
+    CHECK(std::signbit(display.exposure_stops));
+    CHECK(display.false_colors.value().factor == 683.1f);
+    CHECK(display.false_colors.value().unit == "cd/m2");
+    const Film film = merged(parts);
+    const Files again = {test::scratch_folder() / "again.pvf"};
+    write_film_files(again, merge.header(), film);
+    CHECK(bytes_of(merged(again)) == bytes_of(film));
+    CHECK(FilmFileReader(again[0]).header().settings == first.settings);
+}
+
+TEST_CASE("overlaps, gaps and parts of other pictures are refused by name") {
+    Renders renders;
+    const std::string a = renders.file({0, 2}), b = renders.file({2, 3}), c = renders.file({3, 5}),
+                      over = renders.file({1, 4}), none = renders.file({2, 2});
+    CHECK(merge_refusal({a, b, c}) == "no error");
+    CHECK(merge_refusal({c, none, b, a}) == "no error");
+    const auto error = test::thrown_error([&] { FilmMerge(Files{a, over, c}, true); });
+    CHECK(test::is_at(error, ErrorCode::BadInput, FileLocation{over}));
+    CHECK(test::says(error, "samples 1 to 1"));
+    CHECK(test::says(error, a));
+    CHECK(merge_refusal({a, a}).find("samples 0 to 1") != std::string::npos);
+    CHECK(merge_refusal({a, c}).find("samples 2 to 2 of rows 0 to 19") != std::string::npos);
+    CHECK(merge_refusal({b, c}).find("samples 0 to 1") != std::string::npos);
+    CHECK(merge_refusal({a, b}).find("samples 3 to 4") != std::string::npos);
+    CHECK(merge_refusal({none}, true) != "no error");
+    for (const Files& files : {Files{a, c}, Files{b, c}, Files{a, b}}) CHECK(merge_refusal(files, true) == "no error");
+    CHECK(FilmMerge(Files{c, a}, true).has_gaps());
+    CHECK(!FilmMerge(Files{c, b}, true).has_gaps());
+    CHECK(FilmMerge(Files{c, b}, true).header().part == FilmPart{0, 20, {2, 5}});
+    const Film film = merged({c, a}, true);
+    CHECK(film.part().samples.count() == 4);
+
+    renders.settings.path.max_depth = 3;
+    const std::string shallow = renders.file({2, 5});
+    CHECK(merge_refusal({a, shallow}).find("`max_depth` is \"3\"") != std::string::npos);
+    renders.settings.path.max_depth = RenderSettings().path.max_depth;
+    renders.settings.aovs = kAovAlbedo;
+    CHECK(merge_refusal({a, renders.file({2, 5})}) != "no error");
+}
+
+TEST_CASE("samples are added to a finished picture") {
+    Renders renders;
+    const std::string finished = renders.file({0, 5});
+    renders.settings.samples = 8;
+    const auto whole = renders.film({0, 8});
+    const Film more = merged({renders.file({5, 8}), finished});
+    CHECK(bytes_of(more) == bytes_of(whole->film()));
+    CHECK(more.part() == whole->film().part());
+}

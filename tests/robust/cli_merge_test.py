@@ -1,0 +1,223 @@
+#!/usr/bin/env python3
+"""`render --part` and `--samples`, film files, and `merge`: parts make the files of one run, and nothing else is merged."""
+
+import json
+import signal
+import struct
+import subprocess
+import zlib
+
+from cli_run import PATIENCE_S, PROGRAM, CliTest, main
+
+SMALL = ["--size", "20x16", "--device", "cpu"]
+UNMETERED = ["--exposure", "0"]
+
+
+def take_plane(data, at, count):
+    """A packed plane by docs/film_file.md, and where it ends."""
+    kind = data[at]
+    if kind < 2:
+        return (bytes([data[at + 1]]) * count, at + 2) if kind == 0 else (data[at + 1 : at + 1 + count], at + 1 + count)
+    end = at + 5 + struct.unpack_from("<I", data, at + 1)[0]
+    return zlib.decompress(data[at + 5 : end], -15), end
+
+
+def take_sums(data, at, count, before):
+    """Packed sums of a channel, and where they end."""
+    lengths, at = take_plane(data, at, count)
+    lowest, at = take_plane(data, at, count)
+    ends = [((a + abs(b).bit_length()) % 128, low) for a, b, low in zip(lengths, before, lowest)]
+    size = (sum(max(0, length - low - 2) for length, low in ends) + 7) // 8
+    bits, sums = int.from_bytes(data[at : at + size], "little"), []
+    for (length, low), code in zip(ends, lengths):
+        between = max(0, length - low - 2)
+        number = ((bits & (1 << between) - 1) << (low + 1)) | (1 << low | 1 << (length - 1) if length else 0)
+        bits >>= between
+        sums.append(-number if code > 127 else number)
+    return sums, at + size
+
+
+def sums_of(data):
+    """Header and channels of the target `film`, each a list of whole numbers, of a film file."""
+    size = struct.unpack_from("<I", data, 12)[0]
+    header, at = json.loads(data[16 : 16 + size]), 16 + size + 16
+    target = header["targets"][0]
+    stride = target["stride"]
+    channels, left = [[] for _ in range(stride // 16)], target["bytes"] // stride
+    while left:
+        count = min(left, 1 << 15, max(1, (1 << 22) // stride))
+        end, before = at + 4 + struct.unpack_from("<I", data, at)[0], [0] * count
+        at += 4
+        for c, channel in enumerate(channels):
+            kind, at = data[at], at + 1
+            if kind == 0:
+                sums, at = [int.from_bytes(data[at : at + 16], "little", signed=True)] * count, at + 16
+            elif kind == 1:
+                planes = []
+                for _ in range(16):
+                    plane, at = take_plane(data, at, count)
+                    planes.append(plane)
+                sums = [int.from_bytes(bytes(number), "little", signed=True) for number in zip(*planes)]
+            else:
+                sums, at = take_sums(data, at, count, before if kind == 3 else [0] * count)
+            channel += sums
+            before = sums
+        assert at == end, (at, end)
+        at, left = at + 16, left - count
+    return header, channels
+
+
+class Merge(CliTest):
+    def part(self, output, *flags, scene="cornell-box"):
+        size = [] if "--size" in flags else SMALL[:2]
+        fixed = [] if "--exposure" in flags or output == "alone.exr" else UNMETERED
+        return self.succeed("render", scene, "-o", output, *size, *SMALL[2:], *fixed, *flags, "--json").events("done")[0]
+
+    def parts(self, count, *flags):
+        names = [f"part.{i}.pvf" for i in range(1, count + 1)]
+        for i, name in enumerate(names, 1):
+            self.part(name, "--part", f"{i}/{count}", *flags)
+        return names
+
+    def merge(self, *arguments):
+        return self.succeed("merge", *arguments, "--json").events("done")[0]
+
+    def metadata(self, name):
+        """All that an EXR says of itself but its name, times and device."""
+        return {key: value for key, value in self.info(name).items()
+                if key not in ("file", "pertev.device") and not key.endswith("_seconds")}
+
+    def read(self, name):
+        with open(self.path(name), "rb") as file:
+            return file.read()
+
+    def check_parts(self, counts, *flags):
+        outputs = ["-o", "whole.png"]
+        whole = self.part("whole.exr", *outputs, *flags)
+        for count in counts:
+            with self.subTest(count=count):
+                names = self.parts(count, *flags)
+                for order in [names, names[::-1]]:
+                    done = self.merge(*order, "-o", "all.exr", "-o", "all.png", "-o", "all.pvf")
+                    for key in ["hash", "layers_hash", "denoised_hash", "samples", "invalid_samples"]:
+                        self.assertEqual(done[key], whole[key], key)
+                    self.assertEqual(done["parts"], count)
+                    self.assertEqual(self.metadata("all.exr"), self.metadata("whole.exr"))
+                    self.assertEqual(self.read("all.png"), self.read("whole.png"))
+                self.assertEqual(self.merge("all.pvf", "-o", "again.exr")["hash"], whole["hash"])
+
+    def test_merged_parts_have_the_hashes_and_metadata_of_one_run(self):
+        self.check_parts([1, 2, 5], "--spp", "7", "--seed", "3")
+
+    def test_merged_parts_have_layers_ids_and_alpha_of_one_run(self):
+        self.check_parts([3], "--spp", "4", "--aov", "albedo,normal,ids", "--lpe", "diffuse=LD+E", "--transparent")
+
+    def test_merged_parts_of_other_integrators_have_the_hashes_of_one_run(self):
+        for integrator in ["direct", "hybrid", "whitted", "distributed", "raster", "reyes", "light", "bidirectional", "photon_map"]:
+            with self.subTest(integrator=integrator):
+                self.check_parts([2], "--spp", "3", "--integrator", integrator)
+
+    def test_the_metered_exposure_of_parts_is_that_of_one_run(self):
+        flags = ["--spp", "2", "--exposure", "auto"]
+        self.part("whole.png", *flags)
+        for i in (1, 2):
+            self.part(f"{i}.pvf", *flags, "--part", f"{i}/2")
+        self.merge("1.pvf", "2.pvf", "-o", "all.png", "-o", "all.exr")
+        self.assertEqual(self.read("all.png"), self.read("whole.png"))
+        self.merge("1.pvf", "2.pvf", "-o", "plain.exr")
+        self.assertIn("pertev.exposure", self.info("all.exr"))
+        self.assertNotIn("pertev.exposure", self.info("plain.exr"))
+
+    def test_a_part_is_a_range_of_samples_and_may_be_empty(self):
+        whole = self.part("alone.exr", "--spp", "3")
+        names = self.parts(5, "--spp", "3")
+        self.assertEqual(self.part("again.pvf", "--spp", "3", "--part", "1/5")["samples"], 0)
+        self.assertEqual(self.merge(*names, "-o", "all.exr")["hash"], whole["hash"])
+        for i in range(3):
+            self.assertEqual(self.part(f"{i}.pvf", "--spp", "3", "--part", f"{i}/3", "--part-base", "0")["samples"], 1)
+        self.assertEqual(self.merge("1.pvf", "2.pvf", "0.pvf", "-o", "all.exr")["hash"], whole["hash"])
+
+    def test_a_picture_beside_a_film_file_has_the_metadata_of_one_alone(self):
+        self.part("alone.exr", "--spp", "2")
+        self.succeed("render", "cornell-box", "-o", "beside.exr", "-o", "beside.pvf", *SMALL, "--spp", "2")
+        self.assertEqual(self.metadata("beside.exr"), self.metadata("alone.exr"))
+        self.assertNotIn("pertev.exposure", self.info("alone.exr"))
+
+    def test_samples_are_added_to_a_finished_picture(self):
+        whole = self.part("whole.exr", "-o", "whole.png", "--spp", "6")
+        self.part("finished.pvf", "--spp", "4")
+        self.part("more.pvf", "--samples", "4:6")
+        said = self.info("more.pvf")
+        self.assertEqual((said["width"], said["samples"], said["spp"], said["pertev.seed"]), (20, "4:6", 6, "0"))
+        self.assertEqual(self.merge("more.pvf", "finished.pvf", "-o", "all.exr", "-o", "all.png")["hash"], whole["hash"])
+        self.assertEqual(self.metadata("all.exr"), self.metadata("whole.exr"))
+        self.assertIn('"spp":6', self.succeed("info", "all.exr", "--settings").stdout)
+
+    def test_a_film_file_is_read_by_its_description(self):
+        self.part("film.pvf", "--spp", "5", "-o", "film.exr", "--aov", "normal", "--size", "64x48")
+        header, channels = sums_of(self.read("film.pvf"))
+        self.assertEqual((header["size"], header["samples"], header["layers"]), ([64, 48], [0, 5], ["normal"]))
+        self.assertEqual(len(channels), 7)
+        means = [sum(channel) / 2**64 / 5 / len(channel) for channel in channels]
+        for mean, known in zip(means, self.info("film.exr")["mean"]):
+            self.assertAlmostEqual(mean, known, places=6)
+        self.assertLess(min(channels[4]), 0)
+
+    def test_an_interrupted_render_goes_on_from_its_film(self):
+        program = subprocess.Popen([PROGRAM, "render", "cornell-box", "-o", "ended.pvf", *SMALL, *UNMETERED, "--spp", "1000000", "--json"],
+                                   cwd=self.folder, env=self.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE)
+        self.addCleanup(program.kill)
+        first = next(line for line in program.stdout
+                     if json.loads(line)["event"] == "progress" and json.loads(line)["samples"] > 0)
+        program.send_signal(signal.SIGTERM)
+        lines = (first + program.communicate(timeout=PATIENCE_S)[0]).decode().splitlines()
+        samples = next(json.loads(line) for line in lines if json.loads(line)["event"] == "done")["samples"]
+        self.assertEqual(program.returncode, 75)
+        self.refuse(2, "merge", "ended.pvf", "-o", "x.exr", says=["ended.pvf", f"samples {samples} to 999999", "--partial"])
+        whole = self.part("alone.exr", "--spp", samples + 5)
+        self.part("more.pvf", "--samples", f"{samples}:{samples + 5}")
+        done = self.merge("ended.pvf", "more.pvf", "--partial", "-o", "all.exr")
+        self.assertEqual((done["hash"], done["samples"]), (whole["hash"], samples + 5))
+
+    def test_parts_that_are_missing_overlap_or_belong_elsewhere_are_refused(self):
+        names = self.parts(3, "--spp", "6")
+        self.refuse(2, "merge", names[0], names[2], "-o", "x.exr", says=["samples 2 to 3"])
+        self.refuse(2, "merge", *names, names[1], "-o", "x.exr", says=[names[1], "samples 2 to 3"])
+        done = self.merge(names[0], names[2], "--partial", "-o", "some.exr")
+        self.assertEqual(done["samples"], 4)
+        self.refuse(2, "merge", names[0], names[2], "--partial", "-o", "x.pvf", says=["x.pvf"])
+        for flags, name in [(["--max-depth", "3"], "--max-depth"), (["--seed", "7"], "--seed"), (["--exposure", "1"], "exposure"),
+                            (["--size", "16x16"], "--size"), (["--aov", "depth"], "--aov")]:
+            with self.subTest(flags=flags):
+                self.part("other.pvf", "--spp", "6", "--part", "2/3", *flags)
+                self.refuse(2, "merge", names[0], "other.pvf", names[2], "-o", "x.exr", says=["other.pvf", name])
+        self.part("other.pvf", "--spp", "6", "--part", "2/3", scene="blind")
+        self.refuse(2, "merge", names[0], "other.pvf", names[2], "-o", "x.exr", says=["other.pvf", "hash of the scene"])
+
+    def test_files_that_are_no_films_or_are_damaged_are_refused(self):
+        self.part("film.pvf", "--spp", "1", "-o", "film.exr")
+        whole = self.read("film.pvf")
+        for name, content in [("cut.pvf", whole[:-1]), ("flipped.pvf", whole[:-40] + bytes([whole[-40] ^ 1]) + whole[-39:]),
+                              ("empty.pvf", b""), ("text.pvf", b"a text\n" * 9)]:
+            with open(self.path(name), "wb") as file:
+                file.write(content)
+            self.refuse(2, "merge", name, "-o", "x.exr", says=[name])
+            self.refuse(2, "merge", "film.pvf", name, "-o", "x.exr", says=[name])
+        self.refuse(2, "merge", "film.exr", "-o", "x.exr", says=["film.exr"])
+        self.refuse(2, "merge", "nowhere.pvf", "-o", "x.exr", says=["nowhere.pvf"])
+        self.refuse(6, "merge", "film.pvf", "-o", "nowhere/x.exr", says=["nowhere/x.exr"])
+        self.refuse(2, "merge", "film.pvf", "-o", "x.bmp", says=["x.bmp"])
+        self.refuse(2, "merge", "film.pvf")
+
+    def test_parts_that_cannot_be_are_refused(self):
+        for flags in ["--part 0/2", "--part 3/2", "--part 1", "--part 1/0", "--part -1/2", "--part 1/2x", "--part 2/2 --part-base 0",
+                      "--part-base 1", "--samples 4", "--samples 4:4", "--samples 5:4", "--samples 0:9000000", "--samples 1:2 --spp 4",
+                      "--samples 1:2 --part 1/2", "--part 1/2 --time-limit 1", "--samples 0:1 --time-limit 1", "--part 1/2 --turntable 4",
+                      "--denoise svgf", "--aov motion"]:
+            with self.subTest(flags=flags):
+                self.refuse(2, "render", "cornell-box", "-o", "x.pvf", *SMALL, *flags.split(), says=[flags.split()[0]])
+        self.refuse(2, "render", "cornell-box", "-o", "x-#.pvf", *SMALL, "--turntable", "4", says=["x-#.pvf"])
+
+
+if __name__ == "__main__":
+    main()
