@@ -121,7 +121,7 @@ TEST_CASE("merged parts by path have the bytes of one run, with layers, light pa
     Renders renders;
     renders.settings.aovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
     renders.settings.light_paths = std::make_shared<const LightPathLayers>(
-        put_to_scene({parse_light_path("sky=L<'environment'>.*E"), parse_light_path("once=L.E")}, renders.scene));
+        bind_to_scene({parse_light_path("sky=L<'environment'>.*E"), parse_light_path("once=L.E")}, renders.scene));
     check_parts(renders, 3);
     CHECK(renders.film({1, 2})->film().invalid_samples() > 0);
 }

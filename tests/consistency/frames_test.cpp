@@ -19,7 +19,7 @@ namespace {
 
 constexpr uint32_t kFrames = 30;
 
-RenderSettings frame_settings() {
+RenderSettings settings_of_frames() {
     RenderSettings settings;
     settings.width = 72, settings.height = 48;
     settings.path.max_depth = 4;
@@ -72,7 +72,7 @@ TEST_CASE("frame 30 has the same bytes on every device, in every schedule and ba
     for (const Scenes& s : scenes()) {
         Messages messages;
         const PreparedScene prepared = prepare_scene(s.scene, {}, messages);
-        const RenderSettings settings = frame_settings();
+        const RenderSettings settings = settings_of_frames();
         Queue cpu = Queue::make_cpu();
         Session session(cpu, prepared, s.camera, settings);
         const Hash128 expected = hash_of_frames(session, s.camera, kFrames, {});
@@ -108,7 +108,7 @@ TEST_CASE("a change of size or scene restarts the history, and so does changing 
     const PreparedScene prepared = prepare_scene(scene, {}, messages),
                         other_prepared = prepare_scene(other.scene, {}, messages);
     const Camera camera = mixed_scene_camera();
-    RenderSettings smaller = frame_settings();
+    RenderSettings smaller = settings_of_frames();
     smaller.width = 56, smaller.height = 40;
     constexpr uint32_t kFew = 5;
     Queue queue = requested_queue();
@@ -116,15 +116,15 @@ TEST_CASE("a change of size or scene restarts the history, and so does changing 
         Session session(queue, of, camera, settings);
         return hash_of_frames(session, camera, kFew, {});
     };
-    const Hash128 expected = hash_of_new_session(prepared, frame_settings()),
+    const Hash128 expected = hash_of_new_session(prepared, settings_of_frames()),
                   of_smaller = hash_of_new_session(prepared, smaller),
-                  of_other = hash_of_new_session(other_prepared, frame_settings());
+                  of_other = hash_of_new_session(other_prepared, settings_of_frames());
     CHECK(expected != of_other);
-    Session session(queue, prepared, camera, frame_settings());
+    Session session(queue, prepared, camera, settings_of_frames());
     CHECK(hash_of_frames(session, camera, kFew, {}) == expected);
     session.set_settings(smaller);
     CHECK(hash_of_frames(session, camera, kFew, {}) == of_smaller);
-    session.set_settings(frame_settings());
+    session.set_settings(settings_of_frames());
     CHECK(hash_of_frames(session, camera, kFew, {}) == expected);
     session.set_scene(other_prepared);
     CHECK(hash_of_frames(session, camera, kFew, {}) == of_other);
@@ -159,7 +159,7 @@ Hash128 hash_of_motion(Queue& queue, const RenderSettings& settings, bool moves,
 
 TEST_CASE("frames of moving scenes have the same bytes on every device and in every schedule") {
     Queue cpu = Queue::make_cpu();
-    const RenderSettings settings = frame_settings();
+    const RenderSettings settings = settings_of_frames();
     for (const RestirLight light : {RestirLight::Off, RestirLight::Indirect}) {
         const RestirSettings restir = {.light = light};
         const Hash128 expected = hash_of_motion(cpu, settings, true, restir);
@@ -181,7 +181,7 @@ TEST_CASE("frames with ReSTIR have the same bytes on every device, in every sche
     for (const Scenes& s : {Scenes{mixed, mixed_scene_camera()}, diffuse_scene()}) {
         const PreparedScene prepared = prepare_scene(s.scene, {}, messages);
         Queue cpu = Queue::make_cpu();
-        Session session(cpu, prepared, s.camera, frame_settings());
+        Session session(cpu, prepared, s.camera, settings_of_frames());
         const Hash128 off = hash_of_frames(session, s.camera, kRestirFrames, {});
         for (const RestirLight light : {RestirLight::Direct, RestirLight::Indirect}) {
             const RestirSettings restir = {.light = light};
@@ -190,18 +190,18 @@ TEST_CASE("frames with ReSTIR have the same bytes on every device, in every sche
             CHECK(expected != off);
             session.cut();
             CHECK(hash_of_frames(session, s.camera, kRestirFrames, {}, restir) == expected);
-            RenderSettings wavefront = frame_settings();
+            RenderSettings wavefront = settings_of_frames();
             wavefront.body = PathBody::Wavefront;
             wavefront.batch = 600;
             Session other(cpu, prepared, s.camera, wavefront);
             CHECK(hash_of_frames(other, s.camera, kRestirFrames, {}, restir) == expected);
-            RenderSettings hybrid = frame_settings();
+            RenderSettings hybrid = settings_of_frames();
             hybrid.integrator = IntegratorKind::Hybrid; // its samples are path's
             Session rasterised(cpu, prepared, s.camera, hybrid);
             CHECK(hash_of_frames(rasterised, s.camera, kRestirFrames, {}, restir) == expected);
             if (cuda_requested()) {
                 Queue cuda = make_cuda_queue();
-                Session there(cuda, prepared, s.camera, frame_settings());
+                Session there(cuda, prepared, s.camera, settings_of_frames());
                 CHECK(hash_of_frames(there, s.camera, kRestirFrames, {}, restir) == expected);
             }
         }
@@ -215,7 +215,7 @@ TEST_CASE("a frame with ReSTIR counts its rays") {
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     Queue queue = requested_queue();
-    const RenderSettings settings = frame_settings();
+    const RenderSettings settings = settings_of_frames();
     Session session(queue, prepared, mixed_scene_camera(), settings);
     session.render_frame(0, {});
     const uint64_t bounces = session.frames().rays().bounce;
@@ -231,7 +231,7 @@ TEST_CASE("a frame that is not reconstructed is the film's picture of the same s
         Messages messages;
         const PreparedScene prepared = prepare_scene(s.scene, {}, messages);
         Queue queue = requested_queue();
-        Session session(queue, prepared, s.camera, settings_of_frames(frame_settings()));
+        Session session(queue, prepared, s.camera, settings_of_frames(settings_of_frames()));
         session.render_frame(
             0, {.history = 1, .passes = 0, .clamp_fireflies = false, .clamp_history = false, .anti_alias = false});
         session.render(1);
@@ -251,7 +251,7 @@ TEST_CASE("the mean of frames from a still camera is the picture, except for the
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     Queue queue = requested_queue();
-    RenderSettings settings = frame_settings();
+    RenderSettings settings = settings_of_frames();
     settings.width = 96, settings.height = 64; // in smaller ones what is clamped counts for more
     Session session(queue, prepared, mixed_scene_camera(), settings);
     session.render(256);
