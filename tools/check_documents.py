@@ -61,7 +61,7 @@ def commands(text):
             fenced = not fenced
         elif fenced or line.startswith("    "):
             for part in re.split(r"\s#\s|\s{2,}#", line.strip())[0].split(" && "):
-                if COMMAND.match(re.sub(r"^[A-Z_]+=\S+ ", "", part)):
+                if COMMAND.match(re.sub(r"^[A-Z_]+=\S+ ", "", part)) and not part.startswith("pertev."): # that is Python
                     found.append(part.strip())
     return found
 

@@ -111,8 +111,9 @@ Queue Queue::make_dry_run(bool is_cuda) { return Queue(std::make_unique<DryRunBa
 
 Queue Queue::make_cuda(int index, const Threads& threads) { return Queue(make_cuda_backend(index), threads); }
 
-Queue::Queue(Queue&& other) : backend_(std::move(other.backend_)), threads_(other.threads_) {
-    PERTEV_CHECK(other.allocations_.empty());
+Queue::Queue(Queue&& other) : threads_(other.threads_) {
+    PERTEV_CHECK(other.allocations_.empty()); // before the other loses its backend
+    backend_ = std::move(other.backend_);
 }
 
 void* Queue::allocate(std::size_t bytes, const std::string& name) {

@@ -88,7 +88,7 @@ class Commands(CliTest):
         for document in check_documents.documents(ROOT):
             for command in check_documents.commands(document.read_text(encoding="utf-8")):
                 words = shlex.split(command)
-                if words[0] not in ("pertev", "build/bin/pertev") and not words[0].startswith("pertev."): # Python has its own tests
+                if words[0] not in ("pertev", "build/bin/pertev"):
                     continue
                 words = words[1:]
                 with self.subTest(document=document.name, command=command):
