@@ -22,7 +22,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 MOST_WORDS, MOST_FILES_OF_TOUR = 40_000, 40
 SOURCE = re.compile(r"`([\w./-]+\.(?:h|inl|cpp|cu|py|sh|js|md|cmake))`")
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
-COMMAND = re.compile(r"(?:build/bin/|bench/|tools/|tests/)[\w./-]+|pertev\b|\./setup\.sh|cmake|ctest|ninja|python3")
+COMMAND = re.compile(r"(?:build/bin/|bench/|tools/|tests/)[\w./-]+|pertev\b(?!\.)|\./setup\.sh|cmake|ctest|ninja|python3")
 TARGETS = re.compile(r"(?i)\b(?:was|were) asked for|\basked for were|\bhoped for\b|(?<![`|\w])S[58](?![`|\w])")
 FLAG = re.compile(r"(?<![\w/-])--[a-z][a-z-]*[a-z]")
 FOLDERS = ["src", "apps", "tests", "tools", "bench", "cmake", "docs", "examples", "packaging", "scenes"]
@@ -61,7 +61,7 @@ def commands(text):
             fenced = not fenced
         elif fenced or line.startswith("    "):
             for part in re.split(r"\s#\s|\s{2,}#", line.strip())[0].split(" && "):
-                if COMMAND.match(re.sub(r"^[A-Z_]+=\S+ ", "", part)) and not part.startswith("pertev."): # that is Python
+                if COMMAND.match(re.sub(r"^[A-Z_]+=\S+ ", "", part)):
                     found.append(part.strip())
     return found
 
