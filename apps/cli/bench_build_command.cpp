@@ -1,5 +1,5 @@
-// pertev bench build: how long the builder that runs on the device takes for a tree of compressed nodes, and what rays
-// would pay for that tree beside those of builders on the host.
+// pertev bench build: times the device's builder of compressed trees, and compares the trees' SAH costs with those of
+// the host's builders.
 
 #include <memory>
 #include <vector>

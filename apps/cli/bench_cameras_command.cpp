@@ -1,5 +1,5 @@
-// pertev bench cameras: how many small pictures a second a batch of cameras makes, beside the same pictures one after
-// the other, and beside one large picture.
+// pertev bench cameras: times a batch of small pictures, the same pictures one after the other, and one large
+// picture.
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -28,8 +28,8 @@ struct Job {
     uint32_t pictures;
 };
 
-/// Cameras about `camera`, which turn by up to 30 degrees, so that they see about what it sees, and step aside by up to
-/// a fiftieth of the scene's size. Fractions of multiples of irrational numbers spread evenly.
+/// Cameras near `camera`: rotated by up to 30 degrees, so that their views are similar, and moved by up to a fiftieth
+/// of the scene's size. Fractions of multiples of irrational numbers are spread evenly.
 CameraBatch cameras_about(const Camera& camera, uint32_t count, float scene_size) {
     CameraBatch batch;
     for (uint32_t k = 0; k < count; ++k) {

@@ -26,7 +26,7 @@ namespace {
 
 constexpr const char* kSize = "1920x1080";
 
-/// A cache folder of its own, gone afterwards.
+/// A temporary cache folder.
 class ScratchCache {
 public:
     ScratchCache() : path_(std::filesystem::temp_directory_path() / fmt::format("pertev-bench-{}", ::getpid())) {}

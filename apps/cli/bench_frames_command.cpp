@@ -49,7 +49,7 @@ int bench_frames(FramesFlags& flags) {
     const Camera first = session.camera();
     const float size = length(bounds_of(scene).size());
     const bool reconstructs = makes_frames(settings.integrator);
-    std::vector<double> whole, reconstruction, copy; // `copy`: what is shown, to the host
+    std::vector<double> whole, reconstruction, copy; // `copy`: time of copying the displayed picture to the host
     RayCounts rays;
     double seconds = 0;
     DeviceTimer timer(*queue);

@@ -1,5 +1,5 @@
-// pertev bench noise: the variance of a picture at a number of samples, of the low-discrepancy sampler beside that of
-// independent samples. Pictures of several seeds are compared with each other, so no reference is needed.
+// pertev bench noise: compares the variance of pictures by the low-discrepancy sampler and by independent samples.
+// Pictures of several seeds are compared with each other, so no reference is needed.
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -28,7 +28,7 @@ struct Pictures {
     uint64_t invalid_samples = 0;
 };
 
-/// `done` pictures of both samplers are there already.
+/// `done` pictures of each sampler are finished.
 Pictures render_pictures(Session& session, SamplerKind sampler, const NoiseFlags& flags, uint32_t done,
                          Reporter& reporter) {
     Pictures pictures;

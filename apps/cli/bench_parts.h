@@ -57,7 +57,7 @@ Scene read_record_scene(const std::string& name, Sink& sink);
 /// Reads a scene of the record by its name, else a scene with its light as `pertev render` does. Throws Error, with the
 /// known names if there is neither a file nor a scene of this name.
 Scene read_lab_scene(const SceneOptions& options, Sink& sink);
-/// The scene's title in reports: its file's name without folder and extension, in UTF-8 whatever its bytes are.
+/// The scene's title in reports: its file's name without folder and extension, converted to valid UTF-8.
 std::string lab_scene_title(const std::string& scene);
 
 /// The start of a benchmark of one scene.
@@ -87,7 +87,7 @@ void add_picture_flags(CLI::App& verb, SettingVerbs verbs, PictureFlags& flags, 
 /// Options for the binary trees that pictures with these settings need. The session converts the trees.
 PrepareOptions trees_for(const RenderSettings& settings, const Queue& queue);
 
-/// Adds --report, the file of the measurement, beside -q and --json.
+/// Adds the flags --report, -q and --json.
 void add_bench_report_flags(CLI::App& verb, ReportFlags& flags);
 
 /// Prints the results of a benchmark as they come, and writes them as a measurement (lab/measurement.h) to the file of

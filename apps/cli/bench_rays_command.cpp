@@ -1,8 +1,7 @@
-// pertev bench rays: how many rays a second the traversal of pictures traces, on sets of rays that other tracers can be
-// timed on (docs/ray_sets.md). What the record says of the same sets stands beside, and our rate over the best public
-// tracer's where both are of the same rays on the same card (lab/stored_figures.h). The tree is the best one unless
-// --build names another. On a CPU it is traversed with one ray after the other, where pictures go by packets and
-// flights of rays (trace/wide/trace_many.h).
+// pertev bench rays: times the traversals of pictures on ray sets that other tracers can use, too (docs/ray_sets.md).
+// It also prints stored figures of the same sets, and the ratio to the best public tracer if both have the same rays
+// and card (lab/stored_figures.h). The tree is the best one unless --build names another. On a CPU it is traversed with
+// one ray after the other, where pictures go by packets and flights of rays (trace/wide/trace_many.h).
 
 #include <algorithm>
 #include <memory>

@@ -1,5 +1,5 @@
-// pertev bench sequence: how like the frames of a moving picture are to pictures of many samples, and how they flicker;
-// beside them what `denoise` makes of each frame's samples alone.
+// pertev bench sequence: measures error and flicker of a sequence's frames against references of many samples, and the
+// same for each frame's samples denoised by `denoise`.
 
 #include <algorithm>
 #include <optional>
@@ -61,8 +61,8 @@ struct Scores {
     Score ours, sample;
     std::optional<Score> denoised;
     double noise = 0; // HDR-FLIP of one half of the first reference's samples against the other
-    // Scores of a half of each reference's samples against all of them, which differ as much as all of them do from the
-    // truth: its flicker is what the references' own noise adds to the others'.
+    // Scores of half of each reference's samples against all samples, which differ by as much as the reference does
+    // from the truth. The flicker of these halves is the part that noise of the references adds to the other scores.
     Score half;
     std::string denoiser; // RenderResult::denoiser
 };

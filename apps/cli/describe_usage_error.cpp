@@ -117,7 +117,7 @@ std::string describe_flag(const std::string& word, const std::vector<const CLI::
 
 bool takes(const CLI::App& verb, const char* flag) { return verb.get_option_no_throw(flag) != nullptr; }
 
-/// Words that `verb` has no place for, with what they may have been.
+/// Lists unexpected arguments of `verb`, each with suggestions.
 std::string describe_words(const std::vector<std::string>& words, const CLI::App& verb) {
     std::string text = fmt::format("{}: not understood", fmt::join(words, ", "));
     const std::string meant = suggest_name(words.front(), names_below(verb));

@@ -10,7 +10,7 @@
 
 namespace pertev {
 
-// Nothing of them stands in the help, because each flag's own text says it.
+// They do not appear in the help, because each flag's text states its range.
 
 namespace {
 

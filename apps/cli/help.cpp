@@ -45,7 +45,7 @@ std::string names_of(const CLI::Option& option) {
     return name;
 }
 
-/// Returns all that there is to say of a flag, or of a setting its first sentence.
+/// Returns the whole description of a flag, or the first sentence of a setting's.
 std::string text_of(const CLI::Option& option, bool is_short) {
     const Setting* const setting = setting_of(option);
     const std::string full = option.get_description();

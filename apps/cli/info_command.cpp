@@ -1,4 +1,4 @@
-// pertev info FILE: what a scene, a picture or a radiosity solution holds.
+// pertev info FILE: describes a scene, a picture or a radiosity solution.
 
 #include <algorithm>
 #include <concepts>
@@ -195,7 +195,7 @@ void describe_scene(const InfoFlags& flags, Facts& facts, Sink& sink) {
     }
     facts.add("cameras", cameras);
     describe_choices(scene, facts);
-    std::vector<std::string> suggests, makes_up; // settings that a render takes from the file; what it makes up
+    std::vector<std::string> suggests, makes_up; // settings that a render takes from the file, and its defaults
     if (scene.cameras.empty()) makes_up.emplace_back("camera");
     if (lacks_light(scene)) makes_up.emplace_back("light");
     if (!scene.cameras.empty()) {

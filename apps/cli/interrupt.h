@@ -13,7 +13,7 @@ void end_at_interrupt(bool json);
 /// Lets signals set interrupted() instead.
 void listen_for_interrupt();
 bool interrupted();
-/// A sink that nobody hears and that stops at a signal.
+/// A sink that drops all messages and stops at a signal.
 struct InterruptSink final : Sink {
     bool should_stop() override { return interrupted(); }
 };

@@ -240,7 +240,7 @@ void add_lab_command(CLI::App& app, int& status) {
                       "compare integrators instead of traversals: error over time\nagainst a reference");
     for (const char* flag : {"--structures", "--traversals", "--rta", "--order", "--tests", "--persistent", "--rays",
                              "--count", "--no-heat-maps"}) {
-        thesis->excludes(verb.get_option(flag)); // it is what the thesis compared
+        thesis->excludes(verb.get_option(flag)); // the comparison of the thesis
         transport->excludes(verb.get_option(flag));
     }
     for (const char* flag : {"--thesis", "--depths", "--runs"}) transport->excludes(verb.get_option(flag));

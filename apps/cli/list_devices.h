@@ -4,7 +4,7 @@
 
 namespace pertev {
 
-/// Lists the devices that --device names, a line each, with what tells them apart; the CPU is the last one.
+/// Lists the devices of --device, one per line, with distinguishing properties; the CPU comes last.
 std::string list_devices();
 
 } // namespace pertev

@@ -36,7 +36,7 @@ void report_start(const RenderFlags& flags, const RenderSetup& ready, Reporter& 
     const PreparedScene& prepared = ready.prepared();
     const RenderSettings& settings = ready.settings;
     const std::string device = ready.queue->device_name();
-    const bool has_more = has_ground(scene); // the file is counted, not what is made up
+    const bool has_more = has_ground(scene); // counts the file's contents, without defaults
     const uint64_t triangles = prepared.triangles - (has_more ? scene.meshes.back().triangle_count() : 0);
     const uint64_t instances = scene.instances.size() - (has_more ? 1 : 0);
     reporter.print(fmt::format("{}: {}, {}, {}; loaded in {:.2f} s, trees in {:.2f} s; "

@@ -20,7 +20,7 @@ namespace pertev {
 namespace {
 
 void write_now(std::FILE* file, const std::string& text) {
-    std::fwrite(text.data(), 1, text.size(), file); // main asks in the end whether stdout took everything
+    std::fwrite(text.data(), 1, text.size(), file); // main checks stdout for errors at the end
     std::fflush(file);
 }
 

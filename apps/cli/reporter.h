@@ -40,7 +40,7 @@ public:
     void print(const std::string& line);
     /// Shows the progress, and the event `progress`.
     void progress(const Progress& now) override;
-    /// Shows the share that is done, in [0, 1], and a text after the bar. It is redrawn in place on a terminal;
+    /// Shows the completed share, in [0, 1], and a text after the bar. It is redrawn in place on a terminal;
     /// otherwise, or on a dumb one, there is a line every 10 s.
     void progress(double share, const std::string& detail);
     /// Names the current work for these lines until there is a share.
@@ -69,7 +69,7 @@ private:
     std::size_t reported_ = 0;
     std::string shown_step_; // step of the last progress, and the time of that
     double shown_at_s_ = 0;
-    std::unique_ptr<Heartbeat> heartbeat_; // used if nobody sees a bar
+    std::unique_ptr<Heartbeat> heartbeat_; // used if there is no progress bar
 };
 
 } // namespace pertev

@@ -23,7 +23,7 @@ std::string described(const Setting& setting, const std::string& otherwise) {
     return text;
 }
 
-/// "--traversal,--walk": help and documents show the first alone.
+/// "--traversal,--walk": help and documents show only the first name.
 std::string flag_names(const Setting& setting) {
     return flag_of(setting.name) + (*setting.old_name != '\0' ? "," + flag_of(setting.old_name) : "");
 }

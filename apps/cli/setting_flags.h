@@ -21,7 +21,7 @@ class Option;
 
 namespace pertev {
 
-/// Stands in a flag's description before what holds without it.
+/// Separates a flag's description from its default.
 inline constexpr std::string_view kWithoutIt = " Without it: ";
 
 /// The setting of a flag; null if it is none.

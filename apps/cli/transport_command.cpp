@@ -53,7 +53,7 @@ Subject read_subject(SceneOptions options, const TransportPreset* preset, float 
     return subject;
 }
 
-/// Null stands for the scene of the command line.
+/// Null means the scene of the command line.
 std::vector<const TransportPreset*> presets_of(const SceneOptions& scene, const TransportFlags& flags) {
     if (flags.preset.empty() && !scene.scene.empty()) return {nullptr};
     refuse(!scene.scene.empty(), {"preset", flags.preset, "has its own scene; leave out SCENE or --preset"});
@@ -71,13 +71,13 @@ std::vector<const TransportPreset*> presets_of(const SceneOptions& scene, const 
     return presets;
 }
 
-/// Puts flags in place of the settings that the laboratory names.
+/// Replaces names of settings in the laboratory's texts by flags.
 void phrase_all(TransportScene& measured) {
     for (std::string& note : measured.notes) note = phrase(note);
     for (TransportRow& row : measured.rows) row.refused = phrase(row.refused);
 }
 
-/// Errors are of radiance: what was made for a display has lost it.
+/// Errors are measured on radiance, which display formats do not hold.
 Image read_linear_image(const std::string& file, Sink& sink) {
     const std::vector<std::byte> bytes = read_file(file);
     const std::optional<ImageFormat> format = recognise_image(bytes);

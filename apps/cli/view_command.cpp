@@ -138,7 +138,7 @@ int view(ViewFlags& flags) {
         reporter.report_messages();
     }
     const std::unique_ptr<Queue> jpeg_queue = on_cuda ? queue_for_jpeg(flags) : nullptr;
-    reporter.set_work(""); // from now on nothing is said that was said before
+    reporter.set_work(""); // messages printed so far are not repeated
     end_soon();
     run_viewer(
         {.host = flags.host,

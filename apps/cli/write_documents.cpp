@@ -1,4 +1,4 @@
-// A page for man, completion for shells and docs/settings.md are made of all flags.
+// Writes the man page, shell completion and docs/settings.md from all flags.
 
 #include <algorithm>
 #include <map>

@@ -66,14 +66,15 @@ std::string Audience::received(uint32_t id, std::string_view text, double now_s)
         if (wheel_.hand(id, message->client, now_s)) clients_changed();
         return {};
     }
-    // A client that has just lost the wheel may not know it yet, which is no reason to drop it. Anyone may pick.
+    // A client that has just lost the wheel may still send commands and is not dropped for that. Every client may
+    // pick.
     if (!wheel_.steers(id)) note_request(id, client, *message, now_s);
     const bool may = wheel_.steers(id) || (message->kind == MessageKind::Pick && message->use == PickUse::Show);
     if (may && !inbox_.put(Steer{id, *std::move(message)}) && !inbox_.is_closed()) return "too many messages wait";
     return {};
 }
 
-/// Tells a client that does not steer why nothing happens, and the one that steers what was requested.
+/// Sends a client that does not steer the reason why its command is ignored, and the steering client the request.
 void Audience::note_request(uint32_t id, Client& client, const ClientMessage& message, double now_s) {
     if (message.kind == MessageKind::Pick && message.use == PickUse::Show) return; // anyone may do that
     const std::string request = request_text(message);

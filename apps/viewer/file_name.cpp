@@ -9,7 +9,7 @@ namespace fs = std::filesystem;
 namespace pertev {
 namespace {
 
-/// Returns whether no word goes on at `at`, so that a path may begin there.
+/// Returns whether a path may begin at `at`, because no word continues there.
 bool is_beginning(const std::string& text, std::size_t at) {
     constexpr std::string_view before = " \t\"'`=:;,([{<";
     return at == 0 || before.find(text[at - 1]) != before.npos;
@@ -31,8 +31,8 @@ bool is_folder(const std::string& path) {
     return fs::is_directory(path, fault);
 }
 
-/// Returns how much of `rest`, which begins a path, is folders of this machine up to the last slash, the slash
-/// included. What only looks like a path, as /nodes/3 of a JSON document, has none.
+/// Returns the length of the existing folders at the start of the path `rest`, with the last slash. It is 0
+/// for text that only resembles a path, such as the JSON pointer /nodes/3.
 std::size_t folders_size(std::string_view rest) {
     std::size_t size = 0;
     for (std::size_t slash = rest.find('/'); slash != rest.npos; slash = rest.find('/', slash + 1)) {

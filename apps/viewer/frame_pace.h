@@ -31,7 +31,7 @@ private:
 
     double frame_s_;
     double full_s_ = 0;  // estimated time of a full-size frame; 0 if unknown
-    double other_s_ = 0; // time beside the last frame
+    double other_s_ = 0; // time outside of the last frame
     int step_ = 8;       // small until a frame has shown the speed of the machine
 };
 

@@ -23,7 +23,7 @@ constexpr double kReportEvery = 0.2; // seconds between two states, while nothin
 constexpr double kFirstBudget = 0.1, kLongestBudget = 1;
 constexpr float kSpeedStep = 1.25f;
 constexpr double kSlowestTime = 1.0 / 64; // seconds of the scene per second
-constexpr double kLongestStep = 0.5;      // seconds; time stops while nobody watches
+constexpr double kLongestStep = 0.5;      // seconds; time stops while no client is connected
 
 } // namespace
 

@@ -26,9 +26,9 @@ public:
     void took(float scale, double seconds);
     /// A picture at this scale is shown now.
     void showed(float scale) { shown_ = scale; }
-    /// Returns whether a sample takes so long that nobody should have to wait for it.
+    /// Returns whether a sample takes too long to wait for.
     bool is_slow() const { return full_s_ > soon_s_; }
-    /// Returns whether a sample with this time may be waited for, even by somebody who moves the camera.
+    /// Returns whether a sample of this time is short enough to finish even while the camera is moved.
     bool is_short(double sample_s) const { return sample_s <= kShort * soon_s_; }
     /// Returns the scale of the next picture, or nothing if full-size samples may accumulate. `has_whole` adds a last
     /// picture of full size before the samples.

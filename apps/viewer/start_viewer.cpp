@@ -26,8 +26,8 @@ std::string camera_name(const SceneOptions& options, const Scene& scene) {
     return scene.cameras.empty() ? "" : "0";
 }
 
-/// Turns as --turntable N does at 24 frames a second. Its places are said by eye, target and up, so that flags can say
-/// them too: but for rounding they are those of render's frames.
+/// Orbits as --turntable N does at 24 frames a second. Positions are given as eye, target and up, so that flags can
+/// reproduce them; they equal those of render's frames except for rounding.
 CameraSource turned_camera(const RenderSetup& ready, double time_s) {
     const double frames = std::fmod(time_s * kTurntableFps, ready.sequence.turntable);
     CameraSource source = camera_at(*ready.camera, ready.scene(), time_s, frames / ready.sequence.turntable);

@@ -43,7 +43,7 @@ Pose zoom(const Pose& pose, float steps);
 float metres_of(const ClientMessage& message, float speed);
 
 /// The flags of pertev render that place this camera: --eye --target --up, and the lens if it differs from their
-/// defaults. `name` is that of --camera; empty for none. `origin` is the scene's in its file.
+/// defaults. `name` is the value of --camera, or empty. `origin` is the scene's origin in its file.
 std::string camera_flags(const Pose& pose, const Camera& camera, const std::string& name,
                          DoubleVec3 origin = {0, 0, 0});
 /// Flags for the scene's camera `name` at its own position, with the lens of `camera`.

@@ -98,7 +98,7 @@ std::string why_no_layer(ShownLayer layer, const RenderSettings& settings) {
                        integrator_name(settings));
 }
 
-/// Returns what the integrator cannot do; empty if nothing.
+/// Returns a text about an unsupported feature of the integrator, or an empty one.
 std::string why_no_picture(const RenderSettings& settings, const Camera& camera) {
     try {
         check_integrator(settings);
@@ -117,7 +117,7 @@ std::string why_no_integrator(const ViewState& state) {
     return why_not.empty() ? why_no_layer(state.layer, state.options.render) : why_not;
 }
 
-/// Returns the options with the values that the view has in place of them.
+/// Returns the options with the view's own values.
 PictureOptions options_of(const ViewState& state) {
     PictureOptions options = state.options;
     options.tone_map = state.display.tone_map;

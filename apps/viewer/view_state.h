@@ -44,7 +44,7 @@ struct ViewState {
     ShownLayer layer = ShownLayer::Beauty;
     bool is_real_time = false; // pictures at rest are like moving ones
     // Moving frames; none of this affects the picture at rest.
-    float moving_scale = 0;               // scale; 0: whatever meets the frame rate
+    float moving_scale = 0;               // scale; 0: chosen to meet the frame rate
     uint32_t moving_depth = kMovingDepth; // maximum number of scatterings, if that is below the picture's
     float screen_rate = 0;                // refresh rate of the screen of the client that steers; 0: unknown
     bool on_cuda = false;

@@ -65,8 +65,9 @@ std::string address_of(const std::string& host, uint16_t port, const std::string
 void run_viewer(const ViewerOptions& options, const ViewerStart& start, FrameSource& source,
                 const std::function<void(const std::string& address)>& listening,
                 const std::function<bool()>& goes_on) {
-    const bool is_given = !options.token.empty(); // and not for those who read what the program prints
-    const ServerIdentity identity = {options.host, is_given ? options.token : make_token(), "pertev-" + make_token(4), make_token()};
+    const bool is_given = !options.token.empty(); // and not in the program's output
+    const ServerIdentity identity = {options.host, is_given ? options.token : make_token(), "pertev-" + make_token(4),
+                                     make_token()};
     Inbox inbox;
     inbox.raise(source.abandon(), source.hurry());
     inbox.expect(start.view);

@@ -20,24 +20,24 @@ public:
         double requested_s = 0;
     };
     static constexpr double kRequestStays = 20; // seconds
-    static constexpr double kHandingOver = 1;   // seconds in which the former holder may not know of the change yet
+    static constexpr double kHandingOver = 1;   // seconds in which the former holder may not have received the change
     static constexpr double kPatience = 10;     // seconds that the wheel waits for a disconnected holder
 
     void join(uint32_t client, const std::string& key, double now_s);
     void leave(uint32_t client, double now_s);
-    /// Requests the wheel, which is granted if nobody holds it.
+    /// Requests the wheel, which is granted if it is free.
     void request_wheel(uint32_t client);
     /// Returns false and does nothing unless `from` steers and `to` exists.
     bool hand(uint32_t from, uint32_t to, double now_s = 0);
     enum class Request : uint8_t { None, Known, New };
-    /// Records the request of a client that does not steer. Returns None if it steered a moment ago and may not know of
-    /// the change.
+    /// Records the request of a client that does not steer. Returns None if it steered a moment ago and may not have
+    /// received the change.
     Request request(uint32_t client, const std::string& what, double now_s);
     /// Must be called regularly, because the wheel and requests expire. Returns whether anything has changed.
     bool tick(double now_s);
 
     bool steers(uint32_t client) const { return holder_ == client && client != 0; }
-    uint32_t holder() const { return holder_; } // 0: nobody
+    uint32_t holder() const { return holder_; } // 0: no client
     const std::vector<Seat>& seats() const { return seats_; }
 
 private:

@@ -64,13 +64,13 @@ public:
     /// Returns whether the work should stop. Called often and from any thread, so it must be cheap.
     virtual bool should_stop() { return false; }
 
-    /// Tells a warning: something was repaired, or a request has no effect.
+    /// Reports a warning: something was repaired, or a request has no effect.
     void warn(Remark remark) { tell({.is_warning = true}, std::move(remark)); }
-    /// Tells a warning that the picture lacks something that the input has.
+    /// Reports a warning that the picture lacks something that the input has.
     void leave_out(Remark remark) { tell({.is_warning = true, .is_left_out = true}, std::move(remark)); }
-    /// Tells a notice: a default was used, or there is other information.
+    /// Reports a notice: a default was used, or there is other information.
     void note(Remark remark) { tell({}, std::move(remark)); }
-    /// Tells a notice that the picture has something that the input lacks.
+    /// Reports a notice that the picture has something that the input lacks.
     void make_up(Remark remark) { tell({.is_made_up = true}, std::move(remark)); }
     void add_all(const Messages& messages);
 
@@ -152,7 +152,7 @@ inline void Sink::add_all(const Messages& messages) {
     for (const Message& message : messages.all()) receive(message);
 }
 
-/// Returns a sink that nobody hears.
+/// Returns a sink that drops all messages.
 inline Sink& nobody() {
     static Sink sink;
     return sink;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Decodes PNG, JPEG, Radiance HDR and OpenEXR from memory, identified by content. It is meant for files from
-// strangers: allocations are bounded by what the bytes can contain (image/check_image_size.h).
+// Decodes PNG, JPEG, Radiance HDR and OpenEXR from memory, identified by content. Files are untrusted:
+// allocations are bounded by the possible contents of the bytes (image/check_image_size.h).
 
 #include <cstddef>
 #include <span>

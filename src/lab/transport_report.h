@@ -23,7 +23,7 @@ struct TransportFigures {
     double seconds = 0;   // rendering time of all these samples; a solution's includes solving
     double rel_mse = 0, flip = 0;
     uint64_t patches = 0;    // patches in the displayed solution; 0 if nothing was solved
-    double made_seconds = 0; // the part of `seconds` spent once, before the first sample, on what all samples need
+    double made_seconds = 0; // the part of `seconds` spent once, on preparation before the first sample
 };
 
 /// The pictures of a repetition, with increasing sample counts; for solutions, patch counts. It is shorter if it was

@@ -1,5 +1,5 @@
-// Each patch in turn gathers what all others send by now, until a sweep changes hardly anything. The matrix is
-// diagonally dominant, so that it comes to an end.
+// Gauss-Seidel iteration: each patch in turn gathers the current radiosity of all others, until a sweep
+// changes little. It converges because the matrix is diagonally dominant.
 
 #include "math/tree_sum.h"
 #include "radiosity/radiosity_system.h"

@@ -27,8 +27,8 @@ public:
         : scene_(scene), nodes_(nodes), watch_(watch), seed_(settings.seed), max_links_(max_links),
           limit_(settings.link_error * nodes.mean_direct()) {}
 
-    /// Divides links until each is good enough or waits for a patch to be divided. Links of one size are divided after
-    /// the other, so that there are many from the start. Once the watch is over links do not change.
+    /// Refines links until each is accurate enough or waits for a patch to be subdivided. Links are refined by size,
+    /// so that many can be processed in parallel from the start. After the time limit links do not change.
     void refine(std::vector<Link>& links) {
         divides_.assign(nodes_.tree().patches.size(), 0);
         for (uint32_t i = 0; i < divides_.size(); ++i) {
@@ -40,7 +40,8 @@ public:
         while (!open.empty() && !watch_.is_over()) {
             const uint64_t chunks = (open.size() + kLinksAtOnce - 1) / kLinksAtOnce;
             std::vector<Sorted> sorted(chunks);
-            std::atomic<uint64_t> count = links.size(); // looked at while they are made: there is no room for all
+            std::atomic<uint64_t> count =
+                links.size(); // evaluated while they are generated, because memory does not suffice for all
             parallel_for_ranges(chunks, 1, [&](uint64_t begin, uint64_t end) {
                 LinkFactors factors(scene_, nodes_, seed_);
                 for (uint64_t chunk = begin; chunk < end; ++chunk) {
@@ -226,7 +227,7 @@ HierarchicalSolution solve_by_links(const SolvedScene& scene, PatchTree coarse, 
 } // namespace
 
 std::size_t max_hierarchical_bytes(uint64_t patches, uint64_t triangles) {
-    const uint64_t nodes = 3 * patches; // clusters, patches and what was divided into them
+    const uint64_t nodes = 3 * patches; // clusters, patches and their subdivisions
     const uint64_t most = nodes < 100000 ? nodes * nodes : kMaxLinks;
     const std::size_t links = 3 * std::min(most, kMaxLinks) * sizeof(Link);
     return std::max(links, LinkNodes::max_first_bytes(std::min(patches, 2 * triangles))) +

@@ -1,6 +1,5 @@
-// Whether light ends. A patch loses light where it or those that it gathers from absorb some, or where some of what it
-// would gather comes from outside; what gathers from such a patch loses light with it. A set of patches that none of
-// this reaches keeps all its light, and its equations have no solution.
+// Checks that the radiosity system has a solution. A patch loses light if it absorbs some, if part of its hemisphere
+// is open, or if it gathers from a patch that loses light. A set of patches that loses no light has no solution.
 
 #include <fmt/format.h>
 

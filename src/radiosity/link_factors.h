@@ -34,7 +34,7 @@ private:
     };
     struct QueuedLink {
         uint32_t first = 0, count = 0; // range of visibility tests
-        float known = 0;               // sum of what is visible without a ray
+        float known = 0;               // sum of the parts that are visible without a ray
         float scale = 1;               // factor of the sum of weights
         uint32_t rays = 0, seen = 0;   // rays traced, and free without a ray
     };

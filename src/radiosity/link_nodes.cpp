@@ -196,8 +196,8 @@ void LinkNodes::receive(NodeCode receiver, std::span<const Link> links) {
     (is_patch(receiver) ? gathered_[number_of(receiver)] : quad_gathered_[receiver]) = received;
 }
 
-/// Passes light down and up a tree of parts: all parts of a quad receive what it gathers, and it sends the mean of what
-/// they send.
+/// Pushes and pulls light in a tree of parts: each part of a quad receives the quad's gathered light, and the quad's
+/// radiosity is the mean of its parts'.
 LinkNodes::Pushed LinkNodes::push(PatchCode code, Rgb above) {
     if (is_patch(code)) {
         const uint32_t i = number_of(code);

@@ -1,5 +1,5 @@
-// The system as one matrix, solved by elimination: what Goral et al. 1984 do. No row changes places: the diagonal
-// dominates. One matrix a channel, as reflectances differ.
+// Solves the system as a dense matrix by elimination, as Goral et al. 1984 do. It needs no pivoting, because the
+// diagonal dominates. Each colour channel has its own matrix, because reflectances differ.
 
 #include <fmt/format.h>
 

@@ -52,7 +52,7 @@ void set_surface(const SceneView& scene, Patch& patch) {
 
 struct DividedScene {
     const SceneView& scene;
-    WorkWatch* watch; // null: nobody looks
+    WorkWatch* watch; // null: no progress is reported
 };
 
 /// Divides `patch` `levels` times. Returns its code; kNoPatch if it has nothing to solve for.

@@ -1,6 +1,6 @@
-// Form factors by rays: they leave places all over the patch, by the cosine of their angle to its normal, so that the
-// share of them that arrives at a patch is its form factor, whatever stands between. What emitters and the sky send is
-// found by rays to points of lights as well, and weighed (Veach 1997, section 9.2): an emitter that few rays of the
+// Form factors by rays: they start at points all over the patch with cosine-distributed directions, so that the share
+// of rays that hit another patch is its form factor, with occlusion. Light of emitters and sky is also sampled by rays
+// to points on lights, and both are combined by MIS (Veach 1997, section 9.2): an emitter that few rays of the
 // hemisphere meet would be noise.
 //
 // Source: Malley, "A Shading Method for Computer Generated Images", 1988: directions by the cosine are points of a disk
@@ -102,7 +102,7 @@ private:
     }
 
     /// Scales a row so that all form factors of a patch, with those of the sky and of surfaces that absorb all light,
-    /// add up to 1. The sum of emitters is known better than that of the rest, which is scaled to what they leave.
+    /// add up to 1. The sum for emitters is more accurate than that for the rest, so only the rest is scaled.
     void close(double emitters, double others, FormFactorRow& row) const {
         const double of_emitters = others > 0 && emitters <= 1 ? 1 : 1 / emitters;
         const double of_others = others > 0 ? std::max(0.0, 1 - emitters) / others : 0;

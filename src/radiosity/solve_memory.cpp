@@ -32,7 +32,7 @@ std::size_t tree_bytes(uint64_t patches, uint64_t triangles) {
     return patches * sizeof(Patch) + (patches / 3 + 1) * sizeof(PatchQuad) + 2 * triangles * sizeof(PatchCode);
 }
 
-/// Number of form factors that a row is made of, before those of one patch are added.
+/// Number of form factors from which a row is made, before those of one patch are merged.
 uint64_t found_factors(const RadiositySettings& s) {
     const uint64_t of_lights = std::max(s.rays / 4, kMinPatchRays);
     return s.form_factors == FormFactors::Rays ? s.rays + of_lights : 3 * uint64_t(s.hemicube) * s.hemicube;

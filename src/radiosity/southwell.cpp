@@ -1,5 +1,5 @@
-// Southwell's relaxation: the patch with the most unsent light sends it, to all that receive of it, and so on. Where
-// this ends early most of the light is there, and what is not is shown as ambient light.
+// Southwell relaxation (progressive refinement): the patch with the most unshot light shoots it to all visible
+// patches, repeatedly. If this ends early, most of the light is distributed, and the rest is shown as ambient light.
 
 #include <algorithm>
 #include <bit>

@@ -28,8 +28,8 @@ struct CameraView {
     LensView lens;
 };
 
-/// The origin of a camera ray that does not exist, because the lens shows nothing at that place of the picture. The ray
-/// leads away from every scene, so nothing blocks it, and it brings no light.
+/// The origin of a camera ray that does not exist, because the lens images nothing at that picture position. The ray
+/// lies outside of every scene, so it hits nothing and has no light.
 inline constexpr float kNowhere = 0x1p44f;
 HD inline bool is_outside_lens(Vec3 origin) { return max_component(abs(origin)) > 0x1p42f; }
 

@@ -1,8 +1,8 @@
 #pragma once
 
 // Auxiliary layers at the centres of pixels: the values where the ray through the centre hits, without lens, pixel
-// filter or blending, in the middle of the shutter's open time. A blended surface counts or not by the coin of sample
-// 0. Where nothing is hit, values are 0, as in means over samples (render/first_hit.h).
+// filter or blending, in the middle of the shutter's open time. A blended surface counts or not by the random number
+// of sample 0. Where nothing is hit, values are 0, as in means over samples (render/first_hit.h).
 
 #include "device/buffer.h"
 #include "device_scene/moved_surface.h"

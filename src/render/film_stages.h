@@ -28,7 +28,7 @@ struct AddCounts {
     HD void operator()(uint32_t i) const { to[i] += from[i]; }
 };
 
-/// The stage that takes values where there are none.
+/// The stage that copies values to elements that have none.
 struct AddMissing {
     static constexpr uint32_t kMissing = 0xffffffffu; // bits
 

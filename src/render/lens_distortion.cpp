@@ -76,7 +76,8 @@ LensView make_lens_view(const Camera& camera) {
     case LensModel::OpenCv: // k1, k2, p1, p2, k3, k4, k5, k6
         lens.k1 = k[0], lens.k2 = k[1], lens.k3 = k[4], lens.k4 = k[5], lens.k5 = k[6], lens.k6 = k[7];
         lens.p1 = -k[2], lens.p2 = k[3];
-        for (int i = 0; i < (lens.p1 == 0 && lens.p2 == 0 ? 1 : kTurns); ++i) { // without p all directions are alike
+        for (int i = 0; i < (lens.p1 == 0 && lens.p2 == 0 ? 1 : kTurns);
+             ++i) { // without p the lens is rotationally symmetric
             float s = 0, c = 0;
             sin_cos_2pi(static_cast<float>(i) / kTurns, s, c);
             const DoubleVec3 direction = to_double(Vec3{c, s, 0});

@@ -1,9 +1,9 @@
 #pragma once
 
-// Lenses that do not draw straight lines: OpenCV's polynomial model (calib3d: radial, rational and tangential) and the
-// fisheye of Kannala and Brandt ("A Generic Camera Model and Calibration Method for Conventional, Wide-Angle, and
-// Fish-Eye Lenses", 2006), as in cv::fisheye. A point of the view, x to the right and y up, is where a pinhole sees a
-// direction at distance 1; the lens moves it to its place in the picture.
+// Distorting lenses: OpenCV's polynomial model (calib3d: radial, rational and tangential) and the fisheye of Kannala
+// and Brandt ("A Generic Camera Model and Calibration Method for Conventional, Wide-Angle, and Fish-Eye Lenses",
+// 2006), as in cv::fisheye. A point of the view, x to the right and y up, is where a pinhole sees a direction at
+// distance 1; the lens moves it to its place in the picture.
 //
 // Both models are polynomials that stop being monotone somewhere, and beyond that show places a second time. A lens
 // shows nothing there: `limit` is the largest radius in any direction, or angle, that it shows, and the determinant
@@ -29,7 +29,7 @@ bool has_straight_lens(const Camera& camera);
 /// Makes the lens of a camera, with its limit.
 LensView make_lens_view(const Camera& camera);
 
-/// A place in the picture, and the derivative of its x and y by those of the view, a symmetric matrix.
+/// A picture position and the derivative of its x and y with respect to the view, a symmetric matrix.
 template <class T>
 struct DistortedPoint {
     Vec2Of<T> at;
@@ -55,7 +55,7 @@ HD inline DistortedPoint<T> distort(const LensView& lens, Vec2Of<T> p) {
             radial + y * y * slope + 6.0f * py + 2.0f * qx};
 }
 
-/// A direction in camera space, of any length, that a lens shows at a place in the picture, if `is_seen`.
+/// A direction in camera space, of any length, that a lens images at a picture position, if `is_seen`.
 template <class T>
 struct SeenThroughLens {
     Vec3Of<T> direction;
@@ -64,7 +64,7 @@ struct SeenThroughLens {
 
 inline constexpr int kLensSteps = 12; // number of steps of Newton's method
 
-/// Inverts distort() at the place `at`, from where it starts; z is -1.
+/// Inverts distort() at the position `at`, which is also the initial guess; z is -1.
 template <class T>
 HD inline SeenThroughLens<T> undistort(const LensView& lens, Vec2Of<T> at, float tolerance) {
     Vec2Of<T> p = at;
@@ -99,8 +99,8 @@ HD inline FisheyeRadius<T> fisheye_radius(const LensView& lens, T angle) {
             1.0f + a2 * (3.0f * lens.k1 + a2 * (5.0f * lens.k2 + a2 * (7.0f * lens.k3 + a2 * (9.0f * lens.k4))))};
 }
 
-/// The unit direction that a fisheye shows at the place `at`. The angle is found by Newton's method, or by halves where
-/// that leaves the interval in which it must be.
+/// The unit direction that a fisheye images at the position `at`. The angle is found by Newton's method, or by
+/// bisection where that leaves the bracket.
 template <class T>
 HD inline SeenThroughLens<T> fisheye_direction(const LensView& lens, Vec2Of<T> at, float tolerance) {
     const T radius = sqrt(at.x * at.x + at.y * at.y);
@@ -120,21 +120,21 @@ HD inline SeenThroughLens<T> fisheye_direction(const LensView& lens, Vec2Of<T> a
     return {{scale * at.x, scale * at.y, -c}, abs(fisheye_radius(lens, angle).radius - radius) <= tolerance};
 }
 
-/// The direction that a lens that is not straight shows at the place `at`, in the unit of the view at distance 1. Where
-/// Newton's method ends farther than `tolerance` from it, nothing is seen.
+/// The direction that a distorting lens images at the position `at`, in the unit of the view at distance 1. Nothing is
+/// seen where Newton's method ends farther than `tolerance` from it.
 template <class T>
 HD inline SeenThroughLens<T> seen_through_lens(const LensView& lens, Vec2Of<T> at, float tolerance) {
     return lens.model == LensModel::Fisheye ? fisheye_direction(lens, at, tolerance) : undistort(lens, at, tolerance);
 }
 
-/// The place in the picture where a lens shows a point, and how much smaller than in the view things look there.
+/// The picture position at which a lens images a point, and the scale of areas there.
 struct LensProjection {
     Vec2 at;
     float growth; // area in the picture over that in the view; for a fisheye over the solid angle
     bool is_seen;
 };
 
-/// Projects a point of camera space through a lens that is not straight.
+/// Projects a point of camera space through a distorting lens.
 HD inline LensProjection project_through_lens(const LensView& lens, Vec3 point) {
     const float depth = -point.z;
     if (lens.model == LensModel::Fisheye) {

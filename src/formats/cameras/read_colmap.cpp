@@ -64,7 +64,7 @@ void state_calibration(const Calibration& from, CameraOfFile& camera) {
     state(camera, "distortion", k);
 }
 
-/// The camera of an image: a rotation w, x, y, z and a place that lead from the world to the camera.
+/// The camera of an image: a rotation w, x, y, z and a translation from world to camera.
 CameraOfFile camera_of(const std::array<double, 7>& pose, const std::string& picture, uint64_t id,
                        const Calibrations& calibrations, const FileLocation& where) {
     const double length = std::sqrt(pose[0] * pose[0] + pose[1] * pose[1] + pose[2] * pose[2] + pose[3] * pose[3]);

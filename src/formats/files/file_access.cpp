@@ -90,7 +90,7 @@ FileAccess::Located FileAccess::locate(const fs::path& name) const {
 std::optional<fs::path> FileAccess::find_end_of(const fs::path& name, const FileLocation& from, Sink& sink) const {
     const std::vector<std::string> components = components_below(name);
     if (components.empty()) return std::nullopt;
-    // Names in the same case below the folder itself are found without a look around.
+    // Names in the same case below the folder itself are found without a search.
     for (std::size_t first = 0; first < components.size(); ++first) {
         fs::path end = folder_of(from);
         for (std::size_t i = first; i < components.size(); ++i) end /= components[i];

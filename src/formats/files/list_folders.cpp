@@ -88,7 +88,7 @@ void FolderListing::list() {
         std::vector<fs::path> level = {folder};
         for (std::size_t i = 0; i < kMaxLevels && !level.empty(); ++i) list_level(level, component_count(folder));
     }
-    std::ranges::sort(files_, {}, &File::path); // folders may lie in one another, and have no order of their own
+    std::ranges::sort(files_, {}, &File::path); // folders may be nested, and have no natural order
     const auto same = [](const File& a, const File& b) { return a.path == b.path; };
     files_.erase(std::unique(files_.begin(), files_.end(), same), files_.end());
     for (std::size_t i = 0; i < files_.size(); ++i) {

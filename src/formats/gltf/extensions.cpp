@@ -18,15 +18,15 @@ constexpr std::array<std::string_view, 4> kReadInPart = {"KHR_materials_pbrSpecu
                                                          "KHR_materials_specular", "KHR_materials_transmission",
                                                          "KHR_materials_volume"};
 
-// The picture is the file's first look, whatever these say.
+// The picture shows the file's default variant and ignores these.
 constexpr std::array<std::string_view, 3> kWithoutEffect = {"KHR_materials_variants", "KHR_xmp", "KHR_xmp_json_ld"};
 
 struct Conversion {
     std::string_view extension, command;
 };
 
-// Compressions, which a file may have beside data that is not compressed: primitives and textures warn where they have
-// nothing else.
+// Compressions, for which a file may also have uncompressed data: primitives and textures warn if they have no
+// alternative.
 constexpr std::array<Conversion, 4> kConversions = {{{"KHR_draco_mesh_compression", "copy"},
                                                      {"KHR_texture_basisu", "ktxdecompress"},
                                                      {"EXT_texture_webp", "png"},

@@ -1,7 +1,7 @@
 #pragma once
 
 // Targets of caustic photons: spheres that together contain every surface that may mirror or refract. A photon that
-// hits another surface first brings no caustic. This file also samples how such a photon leaves its light: the light
+// hits another surface first causes no caustic. This file also samples how such a photon leaves its light: the light
 // and the point on it as in emit_particle.h, then a uniform direction in the cones from there to the spheres, or, for
 // distant light, a uniform point in their discs. If the targets are wider than the light's normal emission, normal
 // emission is used.

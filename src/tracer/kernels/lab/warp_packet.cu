@@ -1,4 +1,4 @@
-// Packets of a warp. The CPU has packets of its own (host_traversals.cpp).
+// Packet traversal by warps. The CPU's packets are in host_traversals.cpp.
 
 #include "trace/binary/warp_packet_traversal.h"
 #include "tracer/kernels/traversal_kernels_body.h"
