@@ -1,6 +1,7 @@
-// Every traversal of the laboratory over binary trees, with every switch, gives the hits of testing every triangle, bit
-// for bit: closest and any, over meshes that break traversals, over instances, and over trees with spatial splits,
-// where hits lie outside the boxes of their leaves. And what a traversal visits is what its description says.
+// Every traversal of the laboratory over binary trees, with every switch, gives the hits of brute force, bit for bit:
+// closest and any, over meshes that break traversals, over instances, and over trees with spatial splits, where hits
+// lie outside the boxes of their leaves. The tests also compare the nodes that each traversal visits with its
+// description.
 
 #include <doctest/doctest.h>
 

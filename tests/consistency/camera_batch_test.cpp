@@ -1,5 +1,5 @@
-// Batches of pictures: each picture has the bytes of its camera alone, whatever chunks, threads, schedules and devices.
-// With --device cuda the GPU renders.
+// Batches of pictures: each picture has the bytes of a render with its camera alone, for all chunks, threads, schedules
+// and devices. With --device cuda the GPU renders.
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
-// The traversals of trees that cut space, kd-tree and octree: the hits of testing every triangle, bit for bit, whatever
-// is switched in the traversal, also where triangles lie in the planes that cut, and rays along them.
+// Traversals of kd-trees and octrees give the hits of brute force, bit for bit, with all switches, also for triangles
+// in splitting planes and rays along these.
 
 #include <doctest/doctest.h>
 
@@ -73,7 +73,7 @@ TEST_CASE("octrees of all build settings match brute force bit for bit") {
 
 namespace {
 
-/// Meshes in places that turn, stretch and mirror them, and what testing every triangle of it gives.
+/// Meshes with transforms that rotate, stretch and mirror them, and the hits of brute force.
 struct PlacedMeshes {
     std::vector<BvhTriangle> meshes[4] = {
         triangles_of(make_torus(16, 12)), make_soup(300, 0), make_soup(200, 1000.0f), {}};

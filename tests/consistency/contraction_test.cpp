@@ -22,7 +22,7 @@ float value(uint32_t i) { return unit_interval(hash_word(i)) + 0.5f; }
 [[gnu::noinline]] float product_of(float a, float b) { return a * b; }
 [[gnu::noinline]] float sum_of(float a, float b) { return a + b; }
 
-/// a * b + c with two roundings, whatever the flags.
+/// a * b + c with two roundings, independent of compiler flags.
 float two_roundings(float a, float b, float c) { return sum_of(product_of(a, b), c); }
 
 struct Counts {
@@ -46,7 +46,7 @@ Counts compare(const Expression& expression) {
 TEST_CASE("a product and a sum are two roundings") {
     const Counts counts = compare([](float a, float b, float c) { return a * b + c; });
     CHECK(counts.differ_from_two == 0);
-    CHECK(counts.fused_differ_from_two > 1000); // the values tell the two apart
+    CHECK(counts.fused_differ_from_two > 1000); // the values distinguish both
 }
 
 TEST_CASE("a product and a difference are two roundings") {

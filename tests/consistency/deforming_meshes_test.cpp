@@ -1,5 +1,6 @@
-// Skins and morph targets whose vertices are made on the device: the pictures, to the bit, of those made on the host,
-// by every layout of trees; what travels for a step in time; where things were in the frame before.
+// Skins and morph targets with vertices computed on the device: pictures equal, to the bit, those with vertices of
+// the host, with every tree layout. The uploads of a time step and the positions in the previous frame are tested,
+// too.
 
 #include "device_scene/deforming_meshes.h"
 
@@ -132,7 +133,7 @@ TEST_CASE("vertices deformed on the device give the picture of vertices deformed
             session.render(settings.samples);
             CHECK(test::render_hash(session.result()) == expected[i]);
         }
-        settings.tracers.reset(); // another tracer takes over what was moved
+        settings.tracers.reset(); // another tracer takes over the moved meshes
         session.set_settings(settings);
         session.cut();
         session.render(settings.samples);

@@ -1,5 +1,5 @@
-// Single pictures that are denoised: the same bytes on both devices, by both bodies of the path tracer and in parts;
-// the film beside them is what it is without; and they are nearer to the picture of many samples.
+// Denoised single pictures have the same bytes on both devices, with both schedules of the path tracer and in parts;
+// denoising does not change the film, and reduces the error.
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// Every host-device function gives the same bits on the CPU and in CUDA, so what the other tests find on the CPU holds
+// Every host-device function gives the same bits on the CPU and in CUDA, so results of the other tests on the CPU hold
 // on the GPU. Without --device cuda the second run is the CPU's too and only shows that the stages are deterministic.
 
 #include <doctest/doctest.h>
@@ -24,7 +24,7 @@ uint64_t effort_of_two(uint64_t count, uint64_t long_count) {
     return test::cuda_requested() ? test::effort(count, long_count) : count;
 }
 
-/// Runs make_stage(queue, out) on both devices over `count` indices and compares what lies in `out`.
+/// Runs make_stage(queue, out) on both devices over `count` indices and compares the contents of `out`.
 template <class MakeStage>
 void check_same_bits(uint32_t count, const MakeStage& make_stage) {
     std::vector<uint32_t> results[2];

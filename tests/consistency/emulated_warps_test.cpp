@@ -1,7 +1,7 @@
-// The code that only a GPU runs gives the hits that the host's traversals give, whatever a warp does: persistent
-// threads, dynamic fetch, packets of a warp, triangles and leaves put off, counts of live lanes. It runs on emulated
-// warps (tests/support/emulated_warp.h): no vote may name a lane that does not come, each ray is stored once, the pool
-// ends where it must. A failure tells the seed, which replays it.
+// Code that only a GPU runs gives the hits of the host's traversals for any scheduling of warps: persistent threads,
+// dynamic fetch, warp packets, postponed triangles and leaves, counts of live lanes. It runs on emulated warps
+// (tests/support/emulated_warp.h): no vote may name a lane that does not come, each ray is stored once, the pool ends
+// where it must. A failure tells the seed, which replays it.
 
 #include <doctest/doctest.h>
 
@@ -52,7 +52,8 @@ struct Expected {
     const std::vector<Hit>& hits; // the host's closest
 };
 
-/// Runs a batch on warps, of `blocks` blocks where they share a pool, and holds what it stored to what is expected.
+/// Runs a batch on warps, of `blocks` blocks where they share a pool, and compares its results with the expected
+/// ones.
 template <class Run>
 void check_batch(const EmulatedTraversal& traversal, const Expected& expected, uint32_t blocks, uint32_t seed,
                  const Run& run, LaneCounts* lanes = nullptr) {

@@ -1,5 +1,5 @@
-// Pictures by every structure, traversal, switch and way of handing rays out that this device has, with exact tests:
-// one hash. What makes no sense says why. With --device cuda the GPU's.
+// Pictures by every structure, traversal, switch and ray distribution of this device, with exact tests, have one
+// hash. Invalid combinations state the reason. With --device cuda those of the GPU are tested.
 
 #include <string>
 
@@ -27,7 +27,7 @@ RenderSettings tracer_settings() {
     return settings;
 }
 
-/// Each instance with a mesh of its own: baked, so that the scene is one tree.
+/// Gives each instance its own mesh, so that all are baked and the scene is one tree.
 Scene make_single_tree(const Scene& scene) {
     Scene single = scene;
     single.meshes.clear();
@@ -160,7 +160,7 @@ TEST_CASE("renders refuse inexact tests and traversals that the device lacks") {
     } else {
         CHECK(refuses({.traversal = TraversalKind::WhileWhile, .distribution = Distribution::DynamicFetch}));
     }
-    settings.tracers.reset(); // and goes on with what it can do
+    settings.tracers.reset(); // and continues with supported combinations
     session.set_settings(settings);
     CHECK(session.render(1) == 1);
 }

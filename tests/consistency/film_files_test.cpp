@@ -1,5 +1,5 @@
-// Parts of a picture, written as film files and merged in any order, have the bytes of the film of one run, whatever
-// renders them; parts that do not make up one picture are refused.
+// Parts of a picture, written as film files and merged in any order, have the bytes of the film of one run, by any
+// device and integrator; parts of different pictures are refused.
 
 #include <algorithm>
 #include <cmath>

@@ -122,7 +122,7 @@ TEST_CASE("the exposure approaches the metered one and is 1/e of the difference 
     CHECK(goal - exposure.stops() == doctest::Approx(4 / std::exp(1.0)).epsilon(1e-3));
     for (int k = 0; k < 200; ++k) exposure.next(tones, ToneMap::Agx);
     CHECK(exposure.stops() == doctest::Approx(goal).epsilon(1e-3));
-    // Where there is nothing but lamps and sky, they count.
+    // If nothing but lamps and sky is visible, they count.
     for (float& value : tones.scattered.pixels) value = 0;
     for (int k = 0; k < 300; ++k) exposure.next(tones, ToneMap::Agx);
     CHECK(exposure.stops() == doctest::Approx(auto_exposure_stops(tones.all, ToneMap::Agx)).epsilon(1e-2));

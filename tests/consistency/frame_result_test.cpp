@@ -1,5 +1,5 @@
-// A frame in real time as a picture: the same bytes by every body and on every device while scene and camera move, its
-// layers those of its own sample, its memory what is said beforehand.
+// Real-time frames as pictures have the same bytes with every schedule and on every device while scene and camera
+// move. Their layers are those of the frame's sample, and their memory equals its prediction.
 
 #include <doctest/doctest.h>
 

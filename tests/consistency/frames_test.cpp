@@ -1,5 +1,5 @@
-// Frames in real time: the same bytes on both devices and by both bodies of the path tracer, whatever was rendered
-// before the last cut; and what the parts of a noisy frame add up to.
+// Real-time frames have the same bytes on both devices and with both schedules of the path tracer, independent of
+// anything before the last cut. The parts of a noisy frame add up to its radiance.
 
 #include <doctest/doctest.h>
 
@@ -252,7 +252,7 @@ TEST_CASE("the mean of frames from a still camera is the picture, except for the
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     Queue queue = requested_queue();
     RenderSettings settings = settings_of_frames();
-    settings.width = 96, settings.height = 64; // in smaller ones what is clamped counts for more
+    settings.width = 96, settings.height = 64; // in smaller ones clamping has more effect
     Session session(queue, prepared, mixed_scene_camera(), settings);
     session.render(256);
     const double expected = mean_of(session.picture());

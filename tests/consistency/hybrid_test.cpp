@@ -1,5 +1,5 @@
-// hybrid finds what the camera sees by rasterisation, and its picture is path's to the byte: whatever the filter, the
-// view, the scene's places and surfaces, threads and batches. With --device cuda the GPU joins in.
+// The integrator hybrid rasterises the first hit, and its picture equals path's to the byte for all filters, views,
+// transforms, surfaces, threads and batches. With --device cuda the GPU renders, too.
 
 #include <doctest/doctest.h>
 
@@ -41,7 +41,7 @@ void check_as_path(const Scene& scene, const Camera& camera, RenderSettings sett
     CHECK(hybrid.rays.total() == path.rays.total());
 }
 
-/// Triangles of all sizes round the origin: slivers, points, some with the same place, some through the origin.
+/// Triangles of all sizes around the origin: slivers, points, duplicates, some through the origin.
 Mesh soup(uint32_t count, uint32_t seed) {
     test::Random random(seed);
     Mesh mesh;
@@ -179,7 +179,7 @@ TEST_CASE("hybrid has the path tracer's picture of triangles close to the camera
         Scene scene = soup_scene(60, 100 + static_cast<uint32_t>(i));
         const Mesh& mesh = scene.meshes.front();
         const Vec3 corner = mesh.positions[random.below(60)], other = mesh.positions[random.below(60)];
-        Vec3 eye = corner; // a vertex; a place on an edge; hardly off a triangle; in the plane of one
+        Vec3 eye = corner; // at a vertex; on an edge; just off a triangle; in a triangle's plane
         if (i % 4 == 1) eye = 0.5f * (corner + other);
         if (i % 4 == 2) eye = corner + Vec3{1e-6f, -1e-6f, 2e-6f};
         if (i % 4 == 3) eye = mesh.positions[0] + 2.0f * (mesh.positions[0] - mesh.positions[1]);
@@ -203,7 +203,7 @@ TEST_CASE("hybrid has the path tracer's picture of rotated, mirrored, squeezed a
                             make_scale({i % 3 == 0 ? -0.5f : 0.5f, i % 5 == 0 ? 0.002f : 0.7f, 0.4f})));
         instance.is_hidden = i == 4;
         scene.instances.push_back(instance);
-        if (i % 6 == 0) scene.instances.push_back(instance); // the very same place: the lower number is met
+        if (i % 6 == 0) scene.instances.push_back(instance); // identical triangles: the lower number is hit
     }
     check_as_path(scene, camera_at({0, 0, 9}, {0, 0, 0}, 1), hybrid_settings());
     check_as_path(scene, camera_at({0, 0, 0}, {1, 1, 0}, 1.5f), hybrid_settings());
@@ -260,7 +260,7 @@ TEST_CASE("memory of hybrid equals its prediction, and other cameras and sizes g
     Session session(queue, prepared, test::mixed_scene_camera(), settings);
     session.render(settings.samples);
     const std::size_t predicted = predicted_bytes(prepared, settings, queue.is_cuda());
-    const std::size_t sorting = queue.is_cuda() ? predicted / 10 : 0; // CUB says what it takes on the device
+    const std::size_t sorting = queue.is_cuda() ? predicted / 10 : 0; // on the device CUB determines its memory
     CHECK(queue.allocated_bytes() + sorting >= predicted);
     CHECK(queue.allocated_bytes() <= predicted + 4096 + sorting); // the filter's table, the scene's view
     Camera camera = test::mixed_scene_camera();

@@ -137,11 +137,11 @@ TEST_CASE("records are made once per picture and again for another picture") {
         session.set_settings(settings);
         check_made(false);
         check_picture(settings, test::camera_with_lens());
-        session.meter(ToneMap::Aces); // looks at other pictures in between
+        session.meter(ToneMap::Aces); // renders other pictures in between
         check_made(false);
         RenderSettings aside_settings = settings;
         aside_settings.width = 9;
-        session.render_separately(test::mixed_scene_camera(), aside_settings); // has records of its own
+        session.render_separately(test::mixed_scene_camera(), aside_settings); // has its own records
         check_made(false);
         aside_settings.path.max_depth = 0;
         session.render_separately(test::camera_with_lens(), aside_settings);
@@ -280,7 +280,7 @@ TEST_CASE("an overture can be stopped by a sink or a time limit, and leaves no t
             CHECK(session.history().samples == 0);
             CHECK(session.stats().invalid_samples == 0);
         }
-        if (!queue.is_cuda()) { // which asks within a part
+        if (!queue.is_cuda()) { // which checks within a part
             CHECK(session.render(2, test::StopAfter(0)) == 0);
             CHECK(session.render(2, test::StopAfter(5)) == 0);
         }

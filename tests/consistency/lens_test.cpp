@@ -1,5 +1,5 @@
-// Pictures through lenses that do not draw straight lines: one picture whatever renders it, features where OpenCV
-// projects them, and black where the lens shows nothing. With --device cuda a GPU renders too.
+// Pictures through distorting lenses are the same by every schedule and device, have features where OpenCV
+// projects them, and are black outside of the lens's image. With --device cuda a GPU renders too.
 
 #include <cmath>
 

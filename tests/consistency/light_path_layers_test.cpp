@@ -1,6 +1,6 @@
 // Layers of light-path expressions under the one-picture law: the same bytes for any number of threads, any split of
-// the samples, either body of the path tracer, any batch; the picture beside them is the one without them, and layers
-// that share out all paths add up to it. With --device cuda the GPU joins in.
+// the samples, either schedule of the path tracer, any batch. Layers do not change the picture, and layers that
+// partition all paths add up to it. With --device cuda the GPU renders, too.
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,5 @@
-// A scene that lies somewhere else in its file has the same picture: the world is moved before anything is rounded.
+// A scene that is translated in its file has the same picture, because the world is moved before anything is
+// rounded.
 
 #include <doctest/doctest.h>
 
@@ -23,7 +24,7 @@ struct Staged {
     Scene scene = make_mixed_scene();
     Camera camera = mixed_scene_camera();
 
-    /// Everything that has a place, `by` metres further on.
+    /// Translates everything that has a position by `by` metres.
     explicit Staged(Vec3 by) {
         const auto move = [by](Vec3& p) { p = snapped(p) + by; };
         for (Instance& instance : scene.instances) move(instance.world_from_local.translation);

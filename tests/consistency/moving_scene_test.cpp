@@ -1,5 +1,5 @@
-// A moving scene's picture at a time is the same whatever times came before it, on every device: stepped to is prepared
-// afresh, by hash. Also for what hides, mirrors, is squeezed past the limit of baking, and for lights.
+// The hash of a moving scene's picture at a time does not depend on earlier times, on every device. This includes
+// hidden, mirrored and squeezed instances (beyond the limit of baking), and lights.
 
 #include "session/moving_scene.h"
 
@@ -97,7 +97,7 @@ Hash128 hash_at(const Scene& rest, double time_s, const Camera& camera, const Re
     return test::render_hash(session.result());
 }
 
-/// Steps through `times` and compares each picture with one made afresh.
+/// Steps through `times` and compares each picture with one of a new session.
 void check_steps(const Scene& rest, const std::vector<double>& times, const Camera& camera,
                  const RenderSettings& settings) {
     Messages messages;

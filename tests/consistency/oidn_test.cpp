@@ -1,6 +1,6 @@
-// Open Image Denoise, which is loaded while the program runs: a stand-in for it (stand_in/oidn.cpp) tells how it is
-// called and fails where it is told to; libraries that do not fit are refused; film, layers and frames are what they
-// are without it. The library itself is in robust/cli_oidn_test.py.
+// Open Image Denoise, loaded at run time: a stand-in for it (stand_in/oidn.cpp) records its calls and fails on
+// request. Incompatible libraries are refused. Film, layers and frames do not depend on it. The library itself is in
+// robust/cli_oidn_test.py.
 
 #include <dlfcn.h>
 

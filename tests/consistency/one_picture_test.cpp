@@ -1,5 +1,6 @@
 // The one-picture law, held on the CPU: the picture and all its layers are the same bytes for any number of threads,
-// any split of the samples, either body of the path tracer, any batch, any tree. With --device cuda the GPU joins in.
+// any split of the samples, either schedule of the path tracer, any batch, any tree. With --device cuda the GPU
+// renders, too.
 
 #include <doctest/doctest.h>
 

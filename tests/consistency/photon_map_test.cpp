@@ -1,6 +1,6 @@
 // The one-picture law for photon mapping: the same bytes for any number of threads, any split of the passes, all stages
-// over all subpaths or a few subpaths a thread, any number of them in flight, and by whatever structure photons are
-// found. With --device cuda the GPU joins in.
+// over all subpaths or a few subpaths a thread, any number of them in flight, and any structure for photons. With
+// --device cuda the GPU renders, too.
 
 #include <doctest/doctest.h>
 

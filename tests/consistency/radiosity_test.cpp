@@ -1,5 +1,5 @@
 // The one-picture law for pictures of a radiosity solution: the same bytes for any number of threads, any split of the
-// samples, all stages over all samples or a few a thread. With --device cuda the GPU joins in.
+// samples, all stages over all samples or a few a thread. With --device cuda the GPU renders, too.
 
 #include <doctest/doctest.h>
 

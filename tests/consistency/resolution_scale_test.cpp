@@ -1,5 +1,5 @@
-// Frames whose light is found at a lower resolution: the same bytes on both devices and by both bodies of the path
-// tracer; edges and textures stay those of the picture's own resolution.
+// Frames with light of a lower resolution have the same bytes on both devices and with both schedules of the path
+// tracer; edges and textures keep the picture's resolution.
 
 #include <doctest/doctest.h>
 
@@ -39,7 +39,7 @@ Hash128 hash_of_traversal(Session& session, uint32_t frames, const Reconstructio
     return picture_hash(session.frame().picture());
 }
 
-/// Mean of the frames of a still camera, after some: what is left of noise tells nothing of edges.
+/// Mean of the frames of a still camera, after the first ones, with too little noise to disturb edges.
 Image mean_of_still(Session& session, const ReconstructionSettings& settings) {
     constexpr uint32_t kFirst = 16, kCount = 48;
     session.cut();

@@ -1,5 +1,4 @@
-// The parts of a session stand alone: each renders without a Session, and gives the bytes that a Session gives. Two
-// sessions run side by side.
+// Parts of a session work without a Session and give its bytes. Two sessions run concurrently.
 
 #include <algorithm>
 #include <atomic>

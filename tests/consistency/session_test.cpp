@@ -1,5 +1,5 @@
-// A session's picture is a function of what it shows now, not of what it has shown: after any changes, and however the
-// samples came about, it has the bytes that a fresh render on the CPU gives. With --device cuda the session is a GPU's.
+// A session's picture depends only on the current state: after any changes, and with any split of the samples, it has
+// the bytes of a new render on the CPU. With --device cuda the session uses a GPU.
 
 #include <array>
 
@@ -34,7 +34,7 @@ Camera camera_from(Vec3 eye) {
 
 constexpr uint32_t kAllAovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
 
-/// Two scenes, and what else a session can be asked for.
+/// Two scenes, and other settings of a session.
 struct World {
     std::array<Scene, 2> scenes = {test::make_mixed_scene(), test::make_furnace_scene(0.5f)};
     std::array<PreparedScene, 2> prepared;
@@ -132,7 +132,7 @@ TEST_CASE("samples added later give the bytes of samples rendered at once") {
             settings.pass_samples = pass;
             Session session(queue, world.prepared[0], world.cameras[0], settings);
             CHECK(session.render(first) == first);
-            session.result(); // looking does not change what is seen
+            session.result(); // displaying does not change the picture
             CHECK(session.render(8 - first) == 8 - first);
             CHECK(hash_of(session.result()) == at_once);
         }

@@ -1,6 +1,6 @@
-// An open shutter. Pictures of what moves meanwhile are the same bytes for any number of threads, any body, any tracer;
-// each ray meets what it meets in a scene that stands still as it is at the ray's time; what does not move stays as it
-// is, to the bit. With --device cuda the GPU joins in.
+// An open shutter. Pictures with motion have the same bytes for any number of threads, any schedule, any tracer. Each
+// ray has the hit that it has in the still scene of its time. Static parts do not change, to the bit. With --device
+// cuda the GPU renders, too.
 
 #include "session/shutter.h"
 
@@ -186,7 +186,7 @@ TEST_CASE("each sample of a blurred picture equals the still scene at the sample
     Messages messages;
     const Scene rest = make_rushing_scene();
     MovingScene moving(rest, 0.3, {}, messages, kHalfASecond);
-    RenderSettings settings = blurred_settings(IntegratorKind::Cast); // which draws nothing but place, lens and time
+    RenderSettings settings = blurred_settings(IntegratorKind::Cast); // which draws only pixel position, lens and time
     settings.width = 16, settings.height = 12, settings.samples = 1;
     settings.aovs = kAovDepth;
     Camera camera = test::mixed_scene_camera();
@@ -216,7 +216,7 @@ TEST_CASE("each sample of a blurred picture equals the still scene at the sample
         wrong += same_depth && same_light ? 0 : 1;
     }
     CHECK(moved > 20);
-    CHECK(wrong <= 3); // at edges of things and of their shadows
+    CHECK(wrong <= 3); // at edges of objects and shadows
 }
 
 TEST_CASE("an open shutter changes nothing if nothing moves") {

@@ -1,4 +1,4 @@
-// Light that changes by itself, and how soon frames show it.
+// Changing light, and the delay until frames show it.
 
 #include <doctest/doctest.h>
 
@@ -136,7 +136,7 @@ TEST_CASE("with two emitters, frames follow the loss of the dimming one and part
         const double followed_share = (followed.left - late.left) / (expected.left - late.left);
         CHECK(followed_share > (dims ? 0.7 : 0.4));
         CHECK(followed_share < 1.1);
-        // Where the other lamp shines as before.
+        // Pixels lit by the unchanged lamp.
         CHECK(followed.right > (dims ? 0.85 * expected.right : late.right));
         CHECK(followed.right < 1.05 * expected.right);
     }
@@ -227,7 +227,7 @@ TEST_CASE("frames of a dimming emitter have the same bytes on every device") {
 
 TEST_CASE("a mean follows light by its ratio and never rises by more than the difference") {
     CHECK(followed(4, 2, 1) == 2);    // half as bright
-    CHECK(followed(1, 2, 3) == 1.5f); // darker than what is about it
+    CHECK(followed(1, 2, 3) == 1.5f); // darker than its surroundings
     CHECK(followed(4, 2, 3) == 5);    // brighter
     CHECK(followed(0.5f, 0, 2) == 2.5f);
     CHECK(followed(0.5f, 0, 0) == 0.5f);

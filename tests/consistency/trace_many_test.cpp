@@ -1,5 +1,5 @@
-// Many rays at once on the host, in flight or in packets, meet what each meets alone, bit for bit: nasty meshes and
-// rays in any mixture, rays that go together, instances.
+// Many rays at once on the host, in flight or in packets, have the hits of each alone, bit for bit: degenerate
+// meshes and rays in any mixture, coherent rays, instances.
 
 #include <doctest/doctest.h>
 

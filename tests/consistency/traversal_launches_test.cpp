@@ -1,5 +1,6 @@
-// Whoever traverses which ray, the hits are the same: one ray a thread, and in CUDA, with --device cuda, persistent
-// threads with a pool, dynamic fetch, packets of a warp. Counts of live lanes add up to the rays' own visits.
+// The hits do not depend on the distribution of rays to threads: one ray a thread, and in CUDA, with --device cuda,
+// persistent threads with a pool, dynamic fetch, packets of a warp. Counts of live lanes add up to the rays' own
+// visits.
 
 #include <doctest/doctest.h>
 

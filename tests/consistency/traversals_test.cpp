@@ -1,5 +1,5 @@
-// The hit is a function of the scene, not of the traversal: trees of every build setting give, bit for bit, what
-// testing every triangle gives, also where many triangles lie at one t, and for rays along the planes of boxes.
+// The hit is a function of the scene, not of the traversal: trees of every build setting give the hits of brute
+// force, bit for bit, also where many triangles lie at one t, and for rays along the planes of boxes.
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
-// Two queues in one process, each with a scene of its own: what one does never shows in the other's picture. Two GPUs
-// with --device cuda where there are as many (one GPU twice where there is one), else the CPU twice.
+// Two queues in one process, each with its own scene, do not affect each other's picture. With --device cuda these
+// are two GPUs, or one twice; otherwise the CPU twice.
 
 #include <thread>
 
@@ -30,7 +30,7 @@ struct Subject {
     uint32_t width, height;
 };
 
-/// Two scenes of unlike size, so that no buffer of one could stand in for the other's.
+/// Two scenes of different size, so that no buffer of one could serve for the other.
 const Subject& subject(int which) {
     static const Subject subjects[2] = {{test::make_mixed_scene(), 61, 35}, {test::make_furnace_scene(0.5f), 32, 40}};
     return subjects[which];

@@ -1,5 +1,5 @@
-// A scene that is updated gives the picture of one prepared afresh with the same centre, by every structure, and
-// rebuilds no tree that its change does not touch.
+// An updated scene gives the picture of a newly prepared one with the same centre, with every structure, and
+// rebuilds only affected trees.
 
 #include "render/update_scene.h"
 
@@ -181,7 +181,7 @@ TEST_CASE("a change of which instances are baked prepares the scene again with t
     Scene scene = test::make_mixed_scene();
     const PreparedScene before = prepare_scene(scene, {}, messages);
     Scene after = scene;
-    after.instances[1].world_from_local = make_scale({1, 1e-5f, 1}); // too skewed for a space of its own
+    after.instances[1].world_from_local = make_scale({1, 1e-5f, 1}); // too skewed for a local space
     SceneUpdate update;
     update.moved_instances = {1};
     const PreparedScene updated = update_scene(before, after, update, messages);

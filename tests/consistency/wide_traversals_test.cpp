@@ -1,5 +1,5 @@
-// Wide and compressed trees give the hits of testing every triangle, bit for bit: every traversal, with and without
-// redundant traversal avoidance, children in either order, whatever the mesh, and through instances.
+// Wide and compressed trees give the hits of brute force, bit for bit, with every traversal, with and without
+// redundant traversal avoidance, children in either order, for all meshes and through instances.
 
 #include <doctest/doctest.h>
 
@@ -238,7 +238,7 @@ TEST_CASE("in the compressed traversal RTA at pops saves more nodes than RTA at 
 
 namespace {
 
-/// Many small spheres in a large one: whatever is in the way of a ray between them, the large one ends it.
+/// Many small spheres in a large one, so that each ray hits something.
 std::vector<BvhTriangle> things_in_a_room() {
     std::vector<BvhTriangle> triangles = triangles_of(make_sphere(1, {}, 10));
     Random random(6);

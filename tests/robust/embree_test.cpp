@@ -1,7 +1,7 @@
 // Hits agree with Embree's robust single-ray traversal: another primitive only where both lie at one t or the ray meets
 // an edge, and on one primitive one t; of the rest at most 10 in 10^7. One t: within 1e-5 of it, or within 4 units in
-// the last place of the coordinates that it is computed from (Sponza has walls that are there twice, and rays that
-// start just before them).
+// the last place of the coordinates that it is computed from (Sponza has duplicate walls, and rays that start just
+// before them).
 
 #include <doctest/doctest.h>
 

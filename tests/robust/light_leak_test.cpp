@@ -1,6 +1,6 @@
 // A closed shape under a sky of radiance 1000 with the camera inside is black: a ray that starts on the wrong side of a
-// wall is a lit pixel. Boxes small and large, near the file's origin and far from it, turned and not, alone and beside
-// something far away, as vertices, as a node and as instances; and shapes with sharp edges and with uneven triangles.
+// wall is a lit pixel. Boxes small and large, near the file's origin and far from it, rotated and not, alone and with a
+// distant object, as vertices, as a node and as instances; and shapes with sharp edges and with uneven triangles.
 
 #include <doctest/doctest.h>
 
@@ -17,11 +17,11 @@ using namespace pertev::test;
 
 namespace {
 
-/// The way in which the file places the shape.
+/// How the file positions the shape.
 enum class Placing {
     Vertices,  // its vertices are where it is
     Node,      // moved there by the node's transform: baked
-    Instances, // a second instance beside it: each has its own space
+    Instances, // with a second instance, so that each has its own space
     FarMesh,   // far vertices with a second instance: far from the origin in its own space too
 };
 constexpr Placing kPlacings[] = {Placing::Vertices, Placing::Node, Placing::Instances, Placing::FarMesh};

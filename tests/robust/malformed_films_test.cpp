@@ -1,4 +1,4 @@
-// Film files with changed bytes, cut off, or with a header that a stranger wrote.
+// Film files with changed bytes, truncated, or with a malicious header.
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
-// No file, however damaged, may crash a reader, make it hang, or make it ask for memory that the file's size does not
-// justify: it ends in an Error that names the file, or in a picture. The public collection of malformed files, and
-// damage of our own: every kind of picture cut at each length and with bits turned.
+// No damaged file may crash a reader, make it hang, or make it allocate memory that the file's size does not justify:
+// the result is an Error that names the file, or a picture. Inputs are the public collection of malformed files, and
+// every kind of picture truncated at each length and with flipped bits.
 
 #include <doctest/doctest.h>
 

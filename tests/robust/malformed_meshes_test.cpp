@@ -14,8 +14,8 @@ using namespace pertev;
 
 namespace {
 
-/// Reads to an Error that names the file (or one beside it that it refers to) or to a scene, within five processor
-/// seconds.
+/// Checks that reading gives an Error that names the file (or one that it refers to) or a scene, within five
+/// processor seconds.
 void check_survives(const fs::path& path) {
     CAPTURE(path.string());
     const double start = test::cpu_seconds();

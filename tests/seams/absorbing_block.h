@@ -1,7 +1,7 @@
 #pragma once
 
-// AbsorbingBlock is a medium that fills a block of the space between surfaces, a test's own: it absorbs, each colour by
-// itself, and if `kScatters` it scatters alike into all directions.
+// AbsorbingBlock is a test's medium in a block of the space between surfaces. It absorbs each colour separately, and
+// scatters isotropically if `kScatters`.
 //
 // Source: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., section 14.2.
 
@@ -85,7 +85,7 @@ private:
     }
 };
 
-/// The features of code that knows of the block. No code of the product has them.
+/// Features of code that supports the block; the product has none.
 inline constexpr Features kAbsorbing = 1u << 30, kScattering = 1u << 29;
 
 template <Features kBlock>

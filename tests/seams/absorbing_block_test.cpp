@@ -1,5 +1,5 @@
-// A block that absorbs and scatters is rendered through the path tracer's functions, by test code alone: rays of the
-// camera and shadow rays lose what the law of Beer and Lambert says, and light that it scatters once is its integral.
+// A block that absorbs and scatters is rendered through the path tracer's functions, by test code alone: camera and
+// shadow rays are attenuated by the Beer-Lambert law, and single scattering equals its integral.
 
 #include "tests/seams/absorbing_block.h"
 

@@ -1,5 +1,5 @@
-// A film that holds a window of a picture has the bytes that the whole picture has there, its layers, its ids and its
-// layers of light paths too, by every integrator and either of its schedules.
+// A film of a window of a picture has the bytes of the whole picture there, with layers, ids and light-path layers,
+// in every integrator and schedule.
 
 #include <algorithm>
 #include <cstring>

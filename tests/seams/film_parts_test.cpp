@@ -1,5 +1,5 @@
-// A film is rendered in two parts, samples [0, a) on one device and [a, n) on another. Each part is kept as bytes and
-// made again; added up, every target has the bytes of the film that was rendered whole.
+// A film is rendered in two parts, samples [0, a) on one device and [a, n) on another. Each part is serialised and
+// restored; the sum has the bytes of the film of one run in every target.
 
 #include <doctest/doctest.h>
 

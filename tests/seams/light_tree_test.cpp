@@ -1,6 +1,6 @@
-// A light tree of two nodes is rendered through the path tracer's functions, by test code alone: it finds the picture
-// that the table of lights finds, each draw has the density that a hit of the light is weighted by, and both devices
-// give the same bytes.
+// A light tree of two nodes is rendered through the path tracer's functions, by test code alone: it gives the picture
+// of the light table, each draw has the density used to weight a hit of the light, and both devices give the same
+// bytes.
 
 #include "tests/seams/two_node_tree.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// A prepared scene on the device of a queue, and a camera that sees it: what an integrator's begin() is given.
+// A prepared scene on a queue's device, with a camera: the arguments of an integrator's begin().
 
 #include "device_scene/scene_on_device.h"
 #include "render/filter_table.h"

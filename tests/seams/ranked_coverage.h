@@ -1,7 +1,7 @@
 #pragma once
 
-// A target of a film that counts for each pixel how many samples show which instance, as mattes need it: the ids of
-// most coverage come first when it is resolved. The film knows nothing of it.
+// A film target that counts samples per instance in each pixel, for mattes: when resolved, the ids of most coverage
+// come first. The film does not depend on it.
 //
 // If a pixel has more ids than room, it keeps the least. That is a function of the set of samples, so that parts of
 // a film add up exactly: who is among the least of all is so in each part, and was never left out there.

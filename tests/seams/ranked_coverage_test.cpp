@@ -1,5 +1,5 @@
-// A film is given a target that ranks instances by coverage, by test code alone: samples of a rendering go to it, parts
-// of a film add up to the whole byte for byte, over serialisation and devices, and what it says is right.
+// A film gets a target that ranks instances by coverage, by test code alone. Samples of a render are added to it, parts
+// of a film add up to the whole, byte for byte, across serialisation and devices, and its results are correct.
 
 #include "tests/seams/ranked_coverage.h"
 

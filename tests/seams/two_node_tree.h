@@ -1,7 +1,7 @@
 #pragma once
 
-// TwoNodeTree is a light tree of a root and two leaves, the two emissive instances of a scene: a way to choose lights
-// that looks at the context. The environment has a share of its own, and there are no punctual lights.
+// TwoNodeTree is a light tree of a root and two leaves, the two emissive instances of a scene: it selects lights by
+// the shading context. The environment has its own share, and there are no punctual lights.
 //
 // Source: Conty Estevez, Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", HPG 2018, section 5:
 // a node counts by its power and the cosine towards it, over the squared distance.

@@ -1,6 +1,6 @@
-// A library with the functions of nvJPEG that the viewer calls, by their documented signatures, for tests: it writes
-// down what it was asked for, in the words of a file that begins and ends as a JPEG does, counts what was made and not
-// destroyed, and fails where it is told to. Pictures lie in the host's memory.
+// A library for tests with the functions of nvJPEG that the viewer calls, by their documented signatures. It records
+// its calls in a file with the markers of a JPEG, counts objects that were not destroyed, and fails on request.
+// Pictures lie in the host's memory.
 
 #include <cstdio>
 #include <cstring>

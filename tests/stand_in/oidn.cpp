@@ -1,6 +1,6 @@
 // A library with the functions of Open Image Denoise that the renderer calls, by their documented signatures, for
-// tests: of a pixel it makes a half of the colour, a quarter of the albedo and an eighth of the normal. It counts what
-// was made and not released, keeps the values that were set, and fails where it is told to. Images lie in the host's
+// tests: a pixel becomes half of its colour plus a quarter of its albedo and an eighth of its normal. It counts
+// objects that were not released, keeps the values that were set, and fails on request. Images lie in the host's
 // memory.
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// Light tracing and bidirectional path tracing against path tracing, where both find the same light; and what one of
-// them finds and another does not.
+// Compares light tracing and bidirectional path tracing with path tracing where both find the same light, and checks
+// light that only one of them finds.
 
 #include <doctest/doctest.h>
 
@@ -65,7 +65,7 @@ struct Case {
     Scene scene;
     Camera camera = room_camera();
     bool light_finds_all = true;
-    bool light_is_even = true; // else few particles bring much, and Student's t does not hold
+    bool light_is_even = true; // otherwise few particles contribute much, and Student's t does not hold
     PixelFilter filter = PixelFilter::BlackmanHarris;
     float filter_radius = 0; // the filter's default
     uint32_t pixels = 12;    // across
@@ -121,7 +121,7 @@ std::vector<Case> cases() {
     all.push_back(environment);
 
     Case lens = {.name = "depth of field", .scene = allocate(test::white(0.8f))};
-    // The camera looks through its back; light does not.
+    // The camera sees through its back; light is blocked.
     test::add(lens.scene, test::sheet({-0.3f, 0.5f, 0.8f}, {-0.3f, 0, 0}, {0, 0.3f, 0}), test::white(0.7f));
     lens.scene.materials.back().double_sided = false;
     lens.camera.aperture_radius = 0.2f;
@@ -181,7 +181,7 @@ TEST_CASE(
 TEST_CASE("distributed ray tracing gives its light paths the brightness that path tracing gives them") {
     Queue queue = test::requested_queue();
     for (const Case& c : cases()) {
-        if (c.name == "within glass") continue; // but for the sky none of its light is followed
+        if (c.name == "within glass") continue; // only light of the sky is traced
         CAPTURE(c.name);
         Messages messages;
         const PreparedScene prepared = prepare_scene(c.scene, {}, messages);

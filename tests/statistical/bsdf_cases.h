@@ -1,6 +1,6 @@
 #pragma once
 
-// The BSDFs that the statistical tests hold to their promises, and what those tests share.
+// The BSDFs of the statistical tests, and shared functions of these.
 
 #include <cmath>
 #include <string>

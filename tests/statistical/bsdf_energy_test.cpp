@@ -1,5 +1,5 @@
-// White furnace, energy bound and reciprocity. Under uniform light of radiance 1 from everywhere the mean weight of
-// sample() is what the surface sends back: 1 where nothing is absorbed, and never more.
+// White furnace, energy bound and reciprocity. Under uniform light of radiance 1 the mean weight of sample() is the
+// scattered radiance: 1 without absorption, and never more.
 
 #include <doctest/doctest.h>
 
@@ -190,7 +190,7 @@ TEST_CASE("diffuse and glossy light add up to all light, and each equals its lob
             CHECK(diffuse.f.g + glossy.f.g == doctest::Approx(all.f.g).epsilon(1e-5));
         }
     }
-    // A black base leaves the reflection, and no reflection is left where only the base is asked for.
+    // A black base leaves only the reflection, and evaluating only the base excludes the reflection.
     const Vec3 wo = direction_at(0.7f), wi = direction_at(0.6f, 0.55f);
     const Bsdf plastic = make_metallic_roughness({0.2f, 0.5f, 0.8f}, 0, 0.3f, 1.5f);
     const Bsdf black = make_metallic_roughness(grey(0), 0, 0.3f, 1.5f);

@@ -1,5 +1,5 @@
-// Light of lamps that shine from their fronts, from both faces, or not this way at all; found by next-event estimation,
-// by BSDF sampling and by both, with and without a clamp, held to the closed form.
+// Emitters that emit from their fronts, from both faces, or away from the receiver: next-event estimation, BSDF
+// sampling and both together, with and without clamping, agree with the closed form.
 
 #include <algorithm>
 #include <cmath>

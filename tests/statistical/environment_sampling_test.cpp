@@ -1,5 +1,5 @@
-// Environment sampling for multiple importance sampling: samples follow the stated density, the same density is found
-// for a direction that came from elsewhere, and value / density averages to the true integral.
+// Environment sampling for multiple importance sampling: samples follow the stated density, pdf() returns the same
+// density for a given direction, and value / density averages to the true integral.
 
 #include <doctest/doctest.h>
 
@@ -132,7 +132,7 @@ TEST_CASE("environment: density and radiance of a direction equal those of its s
             CHECK(as_double(length(sample.wi)) == doctest::Approx(1).epsilon(1e-6));
             const float pdf = environment_pdf(view, sample.wi);
             const Rgb radiance = environment_radiance(view, sample.wi);
-            // Rounding moves a place, and a density beside a dark corner changes fast.
+            // Rounding moves a position, and the density near a dark corner changes fast.
             if (std::abs(pdf - sample.pdf) > 1e-3f * sample.pdf) ++differing;
             // Near the sun of 100, rounding by 2^-12 texels, that of a float at row 2048, contributes 0.025.
             if (std::abs(radiance.r - sample.radiance.r) > 0.02f * sample.radiance.r + 0.025f) ++far_off;

@@ -1,5 +1,5 @@
-// Parts of frames that bend the mean, each alone: by how much (docs/real_time.md, "What bends the mean"). A still
-// camera's frames are compared with frames of the same samples without the part, so that most of the noise is in both.
+// The bias of each biased part of real-time frames alone (docs/real_time.md, "Bias"). A still camera's frames are
+// compared with frames of the same samples without the part, so that most of the noise is in both.
 
 #include <doctest/doctest.h>
 
@@ -140,7 +140,7 @@ void bound_bias(const ReconstructionSettings& without, const std::vector<Part>& 
             CHECK(std::abs(bias.whole) <= part.most.whole);
             CHECK(bias.of_block <= part.most.of_block);
             CHECK(bias.of_pixels <= part.most.of_pixels);
-            CHECK(bias.with_emitters <= part.most.whole); // their edges may lose light, but bring none
+            CHECK(bias.with_emitters <= part.most.whole); // their edges may lose light, but gain none
         }
     }
 }

@@ -1,6 +1,6 @@
-// A closed room whose walls glow with radiance 1 and reflect the share a of what meets them looks the same everywhere:
-// after at most n scatterings 1 + a + ... + a^n. In it all of light transport has a closed form: the depth limit,
-// Russian roulette, next-event estimation to many triangles, BSDF sampling and their weights.
+// In a closed room whose walls emit radiance 1 and have reflectance a, radiance is the same everywhere: 1 + a + ... +
+// a^n after at most n scatterings. In it all of light transport has a closed form: the depth limit, Russian roulette,
+// next-event estimation to many triangles, BSDF sampling and their weights.
 
 #include <cmath>
 

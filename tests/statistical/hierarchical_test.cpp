@@ -1,4 +1,4 @@
-// Hierarchical radiosity: its links against rows of form factors, light that is known, and how few they are.
+// Hierarchical radiosity: its links are compared with rows of form factors and with closed forms, and are few.
 
 #include <doctest/doctest.h>
 
@@ -60,7 +60,7 @@ void divide_triangles(Mesh& mesh, int times) {
     }
 }
 
-/// Root of the mean squared difference of what is shown all over the scene, over the mean.
+/// Root mean squared difference of the displayed light over the scene, relative to the mean.
 double difference_of(const RadiositySolution& a, const RadiositySolution& b) {
     double squares = 0, sum = 0, count = 0;
     test::Random random(3);

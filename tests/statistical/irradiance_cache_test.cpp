@@ -1,5 +1,5 @@
-// Irradiance caching against path tracing: the error that records leave falls with the number of records and of their
-// rays, at least as fast as the literature says, to a stated bound, and no light is missing or counted twice.
+// Irradiance caching against path tracing: the error falls with the number of records and of their rays at least as
+// fast as published, to a stated bound, and no light is lost or counted twice.
 
 #include <doctest/doctest.h>
 

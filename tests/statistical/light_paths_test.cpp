@@ -1,5 +1,5 @@
-// Layers of light-path expressions against what the same light is found by without them: other depths, the parts of the
-// path tracer, scenes with some of their lights or lobes alone. With --device cuda on the GPU.
+// Compares light-path layers with other ways to separate the same light: other depths, the parts of the path tracer,
+// scenes with only some lights or lobes. With --device cuda it runs on the GPU.
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // The light set against closed forms: irradiance at a point from every kind of light, alone and together, and the
-// densities that multiple importance sampling asks for. Nothing occludes here; that is the integrator's.
+// densities for multiple importance sampling. Occlusion is not tested here; it belongs to the integrator.
 
 #include <doctest/doctest.h>
 

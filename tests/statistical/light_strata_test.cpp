@@ -1,6 +1,6 @@
-// Samples of a pixel are spread evenly over lights, over the places on them and over the sky, and that must show: the
-// variance of a light's estimate with the low-discrepancy sampler against that with independent samples. A table that
-// scatters the order of the numbers leaves a factor of 2 or 3 where an ordered one has ten and more.
+// Samples of a pixel are stratified over lights, points on them and the sky. The test compares the variance of a
+// light's estimate with the low-discrepancy sampler and with independent samples. A table that scatters the order of
+// the numbers leaves a factor of 2 or 3 where an ordered one has ten and more.
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
-// Photon mapping against path tracing: what passes leave of blur and noise falls at least as fast as the literature
-// says, to a stated bound, and no light is missing or counted twice.
+// Photon mapping against path tracing: blur and noise fall with the passes at least as fast as published, to a
+// stated bound, and no light is lost or counted twice.
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,4 @@
-// Radiosity against light that is known, and against path tracing: its error falls with the size of its patches, to a
-// stated bound.
+// Radiosity against closed forms and path tracing: its error falls with the patch size, to a stated bound.
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
-// ReSTIR is without bias: the mean over many frames that know nothing of each other is the path tracer's. With history
-// each frame leans on those before, and its mean stays near.
+// ReSTIR is unbiased: the mean over many frames without history is the path tracer's. With history the mean stays
+// close.
 
 #include <doctest/doctest.h>
 
@@ -55,7 +55,7 @@ RestirCase glossy_case() {
     return box;
 }
 
-/// The Cornell box by a point, a spot and a directional light in place of its lamp.
+/// The Cornell box with a point, a spot and a directional light instead of its lamp.
 RestirCase lights_case() {
     RestirCase box = builtin_case("cornell-box");
     box.name = "lights";

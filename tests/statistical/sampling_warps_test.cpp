@@ -1,5 +1,5 @@
-// Each warp of math/sampling.h sends uniform points to the density that its pdf function states: chi-square over 10^6
-// samples. The tester itself must refuse a density that is slightly wrong.
+// Each warp of math/sampling.h maps uniform points to the density of its pdf function: chi-square over 10^6 samples.
+// The tester itself must refuse a density that is slightly wrong.
 
 #include <cmath>
 #include <optional>

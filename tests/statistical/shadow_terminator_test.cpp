@@ -1,5 +1,5 @@
-// Interpolated normals: surfaces scatter from their triangles what their BSDF says, no light is lost or cut off at the
-// triangles' horizons, none leaks through, and every way of finding light agrees (shading/shadow_terminator.h).
+// Interpolated normals: surfaces scatter as their BSDF says, no light is lost or cut off at the triangles' horizons,
+// none leaks through, and all sampling techniques agree (shading/shadow_terminator.h).
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// A surface whose interpolated normal leans away from its triangle's, and the test of how it is sampled.
+// A surface whose interpolated normal differs from its triangle's, and the test of its sampling.
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-// Meshes for tests of builders on a device, and trees held against each other.
+// Meshes for tests of builders on a device, and comparisons of trees.
 
 #include <cstring>
 #include <vector>

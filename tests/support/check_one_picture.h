@@ -1,6 +1,6 @@
 #pragma once
 
-// The one-picture law for one integrator: what a picture may not depend on. Of the mixed scene, or another one.
+// Checks the one-picture law for one integrator, with the mixed scene or another one.
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Holds a traversal to hits that are known, bit for bit, closest and any.
+// Compares a traversal's closest and any hits with known ones, bit for bit.
 
 #include <doctest/doctest.h>
 

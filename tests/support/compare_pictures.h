@@ -1,7 +1,7 @@
 #pragma once
 
-// Whether two ways to render give one picture in the mean: each is rendered several times with independent samples, and
-// every channel of every pixel, and of the whole picture, is compared by Welch's test.
+// Compares the means of two ways to render: each is rendered several times with independent samples, and every channel
+// of every pixel, and of the whole picture, is compared by Welch's test.
 
 #include <functional>
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
 
-// Processor time, for tests that hold a bound on work: wall time would depend on what else the machine does.
+// Processor time, for tests that hold a bound on work: wall time would depend on the machine's load.
 
 #include <ctime>
 

@@ -1,8 +1,7 @@
 #pragma once
 
-// Stages that run the renderer's host-device functions one by one and leave the bits of what they give. A test runs
-// each on the CPU and in CUDA and compares: what the statistical tests find of a function on the CPU then holds on the
-// GPU.
+// Stages that run the renderer's host-device functions one by one and store the bits of their results. A test compares
+// these on the CPU and in CUDA, so that results of the statistical tests on the CPU hold on the GPU.
 
 #include "base/parallel_for.h"
 #include "math/sampler.h"
@@ -136,7 +135,7 @@ struct EvaluateMath {
     }
 };
 
-/// Tells how many threads of the CPU run the stage; 0 on a GPU.
+/// Returns the number of CPU threads that run the stage; 0 on a GPU.
 struct CountThreads {
     int* count;
 

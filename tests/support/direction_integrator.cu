@@ -3,7 +3,7 @@
 #include "device/launch_body.h"
 #include "math/sampler.h"
 
-// The path tracer is not among what was included: with a second class of this name in sight, the last line would be
+// The path tracer is not among what was included: with a second visible class of this name, the last line would be
 // ambiguous and not compile.
 struct PathIntegrator;
 using namespace pertev;

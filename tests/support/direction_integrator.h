@@ -1,7 +1,7 @@
 #pragma once
 
-// A second integrator, made of what render/ gives to all of them: the light of a sample is its camera ray's direction,
-// as a colour in [0, 1]. It knows nothing of the path tracer, and shows that the seam asks for nothing of it.
+// A second integrator that uses only render/: the light of a sample is its camera ray's direction, as a colour in [0,
+// 1]. It is independent of the path tracer, and shows that the interface is, too.
 
 #include "integrators/integrator.h"
 

@@ -1,4 +1,4 @@
-// Describes lanes that wait for others in vain.
+// Describes deadlocks of lanes.
 
 #include <cstdio>
 #include <string_view>
@@ -49,7 +49,7 @@ std::string describe_calls(const EmulatedLane& lane) {
     return text;
 }
 
-/// Describes what the lanes do that have not reached a meeting.
+/// Describes the state of lanes that have not reached a meeting.
 std::string describe_missing(const EmulatedWarp& warp, const Meeting& meeting) {
     uint32_t other_mask = 0, elsewhere = 0;
     for_each_lane(meeting.mask & warp.live, [&](unsigned k) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// The mean of random draws, and how well it is known.
+// The mean of random draws, with its standard error.
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-// Flat lamps over a floor, and how much of a place's view they take: form factors in closed form.
+// Flat lamps over a floor, and their form factors from points of it in closed form.
 
 #include <cmath>
 #include <cstdint>

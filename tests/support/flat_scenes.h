@@ -1,6 +1,6 @@
 #pragma once
 
-// Scenes of a few flat sheets, for pictures that are known in closed form, and a camera without perspective over them.
+// Scenes of a few flat sheets with closed-form pictures, and an orthographic camera above them.
 
 #include "scene/scene.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Names what does not come to its end: a kernel that hangs leaves no other trace, since the test is killed from
+// Names work that does not finish: a hanging kernel leaves no other trace, because the test is killed from
 // outside.
 
 #include <chrono>

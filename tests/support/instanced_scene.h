@@ -1,7 +1,7 @@
 #pragma once
 
-// A scene of instances that is hard on traversals: turned, mirrored, squeezed, far from their own origins, some of them
-// at the very same place, with or without a baked mesh among them; and what rays meet in it, by testing every triangle.
+// A scene of instances that is hard on traversals: rotated, mirrored, squeezed, far from their local origins, some of
+// them identical, with or without a baked mesh among them; and its hits by brute force.
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Rows of form factors of small scenes, and rooms whose radiosity is known.
+// Rows of form factors of small scenes, and rooms with radiosity in closed form.
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// A room that is open to the camera, with a ball in it, for integrators that are held to path tracing.
+// A room that is open to the camera, with a ball in it, for integrators that are compared with path tracing.
 
 #include "tests/support/flat_scenes.h"
 #include "tests/support/meshes.h"

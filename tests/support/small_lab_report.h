@@ -1,6 +1,6 @@
 #pragma once
 
-// A report of the laboratory that is small enough to know by heart, and what tests look for in its texts.
+// A small report of the laboratory with known contents, and the texts that tests expect.
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 #pragma once
 
-// A tree as spatial splits make it (Stich, Friedrich, Dietrich, HPG 2009), in its plainest form: each node cuts its
-// cell in the middle, and a triangle whose box reaches into both halves lies in both. Boxes are the cells, so hits on a
+// A tree with spatial splits (Stich, Friedrich, Dietrich, HPG 2009) in the simplest form: each node cuts its cell in
+// the middle, and a triangle whose box reaches into both halves lies in both. Boxes are the cells, so hits on a
 // triangle lie outside of all but one of the leaves that hold it.
 
 #include <vector>

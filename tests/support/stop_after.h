@@ -1,6 +1,6 @@
 #pragma once
 
-// A sink that stops after it was asked a number of times, by whichever threads.
+// A sink that stops after a number of checks, by any threads.
 
 #include <atomic>
 #include <climits>

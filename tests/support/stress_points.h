@@ -1,7 +1,7 @@
 #pragma once
 
-// Sets of points that break searches: ties, duplicates, planes, lattices, all in one place, none. And the plainest
-// search there is.
+// Sets of points that break searches: ties, duplicates, planes, lattices, all at one position, none. It also has a
+// brute-force search.
 
 #include <algorithm>
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace pertev::test {
 struct StressPoints {
     const char* name;
     std::vector<Vec3> points;
-    float extent = 1; // places to ask about are within 2 of these of 0
+    float extent = 1; // query points are within 2 of these of 0
 };
 
 inline std::vector<StressPoints> stress_points(uint32_t count) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// The Error that something throws, so that its code and its parts can be looked at.
+// Catches the Error that a call throws, for tests of its code and parts.
 
 #include <doctest/doctest.h>
 
@@ -28,7 +28,7 @@ inline bool is_about(const std::optional<Error>& error, ErrorCode code, std::str
     return error && error->code() == code && error->setting() == setting && (value.empty() || error->value() == value);
 }
 
-/// Returns whether the error has this code and is about this place of a file.
+/// Returns whether the error has this code and names this position in a file.
 inline bool is_at(const std::optional<Error>& error, ErrorCode code, const FileLocation& place) {
     return error && error->code() == code && error->location() == place;
 }

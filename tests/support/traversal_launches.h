@@ -1,7 +1,7 @@
 #pragma once
 
-// The laboratory's traversals of binary and compressed trees as launches, by every way of handing out rays, for tests
-// that run them on either device.
+// The laboratory's traversals of binary and compressed trees as launches, with every ray distribution, for tests that
+// run them on either device.
 
 #include <cstdint>
 #include <vector>

@@ -1,4 +1,4 @@
-// Where a camera looks and focuses when nothing says so.
+// Default targets and focus distances of a camera.
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// The exposure that makes a picture of unknown scale one to look at.
+// Automatic exposure of a picture of unknown scale.
 
 #include <doctest/doctest.h>
 

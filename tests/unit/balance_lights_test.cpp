@@ -1,4 +1,4 @@
-// Near and far lights share the draws by what arrives on the surfaces, not by power.
+// Near and far lights share samples by their irradiance on surfaces, not by power.
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// How many layers lie on a BSDF. What they reflect is in tests/statistical/bsdf_sampling_test.cpp.
+// Numbers of layers on a BSDF. Their reflection is tested in tests/statistical/bsdf_sampling_test.cpp.
 
 #include "shading/bsdf.h"
 

@@ -1,5 +1,5 @@
-// Whatever the triangles and the settings, the builder gives a sound tree: every box holds what is beneath it, each
-// triangle is reached once, the stack suffices, and neither threads nor chance enter.
+// For all triangles and settings the builder gives a valid tree: every box contains its subtree, each triangle is
+// reached once, the stack suffices, and the result is deterministic.
 
 #include "accel/builders/build_bvh.h"
 

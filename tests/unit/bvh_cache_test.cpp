@@ -1,5 +1,4 @@
-// The on-disk cache gives back the very tree that was stored, or nothing: whatever happens to the file, no byte of it
-// is believed unchecked.
+// The disk cache returns exactly the stored tree, or nothing. Every byte of the file is checked.
 
 #include "accel/builders/bvh_cache.h"
 

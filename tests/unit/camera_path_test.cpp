@@ -1,4 +1,4 @@
-// A camera that is led from key to key.
+// Interpolation of a camera path's keys.
 
 #include "scene/camera_path.h"
 

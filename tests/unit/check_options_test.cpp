@@ -1,5 +1,5 @@
-// Options that cannot be are refused before anything is read, whoever sets them, and the error names the setting and
-// its value.
+// Invalid options are refused before anything is read, for every front end, and the error names the setting and its
+// value.
 
 #include "session/pictures/check_options.h"
 

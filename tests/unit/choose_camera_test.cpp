@@ -1,4 +1,4 @@
-// A camera from what is said of it, and a scene with what it lacks, without a command line.
+// A camera from its settings, and a scene's defaults, without a command line.
 
 #include <doctest/doctest.h>
 

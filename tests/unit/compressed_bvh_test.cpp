@@ -1,5 +1,5 @@
 // Compressed trees: decoded boxes hold the exact ones at every size of coordinate, slots follow octants, nothing is
-// lost, and the checker notices a tree that is broken.
+// lost, and the checker detects broken trees.
 
 #include "accel/bvh/compressed_bvh.h"
 

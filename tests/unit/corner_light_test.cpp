@@ -1,4 +1,4 @@
-// Which corners of patches share their light: those at one place, however small and far out it lies, and no others.
+// Corners of patches share their light if they have the same position, at any scale and distance, and only then.
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// Tangents at the corners of a mesh: against those of the library mikktspace, and on what it cannot be asked.
+// Tangents at the corners of a mesh, compared with the library mikktspace, and for input that it does not support.
 
 #include "scene/tangents/corner_tangents.h"
 

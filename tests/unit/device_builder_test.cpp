@@ -1,5 +1,5 @@
-// The builder that runs on the device: sound trees of every mesh, as good as those of its kind should be, and the same
-// bytes by any number of threads. That warps make these bytes too: emulated_warps_hploc_test.cpp.
+// The device's builder gives valid trees of every mesh, with published SAH cost, and the same bytes for any number of
+// threads. emulated_warps_hploc_test.cpp tests that warps give these bytes, too.
 
 #include "tracer/hploc/device_builder.h"
 

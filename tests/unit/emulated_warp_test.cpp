@@ -1,5 +1,5 @@
-// The emulated warp that tests of kernels stand on: meetings give what CUDA says they give, __activemask() anything it
-// may give, and wrong kernels are called wrong, each with the fault that it has.
+// The emulated warp of kernel tests: meetings behave as CUDA specifies, __activemask() returns any permitted mask, and
+// faulty kernels are reported with their fault.
 
 #include "tests/support/emulated_warp.h"
 

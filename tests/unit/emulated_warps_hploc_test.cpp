@@ -1,4 +1,4 @@
-// Warps make of triangles the tree that single threads make: the kernels of tracer/hploc on emulated warps.
+// The kernels of tracer/hploc on emulated warps build the tree that single threads build.
 
 #include <doctest/doctest.h>
 

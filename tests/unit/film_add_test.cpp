@@ -1,4 +1,4 @@
-// Films put together, and what is made of a film on its device. With --device cuda the GPU joins in.
+// Sums of films, and results computed on a film's device. With --device cuda the GPU renders, too.
 
 #include <stdexcept>
 
@@ -103,7 +103,7 @@ TEST_CASE("a film is restored from the bytes of its targets on any device") {
 
 namespace {
 
-/// Counts of a test alone: a kind of target that the film knows nothing of.
+/// A test's counts, a kind of target that the film does not know.
 class CountTarget : public ElementTarget<uint64_t, AddCounts, 0> {
 public:
     using ElementTarget::ElementTarget;

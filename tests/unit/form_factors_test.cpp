@@ -1,4 +1,4 @@
-// Form factors by rays and by hemicubes against closed forms, and what all of them have to keep.
+// Form factors by rays and by hemicubes against closed forms, and their invariants.
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
-// The figures of points found in a tree: a kd-tree and an octree find the same nearest points, and what is drawn of the
-// search is what it did.
+// The figures of points found in a tree: a kd-tree and an octree find the same nearest points, and the drawing shows
+// the search.
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// Backs of surfaces that are not double sided: the camera looks through them, light does not.
+// Backs of surfaces that are not double sided: the camera sees through them, other light is blocked.
 
 #include <algorithm>
 #include <cmath>

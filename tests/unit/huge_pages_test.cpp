@@ -1,4 +1,4 @@
-// Large pages change no byte and no address.
+// Huge pages change no byte and no address.
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
-// FLIP is held against a second implementation of the paper: in double, with the two-dimensional filters as they are
-// printed instead of products of one-dimensional ones.
+// FLIP is compared with a second implementation of the paper: in double, with the two-dimensional filters as they
+// are printed instead of products of one-dimensional ones.
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// A sink ends the reading of a file and the build of a tree at whichever of its checks it says so.
+// A sink can end the reading of a file and the build of a tree at any of its checks.
 
 #include <doctest/doctest.h>
 

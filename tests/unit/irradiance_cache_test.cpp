@@ -1,4 +1,4 @@
-// Irradiance caching's parts against closed forms, and its records and pictures against what is known.
+// Parts, records and pictures of irradiance caching against closed forms.
 
 #include <doctest/doctest.h>
 
@@ -114,7 +114,7 @@ TEST_CASE("a record's radius is the harmonic mean of distances, within its limit
     CHECK(limited.radius == doctest::Approx(1.2));
     for (Vec3& move : sum.by_move) move = {0, 4, 0};
     limited = sum;
-    limit_radius(limited, 0.1f, 9); // light 1 changes by itself over 1/4 m
+    limit_radius(limited, 0.1f, 9); // light 1 changes by its own amount over 1/4 m
     CHECK(limited.radius == doctest::Approx(0.25));
     check_near(limited.by_move[1], {0, 4, 0}, 1e-6f);
     limited = sum;

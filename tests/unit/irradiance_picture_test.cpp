@@ -1,4 +1,4 @@
-// Pictures of irradiance against closed forms and against the light meter. With --device cuda the GPU joins in.
+// Pictures of irradiance against closed forms and against the light meter. With --device cuda the GPU renders, too.
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
-// kd-trees: what the builders promise of depth, memory and cost, that threads do not matter, and that the checker
-// notices a tree that is broken.
+// kd-trees: the builders' bounds of depth, memory and cost hold, threads do not matter, and the checker detects
+// broken trees.
 
 #include <doctest/doctest.h>
 

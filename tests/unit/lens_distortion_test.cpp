@@ -1,5 +1,5 @@
-// Lenses that do not draw straight lines, against numbers that OpenCV 5.0 gave (cv2.projectPoints,
-// cv2.undistortPoints, cv2.fisheye.projectPoints) for the same points, with y and z turned to its axes.
+// Distorting lenses, compared with results of OpenCV 5.0 (cv2.projectPoints, cv2.undistortPoints,
+// cv2.fisheye.projectPoints) for the same points, with y and z turned to its axes.
 
 #include <cmath>
 #include <numbers>

@@ -1,5 +1,5 @@
-// Light-path expressions: what is not one is told with its character, and the automaton takes the words that the
-// standard library's regular expressions take.
+// Light-path expressions: errors name the character, and the automaton accepts the words of the standard
+// library's regular expressions.
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// Names in light-path expressions: what of a scene they mean, and what is said where they mean nothing.
+// Names in light-path expressions: their objects in a scene, and errors for unknown names.
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
-// A light meter against closed forms: lamps with and without extent, an environment, a room that glows. Its error is
-// held to the truth, too.
+// A light meter against closed forms: lamps with and without extent, an environment, a glowing room. Its standard
+// error is tested, too.
 
 #include <cmath>
 

@@ -1,5 +1,4 @@
-// Traversals as stages over rays: the hits are those of the traversal called by itself, the counts are its own, times
-// are taken.
+// Traversals as stages over rays: hits and counts equal those of direct calls, and times are measured.
 
 #include "lab/measure_rays.h"
 

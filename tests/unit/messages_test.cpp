@@ -1,4 +1,4 @@
-// Messages: what was left out and what was made up, in one list each.
+// Messages: skipped parts and defaults are listed separately.
 
 #include <doctest/doctest.h>
 

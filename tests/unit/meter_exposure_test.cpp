@@ -1,4 +1,4 @@
-// The light meter: what moves the exposure of a picture that is yet to be rendered, and what does not.
+// The exposure metered before a render, and its invariance to other settings.
 
 #include <doctest/doctest.h>
 

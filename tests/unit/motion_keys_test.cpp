@@ -1,5 +1,5 @@
-// Rigid motions while a shutter is open: keys that are fitted to places, where they lead between them, and the boxes of
-// all places taken.
+// Rigid motions while a shutter is open: keys fitted to transforms, interpolation between them, and boxes of the whole
+// motion.
 
 #include "math/motion_keys.h"
 
@@ -93,7 +93,7 @@ TEST_CASE("still objects have no keys, and motions that are not rigid are left o
                b = transform_point(box.world_from_local, box.box.hi);
     CHECK(distance(end.move(a), end.move(b)) == doctest::Approx(distance(a, b)).epsilon(1e-5)); // not grown
 
-    // Where there is no place at a time, it is as at the time before.
+    // A time without a transform repeats the previous one.
     const FittedMotions gone = fit_motions({&box, 1}, [&](double time) {
         return std::vector{time > 0.4 ? std::nullopt : std::optional(box.world_from_local)};
     });
@@ -112,7 +112,7 @@ TEST_CASE("motion between equal poses at evenly spaced times is found") {
     CHECK(segments_of([&](double time) {
               return compose(box.world_from_local, turned_about({0, 0, 1}, 50.26548246f * static_cast<float>(time)));
           }) > kFewestMotionSegments);
-    // A hop that is over before anybody looks, but for the one who knows.
+    // A hop that is visible only at its own keys.
     const auto hop = [&](double time) {
         const double height = std::max(0.0, 1 - 100 * std::fabs(time - 0.29));
         return compose(make_translation({0, static_cast<float>(height), 0}), box.world_from_local);

@@ -1,4 +1,4 @@
-// Motion vectors of pixels: of the camera, of instances, of the sky; none of still pictures.
+// Motion vectors of pixels: of the camera, of instances, of the sky; still pictures have none.
 
 #include "denoise/motion_vectors.h"
 
@@ -47,7 +47,7 @@ TEST_CASE("an object that moves right and up has that motion in pixels") {
     const Camera camera = camera_of_ball();
     const RenderSettings settings = motion_settings();
     Scene scene = test::make_furnace_scene(0.5f);
-    scene.instances.push_back(scene.instances[0]); // so that the mesh has a tree of its own
+    scene.instances.push_back(scene.instances[0]); // so that the mesh has its own tree
     scene.instances[1].world_from_local = make_translation({0, 0, -40});
     PreparedScene prepared = prepare_scene(scene, {}, messages);
     Session session(queue, prepared, camera, settings);

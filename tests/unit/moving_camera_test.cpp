@@ -1,4 +1,4 @@
-// The camera of a moving scene: what is left open is decided at rest, and a scene's own camera goes with its node.
+// The camera of a moving scene: missing values are completed at rest, and a scene's camera follows its node.
 
 #include "session/opening/moving_camera.h"
 

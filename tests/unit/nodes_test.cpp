@@ -1,4 +1,4 @@
-// The scene's nodes: their order, what may move, and what is baked for it.
+// The scene's nodes: their order, possible motion, and baking.
 
 #include <algorithm>
 

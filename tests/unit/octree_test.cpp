@@ -1,5 +1,5 @@
-// Octrees: what the builder promises of depth and memory, that threads do not matter, and that the checker notices a
-// tree that is broken.
+// Octrees: the builder's bounds of depth and memory hold, threads do not matter, and the checker detects broken
+// trees.
 
 #include <doctest/doctest.h>
 

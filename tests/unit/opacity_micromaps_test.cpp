@@ -1,4 +1,4 @@
-// Opacity micromaps say what textures say, of every place, or that they do not know; and they know of most.
+// Opacity micromaps agree with textures at every point or are undecided, and are decided for most.
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-// Packed blocks of a film's target: what is packed is unpacked, it is as short as the noise in it lets it be, and
-// nothing else is taken for a block.
+// Packed blocks of a film's target: packing is lossless, sizes are near the entropy of the noise, and invalid
+// blocks are refused.
 
 #include "session/film_file/packed_block.h"
 

@@ -1,4 +1,4 @@
-// Parent links lead from every node to the root and tell along which axis the children are
+// Parent links lead from every node to the root and hold the axis along which the children are
 // farthest apart, and which of them is lower.
 
 #include "accel/bvh/parent_links.h"

@@ -1,4 +1,4 @@
-// Decimal text as a number, at both ends of what one holds.
+// Decimal text as a number, at both ends of the range.
 
 #include <cmath>
 #include <limits>

@@ -1,5 +1,5 @@
-// Vertices of paths: whoever listens is told of each in its order and changes nothing of the light; and each mask of
-// features finds the least code that holds it.
+// Path vertices: listeners receive each in order and do not change the light, and each feature mask selects the
+// smallest variant that contains it.
 
 #include <string>
 #include <vector>

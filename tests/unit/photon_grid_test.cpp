@@ -1,4 +1,4 @@
-// Photons in the order of their numbers, the hash grid over them, and which of them stay where they crowd.
+// Photons in the order of their numbers, the hash grid over them, and the selection in dense cells.
 
 #include <doctest/doctest.h>
 

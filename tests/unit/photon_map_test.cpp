@@ -1,4 +1,4 @@
-// Photon mapping's parts against what they claim, and pictures of it in closed form.
+// Parts of photon mapping against their contracts, and pictures against closed forms.
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// Which instances are baked into world space, and how many copies that may make.
+// The choice of instances to bake into world space, and the limit of copies.
 
 #include <doctest/doctest.h>
 

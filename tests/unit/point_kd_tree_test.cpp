@@ -1,4 +1,4 @@
-// The kd-tree over points: k nearest and radius search give exactly what looking at every point gives, ties included.
+// The kd-tree over points: k nearest and radius search give exactly the results of brute force, ties included.
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
-// The octree over spheres and points: the spheres that cover a place, k nearest and radius search give exactly what
-// looking at every one gives.
+// The octree over spheres and points: the spheres that cover a point, k nearest and radius search give exactly the
+// results of brute force.
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// A scene at a time: nodes, skins, morph targets, cameras, lights; and what is told to have changed.
+// A scene at a time: nodes, skins, morph targets, cameras, lights; and the reported changes.
 
 #include "scene/pose/posed_scene.h"
 
@@ -306,7 +306,7 @@ TEST_CASE("morph targets are added by their weights at a time, and normals stay 
     const Mesh& now = posed.scene().meshes[0];
     CHECK(now.positions == std::vector<Vec3>{{0, 0, 8}, {1, 8, 0}, {0, 1, 0}});
     CHECK(close(now.normals[0], {0.6f, 0, 0.8f}));
-    CHECK(now.normals[1] == Vec3{0, 0, 1}); // (0, 0, 0) says nothing: as before
+    CHECK(now.normals[1] == Vec3{0, 0, 1}); // (0, 0, 0) is ignored
     CHECK(now.normals[2] == Vec3{0, 0, 1});
     CHECK(posed.set_time(0.5).deformed_meshes == Numbers{0});
     CHECK(now.positions[1] == Vec3{1, 4, 0});

@@ -86,7 +86,7 @@ TEST_CASE("an exception on a stream leaves the queue with a single stream") {
     CHECK_THROWS_AS(fail_on_a_stream(), std::runtime_error);
     CHECK(queue.streams() == 1);
     CHECK(queue.stream_index() == 0);
-    CHECK(bytes.download()[99] == 3); // after what the stream was given
+    CHECK(bytes.download()[99] == 3); // after the stream's earlier work
 }
 
 TEST_CASE("a number is read back as it was when requested, whatever follows") {

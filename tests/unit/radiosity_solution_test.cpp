@@ -1,4 +1,4 @@
-// Patches, what is shown of them, and the file that a solution is kept in.
+// Patches, their display, and the file of a solution.
 
 #include <doctest/doctest.h>
 

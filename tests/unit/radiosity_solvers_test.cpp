@@ -1,4 +1,4 @@
-// The solvers of a radiosity system: all come to the same light, each on the way that it says.
+// The solvers of a radiosity system: all converge to the same light, each by its own method.
 
 #include <doctest/doctest.h>
 

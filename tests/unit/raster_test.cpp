@@ -1,4 +1,4 @@
-// The rasteriser: which samples a triangle has, how far away they are, and how they are lit.
+// The rasteriser: coverage, depth and shading of samples.
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
-// Boxes tested against a segment: what holds a hit is entered at every size and in every direction, however often the
-// segment was shortened and down to the hit itself; what lies behind or beyond is not.
+// Boxes tested against a segment: a box with a hit is entered at every size and in every direction, however often the
+// segment was shortened and down to the hit itself; boxes behind or beyond are not.
 
 #include "trace/intersect/ray_segment.h"
 

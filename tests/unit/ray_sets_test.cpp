@@ -1,5 +1,5 @@
-// The sets of rays that tracers are compared on: each is what its definition says, down to numbers that others have
-// printed, and the same for any number of threads.
+// The sets of rays that tracers are compared on: each follows its definition, agrees with published numbers, and is
+// the same for any number of threads.
 
 #include "lab/ray_sets.h"
 

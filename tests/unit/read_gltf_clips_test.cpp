@@ -1,5 +1,4 @@
-// glTF files with several animations or several scenes: the scene has what plays and what is shown, and nothing of the
-// others.
+// glTF files with several animations or several scenes: the scene contains only the selected ones.
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// Errors in a glTF file are reported with the file, the location and what would be right.
+// Errors in a glTF file are reported with the file, the location and the correct form.
 
 #include <doctest/doctest.h>
 

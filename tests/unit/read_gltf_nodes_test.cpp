@@ -1,4 +1,4 @@
-// Where glTF nodes put things: transforms, instancing, cameras, lights, skins, morph targets, scenes.
+// Effects of glTF nodes: transforms, instancing, cameras, lights, skins, morph targets, scenes.
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
-// Stages of the reconstruction on a few pixels: what they take from which neighbours, by object, normal, plane, light
-// and variance; what a history is held within.
+// Stages of the reconstruction on a few pixels: weights of neighbours by object, normal, plane, light and variance,
+// and the limits of history clamping.
 
 #include <doctest/doctest.h>
 

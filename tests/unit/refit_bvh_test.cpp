@@ -1,4 +1,4 @@
-// A tree that is refitted to moved triangles is sound, and traversals find in it what they find in one built afresh.
+// A refitted tree is valid, and traversals find the hits of a newly built one.
 
 #include "accel/builders/refit_bvh.h"
 

@@ -1,5 +1,4 @@
-// Reyes: what micropolygons cover and how far away they are, that neighbours leave no crack, how they are displaced,
-// lit and hidden.
+// Reyes: coverage and depth of micropolygons, no cracks between neighbours, displacement, shading and hiding.
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// Integrators measured in earnest, small, on the CPU.
+// A small measurement of integrators on the CPU.
 
 #include <algorithm>
 #include <cmath>

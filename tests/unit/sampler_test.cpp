@@ -1,5 +1,5 @@
-// The sequences are what math/sampler.h says, to the bit: stratified over the samples of each pixel, strictly inside
-// (0, 1), and the same numbers on every machine.
+// The sequences follow math/sampler.h to the bit: stratified over the samples of each pixel, strictly inside (0, 1),
+// and the same numbers on every machine.
 
 #include <array>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// A scene's parts in a device's memory, each updated on its own. With --device cuda on the GPU.
+// A scene's parts in a device's memory, each updated separately. With --device cuda it runs on the GPU.
 
 #include <cstdint>
 

@@ -1,4 +1,5 @@
-// Scenes far from the origin of their files: what is read, placed and told keeps the digits that the file has.
+// Scenes far from the origin of their files: positions that are read, transformed and printed keep the file's
+// precision.
 
 #include "scene/scene_origin.h"
 

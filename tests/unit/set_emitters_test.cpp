@@ -1,4 +1,4 @@
-// Lamps set to watts, lumens, candela, lux and nits: what they then send out, against sums over all directions.
+// Lamps set to watts, lumens, candela, lux and nits: their emission against sums over all directions.
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// The tree as a list with skip links: sound for every mesh, and the check of it sees each kind of fault.
+// The tree as a list with skip links: valid for every mesh, and its checker detects each kind of fault.
 
 #include "accel/bvh/skip_bvh.h"
 

@@ -1,5 +1,4 @@
-// Runs are compared with stored figures where device, scene and job are the figure's, and not where one of them is
-// another.
+// Runs are compared with stored figures if device, scene and job are the figure's, and only then.
 
 #include "lab/stored_figures.h"
 

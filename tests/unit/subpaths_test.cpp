@@ -1,4 +1,4 @@
-// Light tracing's parts against what they invert, and pictures of light and bidirectional in closed form.
+// Parts of light tracing against their inverses, and pictures of light and bidirectional against closed forms.
 
 #include <doctest/doctest.h>
 

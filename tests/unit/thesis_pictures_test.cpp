@@ -1,5 +1,4 @@
-// Pictures of the thesis's chapters 2 to 4: the scenes are what their figures say, and each picture shows what its
-// caption says.
+// Pictures of the thesis's chapters 2 to 4: scenes and pictures agree with their captions.
 
 #include <doctest/doctest.h>
 

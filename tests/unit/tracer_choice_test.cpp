@@ -1,4 +1,4 @@
-// Which trees stand behind pictures.
+// The trees that pictures use.
 
 #include "tracer/tracer_choice.h"
 

@@ -1,4 +1,4 @@
-// Sums in a fixed tree: how little they round, and which tree it is.
+// Sums in a fixed tree: their rounding error, and the tree.
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// Random numbers that are drawn for eight paths at once are those that each path draws by itself, to the bit.
+// Random numbers drawn for eight paths at once equal those of each path alone, to the bit.
 
 #include <cstdint>
 #include <vector>

@@ -1,5 +1,5 @@
-// How the viewer packs JPEG (jpeg_encoder.h): by a stand-in for nvJPEG (tests/stand_in/nvjpeg.cpp), which tells how it
-// was called and fails where it is told to; and by libjpeg-turbo then.
+// The viewer's JPEG encoders (jpeg_encoder.h): a stand-in for nvJPEG (tests/stand_in/nvjpeg.cpp), which records its
+// calls and fails on request; then libjpeg-turbo.
 
 #include <dlfcn.h>
 

@@ -1,4 +1,4 @@
-// Who may ask the viewer for what (apps/viewer/request_checks.h), and that no text breaks the checks.
+// Checks of requests to the viewer (apps/viewer/request_checks.h), and that no text breaks the checks.
 
 #include <cstdlib>
 

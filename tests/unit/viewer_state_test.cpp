@@ -1,4 +1,4 @@
-// Settings that a page may change (view_state.h), what it is told (panel_text.h), colours of layers (layer_colors.h),
+// Settings that a page may change (view_state.h), messages to it (panel_text.h), colours of layers (layer_colors.h),
 // and the bytes of pictures (frame_header.h, packer.h).
 
 #include <filesystem>

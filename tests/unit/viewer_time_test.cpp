@@ -1,4 +1,4 @@
-// Time in the viewer: how it runs and stands (scene_clock.h), and who leads the camera meanwhile (view_camera.h).
+// Time in the viewer: its clock (scene_clock.h), and what moves the camera meanwhile (view_camera.h).
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// When surfaces that glow light a scene too little to see it by, and what is made up then.
+// Detection of emitters that are too weak to see by, and the default light for these.
 
 #include <doctest/doctest.h>
 

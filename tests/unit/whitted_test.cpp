@@ -1,4 +1,4 @@
-// Whitted's tree of rays against a count by hand, and what it brings against sums in closed form.
+// Whitted's ray trees against a count by hand, and their light against closed forms.
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
-// Wide trees: the collapse has the least cost there is, loses no triangle and gives sound trees; and the checker
-// notices one that is not.
+// Wide trees: the collapse has minimal cost, loses no triangle and gives valid trees; and the checker detects
+// broken ones.
 
 #include "accel/bvh/wide_bvh.h"
 

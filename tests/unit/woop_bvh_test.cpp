@@ -1,5 +1,5 @@
-// Woop's unit triangles: a transform takes the corners where it should, rays away from edges meet what the exact test
-// meets, and what cannot be transformed is never hit.
+// Woop's unit triangles: transforms map corners to the unit triangle, rays away from edges have the hits of the exact
+// test, and degenerate triangles are never hit.
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// Frames of a sequence, as a program renders them: what each file records of itself, and how a sequence goes on.
+// Frames of a sequence rendered by a program: the record in each file, and continued sequences.
 
 #include "session/pictures/write_sequence.h"
 
