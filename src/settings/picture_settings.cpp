@@ -69,8 +69,8 @@ std::vector<Setting> picture_settings() {
             On{kShown | kMeasure | kBenchNoise | kBenchCameras | kBenchPictures}, Mark::Common,
             Panel{"Samples a pixel", PanelGroup::Light}, Changes::Picture),
         row("integrator", "Quality", "NAME", integrator_field, "The light transport algorithm (docs/transport.md).",
-            More{"path finds all light; direct and indirect are its parts straight from emitters and sky and by way of "
-                 "other surfaces. hybrid is path with rasterised primary visibility. cast, whitted and distributed are "
+            More{"path finds all light; direct and indirect render its direct and its indirect part. hybrid is path "
+                 "with rasterised primary visibility. cast, whitted and distributed are "
                  "ray trees without most indirect light. raster and reyes (micropolygons) trace no rays. light traces "
                  "particles from the lights and misses what mirrors and glass show. bidirectional finds all light by "
                  "paths from both ends. photon_map converges to all light and finds caustics early. irradiance_cache "

@@ -55,8 +55,8 @@ std::vector<Setting> scene_settings() {
             Excludes{"aperture=0"}, Recorded::AsUsed, Panel{"Focus distance, m", PanelGroup::Camera, 0.1},
             Changes::Camera),
         row("camera_pose", "Camera", "NUMBERS", FIELD(scene.camera.pose),
-            "The camera's place and axes in the world: the matrix world from camera, 16 or 12 numbers row by row.",
-            Counts{{12, 16}}, On{kLooking | kLab}, Excludes{"eye target up camera_path"}, Changes::Camera),
+            "The camera-to-world matrix: 16 or 12 numbers row by row.", Counts{{12, 16}}, On{kLooking | kLab},
+            Excludes{"eye target up camera_path"}, Changes::Camera),
         row("convention", "Camera", "NAME", FIELD(scene.camera.convention),
             "The axes of camera_pose, and of NeRF's cameras: opengl (y up, looks along -z), opencv (y down, looks "
             "along z) or blender (opengl's, in a world with z up).",
@@ -79,7 +79,7 @@ std::vector<Setting> scene_settings() {
             On{kDistorted}, Excludes{"projection=orthographic denoise=svgf real_time"}, Recorded::AsUsed,
             Changes::Camera),
         row("camera_from", "Camera", "FILE", FIELD(scene.camera.camera_from),
-            "An EXR of Pertev's whose camera is used, to the bit, but for what other settings say.",
+            "An EXR of Pertev's whose camera is used, to the bit, unless other settings override it.",
             On{kLooking | kLab}, Excludes{"camera camera_path"}, Mark::Name, Changes::Camera),
 
         row("environment", "Environment", "FILE|R,G,B", FIELD(scene.environment),

@@ -17,7 +17,7 @@ using namespace pertev::test;
 
 namespace {
 
-/// How the file positions the shape.
+/// Ways in which a file positions the shape.
 enum class Placing {
     Vertices,  // its vertices are where it is
     Node,      // moved there by the node's transform: baked
