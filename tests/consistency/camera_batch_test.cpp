@@ -156,7 +156,7 @@ TEST_CASE("integrators without batches render the pictures one after the other, 
     }
 }
 
-TEST_CASE("a depth at a pixel's centre unprojects onto the plane that is there") {
+TEST_CASE("a depth at a pixel's centre unprojects onto the visible plane") {
     Scene scene;
     test::add(scene, test::floor_at(0, 8), test::white());
     Messages messages;
@@ -261,7 +261,7 @@ TEST_CASE("a batch takes the memory that was predicted, and a limit makes its ch
           (queue.is_cuda() ? queue.free_bytes() + queue.allocated_bytes() : of_cpu));
 }
 
-TEST_CASE("a batch that stops goes on with the chunk that it stopped in, and a caller may keep arrays") {
+TEST_CASE("a stopped batch resumes with the chunk that it stopped in, and a caller may keep arrays") {
     const Scene scene = test::make_mixed_scene();
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

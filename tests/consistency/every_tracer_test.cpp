@@ -112,7 +112,7 @@ TEST_CASE("every tracer gives one picture: opaque surfaces in one tree") {
     check(make_opaque(make_single_tree(test::make_mixed_scene())), false);
 }
 
-TEST_CASE("each kind of ray may have a tracer of its own") {
+TEST_CASE("each kind of ray may have its own tracer") {
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

@@ -234,7 +234,7 @@ TEST_CASE("an overture's progress rises monotonically from 0 to 1") {
     }
 }
 
-TEST_CASE("invalid values in records are reported with sample 0, whatever was rendered before") {
+TEST_CASE("invalid values in records are reported with sample 0, independent of earlier renders") {
     Queue queue = test::requested_queue();
     Scene scene = test::make_mixed_scene();
     test::add(scene, test::sheet({0, 3, 0}, {1, 0, 0}, {0, 0, 1}),

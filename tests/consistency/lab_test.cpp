@@ -130,7 +130,7 @@ TEST_CASE("Woop's tests traverse instances and differ from exact tests on few ra
     }
 }
 
-TEST_CASE("an interrupted laboratory keeps what it has measured") {
+TEST_CASE("an interrupted laboratory keeps its measurements") {
     Queue queue = Queue::make_cpu();
     const Scene scene = scene_of({"torus", triangles_of(make_torus(20, 10), 0), {}});
     LabSettings settings = all_combinations(false, false);

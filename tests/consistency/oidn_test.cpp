@@ -159,7 +159,7 @@ TEST_CASE("a call that fails is an error of its kind, and nothing leaks") {
     }
 }
 
-TEST_CASE("Open Image Denoise is given means of guides, and film and layers are what they are without it") {
+TEST_CASE("Open Image Denoise gets means of guides and does not change film and layers") {
     StandIn stand_in;
     if (!stand_in.is_there()) return;
     Messages messages;

@@ -145,7 +145,7 @@ TEST_CASE("the share of rays through hidden backs depends on scene and view, not
     CHECK(render(scene, looking({0, 0, -1}, {0, 0, 0}, 2)).hidden_back_share == 0);
 }
 
-TEST_CASE("a picture's sink gets a notice of hidden backs, and an error tells why a picture has no sample") {
+TEST_CASE("a picture's sink gets a notice of hidden backs, and an error states why a picture has no sample") {
     struct StoppingSink final : Messages {
         bool stops = false;
         bool should_stop() override { return stops; }

@@ -9,7 +9,7 @@
 
 using namespace pertev;
 
-TEST_CASE("memory moved into large pages keeps its bytes, whatever its size") {
+TEST_CASE("memory moved into huge pages keeps its bytes at any size") {
     for (const std::size_t count : {std::size_t(0), std::size_t(1), std::size_t(1) << 18, std::size_t(3) << 20}) {
         CAPTURE(count);
         std::vector<uint32_t> values(count);

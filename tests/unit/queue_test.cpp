@@ -89,7 +89,7 @@ TEST_CASE("an exception on a stream leaves the queue with a single stream") {
     CHECK(bytes.download()[99] == 3); // after the stream's earlier work
 }
 
-TEST_CASE("a number is read back as it was when requested, whatever follows") {
+TEST_CASE("a number is read back as it was when requested, independent of later work") {
     Queue queue = test::requested_queue();
     Buffer<uint32_t> number(queue, 1, "number");
     Readback<uint32_t> readback(queue);

@@ -138,7 +138,7 @@ TEST_CASE("wrong, refused and missing variants are named with the reason") {
     CHECK(measurement_of(thesis).table("frames").rows.size() == (2 * 7 - 3) * 3);
 }
 
-TEST_CASE("an interrupted chapter is marked and lists what it lacks") {
+TEST_CASE("an interrupted chapter is marked and lists its missing parts") {
     ThesisReport thesis = full_thesis("CPU");
     thesis.scenes.pop_back();
     LabReport& report = thesis.scenes[0];
