@@ -27,7 +27,7 @@ RenderSettings distributed_settings(uint32_t side, uint32_t samples) {
     return settings;
 }
 
-/// A flat lamp of `emitter`, facing down, over a white floor; its radiosity where it is looked at from just above.
+/// A flat lamp of `emitter`, facing down, over a white floor, and the floor's radiosity seen from just above.
 double floor_radiance(const Mesh& emitter, Vec3 at) {
     Scene scene;
     test::add(scene, test::floor_at(0, 50), test::white(1));
@@ -69,7 +69,7 @@ Scene make_metal_scene() {
     return scene;
 }
 
-/// A diffuse or a plastic sphere alone: nothing of what it scatters comes back. Point, spot and sun, and a sky.
+/// A diffuse or a plastic sphere alone: none of its scattered light returns. Point, spot and sun, and a sky.
 Scene make_convex_scene(bool is_glossy) {
     Scene scene = test::make_furnace_scene(0.7f);
     const Scene mixed = test::make_mixed_scene();
@@ -136,7 +136,7 @@ TEST_CASE("a lens is sharp at its focus distance and blurs other points over the
     camera.fov_y = 2 * 0.24497866f; // the view is half as high as it is far away
     camera.aperture_radius = kAperture;
     camera.focus_distance = kFocus;
-    // A lens of this focal length with its film where what is in focus has its image.
+    // A lens of this focal length, with the film at the image of the plane in focus.
     constexpr double kFocalLength = 0.5;
     const auto image_of = [](double object) { return 1 / (1 / kFocalLength - 1 / object); };
     const double film = image_of(static_cast<double>(kFocus));

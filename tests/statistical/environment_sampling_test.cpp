@@ -149,8 +149,8 @@ TEST_CASE("environment: samples follow the density, even within texels") {
     const EnvironmentData data = build(sky);
     const EnvironmentView view = view_of(data);
     const uint32_t samples = static_cast<uint32_t>(effort(1'000'000, 10'000'000));
-    // Each texel is cut into 4 x 4 cells of equal angles, so that no cell crosses the edge of a patch. What is expected
-    // of a cell is the density's integral by midpoints, whose places follow from the convention's own formulas.
+    // Each texel is cut into 4 x 4 cells of equal angles, so that no cell crosses the edge of a patch. A cell's
+    // expected count is the density's integral by midpoints, whose positions follow from the convention's formulas.
     std::vector<double> observed(width * height * parts * parts), expected(observed.size());
     const double part = 1.0 / (parts * steps);
     for (uint32_t y = 0; y < height * parts * steps; ++y) {

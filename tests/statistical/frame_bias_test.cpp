@@ -196,7 +196,7 @@ TextureImage wavy_normals() {
 }
 
 /// The mixed scene with reflecting layers on diffuse surfaces everywhere, waves on all that has texture coordinates,
-/// looked at from just over its floor. Its spheres have interpolated normals.
+/// seen from just over its floor. Its spheres have interpolated normals.
 BiasScene bent_normals() {
     BiasScene bent = {"bent normals", make_mixed_scene(), {}};
     bent.scene.images.push_back(wavy_normals());

@@ -171,7 +171,7 @@ TEST_CASE("lights: a triangle with one bright texel is sampled, and a black one 
         ref.filter = i % 5 == 0 ? TextureFilter::Nearest : TextureFilter::Linear;
         const Lights lights(scene);
 
-        std::array<bool, 2> is_lit{};             // each triangle, looked at in every part
+        std::array<bool, 2> is_lit{};             // each triangle, seen in every part
         const int steps = i % 2 == 0 ? 100 : 300; // shorter than a texel
         for (int a = 0; a <= steps; ++a) {
             for (int b = 0; a + b <= steps; ++b) {

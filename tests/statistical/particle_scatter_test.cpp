@@ -20,7 +20,7 @@ using namespace pertev::test;
 
 namespace {
 
-/// Radiance over n^2 that arrives along w, and what a camera makes of it that sees the surface along w: any two smooth
+/// Radiance over n^2 that arrives along w, and importance of a camera that sees the surface along w: any two smooth
 /// functions. Both are dark near the triangle's plane, where delta directions are folded back.
 double light_at(const Surface& surface, Vec3 w) {
     const float height = std::fabs(dot(w, surface.geometric_normal));
@@ -45,7 +45,7 @@ Estimate transported(const Surface& surface, bool particles, uint32_t count) {
         const SamplePoint p = random_point(i, particles ? 31 : 32), q = random_point(i, particles ? 33 : 34);
         const Vec3 start = sample_uniform_sphere(q.u);
         const double at_start = particles ? light_at(surface, start) : camera_at(surface, start);
-        if (at_start == 0) continue; // whatever it is scattered to
+        if (at_start == 0) continue; // for any scattered direction
         const BsdfSample s =
             particles ? sample_adjoint(surface, start, p.lobe, p.u) : surface.sample(start, p.lobe, p.u);
         if (!(s.pdf > 0)) continue;

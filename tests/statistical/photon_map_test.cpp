@@ -183,7 +183,7 @@ TEST_CASE("an emitter standing on the floor is no noisier than with path tracing
 
 TEST_CASE("tiny radii and coincident photons do not divide by zero") {
     Queue queue = Queue::make_cpu();
-    Scene scene = test::closed_box(test::white(0.5f)); // where photons are left, so that there is something to look up
+    Scene scene = test::closed_box(test::white(0.5f)); // where photons are stored, so that lookups find some
     scene.lights.push_back(test::point_light({0, 0.5f, 0}, {1, 1, 1}));
     RenderSettings settings;
     settings.integrator = IntegratorKind::PhotonMap;

@@ -28,8 +28,8 @@ Image shown_picture(Queue& queue, const PreparedScene& prepared, const Camera& c
     return render_picture(queue, prepared, camera, settings).picture;
 }
 
-/// The mean difference over the mean, but for pixels that show the lamp: far brighter than all others, and no work of
-/// patches.
+/// The mean difference over the mean, without pixels of the lamp, which are far brighter than all others and
+/// independent of patches.
 double mean_difference(const Image& a, const Image& b) {
     double sum = 0, all = 0;
     for (std::size_t i = 0; i < a.pixels.size(); ++i) {
@@ -167,7 +167,7 @@ TEST_CASE("radiosity converges to path tracing in the Cornell box as patches shr
         settings.subdivisions = subdivisions;
         return mean_difference(shown_picture(queue, prepared, camera, picture, solved(prepared, settings)), reference);
     };
-    // The fewer patches, the more rays of each, so that noise does not hide what they are too large for.
+    // Fewer patches get more rays each, so that noise does not hide the error of their size.
     const double errors[] = {error_by(1.0f / 2, 1024, 0), error_by(1.0f / 4, 512, 0), error_by(1.0f / 8, 256, 0),
                              error_by(1.0f / 16, 128, 0)};
     CAPTURE(errors[0]);

@@ -14,7 +14,7 @@ struct Calibration {
     LensModel lens;
     std::vector<double> distortion;
     double focal_x, focal_y;
-    Vec2 seen[6]; // places of kPoints in the picture
+    Vec2 seen[6]; // positions of kPoints in the picture
 };
 
 inline constexpr Vec3 kPoints[] = {{0.1f, 0.2f, -2},      {0.5f, -0.4f, -1.5f}, {-0.6f, 0.3f, -1.2f},

@@ -45,7 +45,7 @@ std::optional<std::string> find_pieces(const Bvh& bvh, std::vector<Piece>& piece
     return std::nullopt;
 }
 
-/// Sort key that makes copies of a triangle neighbours, whatever their flags.
+/// Sort key that makes copies of a triangle adjacent, independent of their flags.
 auto identity_of(const BvhTriangle& t) {
     return std::tuple(t.instance, t.primitive, t.a.x, t.a.y, t.a.z, t.b.x, t.b.y, t.b.z, t.c.x, t.c.y, t.c.z);
 }

@@ -5,7 +5,7 @@
 
 #include "tests/support/emulated_lanes.h"
 
-extern "C" const char __executable_start; // the linker's: addresses are told relative to it
+extern "C" const char __executable_start; // the linker's: addresses are printed relative to it
 
 namespace pertev::test {
 namespace {

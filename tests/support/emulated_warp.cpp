@@ -131,7 +131,7 @@ void Machine::lane_main() {
     m.leave_lane(true);
 }
 
-/// The next warp that is to come, in the place of one that has ended.
+/// The next warp to start, in the slot of one that has ended.
 void Machine::start_warp(EmulatedWarp& warp) {
     const uint32_t warps_a_block = launch_.threads / 32;
     warp.block = to_come_.back() / warps_a_block;
@@ -165,7 +165,7 @@ void Machine::leave_lane(bool for_good) {
     Fiber& from = lane_->fiber;
     about_to_go(for_good ? nullptr : &from.fake_stack, main_);
     switch_stack(&from.stack_pointer, main_.stack_pointer);
-    std::abort(); // nobody goes on with it
+    std::abort(); // no warp continues it
 }
 
 /// Lets some lane go on, perhaps the one that runs. Returns when this one goes on.
@@ -331,7 +331,7 @@ std::string run_warps(const EmulatedLaunch& launch, const std::function<void()>&
 
 namespace lane {
 
-// Each is a call of its own, whose frame says where it was called from.
+// Each is a separate call, whose frame holds the caller's address.
 [[gnu::noinline]] uint32_t active_mask(CodeLocation at) {
     return static_cast<uint32_t>(meet(MeetingKind::ActiveMask, 0, 0, 0, at, __builtin_frame_address(0)));
 }

@@ -64,7 +64,7 @@ HD inline float portable_second_argument(uint32_t input) {
 /// Returns whether reciprocal_of_normal accepts x; for other inputs its value counts as 0.
 HD inline bool has_reciprocal(float x) { return abs(x) >= 0x1p-126f && abs(x) < 0x1p126f; }
 
-/// Bits of function(input as a float). sin_cos_2pi takes the input as a fraction of 2^32; what it gives is in
+/// Bits of function(input as a float). sin_cos_2pi takes the input as a fraction of 2^32; its results are in
 /// [-1, 1]. The functions of two arguments take portable_second_argument() as the second.
 HD inline uint32_t portable_math_value(int function, uint32_t input) {
     const float x = float_of(input);

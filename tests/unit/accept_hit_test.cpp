@@ -33,7 +33,7 @@ struct AlphaScene {
         image.rgba8 = {2, 1, {255, 255, 255, 255, 255, 255, 255, 0}};
         scene.images.push_back(image);
         TextureRef half_clear{.image = 0};
-        scene.materials.push_back({{.alpha = 0.1f}, "solid"}); // opaque: alpha is not looked at
+        scene.materials.push_back({{.alpha = 0.1f}, "solid"}); // opaque: alpha is ignored
         scene.materials.push_back(
             {{.alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0.5f, .base_color_texture = half_clear}, "masked"});
         scene.materials.push_back({{.alpha_mode = AlphaMode::Blend, .alpha = 0.3f}, "blended"});
@@ -133,7 +133,7 @@ Mesh triangle_of_alpha(float a, float b, float c) {
     return mesh;
 }
 
-/// The share of places on the triangle that the surface stops rays at.
+/// The share of the triangle where the surface stops rays.
 double share_stopped(const OneSurface& surface, uint32_t places = 20'000) {
     test::Random random(3);
     uint32_t stopped = 0;
@@ -188,7 +188,7 @@ TEST_CASE("a blended surface whose vertices have alpha 1 stops every ray") {
 
 namespace {
 
-/// A fan of triangles round a middle, each with vertices of its own, as exporters write what has flat normals.
+/// A fan of triangles around a centre, each with its own vertices, as exporters write flat normals.
 Mesh fan(uint32_t sides, test::Random& random) {
     std::vector<Vec3> rim;
     for (uint32_t i = 0; i < sides; ++i) {

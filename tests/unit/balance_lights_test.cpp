@@ -42,8 +42,8 @@ double far_share_of(bool is_open, float emitter_radiance, float scale = 1) {
 } // namespace
 
 TEST_CASE("kinds of lights separated by a wall are balanced by the surfaces that they light") {
-    // Half of the points look at the box's outside, which the sky alone lights, the others at its inside and the lamp;
-    // neither may starve.
+    // Half of the points lie outside of the box, where only the sky gives light, the others inside, with the lamp;
+    // both need enough samples.
     for (const float radiance : {30.0f, 300.0f}) {
         const double share = far_share_of(false, radiance);
         CAPTURE(radiance);

@@ -43,8 +43,8 @@ struct Stored {
     }
 };
 
-/// The checksum is for accidents: a file may be wrong and bear a right one. Recomputes it in place (offset 32, 16
-/// bytes, hashed as 0).
+/// Recomputes the checksum in place, because it detects only accidents and a wrong file may have a correct one
+/// (offset 32, 16 bytes, hashed as 0).
 void seal(std::vector<std::byte>& bytes) {
     std::fill_n(bytes.begin() + 32, 16, std::byte{0});
     Hasher hasher;
@@ -148,7 +148,7 @@ TEST_CASE("a corrupt cached file with a correct checksum never yields indices ou
         (loaded ? taken : refused) += 1;
     }
     CHECK(refused > 1000); // most of it cannot be true
-    CHECK(taken > 0);      // changed boxes cannot be told from others
+    CHECK(taken > 0);      // changed boxes cannot be detected
 }
 
 TEST_CASE("an invalid cached tree causes a warning, and the render continues") {

@@ -119,7 +119,7 @@ TEST_CASE("ambient light equals the reflection of a uniform radiance by a diffus
 
     scene.environment = Environment{.image = {}, .scale = {2, 2, 2}};
     settings.ambient.reset();
-    check_floor(look_down(scene, 3, settings), [](Vec3) { return 0.0f; }); // cast has none of its own
+    check_floor(look_down(scene, 3, settings), [](Vec3) { return 0.0f; }); // cast does not have this setting
     settings.integrator = IntegratorKind::Whitted; // takes the environment's mean: right for a floor under an even sky
     check_floor(look_down(scene, 3, settings), [](Vec3) { return 1.0f; });
     settings.ambient = Rgb{0, 0, 0};

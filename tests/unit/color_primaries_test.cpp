@@ -57,7 +57,8 @@ std::vector<std::byte> with_chromaticities(const std::vector<std::byte>& exr, co
     std::vector<std::byte> to(exr.begin(), exr.begin() + 8);
     to.insert(to.end(), attribute.begin(), attribute.end());
     to.insert(to.end(), exr.begin() + 8, exr.end());
-    // The table follows the header's zero byte: the place whose eight bytes are the file's size without the chunk.
+    // The table follows the header's zero byte: the position whose eight bytes are the file's size without the
+    // chunk.
     for (std::size_t at = to.size() - 8; at > attribute.size() + 8; --at) {
         uint64_t offset = 0;
         std::memcpy(&offset, to.data() + at, 8);

@@ -64,7 +64,7 @@ TEST_CASE("trees built on the device cost rays little more than those of PLOC on
         CAPTURE(mesh.name);
         const float by_host = make_compressed_bvh(build_ploc_bvh(mesh.triangles)).sah_cost;
         CHECK(build(queue, mesh.triangles).sah_cost < 1.06f * by_host);
-        // Halves of the curve know nothing of boxes; a line has nothing else.
+        // A tree that halves the curve ignores the triangles' boxes, so it should not be much better.
         CHECK(build(queue, mesh.triangles).sah_cost <= 1.05f * build(queue, mesh.triangles, true).sah_cost);
     }
 }
@@ -98,7 +98,7 @@ CompressedBvh refit(Queue& queue, const std::vector<BvhTriangle>& triangles, con
     DeviceBuilder builder(queue, count);
     builder.start(there.data(), count);
     builder.finish();
-    for (int i = 0; i < 2; ++i) builder.start_refit(moved_there.data()); // the second finds what the first left
+    for (int i = 0; i < 2; ++i) builder.start_refit(moved_there.data()); // the second uses memory left by the first
     builder.finish();
     return builder.download();
 }

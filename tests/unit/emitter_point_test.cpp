@@ -43,7 +43,7 @@ TEST_CASE("a light evaluated again at its emitter point equals its sample") {
         if (drawn.instance != kNoLight) {
             ++triangles;
             CHECK(found.pdf == drawn.pdf);
-            // The density over weights is the same wherever it is asked from.
+            // The density over weights is the same for all receivers.
             float elsewhere = 0;
             LightSample other;
             if (find_light(lights.view, point_of(drawn), Vec3{1, 0.5f, 1}, other, elsewhere)) {

@@ -70,7 +70,7 @@ TEST_CASE("warp operations give each lane CUDA's result, whichever lane arrives 
         const std::string fault = run_warps({.seed = seed}, [&] {
             const uint32_t k = me(), odd = 0xaaaaaaaau, mine = k % 2 == 1 ? odd : ~odd;
             wrong[k] += lane::ballot(kWarp, k % 3 == 0) != 0x49249249u;
-            wrong[k] += lane::ballot(mine, k < 8) != (mine & 0xffu); // two halves, each by itself
+            wrong[k] += lane::ballot(mine, k < 8) != (mine & 0xffu); // two halves, each separately
             wrong[k] += !lane::all(mine, (mine >> k & 1) != 0);
             wrong[k] += lane::all(kWarp, k != 17);
             wrong[k] += lane::match_any(kWarp, uint64_t(k / 8) << 40) != 0xffu << (k / 8 * 8);
@@ -104,7 +104,7 @@ TEST_CASE("lanes at one call get the same active mask, which holds all or some o
     bool once_whole = false, once_single = false, once_between = false;
     for (uint32_t seed = 0; seed < seeds(); ++seed) {
         std::vector<uint32_t> first(32), second(32);
-        const auto ask = [] { return lane::active_mask(); }; // one place in the source, two calls
+        const auto ask = [] { return lane::active_mask(); }; // one source line, two calls
         const std::string fault = run_warps({.seed = seed}, [&] {
             if (me() < 12) {
                 first[me()] = ask();
@@ -203,7 +203,7 @@ TEST_CASE("a lane that passes a mask without itself, or reads a lane outside of 
 }
 
 TEST_CASE("a mask read before lanes diverged is a fault where it is used") {
-    // Some orders of things let it pass, as on a GPU; some must not.
+    // Some schedules let it pass, as on a GPU; some must not.
     bool noticed = false;
     for (uint32_t seed = 0; seed < seeds(); ++seed) {
         noticed |= run_warps({.seed = seed}, [] {

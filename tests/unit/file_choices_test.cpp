@@ -62,7 +62,7 @@ TEST_CASE("each of several can be chosen, even if the number of one is the name 
             plays[i] = false;
         }
     }
-    CHECK(chosen({"walk", "walk", "1"}, "1") == 1); // which no name stands for
+    CHECK(chosen({"walk", "walk", "1"}, "1") == 1); // which no name denotes
 }
 
 TEST_CASE("a choice that matches none or two is an error that lists all") {

@@ -20,6 +20,6 @@ TEST_CASE("memory moved into huge pages keeps its bytes at any size") {
         uint64_t wrong = 0;
         for (std::size_t i = 0; i < count; ++i) wrong += values[i] != static_cast<uint32_t>(i) * 2654435761u ? 1 : 0;
         CHECK(wrong == 0);
-        if (count > 0) values.back() = 7; // still ours to write
+        if (count > 0) values.back() = 7; // still writable
     }
 }

@@ -45,7 +45,7 @@ private:
     std::size_t offset_ = 0;
 };
 
-// A value that tells pixel and channel, and that half holds exactly.
+// A value that identifies pixel and channel and is exact in half.
 float value_at(int x, int y, int channel) {
     return static_cast<float>(x + 16 * y) + 0.25f * static_cast<float>(channel);
 }

@@ -36,7 +36,8 @@ private:
     std::atomic<int64_t> left_;
 };
 
-/// Checks that `work` asks its sink at least so often, and that it ends at the first, a middle and the last time.
+/// Checks that `work` checks its sink at least so often, and that it ends at the first, a middle and the last
+/// check.
 template <class Work>
 void check_stops(int64_t least_checks, const Work& work) {
     constexpr int64_t kNever = 1 << 30;

@@ -236,7 +236,7 @@ TEST_CASE("light between records is their weighted mean, and there is none outsi
     CHECK(at(0, turned(0.28f)).weight > 0);
     CHECK(at(0, turned(0.29f)).weight == 0);
     CHECK(at(0, {0, 0, 1}, 1).weight == 0); // seen past a mirror: of records of their own
-    // Above a record light may be taken from it; below it, something may stand between that it does not see.
+    // A point above a record may use it; a point below may be occluded in ways that the record does not see.
     CHECK(at(0, {0, 0, 1}, 0, 0.2f).weight > 0);
     CHECK(at(0, {0, 0, 1}, 0, -0.2f).weight == 0);
     CHECK(look_up(cache, {{0, 0, 0}, {0, 0, 1}, 0, 4}).weight == 0); // under a reflection
@@ -259,7 +259,7 @@ TEST_CASE("the overture's grids cover each pixel in the end, and none twice in a
 
 namespace {
 
-/// A picture by the integrator itself, with what it can be asked.
+/// A picture by the integrator, and its queries.
 struct CacheRun {
     Messages messages;
     PreparedScene prepared;

@@ -144,7 +144,7 @@ TEST_CASE("the checker detects a broken kd-tree") {
         const KdTreeNode leaf = t.nodes[find_node(t, big_leaf)];
         t.references[leaf.first() + 1] = t.references[leaf.first()];
     }));
-    CHECK(is_noticed([&](KdTree& t) { // a leaf lists one triangle in place of another
+    CHECK(is_noticed([&](KdTree& t) { // a leaf lists a wrong triangle
         const KdTreeNode leaf = t.nodes[find_node(t, big_leaf)];
         t.references[leaf.first() + leaf.count() - 1] = static_cast<uint32_t>(t.triangles.size()) - 1;
     }));

@@ -122,7 +122,7 @@ TEST_CASE("heat maps of a report share one scale") {
 
 TEST_CASE("the terminal's table has a column for each set, gaps included, and the fastest combination first") {
     LabReport report = small_report();
-    // Interrupted: its diffuse rays are there and its shadow rays are not.
+    // Interrupted: it has figures of diffuse rays but not of shadow rays.
     const Combination gap = {
         .structure = StructureKind::EqualCounts, .traversal = TraversalKind::RestartTrail, .options = kNoRta};
     report.combinations.push_back(figures(gap, {timed(0, 1), timed(2, 2)}));

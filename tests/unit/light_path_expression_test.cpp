@@ -142,7 +142,7 @@ TEST_CASE("the automaton is minimal") {
     CHECK(automaton_of({"LS+DE"}).state_count() == 4);            // E, DE, SDE
     CHECK(automaton_of({"L(DD|DS|SD|SS)*E"}).state_count() == 3); // even, odd
     CHECK(automaton_of({"LD{200}E"}).state_count() == 202);
-    CHECK(automaton_of({"L.*E"}).column_count == 1); // nothing tells scatterings apart
+    CHECK(automaton_of({"L.*E"}).column_count == 1); // no scatterings are distinguished
 }
 
 TEST_CASE("a scattering event may be limited to reflection or transmission") {

@@ -86,7 +86,7 @@ TEST_CASE("a mesh with a normal map gets tangents, and more vertices where its t
     const Mesh before = scene.meshes[0];
     validate_quietly(scene);
     const Mesh& mesh = scene.meshes[0];
-    CHECK(mesh.positions.size() == 8); // the two of the shared edge are there twice
+    CHECK(mesh.positions.size() == 8); // the two of the shared edge are duplicated
     CHECK(mesh.indices.size() == before.indices.size());
     for (std::size_t corner = 0; corner < mesh.indices.size(); ++corner) {
         const uint32_t is = mesh.indices[corner], was = before.indices[corner];

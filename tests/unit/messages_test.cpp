@@ -26,7 +26,7 @@ TEST_CASE("left-out parts cause warnings, defaults cause notices, and both are l
     CHECK(messages.made_up() == std::vector<std::string>{"a sky"});
 
     Messages others;
-    others.warn("a texture"); // told before without saying that it is left out
+    others.warn("a texture"); // reported before without being marked as left out
     others.add_all(messages);
     CHECK(others.left_out() == messages.left_out());
     CHECK(others.made_up() == messages.made_up());

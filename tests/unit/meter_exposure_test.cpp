@@ -69,7 +69,7 @@ Shown show_surfaces(Queue& queue, const Scene& scene, const Camera& camera, floa
     RenderSettings settings = metered_settings();
     const Rgba8Image shown = tone_map_image(test::render(queue, scene, camera, settings).picture, ToneMap::Agx, stops);
     settings.path.max_depth = 0;
-    settings.transparent = true; // alpha: what is hit
+    settings.transparent = true; // alpha: share of hits
     const Image emitted = test::render(queue, scene, camera, settings).picture;
     const std::size_t pixels = emitted.pixels.size() / 4;
     Shown result;

@@ -112,7 +112,7 @@ TEST_CASE("motion between equal poses at evenly spaced times is found") {
     CHECK(segments_of([&](double time) {
               return compose(box.world_from_local, turned_about({0, 0, 1}, 50.26548246f * static_cast<float>(time)));
           }) > kFewestMotionSegments);
-    // A hop that is visible only at its own keys.
+    // A hop so short that it is missed unless its time is among the given keys.
     const auto hop = [&](double time) {
         const double height = std::max(0.0, 1 - 100 * std::fabs(time - 0.29));
         return compose(make_translation({0, static_cast<float>(height), 0}), box.world_from_local);

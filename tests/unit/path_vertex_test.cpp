@@ -15,7 +15,7 @@ using namespace pertev;
 
 namespace {
 
-/// Writes down what it is told, and the depth of the path then.
+/// Records its calls with the depth of the path.
 class Witness : public PathListener<Witness> {
 public:
     struct PathData {
@@ -56,7 +56,7 @@ private:
     ShadowData shadow_data_;
 };
 
-/// Takes all light that rays run into and lets no shadow ray be asked for.
+/// Receives the light that rays hit, and refuses shadow rays.
 class Thief : public PathListener<Thief> {
 public:
     explicit Thief(const PathJob&) {}

@@ -159,7 +159,7 @@ Scene sphere_that_glows(float albedo) {
     return scene;
 }
 
-/// Mean radiance of what lies about the origin, looked at straight down from just above the floor.
+/// Mean radiance around the origin, seen straight down from just above the floor.
 double mean_seen(const Scene& scene, const RenderSettings& from, Vec3 camera = {0, 0.1f, 0},
                  IntegratorKind integrator = IntegratorKind::PhotonMap) {
     RenderSettings settings = from;
@@ -243,7 +243,7 @@ TEST_CASE("a floor under an emitter behind glass has the radiance of the closed 
     CHECK(mean_seen(scene, settings) == doctest::Approx(behind).epsilon(0.03));
     settings.photon_map.edit().nearest = 60;
     CHECK(mean_seen(scene, settings) == doctest::Approx(behind).epsilon(0.03));
-    settings.path.max_depth = 2; // one face alone may scatter beside the floor
+    settings.path.max_depth = 2; // apart from the floor only one face may scatter
     CHECK(mean_seen(scene, settings) == 0);
 }
 
@@ -308,7 +308,7 @@ TEST_CASE("in a glowing room each scattering counts once, by direct estimate and
 
 TEST_CASE("the ray counts of photon mapping, including gathering, equal those computed by hand") {
     const test::TriangleMesh sphere = test::make_sphere(3, {0, 0, 0}, 2.0f);
-    Scene room; // closed and white, with a light that every place sees: no subpath ends before its last scattering
+    Scene room; // closed and white, with a light that is visible everywhere: no subpath ends before its last scattering
     Mesh mesh;
     mesh.positions = sphere.positions;
     mesh.indices = sphere.indices;

@@ -53,7 +53,7 @@ constexpr PixelFilter kFilters[] = {PixelFilter::Box, PixelFilter::Tent, PixelFi
 } // namespace
 
 TEST_CASE("samples of a pixel filter pass a chi-square test of its formula along an axis") {
-    constexpr int cells = 101, samples = 1'000'000; // odd: the middle cell holds the table's steepest place
+    constexpr int cells = 101, samples = 1'000'000; // odd: the middle cell holds the table's steepest part
     for (const PixelFilter kind : kFilters) {
         CAPTURE(static_cast<int>(kind));
         const Filter filter(kind, 1.75f);

@@ -21,7 +21,8 @@
 
 namespace pertev {
 
-static_assert(sizeof(sin(1.0f)) == sizeof(float)); // inside the namespace, ours are found and not ::sin(double)
+static_assert(sizeof(sin(1.0f)) ==
+              sizeof(float)); // inside the namespace, name lookup finds these and not ::sin(double)
 static_assert(sizeof(pow(1.0f, 2.0f)) == sizeof(float));
 
 namespace {

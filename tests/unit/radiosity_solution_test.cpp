@@ -257,7 +257,7 @@ TEST_CASE("a solution's file of the previous version is read with a warning that
 TEST_CASE("an interrupted solution records its state and is rendered with a warning") {
     const std::filesystem::path path = test::scratch_folder() / "ended";
     Messages messages;
-    /// Ended at the `heard`th time that it tells of `during`.
+    /// Ended at progress report number `heard` of the step `during`.
     const auto ended = [&](RadiositySolver solver, const std::string& during, int heard, float reflectance = 0.5f) {
         const Scene scene = lit_box(reflectance);
         const PreparedScene prepared = prepare_scene(scene, {}, messages);

@@ -91,7 +91,7 @@ TEST_CASE("an interrupted elimination leaves the direct light of emitters and of
 
 TEST_CASE("Southwell shoots from the patch with the most unshot light, the first of several") {
     RadiositySystem system;
-    // Four patches in a row; each sends to the next one alone. Nothing is reflected, so that each sends what it has.
+    // Four patches in a row; each sends only to the next one. Without reflection each sends its emission.
     for (const float exitance : {1.0f, 3.0f, 3.0f, 2.0f}) system.patches.push_back({1, {}, grey(exitance)});
     system.patches[2].area = 1;
     system.direct.assign(4, {});
@@ -103,7 +103,7 @@ TEST_CASE("Southwell shoots from the patch with the most unshot light, the first
     };
     CHECK(received(1) == std::vector<float>{0, 0, 3, 0}); // patch 1, though 2 has as much
     CHECK(received(2) == std::vector<float>{0, 0, 3, 3});
-    CHECK(received(3) == std::vector<float>{0, 0, 3, 3}); // 3, whom nobody sees
+    CHECK(received(3) == std::vector<float>{0, 0, 3, 3}); // 3, which no patch sees
     CHECK(received(4) == std::vector<float>{0, 1, 3, 3});
     system.patches[0].area = 4; // more than the whole
     CHECK(received(1) == std::vector<float>{0, 1, 0, 0});
@@ -119,7 +119,7 @@ TEST_CASE("unshot light is displayed as ambient light, so that all light is pres
         CHECK(part.left < before);
         before = part.left;
         CHECK(part.ambient.r > 0);
-        // Inside a sphere light is spread evenly, so that what is shown is right all the time.
+        // Inside a sphere light is uniform, so that the display is correct after every step.
         CHECK(difference(part, whole) < 1e-4);
     }
     CHECK(max_component(solve_by_gauss_seidel(system, 1e-6).ambient) == 0);

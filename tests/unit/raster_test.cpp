@@ -214,7 +214,7 @@ TEST_CASE("without shadows raster shades as cast does, with all lobes, textures 
         alike += std::abs(raster.pixels[i] - cast.pixels[i]) <= 1e-3f * cast.pixels[i] ? 1 : 0;
     }
     CHECK(lit > 1000);
-    CHECK(alike >= lit - lit / 50); // but for samples at edges, which have another triangle
+    CHECK(alike >= lit - lit / 50); // except samples at edges, which have another triangle
 }
 
 TEST_CASE("edges are Bresenham's lines, and the nearer one is visible") {

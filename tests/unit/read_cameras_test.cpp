@@ -92,7 +92,7 @@ TEST_CASE("transforms.json gives poses, focal lengths of all or of a frame, and 
     REQUIRE(angle.size() == 1);
     CHECK(angle[0].name == "train_r_0");
     CHECK(stated(angle[0], "camera_pose") == "1,0,0,2,0,1,0,3,0,0,1,4,0,0,0,1");
-    CHECK(stated(angle[0], "convention") == "none"); // opengl, or what is given
+    CHECK(stated(angle[0], "convention") == "none"); // opengl, or the given convention
     CHECK(stated(angle[0], "intrinsics_size") == "400x300");
     CHECK(numbers_in_text(stated(angle[0], "intrinsics"))[0] == doctest::Approx(200 / std::tan(0.4)).epsilon(1e-6));
     CHECK(numbers_in_text(stated(angle[0], "intrinsics"))[3] == 150);

@@ -133,8 +133,7 @@ TEST_CASE("an error for a damaged GLB container names the first faulty byte") {
     };
     CHECK(with_byte(0, 'x').starts_with("model.glb: byte 0: "));
     CHECK(with_byte(4, 1).starts_with("model.glb: byte 4: "));
-    CHECK(with_byte(15, 0x7f).starts_with(
-        "model.glb: byte 12: the chunk states ")); // the JSON tells by itself where it ends
+    CHECK(with_byte(15, 0x7f).starts_with("model.glb: byte 12: the chunk states ")); // the end of the JSON is known
     CHECK(with_byte(20, '[').starts_with("model.glb: not valid JSON: "));
     CHECK(with_byte(16, 'X').starts_with("model.glb: byte 12: "));
 }

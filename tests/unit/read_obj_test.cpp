@@ -423,7 +423,7 @@ TEST_CASE("mtl: messages of several files come after those of the geometry, in a
     test::write_text(folder / "bad.mtl", "newmtl c\nKd 1 2\n");
     const std::string faces =
         "vt 0 0\nusemtl a\nf 1/1 2/1 3/1\nusemtl b\nf 1/1 2/1 3/1\nusemtl twice\nf 1 2 3\nl 1 2\n";
-    const std::string far(std::size_t(3) << 20, '\n'); // longer than the piece that is looked at for them
+    const std::string far(std::size_t(3) << 20, '\n'); // longer than the part that is searched for them
     const auto load_with = [&](const std::string& text) { return load(test::write_text(folder / "many.obj", text)); };
     for (const std::string& before : {std::string(), far}) {
         const Loaded l = load_with(before + "mtllib gone.mtl\nmtllib a.mtl\n" + kTriangle + faces + "mtllib b.mtl\n");

@@ -113,7 +113,7 @@ TEST_CASE("ply: texnumber selects one of several textures for a face, and -1 non
     CHECK(l.mesh(0).triangle_count() == 1);
     CHECK(l.mesh(1).triangle_count() == 2);
     CHECK(l.mesh(2).triangle_count() == 1);
-    CHECK(l.mesh(0).colors.empty()); // the texture tells
+    CHECK(l.mesh(0).colors.empty()); // the texture decides
     CHECK(l.mesh(2).colors.size() == 3);
     CHECK(l.mesh(2).positions.size() == 3);
     CHECK(l.reports("vertex colours are left out"));
