@@ -48,6 +48,9 @@ public:
     /// Finds whether shadow rays hit anything, under the contract of find_hits().
     void find_occlusions(const RayQueueView& rays, WorkCount count, const HitQueueView& hits, uint32_t* pool = nullptr);
 
+    /// The query of rays of a kind, for kernels that trace what they have made themselves.
+    TraceQuery query_of(RayKind kind, const RayQueueView& rays) const;
+
     /// The trees that a ray loop on the host may traverse directly (device_scene/find_hits.h). Null unless rays of
     /// all kinds use them.
     const HostTrees* host_trees() const { return host_trees_; }
@@ -80,7 +83,6 @@ public:
     const Seconds& seconds() const { return seconds_; }
 
 private:
-    TraceQuery query_of(RayKind kind, const RayQueueView& rays) const;
     double& seconds_of(RayKind kind) {
         if (kind == RayKind::Shadow) return seconds_.shadow;
         return kind == RayKind::Camera ? seconds_.camera : seconds_.bounce;

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "device/launch.h"
+#include "integrators/path/begin_and_trace.h"
 #include "integrators/path/meter_light.h"
 #include "integrators/path/path_loop.h"
 #include "integrators/path/path_stages.h"
@@ -282,21 +283,23 @@ void PathIntegrator::launch_round(Wavefront& w, const Work& work) {
         }
         if (w.known.all_begun == 0) {
             const WorkCount fresh = {most, &counts->fresh};
-            const auto generate = [&]<bool kInBatch>() {
-                launch(queue_, "generate_paths", fresh,
-                       GeneratePaths<kInBatch>{work.job, work.samples, counts, last, any_alpha, paths});
+            const HitQueueView camera_hits = {hits.records + last, hits.instances + last, -1};
+            const auto begin_paths = [&]<bool kInBatch>() {
+                const GeneratePaths<kInBatch> generate = {work.job, work.samples, counts, last, any_alpha, paths};
+                if (!raster_ && begin_and_trace(queue_, *tracer_, fresh, generate, camera_hits)) return;
+                launch(queue_, "generate_paths", fresh, generate);
+                if (raster_) {
+                    tracer_->timed(RayKind::Camera,
+                                   [&] { raster_->find_hits(paths.query_back(last), fresh, camera_hits); });
+                } else {
+                    tracer_->find_hits(RayKind::Camera, paths.query_back(last), fresh, camera_hits,
+                                       pool(RayKind::Camera));
+                }
             };
             if (picture_.batch.is_there()) {
-                generate.template operator()<true>();
+                begin_paths.template operator()<true>();
             } else {
-                generate.template operator()<false>();
-            }
-            const HitQueueView camera_hits = {hits.records + last, hits.instances + last, -1};
-            if (raster_) {
-                tracer_->timed(RayKind::Camera,
-                               [&] { raster_->find_hits(paths.query_back(last), fresh, camera_hits); });
-            } else {
-                tracer_->find_hits(RayKind::Camera, paths.query_back(last), fresh, camera_hits, pool(RayKind::Camera));
+                begin_paths.template operator()<false>();
             }
         }
         const WorkCount active = {most, &counts->active};

@@ -50,12 +50,15 @@ struct GeneratePaths {
     bool any_alpha;
     PathQueueView paths;
 
-    HD void operator()(uint32_t i) const {
+    HD void operator()(uint32_t i) const { begin_and_store(i); }
+    /// Begins a path, stores it and returns its camera ray.
+    HD Ray begin_and_store(uint32_t i) const {
         const PixelSample begun = samples.at(round->first + i);
         constexpr Features kFeatures = kInBatch ? Features{kBatched} : Features{0};
         const PathState path = begin(begun);
         paths.store_begun(last - i, path, sample_key<kFeatures>(job, path.pixel, path.sample), any_alpha);
         if (paths.times != nullptr) paths.times[last - i] = path.time;
+        return {path.origin, 0.0f, path.direction, kInfinity};
     }
 
 private:
