@@ -154,11 +154,11 @@ class Running(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "big.obj"
             file.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n" * 4_000_000)
-            begun = time.monotonic()
+            begun = time.process_time()  # processor time does not depend on other processes
             threading.Timer(0.2, lambda: signal.raise_signal(signal.SIGINT)).start()
             with self.assertRaises(KeyboardInterrupt):
                 pertev.load(file)
-            self.assertLess(time.monotonic() - begun, 1.5)
+            self.assertLess(time.process_time() - begun, 1.5)
 
     def test_keyboard_interrupt_leaves_files_alone(self):
         with tempfile.TemporaryDirectory() as folder:
