@@ -67,7 +67,7 @@ void write_result(const std::string& path, const PythonResult& result, const std
     PictureRecord record = *result.record;
     const std::vector<std::string> paths = {path};
     if (writes_tone_mapped(paths)) record.display = Display{curve_of(curve), exposure, {}};
-    RenderResult written = result.result; // which loses its layers
+    RenderResult written = result.whole(); // which loses its layers
     const nb::gil_scoped_release unlocked;
     image_format_for(path);
     const std::string failures = failures_of(write_picture(paths, record, written));

@@ -111,8 +111,13 @@ auto result_of(Work work) {
 }
 
 PythonResult render(PythonScene& scene, const std::string& settings_file, const SettingTexts& settings,
-                    const std::vector<std::string>& outputs) {
-    return result_of([&](PythonSink& sink) { return scene.render({settings_file, settings}, outputs, sink); });
+                    const std::vector<std::string>& outputs, const std::optional<nb::dict>& out) {
+    std::vector<OutArray> arrays = out ? out_arrays(*out) : std::vector<OutArray>();
+    PythonResult made = result_of([&](PythonSink& sink) {
+        return scene.render({settings_file, settings}, outputs, arrays, sink);
+    });
+    made.out = std::move(arrays);
+    return made;
 }
 
 /// Makes a scene of arrays if there are parts, else of a file.
@@ -238,7 +243,7 @@ void define_scene(nb::module_& module) {
     nb::class_<PythonScene>(module, "Scene")
         .def("__init__", &make_scene, nb::arg("name"), nb::arg("settings"), nb::arg("parts").none())
         .def("_open", [](PythonScene& scene) { run_unlocked([&](PythonSink& sink) { scene.open(sink); }); })
-        .def("_render", &render)
+        .def("_render", &render, nb::arg("file"), nb::arg("settings"), nb::arg("outputs"), nb::arg("out").none())
         .def("_render_batch", &render_batch, nb::arg("file"), nb::arg("settings"), nb::arg("poses").none(),
              nb::arg("intrinsics").none(), nb::arg("seeds").none(), nb::arg("has_color"), nb::arg("out").none())
         .def("_batch_size", &batch_size, nb::arg("file"), nb::arg("settings"), nb::arg("poses"),

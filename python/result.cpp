@@ -1,14 +1,12 @@
 #include "python/result.h"
 
 #include <algorithm>
-#include <cstring>
 #include <span>
 
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "base/error.h"
 #include "image/auto_exposure.h"
@@ -44,10 +42,26 @@ nb::object array_of(Image& image, nb::handle owner) {
     return array_of(image.pixels.data(), image, image.channels, owner);
 }
 
+nb::object noisy_of(nb::handle owner) {
+    PythonResult& self = result_of(owner);
+    const OutArray* array = find_array(self.out, "noisy");
+    if (array == nullptr && self.result.picture.pixels.empty()) array = find_array(self.out, "color");
+    return array != nullptr ? array->array : array_of(self.result.picture, owner);
+}
+
+nb::object color_of(nb::handle owner) {
+    PythonResult& self = result_of(owner);
+    if (const OutArray* array = find_array(self.out, "color")) return array->array;
+    return self.result.denoised ? array_of(*self.result.denoised, owner) : array_of(self.result.picture, owner);
+}
+
 /// Returns the layers by their names; `id` is of uint32.
 nb::dict layers_of(nb::handle owner) {
     PythonResult& self = result_of(owner);
     nb::dict layers;
+    for (const OutArray& array : self.out) {
+        if (!is_picture(array.name)) layers[array.name == "ids" ? "id" : array.name.c_str()] = array.array;
+    }
     for (FilmLayer& layer : self.result.layers) layers[layer.name.c_str()] = array_of(layer.image, owner);
     if (!self.result.ids.empty()) {
         static_assert(sizeof(PixelIds) == 3 * sizeof(uint32_t));
@@ -75,8 +89,7 @@ constexpr std::string_view kJsonTexts[] = {"pertev.settings",  "pertev.made_up",
 nb::dict info_of(PythonResult& self) {
     nb::dict info;
     const nb::object parse = nb::module_::import_("json").attr("loads");
-    const ExrMetadata metadata =
-        picture_metadata(facts_of(*self.record, self.result.ids), self.result, self.known_hash());
+    const ExrMetadata metadata = picture_metadata(facts_of(*self.record, self.ids()), self.result, self.known_hash());
     for (const auto& entry : metadata) {
         const std::string_view name = entry.first;
         constexpr std::string_view kOurs = "pertev.";
@@ -86,44 +99,6 @@ nb::dict info_of(PythonResult& self) {
             parse(holds_json ? *text : metadata_json(entry));
     }
     return info;
-}
-
-/// Returns the values of an array that is named as an attribute.
-std::span<const std::byte> bytes_of(PythonResult& self, const std::string& name, std::vector<std::size_t>& shape) {
-    const RenderResult& result = self.result;
-    const Image* image = name == "color"   ? (result.denoised ? &*result.denoised : &result.picture)
-                         : name == "noisy" ? &result.picture
-                                           : nullptr;
-    for (const FilmLayer& layer : result.layers) {
-        if (layer.name == name) image = &layer.image;
-    }
-    shape = {result.picture.height, result.picture.width};
-    if (name == "ids" && !result.ids.empty()) {
-        shape.push_back(3);
-        return std::as_bytes(std::span(result.ids));
-    }
-    if (image == nullptr) throw Error(ErrorCode::BadInput, "out", name, "the picture has no such array");
-    if (image->channels > 1) shape.push_back(image->channels);
-    return std::as_bytes(std::span(image->pixels));
-}
-
-/// Copies arrays of the result into the caller's.
-void fill(PythonResult& self, const nb::dict& out) {
-    for (const auto& [key, value] : out) {
-        const std::string name = nb::cast<std::string>(nb::str(key));
-        std::vector<std::size_t> shape;
-        const std::span<const std::byte> bytes = bytes_of(self, name, shape);
-        nb::ndarray<nb::c_contig, nb::device::cpu> array;
-        bool fits = nb::try_cast(value, array, false) && array.ndim() == shape.size() &&
-                    array.dtype() == (name == "ids" ? nb::dtype<uint32_t>() : nb::dtype<float>());
-        for (std::size_t axis = 0; fits && axis < shape.size(); ++axis) fits = array.shape(axis) == shape[axis];
-        if (!fits) {
-            throw Error(ErrorCode::BadInput, "out", name,
-                        fmt::format("expected an array of {} of shape ({}), in the CPU's memory and in the order of C",
-                                    name == "ids" ? "uint32" : "float32", fmt::join(shape, ", ")));
-        }
-        std::memcpy(array.data(), bytes.data(), bytes.size());
-    }
 }
 
 nb::object pose_of(const PythonResult& self) {
@@ -145,7 +120,8 @@ nb::object intrinsics_of(const PythonResult& self) {
 
 /// Returns the picture as PNG for notebooks, at the exposure that fits it.
 nb::bytes png_of(const PythonResult& self) {
-    const Image& image = self.result.denoised ? *self.result.denoised : self.result.picture;
+    const RenderResult whole = self.whole();
+    const Image& image = whole.denoised ? *whole.denoised : whole.picture;
     const float stops = auto_exposure_stops(image, ToneMap::Agx);
     const std::vector<std::byte> png = encode_png(tone_map_image(image, ToneMap::Agx, stops), image.channels == 4);
     return nb::bytes(reinterpret_cast<const char*>(png.data()), png.size());
@@ -158,20 +134,29 @@ const std::string& PythonResult::known_hash() {
     return hash;
 }
 
+std::span<const PixelIds> PythonResult::ids() const {
+    const OutArray* array = find_array(out, "ids");
+    if (array == nullptr) return result.ids;
+    return {reinterpret_cast<const PixelIds*>(array->memory),
+            std::size_t(result.picture.width) * result.picture.height};
+}
+
+RenderResult PythonResult::whole() const {
+    RenderResult all = result;
+    take_back(out, all);
+    return all;
+}
+
 void define_result(nb::module_& module) {
     nb::class_<PythonResult> result(module, "Result", nb::is_final(), R"(A rendered picture.
 
-Arrays share the memory of the result, which lives as long as one of them does. Row 0 is the top row.)");
+Arrays share the memory of the result, which lives as long as one of them does, or are those of the caller
+(`out` of render()). Row 0 is the top row.)");
     result.def_prop_ro(
-        "color",
-        [](nb::handle self) {
-            RenderResult& of = result_of(self).result;
-            return array_of(of.denoised ? *of.denoised : of.picture, self);
-        },
+        "color", &color_of,
         "float32 (height, width, 3), or 4 with transparent=True: linear Rec. 709, denoised if that was requested");
-    result.def_prop_ro(
-        "noisy", [](nb::handle self) { return array_of(result_of(self).result.picture, self); },
-        "The mean of the samples, whether or not the picture was denoised; `hash` is of this array");
+    result.def_prop_ro("noisy", &noisy_of,
+                       "The mean of the samples, whether or not the picture was denoised; `hash` is of this array");
     result.def_prop_ro(
         "layers", [](nb::handle self) { return layers_of(self); }, "The requested layers by their names in an EXR");
     struct Named {
@@ -195,8 +180,10 @@ Arrays share the memory of the result, which lives as long as one of them does. 
         "float64 (4, 4): the camera's place and axes, world from camera; it looks along -z, and y is up");
     result.def_prop_ro("K", &intrinsics_of,
                        "float64 (3, 3): focal lengths and principal point in pixels from the upper left corner");
-    result.def("_fill", &fill);
     result.def("_repr_png_", &png_of);
+    result.def_prop_ro(
+        "_first_pixel_seconds", [](const PythonResult& self) { return self.result.first_pixel_seconds; },
+        "Seconds that Session::render took until each pixel had its first sample, for tests");
     result.def_prop_ro(
         "samples", [](const PythonResult& self) { return self.result.samples; },
         "Samples of each pixel; fewer than requested if time_limit ended the render");

@@ -6,6 +6,7 @@
 
 #include <nanobind/nanobind.h>
 
+#include "python/out_arrays.h"
 #include "session/writing/picture_metadata.h"
 #include "settings/render_settings.h"
 
@@ -15,10 +16,14 @@ struct PythonResult {
     PythonResult(RenderResult rendered, std::shared_ptr<const PictureRecord> of)
         : result(std::move(rendered)), record(std::move(of)) {}
 
-    RenderResult result;
+    RenderResult result; // without what `out` has, if there are such arrays, and without layers then
+    std::vector<OutArray> out;
     std::shared_ptr<const PictureRecord> record;
     std::string hash; // made at the first request, before which no array was given away
     const std::string& known_hash();
+    std::span<const PixelIds> ids() const;
+    /// Returns the result with what its arrays hold now.
+    RenderResult whole() const;
 };
 
 void define_result(nanobind::module_& module);

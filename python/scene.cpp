@@ -86,22 +86,48 @@ const PictureRecord& PythonScene::prepare(const CallSettings& settings, const st
     return *record_;
 }
 
-PythonResult PythonScene::render(const CallSettings& settings, const std::vector<std::string>& outputs, Sink& sink) {
+/// Renders a picture whose arrays are those of the caller. Colour that is not among them is made as always.
+PythonResult PythonScene::render_into(Session& session, std::span<const OutArray> out, Sink& sink) {
+    const RenderSettings& settings = session.settings();
+    RenderResult result = {add_samples(session, sink), {}, {}, {}, {}, {}};
+    reader_.read(session, opened_.setup()->queue, out);
+    result.picture = {settings.width, settings.height, settings.transparent ? 4u : 3u, {}};
+    const OutArray* color = find_array(out, "color");
+    if (color == nullptr) result.picture = session.picture();
+    PythonResult made(std::move(result), record_);
+    if (color != nullptr) { // the caller may change it
+        const auto* const values = reinterpret_cast<const float*>(color->memory);
+        const std::size_t count = std::size_t(settings.width) * settings.height * made.result.picture.channels;
+        made.hash = picture_hash(settings.width, settings.height, {values, count}).hex();
+    }
+    return made;
+}
+
+PythonResult PythonScene::render(const CallSettings& settings, const std::vector<std::string>& outputs,
+                                 std::span<const OutArray> out, Sink& sink) {
     const std::unique_lock turn = wait_for_turn(sink);
     Session& session = opened_.session(prepare(settings, outputs, sink));
+    check_arrays(out, session.settings());
     session.cut();
+    const bool is_read = !out.empty() && outputs.empty() && FilmReader::reads(out, session.settings());
     if (writes_tone_mapped(outputs)) {
         PictureRecord shown = *record_;
         shown.display = choose_display(options_, session, sink);
         record_ = std::make_shared<const PictureRecord>(std::move(shown));
     }
     // An interrupted picture is thrown away, and its files stay as they were.
-    PythonResult made(render_samples(session, sink), record_);
+    PythonResult made =
+        is_read ? render_into(session, out, sink) : PythonResult(render_samples(session, sink), record_);
     sink.check();
     WrittenPicture written;
     if (!outputs.empty()) {
         RenderResult result = made.result; // files take the layers out of it
         written = write_picture(outputs, *record_, result);
+    }
+    if (!out.empty() && !is_read) {
+        copy_into(out, made.result);
+        made.known_hash(); // before the caller can change its arrays
+        made.result.layers.clear(), made.result.ids.clear();
     }
     refuse_faults(written, made.result.invalid_samples, options_.strict);
     return made;

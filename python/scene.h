@@ -40,8 +40,9 @@ public:
 
     /// Opens the scene if it is not open. Throws as prepare_render.
     void open(Sink& sink);
-    /// Renders a picture, and writes it to `outputs`. Throws Error.
-    PythonResult render(const CallSettings& settings, const std::vector<std::string>& outputs, Sink& sink);
+    /// Renders a picture, writes it to `outputs`, and fills the arrays `out`. Throws Error.
+    PythonResult render(const CallSettings& settings, const std::vector<std::string>& outputs,
+                        std::span<const OutArray> out, Sink& sink);
 
     /// Renders a picture by each camera into `batch`, whose arrays are made if it has none. Throws Error.
     void render_batch(const CallSettings& settings, const CamerasArgument& cameras, PythonBatch& batch, Sink& sink);
@@ -84,12 +85,14 @@ private:
     /// Waits until no other thread uses the scene. Throws Error(Interrupted) if the sink stops.
     std::unique_lock<std::timed_mutex> wait_for_turn(Sink& sink);
     void open_in_turn(Sink& sink);
+    PythonResult render_into(Session& session, std::span<const OutArray> out, Sink& sink);
     const PictureRecord& prepare(const CallSettings& settings, const std::vector<std::string>& outputs, Sink& sink);
 
     EditedScene source_;
     SettingTexts settings_;
     std::timed_mutex turn_;
     OpenedScene opened_;
+    FilmReader reader_;
     // The last call that wrote no file, whose repetition takes everything as it is.
     std::optional<CallSettings> last_;
     std::shared_ptr<const PictureRecord> record_;

@@ -433,7 +433,7 @@ MUTATIONS = [
     ("predicted memory of frames without the previous positions of instances", "consistency/frame_result",
      ("src/session/session_bytes.cpp", "places_before(queue, scene.scene->instances.size(),", "places_before(queue, 0,")),
     ("a picture's sink gets no notice of hidden backs", "unit/hidden_back",
-     ("src/session/pictures/render_samples.cpp", "if (result.hidden_back_share > 0.01)", "if (false)")),
+     ("src/session/pictures/render_samples.cpp", "if (stats.hidden_back_share > 0.01)", "if (false)")),
     ("a pose in OpenCV's axes keeps its third axis", "unit/calibrated_camera robust/cli_cameras",
      ("src/session/opening/calibrated_camera.cpp", "for (DoubleVec3* axis : {&columns[1], &columns[2]})", "for (DoubleVec3* axis : {&columns[1]})")),
     ("a lens shows what its polynomial shows a second time", "unit/lens_distortion",

@@ -34,8 +34,9 @@ def render(scene, *, cameras=None, seeds=None, color=True, layers=(), output=(),
     layers    names of layers to render as well: "albedo", "normal", "depth", "distance", "position", "ids", "motion"
     output    a file to write, or several: .exr .png .jpg .hdr
     settings  a file of settings, which `values` overrule
-    out       arrays to fill, by the names of the Result's attributes: {"color": array}; with `cameras` or `on_device`
-              an earlier BatchResult of the same scene, whose arrays are filled again
+    out       arrays to fill, by the names of the Result's attributes: {"color": array}, which are then those of the
+              Result, beside `color`; nothing else of the picture's size is allocated. With `cameras` or `on_device` an
+              earlier BatchResult of the same scene, whose arrays are filled again
     on_device True: the arrays stay in the memory of the device, and the call returns them as a BatchResult
     values    any setting of docs/settings.md by its name: size=(640, 480), spp=64, eye=(0, 1, 3), device="cpu".
               None is as if it was not given.
@@ -53,10 +54,7 @@ def render(scene, *, cameras=None, seeds=None, color=True, layers=(), output=(),
     if seeds is not None or not color:
         raise TypeError("seeds and color are for many `cameras`, or for `on_device`")
     outputs = [output] if isinstance(output, (str, os.PathLike)) else output
-    made = used._render(os.fspath(settings or ""), texts_of(with_layers(values, layers)), [os.fspath(path) for path in outputs])
-    if out is not None:
-        made._fill(out)
-    return made
+    return used._render(os.fspath(settings or ""), texts_of(with_layers(values, layers)), [os.fspath(path) for path in outputs], out)
 
 
 def render_chunks(scene, cameras, *, chunk=None, seeds=None, color=True, layers=(), settings=None, **values):

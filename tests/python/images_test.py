@@ -89,15 +89,49 @@ class Images(unittest.TestCase):
 
 
 class Out(unittest.TestCase):
-    def test_arrays_are_filled(self):
+    def compare(self, out, layers, **values):
+        """Renders into `out`, which is then all that the result has; its bytes are those of an ordinary result."""
         scene = pertev.load("cornell-box", size=(24, 16), spp=2, device="cpu")
-        out = {"color": numpy.empty((16, 24, 3), numpy.float32), "depth": numpy.empty((16, 24), numpy.float32),
-               "ids": numpy.empty((16, 24, 3), numpy.uint32)}
         for seed in (1, 2):
-            expected = pertev.render(scene, seed=seed, layers=["depth", "ids"])
-            pertev.render(scene, seed=seed, layers=["depth", "ids"], out=out)
+            expected = pertev.render(scene, seed=seed, layers=layers, **values)
+            made = pertev.render(scene, seed=seed, layers=layers, out=out, **values)
             for name, array in out.items():
-                self.assertTrue((array == getattr(expected, name)).all(), name)
+                self.assertEqual(array.tobytes(), expected.layers.get(name, getattr(expected, name, None)).tobytes(), name)
+                self.assertIs(made.layers.get("id" if name == "ids" else name, getattr(made, name, None)), array)
+            self.assertEqual(set(made.layers), {"id" if name == "ids" else name for name in out} - {"color", "noisy"})
+            for name in ("hash", "color", "noisy"):
+                self.assertTrue((getattr(made, name) == getattr(expected, name)).all() if name != "hash"
+                                else made.hash == expected.hash, name)
+            self.assertEqual({**made.info, "render_seconds": 0}, {**expected.info, "render_seconds": 0})
+            self.assertEqual(made._repr_png_(), expected._repr_png_())
+        return made, expected
+
+    def arrays(self):
+        return {"color": numpy.empty((16, 24, 3), numpy.float32), "depth": numpy.empty((16, 24), numpy.float32),
+                "ids": numpy.empty((16, 24, 3), numpy.uint32)}
+
+    def test_arrays_are_filled(self):
+        for layers_at in ("samples", "centre"):
+            made, expected = self.compare(self.arrays(), ["depth", "ids"], layers_at=layers_at)
+        with tempfile.TemporaryDirectory() as folder:
+            for name, picture in (("a", made), ("b", expected)):
+                pertev.write(f"{folder}/{name}.exr", picture)
+            self.assertEqual(*(pertev.read(f"{folder}/{name}.exr").tobytes() for name in "ab"))
+        self.compare({"color": numpy.empty((16, 24, 4), numpy.float32)}, [], transparent=True)
+        self.compare({"noisy": numpy.empty((16, 24, 3), numpy.float32)}, [])
+        self.compare({"depth": numpy.empty((16, 24), numpy.float32)}, ["depth"])
+
+    def test_arrays_of_what_no_film_has(self):
+        self.compare({"motion": numpy.empty((16, 24, 2), numpy.float32)}, ["motion"])
+        self.compare({"direct": numpy.empty((16, 24, 3), numpy.float32)}, [], lpe="direct=LDE")
+        self.compare({**self.arrays(), "noisy": numpy.empty((16, 24, 3), numpy.float32)}, ["depth", "ids"], denoise="svgf")
+
+    def test_the_hash_is_of_the_picture(self):
+        scene = pertev.load("cornell-box", size=(24, 16), spp=1, device="cpu")
+        out = {"color": numpy.empty((16, 24, 3), numpy.float32)}
+        first = pertev.render(scene, out=out)
+        self.assertNotEqual(pertev.render(scene, seed=5, out=out).hash, first.hash)
+        self.assertEqual(pertev.render(scene).hash, first.hash)
 
     def test_wrong_arrays(self):
         scene = pertev.load("cornell-box", size=(24, 16), spp=1, device="cpu")

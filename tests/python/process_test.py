@@ -8,7 +8,6 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 import unittest.mock
 import urllib.request
@@ -63,26 +62,6 @@ class Processes(unittest.TestCase):
                         for _ in range(3)]
         self.assertLess(min(float(seconds) for seconds, _ in done), 0.3)
         self.assertEqual({loads for _, loads in done}, {"False"})
-
-
-class Overhead(unittest.TestCase):
-    """A call's time less that of the samples in C++, the least of many: others may use this machine too."""
-
-    @staticmethod
-    def seconds_of(size, **values):
-        scene = pertev.load("cornell-box", device="cpu")
-        least = 1.0
-        for _ in range(50):
-            start = time.perf_counter()
-            picture = pertev.render(scene, size=size, spp=1, **values)
-            least = min(least, time.perf_counter() - start - picture.seconds)
-        return least
-
-    def test_a_picture_takes_less_than_a_millisecond(self):
-        self.assertLess(self.seconds_of((64, 64)), 1e-3)
-
-    def test_a_call_takes_less_than_50_microseconds(self):
-        self.assertLess(self.seconds_of((1, 1), out={"color": numpy.empty((1, 1, 3), numpy.float32)}), 50e-6)
 
 
 class Viewer(unittest.TestCase):

@@ -6,7 +6,7 @@
 
 namespace pertev {
 
-RenderResult render_samples(Session& session, Sink& sink) {
+RenderStats add_samples(Session& session, Sink& sink) {
     const RenderSettings& settings = session.settings();
     if (settings.range().count() > 0 && session.render(settings.range(), sink) == 0) {
         if (sink.should_stop()) throw Error(ErrorCode::Interrupted, "interrupted before there was anything to keep");
@@ -15,13 +15,18 @@ RenderResult render_samples(Session& session, Sink& sink) {
                                 "more than samples first",
                                 integrator_name(settings)));
     }
-    RenderResult result = session.result();
-    if (result.hidden_back_share > 0.01) {
+    RenderStats stats = session.stats();
+    if (stats.hidden_back_share > 0.01) {
         sink.note(fmt::format("the camera looks through the backs of surfaces at {:.0f} % of the picture, "
                               "as they are not double sided (`show_back_faces` shows them)",
-                              100 * result.hidden_back_share));
+                              100 * stats.hidden_back_share));
     }
-    return result;
+    return stats;
+}
+
+RenderResult render_samples(Session& session, Sink& sink) {
+    add_samples(session, sink);
+    return session.result();
 }
 
 } // namespace pertev

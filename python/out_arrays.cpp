@@ -1,0 +1,157 @@
+#include "python/out_arrays.h"
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+
+#include <nanobind/ndarray.h>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.h"
+
+namespace nb = nanobind;
+
+namespace pertev {
+namespace {
+
+/// Returns the group of layers that an attribute is named for; null if there is none.
+const AovGroup* group_named(std::string_view name) {
+    const auto* const found = std::ranges::find_if(
+        kAovTable, [&](const AovGroup& group) { return name == (group.bit == kAovIds ? group.name : group.layer); });
+    return found == std::end(kAovTable) ? nullptr : found;
+}
+
+/// Returns how many numbers a pixel has in the array of this name; none if there is no such array.
+std::optional<std::size_t> channels_of(const std::string& name, const RenderSettings& settings) {
+    if (is_picture(name)) return settings.transparent ? 4 : 3;
+    if (const AovGroup* group = group_named(name)) {
+        if ((settings.aovs & group->bit) == 0) return std::nullopt;
+        return channel_names(*group).size();
+    }
+    const std::vector<std::string> light = light_layers_of(settings);
+    if (std::ranges::find(light, name) == light.end()) return std::nullopt;
+    return 3;
+}
+
+std::size_t bytes_of(const OutArray& array) {
+    std::size_t bytes = sizeof(float);
+    for (const std::size_t length : array.shape) bytes *= length;
+    return bytes;
+}
+
+} // namespace
+
+bool is_picture(std::string_view name) { return name == "color" || name == "noisy"; }
+
+std::vector<OutArray> out_arrays(const nb::dict& out) {
+    std::vector<OutArray> arrays;
+    arrays.reserve(out.size());
+    for (const auto& [key, value] : out) {
+        OutArray& made = arrays.emplace_back();
+        made.name = nb::str(key).c_str();
+        made.array = nb::borrow(value);
+        nb::ndarray<nb::c_contig, nb::device::cpu> array;
+        if (!nb::try_cast(value, array, false)) continue;
+        if (reinterpret_cast<std::uintptr_t>(array.data()) % alignof(float) != 0) continue;
+        made.memory = static_cast<std::byte*>(array.data());
+        for (std::size_t axis = 0; axis < array.ndim(); ++axis) made.shape.push_back(array.shape(axis));
+        made.is_float = array.dtype() == nb::dtype<float>();
+        made.is_uint = array.dtype() == nb::dtype<uint32_t>();
+    }
+    return arrays;
+}
+
+const OutArray* find_array(std::span<const OutArray> arrays, std::string_view name) {
+    const auto found = std::ranges::find(arrays, name, &OutArray::name);
+    return found == arrays.end() ? nullptr : &*found;
+}
+
+void check_arrays(std::span<const OutArray> arrays, const RenderSettings& settings) {
+    for (const OutArray& array : arrays) {
+        const std::optional<std::size_t> channels = channels_of(array.name, settings);
+        if (!channels) throw Error(ErrorCode::BadInput, "out", array.name, "the picture has no such array");
+        const std::size_t shape[] = {settings.height, settings.width, *channels};
+        const std::span expected(shape, *channels > 1 ? 3 : 2);
+        const bool is_ids = array.name == "ids";
+        if (array.memory != nullptr && (is_ids ? array.is_uint : array.is_float) &&
+            std::ranges::equal(array.shape, expected)) {
+            continue;
+        }
+        throw Error(ErrorCode::BadInput, "out", array.name,
+                    fmt::format("expected an array of {} of shape ({}), in the CPU's memory and in the order of C",
+                                is_ids ? "uint32" : "float32", fmt::join(expected, ", ")));
+    }
+}
+
+void copy_into(std::span<const OutArray> arrays, const RenderResult& result) {
+    for (const OutArray& array : arrays) {
+        const void* from = result.ids.data();
+        if (array.name == "color" && result.denoised) {
+            from = result.denoised->pixels.data();
+        } else if (is_picture(array.name)) {
+            from = result.picture.pixels.data();
+        } else if (array.name != "ids") {
+            from = layer_named(result, array.name).pixels.data();
+        }
+        std::memcpy(array.memory, from, bytes_of(array));
+    }
+}
+
+void take_back(std::span<const OutArray> arrays, RenderResult& result) {
+    for (const OutArray& array : arrays) {
+        const auto fill = [&](auto& values) {
+            values.resize(bytes_of(array) / sizeof(values[0]));
+            std::memcpy(values.data(), array.memory, bytes_of(array));
+        };
+        if (array.name == "ids") {
+            fill(result.ids);
+        } else if (array.name == "color" && result.denoised) {
+            fill(result.denoised->pixels);
+        } else if (is_picture(array.name)) {
+            fill(result.picture.pixels);
+        } else {
+            const AovGroup* const group = group_named(array.name);
+            const Image& size = result.picture;
+            const std::vector<std::string> channels =
+                group != nullptr ? channel_names(*group) : std::vector<std::string>{"R", "G", "B"};
+            FilmLayer& layer = result.layers.emplace_back(FilmLayer{array.name, channels, {}});
+            layer.image = {size.width, size.height, static_cast<uint32_t>(channels.size()), {}};
+            fill(layer.image.pixels);
+        }
+    }
+}
+
+bool FilmReader::reads(std::span<const OutArray> arrays, const RenderSettings& settings) {
+    if (settings.denoise != Denoise::None || settings.range().count() == 0) return false;
+    return std::ranges::all_of(arrays, [](const OutArray& array) {
+        const AovGroup* const group = group_named(array.name);
+        return is_picture(array.name) || (group != nullptr && group->bit != kAovMotion);
+    });
+}
+
+void FilmReader::read(Session& session, const std::shared_ptr<Queue>& queue, std::span<const OutArray> arrays) {
+    const Film& film = session.film();
+    const uint32_t pixels = film.width() * film.height();
+    const UseThreads use(queue->threads());
+    for (const OutArray& array : arrays) {
+        const std::size_t bytes = bytes_of(array);
+        if (queue->is_cuda() && (queue_ != queue || on_device_.size() < bytes)) {
+            on_device_ = {};
+            queue_ = queue;
+            on_device_ = {*queue, bytes, "arrays to be filled"};
+        }
+        std::byte* const to = queue->is_cuda() ? on_device_.data() : array.memory;
+        if (is_picture(array.name)) {
+            film.picture_into(reinterpret_cast<float*>(to), pixels, session.settings().transparent);
+        } else if (array.name == "ids") {
+            queue->copy_on_device(to, film.view().ids, bytes);
+        } else {
+            film.layer_into(reinterpret_cast<float*>(to), pixels, group_named(array.name)->bit);
+        }
+        if (queue->is_cuda()) queue->copy_to_host(array.memory, to, bytes);
+    }
+}
+
+} // namespace pertev
