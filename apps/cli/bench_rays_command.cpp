@@ -24,6 +24,8 @@
 #include "lab/stored_figures.h"
 #include "render/prepare_scene.h"
 #include "session/machine.h"
+#include "session/opening/calibrated_camera.h"
+#include "session/opening/choose_camera.h"
 #include "settings/tracer_options.h"
 
 namespace pertev {
@@ -137,7 +139,9 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
     const PreparedScene prepared = // the sets are in the file's coordinates
         prepare_scene(scene, {.bvh = {}, .bvh_cache = {}, .tracers = choice, .keep_coordinates = true}, reporter);
     const FrameSize frame = record_frame(flags.count);
-    const Camera camera = choose_camera(flags.scene.camera, scene, 16.0f / 9.0f, reporter);
+    CameraChoice choice_of_camera = flags.scene.camera;
+    fit_intrinsics({frame.width, frame.height}, choice_of_camera);
+    const Camera camera = choose_camera(choice_of_camera, scene, 16.0f / 9.0f, reporter);
     reporter.report_messages();
     watch.restart();
     std::vector<RaySet> sets = make_isolated_sets(queue, scene, camera, prepared, flags.count, reporter);
@@ -147,7 +151,8 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
                                name, prepared.triangles, load_s, prepared.build_seconds, watch.seconds(), frame.width,
                                frame.height));
     const RecordScene* const record = find_named(the_record().scenes, name);
-    const bool is_moved = flags.scene.camera.eye || flags.scene.camera.target || flags.scene.camera.fov_deg;
+    Messages unsaid; // they are those of its first use
+    const bool is_moved = !(camera == choose_camera({}, scene, 16.0f / 9.0f, unsaid));
     std::vector<double> ratios;
     for (std::size_t i = 0; i < sets.size(); ++i) {
         reporter.set_work(fmt::format("{}: measuring {}", name, sets[i].name));
@@ -172,6 +177,7 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
 int bench_rays(RaysFlags& flags) {
     Reporter reporter(flags.report);
     flags.settings.read(flags, reporter);
+    apply_camera_from(flags);
     const std::vector<std::string> scenes = check_record_scenes(flags.scenes);
     listen_for_interrupt();
     const std::unique_ptr<Queue> queue = open_queue(flags.machine, reporter);

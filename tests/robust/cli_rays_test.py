@@ -76,6 +76,25 @@ class RaysOnTheRecord(CliTest):
         self.assertEqual([(of["rays"], of["hit_share"]) for of in up], [(1000, 0)] + [(0, 0)] * 4)
         self.assertEqual([of["rays_per_second"] is None for of in up], [False] + [True] * 4)
 
+    def test_cameras_are_those_of_pictures(self):
+        """Rays hit the share of the floor that each camera sees, however it is stated."""
+        write(self.path("floor.obj"), FLOOR)
+        above = ["--scene", "floor.obj", "--count", "1000"]
+        pose = ["--camera-pose", "1,0,0,0,0,0,1,1,0,-1,0,0", "--intrinsics-size", "64x36"]
+        for camera in [["--eye", "0,1,0", "--target", "0,0,0", "--up", "0,0,-1", "--fov", "20"],
+                       ["--eye", "0,1,0", "--target", "0,0,0", "--up", "0,0,-1", "--projection", "orthographic", "--view-height", "0.1"],
+                       [*pose, "--intrinsics", "200,200,32,18"]]:
+            with self.subTest(camera=camera):
+                self.assertEqual(self.rays(*above, *camera)[0]["hit_share"], 1)
+        far = self.rays(*above, *pose, "--intrinsics", "200,200,9999,18")
+        self.assertEqual(far[0]["hit_share"], 0)
+        self.refuse(2, "bench", "rays", *above, "--camera", "none", says=["--camera"])
+        self.refuse(2, "bench", "rays", *above, *pose[:2], "--intrinsics", "200,200,32,32", "--intrinsics-size", "64x64",
+                    says=["--intrinsics"])
+        render = ["render", "floor.obj", "--device", "cpu", "--spp", "1", "-q"]
+        self.succeed(*render, "--size", "64x36", "--eye", "0,1,0", "--target", "0,0,0", "--up", "0,0,-1", "--fov", "20", "-o", "a.exr")
+        self.assertEqual(self.rays(*above, "--camera-from", "a.exr")[0]["hit_share"], 1)
+
     def test_a_set_without_rays_is_reported_as_empty(self):
         write(self.path("floor.obj"), FLOOR)
         text = self.succeed("bench", "rays", "--device", "cpu", "--runs", "1", "--scene", "floor.obj", "--count", "1000",

@@ -33,7 +33,7 @@ FLAGS = {
     "compare": "--blocks --quiet -q --json",
     "bench": "--scene --size --spp --device --threads --build --structure --traversal --rta --order --distribution --report --quiet -q --json",
     "bench build": "--scene --runs --compare --device --threads --report --quiet -q --json",
-    "bench rays": "--scene --eye --target --fov --count --runs --check --device --threads --axes --build --structure --traversal --rta --order --distribution --report --quiet -q --json",
+    "bench rays": "--scene --camera --eye --target --up --fov --projection --view-height --camera-pose --convention --intrinsics --intrinsics-size --camera-from --count --runs --check --device --threads --axes --build --structure --traversal --rta --order --distribution --report --quiet -q --json",
 }
 
 
