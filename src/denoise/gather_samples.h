@@ -59,7 +59,7 @@ struct SampledSurfaces {
 
     struct Found {
         uint32_t object; // kNoHit: no hit
-        Vec3 point;      // camera space
+        Vec3 point;      // camera space, as a straight lens would show it there
         Vec3 normal;
     };
     HD Found found(uint32_t pixel) const {
@@ -68,6 +68,10 @@ struct SampledSurfaces {
         if (f.object == kNoHit) return f;
         const Vec3 point = point_at(instances, meshes, hit);
         f.point = transform_transposed(camera.world_from_camera, point - camera.world_from_camera.translation);
+        if (camera.lens.model != LensModel::Straight) { // guides lie where a straight lens shows their pixels
+            const LensProjection through = project_through_lens(camera.lens, f.point);
+            f.point = {-f.point.z * through.at.x, -f.point.z * through.at.y, f.point.z};
+        }
         return f;
     }
     /// Returns whether the sample's own pixel shows its surface, regardless of bumps.

@@ -106,15 +106,15 @@ void check_shutter(const RenderSettings& settings) {
 }
 
 void check_camera(const RenderSettings& settings, const Camera& camera) {
-    if (settings.denoise == Denoise::Svgf) check_reconstruction(camera);
+    refuse(settings.denoise == Denoise::Svgf && camera.lens == LensModel::Fisheye, "lens", "fisheye",
+           "`denoise=svgf` needs a lens that sees less than half of all directions (`denoise=oidn` supports it)");
     if (!rasterises_camera(settings.integrator)) return;
     const std::string why = why_no_raster(camera);
     refuse(!why.empty(), "integrator", integrator_name(settings), why);
 }
 
 void check_reconstruction(const Camera& camera) {
-    refuse(!has_straight_lens(camera), "distortion", "",
-           "frames in real time and `denoise=svgf` need a lens that draws straight lines");
+    refuse(!has_straight_lens(camera), "distortion", "", "frames in real time need a lens that draws straight lines");
 }
 
 std::optional<Remark> why_dark(const RenderSettings& settings, const Scene& scene) {

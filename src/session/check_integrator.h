@@ -18,7 +18,7 @@ void check_shutter(const RenderSettings& settings);
 
 /// Checks that the integrator supports this camera. Throws Error(BadInput).
 void check_camera(const RenderSettings& settings, const Camera& camera);
-/// Throws Error(BadInput) if frames, or pictures by svgf, cannot be reconstructed because the lens is not straight.
+/// Throws Error(BadInput) if frames cannot be reconstructed because the lens is not straight.
 void check_reconstruction(const Camera& camera);
 
 /// Returns why nothing would be lit, because the integrator supports none of the lights (though mirrors may show

@@ -91,7 +91,7 @@ class CamerasOfCalibrations(CliTest):
         size = ["--size", "16x16"]
         for flags, says in [([*pose, "--eye", "0,0,1"], ["--camera-pose", "--eye"]), (["--convention", "opencv"], ["--camera-pose"]),
                             (intrinsics, ["--size"]), ([*intrinsics, *size, "--fov", 40], ["--fov"]),
-                            ([*lens, "--denoise", "svgf"], ["--denoise"]), ([*lens, "--integrator", "hybrid"], ["distortion"]),
+                            (["--lens", "fisheye", "--denoise", "svgf"], ["--denoise"]), ([*lens, "--integrator", "hybrid"], ["distortion"]),
                             ([*lens, "--projection", "orthographic"], ["--projection"]),
                             (["--lens", "fisheye", "--aperture", 0.1], ["--aperture"]),
                             (["--camera-pose", "1,2,3"], ["--camera-pose", "12 or 16"]),
