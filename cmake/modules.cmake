@@ -57,18 +57,18 @@ endfunction()
 
 # Gathers .cu files of a list of sources, for nvcc or, without kernels, for the C++ compiler. nvcc takes a minute for each file of
 # shading and of traversal. Those stay alone, and so do the files that every picture needs: a GPU is given all kernels of a
-# file with the first of them.
+# file with the first of them. Folders above the clone may have any names.
 function(pertev_gather_kernels name list)
   set(files ${${list}})
-  list(FILTER files INCLUDE REGEX "\\.cu$|/cuda/")
+  list(FILTER files INCLUDE REGEX "\\.cu$|/cuda/[^/]*$")
   if(PERTEV_HAS_CUDA)
     set_source_files_properties(${files} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON) # CMake 3.31 and newer batch .cu files too
   endif()
-  list(FILTER files EXCLUDE REGEX "/cuda/")
+  list(FILTER files EXCLUDE REGEX "/cuda/[^/]*$")
   set(extension cpp)
   if(PERTEV_COMPILES_KERNELS)
     set(extension cu)
-    list(FILTER files EXCLUDE REGEX "/shade_|/kernels/|/hploc/|/(path|film)_stages")
+    list(FILTER files EXCLUDE REGEX "/(shade_|kernels/(lab/)?|hploc/|path_stages|film_stages)[^/]*$")
   elseif(PERTEV_HAS_CUDA)
     set_property(GLOBAL APPEND PROPERTY PERTEV_MODULES_WITH_KERNELS ${name})
     set_property(GLOBAL PROPERTY PERTEV_KERNELS_OF_${name} ${files})
@@ -76,8 +76,8 @@ function(pertev_gather_kernels name list)
   if(PERTEV_UNITY)
     set_source_files_properties(${files} PROPERTIES HEADER_FILE_ONLY ON)
     set(traversals ${files})
-    list(FILTER files EXCLUDE REGEX "/kernels/") # they have options of their own
-    list(FILTER traversals INCLUDE REGEX "/kernels/")
+    list(FILTER files EXCLUDE REGEX "/kernels/(lab/)?[^/]*$") # they have options of their own
+    list(FILTER traversals INCLUDE REGEX "/kernels/(lab/)?[^/]*$")
     pertev_gather(${name} ${extension} files)
     pertev_gather(${name}_kernels ${extension} traversals)
     set(alone ${traversals})
@@ -123,7 +123,7 @@ function(pertev_module folder)
   endforeach()
   set_property(GLOBAL APPEND PROPERTY PERTEV_MODULE_FOLDERS ${dir})
   if(NOT PERTEV_HAS_CUDA)
-    list(FILTER sources EXCLUDE REGEX "/cuda/")
+    list(FILTER sources EXCLUDE REGEX "/cuda/[^/]*$")
   endif()
   pertev_gather_kernels(${name} sources)
   if(sources MATCHES "\\.(cpp|cu)(;|$)")
