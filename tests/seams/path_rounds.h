@@ -5,7 +5,7 @@
 // that has ended keeps its place, with a ray that meets nothing. So any job, mask of features and listeners can be
 // rendered on either device, with no code in the product for it.
 
-#include "device/launch.h"
+#include "device/buffer.h"
 #include "integrators/path/generate_path.h"
 #include "integrators/path/path_vertex.h"
 #include "tracer/scene_tracer.h"
@@ -126,28 +126,7 @@ public:
           instances_(queue, 2 * pixels, "rounds") {}
 
     /// Adds samples [first, end) of the job's picture to its film, of at most `pixels` pixels.
-    void render(const Job& job, SceneTracer& tracer, uint32_t first, uint32_t end) {
-        const uint32_t count = job.film.window.count();
-        const uint32_t p = pixels_;
-        Uint2* const ids = triangles_.data();
-        const RoundsView<Listener> view = {.paths = paths_.data(),
-                                           .onwards = {rays_.data(), ids, ids + p},
-                                           .shadows = {rays_.data() + p, ids + 2 * p, ids + 3 * p},
-                                           .hits = {records_.data(), instances_.data()},
-                                           .occlusions = {nullptr, instances_.data() + p}};
-        for (uint32_t sample = first; sample < end; ++sample) {
-            launch(queue_, "begin_round", count, BeginRound<Listener, Job>{job, view, sample});
-            for (uint32_t depth = 0; depth <= job.settings.max_depth; ++depth) {
-                const RayKind kind = depth == 0 ? RayKind::Camera : RayKind::Bounce;
-                tracer.find_hits(kind, view.onwards.query(), count, view.hits);
-                launch(queue_, "shade_round", count, ShadeRound<kFeatures, Listener, Job>{job, view});
-                tracer.find_occlusions(view.shadows.query(), count, view.occlusions);
-                launch(queue_, "add_round_light", count, AddRoundLight<Listener, Job>{job, view});
-            }
-            launch(queue_, "end_rounds", count, EndRounds<Listener, Job>{job, view});
-        }
-        queue_.wait();
-    }
+    void render(const Job& job, SceneTracer& tracer, uint32_t first, uint32_t end); // path_rounds_body.h
 
 private:
     Queue& queue_;

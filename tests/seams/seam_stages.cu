@@ -1,5 +1,6 @@
 #include "device/launch_body.h"
 #include "tests/seams/absorbing_block.h"
+#include "tests/seams/path_rounds_body.h"
 #include "tests/seams/ranked_coverage.h"
 #include "tests/seams/two_node_tree.h"
 
