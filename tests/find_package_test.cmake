@@ -13,8 +13,8 @@ foreach(file IN LISTS installed)
     endif()
   endif()
 endforeach()
-execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE}/examples/find_package -B ${prefix}/example -DCMAKE_PREFIX_PATH=${prefix}
-                -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_BUILD_TYPE=Release OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${CMAKE_COMMAND} -G "${GENERATOR}" -S ${SOURCE}/examples/find_package -B ${prefix}/example
+                -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_BUILD_TYPE=Release OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${prefix}/example OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${prefix}/example/example cornell-box ${prefix}/a.exr size 24x16 spp 3 device cpu
                 OUTPUT_VARIABLE hash OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
