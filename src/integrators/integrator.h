@@ -55,11 +55,8 @@ public:
     /// Allocates memory for work of this size, unless what it holds suffices. begin() calls it. A dry run
     /// (Queue::make_dry_run) calls only this, to predict the memory of begin(). Throws Error(OutOfMemory).
     virtual void reserve(const WorkSize& size) = 0;
-    /// Returns an upper bound of the additional host memory, in bytes, for work of this size.
-    virtual std::size_t max_host_bytes(const WorkSize& size) const {
-        static_cast<void>(size);
-        return 0;
-    }
+    /// Returns the bytes of the host's memory that reserve() has allocated besides the queue's.
+    virtual std::size_t host_bytes() const { return 0; }
 
     /// Starts a picture: samples are taken of `picture`, and `tracer` traces their rays. Both must not change until
     /// the next begin(). Memory is allocated for `samples` per pixel (WorkSize); render() may be called for more. A

@@ -35,10 +35,12 @@ RenderSettings settings_of(const TransportSettings& settings, const std::string&
     return picture;
 }
 
-/// Returns an upper bound on the integrator's use of host memory.
+/// Returns the host's memory that the integrator allocates besides the device's.
 std::size_t host_bytes_of(const RenderSettings& picture) {
     Queue queue = Queue::make_dry_run(false);
-    return make_integrator(queue, picture)->max_host_bytes({.width = picture.width, .height = picture.height});
+    const std::unique_ptr<Integrator> integrator = make_integrator(queue, picture);
+    integrator->reserve({.width = picture.width, .height = picture.height, .samples = 1});
+    return integrator->host_bytes();
 }
 
 /// Draws errors in [0, 1] in false colours; an empty picture yields an empty one.

@@ -40,7 +40,7 @@ struct TransportRow {
     /// improve.
     bool is_solved = false;
     std::size_t bytes = 0;      // largest use of device memory that was observed, including the scene
-    std::size_t host_bytes = 0; // largest use of host memory: measured for solvers, an upper bound for records
+    std::size_t host_bytes = 0; // largest use of host memory: measured for solvers, allocated for records
     uint64_t invalid_samples = 0;
     std::vector<Repetition> repetitions; // never contains an empty repetition
 };

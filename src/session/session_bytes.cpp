@@ -43,9 +43,11 @@ public:
         if (integrator_) integrator_->reserve(size);
         take_deforming_trees(scene, tracers);
         if (queue.is_cuda()) take_structures(*scene.structures, tracers);
-        if (integrator_ && !queue.is_cuda()) host_bytes_ = integrator_->max_host_bytes(size);
     }
-    std::size_t bytes() const { return queue_.allocated_bytes() + host_bytes_; }
+    std::size_t bytes() const {
+        const bool counts_host = integrator_ && !queue_.is_cuda();
+        return queue_.allocated_bytes() + (counts_host ? integrator_->host_bytes() : 0);
+    }
 
 private:
     /// Copies the structures of a choice; missing ones are built.
@@ -79,7 +81,6 @@ private:
     std::vector<StructureOnDevice> structures_;
     std::vector<DeformingCompressed> trees_;
     std::vector<Buffer<std::byte>> top_levels_;
-    std::size_t host_bytes_ = 0; // known without a dry run
 };
 
 } // namespace

@@ -12,8 +12,8 @@ constexpr int kMaxLevels = 64; // after this many halvings a cell is a leaf what
 
 class PointOctreeBuilder {
 public:
-    PointOctreeBuilder(std::span<const Sphere> spheres, uint32_t max_leaf, PointOctree& tree)
-        : spheres_(spheres), max_leaf_(max_leaf), tree_(tree) {}
+    PointOctreeBuilder(std::span<const Sphere> spheres, uint32_t max_leaf, const PointOctreeSpace& space)
+        : spheres_(spheres), max_leaf_(max_leaf), space_(space) {}
 
     /// Builds the subtree over `ids`, which ascend and lie in the cube of `side` at `corner`. `spare` has the size of
     /// `ids`.
@@ -30,8 +30,9 @@ public:
             side = half;
         }
         add_node(ids, ids);
-        tree_.nodes.back().skip = static_cast<uint32_t>(tree_.nodes.size());
+        space_.nodes[nodes_ - 1].skip = nodes_;
     }
+    uint32_t nodes() const { return nodes_; }
 
 private:
     static Vec3 corner_of(unsigned k, Vec3 corner, float half) {
@@ -51,14 +52,14 @@ private:
         std::array<std::size_t, 9> ends = {};
         for (std::size_t k = 1; k < 9; ++k) ends[k] = ends[k - 1] + sizes[k - 1];
         for (const uint32_t id : ids) spare[ends[part_of(id, corner + Vec3{half, half, half}, half)]++] = id;
-        const std::size_t at = tree_.nodes.size();
+        const uint32_t at = nodes_;
         add_node(ids, spare.first(sizes[0]));
         for (unsigned k = 0; k < 8; ++k) {
             const std::size_t size = sizes[k + 1], first = ends[k + 1] - size;
             if (size == 0) continue;
             build(spare.subspan(first, size), ids.subspan(first, size), corner_of(k, corner, half), half, levels);
         }
-        tree_.nodes[at].skip = static_cast<uint32_t>(tree_.nodes.size());
+        space_.nodes[at].skip = nodes_;
     }
 
     /// Appends a node over `ids`; the spheres `own` stay at it.
@@ -69,39 +70,48 @@ private:
             bounds.extend(spheres_[id].centre);
             max_radius = max(max_radius, spheres_[id].radius);
         }
-        const auto first = static_cast<uint32_t>(tree_.spheres.size());
-        tree_.nodes.push_back({bounds.lo, first, bounds.hi, static_cast<uint32_t>(own.size()), max_radius, 0});
+        space_.nodes[nodes_++] = {bounds.lo, placed_, bounds.hi, static_cast<uint32_t>(own.size()), max_radius, 0};
         for (const uint32_t id : own) {
-            tree_.spheres.push_back(spheres_[id]);
-            tree_.indices.push_back(id);
+            space_.spheres[placed_] = spheres_[id];
+            space_.indices[placed_++] = id;
         }
     }
 
     std::span<const Sphere> spheres_;
     const uint32_t max_leaf_;
-    PointOctree& tree_;
+    const PointOctreeSpace& space_;
+    uint32_t nodes_ = 0, placed_ = 0;
 };
 
 } // namespace
 
-PointOctree build_point_octree(std::span<const Sphere> spheres, uint32_t max_leaf) {
+uint32_t build_point_octree(std::span<const Sphere> spheres, const PointOctreeSpace& space, uint32_t max_leaf) {
     PERTEV_CHECK(max_leaf >= 1);
-    if (spheres.size() > kMaxOctreeSpheres) {
+    const std::size_t count = spheres.size();
+    if (count > kMaxOctreeSpheres) {
         throw Error(ErrorCode::OverLimit, "an octree over spheres holds at most 2^30 of them");
     }
-    PointOctree tree;
-    if (spheres.empty()) return tree;
+    PERTEV_CHECK(space.nodes.size() >= 2 * count && space.spheres.size() >= count);
+    PERTEV_CHECK(space.indices.size() >= count && space.work.size() >= 2 * count);
+    if (count == 0) return 0;
     Bounds3 bounds;
-    tree.nodes.reserve(2 * spheres.size());
-    tree.spheres.reserve(spheres.size());
-    tree.indices.reserve(spheres.size());
-    std::vector<uint32_t> ids(spheres.size()), spare(spheres.size());
-    for (uint32_t i = 0; i < ids.size(); ++i) {
+    const std::span<uint32_t> ids = space.work.first(count), spare = space.work.subspan(count, count);
+    for (uint32_t i = 0; i < count; ++i) {
         PERTEV_CHECK(is_finite(spheres[i].centre) && is_finite(spheres[i].radius) && spheres[i].radius >= 0);
         bounds.extend(spheres[i].centre);
         ids[i] = i;
     }
-    PointOctreeBuilder(spheres, max_leaf, tree).build(ids, spare, bounds.lo, max_component(bounds.size()), kMaxLevels);
+    PointOctreeBuilder builder(spheres, max_leaf, space);
+    builder.build(ids, spare, bounds.lo, max_component(bounds.size()), kMaxLevels);
+    return builder.nodes();
+}
+
+PointOctree build_point_octree(std::span<const Sphere> spheres, uint32_t max_leaf) {
+    const std::size_t count = spheres.size();
+    PointOctree tree = {std::vector<PointOctreeNode>(2 * count), std::vector<Sphere>(count),
+                        std::vector<uint32_t>(count)};
+    std::vector<uint32_t> work(2 * count);
+    tree.nodes.resize(build_point_octree(spheres, {tree.nodes, tree.spheres, tree.indices, work}, max_leaf));
     return tree;
 }
 

@@ -43,6 +43,14 @@ struct PointOctree {
     std::vector<uint32_t> indices;      // [spheres] index in the builder's input; ascending within a node
 };
 
+/// Memory that a tree over n spheres is built in.
+struct PointOctreeSpace {
+    std::span<PointOctreeNode> nodes; // [2 n]
+    std::span<Sphere> spheres;        // [n]
+    std::span<uint32_t> indices;      // [n]
+    std::span<uint32_t> work;         // [2 n] of no meaning after the build
+};
+
 /// Arrays of a PointOctree for searches, as plain pointers of host or device.
 struct PointOctreeView {
     const PointOctreeNode* nodes = nullptr;
@@ -59,6 +67,8 @@ inline PointOctreeView view_of(const PointOctree& tree) {
 /// node. Spheres are finite, |coordinate| and radius <= kMaxCoordinate. Throws Error(OverLimit) for more than
 /// kMaxOctreeSpheres.
 PointOctree build_point_octree(std::span<const Sphere> spheres, uint32_t max_leaf = 4);
+/// Builds the tree in `space`, which may be for more spheres, and returns its number of nodes.
+uint32_t build_point_octree(std::span<const Sphere> spheres, const PointOctreeSpace& space, uint32_t max_leaf = 4);
 
 /// Squared distance from `at` to the box, 0 inside; no more than squared_distance to a point of it.
 HD inline float squared_distance_to_box(Vec3 lo, Vec3 hi, Vec3 at) {
@@ -98,12 +108,6 @@ HD inline void search_points(const PointOctreeView& tree, Vec3 at, Found& found)
         }
         ++i;
     }
-}
-
-/// Maximum host memory, in bytes, that build_point_octree needs for `spheres` spheres: the tree, and two index lists
-/// during the build.
-inline std::size_t max_octree_bytes(uint64_t spheres) {
-    return spheres * (2 * sizeof(PointOctreeNode) + sizeof(Sphere) + 3 * sizeof(uint32_t));
 }
 
 } // namespace pertev

@@ -32,17 +32,13 @@ public:
 
     void reserve(const WorkSize& size) override;
     /// Returns the bytes of the records and their octree.
-    std::size_t max_host_bytes(const WorkSize& size) const override {
-        return RecordStore::max_host_bytes(size.pixels());
-    }
+    std::size_t host_bytes() const override { return store_.host_bytes(); }
     void expect_same_picture() override { is_same_picture_ = true; }
     bool has_made() const override { return has_records_ && store_.count() > 0; }
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
     /// Makes the records. On the CPU the record that each thread is working on is always finished.
     bool prepare(const std::function<bool(double share)>& goes_on) override;
     void render(uint32_t first, uint32_t count, const FilmView& film) override;
-    /// Maximum additional host memory that records have taken, in bytes.
-    std::size_t host_bytes() const { return store_.host_bytes(); }
 
     /// Number of records of the current picture, once it has samples.
     uint32_t record_count() const { return store_.count(); }

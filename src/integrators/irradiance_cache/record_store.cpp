@@ -11,20 +11,16 @@ namespace pertev {
 
 namespace {
 
-/// Builds an octree over the centres, which lie in its leaves, whatever the radii.
-PointOctree tree_over_centres(std::span<const Sphere> records) {
-    std::vector<Sphere> centres(records.begin(), records.end());
-    for (Sphere& centre : centres) centre.radius = 0;
-    PointOctree tree = build_point_octree(centres);
-    for (std::size_t k = 0; k < tree.spheres.size(); ++k) tree.spheres[k].radius = records[tree.indices[k]].radius;
-    return tree;
-}
-
-/// Returns the least radius in the subtree of each node.
-std::vector<float> min_radii(const PointOctree& tree) {
-    std::vector<float> least(tree.nodes.size());
-    for (std::size_t i = tree.nodes.size(); i-- > 0;) { // reverse depth-first order: children come before their
-                                                        // parents
+/// Builds an octree over the centres, which lie in its leaves, whatever the radii, and finds the least radius in the
+/// subtree of each node.
+PointOctreeView tree_over_centres(std::span<const Sphere> records, const SpacingMemory& memory) {
+    Sphere* const centres = memory.spheres.data();
+    for (std::size_t i = 0; i < records.size(); ++i) centres[i] = {records[i].centre, 0};
+    const PointOctreeSpace tree = memory.tree();
+    const uint32_t count = build_point_octree({centres, records.size()}, tree);
+    for (std::size_t k = 0; k < records.size(); ++k) tree.spheres[k].radius = records[tree.indices[k]].radius;
+    float* const least = memory.least_radii.data();
+    for (std::size_t i = count; i-- > 0;) { // reverse depth-first order: children come before their parents
         const PointOctreeNode& node = tree.nodes[i];
         float radius = kInfinity;
         for (uint32_t k = node.first; k < node.first + node.count; ++k) radius = min(radius, tree.spheres[k].radius);
@@ -33,7 +29,7 @@ std::vector<float> min_radii(const PointOctree& tree) {
         }
         least[i] = radius;
     }
-    return least;
+    return {tree.nodes.data(), tree.spheres.data(), tree.indices.data(), count};
 }
 
 /// The minimum so far of a record's radius and of its neighbours' radii plus distance.
@@ -44,7 +40,8 @@ struct Clamped {
 
 class Clamp {
 public:
-    explicit Clamp(const PointOctree& tree) : tree_(tree), min_(min_radii(tree)) {}
+    /// `least_radii` are those in the subtree of each node.
+    Clamp(const PointOctreeView& tree, const float* least_radii) : tree_(tree), min_(least_radii) {}
 
     /// Clamps the record with this index in the tree. Neighbours farther away than its radius do not reduce it, nor
     /// does a subtree whose least radius plus distance is not below the minimum so far. `guess` is a likely minimum,
@@ -54,7 +51,7 @@ public:
         const float max_squared = square_of_radius(record.radius);
         Clamped found = {record.radius, number};
         inspect(guess, record, max_squared, found);
-        for (uint32_t i = 0; i < tree_.nodes.size();) {
+        for (uint32_t i = 0; i < tree_.node_count;) {
             const PointOctreeNode& node = tree_.nodes[i];
             const float near_squared = squared_distance_to_box(node.lo, node.hi, record.centre);
             if (near_squared > max_squared || min_[i] + sqrt(near_squared) >= found.radius) {
@@ -75,16 +72,25 @@ private:
         if (radius < found.radius) found = {radius, k};
     }
 
-    const PointOctree& tree_;
-    std::vector<float> min_;
+    const PointOctreeView& tree_;
+    const float* min_;
 };
 
 } // namespace
 
-std::vector<float> clamp_by_neighbours(std::span<const Sphere> records) {
-    const PointOctree tree = tree_over_centres(records);
-    const Clamp clamp(tree);
-    std::vector<float> clamped(records.size());
+void SpacingMemory::grow(Queue& host, std::size_t records) {
+    constexpr const char* kName = "spacing of irradiance records";
+    spheres.grow(host, records, kName);
+    least_radii.grow(host, 2 * records, kName);
+    nodes.grow(host, 2 * records, kName);
+    tree_spheres.grow(host, records, kName);
+    indices.grow(host, records, kName);
+    work.grow(host, 2 * records, kName);
+}
+
+void clamp_by_neighbours(std::span<const Sphere> records, const SpacingMemory& memory, std::span<float> clamped) {
+    const PointOctreeView tree = tree_over_centres(records, memory);
+    const Clamp clamp(tree, memory.least_radii.data());
     parallel_for_ranges(records.size(), 64, [&](uint64_t begin, uint64_t end) {
         auto guess = static_cast<uint32_t>(begin); // the neighbour that clamps a record often clamps the next one in
                                                    // the tree too
@@ -94,7 +100,6 @@ std::vector<float> clamp_by_neighbours(std::span<const Sphere> records) {
             guess = found.by;
         }
     });
-    return clamped;
 }
 
 namespace {
@@ -110,11 +115,6 @@ std::span<T> on_host(Queue& queue, T* data, std::size_t count, std::vector<T>& c
 
 } // namespace
 
-std::size_t RecordStore::max_host_bytes(uint64_t pixels) {
-    const uint64_t most = max_records(pixels);
-    return most * (2 * sizeof(Sphere) + 2 * sizeof(float)) + max_octree_bytes(most);
-}
-
 void RecordStore::allocate(uint64_t pixels) {
     const std::size_t most = max_records(pixels);
     sites_.grow(queue_, pixels, "sites of the overture");
@@ -123,22 +123,18 @@ void RecordStore::allocate(uint64_t pixels) {
     nodes_.grow(queue_, 2 * most, "octree over irradiance records");
     tree_spheres_.grow(queue_, most, "octree over irradiance records");
     tree_indices_.grow(queue_, most, "octree over irradiance records");
+    spheres_.grow(host_, most, "irradiance records");
+    luminances_.grow(host_, most, "irradiance records");
+    clamped_.grow(host_, most, "irradiance records");
+    spacing_.grow(host_, most);
     pixels_ = pixels;
-}
-
-void RecordStore::clear() {
-    spheres_.clear();
-    luminances_.clear();
-    spheres_.reserve(max_records(pixels_));
-    luminances_.reserve(max_records(pixels_));
-    node_count_ = 0;
 }
 
 uint32_t RecordStore::gather_sites(uint32_t count) {
     std::vector<RecordSite> copy;
     const std::span<RecordSite> sites = on_host(queue_, sites_.data(), count, copy);
     const auto none = std::ranges::remove_if(sites, [](const RecordSite& s) { return s.scatterings == kNoSite; });
-    const std::size_t wanted = std::min(sites.size() - none.size(), max_records(pixels_) - spheres_.size());
+    const std::size_t wanted = std::min(sites.size() - none.size(), std::size_t(max_records(pixels_) - count_));
     if (queue_.is_cuda()) sites_.upload(sites.first(wanted));
     return static_cast<uint32_t>(wanted);
 }
@@ -146,26 +142,24 @@ uint32_t RecordStore::gather_sites(uint32_t count) {
 void RecordStore::take(uint32_t made, float accuracy) {
     accuracy_ = accuracy;
     std::vector<IrradianceRecord> copy;
-    for (const IrradianceRecord& record : on_host(queue_, records_.data() + count(), made, copy)) {
-        spheres_.push_back({record.point.position, record.radius});
-        luminances_.push_back(luminance(record.light));
+    for (const IrradianceRecord& record : on_host(queue_, records_.data() + count_, made, copy)) {
+        spheres_.data()[count_] = {record.point.position, record.radius};
+        luminances_.data()[count_++] = luminance(record.light);
     }
-    std::vector<float> reaches = clamp_by_neighbours(spheres_);
-    std::vector<Sphere> reached = spheres_;
-    for (std::size_t i = 0; i < reached.size(); ++i) {
+    const std::span<const Sphere> spheres(spheres_.data(), count_);
+    const std::span<float> reaches(clamped_.data(), count_);
+    clamp_by_neighbours(spheres, spacing_, reaches);
+    const std::span<Sphere> reached(spacing_.spheres.data(), count_);
+    for (std::size_t i = 0; i < count_; ++i) {
         reaches[i] = accuracy * reaches[i];
-        reached[i].radius = reaches[i];
+        reached[i] = {spheres[i].centre, reaches[i]};
     }
-    const PointOctree tree = build_point_octree(reached);
-    PERTEV_CHECK(tree.nodes.size() <= nodes_.size());
-    const std::size_t of_each = (spheres_.capacity() + reached.capacity()) * sizeof(Sphere) +
-                                (luminances_.capacity() + reaches.capacity()) * sizeof(float);
-    host_bytes_ = std::max(host_bytes_, of_each + max_octree_bytes(reached.size()));
+    const PointOctreeSpace tree = spacing_.tree();
+    node_count_ = build_point_octree(reached, tree);
     reaches_.upload(reaches);
-    nodes_.upload(tree.nodes);
-    tree_spheres_.upload(tree.spheres);
-    tree_indices_.upload(tree.indices);
-    node_count_ = static_cast<uint32_t>(tree.nodes.size());
+    nodes_.upload(tree.nodes.first(node_count_));
+    tree_spheres_.upload(tree.spheres.first(count_));
+    tree_indices_.upload(tree.indices.first(count_));
 }
 
 IrradianceCacheView RecordStore::view() const {
@@ -177,8 +171,8 @@ IrradianceCacheView RecordStore::view() const {
 
 float RecordStore::mean_luminance() const {
     double sum = 0;
-    for (const float luminance : luminances_) sum += static_cast<double>(luminance);
-    return luminances_.empty() ? 0.0f : static_cast<float>(sum / static_cast<double>(luminances_.size()));
+    for (uint32_t i = 0; i < count_; ++i) sum += static_cast<double>(luminances_.data()[i]);
+    return count_ == 0 ? 0.0f : static_cast<float>(sum / count_);
 }
 
 } // namespace pertev

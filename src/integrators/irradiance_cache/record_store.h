@@ -1,11 +1,11 @@
 #pragma once
 
-// Owns the records of a picture and the octree over them.
+// Owns the records of a picture and the octree over them. Only rounds tell how many records there are: memory is for
+// max_records(), on the device and on the host.
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "accel/octree/point_octree.h"
 #include "device/buffer.h"
@@ -14,21 +14,38 @@
 
 namespace pertev {
 
+/// Host memory in which records are spaced.
+struct SpacingMemory {
+    Buffer<Sphere> spheres;    // [records] what a tree is built over
+    Buffer<float> least_radii; // [nodes]
+    Buffer<PointOctreeNode> nodes;
+    Buffer<Sphere> tree_spheres;
+    Buffer<uint32_t> indices, work;
+
+    /// Allocates for at most `records` records.
+    void grow(Queue& host, std::size_t records);
+    PointOctreeSpace tree() const {
+        return {{nodes.data(), nodes.size()},
+                {tree_spheres.data(), tree_spheres.size()},
+                {indices.data(), indices.size()},
+                {work.data(), work.size()}};
+    }
+};
+
 class RecordStore {
 public:
     /// Makes an empty store; `queue` outlives it.
-    explicit RecordStore(Queue& queue) : queue_(queue) {}
+    explicit RecordStore(Queue& queue)
+        : queue_(queue), host_(queue.is_dry_run() ? Queue::make_dry_run(false) : Queue::make_cpu(queue.threads())) {}
 
-    /// Maximum additional host memory, in bytes, for the octree and the spacing of records.
-    static std::size_t max_host_bytes(uint64_t pixels);
     /// Allocates for a picture of `pixels` pixels. Throws Error(OutOfMemory).
     void allocate(uint64_t pixels);
-    /// Maximum host memory that the store has taken, in bytes.
-    std::size_t host_bytes() const { return host_bytes_; }
+    /// Bytes of the host's memory besides the queue's.
+    std::size_t host_bytes() const { return host_.allocated_bytes(); }
 
     /// Removes all records for a new picture.
-    void clear();
-    uint32_t count() const { return static_cast<uint32_t>(spheres_.size()); }
+    void clear() { count_ = node_count_ = 0; }
+    uint32_t count() const { return count_; }
 
     /// [pixels] sites of the overture.
     RecordSite* sites() const { return sites_.data(); }
@@ -46,12 +63,14 @@ public:
 
 private:
     Queue& queue_;
+    Queue host_; // counts the host's memory
     uint64_t pixels_ = 0;
     float accuracy_ = 0;
-    std::vector<Sphere> spheres_;   // with the records' unclamped radii
-    std::vector<float> luminances_; // luminance of the records' light
-    std::size_t host_bytes_ = 0;
-    uint32_t node_count_ = 0;
+    uint32_t count_ = 0, node_count_ = 0;
+    Buffer<Sphere> spheres_;   // on the host: with the records' unclamped radii
+    Buffer<float> luminances_; // on the host: luminance of the records' light
+    Buffer<float> clamped_;    // on the host: radii of the last round
+    SpacingMemory spacing_;
     Buffer<RecordSite> sites_;
     Buffer<IrradianceRecord> records_;
     Buffer<float> reaches_;
@@ -67,8 +86,7 @@ private:
 // Source: Krivanek, Bouatouch, Pattanaik, Zara, "Making Radiance and Irradiance Caching Practical: Adaptive Caching
 // and Neighbor Clamping", EGSR 2006, section 5.
 
-/// Clamps the radii of spheres around records: returns the minimum of radius_j + distance to j over all j, itself
-/// included.
-std::vector<float> clamp_by_neighbours(std::span<const Sphere> records);
+/// Clamps the radii of spheres around records to the minimum of radius_j + distance to j over all j, itself included.
+void clamp_by_neighbours(std::span<const Sphere> records, const SpacingMemory& memory, std::span<float> clamped);
 
 } // namespace pertev

@@ -249,7 +249,7 @@ std::size_t predicted_bytes(const IntegratorSettings& settings, const WorkSize& 
     Queue queue = Queue::make_dry_run(on_cuda);
     const std::unique_ptr<Integrator> integrator = make_integrator(queue, settings);
     integrator->reserve(size);
-    return queue.allocated_bytes() + (on_cuda ? 0 : integrator->max_host_bytes(size));
+    return queue.allocated_bytes() + (on_cuda ? 0 : integrator->host_bytes());
 }
 
 } // namespace pertev
