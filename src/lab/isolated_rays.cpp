@@ -4,8 +4,8 @@
 
 namespace pertev {
 
-Tracer make_tracer(Queue& queue, const Combination& combination, const PreparedScene& prepared) {
-    return {queue, combination, prepared.structures->get(combination)};
+Tracer make_tracer(Queue& queue, const Combination& combination, const PreparedScene& prepared, Sink& sink) {
+    return {queue, combination, prepared.structures->get(combination, sink)};
 }
 
 const Combination& tracer_of_pictures(const RaySet& set, const TracerChoice& choice) {
@@ -14,7 +14,7 @@ const Combination& tracer_of_pictures(const RaySet& set, const TracerChoice& cho
 
 std::vector<RaySet> make_isolated_sets(Queue& queue, const Scene& scene, const Camera& camera,
                                        const PreparedScene& prepared, uint32_t count, Sink& sink) {
-    const Tracer tracer = make_tracer(queue, kBinaryTracer, prepared);
+    const Tracer tracer = make_tracer(queue, kBinaryTracer, prepared, sink);
     const FrameSize frame = record_frame(count);
     const auto trace = [&, trace_rays = make_ray_tracer(queue, tracer)](std::span<const Ray> rays,
                                                                         std::span<RayHit> hits) {
@@ -46,7 +46,7 @@ IsolatedRates measure_isolated_rays(Queue& queue, const Scene& scene, const Came
     for (RaySet& set : make_isolated_sets(queue, scene, camera, prepared, count, sink)) {
         if (set.rays.empty()) continue;
         sink.check();
-        const Tracer tracer = make_tracer(queue, tracer_of_pictures(set, choice), prepared);
+        const Tracer tracer = make_tracer(queue, tracer_of_pictures(set, choice), prepared, sink);
         RaysOnDevice rays(queue, set);
         Sum& sum = set.any_hit ? shadows : set.name == "primary" ? camera_rays : bounces;
         sum.rays += static_cast<double>(rays.count());

@@ -20,8 +20,8 @@ namespace pertev {
 inline constexpr Combination kBinaryTracer = {.structure = StructureKind::Binned,
                                               .traversal = TraversalKind::WhileWhile};
 
-/// Builds the combination's tracer. Throws Error(OutOfMemory).
-Tracer make_tracer(Queue& queue, const Combination& combination, const PreparedScene& prepared);
+/// Builds the combination's tracer, which `sink` may end. Throws Error(OutOfMemory).
+Tracer make_tracer(Queue& queue, const Combination& combination, const PreparedScene& prepared, Sink& sink = nobody());
 
 /// The tracer that renders use for rays of this set's kind.
 const Combination& tracer_of_pictures(const RaySet& set, const TracerChoice& choice);

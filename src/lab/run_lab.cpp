@@ -22,9 +22,6 @@
 namespace pertev {
 namespace {
 
-/// The exception when the sink stops; everything measured so far is kept.
-struct Stopped {};
-
 /// The proven traversal. Some of its rays are compared with brute force, so that every other combination can be
 /// compared with it on all rays.
 constexpr Combination kProven = {.structure = StructureKind::Binned, .traversal = TraversalKind::WhileWhile};
@@ -60,13 +57,11 @@ public:
         try {
             make_sets();
             for (const StructureKind structure : structures_) measure_structure(structure);
-        } catch (const Stopped&) {
+        } catch (const Error& error) { // the measurements so far are kept
+            const bool device_is_lost = error.code() == ErrorCode::DeviceFault && measuring_ != nullptr;
+            if (error.code() != ErrorCode::Interrupted && !device_is_lost) throw;
             report_.interrupted = true;
-        } catch (const Error& error) { // the device is lost, but the measurements so far are kept
-            if (error.code() != ErrorCode::DeviceFault || measuring_ == nullptr) throw;
-            report_.interrupted = true;
-            measuring_->wrong = true;
-            measuring_->refused = error.what();
+            if (device_is_lost) measuring_->wrong = true, measuring_->refused = error.what();
         }
         if (report_.interrupted) {
             for (CombinationFigures& c : report_.combinations) {
@@ -83,7 +78,8 @@ private:
         const double share = std::min(1.0, work_done_ / std::max(work_, 1.0)), seconds = watch_.seconds();
         Progress now = {.doing = doing, .share = share, .seconds = seconds, .share_of_step = share_of_step};
         if (share > 0.01) now.seconds_left = seconds * (1 - share) / share;
-        if (!sink_.goes_on(now)) throw Stopped{};
+        sink_.progress(now);
+        sink_.check();
     }
     /// Returns a progress callback for work in pieces. `doing` must outlive it.
     PieceDone progress_of(const std::string& doing) {
@@ -103,7 +99,7 @@ private:
     /// Makes the rays of a frame, traces them by the proven traversal and compares that with brute force.
     void make_sets() {
         progress("building the tree of the proven traversal");
-        const BinaryTrees binary = build_binary_trees(triangles_.parts, BvhBuilder::Binned);
+        const BinaryTrees binary = build_binary_trees(triangles_.parts, BvhBuilder::Binned, sink_);
         triangles_.tlas = tlas_over(scene_, binary);
         const Tracer proven = tracer_over(kProven, binary);
         const BruteForce oracle(queue_, triangles_.parts, triangles_.tlas);
@@ -112,7 +108,7 @@ private:
 
     Tracer tracer_over(const Combination& combination, const BinaryTrees& trees) {
         const auto built = std::make_shared<const BuiltStructure>(triangles_.tlas, combination.structure,
-                                                                  layout_of(combination), trees);
+                                                                  layout_of(combination), trees, nullptr, sink_);
         return {queue_, combination, built};
     }
 
@@ -220,17 +216,16 @@ private:
             const std::vector<CombinationFigures*>& combinations = entry.second;
             const uint32_t at = static_cast<uint32_t>(report_.structures.size());
             const std::string failed = unless_memory_lacks([&] {
-                // Builders cannot be interrupted: a stop takes effect after the build and again after the conversion.
                 progress(fmt::format("building {}", name_of(structure)));
                 const auto builder = builder_of(structure);
                 if (builder && !binary) {
-                    binary = build_binary_trees(triangles_.parts, *builder);
+                    binary = build_binary_trees(triangles_.parts, *builder, sink_);
                     progress(fmt::format("converting {}", name_of(structure)));
                 }
                 const Tlas& tlas = triangles_.tlas;
-                const auto on_host = builder
-                                         ? std::make_shared<const BuiltStructure>(tlas, structure, layout, *binary)
-                                         : std::make_shared<const BuiltStructure>(tlas, structure, triangles_.parts);
+                const auto on_host =
+                    builder ? std::make_shared<const BuiltStructure>(tlas, structure, layout, *binary, nullptr, sink_)
+                            : std::make_shared<const BuiltStructure>(tlas, structure, triangles_.parts, nullptr, sink_);
                 const auto built = std::make_shared<const StructureOnDevice>(queue_, on_host);
                 report_.structures.push_back(on_host->figures());
                 for (CombinationFigures* c : combinations) {

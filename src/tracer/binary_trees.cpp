@@ -17,12 +17,12 @@ std::vector<Bounds3> BinaryTrees::mesh_bounds() const {
     return bounds;
 }
 
-BinaryTrees build_binary_trees(const SceneTriangles& triangles, BvhBuilder builder) {
+BinaryTrees build_binary_trees(const SceneTriangles& triangles, BvhBuilder builder, Sink& sink) {
     BinaryTrees trees;
     const Stopwatch watch;
     for (std::size_t part = 0; part < triangles.parts(); ++part) {
         const std::vector<BvhTriangle>& list = triangles.part(part);
-        trees.add(builder, build_bvh(builder, list), list.size());
+        trees.add(builder, build_bvh(builder, list, {.sink = &sink}), list.size());
     }
     trees.build_s = watch.seconds();
     return trees;

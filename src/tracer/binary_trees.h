@@ -32,8 +32,8 @@ struct BinaryTrees {
     std::vector<Bounds3> mesh_bounds() const;
 };
 
-/// Builds all parts. Throws Error(OverLimit), std::bad_alloc.
-BinaryTrees build_binary_trees(const SceneTriangles& triangles, BvhBuilder builder);
+/// Builds all parts. `sink` may end it. Throws Error(OverLimit), std::bad_alloc.
+BinaryTrees build_binary_trees(const SceneTriangles& triangles, BvhBuilder builder, Sink& sink = nobody());
 
 /// Difference of a part's triangles from the previous version of the scene.
 enum class PartChange {

@@ -159,13 +159,13 @@ BuiltStructure::BuiltStructure(const Tlas& tlas, StructureKind kind, TreeLayout 
         take<Bvh>(tlas, parts, [](const Bvh& bvh) { return view_of(bvh); });
         break;
     case TreeLayout::Linked:
-        convert([](Bvh bvh) {
-            add_parent_links(bvh);
+        convert([&](Bvh bvh) {
+            add_parent_links(bvh, sink);
             return bvh;
         });
         break;
     case TreeLayout::Skip: {
-        convert([](const Bvh& bvh) { return make_skip_bvh(bvh); });
+        convert([&](const Bvh& bvh) { return make_skip_bvh(bvh, sink); });
         const Bvh& largest =
             **std::ranges::max_element(parts, {}, [](const auto& bvh) { return bvh->triangles.size(); });
         figures_.sah_cost = static_cast<double>(largest.sah_cost),
@@ -173,7 +173,7 @@ BuiltStructure::BuiltStructure(const Tlas& tlas, StructureKind kind, TreeLayout 
         break;
     }
     case TreeLayout::Woop:
-        convert([](const Bvh& bvh) { return make_woop_bvh(bvh); });
+        convert([&](const Bvh& bvh) { return make_woop_bvh(bvh, sink); });
         break;
     case TreeLayout::Wide4:
         convert([&](const Bvh& bvh) { return make_wide_bvh<4>(bvh, {}, sink); });
@@ -194,7 +194,7 @@ BuiltStructure::BuiltStructure(const Tlas& tlas, StructureKind kind, TreeLayout 
                                             // binary tree
             Queue queue = Queue::make_cpu();
             figures_.build_s = 0;
-            convert([&](const Bvh& bvh) { return build_compressed_bvh(queue, bvh.triangles); });
+            convert([&](const Bvh& bvh) { return build_compressed_bvh(queue, bvh.triangles, sink); });
             break;
         }
         convert([&](const Bvh& bvh) { return make_compressed_bvh(bvh, kCompressedCollapse, sink); });
@@ -206,12 +206,14 @@ BuiltStructure::BuiltStructure(const Tlas& tlas, StructureKind kind, TreeLayout 
 }
 
 BuiltStructure::BuiltStructure(const Tlas& tlas, StructureKind kind, const SceneTriangles& triangles,
-                               const Before* before) {
+                               const Before* before, Sink& sink) {
     figures_.name = std::string(name_of(kind));
     if (kind == StructureKind::Octree) {
-        build(tlas, triangles.parts(), before, [&](std::size_t part) { return build_octree(triangles.part(part)); });
+        build(tlas, triangles.parts(), before,
+              [&](std::size_t part) { return build_octree(triangles.part(part), {.sink = &sink}); });
     } else {
-        const KdTreeSettings settings = {.split = kind == StructureKind::KdSah ? KdSplit::Sah : KdSplit::SpatialMedian};
+        const KdSplit split = kind == StructureKind::KdSah ? KdSplit::Sah : KdSplit::SpatialMedian;
+        const KdTreeSettings settings = {.split = split, .sink = &sink};
         build(tlas, triangles.parts(), before,
               [&](std::size_t part) { return build_kd_tree(triangles.part(part), settings); });
     }

@@ -70,10 +70,10 @@ public:
     /// outlive the call. `sink` may end it. Throws Error(OverLimit), std::bad_alloc.
     BuiltStructure(const Tlas& tlas, StructureKind kind, TreeLayout layout, const BinaryTrees& trees,
                    const Before* before = nullptr, Sink& sink = nobody());
-    /// Builds a kd-tree or an octree. Their planes are fixed in space, so deformed parts are rebuilt. Throws
-    /// Error(OverLimit), std::bad_alloc.
+    /// Builds a kd-tree or an octree. Their planes are fixed in space, so deformed parts are rebuilt. `sink`
+    /// may end it. Throws Error(OverLimit), std::bad_alloc.
     BuiltStructure(const Tlas& tlas, StructureKind kind, const SceneTriangles& triangles,
-                   const Before* before = nullptr);
+                   const Before* before = nullptr, Sink& sink = nobody());
 
     /// The structure as a traversal on the host reads it.
     const AnyTrees& trees() const { return trees_; }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/sort_until.h"
 #include "scene/scene.h"
 #include "tracer/deforming_tree.h"
 
@@ -13,13 +14,14 @@ namespace pertev {
 namespace {
 
 /// Returns the triangles in scene order, as the builder got them. Each appears once even if the tree splits it.
-SceneTriangles triangles_of(const BinaryTrees& trees) {
+SceneTriangles triangles_of(const BinaryTrees& trees, Sink& sink) {
     SceneTriangles triangles;
     for (std::size_t part = 0; part < trees.parts.size(); ++part) {
         std::vector<BvhTriangle> list = trees.parts[part]->triangles;
         for (BvhTriangle& triangle : list) triangle.flags = 0;
         const auto key_of = [](const BvhTriangle& t) { return std::pair(t.instance, t.primitive); };
-        std::ranges::sort(list, {}, key_of);
+        sort_until(std::span(list), sink,
+                   [&](const BvhTriangle& a, const BvhTriangle& b) { return key_of(a) < key_of(b); });
         const auto copies = std::ranges::unique(list, {}, key_of);
         list.erase(copies.begin(), copies.end());
         if (part == 0) {
@@ -97,26 +99,28 @@ std::shared_ptr<SceneStructures> SceneStructures::fitted(Queue& queue, std::span
     return updated(std::move(trees), std::move(tlas), changes, triangles);
 }
 
-const BinaryTrees& SceneStructures::binary_trees(BvhBuilder builder) {
+const BinaryTrees& SceneStructures::binary_trees(BvhBuilder builder, Sink& sink) {
     const auto at = binary_.find(builder);
     if (at != binary_.end()) return at->second;
-    const SceneTriangles triangles = triangles_of(binary_.at(builder_));
-    return binary_.emplace(builder, build_binary_trees(triangles, builder)).first->second;
+    const SceneTriangles triangles = triangles_of(binary_.at(builder_), sink);
+    return binary_.emplace(builder, build_binary_trees(triangles, builder, sink)).first->second;
 }
 
 std::shared_ptr<const BuiltStructure> SceneStructures::get(const Combination& combination, Sink& sink) {
     const std::lock_guard lock(mutex_);
     const StructureKind kind = combination.structure;
     const TreeLayout layout = layout_of(combination);
-    auto& built = built_[{kind, layout}];
-    if (built != nullptr) return built;
+    const auto at = built_.find({kind, layout});
+    if (at != built_.end()) return at->second;
+    std::shared_ptr<const BuiltStructure> built;
     if (const auto builder = builder_of(kind)) {
-        built = std::make_shared<const BuiltStructure>(tlas_, kind, layout, binary_trees(*builder), nullptr, sink);
+        built =
+            std::make_shared<const BuiltStructure>(tlas_, kind, layout, binary_trees(*builder, sink), nullptr, sink);
     } else {
-        const SceneTriangles triangles = triangles_of(binary_.at(builder_));
-        built = std::make_shared<const BuiltStructure>(tlas_, kind, triangles);
+        const SceneTriangles triangles = triangles_of(binary_.at(builder_), sink);
+        built = std::make_shared<const BuiltStructure>(tlas_, kind, triangles, nullptr, sink);
     }
-    return built;
+    return built_.emplace(std::pair(kind, layout), built).first->second;
 }
 
 } // namespace pertev

@@ -52,7 +52,7 @@ public:
     }
 
 private:
-    const BinaryTrees& binary_trees(BvhBuilder builder);
+    const BinaryTrees& binary_trees(BvhBuilder builder, Sink& sink);
 
     BvhBuilder builder_;
     Tlas tlas_;

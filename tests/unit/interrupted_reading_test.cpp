@@ -2,13 +2,16 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <functional>
 
 #include "accel/builders/builders.h"
 #include "accel/builders/bvh_cache.h"
 #include "accel/bvh/compressed_bvh.h"
 #include "accel/bvh/wide_bvh.h"
 #include "base/parallel_for.h"
+#include "base/sort_until.h"
 #include "formats/gltf/read_gltf.h"
 #include "formats/obj/read_obj.h"
 #include "formats/ply/read_ply.h"
@@ -20,6 +23,7 @@
 #include "tests/support/options.h"
 #include "tests/support/thrown_error.h"
 #include "tests/support/write_text.h"
+#include "tracer/scene_structures.h"
 
 namespace fs = std::filesystem;
 using namespace pertev;
@@ -51,6 +55,12 @@ void check_stops(int64_t least_checks, const Work& work) {
         REQUIRE(error);
         CHECK(error->code() == ErrorCode::Interrupted);
     }
+}
+
+SceneTriangles triangles_of_torus(int segments, int sides) {
+    SceneTriangles triangles;
+    triangles.baked = test::triangles_of(test::make_torus(segments, sides));
+    return triangles;
 }
 
 constexpr int kTriangles = 200'000;
@@ -108,6 +118,64 @@ TEST_CASE("every builder ends at a check of its sink") {
         CAPTURE(name_of(builder));
         check_stops(1, [&](Sink& sink) { build_bvh(builder, triangles, {.sink = &sink}); });
     }
+}
+
+TEST_CASE("pieces are sorted and merged until the sink ends it, to what one sort makes") {
+    constexpr int64_t kPiece = 1 << 16;
+    for (const int64_t count : {int64_t(0), int64_t(1), kPiece - 1, kPiece, kPiece + 1, 3 * kPiece, 5 * kPiece + 7}) {
+        CAPTURE(count);
+        std::vector<uint64_t> values;
+        for (int64_t i = 0; i < count; ++i) values.push_back(static_cast<uint64_t>(i) * 0x9e3779b97f4a7c15u);
+        std::vector<uint64_t> wanted = values;
+        std::ranges::sort(wanted, std::greater<>());
+        sort_until(std::span(values), nobody(), std::greater<>());
+        CHECK(values == wanted);
+    }
+    std::vector<int> ascending(5 * kPiece); // five pieces, then merges to three runs, to two, and to one
+    for (std::size_t i = 0; i < ascending.size(); ++i) ascending[i] = static_cast<int>(i);
+    check_stops(5 + 3 + 2 + 1, [&](Sink& sink) { sort_until(std::span(ascending), sink); });
+}
+
+TEST_CASE("builders that sort all triangles, and those of a curve, check the sink in each of their loops") {
+    const std::vector<BvhTriangle> triangles = test::triangles_of(test::make_torus(250, 280)); // 140,000
+    const int64_t checks = 3, sort = 3 + 2 + 1; // a loop over triangles; pieces and merges
+    const auto build = [&](BvhBuilder builder) {
+        return [&triangles, builder](Sink& sink) { build_bvh(builder, triangles, {.sink = &sink}); };
+    };
+    check_stops(3 * sort + 2 * 8, build(BvhBuilder::Sweep)); // eight ranges are so long that axes are parallel
+    check_stops(sort + checks, build(BvhBuilder::Ploc));
+    check_stops(checks + sort + 2 * checks + 2 * checks - 1, build(BvhBuilder::Hploc)); // the last are of the nodes
+}
+
+TEST_CASE("every structure of the laboratory is built until the sink ends it") {
+    const SceneTriangles triangles = triangles_of_torus(250, 280); // 140,000
+    const BinaryTrees trees = build_binary_trees(triangles, BvhBuilder::Median);
+    const auto convert = [&](TreeLayout layout, StructureKind kind = StructureKind::Median) {
+        return [&, layout, kind](Sink& sink) { BuiltStructure(Tlas(), kind, layout, trees, nullptr, sink); };
+    };
+    const auto build = [&](StructureKind kind) {
+        return [&, kind](Sink& sink) { BuiltStructure(Tlas(), kind, triangles, nullptr, sink); };
+    };
+    const int64_t checks = 3, sort = 3 + 2 + 1;
+    const auto nodes = static_cast<int64_t>(trees.baked().nodes.size());
+    check_stops((nodes >> 16) + 1, convert(TreeLayout::Linked));
+    check_stops((3 * nodes >> 16) + 1, convert(TreeLayout::Skip)); // inner nodes twice, and leaves
+    check_stops(checks, convert(TreeLayout::Woop));
+    check_stops(1 + sort + checks + 5, convert(TreeLayout::Compressed, StructureKind::Hploc)); // and levels of nodes
+    // A kd-tree's root has 140,000 triangles, and at least 31 nodes have more than 4096. An octree's have over 8192.
+    check_stops(checks + 31 + checks - 1, build(StructureKind::KdMedian));
+    check_stops(checks + 3 * sort + 31 + checks - 1 + 2 * 3 * 7, build(StructureKind::KdSah));
+    check_stops(checks + 3 + checks - 1, build(StructureKind::Octree));
+}
+
+TEST_CASE("a structure whose build was ended is none that a change of the scene updates") {
+    const BinaryTrees trees = build_binary_trees(triangles_of_torus(20, 10), BvhBuilder::Binned);
+    SceneStructures structures(BvhBuilder::Binned, trees, Tlas());
+    const Combination octree = {.structure = StructureKind::Octree, .traversal = TraversalKind::Octree};
+    StopsAt at_once(0);
+    REQUIRE(test::thrown_error([&] { structures.get(octree, at_once); }));
+    const std::shared_ptr<SceneStructures> after = structures.updated(trees, Tlas(), {PartChange::None}, {});
+    CHECK(after->get(octree)->figures().triangles >= 400);
 }
 
 TEST_CASE("a tree is stored, read, and made wide until the sink ends it, and an ended store leaves no file") {

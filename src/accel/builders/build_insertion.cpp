@@ -4,11 +4,10 @@
 // Source: Goldsmith, Salmon, "Automatic Creation of Object Hierarchies for Ray Tracing", IEEE CG&A 1987; branch and
 // bound: Bittner, Hapala, Havran, "Incremental BVH Construction for Ray Tracing", Computers & Graphics 2015.
 
-#include <algorithm>
-
 #include "accel/builders/build_bvh.h"
 #include "accel/builders/builders.h"
 #include "accel/builders/linked_tree.h"
+#include "base/sort_until.h"
 
 namespace pertev {
 namespace {
@@ -22,10 +21,10 @@ uint32_t scramble_bits(uint32_t x) { // Wellons, "lowbias32", 2018: a bijection
 }
 
 /// Returns a permutation of [0, count) that depends only on `count`.
-std::vector<uint32_t> scramble(uint32_t count) {
+std::vector<uint32_t> scramble(uint32_t count, Sink& sink) {
     std::vector<uint64_t> keys(count);
     for (uint32_t i = 0; i < count; ++i) keys[i] = static_cast<uint64_t>(scramble_bits(i)) << 32 | i;
-    std::sort(keys.begin(), keys.end());
+    sort_until(std::span(keys), sink);
     std::vector<uint32_t> order(count);
     for (uint32_t i = 0; i < count; ++i) order[i] = static_cast<uint32_t>(keys[i]);
     return order;
@@ -109,7 +108,7 @@ Bvh build_insertion_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuil
     const std::vector<BuildReference> references = references_of(triangles);
     BinaryTree leaves; // the first `count` nodes; inner nodes follow
     leaves.nodes.resize(2 * static_cast<std::size_t>(count) - 1);
-    for (const uint32_t id : scramble(count)) {
+    for (const uint32_t id : scramble(count, *settings.sink)) {
         const auto position = static_cast<uint32_t>(leaves.references.size());
         leaves.nodes[position] = make_leaf({references[id].lo, references[id].hi}, position);
         leaves.references.push_back(id);

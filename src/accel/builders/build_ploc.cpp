@@ -11,6 +11,7 @@
 #include "accel/builders/build_bvh.h"
 #include "accel/builders/builders.h"
 #include "base/parallel_for.h"
+#include "base/sort_until.h"
 #include "math/morton_code.h"
 
 namespace pertev {
@@ -27,7 +28,7 @@ struct CurveKey {
 };
 
 /// Sorts triangles along the Morton curve through their centres; equal codes are sorted by id.
-std::vector<CurveKey> sort_along_curve(const std::vector<BuildReference>& references) {
+std::vector<CurveKey> sort_along_curve(const std::vector<BuildReference>& references, Sink& sink) {
     Bounds3 centres;
     for (const BuildReference& r : references) centres.extend(r.lo + r.hi);
     const Vec3 size = centres.size();
@@ -42,15 +43,15 @@ std::vector<CurveKey> sort_along_curve(const std::vector<BuildReference>& refere
                        cell(centre.z, centres.lo.z, size.z),
                    static_cast<uint32_t>(i)};
     });
-    std::sort(keys.begin(), keys.end(),
-              [](const CurveKey& a, const CurveKey& b) { return a.code != b.code ? a.code < b.code : a.id < b.id; });
+    sort_until(std::span(keys), sink,
+               [](const CurveKey& a, const CurveKey& b) { return a.code != b.code ? a.code < b.code : a.id < b.id; });
     return keys;
 }
 
 class Clusters {
 public:
     Clusters(const std::vector<BuildReference>& references, Sink& sink) : sink_(sink) {
-        const std::vector<CurveKey> keys = sort_along_curve(references);
+        const std::vector<CurveKey> keys = sort_along_curve(references, sink);
         const auto count = static_cast<uint32_t>(keys.size());
         tree_.nodes.resize(2 * static_cast<std::size_t>(count) - 1);
         tree_.references.resize(count);
@@ -102,6 +103,7 @@ private:
         choice_.resize(count);
         parallel_for_ranges(count, kPlocChunk, [&](uint64_t begin, uint64_t end) {
             for (auto i = static_cast<uint32_t>(begin); i < end; ++i) {
+                sink_.check_at(i);
                 const uint32_t first = i < kRadius ? 0 : i - kRadius, last = std::min(i + kRadius, count - 1);
                 Choice best = {~0u, ~0u};
                 for (uint32_t k = first; k <= last; ++k) {

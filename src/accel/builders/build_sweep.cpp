@@ -11,6 +11,7 @@
 #include "accel/builders/builders.h"
 #include "accel/builders/halve_references.h"
 #include "accel/builders/sweep_cut.h"
+#include "base/sort_until.h"
 
 namespace pertev {
 namespace {
@@ -28,12 +29,12 @@ void for_each_axis(uint32_t size, const Body& body) {
 
 class SweepCuts {
 public:
-    explicit SweepCuts(const std::vector<BvhTriangle>& triangles) {
+    SweepCuts(const std::vector<BvhTriangle>& triangles, Sink& sink) : sink_(sink) {
         const std::vector<BuildReference> references = references_of(triangles);
         for_each_axis(static_cast<uint32_t>(references.size()), [&](int axis) {
             sorted_[axis] = references;
-            std::sort(sorted_[axis].begin(), sorted_[axis].end(),
-                      [axis](const BuildReference& a, const BuildReference& b) { return lies_before(a, b, axis); });
+            sort_until(std::span(sorted_[axis]), sink,
+                       [axis](const BuildReference& a, const BuildReference& b) { return lies_before(a, b, axis); });
             right_area_[axis].resize(references.size());
         });
     }
@@ -68,6 +69,7 @@ private:
         const BuildReference first_right = sorted_[axis][middle];
         for_each_axis(end - begin, [&](int other) {
             if (other == axis) return;
+            if (end - begin >= kParallelAxes) sink_.check();
             std::vector<BuildReference>& sorted = sorted_[other];
             std::vector<BuildReference> right;
             right.reserve(end - middle);
@@ -83,6 +85,7 @@ private:
         });
     }
 
+    Sink& sink_;
     std::vector<BuildReference> sorted_[3]; // [axis] sorted along it within each range that is not split yet
     std::vector<float> right_area_[3];      // scratch memory for find_sweep_cut
 };
@@ -91,7 +94,7 @@ private:
 
 Bvh build_sweep_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings) {
     check_reference_count(triangles.size());
-    SweepCuts cuts(triangles);
+    SweepCuts cuts(triangles, *settings.sink);
     return make_bvh(TopDownBuilder(cuts, static_cast<uint32_t>(triangles.size()), *settings.sink).build(), triangles,
                     settings);
 }

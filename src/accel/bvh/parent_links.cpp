@@ -16,10 +16,11 @@ uint32_t split_of(const BvhNode& node) {
 
 } // namespace
 
-void add_parent_links(Bvh& bvh) {
+void add_parent_links(Bvh& bvh, Sink& sink) {
     if (bvh.root & kLeafBit) return;
     bvh.nodes[bvh.root].parent = kNoLink;
     parallel_for(bvh.nodes.size(), kParentGrain, [&](uint64_t i) {
+        sink.check_at(i);
         BvhNode& node = bvh.nodes[i];
         node.split = split_of(node);
         for (uint32_t k = 0; k < 2; ++k) { // only the one parent of a node writes to it

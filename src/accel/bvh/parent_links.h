@@ -6,6 +6,7 @@
 // Source: Hapala, Davidovic, Wald, Havran, Slusallek, "Efficient Stack-less BVH Traversal for Ray Tracing", SCCG 2011.
 
 #include "accel/bvh/bvh.h"
+#include "base/sink.h"
 
 namespace pertev {
 
@@ -15,7 +16,7 @@ inline constexpr uint32_t kSecondChildBit = 0x80000000u;
 // the lower centre there.
 inline constexpr uint32_t kSecondIsLower = 4;
 
-/// Fills BvhNode::parent and BvhNode::split. It must be called again after the tree changes.
-void add_parent_links(Bvh& bvh);
+/// Fills BvhNode::parent and BvhNode::split. It must be called again after the tree changes. `sink` may end it.
+void add_parent_links(Bvh& bvh, Sink& sink = nobody());
 
 } // namespace pertev

@@ -6,7 +6,7 @@
 
 namespace pertev {
 
-SkipBvh make_skip_bvh(const Bvh& bvh) {
+SkipBvh make_skip_bvh(const Bvh& bvh, Sink& sink) {
     SkipBvh skip = {{}, bvh.triangles, bvh.bounds};
     if (bvh.root == kNoLink) return skip;
     // inner nodes, and one leaf more than these; `next` must be able to name the end
@@ -21,7 +21,8 @@ SkipBvh make_skip_bvh(const Bvh& bvh) {
         uint32_t opened; // kNoLink before it is opened; then its node in the list, whose subtree is now complete
     };
     std::vector<Pending> pending = {{bvh.root, bvh.bounds, kNoLink}};
-    while (!pending.empty()) {
+    for (uint64_t visits = 0; !pending.empty(); ++visits) {
+        sink.check_at(visits);
         const Pending at = pending.back();
         pending.pop_back();
         const auto size = static_cast<uint32_t>(skip.nodes.size());

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "accel/bvh/bvh.h"
+#include "base/sink.h"
 
 namespace pertev {
 
@@ -35,8 +36,8 @@ struct SkipBvhView {
 };
 
 /// Makes the list with children in the builder's order. Throws Error(OverLimit) if inner nodes and leaves exceed 32
-/// bits.
-SkipBvh make_skip_bvh(const Bvh& bvh);
+/// bits. `sink` may end it.
+SkipBvh make_skip_bvh(const Bvh& bvh, Sink& sink = nobody());
 
 SkipBvhView view_of(const SkipBvh& bvh);
 

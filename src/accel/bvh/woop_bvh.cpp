@@ -42,9 +42,10 @@ WoopTriangle make_woop_triangle(Vec3 a, Vec3 b, Vec3 c, bool last) {
     return {height.row, height.shift, u.row, u.shift, v.row, v.shift};
 }
 
-WoopBvh make_woop_bvh(const Bvh& bvh) {
+WoopBvh make_woop_bvh(const Bvh& bvh, Sink& sink) {
     WoopBvh woop = {bvh, std::vector<WoopTriangle>(bvh.triangles.size())};
     parallel_for(bvh.triangles.size(), kWoopGrain, [&](uint64_t i) {
+        sink.check_at(i);
         const BvhTriangle& t = bvh.triangles[i];
         woop.transforms[i] = make_woop_triangle(t.a, t.b, t.c, (t.flags & kLastInLeaf) != 0);
     });

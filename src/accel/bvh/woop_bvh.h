@@ -12,6 +12,7 @@
 
 #include "accel/bvh/bvh.h"
 #include "base/host_device.h"
+#include "base/sink.h"
 #include "math/vec3.h"
 
 namespace pertev {
@@ -42,7 +43,8 @@ struct WoopBvhView : BvhView {
 };
 
 /// Makes a WoopBvh of a tree by adding the transforms. The result does not depend on the number of threads.
-WoopBvh make_woop_bvh(const Bvh& bvh);
+/// `sink` may end it.
+WoopBvh make_woop_bvh(const Bvh& bvh, Sink& sink = nobody());
 
 WoopBvhView view_of(const WoopBvh& bvh);
 

@@ -3,22 +3,24 @@
 // Makes leaves along a Morton curve from triangles: bounds of all centres, a code for each triangle and, after the
 // sort, a box for each. The curve's cells are cubes, so that boxes of neighbours are as thick as they are long.
 
-#include <algorithm>
 #include <cstdint>
+#include <span>
 
 #include "accel/bvh/bvh.h"
 #include "accel/hploc/climb.h"
 #include "base/host_device.h"
+#include "base/sort_until.h"
 #include "math/bounds3.h"
 #include "math/morton_code.h"
 #include "math/scalar.h"
 
 namespace pertev::hploc {
 
-/// Sorts leaves by code on the host; equal codes are sorted by number. `order` holds 0, 1, 2, ... before.
-inline void sort_along_curve(const uint64_t* codes, uint32_t* order, uint32_t count) {
-    std::sort(order, order + count,
-              [&](uint32_t a, uint32_t b) { return codes[a] != codes[b] ? codes[a] < codes[b] : a < b; });
+/// Sorts leaves by code on the host; equal codes are sorted by number. `order` holds 0, 1, 2, ... before. `sink` may
+/// end it.
+inline void sort_along_curve(const uint64_t* codes, std::span<uint32_t> order, Sink& sink) {
+    sort_until(order, sink,
+               [codes](uint32_t a, uint32_t b) { return codes[a] != codes[b] ? codes[a] < codes[b] : a < b; });
 }
 
 /// Maps floats to integers of the same order, so that atomic minima find bounds; -0 comes before 0.

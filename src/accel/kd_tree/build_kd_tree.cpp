@@ -21,24 +21,31 @@ public:
         std::vector<Part> parts;
     };
 
-    MedianKdSplitter(const std::vector<BvhTriangle>& triangles, uint32_t max_leaf, float max_abs)
-        : triangles_(triangles), max_leaf_(max_leaf), max_abs_(max_abs) {}
+    MedianKdSplitter(const std::vector<BvhTriangle>& triangles, const KdTreeSettings& settings, float max_abs)
+        : triangles_(triangles), settings_(settings), max_abs_(max_abs) {}
 
     Node make_root() const {
         Node root;
         root.count = static_cast<uint32_t>(triangles_.size());
-        for (uint32_t i = 0; i < root.count; ++i) root.parts.push_back({i, bounds_of(triangles_[i])});
+        root.parts.reserve(root.count);
+        for (uint32_t i = 0; i < root.count; ++i) {
+            settings_.sink->check_at(i);
+            root.parts.push_back({i, bounds_of(triangles_[i])});
+        }
         return root;
     }
 
     std::optional<KdPlane> split(const Node& node, Node& below, Node& above) const {
-        if (node.count <= max_leaf_) return std::nullopt;
+        if (node.count <= settings_.max_leaf) return std::nullopt;
         const Vec3 size = node.cell.size();
         const int axis = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
         const float lo = component(node.cell.lo, axis), hi = component(node.cell.hi, axis), at = 0.5f * (lo + hi);
         // Closer planes than the margin of a traversal would not separate any rays.
         if (!(hi - lo > 0x1p-19f * max_abs_ && at > lo && at < hi)) return std::nullopt;
-        for (const Part& part : node.parts) add_part(part, node.cell, {axis, at}, below, above);
+        for (uint32_t i = 0; i < node.count; ++i) {
+            settings_.sink->check_at(i + 1);
+            add_part(node.parts[i], node.cell, {axis, at}, below, above);
+        }
         below.count = static_cast<uint32_t>(below.parts.size());
         above.count = static_cast<uint32_t>(above.parts.size());
         if (uint64_t(below.count) + above.count > node.budget) return std::nullopt;
@@ -69,18 +76,18 @@ private:
     }
 
     const std::vector<BvhTriangle>& triangles_;
-    const uint32_t max_leaf_;
+    const KdTreeSettings& settings_;
     const float max_abs_;
 };
 
 template <class Splitter>
-KdSubtree build_with(const Splitter& splitter, const Bounds3& bounds, int levels, uint64_t budget) {
+KdSubtree build_with(const Splitter& splitter, const Bounds3& bounds, int levels, uint64_t budget, Sink& sink) {
     typename Splitter::Node root = splitter.make_root();
     root.cell = bounds;
     root.levels = levels;
     root.budget = budget;
     KdSubtree all;
-    build_kd_subtree(splitter, std::move(root), 0, all);
+    build_kd_subtree(splitter, std::move(root), 0, all, sink);
     return all;
 }
 
@@ -103,17 +110,17 @@ KdTree build_kd_tree(const std::vector<BvhTriangle>& triangles, const KdTreeSett
     KdSubtree built;
     switch (settings.split) {
     case KdSplit::SpatialMedian:
-        built = build_with(MedianKdSplitter(triangles, settings.max_leaf, max_abs), tree.bounds, levels, budget);
+        built = build_with(MedianKdSplitter(triangles, settings, max_abs), tree.bounds, levels, budget, *settings.sink);
         break;
     case KdSplit::Sah:
-        built = build_with(SahKdSplitter(triangles, settings, max_abs), tree.bounds, levels, budget);
+        built = build_with(SahKdSplitter(triangles, settings, max_abs), tree.bounds, levels, budget, *settings.sink);
         break;
     }
     tree.nodes = std::move(built.nodes);
     tree.references = std::move(built.references);
     tree.depth = built.depth;
     tree.triangles = triangles;
-    tree.sah_cost = kd_tree_sah_cost(tree, settings.node_cost, settings.triangle_cost);
+    tree.sah_cost = kd_tree_sah_cost(tree, settings.node_cost, settings.triangle_cost, *settings.sink);
     return tree;
 }
 
@@ -126,7 +133,7 @@ double kd_cell_area(const Bounds3& cell, float max_abs) {
     return x * y + y * z + z * x;
 }
 
-float kd_tree_sah_cost(const KdTree& tree, float node_cost, float triangle_cost) {
+float kd_tree_sah_cost(const KdTree& tree, float node_cost, float triangle_cost, Sink& sink) {
     if (tree.nodes.empty()) return 0;
     const float max_abs = tree.bounds.max_abs();
     struct Pending {
@@ -135,7 +142,8 @@ float kd_tree_sah_cost(const KdTree& tree, float node_cost, float triangle_cost)
     };
     std::vector<Pending> pending = {{0, tree.bounds}};
     double cost = 0;
-    while (!pending.empty()) {
+    for (uint64_t visits = 1; !pending.empty(); ++visits) {
+        sink.check_at(visits);
         const Pending at = pending.back();
         pending.pop_back();
         const KdTreeNode& node = tree.nodes[at.node];

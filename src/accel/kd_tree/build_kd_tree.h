@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "accel/kd_tree/kd_tree.h"
+#include "base/sink.h"
 
 namespace pertev {
 
@@ -27,6 +28,7 @@ struct KdTreeSettings {
     float node_cost = 0.5f;          // cost of a traversal step
     float triangle_cost = 1.0f;      // cost of testing one triangle
     float empty_bonus = 0.2f;        // [0, 1): relative bonus of a split that leaves a side empty
+    Sink* sink = &nobody();          // may end the build
 };
 
 /// Builds the tree. Vertices are finite, |coordinate| <= kMaxCoordinate. Throws Error(OverLimit) for more than
@@ -37,7 +39,7 @@ KdTree build_kd_tree(const std::vector<BvhTriangle>& triangles, const KdTreeSett
 /// Thus a flat cell has an area too.
 double kd_cell_area(const Bounds3& cell, float max_abs);
 
-/// Expected cost of a ray that hits the bounds.
-float kd_tree_sah_cost(const KdTree& tree, float node_cost, float triangle_cost);
+/// Expected cost of a ray that hits the bounds. `sink` may end it.
+float kd_tree_sah_cost(const KdTree& tree, float node_cost, float triangle_cost, Sink& sink = nobody());
 
 } // namespace pertev

@@ -5,7 +5,8 @@
 //   using Node                            derived from KdBuildNode
 //   optional<KdPlane> split(node, below, above)    fills count and contents of the halves; nothing: a leaf
 //   vector<uint32_t> triangles_of(node)   ascending
-// Two large halves are built in parallel into arrays of their own, which are joined in a fixed order.
+// Two large halves are built in parallel into arrays of their own, which are joined in a fixed order. A sink may end
+// the build at each large node.
 
 #include <algorithm>
 #include <cstdint>
@@ -16,6 +17,7 @@
 #include "accel/kd_tree/kd_tree.h"
 #include "base/error.h"
 #include "base/parallel_for.h"
+#include "base/sink.h"
 
 namespace pertev {
 
@@ -62,8 +64,10 @@ inline void share_budget(const KdBuildNode& parent, KdBuildNode& below, KdBuildN
 }
 
 template <class Splitter>
-void build_kd_subtree(const Splitter& splitter, typename Splitter::Node&& node, int depth, KdSubtree& out) {
+void build_kd_subtree(const Splitter& splitter, typename Splitter::Node&& node, int depth, KdSubtree& out, Sink& sink) {
     constexpr uint32_t kParallelSubtree = 1u << 12; // from this many triangles on, both halves are built in parallel
+    const bool parallel = node.count >= kParallelSubtree;
+    if (parallel) sink.check();
     typename Splitter::Node below, above;
     const std::optional<KdPlane> plane = node.levels > 0 ? splitter.split(node, below, above) : std::nullopt;
     if (!plane) {
@@ -74,7 +78,6 @@ void build_kd_subtree(const Splitter& splitter, typename Splitter::Node&& node, 
         out.depth = std::max(out.depth, depth);
         return out.check_size();
     }
-    const bool parallel = node.count >= kParallelSubtree;
     below.cell = cell_below(node.cell, plane->axis, plane->at);
     above.cell = cell_above(node.cell, plane->axis, plane->at);
     below.levels = above.levels = node.levels - 1;
@@ -87,14 +90,15 @@ void build_kd_subtree(const Splitter& splitter, typename Splitter::Node&& node, 
         out.nodes[at] = make_kd_inner(plane->axis, plane->at, static_cast<uint32_t>(out.nodes.size()));
     };
     if (!parallel) {
-        build_kd_subtree(splitter, std::move(below), depth + 1, out);
+        build_kd_subtree(splitter, std::move(below), depth + 1, out, sink);
         close();
-        return build_kd_subtree(splitter, std::move(above), depth + 1, out);
+        return build_kd_subtree(splitter, std::move(above), depth + 1, out, sink);
     }
     KdSubtree first, second;
-    parallel_invoke([&] { build_kd_subtree(splitter, std::move(below), depth + 1, first); },
-                    [&] { build_kd_subtree(splitter, std::move(above), depth + 1, second); });
+    parallel_invoke([&] { build_kd_subtree(splitter, std::move(below), depth + 1, first, sink); },
+                    [&] { build_kd_subtree(splitter, std::move(above), depth + 1, second, sink); });
     out.append(first);
+    sink.check();
     close();
     out.append(second);
     out.depth = std::max(out.depth, std::max(first.depth, second.depth));

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "accel/clip_triangle.h"
+#include "base/sort_until.h"
 
 namespace pertev {
 namespace {
@@ -85,11 +86,12 @@ SahKdSplitter::Node SahKdSplitter::make_root() const {
     root.triangles.resize(root.count);
     for (auto& events : root.events) events.reserve(2 * triangles_.size());
     for (uint32_t i = 0; i < root.count; ++i) {
+        settings_.sink->check_at(i);
         root.triangles[i] = i;
         add_events(bounds_of(triangles_[i]), i, root.events);
     }
     for_each_axis(root.count >= kParallelKdNode,
-                  [&](int axis) { std::sort(root.events[axis].begin(), root.events[axis].end()); });
+                  [&](int axis) { sort_until(std::span(root.events[axis]), *settings_.sink); });
     return root;
 }
 
@@ -133,8 +135,15 @@ SahKdSplitter::Choice SahKdSplitter::find_cheapest(const Node& node, int axis) c
 std::optional<KdPlane> SahKdSplitter::split(const Node& node, Node& below, Node& above) const {
     if (node.count == 0) return std::nullopt;
     const bool parallel = node.count >= kParallelKdNode;
+    // Every loop over a large node is one that the sink may end.
+    const auto for_axes = [&](const auto& body) {
+        for_each_axis(parallel, [&](int axis) {
+            if (parallel) settings_.sink->check();
+            body(axis);
+        });
+    };
     std::array<Choice, 3> choices;
-    for_each_axis(parallel, [&](int axis) { choices[static_cast<std::size_t>(axis)] = find_cheapest(node, axis); });
+    for_axes([&](int axis) { choices[static_cast<std::size_t>(axis)] = find_cheapest(node, axis); });
     Choice best = choices[0];
     for (const Choice& choice : choices) best = choice.cost < best.cost ? choice : best;
     if (!(best.cost < static_cast<double>(settings_.triangle_cost) * node.count)) return std::nullopt;
@@ -150,6 +159,7 @@ std::optional<KdPlane> SahKdSplitter::split(const Node& node, Node& below, Node&
         return half.count++;
     };
     for (uint32_t i = 0; i < node.count; ++i) {
+        settings_.sink->check_at(i + 1);
         if (sides[i] == kBelow) new_indices[i] = add(below, i);
         if (sides[i] == kAbove) new_indices[i] = add(above, i);
         if (sides[i] != kBoth) continue;
@@ -161,7 +171,7 @@ std::optional<KdPlane> SahKdSplitter::split(const Node& node, Node& below, Node&
     }
     if (uint64_t(below.count) + above.count > node.budget) return std::nullopt;
 
-    for_each_axis(parallel, [&](int axis) {
+    for_axes([&](int axis) {
         std::vector<uint64_t> kept_below, kept_above;
         kept_below.reserve(2 * std::size_t(below.count));
         kept_above.reserve(2 * std::size_t(above.count));

@@ -40,6 +40,8 @@ public:
 
     /// Builds a node in out.nodes[slot] and appends its subtree.
     void build(BuildNode&& node, uint32_t slot, int depth, Subtree& out) const {
+        const bool parallel = node.parts.size() >= kParallelOctreeNode;
+        if (parallel) settings_.sink->check();
         std::array<BuildNode, 8> children;
         if (!split(node, children)) {
             out.depth = max(out.depth, depth);
@@ -48,7 +50,6 @@ public:
             for (const OctreePart& part : node.parts) out.references.push_back(part.triangle);
             return check_size(out);
         }
-        const bool parallel = node.parts.size() >= kParallelOctreeNode;
         node = {}; // frees memory for the levels below
         const auto first = static_cast<uint32_t>(out.nodes.size());
         uint32_t mask = 0, count = 0;
@@ -76,6 +77,7 @@ private:
         });
         for (const Subtree& part : built) {
             if (part.nodes.empty()) continue;
+            settings_.sink->check();
             const auto offset = static_cast<uint32_t>(out.nodes.size()) - 1; // its nodes[1] goes to nodes.size()
             const auto references = static_cast<uint32_t>(out.references.size());
             for (std::size_t i = 0; i < part.nodes.size(); ++i) {
@@ -99,7 +101,10 @@ private:
         const Vec3 centre = node.cell.centre(corner_);
         const Bounds3 cell = bounds_of(node.cell, corner_);
         uint64_t held = 0;
-        for (const OctreePart& part : node.parts) held += add_part(part, cell, centre, children);
+        for (std::size_t i = 0; i < node.parts.size(); ++i) {
+            settings_.sink->check_at(i + 1);
+            held += add_part(node.parts[i], cell, centre, children);
+        }
         if (held > node.budget) return false;
         const uint64_t spare = node.budget - held;
         for (uint32_t k = 0; k < 8; ++k) {
@@ -198,7 +203,11 @@ Octree build_octree(const std::vector<BvhTriangle>& triangles, const OctreeSetti
     root.levels = min(settings.max_depth, place_root(tree));
     root.cell.half = 0.5f * tree.side;
     root.budget = uint64_t(settings.max_references) * triangles.size();
-    for (uint32_t i = 0; i < triangles.size(); ++i) root.parts.push_back({i, bounds_of(triangles[i])});
+    root.parts.reserve(triangles.size());
+    for (uint32_t i = 0; i < triangles.size(); ++i) {
+        settings.sink->check_at(i);
+        root.parts.push_back({i, bounds_of(triangles[i])});
+    }
     Subtree built;
     built.nodes.resize(1);
     OctreeBuilder(triangles, settings, tree).build(std::move(root), 0, 0, built);
@@ -206,7 +215,7 @@ Octree build_octree(const std::vector<BvhTriangle>& triangles, const OctreeSetti
     tree.references = std::move(built.references);
     tree.depth = built.depth;
     tree.triangles = triangles;
-    tree.sah_cost = octree_sah_cost(tree, settings.node_cost, settings.triangle_cost);
+    tree.sah_cost = octree_sah_cost(tree, settings.node_cost, settings.triangle_cost, *settings.sink);
     return tree;
 }
 
@@ -215,7 +224,7 @@ Bounds3 bounds_of(const OctreeCell& cell, Vec3 corner) {
     return {centre - half, centre + half};
 }
 
-float octree_sah_cost(const Octree& tree, float node_cost, float triangle_cost) {
+float octree_sah_cost(const Octree& tree, float node_cost, float triangle_cost, Sink& sink) {
     if (tree.nodes.empty()) return 0;
     const float max_abs = tree.bounds.max_abs();
     struct Pending {
@@ -224,7 +233,8 @@ float octree_sah_cost(const Octree& tree, float node_cost, float triangle_cost) 
     };
     std::vector<Pending> pending = {{0, {0, 0, 0, 0.5f * tree.side}}};
     double cost = 0;
-    while (!pending.empty()) {
+    for (uint64_t visits = 1; !pending.empty(); ++visits) {
+        sink.check_at(visits);
         const Pending at = pending.back();
         pending.pop_back();
         const OctreeNode& node = tree.nodes[at.node];

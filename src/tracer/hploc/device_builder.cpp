@@ -39,24 +39,26 @@ DeviceBuilder::DeviceBuilder(Queue& queue, uint32_t most, const CollapseSettings
     next_count_ = Buffer<uint32_t>(queue, 1, "size of the next level");
 }
 
-void DeviceBuilder::start(const BvhTriangle* triangles, uint32_t count) {
+void DeviceBuilder::start(const BvhTriangle* triangles, uint32_t count, Sink& sink) {
     PERTEV_CHECK(count <= codes_.size());
     triangles_ = triangles;
     count_ = count;
     are_linked_ = is_refitted_ = false;
     if (count == 0) return;
-    make_codes();
-    climb();
-    emit();
+    make_codes(sink);
+    climb(sink);
+    emit(sink);
 }
 
-void DeviceBuilder::make_codes() {
+void DeviceBuilder::make_codes(Sink& sink) {
     centres_.fill(hploc::kNothing);
     const uint32_t threads = (count_ + hploc::kTrianglesAtOnce - 1) / hploc::kTrianglesAtOnce;
     launch(queue_, "find bounds of centres", threads, hploc::FindBounds{triangles_, count_, threads, centres_.data()});
+    sink.check();
     launch(queue_, "make Morton codes", count_,
            hploc::MakeCodes{triangles_, centres_.data(), codes_.data(), order_.data()});
-    sort_codes(queue_, sort_scratch_, codes_.data(), order_.data(), sorted_codes_.data(), sorted_order_.data(), count_);
+    sort_codes(queue_, sort_scratch_, codes_.data(), order_.data(), sorted_codes_.data(), sorted_order_.data(), count_,
+               sink);
 }
 
 hploc::Climb DeviceBuilder::prepare_climb() const {
@@ -64,10 +66,10 @@ hploc::Climb DeviceBuilder::prepare_climb() const {
     return {tree, balanced_ ? nullptr : sorted_codes_.data(), clusters_.data(), ends_.data(), root_.data()};
 }
 
-void DeviceBuilder::climb() {
+void DeviceBuilder::climb(Sink& sink) {
     const hploc::Climb climb = prepare_climb();
     launch(queue_, "place leaves", count_, hploc::StoreLeaves{triangles_, sorted_order_.data(), climb});
-    launch_climb(queue_, climb);
+    launch_climb(queue_, climb, sink);
 }
 
 hploc::EmitWide DeviceBuilder::prepare_emit() {
@@ -88,11 +90,12 @@ hploc::EmitWide DeviceBuilder::prepare_emit() {
     return emit;
 }
 
-void DeviceBuilder::emit() {
+void DeviceBuilder::emit(Sink& sink) {
     const hploc::EmitWide emit = prepare_emit();
     if (launch_emit(queue_, emit)) return;
     *level_.data() = 0;
     for (uint32_t size = 1; size > 0; size = *next_count_.data()) {
+        sink.check();
         *next_count_.data() = 0;
         launch(queue_, "make wide nodes", size,
                hploc::EmitLevel{emit, level_.data(), next_.data(), next_count_.data()});
@@ -150,11 +153,11 @@ DeviceBuilder::Figures DeviceBuilder::finish() {
     return figures_;
 }
 
-CompressedBvh build_compressed_bvh(Queue& queue, std::span<const BvhTriangle> triangles) {
+CompressedBvh build_compressed_bvh(Queue& queue, std::span<const BvhTriangle> triangles, Sink& sink) {
     const auto count = static_cast<uint32_t>(triangles.size());
     const Buffer<BvhTriangle> there(queue, triangles, "triangles to build over");
     DeviceBuilder builder(queue, count);
-    builder.start(there.data(), count);
+    builder.start(there.data(), count, sink);
     builder.finish();
     return builder.download();
 }

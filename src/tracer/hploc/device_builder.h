@@ -10,6 +10,7 @@
 
 #include "accel/bvh/bvh.h"
 #include "accel/bvh/compressed_bvh.h"
+#include "base/sink.h"
 #include "device/buffer.h"
 #include "tracer/hploc/emit_wide.h"
 #include "tracer/hploc/refit.h"
@@ -24,8 +25,8 @@ public:
     DeviceBuilder(Queue& queue, uint32_t most, const CollapseSettings& costs = kCompressedCollapse);
 
     /// Queues the build and returns. `triangles` are on the device, finite, with |coordinate| at most kMaxCoordinate;
-    /// count <= most.
-    void start(const BvhTriangle* triangles, uint32_t count);
+    /// count <= most. On the CPU, which is done when it returns, `sink` may end it.
+    void start(const BvhTriangle* triangles, uint32_t count, Sink& sink = nobody());
 
     /// Figures of the tree that finish() returns, after waiting for the queue. A tree that is too deep for the
     /// traversal stack, which only contrived coordinates cause, is rebuilt with equal halves of the curve. Throws
@@ -58,9 +59,9 @@ public:
     void set_balanced(bool balanced) { balanced_ = balanced; }
 
 private:
-    void make_codes();
-    void climb();
-    void emit();
+    void make_codes(Sink& sink);
+    void climb(Sink& sink);
+    void emit(Sink& sink);
 
     Queue& queue_;
     CollapseSettings costs_;
@@ -89,7 +90,8 @@ private:
     bool are_linked_ = false, is_refitted_ = false;
 };
 
-/// Builds from triangles on the host and copies the tree back; used by the laboratory.
-CompressedBvh build_compressed_bvh(Queue& queue, std::span<const BvhTriangle> triangles);
+/// Builds from triangles on the host and copies the tree back; used by the laboratory. On the CPU `sink` may
+/// end it.
+CompressedBvh build_compressed_bvh(Queue& queue, std::span<const BvhTriangle> triangles, Sink& sink = nobody());
 
 } // namespace pertev

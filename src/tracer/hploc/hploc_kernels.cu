@@ -18,7 +18,7 @@ template void launch(Queue&, const char*, WorkCount, const hploc::LinkParents&);
 template void launch(Queue&, const char*, WorkCount, const hploc::MoveTriangles&);
 template void launch(Queue&, const char*, WorkCount, const hploc::RefitNodes&);
 
-void launch_climb(Queue& queue, const hploc::Climb& climb) {
+void launch_climb(Queue& queue, const hploc::Climb& climb, Sink& sink) {
 #if defined(__CUDACC__)
     if (queue.is_cuda()) {
         const Queue::Scope scope(queue, "join clusters");
@@ -28,7 +28,14 @@ void launch_climb(Queue& queue, const hploc::Climb& climb) {
         return queue.check_launch();
     }
 #endif
-    launch(queue, "join clusters", climb.tree.count, hploc::ClimbFromLeaves{climb});
+    if (queue.is_dry_run()) return;
+    const Queue::Scope scope(queue, "join clusters");
+    const UseThreads use(queue.threads());
+    const hploc::ClimbFromLeaves stage = {climb};
+    parallel_for(climb.tree.count, 256, [&](uint64_t i) {
+        sink.check_at(i);
+        stage(static_cast<uint32_t>(i));
+    });
 }
 
 bool launch_emit(Queue& queue, const hploc::EmitWide& emit) {

@@ -4,13 +4,14 @@
 // wide nodes are made in a single launch, each as soon as its parent has placed it. The bytes are the same.
 
 #include "accel/hploc/climb.h"
+#include "base/sink.h"
 #include "device/queue.h"
 #include "tracer/hploc/emit_wide.h"
 
 namespace pertev {
 
-/// Merges clusters up to the root; StoreLeaves has written the leaves.
-void launch_climb(Queue& queue, const hploc::Climb& climb);
+/// Merges clusters up to the root; StoreLeaves has written the leaves. On the CPU `sink` may end it.
+void launch_climb(Queue& queue, const hploc::Climb& climb, Sink& sink = nobody());
 
 /// Makes all wide nodes in one launch and returns true. Returns false if the device makes them level by level
 /// (EmitLevel).

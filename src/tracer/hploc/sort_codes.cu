@@ -32,7 +32,7 @@ std::size_t sort_scratch_bytes(Queue& queue, uint32_t count) {
 }
 
 void sort_codes(Queue& queue, Buffer<std::byte>& scratch, const uint64_t* codes, const uint32_t* order,
-                uint64_t* sorted_codes, uint32_t* sorted_order, uint32_t count) {
+                uint64_t* sorted_codes, uint32_t* sorted_order, uint32_t count, Sink& sink) {
     const Queue::Scope scope(queue, "sort Morton codes");
 #if defined(__CUDACC__)
     if (queue.is_cuda()) {
@@ -44,7 +44,7 @@ void sort_codes(Queue& queue, Buffer<std::byte>& scratch, const uint64_t* codes,
 #endif
     static_cast<void>(scratch), static_cast<void>(order);
     std::iota(sorted_order, sorted_order + count, 0u);
-    hploc::sort_along_curve(codes, sorted_order, count);
+    hploc::sort_along_curve(codes, {sorted_order, count}, sink);
     for (uint32_t i = 0; i < count; ++i) sorted_codes[i] = codes[sorted_order[i]];
 }
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "base/sink.h"
 #include "device/buffer.h"
 
 namespace pertev {
@@ -13,8 +14,8 @@ namespace pertev {
 std::size_t sort_scratch_bytes(Queue& queue, uint32_t count);
 
 /// Sorts `codes` and `order`, where order[i] is i, into `sorted_codes` and `sorted_order`. All arrays have `count`
-/// elements on the queue's device.
+/// elements on the queue's device. On the CPU `sink` may end it.
 void sort_codes(Queue& queue, Buffer<std::byte>& scratch, const uint64_t* codes, const uint32_t* order,
-                uint64_t* sorted_codes, uint32_t* sorted_order, uint32_t count);
+                uint64_t* sorted_codes, uint32_t* sorted_order, uint32_t count, Sink& sink = nobody());
 
 } // namespace pertev
