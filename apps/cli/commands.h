@@ -3,6 +3,8 @@
 // One function per verb: adds the verb to the command line. A verb runs while the line is parsed. `status` becomes
 // the process's exit status.
 
+#include <string>
+
 namespace CLI {
 class App;
 }
@@ -18,5 +20,8 @@ void add_solve_command(CLI::App& app, int& status);
 void add_info_command(CLI::App& app, int& status);
 void add_bench_command(CLI::App& app, int& status);
 void add_lab_command(CLI::App& app, int& status);
+
+/// Lists the devices that --device names, a line each, with what tells them apart; the CPU is the last one.
+std::string list_devices();
 
 } // namespace pertev

@@ -1,11 +1,10 @@
 // pertev --list-devices
 
-#include "apps/cli/list_devices.h"
-
 #include <fstream>
 
 #include <fmt/format.h>
 
+#include "apps/cli/commands.h"
 #include "base/machine_memory.h"
 #include "base/parallel_for.h"
 #include "base/processor.h"

@@ -25,7 +25,6 @@
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/help.h"
 #include "apps/cli/interrupt.h"
-#include "apps/cli/list_devices.h"
 #include "apps/cli/report_error.h"
 #include "base/error.h"
 #include "base/version.h"
