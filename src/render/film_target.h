@@ -92,7 +92,9 @@ public:
         const auto& from = static_cast<const ElementTarget&>(other);
         const std::size_t all = elements_.size();
         const bool is_here = queue_ == from.queue_;
-        std::vector<std::byte> on_host(is_here ? 0 : std::min(kAtOnce, all) * sizeof(T));
+        const std::size_t copied = is_here ? 0 : std::min(kAtOnce, all);
+        std::vector<std::byte> on_host(copied * sizeof(T));
+        const Buffer<T> copy(*queue_, copied, kCopy);
         for (std::size_t first = 0; first < all; first += kAtOnce) {
             const std::size_t count = std::min(kAtOnce, all - first);
             if (is_here) {
@@ -100,7 +102,7 @@ public:
             } else {
                 const std::span part(on_host.data(), count * sizeof(T));
                 from.copy_elements(first, part);
-                upload_and_add(first, part);
+                upload_and_add(copy, first, part);
             }
         }
         queue_->wait(); // the copy must be finished before its source is freed
@@ -114,9 +116,10 @@ public:
     }
     void add_bytes(std::size_t first, std::span<const std::byte> from) override {
         PERTEV_CHECK(first % stride() == 0 && from.size() % stride() == 0 && first + from.size() <= byte_count());
-        for (std::size_t at = 0; at < from.size(); at += kAtOnce * sizeof(T)) {
-            const std::size_t size = std::min(kAtOnce * sizeof(T), from.size() - at);
-            upload_and_add((first + at) / sizeof(T), from.subspan(at, size));
+        const std::size_t most = std::min(kAtOnce * sizeof(T), from.size());
+        const Buffer<T> copy(*queue_, most / sizeof(T), kCopy);
+        for (std::size_t at = 0; at < from.size(); at += most) {
+            upload_and_add(copy, (first + at) / sizeof(T), from.subspan(at, std::min(most, from.size() - at)));
         }
     }
 
@@ -125,6 +128,7 @@ protected:
 
 private:
     static constexpr std::size_t kAtOnce = std::size_t(1) << 20; // elements
+    static constexpr const char* kCopy = "film to be added";
 
     void add_elements(const T* from, std::size_t first, std::size_t count) {
         launch(*queue_, "add_films", static_cast<uint32_t>(count), Add{from, elements_.data() + first});
@@ -132,10 +136,10 @@ private:
     void copy_elements(std::size_t first, std::span<std::byte> to) const {
         if (!to.empty()) queue_->copy_to_host(to.data(), elements_.data() + first, to.size());
     }
-    void upload_and_add(std::size_t first, std::span<const std::byte> from) {
-        const Buffer<T> copy(*queue_, from.size() / sizeof(T), "film to be added");
+    /// Adds `from` by way of `copy`, which is at least as long.
+    void upload_and_add(const Buffer<T>& copy, std::size_t first, std::span<const std::byte> from) {
         queue_->copy_to_device(copy.data(), from.data(), from.size());
-        add_elements(copy.data(), first, copy.size());
+        add_elements(copy.data(), first, from.size() / sizeof(T));
         queue_->wait();
     }
 

@@ -21,6 +21,12 @@ struct FixedSum {
 };
 static_assert(static_cast<double>(kMaxSamplesPerPixel) * static_cast<double>(kMaxSampleValue) < 0x1p63);
 
+HD inline FixedSum operator-(FixedSum x) {
+    x.low = ~x.low + 1;
+    x.high = ~x.high + (x.low == 0 ? 1 : 0);
+    return x;
+}
+
 /// Converts x to fixed point. |x| <= kMaxSampleValue (2^40), finite.
 HD inline FixedSum to_fixed(float x) {
     const uint32_t bits = bits_of(x);
@@ -40,11 +46,7 @@ HD inline FixedSum to_fixed(float x) {
     } else {
         sum = {0, mantissa << (shift - 64)};
     }
-    if ((bits >> 31) != 0) { // two's complement negation
-        sum.low = ~sum.low + 1;
-        sum.high = ~sum.high + (sum.low == 0 ? 1 : 0);
-    }
-    return sum;
+    return (bits >> 31) != 0 ? -sum : sum;
 }
 
 HD inline FixedSum operator+(FixedSum a, FixedSum b) {
@@ -102,8 +104,7 @@ __device__ inline bool sum_of_warp(uint32_t target, FixedSum& a, FixedSum& b, Fi
 /// kMaxSamplesPerPixel.
 HD inline float mean_of(FixedSum sum, uint64_t count) {
     const bool negative = (sum.high >> 63) != 0;
-    const uint64_t low = negative ? 0 - sum.low : sum.low;
-    const uint64_t high = negative ? ~sum.high + (sum.low == 0 ? 1 : 0) : sum.high;
+    const auto [low, high] = negative ? -sum : sum;
     if ((low | high) == 0) return 0;
 
     // The leading 64 bits in units of 2^exponent, and whether any lower bit is set.

@@ -256,3 +256,24 @@ TEST_CASE("frames split into pixels on either device are merged") {
         CHECK_THROWS_AS(both.set_bytes({}), std::logic_error);
     }
 }
+
+TEST_CASE("a film's elements come from another device, or from bytes, by way of one buffer for each target") {
+    constexpr uint32_t kSide = 1500; // 9 million sums, of which 2^20 are copied at once
+    Queue cpu = Queue::make_cpu(), other_cpu = Queue::make_cpu();
+    Film from(other_cpu, kSide, kSide, 0), added(cpu, kSide, kSide, 0), restored(cpu, kSide, kSide, 0);
+    for (uint32_t pixel = 0; pixel < kSide * kSide; pixel += 997) {
+        add_radiance(from.view(), pixel, {1, static_cast<float>(pixel), -0.5f});
+    }
+    from.set_samples({0, 1});
+    uint64_t allocations = cpu.allocation_count();
+    added.add(from);
+    CHECK(cpu.allocation_count() == allocations + from.targets().size());
+    for (std::size_t i = 0; i < from.targets().size(); ++i) {
+        const std::vector<std::byte> bytes = from.targets()[i]->bytes();
+        CHECK(added.targets()[i]->bytes() == bytes);
+        allocations = cpu.allocation_count();
+        restored.targets()[i]->set_bytes(bytes);
+        CHECK(cpu.allocation_count() == allocations + 1);
+        CHECK(restored.targets()[i]->bytes() == bytes);
+    }
+}

@@ -109,6 +109,7 @@ TEST_CASE("the mean is the correctly rounded quotient") {
         CHECK(distance(mean) <= distance(std::nextafter(mean, 0.0f)));
         CHECK(distance(mean) <= distance(std::nextafter(mean, 2.0f)));
         FixedSum negative = {~sum.low + 1, ~sum.high + (sum.low == 0 ? 1u : 0u)};
+        CHECK(-sum == negative);
         CHECK(mean_of(negative, count) == -mean);
     }
 }

@@ -37,14 +37,14 @@ private:
     void read(std::span<std::byte> to);
     template <class T>
     T read_value();
-    void check_hash(const Hasher& hasher, const std::string& what);
+    Hash128 check_hash(const Hasher& hasher, const std::string& what);
     void read_block(std::vector<std::byte>& packed);
     Error error(const std::string& why) const;
 
     std::string name_;
     InputFile file_;
     uint64_t size_, at_ = 0; // bytes of the file, and how many were read
-    Hasher whole_;           // all that was read
+    Hasher hashes_;          // takes the hashes of the header and of the blocks
     FilmHeader header_;
     Hash128 header_hash_;
 };

@@ -39,8 +39,12 @@ FilmFileReader::FilmFileReader(const std::filesystem::path& path)
     if (size > kMaxFilmHeaderBytes || size > size_) throw error("its header is damaged");
     std::string json(size, '\0');
     read(std::as_writable_bytes(std::span(json)));
-    header_hash_ = whole_.result();
-    check_hash(whole_, "header");
+    Hasher hasher;
+    hasher.add(std::as_bytes(std::span(magic)));
+    hasher.add_value(kFilmFileVersion);
+    hasher.add_value(size);
+    hasher.add(std::as_bytes(std::span(json)));
+    header_hash_ = check_hash(hasher, "header");
     const JsonFile parsed(name_, json);
     header_ = read_film_header(parsed.root());
     if (const uint64_t bytes = at_ + fewest_bytes(header_) + kHashBytes; bytes > size_)
@@ -60,7 +64,7 @@ void FilmFileReader::add_to(Film& film) {
             target->add_bytes(first, block);
         }
     }
-    check_hash(whole_, "checksum of the whole file");
+    check_hash(hashes_, "whole file");
     if (at_ != size_) throw error(fmt::format("{} bytes follow its end", size_ - at_));
 }
 
@@ -81,7 +85,6 @@ void FilmFileReader::read(std::span<std::byte> to) {
     if (std::fread(to.data(), 1, to.size(), file_.get()) != to.size())
         throw error(fmt::format("cannot read: the file ended early or the disk failed"));
     at_ += to.size();
-    whole_.add(to);
 }
 
 template <class T>
@@ -91,10 +94,13 @@ T FilmFileReader::read_value() {
     return value;
 }
 
-void FilmFileReader::check_hash(const Hasher& hasher, const std::string& what) {
+/// Reads the hash that follows what `hasher` was given.
+Hash128 FilmFileReader::check_hash(const Hasher& hasher, const std::string& what) {
     const Hash128 hash = hasher.result();
     const auto low = read_value<uint64_t>(), high = read_value<uint64_t>();
     if (hash != Hash128{high, low}) throw error(fmt::format("it is damaged: the {} does not have its checksum", what));
+    hashes_.add_value(low), hashes_.add_value(high);
+    return hash;
 }
 
 Error FilmFileReader::error(const std::string& why) const {

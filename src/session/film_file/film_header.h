@@ -11,7 +11,7 @@
 namespace pertev {
 
 inline constexpr std::string_view kFilmFileMagic = "\x89PVF\r\n\x1a\n"; // text converters and 7 bits damage it
-inline constexpr uint32_t kFilmFileVersion = 1;
+inline constexpr uint32_t kFilmFileVersion = 2;
 inline constexpr uint32_t kMaxFilmHeaderBytes = 1u << 28;
 
 /// Number of elements of `stride` bytes in a block, except for a target's last.

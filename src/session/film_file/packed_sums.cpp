@@ -10,9 +10,7 @@ namespace {
 constexpr uint32_t kSign = 0x80, kLength = 0x7f;
 
 /// The size of a sum, without its sign.
-FixedSum size_of(FixedSum sum) {
-    return sum.high >> 63 != 0 ? FixedSum{0 - sum.low, ~sum.high + (sum.low == 0 ? 1 : 0)} : sum;
-}
+FixedSum size_of(FixedSum sum) { return sum.high >> 63 != 0 ? -sum : sum; }
 /// Number of bits up to the highest that is set; 0 for 0.
 uint32_t length_of(FixedSum size) {
     return static_cast<uint32_t>(size.high != 0 ? 64 + std::bit_width(size.high) : std::bit_width(size.low));
@@ -127,7 +125,7 @@ bool unpack_sums(std::span<const std::byte>& packed, std::span<const FixedSum> b
         if (length > low + 1) size = size + shifted_up({1, 0}, length - 1);
         const bool is_negative = (uint32_t(lengths[i]) & kSign) != 0;
         if (is_negative && length == 0) return false;
-        sums[i] = is_negative ? FixedSum{0 - size.low, ~size.high + (size.low == 0 ? 1 : 0)} : size;
+        sums[i] = is_negative ? -size : size;
     }
     return bits.is_at_end();
 }

@@ -3,6 +3,7 @@
 #include "base/write_file_atomically.h"
 #include "session/film_file/film_file.h"
 #include "session/film_file/packed_block.h"
+#include "session/film_file/packed_plane.h"
 #include "session/writing/check_outputs.h"
 
 namespace pertev {
@@ -11,19 +12,21 @@ namespace {
 /// The bytes of a file, in the order of x86, which is the file's.
 class FilmBytes {
 public:
-    void add(std::span<const std::byte> bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
+    void add(std::span<const std::byte> bytes) { append(bytes, bytes_); }
     template <class T>
     void add_value(const T& value) {
         add(std::as_bytes(std::span(&value, 1)));
     }
     /// Adds the hash of all bytes from `first` on.
-    Hash128 add_hash(std::size_t first) {
+    void add_hash(std::size_t first) {
         Hasher hasher;
         hasher.add(std::span<const std::byte>(bytes_).subspan(first));
-        const Hash128 hash = hasher.result();
-        add_value(hash.low), add_value(hash.high);
-        return hash;
+        const std::size_t at = bytes_.size();
+        add_result(hasher);
+        hashes_.add(std::span<const std::byte>(bytes_).subspan(at));
     }
+    /// Adds the hash of all these hashes.
+    void add_hash_of_hashes() { add_result(hashes_); }
     void add_target(const FilmTarget& target) {
         const std::size_t stride = target.stride(), most = film_block_elements(stride) * stride;
         std::vector<std::byte> block;
@@ -40,7 +43,13 @@ public:
     std::span<const std::byte> bytes() const { return bytes_; }
 
 private:
+    void add_result(const Hasher& hasher) {
+        const Hash128 hash = hasher.result();
+        add_value(hash.low), add_value(hash.high);
+    }
+
     std::vector<std::byte> bytes_;
+    Hasher hashes_;
 };
 
 } // namespace
@@ -60,7 +69,7 @@ std::vector<WrittenFile> write_film_files(std::span<const std::string> outputs, 
     file.add(std::as_bytes(std::span(json)));
     file.add_hash(0);
     for (const auto& target : film.targets()) file.add_target(*target);
-    file.add_hash(0);
+    file.add_hash_of_hashes();
     for (WrittenFile& to : written) {
         try {
             write_file_atomically(to.path, file.bytes());
