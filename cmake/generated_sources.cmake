@@ -1,7 +1,6 @@
 # Sources that the build writes: the version (looked at in every build), the built-in scenes and the tables
 # of lobes.
 
-set(PERTEV_GENERATED_DIR ${PROJECT_BINARY_DIR}/generated)
 set(PERTEV_BUILTIN_SCENES ${PROJECT_SOURCE_DIR}/scenes/cornell-box/cornell-box.gltf
     ${PROJECT_SOURCE_DIR}/scenes/many-lights/many-lights.gltf)
 foreach(name blind caustic cove door uplight)

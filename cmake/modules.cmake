@@ -1,4 +1,4 @@
-# pertev_module(FOLDER deps...): one static library from src/FOLDER, of all its .cpp and .cu files. A .cu file is compiled
+# pertev_module(FOLDER deps...): one static library from src/FOLDER, of all its .cpp and .cu files and instances. A .cu file is compiled
 # as C++ where there is no CUDA; files under a folder named `cuda` are left out there.
 
 function(pertev_compile_cuda_as_cxx)
@@ -44,7 +44,8 @@ function(pertev_gather name extension list)
     list(REMOVE_ITEM files ${some})
     set(text "")
     foreach(file IN LISTS some)
-      file(RELATIVE_PATH file ${PROJECT_SOURCE_DIR}/src ${file}) # text that does not depend on the tree's folder, for ccache
+      # Text that does not depend on the tree's folder, for ccache.
+      string(REGEX REPLACE "^(${PROJECT_SOURCE_DIR}/src|${PERTEV_GENERATED_DIR})/" "" file ${file})
       string(APPEND text "#include \"${file}\"\n")
     endforeach()
     set(gathered ${PROJECT_BINARY_DIR}/gathered/${name}_${batch}.${extension})
@@ -125,6 +126,8 @@ function(pertev_module folder)
   if(NOT PERTEV_HAS_CUDA)
     list(FILTER sources EXCLUDE REGEX "/cuda/[^/]*$")
   endif()
+  pertev_instances_of(${folder} "${inner}" instances)
+  list(APPEND sources ${instances})
   pertev_gather_kernels(${name} sources)
   if(sources MATCHES "\\.(cpp|cu)(;|$)")
     add_library(pertev_${name} STATIC ${sources})

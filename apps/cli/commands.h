@@ -21,7 +21,7 @@ void add_info_command(CLI::App& app, int& status);
 void add_bench_command(CLI::App& app, int& status);
 void add_lab_command(CLI::App& app, int& status);
 
-/// Lists the devices that --device names, a line each, with what tells them apart; the CPU is the last one.
+/// Lists the devices of --device, one per line, with distinguishing properties; the CPU comes last.
 std::string list_devices();
 
 } // namespace pertev

@@ -1,7 +1,7 @@
 #pragma once
 
 // Runs a stage once per index on the queue's device. A "stage" is a plain struct of views and numbers with `HD void
-// operator()(uint32_t i) const`. Each stage has one .cu file that instantiates this (through device/launch_body.h);
+// operator()(uint32_t i) const`. Each stage has one .cu file that instantiates this (src/instances.cmake);
 // without CUDA that file is compiled as C++.
 //
 // A stage whose threads cooperate within a block (device/block_append.h) has `HD void operator()(uint32_t i, bool

@@ -1,0 +1,288 @@
+# Each row makes a file that only instantiates templates, by the functions of cmake/instances.cmake.
+
+# Traversals of the laboratory; tracer/kernels/lab/add_lab_kernels.cpp calls each.
+pertev_lab_kernels(brute_force trace/brute_force_traversal.h
+  "add_unordered_kernels<BruteForceTraversal>(TraversalKind::BruteForce, rows)")
+pertev_lab_kernels(compressed trace/wide/compressed_traversal.h
+  "add_other_kernels<CompressedTraversal, true>(TraversalKind::Compressed, rows)"
+  "add_kernels<CompressedTraversal, TraversalOptions{.tests = TestKind::Fast, .rta_at_pops = false}, true>(TraversalKind::Compressed, rows)")
+pertev_lab_kernels(if_if trace/binary/if_if_traversal.h
+  "add_all_kernels<IfIfTraversal>(TraversalKind::IfIf, rows)")
+pertev_lab_kernels(kd_tree trace/cells/kd_tree_traversal.h
+  "add_all_kernels<KdTreeTraversal>(TraversalKind::Kd, rows)")
+pertev_lab_kernels(octant trace/binary/octant_traversal.h
+  "add_other_kernels<OctantTraversal>(TraversalKind::Octants, rows)")
+pertev_lab_kernels(octree trace/cells/octree_traversal.h
+  "add_all_kernels<OctreeTraversal>(TraversalKind::Octree, rows)")
+pertev_lab_kernels(parent_links trace/binary/parent_links_traversal.h
+  "add_all_kernels<ParentLinksTraversal>(TraversalKind::ParentLinks, rows)")
+pertev_lab_kernels(restart_trail trace/binary/restart_trail_traversal.h
+  "add_all_kernels<RestartTrailTraversal>(TraversalKind::RestartTrail, rows)")
+pertev_lab_kernels(short_stack trace/binary/short_stack_traversal.h
+  "add_all_kernels<ShortStackTraversal>(TraversalKind::ShortStack, rows)")
+pertev_lab_kernels(skip_links trace/binary/skip_links_traversal.h
+  "add_unordered_kernels<SkipLinksTraversal>(TraversalKind::SkipLinks, rows)")
+pertev_lab_kernels(speculative trace/binary/speculative_traversal.h
+  "add_all_kernels<SpeculativeTraversal, true>(TraversalKind::Speculative, rows)"
+  "add_woop_kernels<SpeculativeTraversal>(TraversalKind::Speculative, rows)")
+pertev_lab_kernels(while_while trace/binary/while_while_traversal.h
+  "add_other_kernels<WhileWhileTraversal, true>(TraversalKind::WhileWhile, rows)"
+  "add_woop_kernels<WhileWhileTraversal>(TraversalKind::WhileWhile, rows)")
+pertev_lab_kernels(wide trace/wide/wide_traversal.h
+  "add_all_kernels<Wide4Traversal>(TraversalKind::Wide4, rows)"
+  "add_all_kernels<Wide8Traversal>(TraversalKind::Wide8, rows)")
+
+# Integrators that are made of a machine of several.
+pertev_integrator(bidirectional integrators/subpaths/subpath_integrator.h "SubpathIntegrator<BothDirections>")
+pertev_integrator(cast integrators/ray_tree/ray_tree_integrator.h "RayTreeIntegrator<Cast>")
+pertev_integrator(distributed integrators/ray_tree/ray_tree_integrator.h "RayTreeIntegrator<Distributed>")
+pertev_integrator(light integrators/subpaths/subpath_integrator.h "SubpathIntegrator<ParticlesAlone>")
+pertev_integrator(whitted integrators/ray_tree/ray_tree_integrator.h "RayTreeIntegrator<Whitted>")
+
+# Shading on a CPU, a file of its own for each: it takes a minute.
+pertev_host_shading(films FilmListeners FilmFeatures)
+pertev_host_shading(frames ReuseListeners FrameFeatures)
+pertev_host_shading(layers LayerListeners LayerFeatures)
+
+# Stages of device_scene.
+pertev_launches(device_scene/mesh_stages.cu
+  device_scene/classify_opacity.h scene/deform_vertices.h
+  STAGES DeformVertices
+    HalveTexelBounds
+    ClassifyOpacity)
+
+# Stages of tracer.
+pertev_launches(tracer/deforming_stages.cu
+  tracer/refit_wide.h
+  STAGES ListTriangles
+    LinkWideParents
+    RefitWide)
+
+# Stages of render.
+pertev_launches(render/add_frame_to_film.cu
+  render/add_frame_to_film.h
+  STAGES AddFrameToFilm)
+pertev_launches(render/centre_layers.cu
+  render/centre_layers.h
+  STAGES MakeCentreRays
+    "StoreCentres<ShadingVariant::PlainDiffuse, false>"
+    "StoreCentres<ShadingVariant::General, false>"
+    "StoreCentres<ShadingVariant::General, true>")
+pertev_launches(render/film_stages.cu
+  render/film_stages.h
+  STAGES AddSums
+    AddIds
+    AddMissing
+    AddCounts
+    AddFrames
+    ResolveFilm
+    DisplayFilm)
+pertev_launches(render/raster/tile_lists.cu
+  render/raster/find_in_tile.h
+  STAGES BinTriangles
+    BinRows
+    FinishTileLists
+    FindInTiles)
+
+# Stages of denoise.
+pertev_launches(denoise/frame_stages.cu
+  denoise/compare_light.h denoise/keep_layers.h denoise/motion_vectors.h denoise/sum_blocks.h denoise/upsample_picture.h
+  STAGES CentreRays
+    MotionOfHits
+    CompareLight
+    SpreadLight
+    UpsamplePicture
+    SumBlockRows
+    MeanOfBlockRows
+    KeepLayers)
+pertev_launches(denoise/oidn/oidn_stages.cu
+  denoise/oidn/oidn_stages.h
+  STAGES MeanOidnGuides
+    ReadShownFrame
+    ShowColor)
+pertev_launches(denoise/picture_denoiser_stages.cu
+  denoise/compose_samples.h denoise/estimate_variance.h denoise/gather_samples.h
+  STAGES BeginSums
+    GatherFeatures
+    GatherLight
+    SmoothGuide
+    EstimateVariance
+    ComposeSamples)
+pertev_launches(denoise/reconstruction_stages.cu
+  denoise/accumulate_signals.h denoise/anti_alias.h denoise/clamp_history.h denoise/compose_picture.h
+  denoise/split_signals.h denoise/wavelet_pass.h
+  STAGES SplitSignals
+    "AccumulateSignals<false>"
+    "AccumulateSignals<true>"
+    ClampHistory
+    WaveletPass
+    ComposePicture
+    AntiAlias
+    ShowPicture)
+
+# Stages of restir.
+pertev_launches(restir/restir_stages.cu
+  restir/add_direct_light.h restir/add_indirect_light.h restir/find_neighbours.h restir/initial_candidates.h
+  restir/initial_gi_reservoirs.h restir/reuse_reservoirs.h
+  STAGES SampleInitialCandidates
+    MakeInitialGiReservoirs
+    FindBefore
+    FindNeighbours
+    "ReuseReservoirs<LightReservoir>"
+    "QueueVisibilityRays<LightReservoir>"
+    "CountVisible<LightReservoir>"
+    "FinishReuse<LightReservoir>"
+    AddDirectLight
+    "ReuseReservoirs<BounceReservoir>"
+    "QueueVisibilityRays<BounceReservoir>"
+    "CountVisible<BounceReservoir>"
+    "FinishReuse<BounceReservoir>"
+    AddIndirectLight)
+
+# Stages of integrators.
+pertev_launches(integrators/bidirectional/camera_subpath_stages.cu
+  integrators/bidirectional/camera_subpath_stages.h
+  STAGES "ShadeCameraSubpaths<ShadingVariant::General>"
+    "ShadeCameraSubpaths<ShadingVariant::PlainDiffuse>"
+    "ConnectSubpaths<ShadingVariant::General>"
+    "ConnectSubpaths<ShadingVariant::PlainDiffuse>")
+pertev_launches(integrators/cast/shade_cast.cu
+  integrators/cast/cast.h integrators/ray_tree/tree_stages.h
+  STAGES "ShadeTrees<Cast, MotionVariant::None>"
+    "ShadeTrees<Cast, MotionVariant::Perhaps>")
+pertev_launches(integrators/distributed/shade_distributed.cu
+  integrators/distributed/distributed.h integrators/ray_tree/tree_stages.h
+  STAGES "ShadeTrees<Distributed, MotionVariant::None>"
+    "ShadeTrees<Distributed, MotionVariant::Perhaps>")
+pertev_launches(integrators/irradiance_cache/cache_stages.cu
+  integrators/irradiance_cache/cache_stages.h integrators/irradiance_cache/hemisphere_stages.h
+  integrators/irradiance_cache/lookup_stages.h integrators/irradiance_cache/overture_grid.h
+  STAGES BeginCacheSubpaths
+    CountMirroredEmitters
+    BeginSeekers
+    StoreDistances
+    ReadCells
+    "ShadeCacheSubpaths<ShadingVariant::General>"
+    "ShadeCacheSubpaths<ShadingVariant::PlainDiffuse>"
+    "BeginHemispheres<ShadingVariant::General>"
+    "BeginHemispheres<ShadingVariant::PlainDiffuse>"
+    "FinishRecords<ShadingVariant::General>"
+    "FinishRecords<ShadingVariant::PlainDiffuse>"
+    "LookUpRadiance<ShadingVariant::General>"
+    "LookUpRadiance<ShadingVariant::PlainDiffuse>"
+    "FindRecordSites<ShadingVariant::General>"
+    "FindRecordSites<ShadingVariant::PlainDiffuse>"
+    "DrawRecords<ShadingVariant::General>"
+    "DrawRecords<ShadingVariant::PlainDiffuse>")
+pertev_launches(integrators/light/shade_seen.cu
+  integrators/light/shade_seen.h
+  STAGES ShadeSeen)
+pertev_launches(integrators/path/meter_light.cu
+  integrators/path/meter_light.h
+  STAGES DrawMeterLights
+    AddMeterLights)
+# Stages that compile quickly; shading has files of its own.
+pertev_launches(integrators/path/path_stages.cu
+  integrators/path/path_stages.h
+  STAGES PlanRound
+    "GeneratePaths<false>"
+    "GeneratePaths<true>"
+    "AddLight<FilmListeners>"
+    "AddLight<PlainFrameListeners>"
+    "AddLight<FrameListeners>"
+    "AddLight<PlainReuseListeners>"
+    "AddLight<ReuseListeners>"
+    "AddLight<LayerListeners>")
+# For batches of pictures.
+pertev_launches(integrators/path/shade_batches.cu
+  integrators/path/path_stages.h
+  STAGES "Shade<kPlainDiffuse | kBatched, FilmListeners>"
+    "Shade<kDiffuse | kBatched, FilmListeners>"
+    "Shade<kAllMaterials | kBatched, FilmListeners>"
+    "Shade<kAllMaterials | kMoving | kBatched, FilmListeners>")
+pertev_launches(integrators/path/shade_films.cu
+  integrators/path/path_stages.h
+  STAGES "Shade<kPlainDiffuse, FilmListeners>"
+    "Shade<kDiffuse, FilmListeners>"
+    "Shade<kAllMaterials, FilmListeners>")
+pertev_launches(integrators/path/shade_frames.cu
+  integrators/path/path_stages.h
+  STAGES "Shade<kPlainDiffuse, PlainFrameListeners>"
+    "Shade<kDiffuse, PlainFrameListeners>"
+    "Shade<kAllMaterials, FrameListeners>")
+pertev_launches(integrators/path/shade_layers.cu
+  integrators/path/path_stages.h
+  STAGES "Shade<kAllMaterials, LayerListeners>"
+    "Shade<kAllMaterials | kMoving, LayerListeners>")
+# For motion while the shutter is open, of the camera or of anything else.
+pertev_launches(integrators/path/shade_moving_films.cu
+  integrators/path/path_stages.h
+  STAGES "Shade<kPlainDiffuse | kMoving, FilmListeners>"
+    "Shade<kDiffuse | kMoving, FilmListeners>"
+    "Shade<kAllMaterials | kMoving, FilmListeners>")
+# For frames that leave light to ReSTIR.
+pertev_launches(integrators/path/shade_reused_frames.cu
+  integrators/path/path_stages.h
+  STAGES "Shade<kPlainDiffuse, PlainReuseListeners>"
+    "Shade<kDiffuse, PlainReuseListeners>"
+    "Shade<kAllMaterials, ReuseListeners>")
+pertev_launches(integrators/photon_map/photon_stages.cu
+  integrators/photon_map/gather_stages.h integrators/photon_map/order_photons.h integrators/photon_map/photon_stages.h
+  integrators/photon_map/photon_targets.h
+  STAGES FindSpecular
+    BeginPhotons
+    NumberPhotons
+    OrderPhotons
+    MakeBuckets
+    FindBuckets
+    KeepPhotons
+    BeginGather
+    "ShadePhotons<ShadingVariant::General>"
+    "ShadePhotons<ShadingVariant::PlainDiffuse>"
+    "ShadeGather<ShadingVariant::General>"
+    "ShadeGather<ShadingVariant::PlainDiffuse>")
+pertev_launches(integrators/radiosity/shade_radiosity.cu
+  integrators/radiosity/radiosity.h integrators/ray_tree/tree_stages.h
+  STAGES "ShadeTrees<Radiosity, MotionVariant::None>")
+pertev_launches(integrators/raster/scan_triangles.cu
+  integrators/raster/scan_triangles.h integrators/raster/shade_pixels.h
+  STAGES ScanTriangles
+    ScanRows
+    DrawEdges
+    ShadePixels
+    "InWindow<ShadePixels>")
+pertev_launches(integrators/ray_tree/tree_stages.cu
+  integrators/ray_tree/tree_stages.h
+  STAGES BeginTrees
+    BeginRounds
+    AddTreeLight
+    TakeNextRays
+    CountTrees)
+pertev_launches(integrators/reyes/split_stages.cu
+  integrators/reyes/shade_samples.h integrators/reyes/split_stages.h
+  STAGES PositionSamples
+    FindFar
+    TakePieces
+    "SplitPieces<HidingPass::FindNearest>"
+    "SplitPieces<HidingPass::FindMicropolygon>"
+    ShadeSamples
+    "InWindow<ShadeSamples>")
+pertev_launches(integrators/subpaths/particle_stages.cu
+  integrators/subpaths/particle_stages.h
+  STAGES BeginParticles
+    BeginCameraSubpaths
+    AddSplats
+    AddConnections
+    CountSubpaths
+    BeginSubpaths
+    "ShadeParticles<ShadingVariant::General>"
+    "ShadeParticles<ShadingVariant::PlainDiffuse>")
+pertev_launches(integrators/whitted/shade_whitted.cu
+  integrators/ray_tree/tree_stages.h integrators/whitted/whitted.h
+  STAGES "ShadeTrees<Whitted, MotionVariant::None>"
+    "ShadeTrees<Whitted, MotionVariant::Perhaps>")
+
+# Stages of lab.
+pertev_launches(lab/brute_force_rays.cu
+  lab/brute_force_rays.h
+  STAGES BruteForceRays)

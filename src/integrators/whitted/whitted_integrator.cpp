@@ -1,6 +1,0 @@
-#include "integrators/ray_tree/ray_tree_integrator.h"
-#include "integrators/whitted/whitted.h"
-
-namespace pertev {
-template class RayTreeIntegrator<Whitted>;
-} // namespace pertev
