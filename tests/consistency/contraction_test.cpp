@@ -25,13 +25,13 @@ float value(uint32_t i) { return unit_interval(hash_word(i)) + 0.5f; }
 /// a * b + c with two roundings, independent of compiler flags.
 float two_roundings(float a, float b, float c) { return sum_of(product_of(a, b), c); }
 
-struct Counts {
+struct Contractions {
     uint32_t differ_from_two = 0, fused_differ_from_two = 0;
 };
 
 template <class Expression>
-Counts compare(const Expression& expression) {
-    Counts counts;
+Contractions compare(const Expression& expression) {
+    Contractions counts;
     for (uint32_t i = 0; i < 10'000; i++) {
         const float a = value(3 * i), b = value(3 * i + 1), c = -value(3 * i + 2);
         const float two = two_roundings(a, b, c);
@@ -44,7 +44,7 @@ Counts compare(const Expression& expression) {
 } // namespace
 
 TEST_CASE("a product and a sum are two roundings") {
-    const Counts counts = compare([](float a, float b, float c) { return a * b + c; });
+    const Contractions counts = compare([](float a, float b, float c) { return a * b + c; });
     CHECK(counts.differ_from_two == 0);
     CHECK(counts.fused_differ_from_two > 1000); // the values distinguish both
 }
