@@ -26,6 +26,8 @@ public:
     OpenFile(const OpenFile&) = delete;
     OpenFile& operator=(const OpenFile&) = delete;
     int fd() const { return fd_; }
+    /// Takes a file in place of none.
+    void reset(int fd) { fd_ = fd; }
 
 private:
     int fd_;
@@ -83,10 +85,51 @@ fs::path resolve_target(const fs::path& path) {
 
 fs::path folder_of(const fs::path& target) { return target.has_parent_path() ? target.parent_path() : fs::path("."); }
 
-/// Name of a new file beside the target, because rename() is atomic only within one file system.
-std::string temporary_name(const fs::path& target) {
-    return (folder_of(target) / ("." + target.filename().string() + ".XXXXXX")).string();
-}
+/// A new file beside the target, because rename() is atomic only within one file system. Where the system can, it has
+/// no name before name(), so that a process that is killed leaves nothing.
+class NewFile {
+public:
+    explicit NewFile(const fs::path& target) : name_(pattern_beside(target)), file_(open_unnamed(target)) {
+        if (file_.fd() >= 0) return;
+        file_.reset(::mkstemp(name_.data()));
+        check(file_.fd() >= 0);
+        has_name_ = true;
+    }
+    ~NewFile() {
+        if (has_name_) ::unlink(name_.c_str());
+    }
+    NewFile(const NewFile&) = delete;
+    NewFile& operator=(const NewFile&) = delete;
+
+    int fd() const { return file_.fd(); }
+    /// Replaces the target.
+    void rename_to(const fs::path& target) {
+        if (!has_name_) link();
+        check(::rename(name_.c_str(), target.c_str()) == 0);
+        has_name_ = false;
+    }
+
+private:
+    static std::string pattern_beside(const fs::path& target) {
+        return (folder_of(target) / ("." + target.filename().string() + ".XXXXXX")).string();
+    }
+    static int open_unnamed(const fs::path& target) {
+        if (::access("/proc/self/fd", X_OK) != 0) return -1; // by which it gets its name
+        return ::open(folder_of(target).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);
+    }
+    void link() {
+        const std::string unnamed = fmt::format("/proc/self/fd/{}", fd()), pattern = name_;
+        for (int number = 0; !has_name_; ++number) {
+            name_ = fmt::format("{}{}.{}", pattern.substr(0, pattern.size() - 6), ::getpid(), number);
+            has_name_ = ::linkat(AT_FDCWD, unnamed.c_str(), AT_FDCWD, name_.c_str(), AT_SYMLINK_FOLLOW) == 0;
+            check(has_name_ || errno == EEXIST);
+        }
+    }
+
+    std::string name_;
+    OpenFile file_;
+    bool has_name_ = false;
+};
 
 /// Throws before the disk is filled by a file that does not fit.
 void check_space(const fs::path& target, std::size_t size) {
@@ -96,19 +139,23 @@ void check_space(const fs::path& target, std::size_t size) {
     throw std::system_error(std::make_error_code(std::errc::no_space_on_device));
 }
 
-void replace(const fs::path& target, std::span<const std::byte> bytes, Sink& sink) {
+/// Makes `previous` another name of the file, if it is there, or a copy where a file cannot have two.
+void keep_as(const fs::path& previous, const fs::path& target) {
+    if (!fs::exists(target)) return;
+    fs::remove(previous);
+    std::error_code fault;
+    fs::create_hard_link(target, previous, fault);
+    if (fault) fs::copy_file(target, previous);
+}
+
+/// Loses the old content if there is no `previous`.
+void replace(const fs::path& target, const fs::path& previous, std::span<const std::byte> bytes, Sink& sink) {
     check_space(target, bytes.size());
-    std::string temporary = temporary_name(target);
-    const OpenFile file(::mkstemp(temporary.data()));
-    check(file.fd() >= 0);
-    try {
-        write_all(file.fd(), bytes, sink);
-        check(::fchmod(file.fd(), mode_for(target)) == 0 && ::fsync(file.fd()) == 0);
-        check(::rename(temporary.c_str(), target.c_str()) == 0);
-    } catch (...) {
-        ::unlink(temporary.c_str());
-        throw;
-    }
+    NewFile file(target);
+    write_all(file.fd(), bytes, sink);
+    check(::fchmod(file.fd(), mode_for(target)) == 0 && ::fsync(file.fd()) == 0);
+    if (!previous.empty()) keep_as(previous, target);
+    file.rename_to(target);
     const OpenFile directory(::open(folder_of(target).c_str(), O_RDONLY | O_DIRECTORY));
     check(directory.fd() >= 0 && ::fsync(directory.fd()) == 0); // makes the rename itself durable
 }
@@ -122,7 +169,15 @@ void replace(const fs::path& target, std::span<const std::byte> bytes, Sink& sin
 
 void write_file_atomically(const fs::path& path, std::span<const std::byte> bytes, Sink& sink) {
     try {
-        replace(resolve_target(path), bytes, sink);
+        replace(resolve_target(path), {}, bytes, sink);
+    } catch (const std::system_error& error) {
+        rethrow(path, error);
+    }
+}
+
+void write_generation(const fs::path& path, const fs::path& previous, std::span<const std::byte> bytes) {
+    try {
+        replace(resolve_target(path), previous, bytes, nobody());
     } catch (const std::system_error& error) {
         rethrow(path, error);
     }
@@ -131,13 +186,7 @@ void write_file_atomically(const fs::path& path, std::span<const std::byte> byte
 void check_writable(const fs::path& path) {
     try {
         const fs::path target = resolve_target(path);
-        // Without a name if the file system supports it, so that nothing is left if the process is killed here.
-        const OpenFile unnamed(::open(folder_of(target).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600));
-        if (unnamed.fd() >= 0) return;
-        std::string temporary = temporary_name(target);
-        const OpenFile file(::mkstemp(temporary.data()));
-        check(file.fd() >= 0);
-        ::unlink(temporary.c_str());
+        const NewFile file(target);
     } catch (const std::system_error& error) {
         rethrow(path, error);
     }

@@ -82,3 +82,19 @@ TEST_CASE("writing to a missing folder, a folder, a FIFO or a full disk is a Fil
     }
     CHECK(files_in(folder) == 2);
 }
+
+TEST_CASE("a new generation keeps the one before, and an error keeps both") {
+    const fs::path folder = test::scratch_folder(), file = folder / "a", before = folder / "a.previous";
+    const auto write = [&](const std::string& text) { write_generation(file, before, std::as_bytes(std::span(text))); };
+    write("1");
+    CHECK(files_in(folder) == 1);
+    write("2");
+    write("3");
+    CHECK(read_text(file) == "3");
+    CHECK(read_text(before) == "2");
+    const std::byte first = {};
+    CHECK_THROWS_AS(write_generation(file, before, {&first, std::size_t(1) << 60}), Error);
+    CHECK(read_text(file) == "3");
+    CHECK(read_text(before) == "2");
+    CHECK(files_in(folder) == 2);
+}
