@@ -51,7 +51,7 @@ PictureOptions PythonScene::options_of(const CallSettings& settings, Sink& sink)
     set_all(options, settings_); // which the call's file overrules
     combine_settings(
         settings.file, kRender, [&](PictureOptions& others) { set_all(others, settings.texts); }, options, sink);
-    for (const char* name : {"samples", "part"}) {
+    for (const char* name : {"samples", "part", "checkpoint"}) {
         if (options.is_given(name)) throw Error(ErrorCode::BadInput, name, "", "a call renders a whole picture");
     }
     return options;

@@ -23,6 +23,7 @@
 #include "session/pictures/choose_display.h"
 #include "session/pictures/prepare_render.h"
 #include "session/pictures/render_samples.h"
+#include "session/pictures/render_with_checkpoint.h"
 #include "session/pictures/write_sequence.h"
 #include "session/survey/ground.h"
 #include "session/writing/check_outputs.h"
@@ -108,7 +109,10 @@ int render_frames(const RenderFlags& flags, const SequenceOfFrames& frames, Repo
 
 int write_one(const RenderFlags& flags, const RenderSettings& settings, const PictureRecord& record,
               std::optional<Session>& session, const Queue& queue, const Stopwatch& watch, Reporter& reporter) {
-    RenderResult result = render_samples(*session, reporter);
+    std::optional<RenderWithCheckpoint> kept;
+    if (!flags.checkpoint.empty()) kept.emplace(*session, flags, record, reporter);
+    reporter.report_messages();
+    RenderResult result = kept ? kept->render(reporter) : render_samples(*session, reporter);
     reporter.end_progress();
     const uint32_t samples = settings.range().count();
     const bool cut_short = interrupted() && result.samples < samples;
@@ -119,10 +123,11 @@ int write_one(const RenderFlags& flags, const RenderSettings& settings, const Pi
     PictureFacts facts = facts_of(record, result.ids);
     std::vector<WrittenFile> films;
     if (has_film) {
-        const Film& film = session->film();
+        const Film& film = kept ? kept->film() : session->film();
         films = write_film_files(flags.outputs, film_header(flags, record, facts, result, film), film);
     }
-    session.reset();                                             // writing takes memory too
+    if (kept) films.push_back(kept->written());
+    kept.reset(), session.reset();                               // writing takes memory too
     if (!writes_tone_mapped(flags.outputs)) facts.shown.clear(); // which only film files have
     WrittenPicture written = write_picture(flags.outputs, facts, result);
     written.files.insert(written.files.end(), films.begin(), films.end());
@@ -151,7 +156,8 @@ int render(RenderFlags& flags) {
     report_camera(record.camera, reporter);
     reporter.set_work("uploading the scene");
     std::optional<Session> session(std::in_place, queue, ready->prepared(), record.camera.camera, settings);
-    if (writes_tone_mapped(flags.outputs) || std::ranges::any_of(flags.outputs, is_film_name)) {
+    const bool has_film = !flags.checkpoint.empty() || std::ranges::any_of(flags.outputs, is_film_name);
+    if (writes_tone_mapped(flags.outputs) || has_film) {
         record.display = choose_display(flags, *session, reporter);
         report_display(*record.display, is_metered(flags), reporter);
     }

@@ -103,6 +103,20 @@ Film& FilmRender::film() {
     return fit_film(pictures_.queue(), film_, settings_, add_targets_);
 }
 
+void FilmRender::restore(SampleRange samples, const std::function<void(Film&)>& add, const RayCounts& rays,
+                         double seconds) {
+    restart();
+    Film& into = film();
+    try {
+        add(into);
+    } catch (...) {
+        forget_samples();
+        throw;
+    }
+    into.set_samples(samples);
+    stats_.rays = rays, stats_.render_seconds = seconds;
+}
+
 uint32_t FilmRender::render(SampleRange range, Sink& sink) {
     PERTEV_CHECK(samples().count() == 0 || range.first == samples().end);
     const uint32_t first = range.first, before = samples().count();

@@ -6,6 +6,7 @@
 // The bytes do not depend on how calls split the samples, nor on earlier pictures: a picture of n samples is always
 // the same.
 
+#include <functional>
 #include <optional>
 
 #include "session/post_steps.h"
@@ -42,6 +43,10 @@ public:
     /// had before are kept: each pass goes through a second film, which doubles the memory.
     void interrupt_passes(bool leaves) { interrupts_passes_ = leaves; }
 
+    /// Takes samples that another render of this picture has taken, with its rays and seconds: `add` adds them to an
+    /// empty film. Throws what `add` throws; the film is then empty.
+    void restore(SampleRange samples, const std::function<void(Film&)>& add, const RayCounts& rays, double seconds);
+
     /// Returns the film of the current picture. It is all zero before the first sample.
     Film& film();
     SampleRange samples() const { return film_ && !film_is_old_ ? film_->part().samples : SampleRange(); }
@@ -61,6 +66,8 @@ public:
     /// Returns statistics, for which it reads two numbers from the device. The share of hidden backs is computed once
     /// per scene, camera and size.
     RenderStats stats();
+    /// Returns picture, denoised picture, layers, ids and stats together.
+    RenderResult result() { return {stats(), picture(), denoised(), denoiser(), layers(), film().ids()}; }
 
     const Camera& camera() const { return camera_; }
     const RenderSettings& settings() const { return settings_; }

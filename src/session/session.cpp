@@ -54,7 +54,7 @@ void Session::cut() {
 }
 
 RenderResult Session::result() {
-    RenderResult result = {stats(), picture(), denoised(), film_.denoiser(), layers(), film().ids()};
+    RenderResult result = film_.result();
     if ((settings().aovs & kAovMotion) != 0) {
         const AovGroup& group = aov_group(kAovMotion);
         result.layers.push_back({group.layer, channel_names(group), motion()});
@@ -66,7 +66,7 @@ RenderResult Session::render_separately(const Camera& camera, const RenderSettin
     if (settings.denoise == Denoise::None) return pictures_.render_separately(camera, settings, first);
     FilmRender film(pictures_, camera, settings);
     film.render({first, first + settings.samples});
-    return {film.stats(), film.picture(), film.denoised(), film.denoiser(), film.layers(), film.film().ids()};
+    return film.result();
 }
 
 RenderResult render_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera,

@@ -99,6 +99,8 @@ struct PictureOptions {
     uint32_t turntable = 0;
     std::string samples, part; // A:B; I/N, where I counts from part_base
     uint32_t part_base = 1;
+    std::string checkpoint; // a film file that the render goes on from and writes
+    double checkpoint_every_s = 60;
     bool goes_on = false; // continues a sequence that was interrupted
     bool real_time = false;
     ReconstructionOptions reconstruction;

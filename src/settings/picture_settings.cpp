@@ -112,6 +112,12 @@ std::vector<Setting> picture_settings() {
             Excludes{"time_limit frames turntable cameras"}, Mark::NotKept),
         row("part_base", "Parts", "B", FIELD(part_base), "The number of the first part.", Range{0, 1u << 31},
             Needs{"part"}, Mark::NotKept),
+        row("checkpoint", "Parts", "FILE", FIELD(checkpoint),
+            "A film file (.pvf) that keeps the samples so far, and from which the render goes on if it is there.",
+            Mark::NotKept, Changes::Picture),
+        row("checkpoint_every", "Parts", "SECONDS", FIELD(checkpoint_every_s),
+            "The time between two writings of the checkpoint.", Above{0}, Unit{"s"}, Needs{"checkpoint"}, Mark::NotKept,
+            Changes::Picture),
 
         row("build", "Tracing", "WHICH", FIELD(tracer.build),
             "The quality of the acceleration structure: fast builds fastest, best traces fastest. "

@@ -13,7 +13,7 @@ from cli_run import FLOOR, PROGRAM, SANITIZED, UNMETERED, CliTest, as_flag, gltf
 
 FLAGS = {
     "merge": "--output -o --partial --quiet -q --json",
-    "render": "--output -o --part --part-base --samples --camera-pose --convention --intrinsics --intrinsics-size --lens --distortion --camera-from --cameras --layers-at --frame-denoiser "
+    "render": "--output -o --part --part-base --samples --checkpoint --checkpoint-every --camera-pose --convention --intrinsics --intrinsics-size --lens --distortion --camera-from --cameras --layers-at --frame-denoiser "
               "--allow-path --up-axis --unit --quiet -q --json --strict --camera --eye --target --up --fov --projection "
               "--view-height --aperture --focus --environment --environment-rotation --environment-scale "
               "--two-sided-lights --show-back-faces --size --tone-map --exposure --transparent --aov --spp --time-limit --denoise "

@@ -16,6 +16,8 @@
 
 namespace pertev {
 
+/// Returns the bytes of a film file.
+std::vector<std::byte> film_file_bytes(const FilmHeader& header, const Film& film);
 /// Writes the film files among `outputs`, each atomically, and returns them.
 std::vector<WrittenFile> write_film_files(std::span<const std::string> outputs, const FilmHeader& header,
                                           const Film& film);

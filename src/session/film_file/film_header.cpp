@@ -140,6 +140,16 @@ FilmHeader film_header(const PictureOptions& options, const PictureRecord& recor
     return header;
 }
 
+std::optional<SettingDifference> film_difference(const FilmHeader& before, const FilmHeader& after) {
+    if (auto different = first_difference(before.settings, after.settings)) return different;
+    const auto shape = [](const FilmHeader& of) {
+        return fmt::format("{}x{}, {}, {}, {}", of.width, of.height, of.aovs, json_strings(of.light_layers),
+                           static_cast<int>(of.layers_at));
+    };
+    if (shape(before) == shape(after)) return std::nullopt;
+    return SettingDifference{"the film", shape(before), shape(after)};
+}
+
 std::string json_of(const FilmHeader& header) {
     std::vector<std::string> settings, layers;
     for (const auto& [name, value] : header.settings)

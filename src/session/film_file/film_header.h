@@ -38,6 +38,9 @@ struct FilmHeader {
 FilmHeader film_header(const PictureOptions& options, const PictureRecord& record, const PictureFacts& facts,
                        const RenderStats& stats, const Film& film);
 
+/// Returns the first difference of films that are not of one picture, or nothing.
+std::optional<SettingDifference> film_difference(const FilmHeader& before, const FilmHeader& after);
+
 std::string json_of(const FilmHeader& header);
 /// Throws Error(BadInput, OverLimit).
 FilmHeader read_film_header(const gltf::JsonValue& root);

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "base/json_text.h"
 #include "base/machine_memory.h"
 #include "settings/settings_file.h"
 
@@ -78,18 +77,11 @@ void FilmMerge::take_header(const std::string& file, const FilmHeader& header) {
         header_ = header;
         return;
     }
-    const auto refuse = [&](const std::string& name, const std::string& here, const std::string& there) {
+    if (const auto different = film_difference(header_, header)) {
         throw Error(ErrorCode::BadInput, FileLocation{file},
                     fmt::format("it is no part of the same picture as {}: {} is \"{}\" here, and \"{}\" there",
-                                parts_.front().file, name, here, there));
-    };
-    if (const auto different = first_difference(header_.settings, header.settings))
-        refuse(different->name, different->after, different->before);
-    const auto shape = [](const FilmHeader& of) {
-        return fmt::format("{}x{}, {}, {}, {}", of.width, of.height, of.aovs, json_strings(of.light_layers),
-                           static_cast<int>(of.layers_at));
-    };
-    if (shape(header_) != shape(header)) refuse("the film", shape(header), shape(header_));
+                                parts_.front().file, different->name, different->after, different->before));
+    }
     const RayCounts rays = header_.rays + header.rays;
     const double seconds = header_.render_seconds + header.render_seconds;
     const uint32_t spp = std::max(header_.spp, header.spp);

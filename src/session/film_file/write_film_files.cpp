@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <utility>
 
 #include "base/write_file_atomically.h"
 #include "session/film_file/film_file.h"
@@ -40,7 +41,7 @@ public:
             add_hash(begin);
         }
     }
-    std::span<const std::byte> bytes() const { return bytes_; }
+    std::vector<std::byte> take() { return std::move(bytes_); }
 
 private:
     void add_result(const Hasher& hasher) {
@@ -54,12 +55,7 @@ private:
 
 } // namespace
 
-std::vector<WrittenFile> write_film_files(std::span<const std::string> outputs, const FilmHeader& header,
-                                          const Film& film) {
-    std::vector<WrittenFile> written;
-    for (const std::string& path : outputs)
-        if (is_film_name(path)) written.push_back({path, ""});
-    if (written.empty()) return written;
+std::vector<std::byte> film_file_bytes(const FilmHeader& header, const Film& film) {
     FilmBytes file;
     const std::string json = json_of(header);
     PERTEV_CHECK(json.size() <= kMaxFilmHeaderBytes);
@@ -70,9 +66,19 @@ std::vector<WrittenFile> write_film_files(std::span<const std::string> outputs, 
     file.add_hash(0);
     for (const auto& target : film.targets()) file.add_target(*target);
     file.add_hash_of_hashes();
+    return file.take();
+}
+
+std::vector<WrittenFile> write_film_files(std::span<const std::string> outputs, const FilmHeader& header,
+                                          const Film& film) {
+    std::vector<WrittenFile> written;
+    for (const std::string& path : outputs)
+        if (is_film_name(path)) written.push_back({path, ""});
+    if (written.empty()) return written;
+    const std::vector<std::byte> bytes = film_file_bytes(header, film);
     for (WrittenFile& to : written) {
         try {
-            write_file_atomically(to.path, file.bytes());
+            write_file_atomically(to.path, bytes);
         } catch (const Error& error) {
             to.failure = error.what();
         }

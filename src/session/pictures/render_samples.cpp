@@ -6,21 +6,28 @@
 
 namespace pertev {
 
-RenderStats add_samples(Session& session, Sink& sink) {
-    const RenderSettings& settings = session.settings();
-    if (settings.range().count() > 0 && session.render(settings.range(), sink) == 0) {
-        if (sink.should_stop()) throw Error(ErrorCode::Interrupted, "interrupted before there was anything to keep");
-        throw Error(ErrorCode::Interrupted, "time_limit", fmt::format("{:g}", settings.time_limit_s),
-                    fmt::format("no sample was finished in this time, so nothing is written; `integrator={}` prepares "
-                                "more than samples first",
-                                integrator_name(settings)));
-    }
-    RenderStats stats = session.stats();
+void refuse_without_samples(const RenderSettings& settings, Sink& sink) {
+    if (sink.should_stop()) throw Error(ErrorCode::Interrupted, "interrupted before there was anything to keep");
+    throw Error(ErrorCode::Interrupted, "time_limit", fmt::format("{:g}", settings.time_limit_s),
+                fmt::format("no sample was finished in this time, so nothing is written; `integrator={}` prepares "
+                            "more than samples first",
+                            integrator_name(settings)));
+}
+
+void note_hidden_backs(const RenderStats& stats, Sink& sink) {
     if (stats.hidden_back_share > 0.01) {
         sink.note(fmt::format("the camera looks through the backs of surfaces at {:.0f} % of the picture, "
                               "as they are not double sided (`show_back_faces` shows them)",
                               100 * stats.hidden_back_share));
     }
+}
+
+RenderStats add_samples(Session& session, Sink& sink) {
+    const RenderSettings& settings = session.settings();
+    if (settings.range().count() > 0 && session.render(settings.range(), sink) == 0)
+        refuse_without_samples(settings, sink);
+    RenderStats stats = session.stats();
+    note_hidden_backs(stats, sink);
     return stats;
 }
 

@@ -14,4 +14,11 @@ RenderResult render_samples(Session& session, Sink& sink);
 /// Does that for a caller that reads the session's film. Returns statistics alone.
 RenderStats add_samples(Session& session, Sink& sink);
 
+// The end of such a render.
+
+/// Throws the Error(Interrupted) that says why there was no time for a sample.
+[[noreturn]] void refuse_without_samples(const RenderSettings& settings, Sink& sink);
+/// Notes if the camera looks through the backs of surfaces.
+void note_hidden_backs(const RenderStats& stats, Sink& sink);
+
 } // namespace pertev

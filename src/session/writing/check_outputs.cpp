@@ -50,6 +50,16 @@ void refuse_twins(std::span<const std::string> outputs, const std::optional<Fram
     }
 }
 
+/// Refuses an output that is a generation of the checkpoint.
+void refuse_checkpoint_twins(std::span<const std::string> outputs, const std::string& checkpoint) {
+    if (checkpoint.empty()) return;
+    for (const std::string& output : outputs) {
+        const std::filesystem::path file = canonical_path(output);
+        if (file == canonical_path(checkpoint) || file == canonical_path(checkpoint + ".previous"))
+            refuse("output", output, fmt::format("`checkpoint={}` writes this file", checkpoint));
+    }
+}
+
 /// Refuses a setting that no file shows where the caller has set it. A settings file may be for other outputs.
 void refuse_unshown(const PictureOptions& options, uint32_t written) {
     const auto check = [&](const std::string& setting, const std::string& value, uint32_t formats) {
@@ -74,9 +84,13 @@ void refuse_unshown(const PictureOptions& options, uint32_t written) {
         check("false_color", "luminance", find_setting("tone_map")->formats); // other files hold irradiance
 }
 
-/// Refuses a picture that a film file does not hold whole.
-void check_film_file(const PictureOptions& options, const std::string& output, bool has_frames) {
-    if (has_frames) refuse("output", output, "a film file holds one picture, not the frames of a sequence");
+/// Refuses a picture that a film file, which is the value of the setting, does not hold whole.
+void check_film_file(const PictureOptions& options, const std::string& setting, const std::string& output,
+                     bool has_frames) {
+    if (has_frames) {
+        refuse(setting, output,
+               "a film file holds one picture, not the frames of a sequence, which `continue` resumes");
+    }
     if (options.render.denoise != Denoise::None)
         refuse("denoise", std::string(name_of(options.render.denoise)), "film files do not hold what it needs");
     if (std::ranges::count(options.aovs, "motion") > 0) refuse("aov", "motion", "film files have no such layer");
@@ -113,7 +127,7 @@ void check_outputs(const PictureOptions& options, std::span<const std::string> o
                    "number, and {name} that of its camera");
         }
         if (is_film_name(output)) {
-            check_film_file(options, output, frames.has_value());
+            check_film_file(options, "output", output, frames.has_value());
             written = ~0u;
             continue;
         }
@@ -121,7 +135,12 @@ void check_outputs(const PictureOptions& options, std::span<const std::string> o
         written |= bit_of(image_format_for(output));
         if (!frames) note_number_signs(output, sink);
     }
+    if (!options.checkpoint.empty()) {
+        check_film_file(options, "checkpoint", options.checkpoint, frames.has_value());
+        written = ~0u;
+    }
     refuse_twins(outputs, frames);
+    refuse_checkpoint_twins(outputs, options.checkpoint);
     refuse_unshown(options, written);
     for (const std::string& output : outputs) {
         if (is_film_name(output)) continue;

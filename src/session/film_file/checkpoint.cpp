@@ -1,0 +1,134 @@
+#include "session/film_file/checkpoint.h"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/machine_memory.h"
+#include "base/write_file_atomically.h"
+#include "session/film_file/film_file.h"
+
+namespace pertev {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_there(const std::string& file) {
+    std::error_code fault;
+    return fs::exists(file, fault) && !fault;
+}
+
+/// Returns how many bytes a film file may take: a sum of many samples has about five that differ.
+uint64_t most_bytes(const Film& film) {
+    uint64_t bytes = 0;
+    for (const auto& target : film.targets()) bytes += target->byte_count() / 16 * 5 + target->byte_count() % 16;
+    return bytes;
+}
+
+} // namespace
+
+Checkpoint::Checkpoint(std::string file, FilmHeader picture)
+    : file_(std::move(file)), previous_(file_ + ".previous"), picture_(std::move(picture)) {}
+
+void Checkpoint::check_header(const std::string& file, const FilmHeader& header) const {
+    const auto refuse = [&](const std::string& why) {
+        Remark remark(FileLocation{file}, why + "; name another file, or delete it to begin anew");
+        remark.setting = "checkpoint";
+        throw Error(ErrorCode::BadInput, std::move(remark));
+    };
+    if (const auto different = film_difference(header, picture_)) {
+        refuse(fmt::format("it is of another picture: {} is \"{}\" there, not \"{}\"", different->name,
+                           different->before, different->after));
+    }
+    if (header.part.is_empty()) return;
+    const SampleRange there = header.part.samples;
+    if (header.part.first_row != 0 || header.part.end_row != picture_.height)
+        refuse(fmt::format("it has the rows {} to {} alone", header.part.first_row, header.part.end_row - 1));
+    if (there.first != picture_.part.samples.first) {
+        refuse(fmt::format("its samples begin with number {}, not {} (`part`, `samples`)", there.first,
+                           picture_.part.samples.first));
+    }
+    if (there.end > picture_.part.samples.end) {
+        refuse(fmt::format("it has the samples up to {}, more than the {} of this picture (`spp`)", there.end,
+                           picture_.part.samples.end));
+    }
+}
+
+/// Takes the samples of one generation. Returns why it is damaged, or nothing.
+std::optional<Error> Checkpoint::take(const std::string& file, FilmRender& film, Sink& sink) const {
+    std::optional<FilmFileReader> reader;
+    try {
+        reader.emplace(file);
+    } catch (const Error& error) {
+        return error;
+    }
+    const FilmHeader& header = reader->header();
+    check_header(file, header);
+    if (header.part.is_empty()) return std::nullopt;
+    try {
+        film.restore(
+            header.part.samples, [&](Film& into) { reader->add_to(into); }, header.rays, header.render_seconds);
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::BadInput) throw;
+        return error;
+    }
+    sink.note(fmt::format("goes on from {} of {} samples in {}", header.part.samples.count(),
+                          picture_.part.samples.count(), file));
+    return std::nullopt;
+}
+
+void Checkpoint::restore(FilmRender& film, Sink& sink) {
+    if (!is_there(file_)) {
+        if (is_there(previous_)) {
+            sink.warn({FileLocation{previous_}, "the render does not go on from it, as there is no checkpoint beside "
+                                                "it; rename it to one to go on"});
+        }
+        return;
+    }
+    const std::optional<Error> damage = take(file_, film, sink);
+    if (!damage) return;
+    const Error refusal(damage->code(), damage->remark().and_then("; delete it to begin anew"));
+    if (!is_there(previous_)) throw refusal;
+    is_damaged_ = true;
+    sink.warn(damage->remark().and_then(fmt::format("; the generation before it, {}, is used", previous_)));
+    if (take(previous_, film, sink)) throw refusal;
+}
+
+void Checkpoint::check_space(const Film& film) const {
+    std::error_code unknown;
+    const fs::path target = fs::weakly_canonical(file_, unknown);
+    const fs::space_info disk = fs::space(target.has_parent_path() ? target.parent_path() : ".", unknown);
+    if (unknown || disk.capacity == 0) return;
+    uint64_t free = disk.available;
+    for (const std::string& file : {file_, previous_}) {
+        const uint64_t size = fs::file_size(file, unknown);
+        if (!unknown) free += size;
+    }
+    const uint64_t needed = 3 * most_bytes(film);
+    if (free >= needed) return;
+    throw Error(ErrorCode::FileWrite, FileLocation{file_},
+                fmt::format("two generations of this checkpoint and the next, while it is written, may take {:.1f} "
+                            "MiB, and the disk has {:.1f} MiB",
+                            mebibytes(needed), mebibytes(free)));
+}
+
+void Checkpoint::write(FilmRender& film, PictureFacts facts) {
+    FilmHeader header = picture_;
+    header.facts = std::move(facts);
+    header.rays = film.rays();
+    const Film& sums = film.film();
+    if (sums.part().is_empty())
+        header.part.samples.end = header.part.samples.first;
+    else
+        header.part = sums.part();
+    header.render_seconds = film.stats().render_seconds;
+    const std::vector<std::byte> bytes = film_file_bytes(header, sums);
+    if (is_damaged_)
+        write_file_atomically(file_, bytes);
+    else
+        write_generation(file_, previous_, bytes);
+    is_damaged_ = false;
+}
+
+} // namespace pertev
