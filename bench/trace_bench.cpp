@@ -18,13 +18,13 @@
 #include <vector>
 
 #include "base/error.h"
+#include "bench/picture_rays.h"
 #include "lab/measurement.h"
 #include "lab/ray_sets.h"
 #include "lab/record_scenes.h"
 #include "render/prepare_scene.h"
 #include "trace/trace_any.h"
 #include "trace/trace_closest.h"
-#include "trace/wide/trace_many.h"
 #include "trace/wide/traverse_wide.h"
 
 using namespace pertev;
@@ -32,7 +32,6 @@ using namespace pertev;
 namespace {
 
 constexpr std::size_t kChunk = 1 << 16; // long enough for a tracer to bring its tree back into the cache
-constexpr TraversalOptions kClosest = {}, kAny = {.near_first = false}; // pictures' (device_scene/find_hits.h)
 
 /// CPU time of this thread.
 template <class F>
@@ -69,21 +68,11 @@ Trace single(const HostTrees& trees, bool any_hit) {
     };
 }
 
-/// Pictures have bounces in flight and other rays in packets.
 Trace as_pictures(const HostTrees& trees, bool any_hit, RayOrder order) {
     return [&trees, any_hit, order](std::span<const Ray> rays) {
         std::vector<Hit> hits(rays.size());
         const auto found = std::make_unique<bool[]>(rays.size());
-        const auto count = static_cast<uint32_t>(rays.size());
-        const auto ray_of = [&](uint32_t i) { return rays[i]; };
-        const auto accept_of = [](uint32_t) { return AcceptAll{}; };
-        return seconds_of([&] {
-            if (any_hit) {
-                trace_any_many<kAny>(trees, count, order, ray_of, accept_of, found.get());
-            } else {
-                trace_closest_many<kClosest>(trees, count, order, ray_of, accept_of, hits.data());
-            }
-        });
+        return seconds_of([&] { trace_as_pictures(trees, {rays, order, any_hit, hits.data(), found.get()}); });
     };
 }
 

@@ -307,7 +307,7 @@ MUTATIONS = [
     ("the front of a mirrored emitter is turned over", "statistical/light_sampling statistical/emitter_faces",
      ("src/shading/build_light_set.cpp", "triangle.is_mirrored = is_mirrored ? 1 : 0;", "triangle.is_mirrored = is_mirrored ? 0 : 0;")),
     ("a packet forgets where its first rays start", "consistency/trace_many",
-     ("src/trace/wide/wide_packet.h", "max(all.max_near, max_of(q_near))", "max_of(q_near)")),
+     ("src/trace/wide/wide_packet.h", "max(all.max_near, greatest_of(q_near))", "max_of(q_near)")),
     ("a hit in flight drops one that waits too many", "consistency/trace_many",
      ("src/trace/wide/flight_stack.h", "(1u << (size_ - i)) - 1", "(1u << (size_ - i - 1)) - 1")),
     ("hidden backs are those of the world's winding", "unit/hidden_back",

@@ -93,6 +93,17 @@ struct Floats8 : LaneArithmetic<Floats8> {
     friend Floats8 sqrt(Floats8 a) { return _mm256_sqrt_ps(a.v); }
     friend Floats8 fma(Floats8 a, Floats8 b, Floats8 c) { return _mm256_fmadd_ps(a.v, b.v, c.v); }
     friend Floats8 floor(Floats8 a) { return _mm256_floor_ps(a.v); }
+    /// The least and the greatest of all lanes, of which none is NaN.
+    friend float least_of(Floats8 a) {
+        const __m128 four = _mm_min_ps(_mm256_castps256_ps128(a.v), _mm256_extractf128_ps(a.v, 1));
+        const __m128 two = _mm_min_ps(four, _mm_movehl_ps(four, four));
+        return _mm_cvtss_f32(_mm_min_ss(two, _mm_shuffle_ps(two, two, 1)));
+    }
+    friend float greatest_of(Floats8 a) {
+        const __m128 four = _mm_max_ps(_mm256_castps256_ps128(a.v), _mm256_extractf128_ps(a.v, 1));
+        const __m128 two = _mm_max_ps(four, _mm_movehl_ps(four, four));
+        return _mm_cvtss_f32(_mm_max_ss(two, _mm_shuffle_ps(two, two, 1)));
+    }
     /// Truncates to integers, whose bits are words; |a| < 2^31.
     friend Words8 truncate_to_word(Floats8 a) { return reinterpret_cast<Words8>(_mm256_cvttps_epi32(a.v)); }
 };

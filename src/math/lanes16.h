@@ -82,6 +82,8 @@ struct Floats16 : LaneArithmetic<Floats16> {
     friend Floats16 sqrt(Floats16 a) { return _mm512_sqrt_ps(a.v); }
     friend Floats16 fma(Floats16 a, Floats16 b, Floats16 c) { return _mm512_fmadd_ps(a.v, b.v, c.v); }
     friend Floats16 floor(Floats16 a) { return _mm512_floor_ps(a.v); }
+    friend float least_of(Floats16 a) { return _mm512_reduce_min_ps(a.v); }
+    friend float greatest_of(Floats16 a) { return _mm512_reduce_max_ps(a.v); }
     friend Words16 truncate_to_word(Floats16 a) { return reinterpret_cast<Words16>(_mm512_cvttps_epi32(a.v)); }
 
 private:

@@ -13,6 +13,7 @@
 #include "math/random.h"
 #include "tests/support/check_traversal.h"
 #include "tests/support/options.h"
+#include "tests/support/trace_many_16.h"
 #include "trace/wide/trace_many.h"
 
 using namespace pertev;
@@ -20,6 +21,19 @@ using namespace pertev::test;
 
 namespace {
 
+void check_hits(const std::vector<Ray>& rays, const std::vector<Hit>& expected, const std::vector<Hit>& hits,
+                const bool* met) {
+    uint64_t wrong = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        Hit want = expected[i];
+        if (want.instance == kNoHit) want.t = rays[i].t_max;
+        if (hits[i] == want && met[i] == (want.instance != kNoHit)) continue;
+        if (wrong++ == 0) FAIL_CHECK("ray ", i, ": ", text_of(rays[i]), " t ", hits[i].t, " want ", want.t);
+    }
+    CHECK(wrong == 0);
+}
+
+/// Checks packets of eight lanes and, where the processor has them, of sixteen.
 template <class Accept>
 void check_many(const HostTrees& scene, RayOrder order, const std::vector<Ray>& rays, const std::vector<Hit>& expected,
                 const Accept& accept) {
@@ -30,14 +44,14 @@ void check_many(const HostTrees& scene, RayOrder order, const std::vector<Ray>& 
     const auto accept_of = [&](uint32_t) { return accept; };
     trace_closest_many<TraversalOptions{}>(scene, count, order, ray_of, accept_of, hits.data());
     trace_any_many<TraversalOptions{.near_first = false}>(scene, count, order, ray_of, accept_of, met.get());
-    uint64_t wrong = 0;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        Hit want = expected[i];
-        if (want.instance == kNoHit) want.t = rays[i].t_max;
-        if (hits[i] == want && met[i] == (want.instance != kNoHit)) continue;
-        if (wrong++ == 0) FAIL_CHECK("ray ", i, ": ", text_of(rays[i]), " t ", hits[i].t, " want ", want.t);
-    }
-    CHECK(wrong == 0);
+    check_hits(rays, expected, hits, met.get());
+#if defined(PERTEV_HAS_16_LANES)
+    if (!has_sixteen_lanes()) return;
+    std::vector<Hit> hits_of_16(rays.size());
+    const auto met_of_16 = std::make_unique<bool[]>(rays.size());
+    trace_many_by_16(scene, order, rays, accept, hits_of_16.data(), met_of_16.get());
+    check_hits(rays, expected, hits_of_16, met_of_16.get());
+#endif
 }
 
 /// Groups of rays around each of `rays`, from one point or in one direction; axis-parallel ones stay so.
@@ -64,7 +78,9 @@ uint64_t count_coherent(const std::vector<Ray>& groups, const HostTrees& scene) 
     uint64_t coherent = 0;
     for (std::size_t i = 0; i < groups.size(); i += kWidePacket) {
         coherent +=
-            WidePacket<TraversalOptions{}, ClosestVisitor<AcceptAll>>(scene.baked, &groups[i]).is_coherent() ? 1 : 0;
+            WidePacket<TraversalOptions{}, ClosestVisitor<AcceptAll>, Floats8>(scene.baked, &groups[i]).is_coherent()
+                ? 1
+                : 0;
     }
     return coherent;
 }

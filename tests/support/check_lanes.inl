@@ -109,6 +109,13 @@ void check_arithmetic(LaneChecks& same) {
             same(is_finite(a), [&](uint32_t k) { return is_finite(a[k]); });
             same(select(a < b, a, b), [&](uint32_t k) { return a[k] < b[k] ? a[k] : b[k]; });
             same(select(a < b, bits_of(a), bits_of(b)), [&](uint32_t k) { return bits_of(a[k] < b[k] ? a[k] : b[k]); });
+            float least = kInfinity, greatest = -kInfinity;
+            for (uint32_t k = 0; k < kLanes; ++k) {
+                if (a[k] != a[k]) continue;
+                least = min(least, a[k]), greatest = max(greatest, a[k]);
+            }
+            same(least_of(select(a == a, a, kInfinity)) == least, [](uint32_t) { return true; });
+            same(greatest_of(select(a == a, a, -kInfinity)) == greatest, [](uint32_t) { return true; });
             same(next_float(a, b), [&](uint32_t k) { return next_float(a[k], b[k]); });
         }
     }

@@ -6,18 +6,12 @@
 
 #include <vector>
 
+#include "tests/support/accept_some.h"
 #include "tests/support/stress_meshes.h"
 #include "trace/trace_any.h"
 #include "trace/trace_closest.h"
 
 namespace pertev::test {
-
-/// Acceptance by a pure function of the primitive and the position on it, like an alpha cut-out.
-struct AcceptSome {
-    HD bool operator()(uint32_t instance, uint32_t primitive, float u, float) const {
-        return (primitive * 2654435761u + instance) % 3 != 0 || u > 0.5f;
-    }
-};
 
 /// The result of testing every triangle.
 template <class Accept>

@@ -1,5 +1,5 @@
-// Body of path_loop.h. The file that includes it names the number type of camera rays: `Floats` is Floats8 or Floats16.
-// All of it is in anonymous namespaces, so that a file for AVX-512 keeps it to itself.
+// Body of path_loop.h. The file that includes it names the number type of camera rays and of packets: `Floats` is
+// Floats8 or Floats16. All of it is in anonymous namespaces, so that a file for AVX-512 keeps it to itself.
 
 #include "device_scene/find_hits.h"
 #include "integrators/path/host_shading.h"
@@ -37,7 +37,7 @@ protected:
             }
             return;
         }
-        find_hits(trees_, job_.picture.scene, from_camera, end - begin, ray_of, accept_of, hits_ + begin);
+        find_hits<Floats>(trees_, job_.picture.scene, from_camera, end - begin, ray_of, accept_of, hits_ + begin);
     }
 
     /// Traces the shadow rays.
@@ -50,7 +50,7 @@ protected:
             return AcceptHit{job_.picture.scene, shadow_rays_[i].start, shadow_rays_[i].target, shadow_keys_[i],
                              paths_[shadow_paths_[i]].time};
         };
-        find_occlusions(trees_, shadows_, RayOrder::Together, ray_of, accept_of, occluded_);
+        find_occlusions<Floats>(trees_, shadows_, RayOrder::Together, ray_of, accept_of, occluded_);
     }
 
     /// Key of the path's ray at its depth, for blended surfaces only.

@@ -22,12 +22,12 @@ enum class RayOrder {
 };
 
 /// Traverses the scene with many rays, in packets where they are coherent and otherwise by traverse_scene_in_flight.
-template <TraversalOptions kOptions, class RayOf, class AcceptOf, class MakeVisitor, class End>
+template <TraversalOptions kOptions, class F, class RayOf, class AcceptOf, class MakeVisitor, class End>
 void traverse_scene_together(const HostTrees& scene, uint32_t count, const RayOf& ray_of, const AcceptOf& accept_of,
                              const MakeVisitor& make_visitor, const End& end_of) {
     using Accept = decltype(accept_of(0));
     using Visitor = decltype(make_visitor(std::declval<const Accept&>(), std::declval<const Ray&>()));
-    using Packet = WidePacket<kOptions, Visitor>;
+    using Packet = WidePacket<kOptions, Visitor, F>;
     constexpr uint32_t kSize = kWidePacket, kMaxAlone = 256, kViewRays = 3;
     std::array<uint32_t, kMaxAlone> alone;
     uint32_t waiting = 0;
@@ -72,7 +72,7 @@ void traverse_scene_together(const HostTrees& scene, uint32_t count, const RayOf
 }
 
 /// Traverses the scene with many rays in the way that suits it and their order.
-template <TraversalOptions kOptions, bool kAny, class RayOf, class AcceptOf, class MakeVisitor, class End>
+template <TraversalOptions kOptions, bool kAny, class F, class RayOf, class AcceptOf, class MakeVisitor, class End>
 void traverse_scene_many(const HostTrees& scene, uint32_t count, RayOrder order, const RayOf& ray_of,
                          const AcceptOf& accept_of, const MakeVisitor& make_visitor, const End& end_of) {
     static_assert(kOptions.is_exact());
@@ -80,32 +80,32 @@ void traverse_scene_many(const HostTrees& scene, uint32_t count, RayOrder order,
         EveryTriangle<kAny, RayOf, AcceptOf, MakeVisitor, End>(scene.baked, ray_of, accept_of, make_visitor, end_of)
             .run(count);
     } else if (order == RayOrder::Together) {
-        traverse_scene_together<kOptions>(scene, count, ray_of, accept_of, make_visitor, end_of);
+        traverse_scene_together<kOptions, F>(scene, count, ray_of, accept_of, make_visitor, end_of);
     } else {
         traverse_scene_in_flight<kOptions>(scene, count, ray_of, accept_of, make_visitor, end_of);
     }
 }
 
 /// Closest hits of `count` rays: hits[i] is that of ray_of(i), among the candidates that accept_of(i) accepts.
-template <TraversalOptions kOptions, class RayOf, class AcceptOf>
+template <TraversalOptions kOptions, class F = Floats8, class RayOf, class AcceptOf>
 void trace_closest_many(const HostTrees& scene, uint32_t count, RayOrder order, const RayOf& ray_of,
                         const AcceptOf& accept_of, Hit* hits) {
     const auto make_visitor = []<class Accept>(const Accept& accept, const Ray& ray) {
         return ClosestVisitor<Accept>{accept, Hit{.t = ray.t_max}};
     };
     const auto end = [&](uint32_t i, const auto& visitor) { hits[i] = visitor.best; };
-    traverse_scene_many<kOptions, false>(scene, count, order, ray_of, accept_of, make_visitor, end);
+    traverse_scene_many<kOptions, false, F>(scene, count, order, ray_of, accept_of, make_visitor, end);
 }
 
 /// Occlusion of `count` rays: met[i] is whether ray i hits anything.
-template <TraversalOptions kOptions, class RayOf, class AcceptOf>
+template <TraversalOptions kOptions, class F = Floats8, class RayOf, class AcceptOf>
 void trace_any_many(const HostTrees& scene, uint32_t count, RayOrder order, const RayOf& ray_of,
                     const AcceptOf& accept_of, bool* met) {
     const auto make_visitor = []<class Accept>(const Accept& accept, const Ray& ray) {
         return AnyVisitor<Accept>{accept, ray.t_max};
     };
     const auto end = [&](uint32_t i, const auto& visitor) { met[i] = visitor.found; };
-    traverse_scene_many<kOptions, true>(scene, count, order, ray_of, accept_of, make_visitor, end);
+    traverse_scene_many<kOptions, true, F>(scene, count, order, ray_of, accept_of, make_visitor, end);
 }
 
 } // namespace pertev
