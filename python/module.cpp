@@ -65,11 +65,12 @@ nb::dict row_of(const Setting& setting) {
 }
 
 /// Returns the settings of a single picture, or those of frames: `frames`, `turntable` and what needs these, but for
-/// those that are about files: `continue`, and parts.
+/// those that are about files: `continue`, parts and checkpoints.
 std::vector<nb::dict> settings_of(bool frames) {
     std::vector<nb::dict> rows;
     std::set<std::string, std::less<>> of_sequences = {"frames", "turntable", "cameras"};
-    const std::set<std::string_view> of_files = {"continue", "samples", "part", "part_base"};
+    const std::set<std::string_view> of_files = {"continue",  "samples",    "part",
+                                                 "part_base", "checkpoint", "checkpoint_every"};
     for (const Setting& setting : all_settings()) {
         const std::vector<std::string> needs = words_of(setting.needs);
         const auto is_of_sequences = [&](const std::string& name) { return of_sequences.contains(name); };
