@@ -1,8 +1,7 @@
 #include "integrators/path/begin_and_trace.h"
 
-#include "device/launch_body.h"
 #include "trace/binary/octant_traversal.h"
-#include "tracer/kernels/queue_stages.h"
+#include "tracer/kernels/traversal_kernels_body.h"
 
 namespace pertev {
 
@@ -34,20 +33,13 @@ bool begin_and_trace([[maybe_unused]] Queue& queue, [[maybe_unused]] const Scene
                             by.distribution == Distribution::OneAThread;
     const TraceQuery query = tracer.query_of(RayKind::Camera, generate.paths.query_back(generate.last));
     if (!queue.is_cuda() || !is_default || query.moving != nullptr || tracer.times_kinds()) return false;
-    const auto& scene = std::get<SceneTrees<BvhView>>(tracer.tracer(RayKind::Camera).structure().trees());
-    const SingleTree<BvhView> baked = {scene.baked};
-    const auto run = [&]<class Accept>(const auto& trees, Accept*) {
-        using Stage = BeginAndTrace<kInBatch, Accept, std::remove_cvref_t<decltype(trees)>>;
-        launch_on_gpu(queue, "begin_and_trace", fresh, Stage{generate, trees, query, hits});
-    };
-    using AcceptAtRest = AcceptQueued<false>;
-    if (scene.tlas_root != kNoLink) {
-        run(scene, static_cast<AcceptAtRest*>(nullptr));
-    } else if (query.is_opaque()) {
-        run(baked, static_cast<AcceptOpaque*>(nullptr));
-    } else {
-        run(baked, static_cast<AcceptAtRest*>(nullptr));
-    }
+    const AnyTrees& trees = tracer.tracer(RayKind::Camera).structure().trees();
+    with_kernel<CameraTraversal, true, true>(trees, query, [&]<class Kernel>(const auto& scene, Kernel) {
+        if constexpr (!std::is_same_v<Kernel, AnyScene<CameraTraversal>>) {
+            using Stage = BeginAndTrace<kInBatch, typename Kernel::Accept, typename Kernel::Scene>;
+            launch_on_gpu(queue, "begin_and_trace", fresh, Stage{generate, scene, query, hits});
+        }
+    });
     return true;
 #else
     return false;

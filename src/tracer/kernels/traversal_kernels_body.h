@@ -1,7 +1,7 @@
 #pragma once
 
-// Makes the rows of one traversal for the table in traversal_kernels.h. Only .cu files of this folder include it,
-// because it includes the bodies of launches (device/launch_body.h).
+// Chooses kernels, and makes the rows of one traversal for the table in traversal_kernels.h. Only .cu files include
+// it, because it includes the bodies of launches (device/launch_body.h).
 
 #include "device/launch_body.h"
 #include "trace/dynamic_fetch.h"
