@@ -133,10 +133,8 @@ private:
 
 /// Throws before the disk is filled by a file that does not fit.
 void check_space(const fs::path& target, std::size_t size) {
-    std::error_code unknown;
-    const fs::space_info disk = fs::space(folder_of(target), unknown);
-    if (unknown || disk.capacity == 0 || disk.available >= size) return;
-    throw std::system_error(std::make_error_code(std::errc::no_space_on_device));
+    if (free_disk_bytes(target).value_or(size) < size)
+        throw std::system_error(std::make_error_code(std::errc::no_space_on_device));
 }
 
 /// Makes `previous` another name of the file, if it is there, or a copy where a file cannot have two.
@@ -181,6 +179,13 @@ void write_generation(const fs::path& path, const fs::path& previous, std::span<
     } catch (const std::system_error& error) {
         rethrow(path, error);
     }
+}
+
+std::optional<uint64_t> free_disk_bytes(const fs::path& target) {
+    std::error_code unknown;
+    const fs::space_info disk = fs::space(folder_of(target), unknown);
+    if (unknown || disk.capacity == 0) return std::nullopt;
+    return disk.available;
 }
 
 void check_writable(const fs::path& path) {

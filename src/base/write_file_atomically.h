@@ -3,7 +3,9 @@
 // Replaces a file atomically: the new content is written beside the target, flushed, and renamed over it.
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 
 #include "base/sink.h"
@@ -20,6 +22,10 @@ void write_file_atomically(const std::filesystem::path& path, std::span<const st
 /// moment `path` is there, if it was. After an error it is as it was.
 void write_generation(const std::filesystem::path& path, const std::filesystem::path& previous,
                       std::span<const std::byte> bytes);
+
+/// Returns the bytes that are free where `target`, a path without links, lies or would; nothing if the system does not
+/// tell.
+std::optional<uint64_t> free_disk_bytes(const std::filesystem::path& target);
 
 /// Throws the Error(FileWrite) that write_file_atomically would throw for a path that cannot be written. It is for
 /// use before a long render. Creates nothing that stays.

@@ -97,10 +97,9 @@ void Checkpoint::restore(FilmRender& film, Sink& sink) {
 
 void Checkpoint::check_space(const Film& film) const {
     std::error_code unknown;
-    const fs::path target = fs::weakly_canonical(file_, unknown);
-    const fs::space_info disk = fs::space(target.has_parent_path() ? target.parent_path() : ".", unknown);
-    if (unknown || disk.capacity == 0) return;
-    uint64_t free = disk.available;
+    const std::optional<uint64_t> known = free_disk_bytes(fs::weakly_canonical(file_, unknown));
+    if (!known) return;
+    uint64_t free = *known;
     for (const std::string& file : {file_, previous_}) {
         const uint64_t size = fs::file_size(file, unknown);
         if (!unknown) free += size;
