@@ -26,3 +26,12 @@ if(PERTEV_SANITIZE)
   add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:-fsanitize=${PERTEV_SANITIZE};-fno-sanitize-recover=all;-fno-omit-frame-pointer;-g1>")
   add_link_options(-fsanitize=${PERTEV_SANITIZE})
 endif()
+
+# pertev_compile_for_sixteen_lanes(FILE...): g++ compiles these files of the current folder for processors with AVX-512, which
+# takes_sixteen_lanes() finds when the program runs. -fno-weak keeps their copies of inline functions to themselves; otherwise the
+# linker might pick one for code that runs everywhere. g++ warns, for each constant of a header, that it is copied too, and has no
+# name for that warning; the same code is compiled with all warnings for eight lanes.
+function(pertev_compile_for_sixteen_lanes)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
+  set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS -march=x86-64-v4 -fno-weak -w)
+endfunction()
