@@ -58,7 +58,9 @@ ArrayArgument::ArrayArgument(nb::handle value, std::string name) : name_(std::mo
             fail(fmt::format("no array of numbers: {}", error.what()));
         }
     }
-    if (array_.device_type() != nb::device::cpu::value)
+    if (array_.device_type() == nb::device::cpu::value) return;
+    const nb::object on_host = nb::module_::import_("pertev._arrays").attr("on_host")(value);
+    if (!nb::try_cast(on_host, array_) || array_.device_type() != nb::device::cpu::value)
         fail("the array is not in the memory of the CPU; copy it there");
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
-// An array that Python gives: of NumPy or of anything with DLPack or the buffer protocol, also lists of numbers. It is
-// copied; its dtype, shape and device are checked, and errors name the argument. All functions need the interpreter's
-// lock.
+// An array that Python gives: of NumPy or of anything with DLPack or the buffer protocol, also on a GPU, and lists of
+// numbers. It is copied; its dtype, shape and device are checked, and errors name the argument. All functions need the
+// interpreter's lock.
 
 #include <cstdint>
 #include <initializer_list>

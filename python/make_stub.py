@@ -146,7 +146,10 @@ def main():
     lines += takes_settings("render_chunks", ["scene: Scene | _Text,", "cameras: Cameras | Any,", "*,",
                                               "chunk: int | None = None,", *BATCH, "settings: _Text | None = None,"],
                             "Iterator[BatchResult]", rows, package.render_chunks)
-    lines += takes_settings("view", ["scene: Scene | _Text,", "*,", "port: int = 0,"], "Viewer", rows, package.view)
+    lines += takes_settings("scene", ["name: str,", "*,"], "Scene", rows, package.scene)
+    viewed = [row for row in rows if row["is_viewed"]]
+    lines += takes_settings("view", ["scene: Scene | _Text,", "*,", "port: int = 0,", "browser: bool = False,"], "Viewer", viewed,
+                            package.view)
     for name in ("read", "read_cameras", "write", "tone_map", "compare"):
         lines += [f"def {name}{SIGNATURES[name]}:", doc_of(getattr(package, name), "    "), ""]
     print("\n".join(lines))

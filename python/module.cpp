@@ -60,6 +60,7 @@ nb::dict row_of(const Setting& setting) {
     row["unit"] = setting.unit;
     row["choices"] = choices_of(setting);
     row["type"] = type_of(setting);
+    row["is_viewed"] = (setting.verbs & kView) != 0;
     row["default"] = texts_of(PictureOptions(), setting);
     return row;
 }

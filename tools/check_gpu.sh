@@ -3,13 +3,13 @@
 #   tools/check_gpu.sh BIN SCENES [PART ...]
 # BIN is the folder of pertev and pertev_tests (build/bin, or a bundle of tools/make_portable.sh), SCENES the folder of the
 # public test scenes (docs/scenes.md), with those of tools/make_record_scenes.py, without which bench leaves out rays. Parts: tests,
-# long, pictures, sanitizers, references, bench, viewer; all without any. Exits 1 when something failed.
+# python, long, pictures, sanitizers, references, bench, viewer; all without any. Exits 1 when something failed.
 set -uo pipefail
 bin=$1 scenes=$2
 shift 2
 here=$(cd "$(dirname "$0")" && pwd)
 parts=("$@")
-[ ${#parts[@]} -gt 0 ] || parts=(tests long pictures sanitizers references bench viewer)
+[ ${#parts[@]} -gt 0 ] || parts=(tests python long pictures sanitizers references bench viewer)
 export PERTEV_SCENES=$scenes
 status=0
 
@@ -28,6 +28,11 @@ for part in "${parts[@]}"; do
         files+=',*/cast_test.cpp,*/whitted_test.cpp,*/distributed_test.cpp,*/light_paths_test.cpp,*/measure_irradiance_test.cpp,*/thesis_pictures_test.cpp,*/motion_vectors_test.cpp,*/restir_test.cpp'
         run "$bin/pertev_tests" --device cuda --source-file="$files"
         [ -z "${PERTEV_OIDN:-}" ] || run python3 "$here/../tests/robust/cli_oidn_test.py" "$bin/pertev" --device cuda
+        ;;
+    python) # the package of the build folder; a bundle has none
+        if [ -d "$bin/../python/pertev" ]; then
+            run env PYTHONPATH="$bin/../python" python3 "$here/../tests/python/cameras_test.py" "$bin/pertev" --device cuda
+        fi
         ;;
     long)
         files='*/device_functions_test.cpp,*/lab_test.cpp,*/lab_scenes_test.cpp,*/watertight_test.cpp'

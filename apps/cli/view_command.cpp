@@ -39,7 +39,7 @@ struct ViewFlags {
     RenderFlags render;
     std::string host = "127.0.0.1";
     uint32_t port = 8080;
-    bool no_browser = false;
+    bool no_browser = false, embed = false;
     std::string token_file, token;
     std::optional<uint32_t> moving_depth;
     std::string jpeg = "auto";
@@ -144,6 +144,7 @@ int view(ViewFlags& flags) {
         {.host = flags.host,
          .port = static_cast<uint16_t>(flags.port),
          .token = flags.token,
+         .embed = flags.embed,
          .jpeg_queue = jpeg_queue.get()},
         start, source, [&](const std::string& address) { report_address(flags, address, reporter); },
         [] { return !interrupted(); });
@@ -176,6 +177,8 @@ void add_view_command(CLI::App& app, int& status) {
         ->type_name("FILE")
         ->group(group);
     verb.add_flag("--no-browser", flags->no_browser, "do not open a browser")->group(group);
+    verb.add_flag("--embed", flags->embed, "let other pages, such as notebooks, show the viewer in a frame")
+        ->group(group);
     add_whole(verb, "--moving-depth", flags->moving_depth,
               fmt::format("maximum path depth in motion ({}, or --max-depth if given)", kMovingDepth), 0,
               kMaxPathDepth - 1)

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "apps/viewer/access_token.h"
 
 namespace pertev {
@@ -104,6 +106,11 @@ std::optional<std::string_view> cookie_named(std::string_view header, std::strin
 
 std::optional<std::string_view> query_value(std::string_view query, std::string_view name) {
     return only_value(query, '&', name);
+}
+
+std::string cookie_text(const ServerIdentity& server) {
+    return fmt::format("{}={}; Path=/; HttpOnly; {}", server.cookie_name, server.cookie_value,
+                       server.in_frames ? "SameSite=None; Secure; Partitioned" : "SameSite=Strict");
 }
 
 RequestVerdict check_request(const RequestText& request, const ServerIdentity& server) {

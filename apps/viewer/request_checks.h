@@ -16,6 +16,7 @@ struct ServerIdentity {
     std::string token;        // part of the printed address
     std::string cookie_name;  // contains an id of this server, because all ports of a name share cookies
     std::string cookie_value; // the value that replaces the token
+    bool in_frames = false;   // whether pages of others may show this one in a frame
 };
 
 /// A request's text. Missing headers are empty.
@@ -46,6 +47,10 @@ bool is_same_origin(std::string_view origin, std::string_view host_header);
 std::optional<std::string_view> cookie_named(std::string_view header, std::string_view name);
 /// The undecoded value of `name=` in "a=1&name=2"; nothing if there is none, or more than one.
 std::optional<std::string_view> query_value(std::string_view query, std::string_view name);
+
+/// The Set-Cookie header. In a frame, browsers send a cookie only if it says that it is for other sites' pages too; it
+/// is partitioned, so that each of them has its own.
+std::string cookie_text(const ServerIdentity& server);
 
 /// Does not throw.
 RequestVerdict check_request(const RequestText& request, const ServerIdentity& server);

@@ -67,7 +67,7 @@ void run_viewer(const ViewerOptions& options, const ViewerStart& start, FrameSou
                 const std::function<bool()>& goes_on) {
     const bool is_given = !options.token.empty(); // and not in the program's output
     const ServerIdentity identity = {options.host, is_given ? options.token : make_token(), "pertev-" + make_token(4),
-                                     make_token()};
+                                     make_token(), options.embed};
     Inbox inbox;
     inbox.raise(source.abandon(), source.hurry());
     inbox.expect(start.view);

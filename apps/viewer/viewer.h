@@ -21,6 +21,7 @@ struct ViewerOptions {
     std::string host = "127.0.0.1";
     uint16_t port = 8080; // 0: any free port
     std::string token;    // empty: a new random one
+    bool embed = false;   // pages of others, such as notebooks, may show the viewer in a frame
     WebLimits limits;
     Queue* jpeg_queue = nullptr; // GPU queue only for encoding pictures; outlives the viewer. Null: the CPU encodes
 };
@@ -41,8 +42,9 @@ struct ViewerStart {
     std::vector<std::pair<std::string, std::string>> about;
 };
 
-/// Listens, calls `listening` with the address that grants access (a given token is to be added to its end), and continues while `goes_on` returns true; it is
-/// called often. Throws Error(BadInput) if it cannot listen, Error(DeviceFault).
+/// Listens, calls `listening` with the address that grants access (a given token is to be added to its end), and
+/// continues while `goes_on` returns true; it is called often. Throws Error(BadInput) if it cannot listen,
+/// Error(DeviceFault).
 void run_viewer(const ViewerOptions& options, const ViewerStart& start, FrameSource& source,
                 const std::function<void(const std::string& address)>& listening, const std::function<bool()>& goes_on);
 

@@ -35,15 +35,17 @@ using Request = http::request<http::empty_body>;
 
 std::string_view view_of(boost::beast::string_view text) { return {text.data(), text.size()}; }
 
-/// Adds security headers to every answer: no other site may use it, and only our scripts run.
-void add_safety(Response& response) {
+/// Adds security headers to an answer: no other site may use it, only our scripts run, and no other page shows it in a
+/// frame unless `in_frames`.
+void add_safety(Response& response, bool in_frames) {
     response.set(http::field::server, "pertev");
     response.set(http::field::cache_control, "no-store");
     response.set("Content-Security-Policy",
-                 "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; connect-src 'self'; "
-                 "base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
+                 fmt::format("default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; "
+                             "connect-src 'self'; base-uri 'none'; form-action 'none'{}",
+                             in_frames ? "" : "; frame-ancestors 'none'"));
     response.set("X-Content-Type-Options", "nosniff");
-    response.set("X-Frame-Options", "DENY");
+    if (!in_frames) response.set("X-Frame-Options", "DENY");
     response.set("Referrer-Policy", "no-referrer");
     response.set("Cross-Origin-Opener-Policy", "same-origin");
     response.set("Cross-Origin-Resource-Policy", "same-origin");
@@ -51,7 +53,6 @@ void add_safety(Response& response) {
 
 Response answer(unsigned status, std::string_view type, std::string body) {
     Response response(static_cast<http::status>(status), 11);
-    add_safety(response);
     response.set(http::field::content_type, boost::beast::string_view(type.data(), type.size()));
     response.body() = std::move(body);
     return response;
@@ -227,11 +228,7 @@ private:
         const auto file = std::ranges::find(server_.files, std::string_view(verdict.path), &PageFile::path);
         if (file == server_.files.end()) return reply(refusal(404, "Not found."), keeps);
         Response response = answer(200, file->type, std::string(file->text));
-        if (verdict.gives_cookie) {
-            response.set(http::field::set_cookie,
-                         fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict", server_.identity.cookie_name,
-                                     server_.identity.cookie_value));
-        }
+        if (verdict.gives_cookie) response.set(http::field::set_cookie, cookie_text(server_.identity));
         reply(std::move(response), keeps);
     }
 
@@ -274,6 +271,7 @@ private:
     }
 
     void reply(Response response, bool keeps) {
+        add_safety(response, server_.identity.in_frames);
         response.keep_alive(keeps);
         response.prepare_payload();
         response_ = std::move(response);

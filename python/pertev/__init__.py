@@ -13,14 +13,14 @@ from ._cameras import BatchResult, Cameras, DeviceArray, chunk_size, read_camera
 from ._core import Result, builtin_scenes
 from ._images import compare, read, tone_map, write
 from ._process import check_process
-from ._scene import Params, Scene, Session, load
+from ._scene import Params, Scene, Session, load, scene
 from ._settings import texts_of, with_layers
 from ._viewer import Viewer, view
 from .errors import DeviceError, Error, InputError, InterruptedRender, LimitError, MemoryLimitError, WriteError
 
 __all__ = ["BatchResult", "Cameras", "DeviceArray", "DeviceError", "Error", "InputError", "InterruptedRender", "LimitError",
            "MemoryLimitError", "Params", "Result", "Scene", "Session", "Viewer", "WriteError", "builtin_scenes", "compare",
-           "load", "read", "read_cameras", "render", "render_chunks", "tone_map", "view", "write"]
+           "load", "read", "read_cameras", "render", "render_chunks", "scene", "tone_map", "view", "write"]
 
 
 def render(scene, *, cameras=None, seeds=None, color=True, layers=(), output=(), settings=None, out=None, on_device=False,

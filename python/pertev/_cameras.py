@@ -3,6 +3,7 @@
 import os
 
 from . import _core
+from ._arrays import on_host
 from ._settings import texts_of
 from .errors import InputError
 
@@ -17,14 +18,14 @@ class Cameras:
     intrinsics_size  the size for which K holds; None: that of the pictures
     lens, distortion as the settings: one lens for all
 
-    `names` are those of a file's cameras (read_cameras).
+    Arrays may be on a GPU. `names` are those of a file's cameras (read_cameras).
     """
 
     names = None
 
     def __init__(self, poses, K=None, *, convention=None, intrinsics_size=None, lens=None, distortion=None):
-        self.poses = poses
-        self.K = K
+        self.poses = on_host(poses)
+        self.K = K if K is None else on_host(K)
         self.settings = {"convention": convention, "intrinsics_size": intrinsics_size, "lens": lens, "distortion": distortion}
 
     def __len__(self):

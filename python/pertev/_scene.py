@@ -7,6 +7,7 @@ import os
 from . import _core
 from ._process import check_process
 from ._settings import OF_FRAMES, texts_of, with_layers
+from .errors import InputError
 
 
 class Params(collections.abc.Mapping):
@@ -51,7 +52,7 @@ class Scene(_core.Scene):
               lights={"lamp": {"kind": "point", "position": (0, 2, 0), "intensity": (9, 9, 9)}},
               environment=(1, 1, 1), cameras={"front": {"eye": (0, 1, 3), "target": (0, 0, 0), "fov": 45}})
 
-    Arrays are of NumPy or of anything with DLPack or the buffer protocol, in the memory of the CPU, and are copied. Only
+    Arrays are of NumPy or of anything with DLPack or the buffer protocol, also on a GPU, and are copied. Only
     meshes and instances must be given. `values` are settings for all pictures that do not overrule them. Raises
     InputError, whose `setting` is the path of a wrong argument, such as "meshes/floor/faces".
 
@@ -112,6 +113,17 @@ def load(scene, **values):
     opened = Scene(scene, **values)
     opened._open()
     return opened
+
+
+def scene(name, **values):
+    """Opens a built-in scene by its name (builtin_scenes()), whatever files there are, and returns it as load() does.
+
+    Raises InputError for another name, and as load().
+    """
+    if name not in _core.builtin_scenes():
+        near = difflib.get_close_matches(str(name), _core.builtin_scenes(), 1)
+        raise InputError(f"there is no built-in scene '{name}'" + (f"; did you mean '{near[0]}'?" if near else ""))
+    return load(name, **values)
 
 
 class Session(_core.Session):

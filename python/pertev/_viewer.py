@@ -5,10 +5,14 @@ import os
 import shutil
 import subprocess
 import threading
+import webbrowser
 
 from . import _core
 from ._settings import OF_PICTURES, texts_of
 from .errors import Error
+
+
+_OF_VIEWS = {name: row for name, row in OF_PICTURES.items() if row["is_viewed"]}
 
 
 def _program():
@@ -21,15 +25,16 @@ def _program():
 
 
 class Viewer:
-    """A running viewer: `url` is its address. Leaving a `with` block or close() ends it. Notebooks show it as a frame."""
+    """A running viewer: `url` is its address. Leaving a `with` block or close() ends it. Notebooks show it as a frame,
+    if they run in a browser on the machine of the viewer or its port is forwarded."""
 
     _reader = None
 
     def __init__(self, scene, port, values):
-        flags = ["--port", str(port), "--no-browser"]
-        for name, texts in texts_of(values, OF_PICTURES).items():
+        flags = ["--port", str(port), "--no-browser", "--embed"]
+        for name, texts in texts_of(values, _OF_VIEWS).items():
             flag = "--" + name.replace("_", "-")
-            is_switch = OF_PICTURES[name]["type"] == "bool"
+            is_switch = _OF_VIEWS[name]["type"] == "bool"
             flags += ([flag] if texts == ["true"] else []) if is_switch else [x for text in texts for x in (flag, text)]
         self._process = subprocess.Popen([_program(), "view", scene, *flags, "--json"], stdout=subprocess.PIPE,
                                          stderr=subprocess.DEVNULL, text=True)
@@ -71,10 +76,23 @@ class Viewer:
         return f'<iframe src="{self.url}" width="100%" height="600" style="border:0"></iframe>'
 
 
-def view(scene, *, port=0, **values):
-    """Starts the viewer of a scene (a file, or the name of a built-in scene) and returns it as a Viewer.
+def view(scene, *, port=0, browser=False, **values):
+    """Starts the viewer of a scene (a file, the name of a built-in scene, or what load() returns) as a process of its own,
+    and returns it as a Viewer.
 
-    port    that it listens on; 0 is any free one
-    values  settings of `pertev view`
+    port     that it listens on; 0 is any free one
+    browser  True: opens the address in the browser of this desktop
+    values   settings of `pertev view`; they overrule those of load()
+
+    Raises Error if the viewer does not start, and TypeError for a scene of arrays or with changed parameters, which the
+    process could not read.
     """
-    return Viewer(scene.name if isinstance(scene, _core.Scene) else os.fspath(scene), port, values)
+    if isinstance(scene, _core.Scene):
+        if scene._is_of_arrays or scene._edits():
+            raise TypeError("the viewer reads a scene's file: it shows no scene of arrays and no changed parameters")
+        of_scene = {name: texts for name, texts in scene._settings.items() if name in _OF_VIEWS}
+        scene, values = scene.name, {**of_scene, **values}
+    viewer = Viewer(os.fspath(scene), port, values)
+    if browser:
+        webbrowser.open(viewer.url)
+    return viewer

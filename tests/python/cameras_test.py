@@ -1,6 +1,7 @@
 """Tests of many cameras in one call: the bytes of each camera alone, chunks, arrays that are filled again, and errors."""
 
 import gc
+import importlib
 import json
 import pathlib
 import sys
@@ -202,6 +203,18 @@ class Cameras(unittest.TestCase):
         with self.assertRaises(pertev.InputError):
             pertev.read_cameras(path.with_name("none.json"))
 
+    def test_poses_of_another_package_are_copied_to_the_host(self):
+        class Tensor:  # has what NumPy refuses, as a tensor on a GPU
+            def __init__(self, copy):
+                setattr(self, copy, lambda: poses(2))
+
+            def __array__(self, *_, **__):
+                raise TypeError("it is on a GPU")
+
+        expected = host(pertev.render(self.scene, cameras=poses(2), **SMALL).color).tobytes()
+        for copy in ("cpu", "get", "numpy"):
+            self.assertEqual(host(pertev.render(self.scene, cameras=Tensor(copy), **SMALL).color).tobytes(), expected)
+
     @unittest.skipIf(DEVICE == "cpu", "arrays on a GPU are those of CUDA")
     def test_arrays_on_a_gpu(self):
         batch = pertev.render(self.scene, cameras=poses(2), layers=LAYERS, **SMALL)
@@ -216,6 +229,40 @@ class Cameras(unittest.TestCase):
         tensor = torch.from_dlpack(batch.color)
         self.assertEqual((tensor.device.type, tensor.cpu().numpy().tobytes()), ("cuda", batch.color.numpy().tobytes()))
         self.assertEqual(torch.as_tensor(batch.depth, device="cuda").data_ptr(), description["data"][0])
+        again = pertev.render(self.scene, cameras=torch.as_tensor(poses(2), device="cuda"), layers=LAYERS, **SMALL)
+        self.assertEqual(again.color.numpy().tobytes(), batch.color.numpy().tobytes())
+        with torch.cuda.stream(torch.cuda.Stream()):  # a consumer's stream of its own
+            self.assertEqual(torch.from_dlpack(again.depth).sum().item(), tensor.new_tensor(batch.depth.numpy()).sum().item())
+
+    @unittest.skipIf(DEVICE == "cpu", "arrays on a GPU are those of CUDA")
+    def test_other_packages_read_arrays_on_a_gpu(self):
+        batch = pertev.render(self.scene, cameras=poses(2), layers=LAYERS, **SMALL)
+        readers = {"cupy": lambda cupy, array: cupy.asarray(array).get(),
+                   "jax": lambda jax, array: numpy.asarray(jax.dlpack.from_dlpack(array)),
+                   "warp": lambda warp, array: warp.from_dlpack(array).numpy()}
+        for name, read in readers.items():
+            with self.subTest(name):
+                try:
+                    package = importlib.import_module(name)
+                    if name == "jax":
+                        importlib.import_module("jax.dlpack")
+                except ImportError:
+                    self.skipTest(f"{name} is not installed")
+                for array in (batch.color, batch.depth, batch.ids):
+                    self.assertEqual(read(package, array).tobytes(), array.numpy().tobytes())
+
+    @unittest.skipIf(DEVICE == "cpu", "arrays on a GPU are those of CUDA")
+    def test_meshes_on_a_gpu(self):
+        try:
+            import torch
+        except ImportError:
+            self.skipTest("torch is not installed")
+        corners = numpy.float32([(-1, 0, 0), (1, 0, 0), (0, 1, 0)])
+        floats, faces = torch.as_tensor(corners, device="cuda"), torch.as_tensor([[0, 1, 2]], device="cuda")
+        view = {"eye": (0, 0, 3), "target": (0, 0, 0), "environment": (1, 1, 1), "device": DEVICE, **SMALL}
+        hashes = {pertev.render(pertev.Scene(meshes={"a": {"vertices": vertices, "faces": of}}, instances={"a": {"mesh": "a"}}), **view).hash
+                  for vertices, of in ((corners, [[0, 1, 2]]), (floats, faces))}
+        self.assertEqual(len(hashes), 1)
 
 
 if __name__ == "__main__":

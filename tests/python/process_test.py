@@ -71,8 +71,26 @@ class Viewer(unittest.TestCase):
                 page = urllib.request.urlopen(viewer.url, timeout=20).read()
                 self.assertIn(b"<html", page.lower())
                 self.assertIn(viewer.url, viewer._repr_html_())
+                self.assertNotIn("X-Frame-Options", urllib.request.urlopen(viewer.url, timeout=20).headers)
             with self.assertRaises(OSError):
                 urllib.request.urlopen(viewer.url, timeout=5)
+
+    def test_a_loaded_scene_with_its_settings(self):
+        started = []
+        with unittest.mock.patch.dict(os.environ, {"PERTEV_PROGRAM": PROGRAM}), \
+                unittest.mock.patch("webbrowser.open", started.append):
+            scene = pertev.scene("cornell-box", device="cpu", size=(48, 32), max_depth=2, aov=["albedo"])
+            with pertev.view(scene, max_depth=3, browser=True) as viewer:
+                self.assertEqual(started, [viewer.url])
+                command = pathlib.Path(f"/proc/{viewer._process.pid}/cmdline").read_text().split("\0")
+            self.assertEqual([command[command.index(flag) + 1] for flag in ("view", "--size", "--max-depth", "--device")],
+                             ["cornell-box", "48x32", "3", "cpu"])
+            self.assertNotIn("--aov", command)
+            scene.params["materials/red/base_color"] = (0, 0, 1)
+            for changed in (scene, pertev.Scene(meshes={"a": {"vertices": [(0, 0, 0), (1, 0, 0), (0, 1, 0)],
+                                                              "faces": [(0, 1, 2)]}}, instances={"a": {"mesh": "a"}})):
+                with self.assertRaises(TypeError):
+                    pertev.view(changed)
 
     def test_a_scene_that_is_missing(self):
         with unittest.mock.patch.dict(os.environ, {"PERTEV_PROGRAM": PROGRAM}):

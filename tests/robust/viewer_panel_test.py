@@ -2,13 +2,15 @@
 """The panel of `pertev view` in a real headless Chromium: its groups, a phone's window, two windows, and a viewer that has
 ended. Skipped where there is no Chromium."""
 
+import http.server
 import json
 import sys
+import threading
 import unittest
 
 from chromium import Chromium, find_chromium
 from cli_run import main
-from viewer_client import Viewer
+from viewer_client import Client, Viewer
 
 if find_chromium() is None:
     print("skipped: no Chromium is here")
@@ -115,6 +117,45 @@ class TwoWindows(unittest.TestCase):
             second.until(f"document.body.dataset.flags != {json.dumps(before)}")
             self.assertFalse(shown(second, "#wheel"))
             self.assertEqual(first.errors + second.errors, [])
+
+
+class Frame(unittest.TestCase):
+    """The viewer in a frame of another site's page, as notebooks show it: localhost is another site than 127.0.0.1."""
+
+    def setUp(self):
+        window(BROWSER, 1280, 720)
+
+    def steers_after(self, *flags):
+        """Returns who steers, the framed page or a client that comes later, and the browser's errors."""
+        with Viewer(*flags, spp=1) as viewer:
+            notebook = f'<!DOCTYPE html><link rel="icon" href="data:,"><iframe src="{viewer.address}"></iframe>'.encode()
+
+            class Notebook(http.server.BaseHTTPRequestHandler):
+                def do_GET(self):  # pylint: disable=invalid-name
+                    self.send_response(200)
+                    self.send_header("Content-Type", "text/html")
+                    self.end_headers()
+                    self.wfile.write(notebook)
+
+                def log_message(self, *_):  # pylint: disable=arguments-differ
+                    pass
+
+            with http.server.ThreadingHTTPServer(("127.0.0.1", 0), Notebook) as server:
+                threading.Thread(target=server.serve_forever, daemon=True).start()
+                try:
+                    with BROWSER.visit(f"http://localhost:{server.server_port}/") as page:
+                        page.until("performance.getEntriesByType('navigation')[0].loadEventEnd > 0")
+                        with Client(viewer) as client:
+                            people = client.text("people", lambda message: not flags or len(message["people"]) == 2)
+                            return "client" if people["steers"] == people["you"] else "frame", list(page.errors)
+                finally:
+                    server.shutdown()
+
+    def test_a_frame_shows_the_viewer_only_if_a_flag_lets_it(self):
+        self.assertEqual(self.steers_after("--embed"), ("frame", []))
+        who, errors = self.steers_after()
+        self.assertEqual(who, "client")
+        self.assertIn("frame-ancestors", " ".join(errors))
 
 
 class Ended(unittest.TestCase):

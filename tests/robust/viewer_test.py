@@ -53,6 +53,17 @@ class Access(WithViewer):
         self.assertRegex(headers["set-cookie"], r"^pertev-[0-9a-f]{8}=[0-9a-f]{32}; Path=/; HttpOnly; SameSite=Strict$")
         self.assertNotIn(self.viewer.token, headers["set-cookie"])
 
+    def test_only_a_flag_lets_pages_of_others_show_the_viewer_in_a_frame(self):
+        headers = self.get("/")[1]
+        self.assertEqual(headers["x-frame-options"], "DENY")
+        self.assertIn("frame-ancestors 'none'", headers["content-security-policy"])
+        with Viewer("--embed") as viewer:
+            headers = viewer.get(f"/?token={viewer.token}", {"Host": f"127.0.0.1:{viewer.port}"})[1]
+            self.assertTrue(headers["set-cookie"].endswith("; HttpOnly; SameSite=None; Secure; Partitioned"))
+            self.assertNotIn("x-frame-options", headers)
+            self.assertNotIn("frame-ancestors", headers["content-security-policy"])
+            self.assertEqual(viewer.get("/", {"Host": f"127.0.0.1:{viewer.port}"})[0], 403)
+
     def test_all_files_of_the_page_come_with_the_cookie_and_their_type(self):
         for path, kind in [("/", "text/html"), ("/main.js", "text/javascript"), ("/link.js", "text/javascript"),
                            ("/keys.js", "text/javascript"), ("/panel.js", "text/javascript"), ("/time.js", "text/javascript"),

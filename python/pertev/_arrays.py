@@ -1,0 +1,13 @@
+"""Arrays of other packages."""
+
+
+def on_host(value):
+    """Returns an array in the memory of the CPU: of PyTorch, CuPy, Warp, JAX or of a DeviceArray a copy if it is on a GPU."""
+    import numpy  # which `import pertev` does without
+
+    if hasattr(value, "detach"):  # PyTorch's, which NumPy takes only without a gradient
+        value = value.detach()
+    for name in ("cpu", "get", "numpy"):  # methods of PyTorch, CuPy, and Warp and a DeviceArray
+        if callable(copy := getattr(value, name, None)):
+            return copy()
+    return numpy.asarray(value)
