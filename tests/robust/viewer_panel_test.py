@@ -2,6 +2,7 @@
 """The panel of `pertev view` in a real headless Chromium: its groups, a phone's window, two windows, and a viewer that has
 ended. Skipped where there is no Chromium."""
 
+import contextlib
 import http.server
 import json
 import sys
@@ -125,37 +126,37 @@ class Frame(unittest.TestCase):
     def setUp(self):
         window(BROWSER, 1280, 720)
 
-    def steers_after(self, *flags):
-        """Returns who steers, the framed page or a client that comes later, and the browser's errors."""
-        with Viewer(*flags, spp=1) as viewer:
-            notebook = f'<!DOCTYPE html><link rel="icon" href="data:,"><iframe src="{viewer.address}"></iframe>'.encode()
+    @contextlib.contextmanager
+    def notebook(self, address):
+        """The browser, which shows a page with a frame of this address."""
+        text = f'<!DOCTYPE html><link rel="icon" href="data:,"><iframe src="{address}"></iframe>'.encode()
 
-            class Notebook(http.server.BaseHTTPRequestHandler):
-                def do_GET(self):  # pylint: disable=invalid-name
-                    self.send_response(200)
-                    self.send_header("Content-Type", "text/html")
-                    self.end_headers()
-                    self.wfile.write(notebook)
+        class Notebook(http.server.BaseHTTPRequestHandler):
+            def do_GET(self):  # pylint: disable=invalid-name
+                self.send_response(200)
+                self.send_header("Content-Type", "text/html")
+                self.end_headers()
+                self.wfile.write(text)
 
-                def log_message(self, *_):  # pylint: disable=arguments-differ
-                    pass
+            def log_message(self, *_):  # pylint: disable=arguments-differ
+                pass
 
-            with http.server.ThreadingHTTPServer(("127.0.0.1", 0), Notebook) as server:
-                threading.Thread(target=server.serve_forever, daemon=True).start()
-                try:
-                    with BROWSER.visit(f"http://localhost:{server.server_port}/") as page:
-                        page.until("performance.getEntriesByType('navigation')[0].loadEventEnd > 0")
-                        with Client(viewer) as client:
-                            people = client.text("people", lambda message: not flags or len(message["people"]) == 2)
-                            return "client" if people["steers"] == people["you"] else "frame", list(page.errors)
-                finally:
-                    server.shutdown()
+        with http.server.ThreadingHTTPServer(("127.0.0.1", 0), Notebook) as server:
+            threading.Thread(target=server.serve_forever, daemon=True).start()
+            try:
+                with BROWSER.visit(f"http://localhost:{server.server_port}/") as page:
+                    yield page
+            finally:
+                server.shutdown()
 
     def test_a_frame_shows_the_viewer_only_if_a_flag_lets_it(self):
-        self.assertEqual(self.steers_after("--embed"), ("frame", []))
-        who, errors = self.steers_after()
-        self.assertEqual(who, "client")
-        self.assertIn("frame-ancestors", " ".join(errors))
+        with Viewer("--embed", spp=1) as viewer, self.notebook(viewer.address) as page, Client(viewer) as client:
+            client.text("people", lambda message: len(message["people"]) == 2)  # the frame's page has joined
+            self.assertEqual(page.errors, [])
+        with Viewer(spp=1) as viewer, self.notebook(viewer.address) as page, Client(viewer) as client:
+            page.wait(lambda: page.value("true") and page.errors)
+            self.assertIn("frame-ancestors", " ".join(page.errors))
+            self.assertEqual(len(client.text("people")["people"]), 1)
 
 
 class Ended(unittest.TestCase):
