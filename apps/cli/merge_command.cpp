@@ -1,6 +1,5 @@
 // pertev merge PART... -o OUT: one picture of the film files of its parts.
 
-#include <algorithm>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -11,8 +10,7 @@
 #include "apps/cli/report_result.h"
 #include "base/message_text.h"
 #include "base/stopwatch.h"
-#include "session/film_file/merge_films.h"
-#include "session/writing/check_outputs.h"
+#include "session/film_file/merge_picture.h"
 
 namespace pertev {
 namespace {
@@ -23,34 +21,17 @@ struct MergeFlags {
     ReportFlags report;
 };
 
-void refuse_film_with_gaps(const std::vector<std::string>& outputs) {
-    const auto film = std::ranges::find_if(outputs, is_film_name);
-    if (film == outputs.end()) return;
-    throw Error(ErrorCode::BadInput, "output", *film, "a film file holds no samples with gaps between them");
-}
-
 int merge(const MergeFlags& flags) {
     Reporter reporter(flags.report);
     const Stopwatch watch;
     for (const std::string& output : flags.outputs) refuse_list(output);
-    check_outputs({}, flags.outputs, reporter);
-    const FilmMerge parts(flags.parts, flags.is_partial);
-    if (parts.has_gaps()) refuse_film_with_gaps(flags.outputs);
     reporter.set_work("merging");
-    Queue queue = Queue::make_cpu();
-    RenderResult result;
-    std::vector<WrittenFile> films;
-    {
-        const Film film = parts.film(queue, reporter);
-        result = result_of(parts.header(), film);
-        films = write_film_files(flags.outputs, parts.header(), film);
-    } // writing takes memory too
+    MergedPicture picture = merge_picture(flags.parts, flags.is_partial, flags.outputs, reporter);
+    RenderResult& result = picture.result;
     reporter.end_progress();
     reporter.set_work("writing");
-    PictureFacts facts = parts.header().facts;
-    if (!writes_tone_mapped(flags.outputs)) facts.shown.clear(); // which only film files have
-    WrittenPicture written = write_picture(flags.outputs, facts, result);
-    written.files.insert(written.files.end(), films.begin(), films.end());
+    WrittenPicture written = write_picture(flags.outputs, picture.facts, result);
+    written.files.insert(written.files.end(), picture.films.begin(), picture.films.end());
     report_files(written, reporter);
     reporter.print(fmt::format("{} spp of {} in {:.2f} s, {}, picture {}", result.samples,
                                counted(flags.parts.size(), "part"), watch.seconds(),
@@ -81,6 +62,7 @@ void add_merge_command(CLI::App& app, int& status) {
     verb.add_flag("--partial", flags->is_partial,
                   "Makes a picture of the samples that are there, if some are missing.");
     add_report_flags(verb, flags->report);
+    add_progress_flag(verb, flags->report);
     verb.callback([flags, &status] { status = merge(*flags); });
 }
 

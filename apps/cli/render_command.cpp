@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <exception>
+#include <filesystem>
+#include <initializer_list>
 #include <optional>
 
 #include <CLI/CLI.hpp>
@@ -18,6 +20,7 @@
 #include "base/message_text.h"
 #include "base/stopwatch.h"
 #include "session/film_file/film_file.h"
+#include "session/mpi/ranks.h"
 #include "session/opening/camera_list.h"
 #include "session/opening/strictness.h"
 #include "session/pictures/choose_display.h"
@@ -53,6 +56,16 @@ void report_start(const RenderFlags& flags, const RenderSetup& ready, Reporter& 
     reporter.event(
         fmt::format(R"({{"event":"picture","width":{},"height":{},"spp":{},"device":{},"predicted_bytes":{}}})",
                     settings.width, settings.height, settings.range().count(), json_string(device), ready.bytes));
+}
+
+/// Names the part that is rendered, as "part 2/3"; empty for a whole picture.
+std::string part_text(const PictureOptions& options) {
+    std::string text;
+    for (const auto& [name, value] :
+         {std::pair("part", &options.part), {"samples", &options.samples}, {"rows", &options.rows}}) {
+        if (!value->empty()) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, *value);
+    }
+    return text;
 }
 
 std::string kept_text(const SequenceTally& tally) {
@@ -107,8 +120,15 @@ int render_frames(const RenderFlags& flags, const SequenceOfFrames& frames, Repo
     return cut_short ? exit_status(ErrorCode::Interrupted) : 0;
 }
 
+/// Deletes the part that this rank kept, once the whole picture is written.
+void delete_part(const std::string& checkpoint) {
+    std::error_code ignored; // it costs space alone
+    for (const char* generation : {"", ".previous"}) std::filesystem::remove(checkpoint + generation, ignored);
+}
+
 int write_one(const RenderFlags& flags, const RenderSettings& settings, const PictureRecord& record,
-              std::optional<Session>& session, const Queue& queue, const Stopwatch& watch, Reporter& reporter) {
+              std::optional<Session>& session, const Queue& queue, const Stopwatch& watch, const Ranks* ranks,
+              Reporter& reporter) {
     std::optional<RenderWithCheckpoint> kept;
     if (!flags.checkpoint.empty()) kept.emplace(*session, flags, record, reporter);
     reporter.report_messages();
@@ -118,6 +138,15 @@ int write_one(const RenderFlags& flags, const RenderSettings& settings, const Pi
     const bool cut_short = interrupted() && result.samples < samples;
     if (cut_short) reporter.print(fmt::format("interrupted after {} of {} spp", result.samples, samples));
     reporter.report_messages();
+    if (ranks != nullptr) {
+        if (!ranks->all(!cut_short)) return exit_status(ErrorCode::Interrupted); // each keeps its part
+        reporter.set_work("summing the films of all ranks");
+        ranks->sum(flags.render.samples, kept->film(), result);
+        if (ranks->rank() > 0) {
+            if (ranks->all(true)) delete_part(flags.checkpoint);
+            return 0;
+        }
+    }
     reporter.set_work("writing");
     const bool has_film = std::ranges::any_of(flags.outputs, is_film_name);
     PictureFacts facts = facts_of(record, result.ids);
@@ -126,21 +155,36 @@ int write_one(const RenderFlags& flags, const RenderSettings& settings, const Pi
         const Film& film = kept ? kept->film() : session->film();
         films = write_film_files(flags.outputs, film_header(flags, record, facts, result, film), film);
     }
-    if (kept) films.push_back(kept->written());
+    if (kept && ranks == nullptr) films.push_back(kept->written());
     kept.reset(), session.reset();                               // writing takes memory too
     if (!writes_tone_mapped(flags.outputs)) facts.shown.clear(); // which only film files have
     WrittenPicture written = write_picture(flags.outputs, facts, result);
     written.files.insert(written.files.end(), films.begin(), films.end());
     report_files(written, reporter);
+    if (ranks != nullptr && ranks->all(failures_of(written).empty())) delete_part(flags.checkpoint);
     report_result(result, written, queue, watch.seconds(), cut_short, reporter);
     refuse_faults(written, result.invalid_samples, flags.strict);
     return cut_short ? exit_status(ErrorCode::Interrupted) : 0;
 }
 
+/// Lets this process render its part, if it is one of several of mpirun's. Only the first one writes files.
+std::unique_ptr<Ranks> join_ranks(RenderFlags& flags) {
+    const bool is_part = std::ranges::any_of(std::initializer_list<const char*>{"part", "samples", "rows"},
+                                             [&](const char* name) { return flags.is_given(name); });
+    std::unique_ptr<Ranks> ranks = is_part ? nullptr : Ranks::join();
+    if (!ranks) return ranks;
+    ranks->divide(flags.outputs.front(), flags);
+    if (ranks->rank() > 0) flags.outputs.clear();
+    return ranks;
+}
+
 int render(RenderFlags& flags) {
     Reporter reporter(flags.report);
     flags.settings.read(flags, reporter);
+    const std::unique_ptr<Ranks> ranks = join_ranks(flags);
+    if (ranks && ranks->rank() > 0) reporter.silence_events();
     for (const std::string& output : flags.outputs) refuse_list(output);
+    reporter.set_part(part_text(flags));
     read_camera_list(flags);
     check_outputs(flags, flags.outputs, reporter);
     const Stopwatch watch;
@@ -166,7 +210,7 @@ int render(RenderFlags& flags) {
         const FrameCamera camera = {*ready->camera, ready->sequence, ready->list};
         return render_frames(flags, {camera, *ready->moving, record, *session}, reporter);
     }
-    return write_one(flags, settings, record, session, queue, watch, reporter);
+    return write_one(flags, settings, record, session, queue, watch, ranks.get(), reporter);
 }
 
 } // namespace
@@ -183,6 +227,7 @@ void add_render_command(CLI::App& app, int& status) {
         ->required();
     flags->settings.add_file(verb);
     add_report_flags(verb, flags->report);
+    add_progress_flag(verb, flags->report);
     flags->settings.add(verb, kRender, *flags);
     verb.callback([flags, &status] { status = render(*flags); });
 }

@@ -37,8 +37,14 @@ void add_report_flags(CLI::App& verb, ReportFlags& flags) {
     verb.add_flag("--json", flags.json, "print one JSON object per line on stdout, errors included, and\nnothing else");
 }
 
-Reporter::Reporter(const ReportFlags& flags) : flags_(flags), redraws_(is_drawn_on()) {
-    if (is_silent() || redraws_) return;
+void add_progress_flag(CLI::App& verb, ReportFlags& flags) {
+    verb.add_option("--progress", flags.progress, "json: the progress as one JSON object per line on stderr, for farms")
+        ->type_name("FORM")
+        ->check(CLI::IsMember({"json"}));
+}
+
+Reporter::Reporter(const ReportFlags& flags) : flags_(flags), redraws_(flags.progress.empty() && is_drawn_on()) {
+    if (is_silent() || redraws_ || !flags.progress.empty()) return;
     heartbeat_ = std::make_unique<Heartbeat>(std::chrono::seconds(10), [](double seconds, const std::string& work) {
         write_now(stderr, fmt::format("{:.0f} s: {}\n", seconds, work));
     });
@@ -70,7 +76,7 @@ bool Reporter::should_stop() { return interrupted(); }
 void Reporter::print(const std::string& line) {
     if (is_silent()) return;
     end_progress();
-    write_now(stderr, line + '\n');
+    write_now(stderr, prefix() + line + '\n');
 }
 
 void Reporter::progress(const Progress& now) {
@@ -94,7 +100,10 @@ void Reporter::progress(const Progress& now) {
     if (now.share_of_step > 0) members += fmt::format(R"(,"share_of_step":{:.4f})", now.share_of_step);
     if (is_render)
         members += fmt::format(R"(,"samples":{},"of":{},"rays":{})", now.samples_done, now.samples, now.rays);
-    event(fmt::format(R"({{"event":"progress",{}}})", members));
+    if (!part_.empty()) members += fmt::format(R"(,"part":{})", json_string(part_));
+    const std::string object = fmt::format(R"({{"event":"progress",{}}})", members);
+    event(object);
+    if (!flags_.progress.empty()) write_now(stderr, object + '\n');
 }
 
 void Reporter::progress(double share, const std::string& detail) {
@@ -102,13 +111,13 @@ void Reporter::progress(double share, const std::string& detail) {
     if (is_silent() || !redraws_) return;
     constexpr int width = 24;
     const int full = std::clamp(static_cast<int>(share * width), 0, width);
-    write_now(stderr, fmt::format("\r[{:=<{}}{: <{}}] {:3.0f} %  {}\x1b[K", "", full, "", width - full, 100 * share,
-                                  phrase(detail)));
+    write_now(stderr, fmt::format("\r{}[{:=<{}}{: <{}}] {:3.0f} %  {}\x1b[K", prefix(), "", full, "", width - full,
+                                  100 * share, phrase(detail)));
     drawn_ = true;
 }
 
 void Reporter::set_work(const std::string& work) {
-    if (heartbeat_) heartbeat_->set_work(phrase(work));
+    if (heartbeat_) heartbeat_->set_work(prefix() + phrase(work));
 }
 
 void Reporter::event(const std::string& object) {
@@ -143,6 +152,8 @@ void Reporter::write_output(const std::string& path, const std::function<void()>
     }
     output(path);
 }
+
+void Reporter::set_part(std::string part) { part_ = std::move(part); }
 
 void Reporter::end_progress() {
     if (!drawn_) return;

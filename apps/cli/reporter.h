@@ -20,10 +20,13 @@ namespace pertev {
 /// -q silences everything but errors; --json turns everything into JSON lines on stdout. Every verb has both.
 struct ReportFlags {
     bool quiet = false, json = false;
+    std::string progress;    // "json": progress as JSON lines on stderr; empty: as it suits
     std::string measurement; // file that a benchmark writes its measurement into; empty: none
 };
 
 void add_report_flags(CLI::App& verb, ReportFlags& flags);
+/// Adds --progress, which verbs for farms have.
+void add_progress_flag(CLI::App& verb, ReportFlags& flags);
 
 class Reporter final : public Messages {
 public:
@@ -57,15 +60,21 @@ public:
     /// Lets `write` write this file, and reports that, or why it failed. Throws as `write`.
     void write_output(const std::string& path, const std::function<void()>& write);
     void end_progress();
+    /// Names the part of a picture that is rendered, such as "part 2/3", in every line and in the progress.
+    void set_part(std::string part);
+    /// Writes no events, because another process writes those of the same stdout.
+    void silence_events() { flags_.quiet = flags_.quiet || flags_.json, flags_.json = false; }
 
     bool json() const { return flags_.json; }
 
 private:
+    std::string prefix() const { return part_.empty() ? "" : part_ + ": "; }
     bool is_silent() const { return flags_.quiet || flags_.json; }
 
     ReportFlags flags_;
     bool redraws_; // a terminal with escape sequences
     bool drawn_ = false;
+    std::string part_;
     std::size_t reported_ = 0;
     std::string shown_step_; // step of the last progress, and the time of that
     double shown_at_s_ = 0;

@@ -30,7 +30,7 @@ std::optional<FilmPart> join(const FilmPart& a, const FilmPart& b) {
 
 Film::Film(Queue& queue, uint32_t width, uint32_t height, uint32_t aovs, std::vector<std::string> light_layers,
            LayersAt layers_at)
-    : queue_(&queue), window_{.width = width, .height = height}, aovs_(aovs), layers_at_(layers_at) {
+    : queue_(&queue), window_{.width = width, .height = height}, end_row_(height), aovs_(aovs), layers_at_(layers_at) {
     const std::size_t pixels = std::size_t(width) * height;
     const auto take = [&]<class Target>(std::unique_ptr<Target> target, const Target*& taken) {
         taken = target.get();
@@ -61,6 +61,11 @@ FilmView Film::view() const {
     FilmView view = {};
     view.window = window_;
     for (const auto& target : targets_) target->show(view);
+    if (end_row_ - first_row_ == height()) return view;
+    view.window = {.picture_width = width(), .y = first_row_, .width = width(), .height = end_row_ - first_row_};
+    const std::size_t before = std::size_t(first_row_) * width();
+    view.sums += before * view.channels;
+    if (view.ids != nullptr) view.ids += before;
     return view;
 }
 
@@ -98,6 +103,14 @@ CentreArrays Film::centres() const {
     if (layers_at_ == LayersAt::Samples) return arrays;
     if (centres_ != nullptr) arrays = centres_->arrays();
     if (ids_ != nullptr) arrays.ids = ids_->elements().data();
+    const std::size_t before = std::size_t(first_row_) * width();
+    if (before == 0) return arrays;
+    if (arrays.ids != nullptr) arrays.ids += before;
+    for (const AovGroup& group : kAovTable) {
+        if (group.bit == kAovIds || group.bit == kAovMotion) continue;
+        float*& array = arrays.of(group.bit);
+        if (array != nullptr) array += before * channel_names(group).size();
+    }
     return arrays;
 }
 

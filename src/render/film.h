@@ -79,8 +79,14 @@ public:
         window_ = window;
     }
 
-    /// Sets which samples, of all rows, have been added to view() so far.
-    void set_samples(SampleRange samples) { set_part({0, height(), samples}); }
+    /// Lets view() and centres() hold the rows [first, end) alone, so that nothing is added to the others.
+    void set_rows(uint32_t first, uint32_t end) {
+        PERTEV_CHECK(first < end && end <= height() && (end - first == height() || window_.picture_width == 0));
+        first_row_ = first, end_row_ = end;
+    }
+
+    /// Sets which samples, of all rows of view(), have been added to it so far.
+    void set_samples(SampleRange samples) { set_part({first_row_, end_row_, samples}); }
     void set_part(FilmPart part) { part_ = part; }
     const FilmPart& part() const { return part_; }
 
@@ -114,6 +120,7 @@ public:
 private:
     Queue* queue_;
     PixelWindow window_;
+    uint32_t first_row_ = 0, end_row_; // rows that view() holds
     FilmPart part_;
     std::vector<std::unique_ptr<FilmTarget>> targets_; // the film's own targets below come first
     uint32_t aovs_;

@@ -20,7 +20,8 @@ constexpr uint32_t kFirstAtOnce = 16; // samples of a first pass
 /// remain.
 uint32_t next_pass(const RenderSettings& settings, uint32_t left, uint32_t done, double seconds) {
     if (settings.pass_samples > 0) return std::min(left, settings.pass_samples);
-    const uint64_t pixels = uint64_t(settings.width) * settings.height;
+    const FilmPart part = settings.part();
+    const uint64_t pixels = uint64_t(settings.width) * (part.end_row - part.first_row);
     const uint32_t at_once =
         settings.time_limit_s > 0 ? 1 : std::min(samples_at_once(settings, pixels), std::max(done, kFirstAtOnce));
     if (done == 0) return std::min(left, at_once);
@@ -100,7 +101,14 @@ void FilmRender::set_targets(AddTargets add) {
 Film& FilmRender::film() {
     if (film_ && film_is_old_) film_->clear();
     film_is_old_ = false;
-    return fit_film(pictures_.queue(), film_, settings_, add_targets_);
+    return fit_part(film_);
+}
+
+/// Returns `film`, made if it does not fit the settings, for their rows.
+Film& FilmRender::fit_part(std::optional<Film>& film) {
+    Film& fit = fit_film(pictures_.queue(), film, settings_, add_targets_);
+    fit.set_rows(settings_.part().first_row, settings_.part().end_row);
+    return fit;
 }
 
 void FilmRender::restore(SampleRange samples, const std::function<void(Film&)>& add, const RayCounts& rays,
@@ -134,7 +142,7 @@ uint32_t FilmRender::render(SampleRange range, Sink& sink) {
     const Stopwatch watch;
     const bool is_apart = interrupts_passes_ && on_cpu && before > 0 && !has_steps;
     if (!is_apart) pass_film_.reset();
-    Film& into = is_apart ? fit_film(pictures_.queue(), pass_film_, settings_, add_targets_) : into_film;
+    Film& into = is_apart ? fit_part(pass_film_) : into_film;
     bool makes = false;
     const auto goes_on = [&](double made_share) {
         makes = true;

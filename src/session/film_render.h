@@ -74,6 +74,7 @@ public:
 
 private:
     void forget_samples();
+    Film& fit_part(std::optional<Film>& film);
 
     PictureRenderer& pictures_;
     Camera camera_;

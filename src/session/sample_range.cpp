@@ -34,6 +34,14 @@ SampleRange parse_samples(const std::string& text) {
 
 } // namespace
 
+std::pair<uint32_t, uint32_t> row_range(const PictureOptions& options) {
+    if (options.rows.empty()) return {0, 0};
+    const auto rows = two_numbers(options.rows, ':');
+    if (rows && rows->first < rows->second && rows->second <= kMaxImageSide) return *rows;
+    throw Error(ErrorCode::BadInput, "rows", options.rows,
+                fmt::format("expected A:B with 0 <= A < B <= {}, as 0:540", kMaxImageSide));
+}
+
 SampleRange sample_range(const PictureOptions& options) {
     if (!options.samples.empty()) return parse_samples(options.samples);
     const uint64_t all = options.render.samples;

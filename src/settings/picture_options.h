@@ -97,7 +97,8 @@ struct PictureOptions {
     std::shared_ptr<const std::vector<CameraOfFile>> camera_list; // its cameras, once it is read
     double fps = 0;
     uint32_t turntable = 0;
-    std::string samples, part; // A:B; I/N, where I counts from part_base
+    std::string rows, samples; // A:B
+    std::string part;          // I/N, where I counts from part_base
     uint32_t part_base = 1;
     std::string checkpoint; // a film file that the render goes on from and writes
     double checkpoint_every_s = 60;

@@ -104,14 +104,20 @@ std::vector<Setting> picture_settings() {
             On{kRender | kBenchSequence}, Excludes{"!none:max_depth=0"}, Recorded::Changed, Mark::Common,
             Changes::Picture),
 
+        row("rows", "Parts", "A:B", FIELD(rows),
+            "The rows of pixels from number A, where the top one is 0, to before B. light and bidirectional light "
+            "pixels "
+            "of all rows.",
+            Excludes{"integrator=light integrator=bidirectional denoise!=none time_limit frames turntable cameras"},
+            Mark::NotKept, Changes::Picture),
         row("samples", "Parts", "A:B", FIELD(samples),
             "The samples of each pixel from number A, where the first is 0, to before B.",
-            Excludes{"spp part time_limit frames turntable cameras"}, Mark::NotKept),
+            Excludes{"spp part time_limit frames turntable cameras"}, Mark::NotKept, Changes::Picture),
         row("part", "Parts", "I/N", FIELD(part),
             "Part I of N parts of the samples, whose film files (.pvf) are merged.",
-            Excludes{"time_limit frames turntable cameras"}, Mark::NotKept),
+            Excludes{"time_limit frames turntable cameras"}, Mark::NotKept, Changes::Picture),
         row("part_base", "Parts", "B", FIELD(part_base), "The number of the first part.", Range{0, 1u << 31},
-            Needs{"part"}, Mark::NotKept),
+            Needs{"part"}, Mark::NotKept, Changes::Picture),
         row("checkpoint", "Parts", "FILE", FIELD(checkpoint),
             "A film file (.pvf) that keeps the samples so far, and from which the render goes on if it is there.",
             Mark::NotKept, Changes::Picture),

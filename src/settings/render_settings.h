@@ -38,16 +38,19 @@ struct RenderSettings : IntegratorSettings {
     std::optional<uint32_t> frame_depth;
 
     // Number of samples and limits.
-    uint32_t first_sample = 0; // number of the first sample of each pixel
-    uint32_t samples = 64;     // per pixel, for render_picture, with those before first_sample
-    double time_limit_s = 0;   // limit for one call that renders; 0: none; it ends at a whole sample
-    uint32_t pass_samples = 0; // samples per pass; 0: as many as fit a fraction of a second
+    uint32_t first_sample = 0;           // number of the first sample of each pixel
+    uint32_t samples = 64;               // per pixel, for render_picture, with those before first_sample
+    uint32_t first_row = 0, end_row = 0; // rows of pixels that get samples; 0 as the end: all
+    double time_limit_s = 0;             // limit for one call that renders; 0: none; it ends at a whole sample
+    uint32_t pass_samples = 0;           // samples per pass; 0: as many as fit a fraction of a second
 
     // How the device renders; the picture does not change.
     std::optional<TracerChoice> tracers; // none: the device's default
     bool time_kinds = false;             // fills RenderStats::kind_seconds, which slows the wavefront down
 
     SampleRange range() const { return {first_sample, samples}; }
+    /// The part of the picture that is rendered.
+    FilmPart part() const { return {first_row, end_row == 0 ? height : end_row, range()}; }
 };
 
 /// Returns the names of the requested layers of light paths.

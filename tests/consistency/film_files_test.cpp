@@ -144,6 +144,86 @@ TEST_CASE("merged parts by other integrators have the bytes of one run") {
     }
 }
 
+namespace {
+
+/// Renders the whole picture, and merges parts [first row, end row, first sample, end sample).
+void check_rows(Renders& renders, const std::vector<FilmPart>& parts) {
+    const auto whole = renders.film({0, 5});
+    Files files;
+    for (const FilmPart& part : parts) {
+        renders.settings.first_row = part.first_row, renders.settings.end_row = part.end_row;
+        files.push_back(renders.file(part.samples));
+        CHECK(FilmFileReader(files.back()).header().part == part);
+    }
+    renders.settings.first_row = renders.settings.end_row = 0;
+    std::ranges::reverse(files);
+    const FilmMerge merge(files, false);
+    static Queue cpu = Queue::make_cpu();
+    const Film film = merge.film(cpu, nobody());
+    CHECK(film.part() == whole->film().part());
+    CHECK(bytes_of(film) == bytes_of(whole->film()));
+    const ExrMetadata known = FilmFileReader(renders.file({0, 5})).header().facts.origin;
+    CHECK(merge.header().facts.origin == known);
+}
+
+const std::vector<FilmPart> kBands = {{0, 7, {0, 5}}, {7, 8, {0, 5}}, {8, 20, {0, 5}}},
+                            kBandsOfSamples = {{0, 7, {0, 2}}, {0, 7, {2, 5}}, {7, 20, {0, 4}}, {7, 20, {4, 5}}};
+
+} // namespace
+
+TEST_CASE("merged parts by rows, or by rows and samples, have the bytes of one run") {
+    for (const auto& parts : {kBands, kBandsOfSamples}) {
+        Renders renders;
+        renders.settings.aovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
+        renders.settings.light_paths =
+            std::make_shared<const LightPathLayers>(bind_to_scene({parse_light_path("once=L.E")}, renders.scene));
+        check_rows(renders, parts);
+        Renders at_centres;
+        at_centres.settings.aovs = kAovAlbedo | kAovDepth | kAovDistance | kAovIds;
+        at_centres.settings.layers_at = LayersAt::Centre;
+        check_rows(at_centres, parts);
+    }
+    for (const IntegratorKind kind : {IntegratorKind::PhotonMap, IntegratorKind::Whitted, IntegratorKind::Raster,
+                                      IntegratorKind::IrradianceCache, IntegratorKind::Reyes}) {
+        CAPTURE(static_cast<int>(kind));
+        Renders renders;
+        renders.settings.integrator = kind;
+        if (kind == IntegratorKind::PhotonMap) renders.scene.materials[5].emission = grey(0x1p127f); // invalid photons
+        check_rows(renders, kBandsOfSamples);
+    }
+}
+
+TEST_CASE("a part of rows restarts a film of others, and its picture is black elsewhere") {
+    Renders renders;
+    const auto whole = renders.film({0, 2});
+    const Image picture = whole->picture();
+    RenderSettings part = renders.settings;
+    part.first_row = 5, part.end_row = 9;
+    CHECK(whole->set_settings(part));
+    REQUIRE(whole->render({0, 2}) == 2);
+    const Image rows = whole->picture();
+    const std::size_t row = std::size_t(3) * rows.width;
+    for (std::size_t i = 0; i < rows.pixels.size(); ++i) {
+        const bool is_inside = i >= 5 * row && i < 9 * row;
+        REQUIRE(rows.pixels[i] == (is_inside ? picture.pixels[i] : 0.0f));
+    }
+}
+
+TEST_CASE("overlaps and gaps of rows are refused by name") {
+    Renders renders;
+    const auto band = [&](uint32_t first, uint32_t end, SampleRange range) {
+        renders.settings.first_row = first, renders.settings.end_row = end;
+        return renders.file(range);
+    };
+    const std::string top = band(0, 9, {0, 5}), bottom = band(9, 20, {0, 5}), over = band(8, 12, {4, 5}),
+                      late = band(9, 20, {3, 5});
+    CHECK(merge_refusal({bottom, top}) == "no error");
+    CHECK(merge_refusal({top, bottom, over}).find("samples 4 to 4 of rows 8 to 8") != std::string::npos);
+    CHECK(merge_refusal({top}).find("samples 0 to 4 of rows 9 to 19") != std::string::npos);
+    CHECK(merge_refusal({top, late}).find("samples 0 to 2 of rows 9 to 19") != std::string::npos);
+    CHECK(merge_refusal({top, late}, true) != "no error"); // a picture has as many samples everywhere
+}
+
 TEST_CASE("a merged film has the facts of the part with the first samples, and all samples may be written again") {
     Renders renders;
     renders.settings.aovs = kAovIds;

@@ -118,6 +118,39 @@ class Merge(CliTest):
                 lights = ["--ambient", "0.5"] if integrator in ("whitted", "raster", "reyes") else []
                 self.check_parts([2], "--spp", "3", "--integrator", integrator, *lights)
 
+    def test_parts_by_rows_and_samples_have_the_hashes_of_one_run(self):
+        flags = ["--spp", "4", "--aov", "ids,depth", "--exposure", "auto"]
+        whole = self.part("whole.exr", "-o", "whole.png", *flags)
+        for name, part in {"a": "--rows 0:5", "b": "--rows 5:16 --part 1/2", "c": "--rows 5:16 --part 2/2"}.items():
+            self.part(f"{name}.pvf", *flags, *part.split())
+        self.assertEqual((self.info("b.pvf")["rows"], self.info("b.pvf")["samples"]), ("5:16", "0:2"))
+        done = self.merge("b.pvf", "c.pvf", "a.pvf", "-o", "all.exr", "-o", "all.png", "-o", "all.pvf")
+        self.assertEqual((done["hash"], done["layers_hash"]), (whole["hash"], whole["layers_hash"]))
+        self.assertEqual(self.metadata("all.exr"), self.metadata("whole.exr"))
+        self.assertEqual(self.read("all.png"), self.read("whole.png"))
+        self.assertEqual(self.info("all.pvf")["rows"], "0:16")
+        self.refuse(2, "merge", "a.pvf", "b.pvf", "-o", "x.exr", says=["samples 2 to 3 of rows 5 to 15"])
+        self.refuse(2, "merge", "a.pvf", "b.pvf", "--partial", "-o", "x.exr", says=["rows 5 to 15"])
+
+    def test_a_part_of_rows_goes_on_from_its_checkpoint(self):
+        flags = ["--rows", "3:9", "--checkpoint", "c.pvf"]
+        self.part("a.exr", "--spp", "2", *flags)
+        again = self.part("b.exr", "--spp", "5", *flags)
+        self.assertEqual(again["hash"], self.part("d.pvf", "-o", "d.exr", "--spp", "5", "--rows", "3:9")["hash"])
+        self.assertEqual((self.info("c.pvf")["rows"], self.info("c.pvf")["samples"]), ("3:9", "0:5"))
+        self.refuse(2, "render", "cornell-box", "-o", "x.exr", *SMALL, "--spp", "5", "--rows", "3:8", "--checkpoint", "c.pvf", says=["--checkpoint", "rows"])
+
+    def test_lines_and_progress_name_the_part(self):
+        flags = ["render", "cornell-box", "-o", "x.pvf", *SMALL, "--spp", "4", "--part", "2/3", "--rows", "0:8"]
+        lines = self.succeed(*flags).stderr.splitlines()
+        self.assertTrue(lines and all(line.startswith("part 2/3, rows 0:8: ") for line in lines), lines)
+        for event in self.succeed(*flags, "--json").events("progress"):
+            self.assertEqual(event["part"], "part 2/3, rows 0:8")
+        said = [json.loads(line) for line in self.succeed(*flags, "--progress", "json", "-q").stderr.splitlines()]
+        self.assertEqual({(line["event"], line["part"]) for line in said}, {("progress", "part 2/3, rows 0:8")})
+        self.assertEqual(said[-1]["share"], 1)
+        self.assertNotIn("part", self.succeed(*flags[:-4], "--json").events("progress")[-1])
+
     def test_the_metered_exposure_of_parts_is_that_of_one_run(self):
         flags = ["--spp", "2", "--exposure", "auto"]
         self.part("whole.png", *flags)
@@ -214,7 +247,8 @@ class Merge(CliTest):
         for flags in ["--part 0/2", "--part 3/2", "--part 1", "--part 1/0", "--part -1/2", "--part 1/2x", "--part 2/2 --part-base 0",
                       "--part-base 1", "--samples 4", "--samples 4:4", "--samples 5:4", "--samples 0:9000000", "--samples 1:2 --spp 4",
                       "--samples 1:2 --part 1/2", "--part 1/2 --time-limit 1", "--samples 0:1 --time-limit 1", "--part 1/2 --turntable 4",
-                      "--denoise svgf", "--aov motion"]:
+                      "--denoise svgf", "--aov motion", "--rows 4", "--rows 4:4", "--rows 0:17", "--rows 0:8 --integrator light",
+                      "--rows 0:8 --integrator bidirectional", "--rows 0:8 --time-limit 1", "--rows 0:8 --turntable 4"]:
             with self.subTest(flags=flags):
                 self.refuse(2, "render", "cornell-box", "-o", "x.pvf", *SMALL, *flags.split(), says=[flags.split()[0]])
         self.refuse(2, "render", "cornell-box", "-o", "x-#.pvf", *SMALL, "--turntable", "4", says=["x-#.pvf"])

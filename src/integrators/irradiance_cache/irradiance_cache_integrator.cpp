@@ -66,7 +66,7 @@ void IrradianceCacheIntegrator::render(uint32_t first, uint32_t count, const Fil
     check_sums(film);
     if (count == 0) return;
     if (!prepare([this](double) { return !is_abandoned(); })) return;
-    if (first == 0) report_invalid(film.invalid);
+    if (first == 0 && film.window.x == 0 && film.window.y == 0) report_invalid(film.invalid);
     CacheJob job = make_job(0);
     job.film = film;
     job.shows_records = picture_settings_.cache.show_records;
@@ -79,7 +79,8 @@ void IrradianceCacheIntegrator::render(uint32_t first, uint32_t count, const Fil
     rays_.camera += job.samples.count();
 }
 
-/// Adds invalid samples of the records to the count together with sample 0, thus once, however the work is split.
+/// Adds invalid samples of the records to the count together with sample 0 of the first pixel, thus once, however the
+/// work is split.
 void IrradianceCacheIntegrator::report_invalid(uint64_t* invalid) {
     uint64_t of_records = 0, so_far = 0;
     queue_.copy_to_host(&of_records, counts_.data() + kInvalid, sizeof of_records);

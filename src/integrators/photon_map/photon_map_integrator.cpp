@@ -25,6 +25,7 @@ void PhotonMapIntegrator::reserve(const WorkSize& size) {
     const PhotonMapSettings& map = settings_.map;
     maps_.allocate(map, settings_.subpaths.max_depth);
     targets_.grow(queue_, kMaxTargets, "targets of photons");
+    counted_elsewhere_.grow(queue_, 1, "invalid photons");
     if (uses_loop(size)) return;
     const uint64_t subpaths =
         std::max<uint64_t>(size.pixels(), 2 * uint64_t(map.photons)); // camera subpaths or photons
@@ -40,6 +41,7 @@ void PhotonMapIntegrator::begin(const PictureView& picture, SceneTracer& tracer,
     world_ = sphere_round(tracer.bounds());
     global_radius_ = map.radius > 0 ? map.radius : kRadiusOfScene * world_.radius;
     caustic_radius_ = map.caustic_radius > 0 ? map.caustic_radius : kCausticRadius * global_radius_;
+    counted_elsewhere_.fill(0);
     find_targets();
 }
 
@@ -67,8 +69,11 @@ PhotonJob PhotonMapIntegrator::make_job(uint32_t pass, const FilmView& film) {
     job.scene = {picture_, picture_settings_.subpaths, world_, false};
     job.film = film;
     job.samples = {film.window, pass, 1};
+    // Photons of a pass are the same for all parts of a picture, of which the one with its first pixel counts them.
+    const bool counts = film.window.x == 0 && film.window.y == 0;
+    uint64_t* const invalid = counts ? film.invalid : counted_elsewhere_.data();
     const PhotonMapSettings& map = picture_settings_.map;
-    job.pass = {pass, map.photons, {targets_.data(), target_count_}, maps_.clear(), film.invalid, energy_};
+    job.pass = {pass, map.photons, {targets_.data(), target_count_}, maps_.clear(), invalid, energy_};
     job.how = map.gather;
     job.search = map.search;
     return job;

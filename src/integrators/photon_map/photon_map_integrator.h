@@ -49,6 +49,7 @@ private:
     float global_radius_ = 0, caustic_radius_ = 0; // radii of the first pass
     PhotonMaps maps_;
     Buffer<Float4> targets_;
+    Buffer<uint64_t> counted_elsewhere_; // number of invalid photons that another part of the picture counts
     uint32_t target_count_ = 0;
 };
 

@@ -43,8 +43,10 @@ void Checkpoint::check_header(const std::string& file, const FilmHeader& header)
     }
     if (header.part.is_empty()) return;
     const SampleRange there = header.part.samples;
-    if (header.part.first_row != 0 || header.part.end_row != picture_.height)
-        refuse(fmt::format("it has the rows {} to {} alone", header.part.first_row, header.part.end_row - 1));
+    if (header.part.first_row != picture_.part.first_row || header.part.end_row != picture_.part.end_row) {
+        refuse(fmt::format("it has the rows {} to {}, not {} to {} (`rows`)", header.part.first_row,
+                           header.part.end_row - 1, picture_.part.first_row, picture_.part.end_row - 1));
+    }
     if (there.first != picture_.part.samples.first) {
         refuse(fmt::format("its samples begin with number {}, not {} (`part`, `samples`)", there.first,
                            picture_.part.samples.first));

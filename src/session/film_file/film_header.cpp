@@ -134,8 +134,8 @@ FilmHeader film_header(const PictureOptions& options, const PictureRecord& recor
     std::erase_if(header.settings,
                   [](const auto& setting) { return setting.first == "spp" || setting.first == "scene"; });
     if (header.part.is_empty()) {
-        const uint32_t first = record.settings.first_sample;
-        header.part = {0, film.height(), {first, first}};
+        header.part = record.settings.part();
+        header.part.samples.end = header.part.samples.first;
     }
     return header;
 }

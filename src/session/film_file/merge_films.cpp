@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/machine_memory.h"
+#include "session/film_file/unite_id_names.h"
 #include "settings/settings_file.h"
 
 namespace pertev {
@@ -85,7 +86,12 @@ void FilmMerge::take_header(const std::string& file, const FilmHeader& header) {
     const RayCounts rays = header_.rays + header.rays;
     const double seconds = header_.render_seconds + header.render_seconds;
     const uint32_t spp = std::max(header_.spp, header.spp);
-    if (precedence(header.part) < precedence(header_.part)) header_ = header;
+    const bool comes_first = precedence(header.part) < precedence(header_.part);
+    const ExrMetadata& later = comes_first ? header_.facts.origin : header.facts.origin;
+    ExrMetadata origin = comes_first ? header.facts.origin : header_.facts.origin;
+    unite_id_names(later, origin);
+    if (comes_first) header_ = header;
+    header_.facts.origin = std::move(origin);
     header_.rays = rays, header_.render_seconds = seconds, header_.spp = spp;
 }
 
@@ -95,8 +101,10 @@ void FilmMerge::refuse_overlaps() const {
             if (!overlap(parts_[i].of, parts_[k].of)) continue;
             const FilmPart &a = parts_[i].of, &b = parts_[k].of;
             throw Error(ErrorCode::BadInput, FileLocation{parts_[i].file},
-                        fmt::format("its samples {} to {} are also in {}", std::max(a.samples.first, b.samples.first),
-                                    std::min(a.samples.end, b.samples.end) - 1, parts_[k].file));
+                        fmt::format("its samples {} to {} of rows {} to {} are also in {}",
+                                    std::max(a.samples.first, b.samples.first),
+                                    std::min(a.samples.end, b.samples.end) - 1, std::max(a.first_row, b.first_row),
+                                    std::min(a.end_row, b.end_row) - 1, parts_[k].file));
         }
     }
 }

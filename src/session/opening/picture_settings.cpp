@@ -1,6 +1,9 @@
 #include "session/opening/picture_settings.h"
 
 #include <algorithm>
+#include <tuple>
+
+#include <fmt/format.h>
 
 #include "base/error.h"
 #include "image/write_exr.h"
@@ -69,6 +72,11 @@ RenderSettings render_settings(const PictureOptions& options, const Scene& scene
     set_size(options, scene, settings);
     const SampleRange range = sample_range(options);
     settings.first_sample = range.first, settings.samples = range.end;
+    std::tie(settings.first_row, settings.end_row) = row_range(options);
+    if (settings.end_row > settings.height) {
+        throw Error(ErrorCode::BadInput, "rows", options.rows,
+                    fmt::format("the picture has the rows 0 to {}", settings.height - 1));
+    }
     const std::size_t of_ids = (settings.aovs & kAovIds) != 0 ? 3 : 0;
     check_exr_row(settings.width, film_channel_count(settings.aovs) + of_ids + 3 * light_layers_of(settings).size());
     return settings;

@@ -34,6 +34,7 @@ void check_options(const PictureOptions& options, uint32_t verbs) {
     check_settings(options, verbs);
     frame_range(options);
     sample_range(options);
+    row_range(options);
     check_real_time(options);
     if (options.reconstruction.used().denoiser == FrameDenoiser::Oidn) OidnLibrary::find("frame_denoiser");
     requested_exposure(options);

@@ -20,7 +20,7 @@ public:
     /// Adds the samples that are missing, as render_samples. Writes the checkpoint every options.checkpoint_every_s
     /// seconds, where a failure is a warning, and in the end.
     RenderResult render(Sink& sink);
-    const Film& film() { return film_.film(); }
+    Film& film() { return film_.film(); }
     /// Returns the checkpoint's file, with the reason if it could not be written in the end.
     const WrittenFile& written() const { return written_; }
 

@@ -1,0 +1,24 @@
+#pragma once
+
+// Merges film files into one picture for its files or arrays.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "session/film_file/merge_films.h"
+
+namespace pertev {
+
+struct MergedPicture {
+    RenderResult result;
+    PictureFacts facts;             // for the outputs
+    std::vector<WrittenFile> films; // the film files among the outputs, which have been written
+};
+
+/// Checks the names of the outputs, merges `files`, and writes the film files among the outputs; write_picture() writes
+/// the others. Throws as check_outputs and FilmMerge, and Error(BadInput) for a film file of samples with gaps.
+MergedPicture merge_picture(std::span<const std::string> files, bool is_partial, std::span<const std::string> outputs,
+                            Sink& sink);
+
+} // namespace pertev

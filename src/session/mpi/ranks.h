@@ -1,0 +1,46 @@
+#pragma once
+
+// The processes that mpirun starts together to render one picture. Each renders its part into a film file of its own
+// (session/film_file/checkpoint.h) and the first one sums the films. A build without MPI (PERTEV_MPI) has the same
+// functions, and refuses to be one of several ranks.
+//
+// Source: MPI: A Message-Passing Interface Standard 3.1, section 5.9.5 (operations of the user).
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "settings/picture_options.h"
+#include "settings/render_settings.h"
+
+namespace pertev {
+
+class Ranks {
+public:
+    /// Joins the others if mpirun started this process with others; otherwise returns null. Throws Error(BadInput) if
+    /// this build cannot.
+    static std::unique_ptr<Ranks> join();
+    /// Leaves, together with the others, unless an exception ends this process; mpirun then ends the others.
+    ~Ranks();
+    Ranks(const Ranks&) = delete;
+    Ranks& operator=(const Ranks&) = delete;
+
+    uint32_t rank() const { return rank_; } // from 0
+    uint32_t count() const { return count_; }
+
+    /// Sets the part and the checkpoint of this rank, a film file beside `output`. Throws Error(BadInput) if a
+    /// checkpoint was given.
+    void divide(const std::string& output, PictureOptions& options) const;
+    /// Returns whether all ranks call it with true. Each rank calls it, and waits for the others.
+    bool all(bool here) const;
+    /// Adds the films and the statistics of the other ranks to those of the first one, which then are those of `spp`
+    /// samples of each pixel. Each rank calls it. Throws Error(OutOfMemory, DeviceFault).
+    void sum(uint32_t spp, Film& film, RenderResult& result) const;
+
+private:
+    Ranks(uint32_t rank, uint32_t count) : rank_(rank), count_(count) {}
+
+    uint32_t rank_, count_;
+};
+
+} // namespace pertev
