@@ -64,13 +64,20 @@ void write(const std::string& path, nb::handle array, const std::string& curve, 
 
 /// Writes a result with all that the format holds: its layers and metadata too.
 void write_result(const std::string& path, const PythonResult& result, const std::string& curve, float exposure) {
-    PictureRecord record = *result.record;
     const std::vector<std::string> paths = {path};
-    if (writes_tone_mapped(paths)) record.display = Display{curve_of(curve), exposure, {}};
+    PictureFacts facts = result.facts();
+    if (writes_tone_mapped(paths)) {
+        PictureRecord shown;
+        shown.display = Display{curve_of(curve), exposure, {}};
+        facts.display = shown.display;
+        facts.shown = facts_of(shown, {}).shown;
+    } else if (result.merged) {
+        facts.shown.clear();
+    }
     RenderResult written = result.whole(); // which loses its layers
     const nb::gil_scoped_release unlocked;
     image_format_for(path);
-    const std::string failures = failures_of(write_picture(paths, record, written));
+    const std::string failures = failures_of(write_picture(paths, facts, written));
     if (!failures.empty()) throw Error(ErrorCode::FileWrite, failures);
 }
 

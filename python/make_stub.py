@@ -40,6 +40,7 @@ MEMBERS = {"ids": "NDArray[numpy.uint32]", "layers": "dict[str, NDArray[Any]]", 
            "instance_names": "list[str]", "material_names": "list[str]", "arrays": "dict[str, Any]", "shape": "tuple[int, ...]", "__cuda_array_interface__": "dict[str, Any]"}
 OF_BATCHES = {"color": "Any", "albedo": "Any", "normal": "Any", "depth": "Any", "distance": "Any", "position": "Any", "ids": "Any"}
 SIGNATURES = {
+    "merge": "(files: _Text | Sequence[_Text], *, output: _Text | Sequence[_Text] = (), partial: bool = False) -> Result",
     "read": "(path: _Text) -> _Floats",
     "read_cameras": "(path: _Text, *, size: tuple[int, int] | None = None, "
                     "convention: Literal['opengl', 'opencv', 'blender'] | None = None) -> Cameras",
@@ -123,7 +124,7 @@ def main():
     package = importlib.import_module(folder.name)
     core = importlib.import_module(f"{folder.name}._core")
     rows = core.settings()
-    all_rows = rows + core.frame_settings()
+    all_rows, of_parts = rows + core.frame_settings(), rows + core.part_settings()
     scene, session, viewer = package.Scene, package.Session, package.Viewer
     lines = [HEAD]
     lines += class_of("Result", core.Result, "", properties_of(core.Result))
@@ -142,7 +143,7 @@ def main():
     lines += takes_settings("render", ["scene: Scene | _Text,", "*,", "cameras: Cameras | Any = None,", *BATCH,
                                        "output: _Text | Sequence[_Text] = (),", "settings: _Text | None = None,",
                                        "out: Mapping[str, Any] | BatchResult | None = None,", "on_device: bool = False,"],
-                            "Any", rows, package.render)
+                            "Any", of_parts, package.render)
     lines += takes_settings("render_chunks", ["scene: Scene | _Text,", "cameras: Cameras | Any,", "*,",
                                               "chunk: int | None = None,", *BATCH, "settings: _Text | None = None,"],
                             "Iterator[BatchResult]", rows, package.render_chunks)
@@ -150,7 +151,7 @@ def main():
     viewed = [row for row in rows if row["is_viewed"]]
     lines += takes_settings("view", ["scene: Scene | _Text,", "*,", "port: int = 0,", "browser: bool = False,"], "Viewer", viewed,
                             package.view)
-    for name in ("read", "read_cameras", "write", "tone_map", "compare"):
+    for name in ("merge", "read", "read_cameras", "write", "tone_map", "compare"):
         lines += [f"def {name}{SIGNATURES[name]}:", doc_of(getattr(package, name), "    "), ""]
     print("\n".join(lines))
 

@@ -28,12 +28,15 @@
 #include "python/scene_arrays.h"
 #include "python/session.h"
 #include "scene/scene_origin.h"
+#include "session/film_file/merge_picture.h"
 #include "settings/setting_table.h"
 
 namespace nb = nanobind;
 
 namespace pertev {
 namespace {
+
+constexpr std::string_view kPartsGroup = "Parts";
 
 /// Names the type of a setting's values: bool, int, float, size, vector, list, choice or text.
 const char* type_of(const Setting& setting) {
@@ -65,19 +68,26 @@ nb::dict row_of(const Setting& setting) {
     return row;
 }
 
-/// Returns the settings of a single picture, or those of frames: `frames`, `turntable` and what needs these, but for
-/// those that are about files: `continue`, parts and checkpoints.
+/// Returns the settings of parts and checkpoints, which a call for a single picture has.
+std::vector<nb::dict> settings_of_parts() {
+    std::vector<nb::dict> rows;
+    for (const Setting& setting : all_settings())
+        if (setting.group == kPartsGroup) rows.push_back(row_of(setting));
+    return rows;
+}
+
+/// Returns the settings of any picture, or those of frames: `frames`, `turntable` and what needs these, but for
+/// `continue`, which is about files.
 std::vector<nb::dict> settings_of(bool frames) {
     std::vector<nb::dict> rows;
     std::set<std::string, std::less<>> of_sequences = {"frames", "turntable", "cameras"};
-    const std::set<std::string_view> of_files = {"continue",  "samples",    "part",
-                                                 "part_base", "checkpoint", "checkpoint_every"};
     for (const Setting& setting : all_settings()) {
         const std::vector<std::string> needs = words_of(setting.needs);
         const auto is_of_sequences = [&](const std::string& name) { return of_sequences.contains(name); };
         if (!needs.empty() && std::ranges::all_of(needs, is_of_sequences)) of_sequences.insert(setting.name);
         if ((setting.verbs & kRender) == 0 || is_of_sequences(setting.name) != frames) continue;
-        if (!of_files.contains(setting.name)) rows.push_back(row_of(setting));
+        if (setting.name != std::string_view("continue") && setting.group != kPartsGroup)
+            rows.push_back(row_of(setting));
     }
     return rows;
 }
@@ -116,10 +126,24 @@ PythonResult render(PythonScene& scene, const std::string& settings_file, const 
                     const std::vector<std::string>& outputs, const std::optional<nb::dict>& out) {
     std::vector<OutArray> arrays = out ? out_arrays(*out) : std::vector<OutArray>();
     PythonResult made = result_of([&](PythonSink& sink) {
-        return scene.render({settings_file, settings}, outputs, arrays, sink);
+        return scene.render({settings_file, settings, true}, outputs, arrays, sink);
     });
     made.out = std::move(arrays);
     return made;
+}
+
+PythonResult merge(const std::vector<std::string>& files, bool is_partial, const std::vector<std::string>& outputs) {
+    if (files.empty()) throw Error(ErrorCode::BadInput, "files", "", "there is no film file");
+    return result_of([&](PythonSink& sink) {
+        MergedPicture picture = merge_picture(files, is_partial, outputs, sink);
+        PythonResult made(std::move(picture.result), std::move(picture.facts));
+        if (outputs.empty()) return made;
+        RenderResult written_result = made.result; // files take the layers out of it
+        WrittenPicture written = write_picture(outputs, *made.merged, written_result);
+        written.files.insert(written.files.end(), picture.films.begin(), picture.films.end());
+        refuse_faults(written, made.result.invalid_samples, false);
+        return made;
+    });
 }
 
 /// Makes a scene of arrays if there are parts, else of a file.
@@ -326,10 +350,12 @@ NB_MODULE(_core, module) {
         "settings", [] { return settings_of(false); }, "The rows of the table of settings that a picture has");
     module.def(
         "frame_settings", [] { return settings_of(true); }, "Further rows, which only frames have");
+    module.def("part_settings", &settings_of_parts, "Further rows, which only a single picture has");
     module.def("read_cameras", &cameras_of_file);
     module.def("builtin_scenes", &builtin_scene_names, "Names of the scenes that are part of Pertev");
     define_scene(module);
     define_images(module);
+    module.def("merge", &merge);
 }
 
 } // namespace pertev

@@ -89,7 +89,7 @@ constexpr std::string_view kJsonTexts[] = {"pertev.settings",  "pertev.made_up",
 nb::dict info_of(PythonResult& self) {
     nb::dict info;
     const nb::object parse = nb::module_::import_("json").attr("loads");
-    const ExrMetadata metadata = picture_metadata(facts_of(*self.record, self.ids()), self.result, self.known_hash());
+    const ExrMetadata metadata = picture_metadata(self.facts(), self.result, self.known_hash());
     for (const auto& entry : metadata) {
         const std::string_view name = entry.first;
         constexpr std::string_view kOurs = "pertev.";
@@ -101,19 +101,25 @@ nb::dict info_of(PythonResult& self) {
     return info;
 }
 
+/// Returns the record of a rendered picture. Throws AttributeError for a merged one.
+const PictureRecord& record_of(const PythonResult& self) {
+    if (!self.record) throw nb::attribute_error("a merged picture has its camera in `info` alone");
+    return *self.record;
+}
+
 nb::object pose_of(const PythonResult& self) {
-    const CameraSource& source = self.record->camera;
+    const CameraSource& source = record_of(self).camera;
     return owned_array(values_of(source.camera.world_from_camera, source.origin), {4, 4});
 }
 
 nb::object intrinsics_of(const PythonResult& self) {
-    const Camera& camera = self.record->camera.camera;
+    const PictureRecord& record = record_of(self);
+    const Camera& camera = record.camera.camera;
     if (has_parallel_rays(camera.projection)) throw nb::attribute_error("a camera with parallel rays has no K");
-    const auto width = static_cast<double>(self.record->settings.width),
-               height = static_cast<double>(self.record->settings.height);
+    const auto width = static_cast<double>(record.settings.width), height = static_cast<double>(record.settings.height);
     const double focal = 0.5 * height / static_cast<double>(half_view_height(camera));
     const Intrinsics k = camera.intrinsics.value_or(
-        Intrinsics{focal, focal, 0.5 * width, 0.5 * height, self.record->settings.width, self.record->settings.height});
+        Intrinsics{focal, focal, 0.5 * width, 0.5 * height, record.settings.width, record.settings.height});
     const double x = width / k.width, y = height / k.height;
     return owned_array<double>({x * k.focal_x, 0, x * k.centre_x, 0, y * k.focal_y, y * k.centre_y, 0, 0, 1}, {3, 3});
 }

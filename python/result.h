@@ -15,13 +15,18 @@ namespace pertev {
 struct PythonResult {
     PythonResult(RenderResult rendered, std::shared_ptr<const PictureRecord> of)
         : result(std::move(rendered)), record(std::move(of)) {}
+    /// A picture that was merged of film files.
+    PythonResult(RenderResult rendered, PictureFacts of)
+        : result(std::move(rendered)), merged(std::make_shared<const PictureFacts>(std::move(of))) {}
 
     RenderResult result; // without what `out` has, if there are such arrays, and without layers then
     std::vector<OutArray> out;
-    std::shared_ptr<const PictureRecord> record;
-    std::string hash; // made at the first request, before which no array was given away
+    std::shared_ptr<const PictureRecord> record; // null for a merged picture
+    std::shared_ptr<const PictureFacts> merged;  // null for others
+    std::string hash;                            // made at the first request, before which no array was given away
     const std::string& known_hash();
     std::span<const PixelIds> ids() const;
+    PictureFacts facts() const { return merged ? *merged : facts_of(*record, ids()); }
     /// Returns the result with what its arrays hold now.
     RenderResult whole() const;
 };

@@ -1,5 +1,6 @@
 #include "python/scene.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include <fmt/format.h>
@@ -7,9 +8,11 @@
 
 #include "base/error.h"
 #include "image/picture_hash.h"
+#include "session/film_file/film_file.h"
 #include "session/opening/strictness.h"
 #include "session/pictures/choose_display.h"
 #include "session/pictures/render_samples.h"
+#include "session/pictures/render_with_checkpoint.h"
 #include "session/writing/check_outputs.h"
 #include "session/writing/write_picture.h"
 #include "settings/setting_table.h"
@@ -52,7 +55,8 @@ PictureOptions PythonScene::options_of(const CallSettings& settings, Sink& sink)
     combine_settings(
         settings.file, kRender, [&](PictureOptions& others) { set_all(others, settings.texts); }, options, sink);
     for (const char* name : {"samples", "part", "checkpoint"}) {
-        if (options.is_given(name)) throw Error(ErrorCode::BadInput, name, "", "a call renders a whole picture");
+        if (!settings.is_still && options.is_given(name))
+            throw Error(ErrorCode::BadInput, name, "", "only a call for a single picture has parts and checkpoints");
     }
     return options;
 }
@@ -78,7 +82,7 @@ const PictureRecord& PythonScene::prepare(const CallSettings& settings, const st
     if (frame_range(options_)) {
         throw Error(ErrorCode::BadInput, "frames", options_.frames, "a call renders one picture; `time` chooses it");
     }
-    if (!outputs.empty()) check_files(options_, outputs, sink);
+    if (!outputs.empty() || !options_.checkpoint.empty()) check_files(options_, outputs, sink);
     opened_.prepare(options_, source_, sink);
     record_ = std::make_shared<const PictureRecord>(opened_.record(options_, source_, sink));
     if (outputs.empty()) last_ = settings;
@@ -109,21 +113,29 @@ PythonResult PythonScene::render(const CallSettings& settings, const std::vector
     Session& session = opened_.session(prepare(settings, outputs, sink));
     check_arrays(out, session.settings());
     session.cut();
-    const bool is_read = !out.empty() && outputs.empty() && FilmReader::reads(out, session.settings());
-    if (writes_tone_mapped(outputs)) {
-        PictureRecord shown = *record_;
+    const bool has_checkpoint = !options_.checkpoint.empty();
+    const bool is_read =
+        !out.empty() && outputs.empty() && !has_checkpoint && FilmReader::reads(out, session.settings());
+    PictureRecord shown = *record_;
+    if (writes_tone_mapped(outputs) || has_checkpoint || std::ranges::any_of(outputs, is_film_name))
         shown.display = choose_display(options_, session, sink);
-        record_ = std::make_shared<const PictureRecord>(std::move(shown));
-    }
-    // An interrupted picture is thrown away, and its files stay as they were.
-    PythonResult made =
-        is_read ? render_into(session, out, sink) : PythonResult(render_samples(session, sink), record_);
+    if (writes_tone_mapped(outputs)) record_ = std::make_shared<const PictureRecord>(shown);
+    // Only a checkpoint keeps an interrupted picture; its files stay as they were.
+    std::optional<RenderWithCheckpoint> kept;
+    if (has_checkpoint) kept.emplace(session, options_, shown, sink);
+    PythonResult made = is_read ? render_into(session, out, sink)
+                                : PythonResult(kept ? kept->render(sink) : render_samples(session, sink), record_);
     sink.check();
     WrittenPicture written;
     if (!outputs.empty()) {
         RenderResult result = made.result; // files take the layers out of it
-        written = write_picture(outputs, *record_, result);
+        const Film& film = kept ? kept->film() : session.film();
+        const FilmHeader header = film_header(options_, shown, facts_of(shown, result.ids), result, film);
+        written.files = write_film_files(outputs, header, film);
+        WrittenPicture pictures = write_picture(outputs, *record_, result);
+        written.files.insert(written.files.end(), pictures.files.begin(), pictures.files.end());
     }
+    if (kept) written.files.push_back(kept->written());
     if (!out.empty() && !is_read) {
         copy_into(out, made.result);
         made.known_hash(); // before the caller can change its arrays

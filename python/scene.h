@@ -22,6 +22,7 @@ using SettingTexts = std::map<std::string, std::vector<std::string>>;
 struct CallSettings {
     std::string file; // a file of settings; empty: none
     SettingTexts texts;
+    bool is_still = false; // a single picture, which may be a part and may have a checkpoint
     bool operator==(const CallSettings&) const = default;
 };
 

@@ -13,14 +13,15 @@ from ._cameras import BatchResult, Cameras, DeviceArray, chunk_size, read_camera
 from ._core import Result, builtin_scenes
 from ._images import compare, read, tone_map, write
 from ._process import check_process
+from ._parts import merge, names_of
 from ._scene import Params, Scene, Session, load, scene
-from ._settings import texts_of, with_layers
+from ._settings import OF_PARTS, OF_PICTURES, texts_of, with_layers
 from ._viewer import Viewer, view
 from .errors import DeviceError, Error, InputError, InterruptedRender, LimitError, MemoryLimitError, WriteError
 
 __all__ = ["BatchResult", "Cameras", "DeviceArray", "DeviceError", "Error", "InputError", "InterruptedRender", "LimitError",
            "MemoryLimitError", "Params", "Result", "Scene", "Session", "Viewer", "WriteError", "builtin_scenes", "compare",
-           "load", "read", "read_cameras", "render", "render_chunks", "scene", "tone_map", "view", "write"]
+           "load", "merge", "read", "read_cameras", "render", "render_chunks", "scene", "tone_map", "view", "write"]
 
 
 def render(scene, *, cameras=None, seeds=None, color=True, layers=(), output=(), settings=None, out=None, on_device=False,
@@ -39,7 +40,8 @@ def render(scene, *, cameras=None, seeds=None, color=True, layers=(), output=(),
               earlier BatchResult of the same scene, whose arrays are filled again
     on_device True: the arrays stay in the memory of the device, and the call returns them as a BatchResult
     values    any setting of docs/settings.md by its name: size=(640, 480), spp=64, eye=(0, 1, 3), device="cpu".
-              None is as if it was not given.
+              None is as if it was not given. part=(1, 4), samples=(64, 128) and checkpoint=FILE are for a single picture;
+              a part is an output="part.1.pvf" for merge().
 
     The picture has the bytes of `pertev render` with the same settings. The interpreter's lock is released, and Ctrl-C
     raises KeyboardInterrupt. Messages go to the logger "pertev", but for those of a call that repeats the last one on an
@@ -48,13 +50,15 @@ def render(scene, *, cameras=None, seeds=None, color=True, layers=(), output=(),
     check_process()
     used = scene if isinstance(scene, Scene) else Scene(scene)
     if cameras is not None or on_device:
+        for name in OF_PARTS.keys() & {name for name, value in values.items() if value is not None}:
+            raise TypeError(f"{name} is of a single picture, not of many cameras or of arrays on the device")
         if output:
             raise TypeError("output: pictures of many cameras or on the device are arrays; `pertev render` writes files")
         return render_batch(used, cameras, seeds, color, os.fspath(settings or ""), with_layers(values, layers), out)
     if seeds is not None or not color:
         raise TypeError("seeds and color are for many `cameras`, or for `on_device`")
-    outputs = [output] if isinstance(output, (str, os.PathLike)) else output
-    return used._render(os.fspath(settings or ""), texts_of(with_layers(values, layers)), [os.fspath(path) for path in outputs], out)
+    return used._render(os.fspath(settings or ""), texts_of(with_layers(values, layers), {**OF_PICTURES, **OF_PARTS}),
+                        names_of(output), out)
 
 
 def render_chunks(scene, cameras, *, chunk=None, seeds=None, color=True, layers=(), settings=None, **values):

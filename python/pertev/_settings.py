@@ -7,10 +7,12 @@ from . import _core
 
 OF_PICTURES = {row["name"]: row for row in _core.settings()}
 OF_FRAMES = {**OF_PICTURES, **{row["name"]: row for row in _core.frame_settings()}}
+OF_PARTS = {row["name"]: row for row in _core.part_settings()}
+SEPARATORS = {"A:B": ":", "I/N": "/"}  # by the form of a value
 
 
 def _text(row, value):
-    """Returns one value in the syntax of settings: True as "true", (1, 2, 3) as "1,2,3", a size as "640x480"."""
+    """Returns one value in the syntax of settings: True as "true", (1, 2, 3) as "1,2,3", a size as "640x480", a part as "1/4"."""
     if isinstance(value, str):
         return value
     if isinstance(value, os.PathLike):
@@ -24,7 +26,7 @@ def _text(row, value):
         number = float(value)
         return str(int(number)) if number.is_integer() and abs(number) < 2**53 else repr(number)
     elif hasattr(value, "__iter__"):
-        return ("x" if row["type"] == "size" else ",").join(_text(row, item) for item in value)
+        return ("x" if row["type"] == "size" else SEPARATORS.get(row["form"], ",")).join(_text(row, item) for item in value)
     raise TypeError(f"{row['name']}: {type(value).__name__} is no value of this setting ({row['form'] or 'bool'})")
 
 

@@ -21,7 +21,7 @@ class Stub(unittest.TestCase):
     def test_all_settings(self):
         names = {row["name"] for row in _core.settings()}
         self.assertEqual(set(types_of("load")), names)
-        self.assertEqual(set(types_of("render")), names | {"layers", "output", "settings", "out", "cameras", "seeds", "color",
+        self.assertEqual(set(types_of("render")), names | {row["name"] for row in _core.part_settings()} | {"layers", "output", "settings", "out", "cameras", "seeds", "color",
                                                      "on_device"})
         scene, session = (next(node for node in DEFINED[name].body if getattr(node, "name", "") == "__init__")
                           for name in ("Scene", "Session"))

@@ -1,0 +1,25 @@
+"""Pictures that are made of the film files of their parts."""
+
+import os
+
+from . import _core
+from ._process import check_process
+
+
+def names_of(files):
+    """Returns a list of names for one file or several."""
+    return [os.fspath(file) for file in ([files] if isinstance(files, (str, os.PathLike)) else files)]
+
+
+def merge(files, *, output=(), partial=False):
+    """Returns the picture of the film files (.pvf) of its parts, which render() wrote, as a Result without pose and K.
+
+    files    a file or several, in any order
+    output   a file to write, or several: .exr .png .jpg .hdr, or .pvf with all samples
+    partial  True: a picture of the samples that are there, if some are missing
+
+    The picture has the bytes of one render of all samples. Raises InputError for parts that overlap, are missing or are of
+    other pictures, and as render().
+    """
+    check_process()
+    return _core.merge(names_of(files), partial, names_of(output))
