@@ -1,0 +1,127 @@
+"""Tests of pertev.farm with the real Ray and Dask: the picture of parts is that of one render, also if a worker is killed.
+
+It runs by the Python of PERTEV_FARM_PYTHON, which has PyPI's `ray` and `dask[distributed]` (.ci/run makes one), and skips what is not there."""
+
+import importlib.util
+import os
+import pathlib
+import signal
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+FARM_PYTHON = os.environ.get("PERTEV_FARM_PYTHON", "")
+if FARM_PYTHON and os.path.realpath(sys.prefix) != os.path.realpath(pathlib.Path(FARM_PYTHON).parent.parent):
+    os.execv(FARM_PYTHON, [FARM_PYTHON, *sys.argv])
+
+os.environ.update(RAY_USAGE_STATS_ENABLED="0", RAY_DEDUP_LOGS="0")
+
+import pertev
+import pertev.farm
+
+JOB = {"size": (48, 36), "spp": 2048, "threads": 1, "device": "cpu", "exposure": 0}  # seconds for each part
+
+
+def has(name):
+    return importlib.util.find_spec(name) is not None
+
+
+def commands():
+    """The command lines and parents of all processes that there are, by their numbers."""
+    found = {}
+    for folder in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            parent = int((folder / "stat").read_text(encoding="utf-8").rpartition(")")[2].split()[1])
+            found[int(folder.name)] = ((folder / "cmdline").read_bytes().decode(errors="replace"), parent)
+        except (OSError, ValueError):
+            pass  # it has ended
+    return found
+
+
+def descends(process, known):
+    while process in known:
+        if process == os.getpid():
+            return True
+        process = known[process][1]
+    return False
+
+
+class Killer(threading.Thread):
+    """Kills the first of our processes that `finds` returns, once, after it has worked for a moment."""
+
+    def __init__(self, finds):
+        super().__init__()
+        self.finds, self.killed = finds, None
+        self.start()
+
+    def run(self):
+        until = time.monotonic() + 120
+        while self.killed is None and time.monotonic() < until:
+            time.sleep(0.05)
+            victim = self.finds()
+            if victim is not None:
+                time.sleep(0.3)
+                os.kill(victim, signal.SIGKILL)
+                self.killed = victim
+
+
+class Farm(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+
+    def check(self, merged, killer):
+        killer.join()
+        self.assertIsNotNone(killer.killed)
+        self.assertEqual(merged.samples, JOB["spp"])
+        self.assertEqual(merged.hash, pertev.render("cornell-box", **{**JOB, "threads": 2}).hash)
+        self.assertTrue(pertev.compare(merged, self.folder / "a.exr")["equal"])
+
+    @unittest.skipUnless(has("ray"), "ray is not installed")
+    def test_ray_renders_the_part_of_a_killed_worker_again(self):
+        import ray
+        ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False, configure_logging=False)
+        self.addCleanup(ray.shutdown)
+
+        def worker():
+            known = commands()
+            return next((process for process, (line, _) in known.items()
+                         if line.startswith("ray::_render_part") and descends(process, known)), None)
+
+        killer = Killer(worker)
+        merged = pertev.farm.ray("cornell-box", parts=3, output=self.folder / "a.exr", **JOB)
+        self.check(merged, killer)
+        with self.assertRaises(pertev.InputError) as caught:
+            pertev.farm.ray("cornell-box", parts=2, **{**JOB, "max_depth": -1})
+        self.assertEqual(caught.exception.setting, "max_depth")
+
+    @unittest.skipUnless(has("distributed"), "dask[distributed] is not installed")
+    def test_dask_renders_the_part_of_a_killed_worker_again(self):
+        import dask
+        from distributed import Client, LocalCluster
+        dask.config.set({"distributed.admin.tick.limit": "1h"})
+        cluster = self.enterContext(LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50))
+        client = self.enterContext(Client(cluster))
+        processes = client.run(os.getpid)
+
+        def worker():
+            return next((processes[address] for address, tasks in client.processing().items() if tasks and address in processes), None)
+
+        killer = Killer(worker)
+        merged = pertev.farm.dask(client, pertev.load("cornell-box"), parts=3, output=self.folder / "a.exr", **JOB)
+        self.check(merged, killer)
+        with self.assertRaises(pertev.InputError) as caught:
+            pertev.farm.dask(client, "cornell-box", parts=2, **{**JOB, "max_depth": -1})
+        self.assertEqual(caught.exception.setting, "max_depth")
+
+    def test_what_is_wrong_everywhere_is_refused_here(self):
+        for values, kind in [({"parts": 0}, ValueError), ({"parts": 2, "part": (1, 2)}, TypeError), ({"parts": 2, "samples": (0, 1)}, TypeError),
+                             ({"parts": 2, "checkpoint": "c.pvf"}, TypeError)]:
+            with self.subTest(values), self.assertRaises(kind):
+                pertev.farm.dask(None, "cornell-box", **values)
+
+
+if __name__ == "__main__":  # workers that are spawned import this file
+    sys.argv.pop(1)
+    unittest.main()
