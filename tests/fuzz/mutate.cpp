@@ -1,0 +1,88 @@
+// Makes inputs for the fuzz target of film files where there is no libFuzzer: `fuzz_film_files [SECONDS [SEED]]`. An
+// input that aborts is left in the working folder as fuzz-input.pvf.
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <random>
+
+#include "base/stopwatch.h"
+#include "tests/fuzz/fuzz_target.h"
+
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+Bytes g_input;
+
+extern "C" void keep_input(int number) {
+    if (std::FILE* const file = std::fopen("fuzz-input.pvf", "wb")) {
+        std::fwrite(g_input.data(), 1, g_input.size(), file);
+        std::fclose(file);
+    }
+    std::signal(number, SIG_DFL);
+    std::raise(number);
+}
+
+/// Changes a few bytes: flipped bits, other values, digits of numbers in text, parts that are missing, twice or from
+/// elsewhere.
+void mutate(std::mt19937_64& random, Bytes& bytes) {
+    constexpr uint8_t kValues[] = {0, 1, 0x7f, 0x80, 0xff, '0', '9', '-', '"', '[', '}', 'e'};
+    for (uint64_t changes = 1 + random() % 4; changes > 0 && !bytes.empty(); --changes) {
+        const std::size_t at = random() % bytes.size(), to = random() % bytes.size();
+        const std::size_t length = std::min<std::size_t>(1 + random() % 40, bytes.size() - std::max(at, to));
+        const auto first = bytes.begin() + static_cast<std::ptrdiff_t>(at);
+        switch (random() % 6) {
+        case 0:
+            bytes[at] ^= std::byte(1u << random() % 8);
+            break;
+        case 1:
+            bytes[at] = std::byte(kValues[random() % std::size(kValues)]);
+            break;
+        case 2:
+            for (std::size_t i = at; i < std::min(at + 200, bytes.size()); ++i) {
+                if (bytes[i] < std::byte('0') || bytes[i] > std::byte('9')) continue;
+                bytes[i] = std::byte('0' + random() % 10);
+                break;
+            }
+            break;
+        case 3:
+            bytes.erase(first, first + static_cast<std::ptrdiff_t>(length));
+            break;
+        case 4: {
+            const Bytes copy(first, first + static_cast<std::ptrdiff_t>(length));
+            bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(to), copy.begin(), copy.end());
+            break;
+        }
+        default:
+            std::copy_n(Bytes(first, first + static_cast<std::ptrdiff_t>(length)).begin(), length,
+                        bytes.begin() + static_cast<std::ptrdiff_t>(to));
+        }
+    }
+}
+
+} // namespace
+
+int main(int count, char** arguments) {
+    const double seconds = count > 1 ? std::atof(arguments[1]) : 2;
+    std::mt19937_64 random(count > 2 ? std::strtoull(arguments[2], nullptr, 10) : 1);
+    for (const int number : {SIGABRT, SIGSEGV}) std::signal(number, &keep_input);
+    constexpr uint32_t kSeeds = 12;
+    const pertev::Stopwatch watch;
+    uint64_t runs = 0, films = 0;
+    for (; watch.seconds() < seconds; ++runs) {
+        g_input = pertev::fuzz_seed(static_cast<uint32_t>(runs % kSeeds));
+        if (runs >= kSeeds) mutate(random, g_input);
+        bool is_film = false;
+        pertev::fuzz_film_file(g_input, is_film);
+        films += is_film ? 1 : 0;
+        if (runs < kSeeds && !is_film) {
+            std::fprintf(stderr, "seed %llu is refused\n", static_cast<unsigned long long>(runs));
+            return 1;
+        }
+    }
+    std::printf("%llu inputs, of which %llu are films\n", static_cast<unsigned long long>(runs),
+                static_cast<unsigned long long>(films));
+    return films > kSeeds && films < runs ? 0 : 1; // else nothing behind the checksums was reached
+}
