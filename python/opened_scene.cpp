@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "session/device_names.h"
 #include "settings/settings_file.h"
 
 namespace pertev {
@@ -75,6 +76,7 @@ void OpenedScene::open(PictureOptions& options, const EditedScene& source, Sink&
 }
 
 void OpenedScene::prepare(PictureOptions& options, const EditedScene& source, Sink& sink) {
+    refuse_several_devices(options.machine.device, "a scene that stays open");
     const PictureOptions asked = options; // without what the scene's file suggests
     const bool is_open = setup_ && apply_edits(source, sink) && adapt_setup(*setup_, used_, options, kRender, sink);
     if (!is_open) {

@@ -150,6 +150,7 @@ void add_bench_command(CLI::App& app, int& status) {
     add_bench_noise_command(verb, status);
     add_bench_sequence_command(verb, status);
     add_bench_cameras_command(verb, status);
+    add_bench_devices_command(verb, status);
     add_bench_build_command(verb, status);
     add_bench_page_command(verb, status);
     verb.require_subcommand(0, 1);

@@ -138,5 +138,6 @@ void add_bench_noise_command(CLI::App& bench, int& status);
 void add_bench_render_command(CLI::App& bench, int& status);
 void add_bench_sequence_command(CLI::App& bench, int& status);
 void add_bench_cameras_command(CLI::App& bench, int& status);
+void add_bench_devices_command(CLI::App& bench, int& status);
 
 } // namespace pertev

@@ -9,6 +9,7 @@
 #include "base/parallel_for.h"
 #include "base/processor.h"
 #include "device/backend.h"
+#include "device/device_identity.h"
 
 namespace pertev {
 namespace {
@@ -35,11 +36,14 @@ std::string driver_version() {
 std::string list_devices() {
     std::string list;
     int index = 0;
+    const std::vector<DeviceIdentity> identities = device_identities();
     for (const CudaDevice& device : cuda_devices()) {
         const std::string why_not = why_no_cuda(index);
-        list += fmt::format("cuda:{:<3} {}, {:.0f} MiB, compute capability {}.{}{}{}\n", index++, device.name,
+        list += fmt::format("cuda:{:<3} {}, {:.0f} MiB, compute capability {}.{}{}, {}{}\n", index, device.name,
                             mebibytes(device.bytes), device.major, device.minor, driver_version(),
+                            identities.at(static_cast<std::size_t>(index)).uuid,
                             why_not.empty() ? "" : fmt::format("; it cannot be used: {}", why_not));
+        ++index;
     }
     if (index == 0) list += fmt::format("no CUDA device: {}\n", why_no_cuda(0));
     const std::string name = value_in("/proc/cpuinfo", "model name");

@@ -19,6 +19,7 @@
 #include "base/machine_memory.h"
 #include "base/message_text.h"
 #include "base/stopwatch.h"
+#include "session/devices/render_on_devices.h"
 #include "session/film_file/film_file.h"
 #include "session/mpi/ranks.h"
 #include "session/opening/camera_list.h"
@@ -39,7 +40,7 @@ void report_start(const RenderFlags& flags, const RenderSetup& ready, Reporter& 
     const Scene& scene = ready.scene();
     const PreparedScene& prepared = ready.prepared();
     const RenderSettings& settings = ready.settings;
-    const std::string device = ready.queue->device_name();
+    const std::string device = ready.device_name();
     const bool has_more = has_ground(scene); // counts the file's contents, without defaults
     const uint64_t triangles = prepared.triangles - (has_more ? scene.meshes.back().triangle_count() : 0);
     const uint64_t instances = scene.instances.size() - (has_more ? 1 : 0);
@@ -162,7 +163,7 @@ int write_one(const RenderFlags& flags, const RenderSettings& settings, const Pi
     written.files.insert(written.files.end(), films.begin(), films.end());
     report_files(written, reporter);
     if (ranks != nullptr && ranks->all(failures_of(written).empty())) delete_part(flags.checkpoint);
-    report_result(result, written, queue, watch.seconds(), cut_short, reporter);
+    report_result(result, written, queue, record.device, watch.seconds(), cut_short, reporter);
     refuse_faults(written, result.invalid_samples, flags.strict);
     return cut_short ? exit_status(ErrorCode::Interrupted) : 0;
 }
@@ -199,7 +200,10 @@ int render(RenderFlags& flags) {
     PictureRecord record = picture_record(flags, *ready, reporter);
     report_camera(record.camera, reporter);
     reporter.set_work("uploading the scene");
+    std::optional<RenderOnDevices> together;
+    if (ready->queues.size() > 1) together.emplace(ready->queues, ready->prepared(), settings);
     std::optional<Session> session(std::in_place, queue, ready->prepared(), record.camera.camera, settings);
+    if (together) session->pictures().share(*together);
     const bool has_film = !flags.checkpoint.empty() || std::ranges::any_of(flags.outputs, is_film_name);
     if (writes_tone_mapped(flags.outputs) || has_film) {
         record.display = choose_display(flags, *session, reporter);

@@ -46,8 +46,8 @@ std::string hashes_json(const WrittenPicture& written) {
                        or_null(written.denoised_hash));
 }
 
-void report_result(const RenderResult& result, const WrittenPicture& written, const Queue& queue, double total_seconds,
-                   bool interrupted, Reporter& reporter) {
+void report_result(const RenderResult& result, const WrittenPicture& written, const Queue& queue,
+                   const std::string& device, double total_seconds, bool interrupted, Reporter& reporter) {
     const double samples = static_cast<double>(result.picture.width) * result.picture.height * result.samples;
     const double samples_per_second = samples / result.render_seconds;
     const double rays_per_second = static_cast<double>(result.rays.total()) / result.render_seconds;
@@ -68,7 +68,7 @@ void report_result(const RenderResult& result, const WrittenPicture& written, co
         R"({{"event":"done","samples":{},"seconds":{:.6f},"total_seconds":{:.6f},"frames":{},"seconds_per_frame":{},"samples_per_second":{},"rays_per_second":{},"peak_bytes":{},"device_peak_bytes":{},"invalid_samples":{},{},"device":{},"interrupted":{}}})",
         result.samples, result.render_seconds, total_seconds, result.samples, json_number(frame_seconds),
         json_number(samples_per_second), json_number(rays_per_second), host_bytes, result.device_peak_bytes,
-        result.invalid_samples, hashes_json(written), json_string(queue.device_name()), interrupted));
+        result.invalid_samples, hashes_json(written), json_string(device), interrupted));
 }
 
 } // namespace pertev

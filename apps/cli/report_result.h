@@ -27,8 +27,9 @@ void report_files(const WrittenPicture& written, Reporter& reporter);
 std::string hashes_json(const WrittenPicture& written);
 
 /// Reports time, rates, memory, invalid samples and hashes. `total_seconds` counts from the start of loading the
-/// scene; `queue` is the one it was rendered on; `interrupted` means before all samples were done.
-void report_result(const RenderResult& result, const WrittenPicture& written, const Queue& queue, double total_seconds,
-                   bool interrupted, Reporter& reporter);
+/// scene; `queue` is the one it was rendered on, and `device` names all devices; `interrupted` means before all samples
+/// were done.
+void report_result(const RenderResult& result, const WrittenPicture& written, const Queue& queue,
+                   const std::string& device, double total_seconds, bool interrupted, Reporter& reporter);
 
 } // namespace pertev

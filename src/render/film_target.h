@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "device/buffer.h"
 #include "device/launch.h"
+#include "device/peer_copy.h"
 #include "image/image.h"
 #include "render/film_view.h"
 
@@ -40,6 +41,8 @@ public:
     /// Adds the contents of `other`, which holds other samples, from any queue. Throws std::logic_error unless
     /// is_like() holds.
     virtual void add(const FilmTarget& other) = 0;
+    /// Replaces the contents by those of `other`, from any queue whose work on them is done. Throws as add().
+    virtual void copy(const FilmTarget& other) { set_bytes(other.bytes()); }
     /// Layers of the picture, for a film that is `width` columns wide and has `samples` samples per pixel.
     virtual std::vector<FilmLayer> layers(uint32_t width, uint64_t samples) const {
         static_cast<void>(width), static_cast<void>(samples);
@@ -106,6 +109,12 @@ public:
             }
         }
         queue_->wait(); // the copy must be finished before its source is freed
+    }
+
+    void copy(const FilmTarget& other) override {
+        PERTEV_CHECK(is_like(other));
+        const auto& from = static_cast<const ElementTarget&>(other);
+        copy_between(*queue_, elements_.data(), *from.queue_, from.elements_.data(), byte_count());
     }
 
     std::size_t byte_count() const override { return elements_.size() * sizeof(T); }

@@ -7,6 +7,8 @@
 #include "base/stopwatch.h"
 #include "render/hidden_back_share.h"
 #include "session/check_integrator.h"
+#include "session/render_progress.h"
+#include "session/shared_render.h"
 
 namespace pertev {
 namespace {
@@ -29,27 +31,6 @@ uint32_t next_pass(const RenderSettings& settings, uint32_t left, uint32_t done,
     double budget = 1.0 / 3;
     if (settings.time_limit_s > 0) budget = std::min(budget, settings.time_limit_s - seconds);
     return std::min(left, std::max(at_once, static_cast<uint32_t>(std::clamp(budget / a_sample, 1.0, 65536.0))));
-}
-
-/// Progress of an integrator's precomputation.
-Progress made_progress(uint32_t done, uint32_t samples, double made_share, double seconds, const RayCounts& rays) {
-    Progress now = {.doing = "before_samples", .share = made_share, .seconds = seconds};
-    if (made_share > 0.01) now.seconds_left = seconds * (1 - made_share) / made_share;
-    now.samples_done = done, now.samples = samples, now.rays = rays.total();
-    now.made_share = made_share, now.made_seconds = seconds;
-    return now;
-}
-
-/// Progress of the samples, or of the time if that ends first.
-Progress progress_of(const RenderSettings& settings, uint32_t done, uint32_t samples, double seconds,
-                     double made_seconds, const RayCounts& rays) {
-    Progress now = {.doing = "samples", .share = static_cast<double>(done) / samples, .seconds = seconds};
-    const double limit = settings.time_limit_s - made_seconds, sampled = seconds - made_seconds;
-    if (limit > 0) now.share = std::clamp(sampled / limit, now.share, 1.0);
-    if (now.share > 0) now.seconds_left = sampled * (1 - now.share) / now.share;
-    now.samples_done = done, now.samples = samples, now.rays = rays.total();
-    now.made_seconds = made_seconds;
-    return now;
 }
 
 } // namespace
@@ -106,7 +87,7 @@ Film& FilmRender::film() {
 
 /// Returns `film`, made if it does not fit the settings, for their rows.
 Film& FilmRender::fit_part(std::optional<Film>& film) {
-    Film& fit = fit_film(pictures_.queue(), film, settings_, add_targets_);
+    Film& fit = fit_film(pictures_.film_queue(), film, settings_, add_targets_);
     fit.set_rows(settings_.part().first_row, settings_.part().end_row);
     return fit;
 }
@@ -130,6 +111,7 @@ uint32_t FilmRender::render(SampleRange range, Sink& sink) {
     const uint32_t first = range.first, before = samples().count();
     const uint32_t count = std::min(range.count(), kMaxSamplesPerPixel - std::min(first, kMaxSamplesPerPixel));
     if (count == 0) return 0;
+    if (pictures_.sharing() != nullptr) return render_shared(*pictures_.sharing(), {first, first + count}, sink);
     const Stopwatch since_call;
     Film& into_film = film();
     const bool has_steps = settings_.denoise != Denoise::None;
@@ -195,17 +177,40 @@ uint32_t FilmRender::render(SampleRange range, Sink& sink) {
     return samples().count() - before;
 }
 
+uint32_t FilmRender::render_shared(SharedRender& sharing, SampleRange range, Sink& sink) {
+    PERTEV_CHECK(settings_.denoise == Denoise::None);
+    const uint32_t before = samples().count();
+    find_hidden_backs(); // while its device is known to work
+    Film& into = film();
+    SharedSamples added;
+    try {
+        const SharedPicture picture = {pictures_, camera_, settings_, add_targets_, number_, range.first - before};
+        added = sharing.render(picture, range, before, into, sink);
+    } catch (...) {
+        forget_samples();
+        throw;
+    }
+    if (added.count == 0) return 0;
+    into.set_samples({range.first - before, range.first + added.count});
+    stats_.rays = stats_.rays + added.rays;
+    stats_.render_seconds += added.seconds;
+    if (before == 0) stats_.first_pixel_seconds = added.first_seconds;
+    return added.count;
+}
+
+void FilmRender::find_hidden_backs() {
+    if (hidden_back_share_) return;
+    const PictureView picture = pictures_.view_of(camera_, settings_); // first: it checks that there is a scene
+    hidden_back_share_ = hidden_back_share(pictures_.queue(), pictures_.scene().tracer(), picture);
+}
+
 std::optional<Image> FilmRender::denoised() {
     if (settings_.denoise == Denoise::None || samples().count() == 0) return std::nullopt;
     return steps_.apply(picture());
 }
 
 RenderStats FilmRender::stats() {
-    if (!hidden_back_share_) {
-        const PictureView picture = pictures_.view_of(camera_, settings_); // first, because it checks that there is a
-                                                                           // scene
-        hidden_back_share_ = hidden_back_share(pictures_.queue(), pictures_.scene().tracer(), picture);
-    }
+    find_hidden_backs();
     RenderStats stats = stats_;
     stats.samples = samples().count();
     stats.invalid_samples = film().invalid_samples();

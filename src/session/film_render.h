@@ -73,6 +73,8 @@ public:
     const RenderSettings& settings() const { return settings_; }
 
 private:
+    uint32_t render_shared(SharedRender& sharing, SampleRange range, Sink& sink);
+    void find_hidden_backs();
     void forget_samples();
     Film& fit_part(std::optional<Film>& film);
 

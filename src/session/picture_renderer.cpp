@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "render/camera_work.h"
 #include "session/check_integrator.h"
+#include "session/shared_render.h"
 
 namespace pertev {
 
@@ -31,6 +32,8 @@ NoisyFrame& fit_frame(const DeviceScene& scene, std::optional<NoisyFrame>& frame
     frame.reset(); // freed before the new one, so that two need not fit
     return frame.emplace(scene.queue(), width, height, splits_light);
 }
+
+Queue& PictureRenderer::film_queue() { return sharing_ != nullptr ? sharing_->film_queue() : queue(); }
 
 PictureView PictureRenderer::view_of(const Camera& camera, const RenderSettings& settings) {
     const SceneView& scene = scene_.view();

@@ -16,6 +16,8 @@
 
 namespace pertev {
 
+class SharedRender; // session/shared_render.h
+
 /// Adds targets to a new film, by Film::hold.
 using AddTargets = std::function<void(Film&)>;
 
@@ -35,6 +37,11 @@ public:
     DeviceScene& scene() { return scene_; }
     Queue& queue() { return scene_.queue(); }
     PictureView view_of(const Camera& camera, const RenderSettings& settings);
+
+    /// Lets films that are made from now on be rendered by other devices too; `sharing` outlives them.
+    void share(SharedRender& sharing) { sharing_ = &sharing; }
+    SharedRender* sharing() const { return sharing_; } // null: this device renders alone
+    Queue& film_queue();
 
     /// Returns an integrator that is ready to add `samples` samples of this picture, and that nothing stops. Its
     /// precomputed data is kept if `number`, which new_number() returned, equals that of the previous begin(). 0
@@ -61,6 +68,7 @@ private:
     MotionTrack motion_of(const Camera& camera, Vec3 centre);
 
     DeviceScene& scene_;
+    SharedRender* sharing_ = nullptr;
     FilterTable filter_;
     CentreLayers centres_;
     Buffer<MotionKey> camera_motion_; // used while the shutter is open

@@ -1,6 +1,7 @@
 #include "session/session.h"
 
 #include "session/check_integrator.h"
+#include "session/shared_render.h"
 
 namespace pertev {
 
@@ -15,6 +16,7 @@ void Session::set_scene(const PreparedScene& scene) {
     film_.restart_for_scene();
     const UseThreads use(scene_.queue().threads());
     scene_.set(scene, settings());
+    if (pictures_.sharing() != nullptr) pictures_.sharing()->change_scene(scene, kAllParts);
 }
 
 void Session::update_scene(const PreparedScene& scene, uint32_t parts) {
@@ -22,6 +24,7 @@ void Session::update_scene(const PreparedScene& scene, uint32_t parts) {
     frames_.scene_changes();
     const UseThreads use(scene_.queue().threads());
     scene_.update(scene, parts, settings());
+    if (pictures_.sharing() != nullptr) pictures_.sharing()->change_scene(scene, parts);
 }
 
 void Session::set_camera(const Camera& camera) {

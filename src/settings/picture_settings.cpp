@@ -146,7 +146,8 @@ std::vector<Setting> picture_settings() {
             Mark::NotKept),
 
         row("device", "Machine", "NAME", FIELD(machine.device),
-            "The device that renders: auto, cpu, cuda or cuda:N. The picture is the same on all.", On{kMachines},
+            "The device that renders: auto, cpu, cuda, cuda:N, or a GPU's UUID. The picture is the same on all.",
+            More{"cuda:all, or several of these with commas (cuda:0,2), render together."}, On{kMachines},
             Mark::NotKept, Mark::Common),
         row("threads", "Machine", "N", FIELD(machine.threads), "The number of CPU threads.", Range{1, 4096},
             Otherwise{"all"}, On{kMachines | kSolve}, Mark::NotKept),

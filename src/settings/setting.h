@@ -81,6 +81,7 @@ enum SettingVerbs : uint32_t {
     kBenchFrames = 2048,
     kBenchSequence = 4096,
     kBenchCameras = 8192,
+    kBenchDevices = 16384,
 };
 /// Names of verbs in the order of documents.
 inline constexpr ValueName<SettingVerbs> kVerbNames[] = {{kRender, "render"},
@@ -96,7 +97,8 @@ inline constexpr ValueName<SettingVerbs> kVerbNames[] = {{kRender, "render"},
                                                          {kBenchNoise, "bench noise"},
                                                          {kBenchFrames, "bench frames"},
                                                          {kBenchSequence, "bench sequence"},
-                                                         {kBenchCameras, "bench cameras"}};
+                                                         {kBenchCameras, "bench cameras"},
+                                                         {kBenchDevices, "bench devices"}};
 
 /// Form in which a picture's file records a setting under its name.
 enum class Recorded : uint8_t {

@@ -21,7 +21,7 @@ std::vector<Setting> frame_settings();      // settings of real-time frames
 
 inline constexpr uint32_t kLooking = kRender | kView | kBenchNoise | kBenchFrames | kBenchSequence | kBenchCameras;
 inline constexpr uint32_t kScenes = kLooking | kMeasure | kSolve;
-inline constexpr uint32_t kBenchPictures = kBench | kBenchRender;
+inline constexpr uint32_t kBenchPictures = kBench | kBenchRender | kBenchDevices;
 
 /// The field at a path in PictureOptions.
 #define PERTEV_SETTING_FIELD(place) [](PictureOptions& all) { return field_of(all.place); }

@@ -58,6 +58,8 @@ TEST_CASE("incompatible options are refused with the name of one of them") {
              {{{"shutter", "0.1"}, {"time", "1"}, {"denoise", "svgf"}}, "shutter"},
              {{{"shutter", "0.1"}, {"time", "1"}, {"integrator", "hybrid"}}, "shutter"},
              {{{"real_time", "true"}, {"frames", "0-1"}, {"spp", "4"}}, "spp", "4"},
+             {{{"device", "cpu,cpu"}, {"frames", "0-1"}, {"real_time", "true"}, {"spp", "1"}}, "device", "cpu,cpu"},
+             {{{"device", "cuda:all"}, {"denoise", "svgf"}}, "device", "cuda:all"},
              {{{"real_time", "true"}, {"frames", "0-1"}, {"integrator", "whitted"}}, "real_time"},
              {{{"frames", "3-2"}}, "frames", "3-2"},
              {{{"exposure", "bright"}}, "exposure", "bright"},

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "denoise/oidn/oidn_library.h"
 #include "session/check_integrator.h"
+#include "session/device_names.h"
 #include "session/frame_range.h"
 #include "session/opening/open_scene.h"
 #include "session/opening/picture_settings.h"
@@ -28,6 +29,15 @@ void check_solution(const std::string& file) {
     throw Error(ErrorCode::BadInput, "solution", file, "there is no such file");
 }
 
+/// Refuses several devices for what one device does alone.
+void check_devices(const PictureOptions& options, uint32_t verbs) {
+    const std::string& device = options.machine.device;
+    if (!names_several_devices(device)) return;
+    if ((verbs & kRender) == 0) refuse_several_devices(device, "this");
+    if (options.real_time) refuse_several_devices(device, "`real_time`");
+    if (options.render.denoise != Denoise::None) refuse_several_devices(device, "`denoise`");
+}
+
 } // namespace
 
 void check_options(const PictureOptions& options, uint32_t verbs) {
@@ -35,6 +45,7 @@ void check_options(const PictureOptions& options, uint32_t verbs) {
     frame_range(options);
     sample_range(options);
     row_range(options);
+    check_devices(options, verbs);
     check_real_time(options);
     if (options.reconstruction.used().denoiser == FrameDenoiser::Oidn) OidnLibrary::find("frame_denoiser");
     requested_exposure(options);

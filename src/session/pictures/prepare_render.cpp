@@ -10,6 +10,7 @@
 #include "base/stopwatch.h"
 #include "formats/read_camera_path.h"
 #include "session/check_integrator.h"
+#include "session/device_names.h"
 #include "session/machine.h"
 #include "session/opening/calibrated_camera.h"
 #include "session/opening/camera_list.h"
@@ -124,6 +125,12 @@ bool is_whole(const PictureOptions& options, const Scene& scene) {
 
 } // namespace
 
+std::string RenderSetup::device_name() const {
+    std::vector<std::string> names;
+    for (const auto& of_device : queues) names.push_back(of_device->device_name());
+    return text_of_devices(names);
+}
+
 bool adapt_setup(RenderSetup& ready, const PictureOptions& before, PictureOptions& options, uint32_t verbs,
                  Sink& sink) {
     const Ground ground = ground_of(options);
@@ -186,7 +193,7 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     apply_camera_from(options);
     std::optional<CameraPath> path;
     if (!options.camera_path.empty()) path = read_camera_path(options.camera_path);
-    StartingMachine machine(options.machine, sink);
+    StartingMachine machine(options.machine, sink, StartingMachine::Takes::AllNamed);
     const UseThreads threads(machine.threads());
     std::optional<TracerChoice> tracers; // a tracer that does not fit the device is refused before the scene is read
     if (!options.tracer.are_empty()) tracers = tracer_choice(options.tracer, machine.is_cuda());
@@ -218,7 +225,8 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     ready->moving.emplace(std::move(scene), ready->sequence.time_of(ready->sequence.first), prepare, sink,
                           ready->sequence.shutter);
     sink.check();
-    ready->queue = machine.take();
+    for (auto& queue : machine.take_all()) ready->queues.push_back(std::move(queue));
+    ready->queue = ready->queues.front();
     if (is_solved(settings.integrator)) {
         if (ready->moving->is_animated() && !options.frames.empty()) {
             throw Error(ErrorCode::BadInput, "frames", "",
@@ -291,7 +299,7 @@ PictureRecord picture_record(const PictureOptions& options, RenderSetup& ready, 
     PictureRecord record = {.scene = source_of(options.scene, ready.scene()),
                             .camera = {},
                             .settings = ready.settings,
-                            .device = ready.queue->device_name(),
+                            .device = ready.device_name(),
                             .frame = {},
                             .display = {}};
     record.scene.hash = ready.hash;

@@ -34,10 +34,12 @@ struct RenderSetup {
     std::string hash;      // scene_hash() when it was read, if the setup is kept; empty: records take it themselves
     double load_s = 0;     // seconds of reading
     std::size_t bytes = 0; // that rendering takes on the device, as predicted
-    std::shared_ptr<Queue> queue; // whoever keeps arrays on the device shares it
+    std::shared_ptr<Queue> queue;               // whoever keeps arrays on the device shares it
+    std::vector<std::shared_ptr<Queue>> queues; // the devices that render a picture together; the first is `queue`
 
     const Scene& scene() const { return moving->scene(); }
     const PreparedScene& prepared() const { return moving->prepared(); }
+    std::string device_name() const; // with their number if there are several
 };
 
 /// The caller makes or changes a scene in memory. Each function may be empty.

@@ -1,0 +1,179 @@
+// pertev bench devices: times one picture of the record by one device, two, and so on to all that are named, and
+// expects from these times what more would take.
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "apps/cli/bench_parts.h"
+#include "apps/cli/flag_checks.h"
+#include "apps/cli/interrupt.h"
+#include "base/stopwatch.h"
+#include "image/picture_hash.h"
+#include "lab/record_scenes.h"
+#include "lab/stored_figures.h"
+#include "session/device_names.h"
+#include "session/devices/render_on_devices.h"
+#include "session/machine.h"
+#include "settings/tracer_options.h"
+
+namespace pertev {
+namespace {
+
+constexpr uint32_t kLongSamples = 8192; // half a minute on one GPU for the default job
+constexpr uint32_t kShortSamples = 256;
+
+struct DevicesFlags {
+    PictureFlags picture;
+    std::string job = "S8";
+    uint32_t runs = 5;
+};
+
+/// Times of some devices for a picture.
+struct TimesTaken {
+    RunTimes times;
+    double sum_s = 0;    // median seconds after the last sample
+    double upload_s = 0; // time of the slowest device
+    std::string hash;
+};
+
+/// The picture to be timed.
+struct PictureJob {
+    const PreparedScene& prepared;
+    const Camera& camera;
+    const RenderSettings& settings;
+};
+
+/// Times a picture by the first `count` devices. One alone renders as it does without others.
+TimesTaken time_devices(std::span<const std::shared_ptr<Queue>> queues, const PictureJob& job, uint32_t samples,
+                        uint32_t runs) {
+    std::optional<RenderOnDevices> together;
+    if (queues.size() > 1) together.emplace(queues, job.prepared, job.settings);
+    Session session(*queues.front(), job.prepared, job.camera, job.settings);
+    TimesTaken taken;
+    if (together) {
+        taken.upload_s = together->wait_for_scenes();
+        session.pictures().share(*together);
+    }
+    std::vector<double> seconds, sums;
+    for (uint32_t run = 0; run <= runs; ++run) { // the first one takes memory and warms up
+        render_again(session, run == 0 ? std::min(samples, 64u) : samples);
+        if (run == 0) continue;
+        seconds.push_back(session.stats().render_seconds);
+        if (together) sums.push_back(together->sum_seconds());
+    }
+    taken.times = summarize_runs(seconds);
+    taken.upload_s = std::max(taken.upload_s, session.stats().upload_seconds);
+    if (together) taken.sum_s = summarize_runs(sums).median;
+    taken.hash = picture_hash(session.picture()).hex();
+    return taken;
+}
+
+std::string names_of_some(std::span<const std::shared_ptr<Queue>> queues) {
+    std::vector<std::string> names;
+    for (const auto& queue : queues) names.push_back(queue->device_name());
+    return text_of_devices(names);
+}
+
+/// Returns what `count` devices would take if each lost as much as those measured do, and if each film took its turn.
+double expected_seconds(std::size_t count, const TimesTaken& alone, const TimesTaken& most, std::size_t of_most) {
+    const double all = static_cast<double>(of_most), n = static_cast<double>(count);
+    const double loss = (most.times.median - most.sum_s) * all / alone.times.median;
+    return alone.times.median * loss / n + most.sum_s * n / all;
+}
+
+int bench_devices(DevicesFlags& flags) {
+    Reporter reporter(flags.picture.report);
+    flags.picture.settings.read(flags.picture, reporter);
+    const RecordJob& record = *find_named(the_record().jobs, flags.job);
+    const std::string& file = flags.picture.scenes.front();
+    RenderSettings settings = job_settings(record);
+    if (const auto& size = flags.picture.size) settings.width = size->width, settings.height = size->height;
+    settings.samples = flags.picture.is_given("spp") ? flags.picture.render.samples : kLongSamples;
+    check_bench_scene(file);
+    listen_for_interrupt();
+    const Stopwatch watch;
+    std::vector<std::shared_ptr<Queue>> queues;
+    for (auto& queue : open_queues(flags.picture.machine, reporter)) queues.push_back(std::move(queue));
+    const double start_s = watch.seconds();
+    const UseThreads threads(queues.front()->threads());
+    settings.tracers = tracer_choice(flags.picture.tracer, queues.front()->is_cuda());
+    BenchReport report(reporter, flags.picture.report, *queues.front(), "One picture by several devices");
+    const Scene scene = make_job_scene(record, file, reporter);
+    throw_if_interrupted();
+    const PreparedScene prepared = prepare_scene(scene, trees_for(settings, *queues.front()), reporter);
+    const Camera camera = job_camera(record, scene, aspect_of(settings.width, settings.height), reporter);
+    reporter.report_messages();
+
+    std::vector<uint32_t> jobs = {settings.samples};
+    if (settings.samples > kShortSamples) jobs.push_back(kShortSamples);
+    for (const uint32_t samples : jobs) {
+        settings.samples = samples;
+        TimesTaken alone, most;
+        for (std::size_t count = 1; count <= queues.size(); ++count) {
+            reporter.set_work(fmt::format("measuring {} samples by {} of {} devices", samples, count, queues.size()));
+            const std::span some = std::span(queues).first(count);
+            most = time_devices(some, {prepared, camera, settings}, samples, flags.runs);
+            if (count == 1) alone = most;
+            if (most.hash != alone.hash) {
+                throw Error(ErrorCode::DeviceFault,
+                            fmt::format("the picture of {} is {} and not {}, that of one device", names_of_some(some),
+                                        most.hash, alone.hash));
+            }
+            const double ratio = alone.times.median / most.times.median;
+            Fields fields = {{"job", "job", record.name},
+                             {"devices", "devices", count},
+                             {"device", "device", names_of_some(some)},
+                             {"width", "width", settings.width},
+                             {"height", "height", settings.height},
+                             {"samples", "samples", samples}};
+            fields = fields + time_fields(most.times);
+            fields.push_back({"ratio_to_one", "times one", ratio, "", "{:.3f}"});
+            fields.push_back({"share_of_ideal", "of ideal", ratio / static_cast<double>(count), "", "{:.3f}"});
+            fields.push_back({"sum_seconds", "films", most.sum_s, "s", "{:.4f}"});
+            fields.push_back({"upload_seconds", "upload", most.upload_s, "s", "{:.3f}"});
+            fields.push_back({"start_seconds", "start of all", start_s, "s", "{:.3f}"});
+            fields.push_back({"hash", "picture", most.hash});
+            report.add("devices", fields);
+        }
+        for (const std::size_t count : {4u, 8u}) {
+            if (count <= queues.size() || queues.size() < 2) continue;
+            const double seconds = expected_seconds(count, alone, most, queues.size());
+            report.add("devices_expected", {{"job", "job", record.name},
+                                            {"devices", "devices, not measured", count},
+                                            {"samples", "samples", samples},
+                                            {"expected_seconds", "expected", seconds, "s", "{:.4f}"},
+                                            {"ratio_to_one", "times one", alone.times.median / seconds, "", "{:.3f}"}});
+        }
+    }
+    report.write();
+    return 0;
+}
+
+} // namespace
+
+void add_bench_devices_command(CLI::App& bench, int& status) {
+    const auto flags = std::make_shared<DevicesFlags>();
+    CLI::App& verb = add_bench_verb(bench, "devices", "Time a picture by one device and by several together",
+                                    [flags, &status] { status = bench_devices(*flags); });
+    flags->picture.tracer.default_build = TreeBuild::Best; // only the render is timed
+    std::vector<std::string> names;
+    for (const RecordJob& job : the_record().jobs) names.emplace_back(job.name);
+    verb.add_option("--job", flags->job, "the job of `bench render`")
+        ->type_name("NAME")
+        ->check(one_of(std::move(names)))
+        ->capture_default_str();
+    verb.add_option("--scene", flags->picture.scenes, "the job's scene, as of `bench render`")
+        ->type_name("FILE")
+        ->required()
+        ->expected(1);
+    add_whole(verb, "--runs", flags->runs, "timed runs of each number of devices", 1, 1000)->capture_default_str();
+    add_picture_flags(verb, kBenchDevices, flags->picture, "the job's", "8192, and 256");
+}
+
+} // namespace pertev

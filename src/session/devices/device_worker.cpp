@@ -1,0 +1,196 @@
+#include "session/devices/device_worker.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/stopwatch.h"
+#include "device/device_identity.h"
+
+namespace pertev {
+namespace {
+
+/// Stops a CPU in a slice whose samples are dropped.
+class DropSink final : public Sink {
+public:
+    explicit DropSink(const SharedRun& run) : run_(run) {}
+    bool should_stop() override { return run_.is_dropped(); }
+
+private:
+    const SharedRun& run_;
+};
+
+bool film_is_like(const Film& film, const Film& other) {
+    return std::ranges::equal(film.targets(), other.targets(),
+                              [](const auto& a, const auto& b) { return a->is_like(*b); });
+}
+
+/// Lets the calling thread run near its GPU, if it has one.
+void stay_near(const Queue& queue) {
+    if (!queue.is_cuda()) return;
+    const std::vector<DeviceIdentity> identities = device_identities();
+    const auto index = static_cast<std::size_t>(queue.device_index());
+    if (index < identities.size()) stay_on_processors(processors_near(identities[index].bus));
+}
+
+/// Copies a little to the host, because the first large copy of a queue pins memory, for which a GPU may pause.
+void copy_once(const Film& film) {
+    const FilmTarget& target = *film.targets().front();
+    constexpr std::size_t kEnough = std::size_t(2) << 20;
+    std::vector<std::byte> bytes(std::min(target.byte_count(), kEnough / target.stride() * target.stride()));
+    target.read(0, bytes);
+}
+
+} // namespace
+
+DeviceWorker::DeviceWorker(std::size_t number, Queue& queue, const PreparedScene& scene, const RenderSettings& settings)
+    : number_(number), queue_(queue) {
+    own_scene_.emplace(queue);
+    own_pictures_.emplace(*own_scene_);
+    uploaded_ = std::async(std::launch::async, [this, &scene, settings] {
+        const UseThreads use(queue_.threads());
+        own_scene_->set(scene, settings);
+    });
+}
+
+std::string DeviceWorker::name() const {
+    return queue_.is_cuda() ? fmt::format("cuda:{}", queue_.device_index()) : "cpu";
+}
+
+void DeviceWorker::wait_for_scene() {
+    if (uploaded_.valid()) uploaded_.get();
+}
+
+void DeviceWorker::change_scene(const PreparedScene& scene, uint32_t parts) {
+    changed_scene_ = &scene;
+    changed_parts_ |= parts;
+}
+
+/// Makes the films that fit the picture, or clears those that do.
+void DeviceWorker::make_films(const SharedPicture& picture, const Film& into) {
+    if (!film_queue_) {
+        film_queue_.emplace(queue_.is_cuda() ? Queue::make_cuda(queue_.device_index(), queue_.threads())
+                                             : Queue::make_cpu(queue_.threads()));
+    }
+    for (std::optional<Film>& film : films_) {
+        const bool is_first = &film == &films_[0];
+        if (film && !film_is_like(*film, into)) film.reset();
+        try {
+            Film& made = fit_film(*film_queue_, film, picture.settings, picture.add_targets);
+            made.set_window(into.view().window);
+            made.clear();
+            if (queue_.is_cuda() && is_first) copy_once(made);
+        } catch (const Error& error) {
+            film.reset();
+            if (is_first || error.code() != ErrorCode::OutOfMemory) throw;
+        }
+    }
+    if (landing_ && !film_is_like(*landing_, into)) landing_.reset();
+    if (!own_scene_ && films_[1]) {
+        try {
+            fit_film(*film_queue_, landing_, picture.settings, picture.add_targets);
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::OutOfMemory) throw;
+        }
+    }
+    film_queue_->wait(); // the other queue of the device does not wait for this one
+    held_ = {.device = number_, .film = &*films_[0], .slices = {}, .rays = {}};
+}
+
+void DeviceWorker::clear(Film& film) {
+    film.clear();
+    film_queue_->wait(); // before the other queue adds samples
+}
+
+bool DeviceWorker::add(Film& to, const Film& other) {
+    if (!landing_) return false;
+    try {
+        for (std::size_t i = 0; i < to.targets().size(); ++i) landing_->targets()[i]->copy(*other.targets()[i]);
+        for (std::size_t i = 0; i < to.targets().size(); ++i) to.targets()[i]->add(*landing_->targets()[i]);
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::DeviceFault) throw;
+        return false;
+    }
+    return true;
+}
+
+void DeviceWorker::render(SharedRun& run, const SharedPicture& picture, uint32_t count, const Film& into,
+                          const DeviceHooks& hooks) {
+    held_ = {.device = number_, .film = nullptr, .slices = {}, .rays = {}};
+    try {
+        stay_near(queue_);
+        const UseThreads use(queue_.threads());
+        wait_for_scene();
+        if (hooks.before_samples) hooks.before_samples(number_);
+        PictureRenderer& pictures = own_pictures_ ? *own_pictures_ : picture.pictures;
+        const uint32_t parts = std::exchange(changed_parts_, 0);
+        if (own_scene_ && parts == kAllParts) own_scene_->set(*changed_scene_, picture.settings);
+        if (own_scene_ && parts != kAllParts && parts != 0) {
+            own_scene_->update(*changed_scene_, parts, picture.settings);
+        }
+        if (own_scene_) own_scene_->set_tracer(picture.settings);
+        make_films(picture, into);
+        Integrator& integrator = pictures.begin(picture.camera, picture.settings, count, picture.number);
+        run.start_clock();
+        DropSink drops(run);
+        integrator.stop_with(&drops);
+        const auto goes_on = [&](double share) { return run.goes_on_making(number_, share); };
+        if (integrator.prepare(goes_on)) take_slices(run, picture, pictures, integrator, hooks);
+        integrator.stop_with(nullptr);
+    } catch (const Error& error) {
+        const bool is_its_own = error.code() == ErrorCode::DeviceFault || error.code() == ErrorCode::OutOfMemory;
+        if (is_its_own) {
+            run.lose(held_, error);
+        } else {
+            run.fail(std::current_exception());
+        }
+    } catch (...) {
+        run.fail(std::current_exception());
+    }
+    run.leave();
+}
+
+void DeviceWorker::take_slices(SharedRun& run, const SharedPicture& picture, PictureRenderer& pictures,
+                               Integrator& integrator, const DeviceHooks& hooks) {
+    double rate = 0;                          // samples a second
+    const RayCounts made = integrator.rays(); // by the precomputation, which counts once for all devices
+    Stopwatch since_fold;
+    const auto hand_over = [&] {
+        Film& next = other_film();
+        run.hand_over(std::exchange(held_, {.device = number_, .film = &next, .slices = {}, .rays = {}}), &next);
+        since_fold.restart();
+    };
+    for (;;) {
+        const std::optional<SampleRange> slice = run.take(number_, rate);
+        if (!slice) {
+            if (run.is_dropped() || run.is_lost(number_)) break;
+            if (!held_.slices.empty()) {
+                hand_over();
+            } else if (!run.wait_for_work(number_)) {
+                break;
+            }
+            continue;
+        }
+        held_.slices.push_back(*slice); // at once, so that it is known if it is lost
+        const Stopwatch watch;
+        const bool is_first = slice->first == picture.first;
+        const RayCounts before = integrator.rays();
+        if (is_first) pictures.find_centres(picture.camera, picture.settings, *held_.film);
+        integrator.render(slice->first, slice->count(), held_.film->view());
+        if (hooks.after_slice) hooks.after_slice(number_, *slice);
+        if (run.is_dropped()) break;
+        const double now = slice->count() / std::max(watch.seconds(), 1e-9);
+        rate = rate > 0 ? 0.5 * (rate + now) : now;
+        held_.rays = held_.rays + (integrator.rays() - before) + (is_first ? made : RayCounts());
+        held_.done += slice->count();
+        run.add_done(slice->count());
+        if (since_fold.seconds() >= hooks.fold_s) hand_over();
+    }
+    // A device whose film could not be read is lost with what it holds.
+    if (run.is_lost(number_)) throw Error(ErrorCode::DeviceFault, "its film cannot be read");
+}
+
+} // namespace pertev

@@ -1,0 +1,79 @@
+#pragma once
+
+// One of the devices that render a picture together: its scene, integrator and films. It has a queue of its own for its
+// films, so that a film is copied to the host while the next one is being rendered.
+
+#include <functional>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "session/devices/shared_run.h"
+#include "session/shared_render.h"
+
+namespace pertev {
+
+/// Seconds after which a device hands its film over, and thus what a failing device costs at most. A film is added
+/// beside the rendering and delays none of it.
+inline constexpr double kFoldSeconds = 5;
+
+/// Called by the device's thread, for tests, which throw there what a device would.
+struct DeviceHooks {
+    std::function<void(std::size_t device)> before_samples;
+    std::function<void(std::size_t device, SampleRange slice)> after_slice;
+    double fold_s = kFoldSeconds;
+};
+
+class DeviceWorker {
+public:
+    /// Makes the worker of the caller's device, which has the scene; `queue` outlives it.
+    DeviceWorker(std::size_t number, Queue& queue) : number_(number), queue_(queue) {}
+    /// Makes the worker of another device and starts to upload the scene to it, which must not change until
+    /// wait_for_scene() has returned.
+    DeviceWorker(std::size_t number, Queue& queue, const PreparedScene& scene, const RenderSettings& settings);
+
+    /// Waits until the scene is on the device. Throws as DeviceScene::set.
+    void wait_for_scene();
+    /// Takes parts of the scene as they are at the next render(). The caller's device has them.
+    void change_scene(const PreparedScene& scene, uint32_t parts);
+    /// Seconds of uploading; 0 on the caller's device.
+    double upload_seconds() const { return own_scene_ ? own_scene_->upload_seconds() : 0; }
+    std::string name() const; // cuda:1, for people
+    /// Its number in a run.
+    std::size_t number() const { return number_; }
+    void set_number(std::size_t number) { number_ = number; }
+    // The caller's thread calls these for films that were handed over.
+
+    /// Clears a film of the device. Throws Error(DeviceFault).
+    void clear(Film& film);
+    /// Adds `other`, a film of another device, to a film of this one, and returns true; or returns false if one of the
+    /// devices has failed, or if this one has no memory for it.
+    bool add(Film& to, const Film& other);
+    Queue& queue() const { return queue_; }
+
+    /// Takes slices of the run until it ends; a thread's function. `count` is the number of samples of all devices, and
+    /// `into` the film to which those of the devices are added, which are like it.
+    void render(SharedRun& run, const SharedPicture& picture, uint32_t count, const Film& into,
+                const DeviceHooks& hooks);
+
+private:
+    void take_slices(SharedRun& run, const SharedPicture& picture, PictureRenderer& pictures, Integrator& integrator,
+                     const DeviceHooks& hooks);
+    void make_films(const SharedPicture& picture, const Film& into);
+    Film& other_film() { return films_[1] && &*films_[0] == held_.film ? *films_[1] : *films_[0]; }
+
+    std::size_t number_;
+    Queue& queue_;
+    std::optional<DeviceScene> own_scene_;
+    std::optional<PictureRenderer> own_pictures_;
+    std::future<void> uploaded_;
+    const PreparedScene* changed_scene_ = nullptr; // with the parts that are to be uploaded
+    uint32_t changed_parts_ = 0;
+    std::optional<Queue> film_queue_;
+    std::optional<Film> films_[2]; // one is filled while the other is added to the sum; one alone if memory is short
+    std::optional<Film> landing_;  // a film of another device, before it is added; on the caller's device alone
+    FilledFilm held_;              // the contents of the film that is being filled
+};
+
+} // namespace pertev

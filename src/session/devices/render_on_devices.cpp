@@ -1,0 +1,168 @@
+#include "session/devices/render_on_devices.h"
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "device/peer_copy.h"
+#include "session/render_progress.h"
+
+namespace pertev {
+namespace {
+
+constexpr double kProgressSeconds = 0.1; // between two reports
+
+} // namespace
+
+RenderOnDevices::RenderOnDevices(std::span<const std::shared_ptr<Queue>> queues, const PreparedScene& scene,
+                                 const RenderSettings& settings, DeviceHooks hooks)
+    : film_queue_(Queue::make_cpu()), hooks_(std::move(hooks)) {
+    workers_.push_back(std::make_unique<DeviceWorker>(0, *queues.front()));
+    for (std::size_t i = 1; i < queues.size(); ++i) {
+        workers_.push_back(std::make_unique<DeviceWorker>(i, *queues[i], scene, settings));
+    }
+}
+
+void RenderOnDevices::change_scene(const PreparedScene& scene, uint32_t parts) {
+    for (const auto& worker : workers_) worker->change_scene(scene, parts);
+}
+
+double RenderOnDevices::wait_for_scenes() {
+    double seconds = 0;
+    for (const auto& worker : workers_) {
+        worker->wait_for_scene();
+        seconds = std::max(seconds, worker->upload_seconds());
+    }
+    return seconds;
+}
+
+SharedSamples RenderOnDevices::render(const SharedPicture& picture, SampleRange range, uint32_t before, Film& into,
+                                      Sink& sink) {
+    PERTEV_CHECK(!workers_.empty());
+    SharedRun run(range, picture.settings, workers_.size());
+    std::vector<std::thread> threads;
+    try {
+        say_paths(sink);
+        for (std::size_t i = 0; i < workers_.size(); ++i) {
+            workers_[i]->set_number(i);
+            threads.emplace_back([&, i] { workers_[i]->render(run, picture, range.count(), into, hooks_); });
+        }
+        drive(run, picture, range, before, into, sink);
+    } catch (...) {
+        run.fail(std::current_exception());
+    }
+    for (std::thread& thread : threads) thread.join();
+    const uint32_t count = run.result();
+    const RunState state = run.state();
+    std::erase_if(workers_, [&](const auto& worker) { return run.is_lost(worker->number()); });
+    sum_seconds_ = state.seconds - run.last_slice_seconds();
+    return {count, state.rays, state.seconds, run.first_seconds()};
+}
+
+/// Opens the paths on which films are copied to the caller's device, and names those of GPUs.
+void RenderOnDevices::say_paths(Sink& sink) {
+    if (std::exchange(has_said_paths_, true)) return;
+    Queue& to = workers_.front()->queue();
+    std::string paths;
+    for (const auto& worker : workers_) {
+        if (worker == workers_.front()) continue;
+        allow_copies(to, worker->queue());
+        if (!worker->queue().is_cuda()) continue;
+        paths += fmt::format("{} {} {}", paths.empty() ? "" : ",", worker->name(),
+                             name_of_path(copy_path(worker->queue(), to)));
+    }
+    if (!paths.empty()) sink.note(fmt::format("films are copied to {} from{}", workers_.front()->name(), paths));
+}
+
+/// Adds films and reports until all devices have left.
+void RenderOnDevices::drive(SharedRun& run, const SharedPicture& picture, SampleRange range, uint32_t before,
+                            Film& into, Sink& sink) {
+    landing_.resize(into.targets().size());
+    for (std::size_t i = 0; i < landing_.size(); ++i) landing_[i].resize(into.targets()[i]->byte_count());
+    const bool on_cpu = std::ranges::none_of(workers_, [](const auto& worker) { return worker->queue().is_cuda(); });
+    const uint32_t all = before + range.count();
+    uint32_t most_done = 0; // a lost device does not take the progress back
+    const auto report = [&] {
+        const RunState state = run.state();
+        most_done = std::max(most_done, state.done);
+        if (state.made_share < 1 && most_done == 0) {
+            return sink.goes_on(made_progress(before, all, state.made_share, state.seconds, state.rays));
+        }
+        return sink.goes_on(
+            progress_of(picture.settings, before + most_done, all, state.seconds, state.made_seconds, state.rays));
+    };
+    std::vector<FilledFilm> last;
+    Stopwatch since_report;
+    while (!run.have_all_left()) {
+        if (std::optional<FilledFilm> film = run.wait_for_film(kProgressSeconds)) last.push_back(std::move(*film));
+        // Films wait for each other only if none of them may be needed for lost samples.
+        if (!last.empty() && (!run.is_ending() || run.is_complete_with(last)))
+            fold_last(run, std::exchange(last, {}), into);
+        report_losses(run, sink);
+        if (since_report.seconds() < kProgressSeconds) continue;
+        since_report.restart();
+        if (!report()) run.stop(on_cpu);
+    }
+    if (!run.is_dropped()) report();
+}
+
+/// Adds a device's film to the sum. It is on the host before the first number is added, so that a device that fails
+/// meanwhile leaves no trace.
+void RenderOnDevices::fold(SharedRun& run, const FilledFilm& film, Film& into) {
+    try {
+        for (std::size_t i = 0; i < landing_.size(); ++i) film.film->targets()[i]->read(0, landing_[i]);
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::DeviceFault) throw;
+        run.lose(film, error);
+        return run.release(film);
+    }
+    for (std::size_t i = 0; i < landing_.size(); ++i) into.targets()[i]->add_bytes(0, landing_[i]);
+    run.add_to_sum(film);
+    release(run, film);
+}
+
+/// Adds films of several devices to the sum, by way of the caller's device if one of them is its film.
+void RenderOnDevices::fold_last(SharedRun& run, std::vector<FilledFilm> films, Film& into) {
+    const auto first = std::ranges::find(films, workers_.front()->number(), &FilledFilm::device);
+    if (first != films.end()) {
+        FilledFilm sum = *first;
+        std::erase_if(films, [&](const FilledFilm& film) {
+            if (film.film == sum.film) return true;
+            if (!workers_.front()->add(*sum.film, *film.film)) return false;
+            sum.slices.insert(sum.slices.end(), film.slices.begin(), film.slices.end());
+            sum.done += film.done;
+            sum.rays = sum.rays + film.rays;
+            release(run, film);
+            return true;
+        });
+        fold(run, sum, into);
+    }
+    for (const FilledFilm& film : films) fold(run, film, into);
+}
+
+/// Gives a film whose samples are elsewhere back to its device.
+void RenderOnDevices::release(SharedRun& run, const FilledFilm& film) {
+    try {
+        workers_[film.device]->clear(*film.film);
+    } catch (const Error& error) {
+        run.lose({.device = film.device, .film = nullptr, .slices = {}, .rays = {}}, error);
+    }
+    run.release(film);
+}
+
+void RenderOnDevices::report_losses(SharedRun& run, Sink& sink) {
+    for (const auto& [number, error] : run.take_losses()) {
+        const std::string name = workers_[number]->name();
+        if (error.code() == ErrorCode::OutOfMemory) {
+            sink.warn({"device", name, fmt::format("has too little memory and is left out: {}", error.what())});
+        } else {
+            sink.warn(
+                {"device", name, fmt::format("failed, and the others render its samples again: {}", error.what())});
+        }
+    }
+}
+
+} // namespace pertev
