@@ -39,13 +39,13 @@ bool SharedRun::goes_on_making(std::size_t device, double share) {
     made_shares_[device] = share;
     made_seconds_ = clock_->seconds();
     const bool is_over = time_limit_s_ > 0 && made_seconds_ >= time_limit_s_;
-    return !is_over && !is_dropped_ && !failure_ && !slices_.is_empty();
+    return !is_over && !is_dropped_ && !slices_.is_empty();
 }
 
 std::optional<SampleRange> SharedRun::take(std::size_t device, double rate) {
     const std::lock_guard lock(mutex_);
     made_shares_[device] = 1;
-    if (is_dropped_ || failure_ || is_lost_[device]) return std::nullopt;
+    if (is_dropped_ || is_lost_[device]) return std::nullopt;
     double most_s = std::numeric_limits<double>::infinity();
     if (time_limit_s_ > 0) {
         const double left = time_limit_s_ - clock_->seconds();
@@ -70,12 +70,12 @@ void SharedRun::hand_over(FilledFilm film, const Film* next) {
     busy_.push_back(film.film);
     full_.push_back(std::move(film));
     changed_.notify_all();
-    changed_.wait(lock, [&] { return !is_busy(next) || is_dropped_ || failure_ || is_lost_[device]; });
+    changed_.wait(lock, [&] { return !is_busy(next) || is_dropped_ || is_lost_[device]; });
 }
 
 bool SharedRun::wait_for_work(std::size_t device) {
     std::unique_lock lock(mutex_);
-    const auto ends = [&] { return is_dropped_ || failure_ || is_lost_[device] || is_finished(); };
+    const auto ends = [&] { return is_dropped_ || is_lost_[device] || is_finished(); };
     changed_.wait(lock, [&] { return ends() || !slices_.is_empty(); });
     return !ends();
 }
@@ -94,6 +94,7 @@ void SharedRun::lose(const FilledFilm& unsaved, const Error& why) {
 void SharedRun::fail(std::exception_ptr why) {
     const std::lock_guard lock(mutex_);
     if (!failure_) failure_ = std::move(why);
+    is_dropped_ = true;
     changed_.notify_all();
 }
 
@@ -106,11 +107,6 @@ void SharedRun::leave() {
 bool SharedRun::is_lost(std::size_t device) const {
     const std::lock_guard lock(mutex_);
     return is_lost_[device];
-}
-
-bool SharedRun::is_dropped() const {
-    const std::lock_guard lock(mutex_);
-    return is_dropped_ || failure_ != nullptr;
 }
 
 std::optional<FilledFilm> SharedRun::wait_for_film(double most_s) {

@@ -4,6 +4,7 @@
 // A device takes slices into a film of its own and hands that over now and then; the caller adds it to the sum. Samples
 // in films that were not yet added are lost with their device, and the others render them again.
 
+#include <atomic>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
@@ -60,8 +61,8 @@ public:
     /// Ends a device's part.
     void leave();
     bool is_lost(std::size_t device) const;
-    /// Returns whether everything that was rendered is dropped.
-    bool is_dropped() const;
+    /// Returns whether everything that was rendered is dropped. It is cheap.
+    bool is_dropped() const { return is_dropped_; }
 
     // The caller calls these.
 
@@ -108,7 +109,7 @@ private:
     uint32_t done_ = 0, in_sum_ = 0;
     RayCounts rays_;
     double first_seconds_ = 0, last_slice_seconds_ = 0;
-    bool is_dropped_ = false;
+    std::atomic<bool> is_dropped_ = false; // also if the run failed
 };
 
 } // namespace pertev
