@@ -26,7 +26,9 @@ public:
     bool next(BatchArrays& arrays, Sink& sink = nobody());
     bool next(BatchArrays& arrays, Sink&& sink) { return next(arrays, sink); }
 
-    /// Number of pictures of the chunks so far.
+    /// Lets the next chunk begin with this picture of the batch.
+    void go_to(uint32_t picture) { done_ = picture; }
+    /// Number of the first picture of the next chunk.
     uint32_t done() const { return done_; }
     const RayCounts& rays() const { return rays_; }
     uint64_t invalid_samples() const { return invalid_samples_; }

@@ -69,6 +69,19 @@ void DeviceWorker::change_scene(const PreparedScene& scene, uint32_t parts) {
     changed_parts_ |= parts;
 }
 
+PictureRenderer& DeviceWorker::pictures_of(PictureRenderer& of_caller, const RenderSettings& settings) {
+    wait_for_scene();
+    const uint32_t parts = std::exchange(changed_parts_, 0);
+    if (!own_scene_) return of_caller;
+    if (parts == kAllParts) {
+        own_scene_->set(*changed_scene_, settings);
+    } else if (parts != 0) {
+        own_scene_->update(*changed_scene_, parts, settings);
+    }
+    own_scene_->set_tracer(settings);
+    return *own_pictures_;
+}
+
 /// Makes the films that fit the picture, or clears those that do.
 void DeviceWorker::make_films(const SharedPicture& picture, const Film& into) {
     if (!film_queue_) {
@@ -123,15 +136,8 @@ void DeviceWorker::render(SharedRun& run, const SharedPicture& picture, uint32_t
     try {
         stay_near(queue_);
         const UseThreads use(queue_.threads());
-        wait_for_scene();
+        PictureRenderer& pictures = pictures_of(picture.pictures, picture.settings);
         if (hooks.before_samples) hooks.before_samples(number_);
-        PictureRenderer& pictures = own_pictures_ ? *own_pictures_ : picture.pictures;
-        const uint32_t parts = std::exchange(changed_parts_, 0);
-        if (own_scene_ && parts == kAllParts) own_scene_->set(*changed_scene_, picture.settings);
-        if (own_scene_ && parts != kAllParts && parts != 0) {
-            own_scene_->update(*changed_scene_, parts, picture.settings);
-        }
-        if (own_scene_) own_scene_->set_tracer(picture.settings);
         make_films(picture, into);
         Integrator& integrator = pictures.begin(picture.camera, picture.settings, count, picture.number);
         run.start_clock();

@@ -37,6 +37,9 @@ public:
     void wait_for_scene();
     /// Takes parts of the scene as they are at the next render(). The caller's device has them.
     void change_scene(const PreparedScene& scene, uint32_t parts);
+    /// Returns what renders pictures of these settings on the device, once its scene is as it should be; `of_caller` on
+    /// the caller's device. Throws as wait_for_scene().
+    PictureRenderer& pictures_of(PictureRenderer& of_caller, const RenderSettings& settings);
     /// Seconds of uploading; 0 on the caller's device.
     double upload_seconds() const { return own_scene_ ? own_scene_->upload_seconds() : 0; }
     std::string name() const; // cuda:1, for people

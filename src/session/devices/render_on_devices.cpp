@@ -30,6 +30,12 @@ void RenderOnDevices::change_scene(const PreparedScene& scene, uint32_t parts) {
     for (const auto& worker : workers_) worker->change_scene(scene, parts);
 }
 
+std::vector<DeviceWorker*> RenderOnDevices::workers() const {
+    std::vector<DeviceWorker*> all;
+    for (const auto& worker : workers_) all.push_back(worker.get());
+    return all;
+}
+
 double RenderOnDevices::wait_for_scenes() {
     double seconds = 0;
     for (const auto& worker : workers_) {

@@ -29,6 +29,9 @@ public:
     SharedSamples render(const SharedPicture& picture, SampleRange range, uint32_t before, Film& into,
                          Sink& sink) override;
 
+    /// The devices that have not failed, of which the first is the caller's unless that has.
+    std::vector<DeviceWorker*> workers() const;
+    const DeviceHooks& hooks() const { return hooks_; }
     /// Waits until the scene is on all devices that are not lost. Returns the seconds of the slowest upload.
     double wait_for_scenes();
     /// Seconds of the last render() after its last sample, in which the last films were added.

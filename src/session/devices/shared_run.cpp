@@ -76,7 +76,11 @@ void SharedRun::hand_over(FilledFilm film, const Film* next) {
 bool SharedRun::wait_for_work(std::size_t device) {
     std::unique_lock lock(mutex_);
     const auto ends = [&] { return is_dropped_ || is_lost_[device] || is_finished(); };
+    ++waiting_;
+    // Somebody must be at work, or nothing would ever change.
+    PERTEV_CHECK(ends() || !slices_.is_empty() || waiting_ + left_ < is_lost_.size() || !busy_.empty());
     changed_.wait(lock, [&] { return ends() || !slices_.is_empty(); });
+    --waiting_;
     return !ends();
 }
 

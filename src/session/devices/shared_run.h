@@ -105,7 +105,7 @@ private:
     std::vector<std::pair<std::size_t, Error>> losses_;
     std::optional<Error> first_loss_;
     std::exception_ptr failure_;
-    std::size_t left_ = 0; // devices that have left
+    std::size_t left_ = 0, waiting_ = 0; // devices that have left, and that wait for work
     uint32_t done_ = 0, in_sum_ = 0;
     RayCounts rays_;
     double first_seconds_ = 0, last_slice_seconds_ = 0;

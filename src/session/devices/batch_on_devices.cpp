@@ -1,0 +1,169 @@
+#include "session/devices/batch_on_devices.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "base/error.h"
+#include "device/peer_copy.h"
+
+namespace pertev {
+namespace {
+
+constexpr uint32_t kChunksOfDevice = 4; // so that the last one is not waited for long
+
+/// The chunks of a batch that are still to be rendered, and what became of the others.
+class ChunkRun final : public Sink {
+public:
+    ChunkRun(uint32_t pictures, uint32_t chunk) : pictures_(pictures), chunk_(chunk) {}
+
+    /// Returns the first picture of a chunk; nothing if none is left or the run stops.
+    std::optional<uint32_t> take() {
+        const std::lock_guard lock(mutex_);
+        if (stops_) return std::nullopt;
+        if (!lost_.empty()) {
+            const uint32_t first = lost_.back();
+            lost_.pop_back();
+            return first;
+        }
+        if (next_ >= pictures_) return std::nullopt;
+        return std::exchange(next_, next_ + std::min(chunk_, pictures_ - next_));
+    }
+    void add_done(uint32_t pictures) {
+        const std::lock_guard lock(mutex_);
+        done_ += pictures;
+        changed_.notify_all();
+    }
+    /// Gives a chunk back, if there is one, for another round without the device.
+    void lose(std::optional<uint32_t> chunk, std::size_t device, const Error& why) {
+        const std::lock_guard lock(mutex_);
+        if (chunk) lost_.push_back(*chunk);
+        losses.emplace_back(device, why);
+    }
+    void fail(std::exception_ptr why) {
+        const std::lock_guard lock(mutex_);
+        if (!failure) failure = std::move(why);
+        stops_ = true;
+    }
+    void stop() { stops_ = true; }
+    bool should_stop() override { return stops_; }
+    void leave() {
+        const std::lock_guard lock(mutex_);
+        ++left_;
+        changed_.notify_all();
+    }
+    /// Waits a while for a change. Returns how many pictures are done, and whether `threads` of them have left.
+    std::pair<uint32_t, bool> wait(std::size_t threads) {
+        std::unique_lock lock(mutex_);
+        changed_.wait_for(lock, std::chrono::milliseconds(100), [&] { return left_ == threads; });
+        return {done_, left_ == threads};
+    }
+    void begin_round() { left_ = 0; }
+    bool is_done() const { return done_ == pictures_; }
+
+    // For the caller's thread, between rounds.
+    std::vector<std::pair<std::size_t, Error>> losses;
+    std::exception_ptr failure;
+
+private:
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    uint32_t pictures_, chunk_, next_ = 0, done_ = 0;
+    std::size_t left_ = 0;
+    std::vector<uint32_t> lost_;
+    std::atomic<bool> stops_ = false;
+};
+
+/// Copies a chunk to its place among all pictures.
+void copy_chunk(Queue& to, BatchArrays& all, Queue& from, const BatchArrays& part, std::size_t pixels_of_picture) {
+    const std::size_t first = part.first * pixels_of_picture, pixels = part.pictures * pixels_of_picture;
+    const auto copy = [&]<class T>(const Buffer<T>& into, const Buffer<T>& source, std::size_t channels) {
+        copy_between(to, into.data() + first * channels, from, source.data(), pixels * channels * sizeof(T));
+    };
+    if (part.color.size() > 0) copy(all.color, part.color, all.color.size() / (all.pictures * pixels_of_picture));
+    for (std::size_t i = 0; i < part.layers.size(); ++i) {
+        copy(all.layers[i].values, part.layers[i].values, part.layers[i].channels);
+    }
+    if (part.ids.size() > 0) copy(all.ids, part.ids, 1);
+}
+
+} // namespace
+
+SharedBatch render_batch(RenderOnDevices& together, PictureRenderer& pictures, const CameraBatch& batch,
+                         const RenderSettings& settings, uint32_t at_once, BatchArrays& arrays, Sink& sink) {
+    std::vector<DeviceWorker*> workers = together.workers();
+    const auto pieces = static_cast<uint32_t>(workers.size()) * kChunksOfDevice;
+    const uint32_t chunk = std::clamp((batch.count() + pieces - 1) / pieces, 1u, at_once);
+    Queue& first_queue = pictures.queue();
+    arrays.fit(first_queue, settings, batch.count());
+    arrays.first = 0, arrays.pictures = batch.count();
+    first_queue.wait(); // others write into the arrays
+    ChunkRun run(batch.count(), chunk);
+    SharedBatch result;
+    std::mutex result_mutex;
+    const auto render = [&](DeviceWorker& worker) {
+        std::optional<uint32_t> taken;
+        try {
+            const UseThreads use(worker.queue().threads());
+            PictureRenderer& own = worker.pictures_of(pictures, settings);
+            if (together.hooks().before_samples) together.hooks().before_samples(worker.number());
+            Queue landing = first_queue.is_cuda() ? Queue::make_cuda(first_queue.device_index(), first_queue.threads())
+                                                  : Queue::make_cpu(first_queue.threads());
+            BatchRender of_device(own, batch, settings, chunk);
+            BatchArrays part;
+            while ((taken = run.take())) {
+                of_device.go_to(*taken);
+                if (!of_device.next(part, run)) break;
+                worker.queue().wait();
+                copy_chunk(landing, arrays, worker.queue(), part, std::size_t(settings.width) * settings.height);
+                if (together.hooks().after_slice)
+                    together.hooks().after_slice(worker.number(), {part.first, part.first + part.pictures});
+                run.add_done(part.pictures);
+            }
+            const std::lock_guard lock(result_mutex);
+            result.rays = result.rays + of_device.rays();
+            result.invalid_samples += of_device.invalid_samples();
+        } catch (const Error& error) {
+            const bool is_its_own = error.code() == ErrorCode::DeviceFault || error.code() == ErrorCode::OutOfMemory;
+            if (is_its_own) {
+                run.lose(taken, worker.number(), error);
+            } else {
+                run.fail(std::current_exception());
+            }
+        } catch (...) {
+            run.fail(std::current_exception());
+        }
+        run.leave();
+    };
+    while (!run.is_done() && !run.should_stop()) {
+        run.begin_round();
+        std::vector<std::thread> threads;
+        try {
+            for (DeviceWorker* const worker : workers) threads.emplace_back([&render, worker] { render(*worker); });
+            for (bool have_left = false; !have_left;) {
+                const auto [done, all_have] = run.wait(threads.size());
+                have_left = all_have;
+                const double share = static_cast<double>(done) / batch.count();
+                if (!sink.goes_on({.doing = "pictures", .share = share})) run.stop();
+            }
+        } catch (...) {
+            run.fail(std::current_exception());
+        }
+        for (std::thread& thread : threads) thread.join();
+        if (run.failure) std::rethrow_exception(run.failure);
+        for (const auto& [number, error] : std::exchange(run.losses, {})) {
+            const auto lost = std::ranges::find(workers, number, &DeviceWorker::number);
+            if (workers.size() == 1) throw error;
+            sink.warn({"device", (*lost)->name(),
+                       "failed, and the others render its pictures: " + std::string(error.what())});
+            workers.erase(lost);
+        }
+    }
+    return result;
+}
+
+} // namespace pertev
