@@ -8,7 +8,6 @@
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
 #include "base/stopwatch.h"
-#include "math/portable_math.h"
 #include "session/batch_render.h"
 #include "settings/value_names.h"
 
@@ -27,21 +26,6 @@ struct Job {
     RenderSettings settings;
     uint32_t pictures;
 };
-
-/// Cameras near `camera`: rotated by up to 30 degrees, so that their views are similar, and moved by up to a fiftieth
-/// of the scene's size. Fractions of multiples of irrational numbers are spread evenly.
-CameraBatch cameras_about(const Camera& camera, uint32_t count, float scene_size) {
-    CameraBatch batch;
-    for (uint32_t k = 0; k < count; ++k) {
-        const auto part_of = [&](double share) {
-            const double at = k * share;
-            return static_cast<float>(at - static_cast<uint32_t>(at));
-        };
-        const Vec3 aside = {part_of(0.7548776662) - 0.5f, part_of(0.5698402910) - 0.5f, 0};
-        batch.cameras.push_back(moved(camera, kPi / 3 * (part_of(0.6180339887) - 0.5f), (0.04f * scene_size) * aside));
-    }
-    return batch;
-}
 
 /// Returns the seconds of all pictures of a job as one batch, and adds up its rays.
 double seconds_of_batch(PictureRenderer& pictures, const CameraBatch& batch, const RenderSettings& settings,

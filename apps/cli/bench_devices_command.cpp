@@ -1,5 +1,5 @@
-// pertev bench devices: times one picture of the record by one device, two, and so on to all that are named, and
-// expects from these times what more would take.
+// pertev bench devices: times one picture of the record, and a batch of pictures, by one device, two, and so on to all
+// that are named, and expects from these times what more would take.
 
 #include <memory>
 #include <optional>
@@ -18,7 +18,7 @@
 #include "lab/record_scenes.h"
 #include "lab/stored_figures.h"
 #include "session/device_names.h"
-#include "session/devices/render_on_devices.h"
+#include "session/devices/batch_on_devices.h"
 #include "session/machine.h"
 #include "settings/tracer_options.h"
 
@@ -32,6 +32,7 @@ struct DevicesFlags {
     PictureFlags picture;
     std::string job = "S8";
     uint32_t runs = 5;
+    uint32_t pictures = 0; // 0: by the device
 };
 
 /// Times of some devices for a picture.
@@ -74,6 +75,47 @@ TimesTaken time_devices(std::span<const std::shared_ptr<Queue>> queues, const Pi
     return taken;
 }
 
+void add_colors(Hasher& hasher, const BatchArrays& arrays, const RenderSettings& settings) {
+    const std::vector<float> values = arrays.color.download();
+    const std::size_t floats = std::size_t(settings.width) * settings.height * 3 * arrays.pictures;
+    hasher.add(std::as_bytes(std::span(values).first(floats)));
+}
+
+/// Times the pictures of a batch by some devices. One alone renders as it does without others.
+TimesTaken time_batch(std::span<const std::shared_ptr<Queue>> queues, const PictureJob& job, const CameraBatch& batch,
+                      uint32_t runs) {
+    const RenderSettings& settings = job.settings;
+    Queue& queue = *queues.front();
+    std::optional<RenderOnDevices> together;
+    if (queues.size() > 1) together.emplace(queues, job.prepared, settings);
+    Session session(queue, job.prepared, job.camera, settings);
+    const std::size_t limit = batch_memory(queue, settings, {}).bytes;
+    const uint32_t at_once = pictures_at_once(job.prepared, batch, settings, limit, queue.is_cuda());
+    TimesTaken taken;
+    BatchArrays arrays;
+    std::vector<double> seconds;
+    Hasher hasher;
+    for (uint32_t run = 0; run <= runs; ++run) { // the first one takes memory, warms up, and gives the hash
+        const Stopwatch watch;
+        InterruptSink sink;
+        if (together) {
+            render_batch(*together, session.pictures(), batch, settings, at_once, arrays, sink);
+            if (run == 0) add_colors(hasher, arrays, settings);
+        } else {
+            BatchRender render(session.pictures(), batch, settings, at_once);
+            while (render.next(arrays, sink)) {
+                if (run == 0) add_colors(hasher, arrays, settings);
+            }
+        }
+        queue.wait();
+        throw_if_interrupted();
+        if (run > 0) seconds.push_back(watch.seconds());
+    }
+    taken.times = summarize_runs(seconds);
+    taken.hash = hasher.result().hex();
+    return taken;
+}
+
 std::string names_of_some(std::span<const std::shared_ptr<Queue>> queues) {
     std::vector<std::string> names;
     for (const auto& queue : queues) names.push_back(queue->device_name());
@@ -85,6 +127,41 @@ double expected_seconds(std::size_t count, const TimesTaken& alone, const TimesT
     const double all = static_cast<double>(of_most), n = static_cast<double>(count);
     const double loss = (most.times.median - most.sum_s) * all / alone.times.median;
     return alone.times.median * loss / n + most.sum_s * n / all;
+}
+
+/// Throws Error(DeviceFault) if the pictures are not those of one device.
+void check_hash(const TimesTaken& taken, const TimesTaken& alone, const std::string& devices) {
+    if (taken.hash == alone.hash) return;
+    throw Error(ErrorCode::DeviceFault,
+                fmt::format("the picture of {} is {} and not {}, that of one device", devices, taken.hash, alone.hash));
+}
+
+/// Reports the times of a batch of small pictures by each number of devices.
+void report_batches(const DevicesFlags& flags, std::span<const std::shared_ptr<Queue>> queues, const PictureJob& job,
+                    const std::string& name, float scene_size, BenchReport& report) {
+    RenderSettings settings = job.settings;
+    settings.width = settings.height = 128, settings.samples = 16;
+    const uint32_t pictures = flags.pictures > 0 ? flags.pictures : (queues.front()->is_cuda() ? 4096 : 32);
+    const CameraBatch batch = cameras_about(job.camera, pictures, scene_size);
+    TimesTaken alone;
+    for (std::size_t count = 1; count <= queues.size(); ++count) {
+        const auto some = queues.first(count);
+        const TimesTaken taken = time_batch(some, {job.prepared, job.camera, settings}, batch, flags.runs);
+        if (count == 1) alone = taken;
+        check_hash(taken, alone, names_of_some(some));
+        Fields fields = {{"job", "job", name},
+                         {"devices", "devices", count},
+                         {"device", "device", names_of_some(some)},
+                         {"width", "width", settings.width},
+                         {"height", "height", settings.height},
+                         {"samples", "samples", settings.samples},
+                         {"pictures", "pictures", pictures}};
+        fields = fields + time_fields(taken.times);
+        fields.push_back({"pictures_per_second", "pictures/s", pictures / taken.times.median, "", "{:.5g}"});
+        fields.push_back({"ratio_to_one", "times one", alone.times.median / taken.times.median, "", "{:.3f}"});
+        fields.push_back({"hash", "pictures", taken.hash});
+        report.add("devices_cameras", fields);
+    }
 }
 
 int bench_devices(DevicesFlags& flags) {
@@ -120,11 +197,7 @@ int bench_devices(DevicesFlags& flags) {
             const std::span some = std::span(queues).first(count);
             most = time_devices(some, {prepared, camera, settings}, samples, flags.runs);
             if (count == 1) alone = most;
-            if (most.hash != alone.hash) {
-                throw Error(ErrorCode::DeviceFault,
-                            fmt::format("the picture of {} is {} and not {}, that of one device", names_of_some(some),
-                                        most.hash, alone.hash));
-            }
+            check_hash(most, alone, names_of_some(some));
             const double ratio = alone.times.median / most.times.median;
             Fields fields = {{"job", "job", record.name},
                              {"devices", "devices", count},
@@ -151,6 +224,8 @@ int bench_devices(DevicesFlags& flags) {
                                             {"ratio_to_one", "times one", alone.times.median / seconds, "", "{:.3f}"}});
         }
     }
+    reporter.set_work("measuring batches of cameras");
+    report_batches(flags, queues, {prepared, camera, settings}, record.name, length(bounds_of(scene).size()), report);
     report.write();
     return 0;
 }
@@ -173,6 +248,8 @@ void add_bench_devices_command(CLI::App& bench, int& status) {
         ->required()
         ->expected(1);
     add_whole(verb, "--runs", flags->runs, "timed runs of each number of devices", 1, 1000)->capture_default_str();
+    add_whole(verb, "--pictures", flags->pictures, "pictures of 128x128 in a batch (4096 in CUDA, 32 on the CPU)", 1,
+              10000000);
     add_picture_flags(verb, kBenchDevices, flags->picture, "the job's", "8192, and 256");
 }
 

@@ -207,6 +207,19 @@ Camera moved(const Camera& camera, float yaw, Vec3 step) {
     return result;
 }
 
+CameraBatch cameras_about(const Camera& camera, uint32_t count, float scene_size) {
+    CameraBatch batch;
+    for (uint32_t k = 0; k < count; ++k) {
+        const auto part_of = [&](double share) {
+            const double at = k * share;
+            return static_cast<float>(at - static_cast<uint32_t>(at));
+        };
+        const Vec3 aside = {part_of(0.7548776662) - 0.5f, part_of(0.5698402910) - 0.5f, 0};
+        batch.cameras.push_back(moved(camera, kPi / 3 * (part_of(0.6180339887) - 0.5f), (0.04f * scene_size) * aside));
+    }
+    return batch;
+}
+
 void render_again(Session& session, uint32_t samples) {
     throw_if_interrupted();
     session.cut();

@@ -17,6 +17,7 @@
 #include "device/queue.h"
 #include "lab/measurement.h"
 #include "render/prepare_scene.h"
+#include "session/camera_batch.h"
 #include "session/session.h"
 
 namespace CLI {
@@ -121,6 +122,10 @@ Fields time_fields(const RunTimes& times);
 
 /// The camera turned by `yaw` radians about +y, then moved by `step` (metres, in its own space).
 Camera moved(const Camera& camera, float yaw, Vec3 step);
+
+/// Returns cameras near `camera`: rotated by up to 30 degrees, so that their views are similar, and moved by up to a
+/// fiftieth of the scene's size. Fractions of multiples of irrational numbers are spread evenly.
+CameraBatch cameras_about(const Camera& camera, uint32_t count, float scene_size);
 
 /// Renders the session's picture from its first sample on. Throws Error(Interrupted) after Ctrl-C.
 void render_again(Session& session, uint32_t samples);
