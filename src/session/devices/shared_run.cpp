@@ -77,9 +77,11 @@ bool SharedRun::wait_for_work(std::size_t device) {
     std::unique_lock lock(mutex_);
     const auto ends = [&] { return is_dropped_ || is_lost_[device] || is_finished(); };
     ++waiting_;
-    // Somebody must be at work, or nothing would ever change.
-    PERTEV_CHECK(ends() || !slices_.is_empty() || waiting_ + left_ < is_lost_.size() || !busy_.empty());
-    changed_.wait(lock, [&] { return ends() || !slices_.is_empty(); });
+    const auto is_stuck = [&] { // nobody is at work, so nothing would ever change
+        return !ends() && slices_.is_empty() && waiting_ + left_ == is_lost_.size() && busy_.empty();
+    };
+    changed_.wait(lock, [&] { return ends() || !slices_.is_empty() || is_stuck(); });
+    PERTEV_CHECK(!is_stuck());
     --waiting_;
     return !ends();
 }
