@@ -85,6 +85,12 @@ public:
         first_row_ = first, end_row_ = end;
     }
 
+    /// Makes the film hold the window and the rows of `other`, which has its size.
+    void set_place_of(const Film& other) {
+        set_window(other.window_);
+        set_rows(other.first_row_, other.end_row_);
+    }
+
     /// Sets which samples, of all rows of view(), have been added to it so far.
     void set_samples(SampleRange samples) { set_part({first_row_, end_row_, samples}); }
     void set_part(FilmPart part) { part_ = part; }

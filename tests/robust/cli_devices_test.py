@@ -39,6 +39,9 @@ class Devices(CliTest):
         for part, devices in zip("123", [TWO, ONE, THREE], strict=True):
             self.done("--spp", "30", "--part", f"{part}/3", *devices, output=f"{part}.pvf")
         self.assertEqual(self.succeed("merge", "2.pvf", "1.pvf", "3.pvf", "-o", "m.exr", "--json").events("done")[0]["hash"], whole["hash"])
+        self.done("--spp", "30", "--rows", "0:7", *TWO, output="a.pvf")
+        self.done("--spp", "30", "--rows", "7:18", *THREE, output="b.pvf")
+        self.assertEqual(self.succeed("merge", "a.pvf", "b.pvf", "-o", "m.exr", "--json").events("done")[0]["hash"], whole["hash"])
         self.done("--samples", "0:11", *TWO, output="a.pvf")
         self.done("--samples", "11:30", *TWO, output="b.pvf")
         self.assertEqual(self.succeed("merge", "a.pvf", "b.pvf", "-o", "m.exr", "--json").events("done")[0]["hash"], whole["hash"])

@@ -93,7 +93,7 @@ void DeviceWorker::make_films(const SharedPicture& picture, const Film& into) {
         if (film && !film_is_like(*film, into)) film.reset();
         try {
             Film& made = fit_film(*film_queue_, film, picture.settings, picture.add_targets);
-            made.set_window(into.view().window);
+            made.set_place_of(into);
             made.clear();
             if (queue_.is_cuda() && is_first) copy_once(made);
         } catch (const Error& error) {
