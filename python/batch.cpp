@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "session/batch_render.h"
+#include "session/devices/batch_on_devices.h"
 #include "session/opening/calibrated_camera.h"
 #include "session/opening/choose_camera.h"
 
@@ -106,6 +107,13 @@ void PythonBatch::render(OpenedScene& opened, Session& session, const CamerasArg
     }
     arrays_.fit(queue, settings, count);
     const Stopwatch watch;
+    if (RenderOnDevices* const together = opened.together()) {
+        const SharedBatch made = render_batch(*together, session.pictures(), batch, settings, at_once, arrays_, sink);
+        sink.check();
+        invalid_samples_ = made.invalid_samples;
+        seconds_ = watch.seconds();
+        return;
+    }
     BatchRender render(session.pictures(), batch, settings, at_once);
     if (at_once == count) {
         render.next(arrays_, sink);

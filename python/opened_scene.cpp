@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "base/hash.h"
-#include "session/device_names.h"
 #include "settings/settings_file.h"
 
 namespace pertev {
@@ -76,11 +75,10 @@ void OpenedScene::open(PictureOptions& options, const EditedScene& source, Sink&
 }
 
 void OpenedScene::prepare(PictureOptions& options, const EditedScene& source, Sink& sink) {
-    refuse_several_devices(options.machine.device, "a scene that stays open");
     const PictureOptions asked = options; // without what the scene's file suggests
     const bool is_open = setup_ && apply_edits(source, sink) && adapt_setup(*setup_, used_, options, kRender, sink);
     if (!is_open) {
-        session_.reset();
+        session_.reset(), together_.reset();
         try {
             open(options, source, sink);
         } catch (const Error& error) {
@@ -107,9 +105,16 @@ PictureRecord OpenedScene::record(const PictureOptions& options, const EditedSce
 
 Session& OpenedScene::session(const PictureRecord& record) {
     const uint32_t parts = std::exchange(setup_->changed_parts, 0);
-    if (!session_) return session_.emplace(*setup_->queue, setup_->prepared(), record.camera.camera, record.settings);
+    if (!session_) {
+        together_.reset();
+        if (setup_->queues.size() > 1) together_.emplace(setup_->queues, setup_->prepared(), record.settings);
+        return session_.emplace(*setup_->queue, setup_->prepared(), record.camera.camera, record.settings);
+    }
     try {
-        if (parts != 0) session_->update_scene(setup_->prepared(), parts);
+        if (parts != 0) {
+            session_->update_scene(setup_->prepared(), parts);
+            if (together_) together_->change_scene(setup_->prepared(), parts);
+        }
         session_->set_settings(record.settings);
     } catch (...) {
         session_.reset(); // which is made anew with the whole scene

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "python/scene_parameters.h"
+#include "session/devices/render_on_devices.h"
 #include "session/pictures/prepare_render.h"
 #include "session/session.h"
 
@@ -46,6 +47,9 @@ public:
     PictureRecord record(const PictureOptions& options, const EditedScene& source, Sink& sink);
     /// Returns the session, made or brought up to date, with the record's camera and settings.
     Session& session(const PictureRecord& record);
+    /// Returns what renders batches by several devices, for which session() has gone before; null if there is one
+    /// device.
+    RenderOnDevices* together() { return together_ ? &*together_ : nullptr; }
 
 private:
     bool apply_edits(const EditedScene& source, Sink& sink);
@@ -54,6 +58,7 @@ private:
     PictureOptions used_; // options that setup_ was made or last adapted by
     std::unique_ptr<RenderSetup> setup_;
     std::optional<SceneParameters> parameters_;
+    std::optional<RenderOnDevices> together_;
     std::optional<Session> session_;
     uint64_t edits_ = 0; // how many of the source's edits the setup has
 };

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "image/picture_hash.h"
+#include "session/device_names.h"
 #include "session/film_file/film_file.h"
 #include "session/opening/strictness.h"
 #include "session/pictures/choose_display.h"
@@ -110,7 +111,9 @@ PythonResult PythonScene::render_into(Session& session, std::span<const OutArray
 PythonResult PythonScene::render(const CallSettings& settings, const std::vector<std::string>& outputs,
                                  std::span<const OutArray> out, Sink& sink) {
     const std::unique_lock turn = wait_for_turn(sink);
-    Session& session = opened_.session(prepare(settings, outputs, sink));
+    prepare(settings, outputs, sink);
+    refuse_several_devices(options_.machine.device, "a picture without `cameras`");
+    Session& session = opened_.session(*record_);
     check_arrays(out, session.settings());
     session.cut();
     const bool has_checkpoint = !options_.checkpoint.empty();

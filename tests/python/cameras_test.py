@@ -87,6 +87,24 @@ class Cameras(unittest.TestCase):
             self.assertEqual(host(getattr(whole, name)).tobytes(), together.tobytes())
         self.assertEqual([len(part) for part in pertev.render_chunks(self.scene, poses(5), **SMALL)], [5])
 
+    def test_several_devices_share_a_batch(self):
+        call = {"cameras": poses(9), "seeds": numpy.arange(9), "layers": LAYERS, **SMALL}
+        for devices in ("cpu,cpu", "cpu,cpu,cpu"):
+            scene = pertev.load("cornell-box", device=devices)
+            for more in ({}, {"layers_at": "centre"}, {"integrator": "bidirectional"}):
+                alone, together = pertev.render(self.scene, **call, **more), pertev.render(scene, **call, **more)
+                for name in ["color", *LAYERS]:
+                    self.assertEqual(host(getattr(together, name)).tobytes(), host(getattr(alone, name)).tobytes(), (devices, name, more))
+            before, changed = together, pertev.load("cornell-box", device=DEVICE)
+            for edited in (scene, changed):  # on all devices
+                edited.params["materials/white/base_color"] = (0.2, 0.5, 0.9)
+            together = pertev.render(scene, **call, **more)
+            self.assertEqual(host(together.color).tobytes(), host(pertev.render(changed, **call, **more).color).tobytes())
+            self.assertNotEqual(host(together.color).tobytes(), host(before.color).tobytes())
+            with self.assertRaises(pertev.InputError) as refused:
+                pertev.render(scene, **SMALL)
+            self.assertEqual(refused.exception.setting, "device")
+
     def test_layers_without_color(self):
         batch = pertev.render(self.scene, cameras=poses(2), color=False, layers=LAYERS, layers_at="centre", size=(24, 16))
         self.assertEqual(sorted(batch.arrays), sorted(LAYERS))
