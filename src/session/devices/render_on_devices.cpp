@@ -86,6 +86,7 @@ void RenderOnDevices::say_paths(Sink& sink) {
 /// Adds films and reports until all devices have left.
 void RenderOnDevices::drive(SharedRun& run, const SharedPicture& picture, SampleRange range, uint32_t before,
                             Film& into, Sink& sink) {
+    into_is_empty_ = before == 0;
     landing_.resize(into.targets().size());
     for (std::size_t i = 0; i < landing_.size(); ++i) landing_[i].resize(into.targets()[i]->byte_count());
     const bool on_cpu = std::ranges::none_of(workers_, [](const auto& worker) { return worker->queue().is_cuda(); });
@@ -103,10 +104,10 @@ void RenderOnDevices::drive(SharedRun& run, const SharedPicture& picture, Sample
     std::vector<FilledFilm> last;
     Stopwatch since_report;
     while (!run.have_all_left()) {
-        if (std::optional<FilledFilm> film = run.wait_for_film(kProgressSeconds)) last.push_back(std::move(*film));
-        // Films wait for each other only if none of them may be needed for lost samples.
-        if (!last.empty() && (!run.is_ending() || run.is_complete_with(last)))
-            fold_last(run, std::exchange(last, {}), into);
+        std::optional<FilledFilm> film = run.wait_for_film(kProgressSeconds, !last.empty());
+        if (film) last.push_back(std::move(*film));
+        // The last films wait for each other.
+        if (!last.empty() && !run.is_ending()) fold_last(run, std::exchange(last, {}), into);
         report_losses(run, sink);
         if (since_report.seconds() < kProgressSeconds) continue;
         since_report.restart();
@@ -118,14 +119,20 @@ void RenderOnDevices::drive(SharedRun& run, const SharedPicture& picture, Sample
 /// Adds a device's film to the sum. It is on the host before the first number is added, so that a device that fails
 /// meanwhile leaves no trace.
 void RenderOnDevices::fold(SharedRun& run, const FilledFilm& film, Film& into) {
+    const auto& targets = film.film->targets();
     try {
-        for (std::size_t i = 0; i < landing_.size(); ++i) film.film->targets()[i]->read(0, landing_[i]);
+        for (std::size_t i = 0; i < landing_.size(); ++i) {
+            if (into_is_empty_) into.targets()[i]->copy(*targets[i]); // which saves a pass over the first film
+            if (!into_is_empty_) targets[i]->read(0, landing_[i]);
+        }
     } catch (const Error& error) {
         if (error.code() != ErrorCode::DeviceFault) throw;
+        if (into_is_empty_) into.clear();
         run.lose(film, error);
         return run.release(film);
     }
-    for (std::size_t i = 0; i < landing_.size(); ++i) into.targets()[i]->add_bytes(0, landing_[i]);
+    for (std::size_t i = 0; i < landing_.size() && !into_is_empty_; ++i) into.targets()[i]->add_bytes(0, landing_[i]);
+    into_is_empty_ = false;
     run.add_to_sum(film);
     release(run, film);
 }

@@ -49,6 +49,7 @@ private:
     Queue film_queue_;
     DeviceHooks hooks_;
     std::vector<std::unique_ptr<DeviceWorker>> workers_; // without those that were lost in earlier calls
+    bool into_is_empty_ = false;                         // the film to which films are added has no samples yet
     double sum_seconds_ = 0;
     bool has_said_paths_ = false;
     std::vector<std::vector<std::byte>> landing_; // a film's targets on the host, before they are added

@@ -69,16 +69,19 @@ void SharedRun::hand_over(FilledFilm film, const Film* next) {
     const std::size_t device = film.device;
     busy_.push_back(film.film);
     full_.push_back(std::move(film));
+    ++waiting_;
     changed_.notify_all();
     changed_.wait(lock, [&] { return !is_busy(next) || is_dropped_ || is_lost_[device]; });
+    --waiting_;
 }
 
 bool SharedRun::wait_for_work(std::size_t device) {
     std::unique_lock lock(mutex_);
     const auto ends = [&] { return is_dropped_ || is_lost_[device] || is_finished(); };
     ++waiting_;
+    changed_.notify_all();
     const auto is_stuck = [&] { // nobody is at work, so nothing would ever change
-        return !ends() && slices_.is_empty() && waiting_ + left_ == is_lost_.size() && busy_.empty();
+        return !ends() && slices_.is_empty() && is_idle() && busy_.empty();
     };
     changed_.wait(lock, [&] { return ends() || !slices_.is_empty() || is_stuck(); });
     PERTEV_CHECK(!is_stuck());
@@ -115,10 +118,10 @@ bool SharedRun::is_lost(std::size_t device) const {
     return is_lost_[device];
 }
 
-std::optional<FilledFilm> SharedRun::wait_for_film(double most_s) {
+std::optional<FilledFilm> SharedRun::wait_for_film(double most_s, bool has_films) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, std::chrono::duration<double>(most_s),
-                      [&] { return !full_.empty() || left_ == is_lost_.size(); });
+                      [&] { return !full_.empty() || left_ == is_lost_.size() || (has_films && is_idle()); });
     if (full_.empty()) return std::nullopt;
     FilledFilm film = std::move(full_.front());
     full_.erase(full_.begin());
@@ -153,16 +156,9 @@ bool SharedRun::have_all_left() const {
     return left_ == is_lost_.size() && full_.empty();
 }
 
-bool SharedRun::is_complete_with(const std::vector<FilledFilm>& films) const {
-    const std::lock_guard lock(mutex_);
-    uint32_t samples = in_sum_;
-    for (const FilledFilm& film : films) samples += film.samples();
-    return slices_.is_empty() && samples == slices_.handed_out();
-}
-
 bool SharedRun::is_ending() const {
     const std::lock_guard lock(mutex_);
-    return slices_.is_empty() && !first_loss_;
+    return slices_.is_empty() && !first_loss_ && !is_idle();
 }
 
 RunState SharedRun::state() const {

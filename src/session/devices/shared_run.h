@@ -66,17 +66,16 @@ public:
 
     // The caller calls these.
 
-    /// Returns a film to be added; nothing after `most_s` seconds, or if all devices have left.
-    std::optional<FilledFilm> wait_for_film(double most_s);
+    /// Returns a film to be added; nothing after `most_s` seconds, if all devices have left, or, if `has_films`, which
+    /// are not in the sum yet, once no device is at work.
+    std::optional<FilledFilm> wait_for_film(double most_s, bool has_films);
     void add_to_sum(const FilledFilm& film);
     /// Lets the device use the film again.
     void release(const FilledFilm& film);
     /// Hands out no new samples; if `drops` and there is no whole slice yet, ends those under way.
     void stop(bool drops);
     bool have_all_left() const;
-    /// Returns whether these films and the sum have all samples, so that no device is at work.
-    bool is_complete_with(const std::vector<FilledFilm>& films) const;
-    /// Returns whether no new samples are handed out, and none were lost.
+    /// Returns whether devices are at work on their last slices, and none of them was lost.
     bool is_ending() const;
     RunState state() const;
     /// Returns the errors of lost devices since the last call.
@@ -91,6 +90,7 @@ public:
 private:
     bool is_finished() const { return slices_.is_empty() && in_sum_ == slices_.handed_out(); }
     bool is_busy(const Film* film) const;
+    bool is_idle() const { return waiting_ + left_ == is_lost_.size(); }
 
     mutable std::mutex mutex_;
     std::condition_variable changed_;
@@ -105,7 +105,7 @@ private:
     std::vector<std::pair<std::size_t, Error>> losses_;
     std::optional<Error> first_loss_;
     std::exception_ptr failure_;
-    std::size_t left_ = 0, waiting_ = 0; // devices that have left, and that wait for work
+    std::size_t left_ = 0, waiting_ = 0; // devices that have left, and that wait
     uint32_t done_ = 0, in_sum_ = 0;
     RayCounts rays_;
     double first_seconds_ = 0, last_slice_seconds_ = 0;
