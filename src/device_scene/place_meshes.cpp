@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/message_text.h"
-#include "base/parallel_for.h"
+#include "base/parallel_until.h"
 #include "scene/scene_origin.h"
 
 namespace pertev {
@@ -14,8 +14,7 @@ namespace {
 /// Writes the triangles of a mesh, transformed by `world_from_local`.
 void add_triangles(const Mesh& mesh, const Transform& world_from_local, uint32_t instance,
                    std::span<BvhTriangle> triangles, Sink& sink) {
-    parallel_for(triangles.size(), 4096, [&](uint64_t i) {
-        sink.check_at(i);
+    parallel_until(triangles.size(), 4096, sink, [&](uint64_t i) {
         const uint32_t* v = &mesh.indices[3 * i];
         triangles[i] = {.a = transform_point(world_from_local, mesh.positions[v[0]]),
                         .primitive = static_cast<uint32_t>(i),
@@ -27,9 +26,9 @@ void add_triangles(const Mesh& mesh, const Transform& world_from_local, uint32_t
 
 Error too_many_copies(const MeshPlacement& placement, std::size_t i, const Instance& instance, uint64_t limit) {
     return {ErrorCode::OverLimit, "scene", "",
-            fmt::format("{}: its transform squeezes one direction by more than {} times another, so that its mesh is "
-                        "copied into world space; the {} copies have {} triangles, and the limit for this scene is {}; "
-                        "squeeze the mesh itself, or use copies of fewer triangles",
+            fmt::format("{}: its transform scales one direction by more than {} times another, so its mesh is copied "
+                        "into world space; the {} copies have {} triangles, and the limit for this scene is {}; "
+                        "scale the mesh itself, or use copies with fewer triangles",
                         numbered("instance", i, instance.name, origin_of(instance)), kMaxCondition, placement.copies,
                         placement.copied_triangles, limit)};
 }
@@ -74,9 +73,9 @@ std::vector<BvhTriangle> baked_triangles(const Scene& scene, const MeshPlacement
         if (placement.is_baked[i]) count += scene.meshes[scene.instances[i].mesh].triangle_count();
     }
     if (count > kMaxBvhTriangles) {
-        throw Error(
-            ErrorCode::OverLimit, "scene", "",
-            fmt::format("it has {} triangles outside shared meshes; at most {} fit one tree", count, kMaxBvhTriangles));
+        throw Error(ErrorCode::OverLimit, "scene", "",
+                    fmt::format("the scene has {} triangles outside shared meshes; one tree holds at most {}", count,
+                                kMaxBvhTriangles));
     }
     std::vector<BvhTriangle> triangles(count);
     std::size_t first = 0;

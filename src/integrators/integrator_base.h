@@ -38,7 +38,9 @@ protected:
     bool uses_loop(const WorkSize& size) const { return in_loop_ && size.traverses_on_host; }
     /// Returns the trees that the loop traverses for the current picture, or null if it does not run by the loop.
     const HostTrees* trees_of_loop() const { return in_loop_ ? tracer_->host_trees() : nullptr; }
-    bool is_abandoned() const { return sink_ != nullptr && sink_->should_stop(); }
+    /// Returns what may end render() early.
+    Sink& stopping_sink() const { return sink_ != nullptr ? *sink_ : nobody(); }
+    bool is_abandoned() const { return stopping_sink().should_stop(); }
     /// Throws std::logic_error unless `film` lies in the picture.
     void check_window(const FilmView& film) const {
         PERTEV_CHECK(film.window.is_in(picture_.camera.width, picture_.camera.height));

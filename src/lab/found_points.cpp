@@ -83,7 +83,7 @@ std::string box_at(Vec3 lo, Vec3 hi, const char* style) {
 
 FoundPoints found_in_kd_tree() {
     FoundPoints result = {.tree = "kd-tree", .points = scattered_points(), .at = kQuery};
-    const PointKdTree tree = build_point_kd_tree(result.points);
+    const PointKdTree tree = build_point_kd_tree(result.points, nobody());
     NearPoint nearest[kPointsRequested];
     NearestPoints heap(nearest, kPointsRequested, kInfinity);
     Watched<NearestPoints> watched = {heap, result.tested};
@@ -105,7 +105,7 @@ FoundPoints found_in_octree() {
         .tree = "octree", .points = nearest.points, .at = kQuery, .radius_squared = nearest.radius_squared};
     std::vector<Sphere> spheres;
     for (const Vec3 p : result.points) spheres.push_back({p, 0});
-    const PointOctree tree = build_point_octree(spheres);
+    const PointOctree tree = build_point_octree(spheres, nobody());
     auto keep = [&](const NearPoint& p) { result.found.push_back(p.index); };
     PointsWithin<decltype(keep)> within = {result.radius_squared, keep};
     Watched<PointsWithin<decltype(keep)>> watched = {within, result.tested};

@@ -10,6 +10,8 @@
 #include "accel/builders/bvh_cache.h"
 #include "accel/bvh/compressed_bvh.h"
 #include "accel/bvh/wide_bvh.h"
+#include "accel/kd_tree/point_kd_tree.h"
+#include "accel/octree/point_octree.h"
 #include "base/parallel_for.h"
 #include "base/sort_until.h"
 #include "formats/gltf/read_gltf.h"
@@ -17,10 +19,13 @@
 #include "formats/ply/read_ply.h"
 #include "formats/read_scene.h"
 #include "image/write_png.h"
+#include "integrators/photon_map/photon_map_settings.h"
 #include "render/prepare_scene.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/meshes.h"
 #include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+#include "tests/support/stress_points.h"
 #include "tests/support/thrown_error.h"
 #include "tests/support/write_text.h"
 #include "tracer/scene_structures.h"
@@ -40,8 +45,7 @@ private:
     std::atomic<int64_t> left_;
 };
 
-/// Checks that `work` checks its sink at least so often, and that it ends at the first, a middle and the last
-/// check.
+/// Tests that `work` checks its sink at least `least_checks` times and ends at the first, a middle and the last check.
 template <class Work>
 void check_stops(int64_t least_checks, const Work& work) {
     constexpr int64_t kNever = 1 << 30;
@@ -87,7 +91,7 @@ TEST_CASE("an OBJ file's pieces, faces, vertices and pictures are read until the
         const UseThreads one(1);
         read_obj(path, FileAccess(path, {}), {}, sink);
     });
-    StopsAt sink(3); // while another thread reads the materials
+    StopsAt sink(3); // stops while another thread reads the materials
     const std::optional<Error> error = test::thrown_error([&] { read_obj(path, FileAccess(path, {}), {}, sink); });
     CHECK((error && error->code() == ErrorCode::Interrupted));
 }
@@ -120,7 +124,7 @@ TEST_CASE("every builder ends at a check of its sink") {
     }
 }
 
-TEST_CASE("pieces are sorted and merged until the sink ends it, to what one sort makes") {
+TEST_CASE("pieces are sorted and merged until the sink ends it, and the result is that of one sort") {
     constexpr int64_t kPiece = 1 << 16;
     for (const int64_t count : {int64_t(0), int64_t(1), kPiece - 1, kPiece, kPiece + 1, 3 * kPiece, 5 * kPiece + 7}) {
         CAPTURE(count);
@@ -144,7 +148,8 @@ TEST_CASE("builders that sort all triangles, and those of a curve, check the sin
     };
     check_stops(3 * sort + 2 * 8, build(BvhBuilder::Sweep)); // eight ranges are so long that axes are parallel
     check_stops(sort + checks, build(BvhBuilder::Ploc));
-    check_stops(checks + sort + 2 * checks + 2 * checks - 1, build(BvhBuilder::Hploc)); // the last are of the nodes
+    check_stops(checks + sort + 2 * checks + 2 * checks - 1,
+                build(BvhBuilder::Hploc)); // the last checks are those of the nodes
 }
 
 TEST_CASE("every structure of the laboratory is built until the sink ends it") {
@@ -168,7 +173,44 @@ TEST_CASE("every structure of the laboratory is built until the sink ends it") {
     check_stops(checks + 3 + checks - 1, build(StructureKind::Octree));
 }
 
-TEST_CASE("a structure whose build was ended is none that a change of the scene updates") {
+TEST_CASE("the trees over photons end at a check of the sink") {
+    test::Random random(8);
+    std::vector<Vec3> points;
+    std::vector<Sphere> spheres;
+    for (int i = 0; i < 140'000; ++i) {
+        points.push_back(random.point(-1, 1));
+        spheres.push_back({points.back(), 0});
+    }
+    check_stops(31, [&](Sink& sink) { build_point_kd_tree(points, sink); }); // nodes with at least 4096 points
+    check_stops(1 + 8, [&](Sink& sink) { build_point_octree(spheres, sink); });
+}
+
+TEST_CASE("a photon map's first pass is abandoned wherever the sink stops it, also while it builds trees") {
+    Queue queue = Queue::make_cpu(Threads(1));
+    const Scene scene = test::make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, nobody());
+    for (const PhotonSearch search : {PhotonSearch::KdTree, PhotonSearch::Octree}) {
+        RenderSettings settings;
+        settings.width = settings.height = 8;
+        settings.integrator = IntegratorKind::PhotonMap;
+        settings.photon_map.edit().photons = 60'000;
+        settings.photon_map.edit().search = search;
+        constexpr int64_t kNever = 1 << 30;
+        StopsAt never(kNever);
+        Session whole(queue, prepared, test::mixed_scene_camera(), settings);
+        REQUIRE(whole.render(1, never) == 1);
+        const int64_t checks = kNever - never.left();
+        Session session(queue, prepared, test::mixed_scene_camera(), settings);
+        for (int64_t part = 0; part < 12; ++part) {
+            StopsAt sink(checks * part / 12);
+            CHECK(session.render(1, sink) == 0);
+        }
+        REQUIRE(session.render(1) == 1);
+        CHECK(test::render_hash(session.result()) == test::render_hash(whole.result()));
+    }
+}
+
+TEST_CASE("an update of the scene ignores a structure whose build was ended") {
     const BinaryTrees trees = build_binary_trees(triangles_of_torus(20, 10), BvhBuilder::Binned);
     SceneStructures structures(BvhBuilder::Binned, trees, Tlas());
     const Combination octree = {.structure = StructureKind::Octree, .traversal = TraversalKind::Octree};

@@ -31,7 +31,7 @@ namespace {
 
 constexpr HemisphereGrid kFine = {64, 200};
 
-/// The sum over cells whose rays, world directions, `cell_of` answers.
+/// Returns the sum over cells; `cell_of` returns the cell of a ray's world direction.
 template <class CellOf>
 HemisphereSum sum_over(const HemisphereGrid& grid, const Frame& frame, const CellOf& cell_of) {
     return sum_hemisphere(grid, frame, [&](uint32_t cell) {
@@ -87,14 +87,14 @@ TEST_CASE("the rotational gradient under a known sky matches the irradiance of a
         CHECK(sum.light.g == doctest::Approx(2));
         check_near(sum.by_turn[0], (2.0f / 3) * (b - dot(b, normal) * normal), 2e-3f);
         check_near(sum.by_turn[1], {0, 0, 0}, 1e-4f);
-        for (const Vec3 move : sum.by_move) check_near(move, {0, 0, 0}, 1e-6f); // all is far away
+        for (const Vec3 move : sum.by_move) check_near(move, {0, 0, 0}, 1e-6f); // all surfaces are far away
         CHECK(sum.radius == kInfinity);
     }
 }
 
 TEST_CASE("the translational gradient under a finite ceiling matches the closed form") {
     // Under the half x > 0 of a ceiling at height h that gives radiance 1, irradiance at x is pi (1 + x / sqrt(x^2 +
-    // h^2)) / 2. What lies behind the ceiling's edge is dark and far away.
+    // h^2)) / 2. Beyond the ceiling's edge everything is dark and far away.
     const float h = 1.5f;
     for (const float x : {-1.0f, -0.3f, 0.0f, 0.8f}) {
         for (const float turn : {0.0f, 0.7f, 2.0f}) { // rotation of the frame: the gradient belongs to the world
@@ -169,7 +169,7 @@ TEST_CASE("work in parts is done once, in order and within its limit") {
                 });
             CHECK(longest <= sizes.most);
             CHECK(went_on == (done == 1003 && connections <= max_requested));
-            CHECK(connections == parts + 1); // before each, and after the last
+            CHECK(connections == parts + 1); // before each part, and after the last
         }
     }
     CHECK_FALSE(do_in_parts(
@@ -189,7 +189,7 @@ TEST_CASE("parts of work take about 0.1 s, however long each piece takes") {
             if (begin >= 127 && end < 700) shortest = std::min(shortest, end - begin);
         });
     CHECK(longest >= 16);  // a machine under load sleeps longer
-    CHECK(longest <= 128); // 40 ms are short, so what is at least as long is not doubled
+    CHECK(longest <= 128); // parts of 40 ms or more are not doubled
     CHECK(shortest > 1);
 }
 
@@ -197,7 +197,7 @@ TEST_CASE("the time to space records grows linearly with their number for all ra
     const auto seconds_for = [](uint32_t count) {
         test::Random random(8);
         std::vector<Sphere> records;
-        for (uint32_t i = 0; i < count; ++i) { // on a floor, reaching as far as it is to the nearest of two walls
+        for (uint32_t i = 0; i < count; ++i) { // on a floor, with the distance to the nearer of two walls as radius
             const float x = 20 * random.unit(), z = 20 * random.unit();
             records.push_back({{x, 0, z}, 0.05f + 1.5f * std::min(x, z) * (0.8f + 0.4f * random.unit())});
         }
@@ -211,7 +211,7 @@ TEST_CASE("the time to space records grows linearly with their number for all ra
     const double few = seconds_for(1 << 12), many = seconds_for(1 << 15);
     CAPTURE(few);
     CAPTURE(many);
-    CHECK(many < 32 * few); // 64 where each looks at all
+    CHECK(many < 32 * few); // it would be 64 if each record examined all others
 }
 
 TEST_CASE("light between records is their weighted mean, and there is none outside their radii") {
@@ -225,12 +225,12 @@ TEST_CASE("light between records is their weighted mean, and there is none outsi
     records[0].by_move[0] = {0.5f, 0, 0};
     records[0].by_turn[1] = {2, 0, 0};
     const std::vector<float> reaches = {0.8f, 0.8f};
-    const PointOctree tree = build_point_octree(std::vector<Sphere>{{{0, 0, 0}, 0.8f}, {{1, 0, 0}, 0.8f}});
+    const PointOctree tree = build_point_octree(std::vector<Sphere>{{{0, 0, 0}, 0.8f}, {{1, 0, 0}, 0.8f}}, nobody());
     const IrradianceCacheView cache = {records.data(), reaches.data(), view_of(tree), 0.2f};
     const auto at = [&](float x, Vec3 normal = {0, 0, 1}, uint32_t scatterings = 0, float z = 0) {
         return look_up(cache, {{x, 0, z}, normal, scatterings, kBareDiffuse});
     };
-    CHECK(at(0).weight == doctest::Approx(1)); // the other one's reach ends before
+    CHECK(at(0).weight == doctest::Approx(1)); // outside the other record's radius
     CHECK(at(0).light.r == doctest::Approx(1));
     CHECK(at(-0.4f).weight == doctest::Approx(0.5));
     CHECK(at(-0.4f).light.r == doctest::Approx(0.8)); // 1 - 0.4 * 0.5
@@ -244,14 +244,14 @@ TEST_CASE("light between records is their weighted mean, and there is none outsi
     CHECK(at(0, turned(0.1f)).light.g == doctest::Approx(1 + 2 * std::sin(0.1)).epsilon(1e-3));
     CHECK(at(0, turned(0.28f)).weight > 0);
     CHECK(at(0, turned(0.29f)).weight == 0);
-    CHECK(at(0, {0, 0, 1}, 1).weight == 0); // seen past a mirror: of records of their own
+    CHECK(at(0, {0, 0, 1}, 1).weight == 0); // a point seen in a mirror has its own records
     // A point above a record may use it; a point below may be occluded in ways that the record does not see.
     CHECK(at(0, {0, 0, 1}, 0, 0.2f).weight > 0);
     CHECK(at(0, {0, 0, 1}, 0, -0.2f).weight == 0);
     CHECK(look_up(cache, {{0, 0, 0}, {0, 0, 1}, 0, 4}).weight == 0); // under a reflection
 }
 
-TEST_CASE("the overture's grids cover each pixel in the end, and none twice in a round") {
+TEST_CASE("the overture's grids cover each pixel, and none twice in a round") {
     for (const auto& [width, height] : {std::pair(37u, 21u), std::pair(1u, 1u), std::pair(640u, 33u)}) {
         for (uint32_t round = 0; round < kOvertureRounds; ++round) {
             const OvertureGrid grid = make_overture_grid(round, width, height);
@@ -268,7 +268,7 @@ TEST_CASE("the overture's grids cover each pixel in the end, and none twice in a
 
 namespace {
 
-/// A picture by the integrator, and its queries.
+/// The integrator's picture and its lookups.
 struct CacheRun {
     Messages messages;
     PreparedScene prepared;
@@ -319,7 +319,7 @@ TEST_CASE("irradiance at records equals brute force") {
         const CachePoint& point = records[i].point;
         const Vec3 at = point.position + run.prepared.centre;
         if (std::abs(point.normal.y - 1) > 1e-4f || at.y > 0.01f) continue; // only the floor, whose albedo is known
-        RenderSettings settings; // light that is scattered at least twice, by path tracing, looked at from close by
+        RenderSettings settings; // light that is scattered at least twice, by path tracing from nearby
         settings.width = settings.height = 1;
         settings.filter = PixelFilter::Box;
         settings.path.max_depth = 6;
@@ -357,14 +357,14 @@ TEST_CASE("few lookups miss, and there are records behind mirrors and beneath la
     }
 }
 
-TEST_CASE("in a glowing room each scattering counts once, with records and with paths where there are none") {
+TEST_CASE("in a glowing room each scattering counts once, with records and with the paths that replace them") {
     const test::TriangleMesh sphere = test::make_sphere(3, {0, 0, 0}, 2.0f);
     Scene scene;
     Mesh mesh;
     mesh.positions = sphere.positions;
     mesh.indices = sphere.indices;
     test::add(scene, mesh, {{.two_sided_emission = true, .base_color = grey(0.5f), .emission = {1, 1, 1}}, "wall"});
-    for (const bool has_all : {true, false}) { // or records that serve less than a pixel
+    for (const bool has_all : {true, false}) { // records would have a radius below a pixel
         double wanted = 0;
         for (uint32_t depth = 0; depth <= 4; ++depth) {
             CAPTURE(has_all);
@@ -415,7 +415,7 @@ TEST_CASE("marks are drawn only where records are visible") {
         CHECK(is_same);
     }
     CHECK(with_record > 20);
-    CHECK(changed > with_record * 9 / 10); // others are at an edge
+    CHECK(changed > with_record * 9 / 10); // the others are at an edge
     CHECK(far > 200);
 }
 
@@ -449,7 +449,7 @@ TEST_CASE(
             if (is_known) CHECK(reported == doctest::Approx(done).epsilon(0.1));
         };
         for (uint32_t round = 0; round < kOvertureRounds; ++round) {
-            const bool is_known = round > 2; // how it falls is
+            const bool is_known = round > 2; // the rate of decrease is
             progress.begin_subpaths(rays);
             for (uint32_t i = 0; i < counts[round]; ++i) {
                 if (i % 100 == 0) check(is_known);
@@ -464,6 +464,6 @@ TEST_CASE(
         CHECK(rays == all);
         check(true);
         CHECK(before == 0.999);
-        CHECK(progress.share(rays + 1000 * kRecord) < 1); // more than were expected: still under way
+        CHECK(progress.share(rays + 1000 * kRecord) < 1); // more records than expected, so the work is not complete
     }
 }

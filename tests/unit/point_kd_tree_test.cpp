@@ -6,6 +6,7 @@
 
 #include "accel/kd_tree/point_kd_tree.h"
 #include "base/parallel_for.h"
+#include "base/sink.h"
 #include "tests/support/options.h"
 #include "tests/support/stress_points.h"
 
@@ -15,7 +16,7 @@ using namespace pertev::test;
 TEST_CASE("searches of a kd-tree over points match brute force, with ties by index") {
     for (const StressPoints& set : stress_points(static_cast<uint32_t>(effort(600, 5000)))) {
         CAPTURE(set.name);
-        const PointKdTree tree = build_point_kd_tree(set.points);
+        const PointKdTree tree = build_point_kd_tree(set.points, nobody());
         CHECK(find_wrong_search(view_of(tree), set, static_cast<uint32_t>(effort(60, 400))) == "");
     }
 }
@@ -26,7 +27,7 @@ TEST_CASE("a kd-tree over any number of points is left-balanced") {
         CAPTURE(n);
         StressPoints set = {"few", {}};
         for (uint32_t i = 0; i < n; ++i) set.points.push_back(random.point(-1, 1));
-        const PointKdTree tree = build_point_kd_tree(set.points);
+        const PointKdTree tree = build_point_kd_tree(set.points, nobody());
         REQUIRE(tree.nodes.size() == n);
         for (uint32_t i = 1; i < n; ++i) { // each node is on its side of every plane above it
             for (uint32_t at = i; at > 0; at = (at - 1) / 2) {
@@ -46,7 +47,7 @@ TEST_CASE("a kd-tree over points visits few of them and does not depend on the n
     for (uint32_t i = 0; i < effort(100'000, 2'000'000); ++i) points.push_back(random.point(-1, 1));
     const auto built_by = [&](int threads) {
         const UseThreads use(threads);
-        return build_point_kd_tree(points);
+        return build_point_kd_tree(points, nobody());
     };
     const PointKdTree tree = built_by(1), again = built_by(4);
     CHECK(std::memcmp(tree.nodes.data(), again.nodes.data(), points.size() * sizeof(PointKdNode)) == 0);

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "accel/octree/point_octree.h"
+#include "base/sink.h"
 #include "tests/support/options.h"
 #include "tests/support/stress_points.h"
 
@@ -24,7 +25,7 @@ TEST_CASE("searches of an octree over points match brute force, with ties by ind
     for (const StressPoints& set : stress_points(static_cast<uint32_t>(effort(600, 5000)))) {
         CAPTURE(set.name);
         for (const uint32_t max_leaf : {1u, 4u}) {
-            const PointOctree tree = build_point_octree(points_as_spheres(set.points), max_leaf);
+            const PointOctree tree = build_point_octree(points_as_spheres(set.points), nobody(), max_leaf);
             CHECK(find_wrong_search(view_of(tree), set, static_cast<uint32_t>(effort(60, 400))) == "");
             CHECK(tree.nodes.size() <= 2 * set.points.size());
         }
@@ -42,7 +43,7 @@ TEST_CASE("an octree over spheres finds exactly the spheres that cover a point, 
             const float radius = random.below(3) == 0 ? 0.25f * static_cast<float>(random.below(4)) : u * u * u * u;
             spheres.push_back({p, set.extent * (random.below(10) == 0 ? 0 : radius)});
         }
-        const PointOctree tree = build_point_octree(spheres);
+        const PointOctree tree = build_point_octree(spheres, nobody());
         CHECK(tree.spheres.size() == spheres.size());
         CHECK(tree.nodes.size() <= 2 * spheres.size());
         uint64_t covering = 0;
@@ -66,7 +67,7 @@ TEST_CASE("a few large spheres do not slow down the search for small ones") {
     Random random(6);
     std::vector<Sphere> spheres;
     for (uint32_t i = 0; i < 50'000; ++i) spheres.push_back({random.point(-1, 1), i % 1000 == 0 ? 1.0f : 0.01f});
-    const PointOctree tree = build_point_octree(spheres);
+    const PointOctree tree = build_point_octree(spheres, nobody());
     uint64_t nodes = 0;
     for (int i = 0; i < 100; ++i) { // the order of visit_covering
         const Vec3 at = random.point(-1, 1);

@@ -1,6 +1,7 @@
 #include "accel/builders/build_bvh.h"
 
 #include "base/parallel_for.h"
+#include "base/parallel_until.h"
 
 namespace pertev {
 namespace {
@@ -31,8 +32,7 @@ Bvh make_bvh(BuiltTree tree, const std::vector<BvhTriangle>& triangles, Sink& si
             .bounds = tree.bounds,
             .depth = tree.depth,
             .sah_cost = tree.sah_cost};
-    parallel_for(tree.order.size(), kGrain, [&](uint64_t i) {
-        sink.check_at(i);
+    parallel_until(tree.order.size(), kGrain, sink, [&](uint64_t i) {
         BvhTriangle t = triangles[tree.order[i]];
         t.flags = tree.is_last[i] ? t.flags | kLastInLeaf : t.flags & ~kLastInLeaf;
         bvh.triangles[i] = t;

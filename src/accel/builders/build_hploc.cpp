@@ -8,17 +8,14 @@
 #include "accel/builders/builders.h"
 #include "accel/hploc/climb.h"
 #include "accel/hploc/leaves.h"
-#include "base/parallel_for.h"
+#include "base/parallel_until.h"
 
 namespace pertev {
 namespace {
 
 template <class Stage>
 void run(uint32_t count, const Stage& stage, Sink& sink) {
-    parallel_for(count, 256, [&](uint64_t i) {
-        sink.check_at(i);
-        stage(static_cast<uint32_t>(i));
-    });
+    parallel_until(count, 256, sink, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
 }
 
 /// Positions of the triangles along the curve, and their codes in that order.

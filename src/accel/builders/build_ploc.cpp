@@ -11,6 +11,7 @@
 #include "accel/builders/build_bvh.h"
 #include "accel/builders/builders.h"
 #include "base/parallel_for.h"
+#include "base/parallel_until.h"
 #include "base/sort_until.h"
 #include "math/morton_code.h"
 
@@ -101,20 +102,18 @@ private:
     void choose(uint32_t blur) {
         const auto count = static_cast<uint32_t>(clusters_.size());
         choice_.resize(count);
-        parallel_for_ranges(count, kPlocChunk, [&](uint64_t begin, uint64_t end) {
-            for (auto i = static_cast<uint32_t>(begin); i < end; ++i) {
-                sink_.check_at(i);
-                const uint32_t first = i < kRadius ? 0 : i - kRadius, last = std::min(i + kRadius, count - 1);
-                Choice best = {~0u, ~0u};
-                for (uint32_t k = first; k <= last; ++k) {
-                    if (k == i) continue;
-                    Bounds3 both = clusters_[i].box;
-                    both.extend(clusters_[k].box);
-                    const Choice choice = {bits_of(both.half_area()) >> blur, i ^ k}; // areas are not negative
-                    if (choice < best) best = choice;
-                }
-                choice_[i] = i ^ best.difference;
+        parallel_until(count, kPlocChunk, sink_, [&](uint64_t at) {
+            const auto i = static_cast<uint32_t>(at);
+            const uint32_t first = i < kRadius ? 0 : i - kRadius, last = std::min(i + kRadius, count - 1);
+            Choice best = {~0u, ~0u};
+            for (uint32_t k = first; k <= last; ++k) {
+                if (k == i) continue;
+                Bounds3 both = clusters_[i].box;
+                both.extend(clusters_[k].box);
+                const Choice choice = {bits_of(both.half_area()) >> blur, i ^ k}; // areas are not negative
+                if (choice < best) best = choice;
             }
+            choice_[i] = i ^ best.difference;
         });
     }
 

@@ -80,7 +80,7 @@ void read_values(std::ifstream& file, std::span<T> values, Sink& sink) {
         const std::span<T> part = values.first(std::min(kAtOnce, values.size()));
         file.read(reinterpret_cast<char*>(part.data()), static_cast<std::streamsize>(part.size_bytes()));
     }
-    if (!file) throw Unusable{"it cannot be read to its end"};
+    if (!file) throw Unusable{"the file cannot be read to its end"};
 }
 
 /// Reads a tree and validates every number of the file before it is used.
@@ -88,22 +88,26 @@ BuiltTree read_tree(const fs::path& path, const Hash128& key, std::size_t triang
     const uint64_t size = fs::file_size(path);
     std::ifstream file(path, std::ios::binary);
     Header header;
-    if (size < sizeof header) throw Unusable{"it is cut short"};
+    if (size < sizeof header) throw Unusable{"the file is truncated"};
     read_values(file, std::span(&header, 1), sink);
-    if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) throw Unusable{"it is not a tree that Pertev wrote"};
-    if (header.byte_order != kByteOrder || header.version != kVersion) throw Unusable{"another version wrote it"};
-    if (!(header.key == key) || header.triangle_count != triangle_count) throw Unusable{"it belongs to another mesh"};
+    if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0)
+        throw Unusable{"the file is not a tree that Pertev wrote"};
+    if (header.byte_order != kByteOrder || header.version != kVersion)
+        throw Unusable{"another version of Pertev wrote the file"};
+    if (!(header.key == key) || header.triangle_count != triangle_count)
+        throw Unusable{"the file belongs to another mesh"};
     if (header.node_count >= kMaxBvhTriangles || header.order_count < header.triangle_count ||
         header.order_count > kMaxCopies * header.triangle_count ||
         size != sizeof header + header.node_count * sizeof(BvhNode) + header.order_count * sizeof(uint32_t)) {
-        throw Unusable{"its size is not the stated one"};
+        throw Unusable{"the file's size differs from the size that it states"};
     }
     BuiltTree tree;
     tree.nodes.resize(header.node_count);
     tree.order.resize(header.order_count);
     read_values(file, std::span(tree.nodes), sink);
     read_values(file, std::span(tree.order), sink);
-    if (!(checksum_of(header, tree.nodes, tree.order) == header.checksum)) throw Unusable{"its checksum is wrong"};
+    if (!(checksum_of(header, tree.nodes, tree.order) == header.checksum))
+        throw Unusable{"the file's checksum is wrong"};
 
     tree.is_last.resize(tree.order.size());
     std::vector<bool> seen(triangle_count);
@@ -112,11 +116,11 @@ BuiltTree read_tree(const fs::path& path, const Hash128& key, std::size_t triang
         sink.check_at(i);
         tree.is_last[i] = (tree.order[i] & kEndOfLeaf) != 0;
         tree.order[i] &= ~kEndOfLeaf;
-        if (tree.order[i] >= triangle_count) throw Unusable{"its order of triangles is broken"};
+        if (tree.order[i] >= triangle_count) throw Unusable{"the file's order of triangles is invalid"};
         missing -= seen[tree.order[i]] ? 0 : 1;
         seen[tree.order[i]] = true;
     }
-    if (missing > 0) throw Unusable{"its order of triangles is broken"};
+    if (missing > 0) throw Unusable{"the file's order of triangles is invalid"};
     tree.root = header.root;
     tree.bounds = header.bounds;
     tree.depth = header.depth;
@@ -209,16 +213,18 @@ std::optional<Bvh> load_cached_bvh(const Hash128& key, const fs::path& folder,
     const fs::path path = file_of(key, folder);
     try {
         if (!fs::exists(path)) return std::nullopt;
-        if (!fs::is_regular_file(path)) throw Unusable{"it is not a regular file"};
+        if (!fs::is_regular_file(path)) throw Unusable{"the file is not a regular file"};
         Bvh bvh = make_bvh(read_tree(path, key, triangles.size(), sink), triangles, sink);
         if (const auto fault = find_broken_link(bvh, sink)) throw Unusable{*fault};
         std::error_code ignored; // a read-only cache can still be read
         fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);
         return bvh;
     } catch (const Unusable& unusable) {
-        sink.warn({FileLocation{path.string()}, fmt::format("ignored and rebuilt: {}", unusable.why)});
+        sink.warn({FileLocation{path.string()},
+                   fmt::format("the cached structure is ignored and rebuilt: {}", unusable.why)});
     } catch (const fs::filesystem_error& error) {
-        sink.warn({FileLocation{path.string()}, fmt::format("ignored and rebuilt: {}", error.code().message())});
+        sink.warn({FileLocation{path.string()},
+                   fmt::format("the cached structure is ignored and rebuilt: {}", error.code().message())});
     }
     return std::nullopt;
 }

@@ -10,7 +10,7 @@
 #include "accel/builders/reinsert_subtrees.h"
 #include "accel/builders/visit_upwards.h"
 #include "base/error.h"
-#include "base/parallel_for.h"
+#include "base/parallel_until.h"
 
 namespace pertev {
 namespace {
@@ -47,8 +47,7 @@ BinaryTree unfold(const Bvh& bvh, Sink& sink) {
         return tree;
     }
     tree.root = triangles + bvh.root;
-    parallel_for(inner, 1024, [&](uint64_t i) {
-        sink.check_at(i);
+    parallel_until(inner, 1024, sink, [&](uint64_t i) {
         const BvhNode& node = bvh.nodes[i];
         for (int k = 0; k < 2; ++k) {
             const uint32_t link = node.child[k];

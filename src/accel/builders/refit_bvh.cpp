@@ -25,7 +25,7 @@ std::unordered_map<uint32_t, std::size_t> firsts_of(const std::vector<BvhTriangl
 std::optional<std::string> why_no_refit(BvhBuilder builder) {
     if (!cuts_triangles(builder)) return std::nullopt;
     return std::string(name_of(builder)) +
-           ": its boxes hold parts of triangles, which change when the triangles move; it is rebuilt";
+           ": its boxes contain parts of triangles, which change when the triangles move; the tree is rebuilt";
 }
 
 Bvh refit_bvh(const Bvh& bvh, const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings) {

@@ -5,6 +5,7 @@
 
 #include "accel/builders/visit_upwards.h"
 #include "base/parallel_for.h"
+#include "base/parallel_until.h"
 
 namespace pertev {
 namespace {
@@ -79,13 +80,11 @@ private:
     /// the number of moves made.
     std::size_t round(std::vector<uint32_t>& nodes) {
         std::vector<Move> moves(nodes.size());
-        parallel_for(nodes.size(), 64, [&](uint64_t i) {
-            sink_.check_at(i);
+        parallel_until(nodes.size(), 64, sink_, [&](uint64_t i) {
             if (can_move(nodes[i])) moves[i] = find_move(nodes[i]);
         });
         std::erase_if(moves, [](const Move& move) { return move.target == kNoLink; });
-        parallel_for(moves.size(), kReinsertChunk, [&](uint64_t i) {
-            sink_.check_at(i);
+        parallel_until(moves.size(), kReinsertChunk, sink_, [&](uint64_t i) {
             own_[moves[i].node] = key_of(moves[i]);
             for_each_link(moves[i], [&](uint32_t at) { raise(lock_[at], key_of(moves[i])); });
         });

@@ -33,8 +33,8 @@ public:
         if (all.size() == 0) return tree;
         if (levels_needed(all.size()) > settings_.max_depth) {
             throw Error(ErrorCode::OverLimit,
-                        fmt::format("{} boxes do not fit into a tree of {} levels with {} to a leaf", all.size(),
-                                    settings_.max_depth, settings_.max_leaf));
+                        fmt::format("{} boxes do not fit into a tree of {} levels with at most {} in a leaf",
+                                    all.size(), settings_.max_depth, settings_.max_leaf));
         }
         measure(all);
         uint32_t leaf_count = 0;

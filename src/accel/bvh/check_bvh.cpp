@@ -10,7 +10,7 @@ namespace pertev {
 
 std::optional<std::string> find_broken_link(const Bvh& bvh, Sink& sink) {
     if (bvh.root == kNoLink) {
-        if (!bvh.nodes.empty() || !bvh.triangles.empty()) return "no root, but nodes or triangles";
+        if (!bvh.nodes.empty() || !bvh.triangles.empty()) return "the tree has nodes or triangles but no root";
         return std::nullopt;
     }
     struct Pending {
@@ -25,10 +25,10 @@ std::optional<std::string> find_broken_link(const Bvh& bvh, Sink& sink) {
         const Pending at = pending.back();
         pending.pop_back();
         depth = std::max(depth, at.depth);
-        if (at.link == kNoLink) return "an inner node links to nothing";
+        if (at.link == kNoLink) return "an inner node has no child";
         if (at.link & kLeafBit) {
             for (uint64_t i = at.link & ~kLeafBit;; ++i) {
-                if (i >= bvh.triangles.size()) return fmt::format("a leaf runs past triangle {}", i);
+                if (i >= bvh.triangles.size()) return fmt::format("a leaf extends beyond triangle {}", i);
                 if (triangle_seen[i]) return fmt::format("triangle {} is reached twice", i);
                 triangle_seen[i] = true;
                 ++triangles;
@@ -48,7 +48,7 @@ std::optional<std::string> find_broken_link(const Bvh& bvh, Sink& sink) {
     if (triangles != bvh.triangles.size()) {
         return fmt::format("{} of {} triangles are reached", triangles, bvh.triangles.size());
     }
-    if (depth != bvh.depth) return fmt::format("depth {}, stated {}", depth, bvh.depth);
+    if (depth != bvh.depth) return fmt::format("the depth is {}, but the tree states {}", depth, bvh.depth);
     return std::nullopt;
 }
 

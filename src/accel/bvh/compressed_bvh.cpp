@@ -5,7 +5,7 @@
 
 #include "accel/bvh/compress_boxes.h"
 #include "base/error.h"
-#include "base/parallel_for.h"
+#include "base/parallel_until.h"
 
 namespace pertev {
 namespace {
@@ -79,10 +79,7 @@ CompressedBvh compress(const WideBvh<8>& wide, Sink& sink) {
         int child[8];
     };
     std::vector<Slots> slots(wide.nodes.size());
-    parallel_for(slots.size(), kNodesAtOnce, [&](uint64_t i) {
-        sink.check_at(i);
-        assign_slots(wide.nodes[i], slots[i].child);
-    });
+    parallel_until(slots.size(), kNodesAtOnce, sink, [&](uint64_t i) { assign_slots(wide.nodes[i], slots[i].child); });
 
     // Assigns positions to nodes and their triangles.
     std::vector<uint32_t> wide_of = {0};
@@ -114,8 +111,7 @@ CompressedBvh compress(const WideBvh<8>& wide, Sink& sink) {
     }
 
     result.triangles.resize(triangles);
-    parallel_for(wide_of.size(), kNodesAtOnce, [&](uint64_t i) {
-        sink.check_at(i);
+    parallel_until(wide_of.size(), kNodesAtOnce, sink, [&](uint64_t i) {
         CompressedBvhNode& node = result.nodes[i];
         const WideBvhNode<8>& from = wide.nodes[wide_of[i]];
         const Slots& of = slots[wide_of[i]];

@@ -1,6 +1,6 @@
 #include "accel/bvh/parent_links.h"
 
-#include "base/parallel_for.h"
+#include "base/parallel_until.h"
 
 namespace pertev {
 namespace {
@@ -19,8 +19,7 @@ uint32_t split_of(const BvhNode& node) {
 void add_parent_links(Bvh& bvh, Sink& sink) {
     if (bvh.root & kLeafBit) return;
     bvh.nodes[bvh.root].parent = kNoLink;
-    parallel_for(bvh.nodes.size(), kParentGrain, [&](uint64_t i) {
-        sink.check_at(i);
+    parallel_until(bvh.nodes.size(), kParentGrain, sink, [&](uint64_t i) {
         BvhNode& node = bvh.nodes[i];
         node.split = split_of(node);
         for (uint32_t k = 0; k < 2; ++k) { // only the one parent of a node writes to it

@@ -75,7 +75,7 @@ WideBvh<kWidth> assemble(const Bvh& bvh, const CollapseSettings& settings, Sink&
         }
     }
     if (wide.depth > kMaxBvhDepth) {
-        throw Error(ErrorCode::OverLimit, fmt::format("a tree of {} children a node is {} levels deep, {} are allowed",
+        throw Error(ErrorCode::OverLimit, fmt::format("a tree with {} children per node has {} levels; the limit is {}",
                                                       kWidth, wide.depth, kMaxBvhDepth));
     }
     const float area = bvh.bounds.half_area();

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "base/parallel_for.h"
+#include "base/parallel_until.h"
 #include "math/double_vec3.h"
 #include "math/scalar.h"
 
@@ -44,8 +44,7 @@ WoopTriangle make_woop_triangle(Vec3 a, Vec3 b, Vec3 c, bool last) {
 
 WoopBvh make_woop_bvh(const Bvh& bvh, Sink& sink) {
     WoopBvh woop = {bvh, std::vector<WoopTriangle>(bvh.triangles.size())};
-    parallel_for(bvh.triangles.size(), kWoopGrain, [&](uint64_t i) {
-        sink.check_at(i);
+    parallel_until(bvh.triangles.size(), kWoopGrain, sink, [&](uint64_t i) {
         const BvhTriangle& t = bvh.triangles[i];
         woop.transforms[i] = make_woop_triangle(t.a, t.b, t.c, (t.flags & kLastInLeaf) != 0);
     });

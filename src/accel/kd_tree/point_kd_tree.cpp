@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/parallel_for.h"
+#include "base/sink.h"
 #include "math/bounds3.h"
 
 namespace pertev {
@@ -22,11 +23,14 @@ std::size_t count_of_left(std::size_t n) {
 
 class PointKdBuilder {
 public:
-    PointKdBuilder(std::span<const Vec3> points, std::vector<PointKdNode>& nodes) : points_(points), nodes_(nodes) {}
+    PointKdBuilder(std::span<const Vec3> points, std::vector<PointKdNode>& nodes, Sink& sink)
+        : points_(points), nodes_(nodes), sink_(sink) {}
 
     /// Builds the subtree at node `at` from the points `ids`.
     void build(std::span<uint32_t> ids, std::size_t at) const {
         if (ids.empty()) return;
+        const bool is_parallel = ids.size() >= kParallelPoints;
+        if (is_parallel) sink_.check();
         Bounds3 bounds;
         for (const uint32_t id : ids) bounds.extend(points_[id]);
         const Vec3 size = bounds.size();
@@ -41,7 +45,7 @@ public:
         nodes_[at] = kd_node(points_[ids[left]], ids[left], axis);
         const auto build_left = [&] { build(ids.first(left), 2 * at + 1); };
         const auto build_right = [&] { build(ids.subspan(left + 1), 2 * at + 2); };
-        if (ids.size() >= kParallelPoints) return parallel_invoke(build_left, build_right);
+        if (is_parallel) return parallel_invoke(build_left, build_right);
         build_left();
         build_right();
     }
@@ -49,11 +53,12 @@ public:
 private:
     std::span<const Vec3> points_;
     std::vector<PointKdNode>& nodes_;
+    Sink& sink_;
 };
 
 } // namespace
 
-PointKdTree build_point_kd_tree(std::span<const Vec3> points) {
+PointKdTree build_point_kd_tree(std::span<const Vec3> points, Sink& sink) {
     if (points.size() > kMaxKdPoints) {
         throw Error(ErrorCode::OverLimit, "a kd-tree over points holds at most 2^30 - 1 of them");
     }
@@ -64,7 +69,7 @@ PointKdTree build_point_kd_tree(std::span<const Vec3> points) {
         PERTEV_CHECK(is_finite(points[i]));
         ids[i] = i;
     }
-    PointKdBuilder(points, tree.nodes).build(ids, 0);
+    PointKdBuilder(points, tree.nodes, sink).build(ids, 0);
     return tree;
 }
 

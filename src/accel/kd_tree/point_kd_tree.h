@@ -17,6 +17,8 @@
 
 namespace pertev {
 
+class Sink;
+
 inline constexpr uint32_t kMaxKdPoints = (1u << 30) - 1; // an index has 30 bits, and its double must fit an int
 
 struct alignas(16) PointKdNode {
@@ -46,8 +48,8 @@ inline PointKdTreeView view_of(const PointKdTree& tree) {
 }
 
 /// Builds the tree. Points are finite, |coordinate| <= kMaxCoordinate. The result does not depend on the number of
-/// threads. Throws Error(OverLimit) for more than kMaxKdPoints.
-PointKdTree build_point_kd_tree(std::span<const Vec3> points);
+/// threads. Throws Error(OverLimit) for more than kMaxKdPoints, and Error(Interrupted) if `sink` stops it.
+PointKdTree build_point_kd_tree(std::span<const Vec3> points, Sink& sink);
 
 /// Offers `found` each point that may be within its limit, which may shrink during the search:
 ///   float limit() const             square of the distance beyond which points may be skipped

@@ -3,22 +3,25 @@
 #include <array>
 
 #include "base/error.h"
+#include "base/sink.h"
 #include "math/bounds3.h"
 
 namespace pertev {
 namespace {
 
-constexpr int kMaxLevels = 64; // after this many halvings a cell is a leaf whatever it holds
+constexpr std::size_t kCheckedSpheres = 1 << 12; // a node with so many spheres checks the sink
+constexpr int kMaxLevels = 64;                   // after this many halvings a cell is a leaf whatever it holds
 
 class PointOctreeBuilder {
 public:
-    PointOctreeBuilder(std::span<const Sphere> spheres, uint32_t max_leaf, const PointOctreeSpace& space)
-        : spheres_(spheres), max_leaf_(max_leaf), space_(space) {}
+    PointOctreeBuilder(std::span<const Sphere> spheres, uint32_t max_leaf, const PointOctreeSpace& space, Sink& sink)
+        : spheres_(spheres), max_leaf_(max_leaf), space_(space), sink_(sink) {}
 
     /// Builds the subtree over `ids`, which ascend and lie in the cube of `side` at `corner`. `spare` has the size of
     /// `ids`.
     void build(std::span<uint32_t> ids, std::span<uint32_t> spare, Vec3 corner, float side, int levels) {
         for (; ids.size() > max_leaf_ && levels > 0; --levels) {
+            if (ids.size() >= kCheckedSpheres) sink_.check();
             const float half = 0.5f * side;
             const Vec3 centre = corner + Vec3{half, half, half};
             std::array<std::size_t, 9> sizes = {}; // spheres that stay at the node, and of each octant
@@ -80,12 +83,14 @@ private:
     std::span<const Sphere> spheres_;
     const uint32_t max_leaf_;
     const PointOctreeSpace& space_;
+    Sink& sink_;
     uint32_t nodes_ = 0, placed_ = 0;
 };
 
 } // namespace
 
-uint32_t build_point_octree(std::span<const Sphere> spheres, const PointOctreeSpace& space, uint32_t max_leaf) {
+uint32_t build_point_octree(std::span<const Sphere> spheres, const PointOctreeSpace& space, Sink& sink,
+                            uint32_t max_leaf) {
     PERTEV_CHECK(max_leaf >= 1);
     const std::size_t count = spheres.size();
     if (count > kMaxOctreeSpheres) {
@@ -101,17 +106,17 @@ uint32_t build_point_octree(std::span<const Sphere> spheres, const PointOctreeSp
         bounds.extend(spheres[i].centre);
         ids[i] = i;
     }
-    PointOctreeBuilder builder(spheres, max_leaf, space);
+    PointOctreeBuilder builder(spheres, max_leaf, space, sink);
     builder.build(ids, spare, bounds.lo, max_component(bounds.size()), kMaxLevels);
     return builder.nodes();
 }
 
-PointOctree build_point_octree(std::span<const Sphere> spheres, uint32_t max_leaf) {
+PointOctree build_point_octree(std::span<const Sphere> spheres, Sink& sink, uint32_t max_leaf) {
     const std::size_t count = spheres.size();
     PointOctree tree = {std::vector<PointOctreeNode>(2 * count), std::vector<Sphere>(count),
                         std::vector<uint32_t>(count)};
     std::vector<uint32_t> work(2 * count);
-    tree.nodes.resize(build_point_octree(spheres, {tree.nodes, tree.spheres, tree.indices, work}, max_leaf));
+    tree.nodes.resize(build_point_octree(spheres, {tree.nodes, tree.spheres, tree.indices, work}, sink, max_leaf));
     return tree;
 }
 

@@ -19,6 +19,8 @@
 
 namespace pertev {
 
+class Sink;
+
 inline constexpr uint32_t kMaxOctreeSpheres = 1u << 30; // there are at most twice as many nodes
 
 struct alignas(16) Sphere {
@@ -65,10 +67,11 @@ inline PointOctreeView view_of(const PointOctree& tree) {
 
 /// Builds the tree. Cells with more than max_leaf spheres are split; spheres larger than half a cell stay at its
 /// node. Spheres are finite, |coordinate| and radius <= kMaxCoordinate. Throws Error(OverLimit) for more than
-/// kMaxOctreeSpheres.
-PointOctree build_point_octree(std::span<const Sphere> spheres, uint32_t max_leaf = 4);
+/// kMaxOctreeSpheres, and Error(Interrupted) if `sink` stops it.
+PointOctree build_point_octree(std::span<const Sphere> spheres, Sink& sink, uint32_t max_leaf = 4);
 /// Builds the tree in `space`, which may be for more spheres, and returns its number of nodes.
-uint32_t build_point_octree(std::span<const Sphere> spheres, const PointOctreeSpace& space, uint32_t max_leaf = 4);
+uint32_t build_point_octree(std::span<const Sphere> spheres, const PointOctreeSpace& space, Sink& sink,
+                            uint32_t max_leaf = 4);
 
 /// Squared distance from `at` to the box, 0 inside; no more than squared_distance to a point of it.
 HD inline float squared_distance_to_box(Vec3 lo, Vec3 hi, Vec3 at) {

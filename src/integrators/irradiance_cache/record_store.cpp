@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/parallel_for.h"
+#include "base/sink.h"
 #include "integrators/irradiance_cache/irradiance_cache_settings.h"
 
 namespace pertev {
@@ -17,7 +18,7 @@ PointOctreeView tree_over_centres(std::span<const Sphere> records, const Spacing
     Sphere* const centres = memory.spheres.data();
     for (std::size_t i = 0; i < records.size(); ++i) centres[i] = {records[i].centre, 0};
     const PointOctreeSpace tree = memory.tree();
-    const uint32_t count = build_point_octree({centres, records.size()}, tree);
+    const uint32_t count = build_point_octree({centres, records.size()}, tree, nobody());
     for (std::size_t k = 0; k < records.size(); ++k) tree.spheres[k].radius = records[tree.indices[k]].radius;
     float* const least = memory.least_radii.data();
     for (std::size_t i = count; i-- > 0;) { // reverse depth-first order: children come before their parents
@@ -155,7 +156,7 @@ void RecordStore::take(uint32_t made, float accuracy) {
         reached[i] = {spheres[i].centre, reaches[i]};
     }
     const PointOctreeSpace tree = spacing_.tree();
-    node_count_ = build_point_octree(reached, tree);
+    node_count_ = build_point_octree(reached, tree, nobody());
     reaches_.upload(reaches);
     nodes_.upload(tree.nodes.first(node_count_));
     tree_spheres_.upload(tree.spheres.first(count_));

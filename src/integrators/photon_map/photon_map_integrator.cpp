@@ -81,7 +81,11 @@ PhotonJob PhotonMapIntegrator::make_job(uint32_t pass, const FilmView& film) {
 
 void PhotonMapIntegrator::render(uint32_t first, uint32_t count, const FilmView& film) {
     check_sums(film);
-    for (uint32_t pass = first; pass < first + count && !is_abandoned(); ++pass) render_pass(pass, film);
+    try {
+        for (uint32_t pass = first; pass < first + count && !is_abandoned(); ++pass) render_pass(pass, film);
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::Interrupted) throw; // the film is discarded (stop_with)
+    }
 }
 
 void PhotonMapIntegrator::render_pass(uint32_t pass, const FilmView& film) {
@@ -95,7 +99,8 @@ void PhotonMapIntegrator::render_pass(uint32_t pass, const FilmView& film) {
                });
     const float shrunk = radius_of_pass(pass), largest = length(world_.centre) + world_.radius;
     job.near = max(shrunk * global_radius_, kMinPhotonRadius);
-    job.maps = maps_.build(job.near, max(shrunk * caustic_radius_, kMinPhotonRadius), largest, pass, subpaths.seed);
+    job.maps = maps_.build(job.near, max(shrunk * caustic_radius_, kMinPhotonRadius), largest, pass, subpaths.seed,
+                           stopping_sink());
     run_stages(job, 0, job.samples.count(), loop_capacity(), 1, [this](auto& schedule, const PhotonJob& part) {
         if (!is_abandoned()) run_gather(schedule, part);
     });

@@ -63,7 +63,7 @@ StoredPhotonsView PhotonMaps::clear() {
 }
 
 const PhotonMapsView& PhotonMaps::build(float global_radius, float caustic_radius, float largest, uint32_t pass,
-                                        uint32_t seed) {
+                                        uint32_t seed, Sink& sink) {
     queue_.copy_to_host(&found_, counts_.data(), sizeof found_);
     PERTEV_CHECK(found_.stored <= capacity_);
     const uint32_t all = found_.stored;
@@ -90,7 +90,7 @@ const PhotonMapsView& PhotonMaps::build(float global_radius, float caustic_radiu
     for (int k = 0; k < 2; ++k) {
         if (both[k]->count == 0) continue;
         fill_grid(*both[k], stored_[k].data(), starts_[k], largest, pass, seed);
-        if (search_ != PhotonSearch::Grid) build_trees(*both[k], k == 0 ? 0 : maps.global.count);
+        if (search_ != PhotonSearch::Grid) build_trees(*both[k], k == 0 ? 0 : maps.global.count, sink);
     }
     return maps;
 }
@@ -109,7 +109,7 @@ void PhotonMaps::fill_grid(PhotonMapView& map, Float4* points, Buffer<uint32_t>&
     map.grid = {cells, points, starts.data(), max_kept_};
 }
 
-void PhotonMaps::build_trees(PhotonMapView& map, uint32_t first) {
+void PhotonMaps::build_trees(PhotonMapView& map, uint32_t first, Sink& sink) {
     std::vector<Float4> positions(map.count);
     queue_.copy_to_host(positions.data(), map.photons.positions, positions.size() * sizeof(Float4));
     std::vector<uint32_t> kept; // the grid keeps them
@@ -122,7 +122,7 @@ void PhotonMaps::build_trees(PhotonMapView& map, uint32_t first) {
     if (search_ == PhotonSearch::KdTree) {
         std::vector<Vec3> points(positions.size());
         std::ranges::transform(positions, points.begin(), [](const Float4& p) { return Vec3{p.x, p.y, p.z}; });
-        PointKdTree tree = build_point_kd_tree(points);
+        PointKdTree tree = build_point_kd_tree(points, sink);
         for (PointKdNode& node : tree.nodes) node = kd_node(node.position, kept[node.index()], node.axis());
         kd_nodes_.upload_at(first, tree.nodes);
         map.kd_tree = {kd_nodes_.data() + first, static_cast<uint32_t>(tree.nodes.size())};
@@ -130,7 +130,7 @@ void PhotonMaps::build_trees(PhotonMapView& map, uint32_t first) {
     }
     std::vector<Sphere> spheres(positions.size());
     std::ranges::transform(positions, spheres.begin(), [](const Float4& p) { return Sphere{{p.x, p.y, p.z}, 0}; });
-    PointOctree tree = build_point_octree(spheres);
+    PointOctree tree = build_point_octree(spheres, sink);
     for (uint32_t& index : tree.indices) index = kept[index];
     const std::size_t first_node = 2 * std::size_t(first);
     PERTEV_CHECK(tree.nodes.size() <= 2 * positions.size());

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "base/sink.h"
 #include "device/buffer.h"
 #include "integrators/photon_map/estimate_radiance.h"
 #include "integrators/photon_map/photon_map_view.h"
@@ -22,8 +23,9 @@ public:
     /// Starts a pass: empties the maps and returns the arrays that photons are appended to.
     StoredPhotonsView clear();
     /// Builds the maps from the photons of pass `pass`. `largest` is the largest |coordinate| of any point. Waits for
-    /// the device.
-    const PhotonMapsView& build(float global_radius, float caustic_radius, float largest, uint32_t pass, uint32_t seed);
+    /// the device. Throws Error(Interrupted) if `sink` stops the building of a tree.
+    const PhotonMapsView& build(float global_radius, float caustic_radius, float largest, uint32_t pass, uint32_t seed,
+                                Sink& sink);
     /// Counts of the last build().
     const PhotonCounts& counts() const { return found_; }
     const PhotonMapsView& view() const { return view_; }
@@ -32,7 +34,7 @@ private:
     PhotonsView ordered() const { return {ordered_[0].data(), ordered_[1].data(), ordered_[2].data()}; }
     void fill_grid(PhotonMapView& map, Float4* points, Buffer<uint32_t>& starts, float largest, uint32_t pass,
                    uint32_t seed);
-    void build_trees(PhotonMapView& map, uint32_t first);
+    void build_trees(PhotonMapView& map, uint32_t first, Sink& sink);
 
     Queue& queue_;
     PhotonSearch search_ = PhotonSearch::Grid;

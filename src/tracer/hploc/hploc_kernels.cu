@@ -1,6 +1,7 @@
 #include "tracer/hploc/hploc_kernels.h"
 
 #include "accel/hploc/leaves.h"
+#include "base/parallel_until.h"
 #include "device/launch_body.h"
 #include "tracer/hploc/refit.h"
 
@@ -32,10 +33,7 @@ void launch_climb(Queue& queue, const hploc::Climb& climb, Sink& sink) {
     const Queue::Scope scope(queue, "join clusters");
     const UseThreads use(queue.threads());
     const hploc::ClimbFromLeaves stage = {climb};
-    parallel_for(climb.tree.count, 256, [&](uint64_t i) {
-        sink.check_at(i);
-        stage(static_cast<uint32_t>(i));
-    });
+    parallel_until(climb.tree.count, 256, sink, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
 }
 
 bool launch_emit(Queue& queue, const hploc::EmitWide& emit) {
