@@ -6,12 +6,13 @@ cd "$(dirname "${BASH_SOURCE[0]}")"
 
 usage() {
     cat <<'END'
-usage: ./setup.sh [--cpu | --cuda | --check-kernels] [--tests] [--no-apt] [--help]
+usage: ./setup.sh [--cpu | --cuda | --check-kernels] [--lab] [--tests] [--no-apt] [--help]
 
   --cpu            build without CUDA
   --cuda           build with CUDA; where no nvcc is found, fetch one from PyPI into build/cuda (about 300 MB)
   --check-kernels  build without CUDA, but compile the kernels to see whether they compile (needs nvcc)
-  --tests          build the tests too and run them; the exit status is theirs
+  --lab            build every traversal that `pertev lab` can compare, not only those that pictures use by default
+  --tests          build the tests and the laboratory too and run the tests; the exit status is theirs
   --no-apt         install nothing; say what is missing
 
 Without --cpu or --cuda, CUDA is used if there is a GPU's driver; nvcc is fetched if there is none. Kernels are compiled
@@ -21,14 +22,15 @@ END
 
 readonly oldest_systems="Debian 12 or Ubuntu 24.04"
 readonly build=build
-cuda=auto tests=false apt=true
+cuda=auto lab=false tests=false apt=true
 for arg in "$@"; do
     case $arg in
         --cpu | --cuda | --check-kernels)
             [[ $cuda == auto ]] || { echo "setup.sh: --cpu, --cuda and --check-kernels exclude each other" >&2; exit 2; }
             cuda=$arg
             ;;
-        --tests) tests=true ;;
+        --lab) lab=true ;;
+        --tests) tests=true lab=true ;;
         --no-apt) apt=false ;;
         -h | --help) usage; exit 0 ;;
         *) echo "setup.sh: unknown flag '$arg'" >&2; usage >&2; exit 2 ;;
@@ -294,6 +296,9 @@ sys.exit(not (pathlib.Path(sysconfig.get_path("include")) / "Python.h").exists()
 
 # ---- Configure and build ----------------------------------------------------------------------------------------
 
+# had OPTION: did the last run configure with this option?
+had() { [[ -e $build/setup.options ]] && grep -q "$1" "$build/setup.options"; }
+
 configure() {
     local options=(-G Ninja -DCMAKE_BUILD_TYPE=Release -DPERTEV_UNITY=ON)
     if command -v ccache >/dev/null; then
@@ -308,8 +313,13 @@ configure() {
     else
         options+=(-DPERTEV_CUDA=OFF)
     fi
-    # A build folder that has tests keeps them: a plain run does not throw work away.
-    if $tests || { [[ -e $build/setup.options ]] && grep -q 'TESTS=ON' "$build/setup.options"; }; then
+    # A build folder that has tests or the laboratory keeps them: a plain run does not throw work away.
+    if $lab || had LAB_KERNELS=ON; then
+        options+=(-DPERTEV_LAB_KERNELS=ON)
+    else
+        options+=(-DPERTEV_LAB_KERNELS=OFF)
+    fi
+    if $tests || had TESTS=ON; then
         options+=(-DPERTEV_TESTS=ON)
         find_python
         [[ -z $python ]] || options+=(-DPERTEV_PYTHON=ON "-DPython_EXECUTABLE=$python")
@@ -363,6 +373,9 @@ summary() {
         fi
     else
         echo "  CUDA      left out: $cuda_note"
+    fi
+    if ! grep -q 'PERTEV_LAB_KERNELS:BOOL=ON' "$build/CMakeCache.txt"; then
+        echo "  lab       has only the traversals of pictures: ./setup.sh --lab builds all"
     fi
     if ! grep -q 'PERTEV_TESTS:BOOL=ON' "$build/CMakeCache.txt"; then
         echo "  tests     left out: ./setup.sh --tests builds and runs them"

@@ -29,7 +29,9 @@ std::optional<std::string> why_no_tracer(const Combination& c, bool on_cuda) {
     if (auto reason = why_not(c, on_cuda)) return reason;
     if (find_kernel(c, false, on_cuda) != nullptr) return std::nullopt;
 #if !defined(PERTEV_LAB_KERNELS)
-    return "left out of this build, which has only the traversals of pictures (PERTEV_LAB_KERNELS=OFF)";
+    return "not in this build, which has only the default traversals of pictures; setup.sh builds all with its option "
+           "'lab' "
+           "(CMake: PERTEV_LAB_KERNELS=ON)";
 #endif
     if (!c.options.is_exact()) return "fast and woop tests are compiled only with RTA and nearer children first";
     return c.options.rta_at_pops ? "not compiled" : "RTA at nodes only is compiled only with nearer children first";
