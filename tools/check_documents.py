@@ -102,7 +102,7 @@ def change_faults(text, ends):
     """Faults of the table of changes: files to be touched that are not there, and numbers that are not those of the files."""
     for row in re.findall(r"(?m)^\| (?!change )(.*) \| .* \| (\d+(?: \([^|]*?\))?: .*) \|$", text.split(ON_PAPER)[-1]):
         for part in row[1].split("; "):
-            names = re.findall(r"`([\w./]+\.(?:h|cpp|txt|toml|sh))`", part)
+            names = re.findall(r"`([\w./]+\.(?:h|cpp|cmake|txt|toml|sh))`", part)
             yield from (f"architecture.md: {row[0]}: {name} is not there" for name in names if name not in ends)
             if (number := re.match(r"(\d+)(?: \([^)]*\))?:", part)) and int(number[1]) != len(names):
                 yield f"architecture.md: {row[0]}: {number[1]} files are {len(names)}"
