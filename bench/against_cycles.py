@@ -60,7 +60,7 @@ class Scene:
             return material
         shader.inputs["Strength"].default_value = strength
         face, mix = tree.nodes.new("ShaderNodeNewGeometry"), tree.nodes.new("ShaderNodeMixShader")
-        tree.links.new(face.outputs["Backfacing"], mix.inputs[0])  # a lamp shines from its front
+        tree.links.new(face.outputs["Backfacing"], mix.inputs[0])  # an emitter emits from its front
         tree.links.new(shader.outputs[0], mix.inputs[1])
         tree.links.new(mix.outputs[0], output.inputs["Surface"])
         return material

@@ -3,7 +3,7 @@
 
 Needs PyPI's mitsuba 3.9 (its variants llvm_ad_rgb, for which libLLVM must be there, and cuda_ad_rgb) and PERTEV_SCENES
 (docs/scenes.md); a job whose scene is missing is left out. Jobs: grey Sponza under a constant sky, by two roulettes, Bitterli's Cornell
-box to two depths, the Stanford bunny under a constant sky, and a corridor of 5,000 small lamps in direct light. Both renderers use
+box to two depths, the Stanford bunny under a constant sky, and a corridor with 5,000 small emitters in direct light. Both renderers use
 64 samples, a box filter of one pixel and their own best sampler (Sobol here, multijitter there).
 
 Rates are medians of samples a second, without reading, trees and Mitsuba's compiling. The error is relMSE over the best 98 % of pixels
@@ -66,7 +66,7 @@ def scene_of_file(job, width, height):
 
 def hold_to_avx2(core):
     """Has Dr.Jit compile for Haswell's eight lanes, by jit_llvm_set_target(processor, features, lanes) of its core, which Python does not
-    show. Embree is then asked for eight rays at a time, and keeps AVX-512 within."""
+    show. Embree then gets eight rays at a time, and uses AVX-512 internally."""
     ctypes.CDLL(str(core))._Z19jit_llvm_set_targetPKcS0_j(b"haswell", b"+avx2,+fma,+f16c", 8)
 
 

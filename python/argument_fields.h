@@ -51,7 +51,7 @@ public:
     }
     ArrayArgument needed(const char* field) {
         auto value = array(field);
-        if (!value) refuse_argument(path_of(field), "it is missing");
+        if (!value) refuse_argument(path_of(field), "the field is missing");
         return std::move(*value);
     }
     std::string text(const char* field, const std::string& otherwise) {
@@ -89,7 +89,7 @@ public:
         if (!given) return std::nullopt;
         std::vector<double> values = given->of_shape({4, 4}).doubles();
         const double last[] = {0, 0, 0, 1};
-        if (!std::equal(last, last + 4, values.begin() + 12)) given->fail("its last row is not 0, 0, 0, 1");
+        if (!std::equal(last, last + 4, values.begin() + 12)) given->fail("expected 0, 0, 0, 1 as the last row");
         return values;
     }
     /// Returns the index of a text among names.
@@ -107,7 +107,7 @@ public:
             const std::string name = text_argument(key, path_);
             if (std::ranges::find(known_, name) != known_.end()) continue;
             refuse_argument(path_ + "/" + name,
-                            fmt::format("there is no such field; there are {}", fmt::join(known_, ", ")));
+                            fmt::format("unknown field; the fields are {}", fmt::join(known_, ", ")));
         }
     }
 

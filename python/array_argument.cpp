@@ -53,15 +53,15 @@ ArrayArgument::ArrayArgument(nb::handle value, std::string name) : name_(std::mo
         try {
             const nb::object made = nb::module_::import_("numpy").attr("asarray")(value);
             if (!nb::try_cast(made, array_))
-                fail(fmt::format("{} is no array of numbers", nb::type_name(value.type()).c_str()));
+                fail(fmt::format("{} is not an array of numbers", nb::type_name(value.type()).c_str()));
         } catch (nb::python_error& error) {
-            fail(fmt::format("no array of numbers: {}", error.what()));
+            fail(fmt::format("not an array of numbers: {}", error.what()));
         }
     }
     if (array_.device_type() == nb::device::cpu::value) return;
     const nb::object on_host = nb::module_::import_("pertev._arrays").attr("on_host")(value);
     if (!nb::try_cast(on_host, array_) || array_.device_type() != nb::device::cpu::value)
-        fail("the array is not in the memory of the CPU; copy it there");
+        fail("the array is not in the CPU's memory; copy it there");
 }
 
 void ArrayArgument::fail(const std::string& why) const { throw Error(ErrorCode::BadInput, name_, "", why); }
@@ -80,7 +80,8 @@ const ArrayArgument& ArrayArgument::of_shape(std::initializer_list<std::size_t> 
     if (has_shape(shape)) return *this;
     std::vector<std::size_t> own;
     for (std::size_t axis = 0; axis < axes(); ++axis) own.push_back(array_.shape(axis));
-    fail(fmt::format("its shape is {}; expected {}", text_of_shape(own), text_of_shape({shape.begin(), shape.size()})));
+    fail(fmt::format("the array's shape is {}; expected {}", text_of_shape(own),
+                     text_of_shape({shape.begin(), shape.size()})));
 }
 
 bool ArrayArgument::is_uint8() const { return array_.dtype() == nb::dtype<uint8_t>(); }
@@ -121,7 +122,7 @@ std::vector<To> ArrayArgument::values() const {
         if (type.bits == 32) return is_signed ? values_of<int32_t, To>() : values_of<uint32_t, To>();
         if (type.bits == 64) return is_signed ? values_of<int64_t, To>() : values_of<uint64_t, To>();
     }
-    fail("its dtype is not that of numbers; expected floats or integers");
+    fail("the array's dtype is not numeric; expected floats or integers");
 }
 
 std::vector<float> ArrayArgument::floats() const { return values<float>(); }
@@ -129,7 +130,7 @@ std::vector<double> ArrayArgument::doubles() const { return values<double>(); }
 std::vector<uint8_t> ArrayArgument::bytes() const { return values<uint8_t>(); }
 
 std::vector<uint32_t> ArrayArgument::indices(std::size_t end) const {
-    if (!is_whole()) fail("its dtype is not that of integers");
+    if (!is_whole()) fail("the array's dtype is not an integer type");
     std::vector<uint32_t> found;
     found.reserve(array_.size());
     for (const int64_t index : values<int64_t>()) {

@@ -86,7 +86,7 @@ void PythonBatch::render(OpenedScene& opened, Session& session, const CamerasArg
     check_batch(batch, settings);
     if (!is_empty() && !fits(settings, cameras, queue)) {
         throw Error(ErrorCode::BadInput, "out", "",
-                    "its arrays are of other pictures: number, size, layers and scene must be the same");
+                    "the arrays belong to other pictures: number, size, layers and scene must be the same");
     }
     const uint32_t at_once = size_of_chunk(opened, settings, cameras, options);
     if (is_empty()) {
@@ -95,8 +95,8 @@ void PythonBatch::render(OpenedScene& opened, Session& session, const CamerasArg
         const MemoryLimit limit = limit_of(setup, settings, options);
         if (bytes > limit.bytes) {
             throw Error(ErrorCode::OutOfMemory, "cameras", fmt::format("{}", count),
-                        fmt::format("{:.1f} GiB are needed and {:.1f} GiB are there; pertev.render_chunks() renders "
-                                    "them in parts",
+                        fmt::format("{:.1f} GiB are needed and {:.1f} GiB are available; pertev.render_chunks() "
+                                    "renders the pictures in parts",
                                     static_cast<double>(bytes) / (1u << 30),
                                     static_cast<double>(limit.bytes) / (1u << 30)));
         }

@@ -92,7 +92,7 @@ void define_batch(nb::module_& module) {
                             R"(An array in a GPU's memory, for PyTorch, JAX, CuPy or Warp.
 
 It has DLPack (`torch.from_dlpack(array)`) and `__cuda_array_interface__`, shares the memory of its BatchResult and keeps
-it. The work on it has ended, so that any stream may use it.)")
+it. Its contents are complete, so any stream may use it.)")
         .def("__dlpack__",
              [](const DeviceArray& self, const nb::kwargs& how) { return self.exported().attr("__dlpack__")(**how); })
         .def("__dlpack_device__",

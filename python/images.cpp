@@ -30,7 +30,7 @@ Image image_of(nb::handle value, const std::string& name) {
     if (channels < 1 || channels > 4) {
         array.fail("expected the shape (height, width), or (height, width, channels) with 1 to 4 channels");
     }
-    if (array.length(0) > UINT32_MAX || array.length(1) > UINT32_MAX) array.fail("it is too large");
+    if (array.length(0) > UINT32_MAX || array.length(1) > UINT32_MAX) array.fail("the image is too large");
     return {static_cast<uint32_t>(array.length(1)), static_cast<uint32_t>(array.length(0)),
             static_cast<uint32_t>(channels), array.floats()};
 }

@@ -192,20 +192,19 @@ CamerasArgument cameras_of(nb::handle poses, nb::handle intrinsics, nb::handle s
     cameras.poses = rows_of(places);
     cameras.has_color = has_color;
     const std::size_t count = cameras.poses.size();
-    if (count == 0) places.fail("there is no camera");
+    if (count == 0) places.fail("expected at least one camera");
     if (!intrinsics.is_none()) {
         const ArrayArgument array(intrinsics, "K");
         cameras.intrinsics = rows_of(array);
         const std::size_t rows = cameras.intrinsics.size();
         const bool has_shape = array.has_shape({kAny, 3, 3}) || array.has_shape({kAny, 4});
-        if (!has_shape || (rows != 1 && rows != count))
-            array.fail("expected (3, 3), or (N, 3, 3) as there are cameras");
+        if (!has_shape || (rows != 1 && rows != count)) array.fail("expected (3, 3), or (N, 3, 3) for N cameras");
     }
     if (!seeds.is_none()) {
         const ArrayArgument array(seeds, "seeds");
         cameras.seeds = array.indices(std::size_t{1} << 32);
         if (array.axes() != 1 || (cameras.seeds.size() != 1 && cameras.seeds.size() != count)) {
-            array.fail("expected one, or as many as there are cameras");
+            array.fail("expected one, or one for each camera");
         }
     }
     return cameras;
@@ -347,10 +346,10 @@ NB_MODULE(_core, module) {
     define_result(module);
     define_batch(module);
     module.def(
-        "settings", [] { return settings_of(false); }, "The rows of the table of settings that a picture has");
+        "settings", [] { return settings_of(false); }, "The settings of a picture");
     module.def(
-        "frame_settings", [] { return settings_of(true); }, "Further rows, which only frames have");
-    module.def("part_settings", &settings_of_parts, "Further rows, which only a single picture has");
+        "frame_settings", [] { return settings_of(true); }, "Additional settings of frames");
+    module.def("part_settings", &settings_of_parts, "Additional settings of single pictures");
     module.def("read_cameras", &cameras_of_file);
     module.def("builtin_scenes", &builtin_scene_names, "Names of the scenes that are part of Pertev");
     define_scene(module);

@@ -9,7 +9,7 @@ namespace {
 
 SceneParameter parameter_of(const SceneParameters& parameters, const Scene& scene, const std::string& path) {
     if (const auto found = parameters.find(scene, path)) return *found;
-    throw Error(ErrorCode::BadInput, path, "", "with these settings the scene has no such parameter");
+    throw Error(ErrorCode::BadInput, path, "", "the scene has no such parameter with these settings");
 }
 
 } // namespace

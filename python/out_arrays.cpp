@@ -80,7 +80,7 @@ void check_arrays(std::span<const OutArray> arrays, const RenderSettings& settin
             continue;
         }
         throw Error(ErrorCode::BadInput, "out", array.name,
-                    fmt::format("expected an array of {} of shape ({}), in the CPU's memory and in the order of C",
+                    fmt::format("expected a C-contiguous array of {} with shape ({}) in the CPU's memory",
                                 is_ids ? "uint32" : "float32", fmt::join(expected, ", ")));
     }
 }

@@ -70,7 +70,7 @@ nb::dict layers_of(nb::handle owner) {
     return layers;
 }
 
-/// Returns a layer that is asked for as an attribute. Throws AttributeError where it was not requested.
+/// Returns a layer that is read as an attribute. Throws AttributeError if it was not requested.
 nb::object layer_of(nb::handle owner, const char* name) {
     const nb::dict layers = layers_of(owner);
     if (!layers.contains(name)) {
@@ -115,7 +115,7 @@ nb::object pose_of(const PythonResult& self) {
 nb::object intrinsics_of(const PythonResult& self) {
     const PictureRecord& record = record_of(self);
     const Camera& camera = record.camera.camera;
-    if (has_parallel_rays(camera.projection)) throw nb::attribute_error("a camera with parallel rays has no K");
+    if (has_parallel_rays(camera.projection)) throw nb::attribute_error("an orthographic camera has no K");
     const auto width = static_cast<double>(record.settings.width), height = static_cast<double>(record.settings.height);
     const double focal = 0.5 * height / static_cast<double>(half_view_height(camera));
     const Intrinsics k = camera.intrinsics.value_or(
@@ -183,7 +183,7 @@ Arrays share the memory of the result, which lives as long as one of them does, 
                        "The picture's hash, as `pertev render` and `pertev info` print it");
     result.def_prop_ro(
         "pose", &pose_of,
-        "float64 (4, 4): the camera's place and axes, world from camera; it looks along -z, and y is up");
+        "float64 (4, 4): the camera's position and axes, world from camera; it looks along -z, and y is up");
     result.def_prop_ro("K", &intrinsics_of,
                        "float64 (3, 3): focal lengths and principal point in pixels from the upper left corner");
     result.def("_repr_png_", &png_of);

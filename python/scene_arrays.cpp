@@ -23,7 +23,7 @@ using Names = std::map<std::string, uint32_t>;
 
 uint32_t named(const Names& names, const std::string& name, const std::string& path) {
     const auto found = names.find(name);
-    if (found == names.end()) throw Error(ErrorCode::BadInput, path, name, "there is no object of this name");
+    if (found == names.end()) throw Error(ErrorCode::BadInput, path, name, "there is no object with this name");
     return found->second;
 }
 
@@ -58,7 +58,7 @@ TextureImage image_of(const ArrayArgument& array) {
     if (channels != 1 && channels != 3 && channels != 4) {
         array.fail("expected the shape (height, width), or (height, width, channels) with 1, 3 or 4 channels");
     }
-    if (array.length(0) == 0 || array.length(1) == 0) array.fail("it has no pixels");
+    if (array.length(0) == 0 || array.length(1) == 0) array.fail("the image has no pixels");
     const auto expand = [&]<class Value>(const std::vector<Value>& values, Value opaque) {
         std::vector<Value> pixels;
         pixels.reserve(values.size() / channels * 4);
@@ -143,16 +143,16 @@ Camera camera_of(ArgumentFields& fields, DoubleVec3 origin) {
     const auto eye = fields.point("eye"), target = fields.point("target");
     Vec3 up = {0, 1, 0};
     fields.vector("up", up);
-    if (transform && (eye || target)) refuse_argument(fields.path(), "give a transform, or an eye and a target");
-    if (eye.has_value() != target.has_value()) refuse_argument(fields.path(), "an eye and a target belong together");
+    if (transform && (eye || target)) refuse_argument(fields.path(), "expected a transform, or an eye and a target");
+    if (eye.has_value() != target.has_value()) refuse_argument(fields.path(), "expected both an eye and a target");
     if (transform) {
         const auto rigid = without_scale(transform_of(*transform, origin));
-        if (!rigid) refuse_argument(fields.path_of("transform"), "its direction is lost");
+        if (!rigid) refuse_argument(fields.path_of("transform"), "the camera has no direction");
         camera.world_from_camera = *rigid;
     } else if (eye) {
         camera.world_from_camera = look_at(to_float(*eye - origin), to_float(*target - origin), up);
         if (!is_finite(camera.world_from_camera))
-            refuse_argument(fields.path_of("target"), "it must differ from the eye, and its direction from up");
+            refuse_argument(fields.path_of("target"), "the target must differ from the eye, and its direction from up");
         camera.focus_distance = length(to_float(*target - *eye));
     }
     camera.projection =
@@ -183,7 +183,7 @@ std::optional<Environment> environment_of(nb::handle value) {
     const Rgb& scale = environment.scale;
     if (!is_light(scale.r) || !is_light(scale.g) || !is_light(scale.b) ||
         !std::ranges::all_of(environment.image.pixels, is_light)) {
-        array.fail("radiance is finite and not negative");
+        array.fail("expected a finite radiance of at least 0");
     }
     return environment;
 }

@@ -94,7 +94,7 @@ void set_instance(Scene& scene, uint32_t i, std::span<const double> values) {
 }
 
 std::string why_no_aim(const Scene& scene, uint32_t, std::span<const double> values) {
-    return without_scale(transform_of(values, scene.origin_in_file)) ? "" : "its direction is lost";
+    return without_scale(transform_of(values, scene.origin_in_file)) ? "" : "the light has no direction";
 }
 
 void set_light(Scene& scene, uint32_t i, std::span<const double> values) {
@@ -172,7 +172,7 @@ std::vector<Property> of_lights() {
          .set = [](Scene& scene, uint32_t i,
                    std::span<const double> v) { scene.lights[i].direction = normalize_safely(vec3(v)); },
          .why_not = [](const Scene&, uint32_t, std::span<const double> v) -> std::string {
-             return is_finite(normalize_safely(vec3(v))) ? "" : "a direction has a length";
+             return is_finite(normalize_safely(vec3(v))) ? "" : "expected a direction other than 0";
          }},
         {.name = "transform",
          .shape = {4, 4},
@@ -331,9 +331,10 @@ void check_parameter(const Scene& scene, const SceneParameter& parameter, std::s
     }
     if (property.shape.size() == 2) {
         const double last[] = {0, 0, 0, 1};
-        if (!std::equal(last, last + 4, values.begin() + 12)) fail(path, "the last row of a transform is 0, 0, 0, 1");
+        if (!std::equal(last, last + 4, values.begin() + 12))
+            fail(path, "expected 0, 0, 0, 1 as the last row of a transform");
     }
-    if (is_animated(scene, parameter)) fail(path, "an animation changes it");
+    if (is_animated(scene, parameter)) fail(path, "an animation changes this parameter");
     if (!property.why_not) return;
     if (const std::string why = property.why_not(scene, parameter.index, values); !why.empty()) fail(path, why);
 }

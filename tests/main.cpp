@@ -33,6 +33,6 @@ int main(int argc, char** argv) {
     pertev::test::parse_options(argc, argv);
     doctest::Context context(argc, argv);
     const int status = context.run();
-    // Scenes were missing and nothing else was tested, which is no pass.
+    // Scenes were missing and nothing was tested, which does not count as passed.
     return status == 0 && g_assertions == 0 && pertev::test::scene_was_missing() ? kSkipped : status;
 }

@@ -1,6 +1,6 @@
 # For scripts that bring libraries along (source it): which ones a program loads, and their licences.
 
-# libraries_of FILE...: prints the files of the libraries that these load, but for the C library's own.
+# libraries_of FILE...: prints the files of the libraries that these load, except those of the C library.
 libraries_of() {
     ldd "$@" | awk '$2 == "=>" && $3 ~ /^\// { print $3 }' |
         grep -vE '/(libc|libm|libdl|libpthread|librt|ld-linux[^/]*)\.so' | sort -u

@@ -193,7 +193,7 @@ def check(source, compilers, nvcc, threads, folders=()):
 
 
 GOOD = '#pragma once\n#include "base/host_device.h"\n'
-BAD_HEADERS = {  # each compiles for somebody, and must fail for the compiler named
+BAD_HEADERS = {  # each compiles for some compiler, and must fail for the compiler named
     "cxx": "#pragma once\nHD inline int f(Vec3 v) { return 0; }\n",
     "unit": GOOD + "inline int f(int x) { return g(x); }\n",  # g is good.h's, which it does not include
     "nvcc": GOOD + "inline int on_host(int x) { return x; }\nHD inline int f(int x) { return on_host(x); }\n",

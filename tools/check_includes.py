@@ -3,7 +3,7 @@
 
 ALLOWED is the "may know" column of docs/architecture.md: a module may include itself and the modules that stand there, all
 of which come before it. Beyond that table: only device/cuda and .cu files include CUDA's headers, no integrator includes
-another, but for the machines that several are made of (integrators/ray_tree, subpaths), other modules include of an
+another, except the parts that several share (integrators/ray_tree, subpaths), other modules include of an
 integrator only its settings (*_settings.h), and neither files nor folders include each other in a circle: the files that
 lie in a folder itself count as one, each folder below it as another.
 

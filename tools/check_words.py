@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Refuses comments that begin as a fragment and commit subjects that are too long, with file and line.
+"""Refuses comments that begin as a fragment or use vague words, and commit subjects that are too long, with file and line.
 
 A comment, docstring or trailing comment names a thing or is a sentence, and is understood without its neighbour. One that
 begins with a word of FRAGMENTS leans on another one, and the comment of a declaration that begins with one of CLAUSES is
-half a sentence. Subjects are checked for the commits that follow the one that added
+half a sentence. VAGUE are words with a plain or standard one: name who acts, say "emitter", "truncated", "except". Names
+in backquotes and strings are not checked. Subjects are checked for the commits that follow the one that added
 this file; where there is no git or no history, they are not checked.
 
 `check_words.py [ROOT]` checks the tree, `--self-test` checks this tool on text that it must refuse or accept.
@@ -23,6 +24,8 @@ SCRIPT_SUFFIXES = {".cmake", ".sh"}
 FRAGMENTS = re.compile(r"[/*!<#\s]*(?:of|what|those|the same|likewise|as|beside)\b", re.IGNORECASE)
 CLAUSES = re.compile(r"/// *(?:whether|why|how|where|when|that|these|it|they|then|and|so|to|from|by|without|with the)\b",
                      re.IGNORECASE)
+VAGUE = re.compile(r"\b(?:(?:is|are) (?:told|asked|seen)|asked (?:for|about)|somebody|nobody(?!\()|stuff|thrice|the very|but for|"
+                   r"cut short|proven|lamps?|what is (?:there|wrong|right)|for ever|whichever way|as it is,)\b", re.IGNORECASE)
 LONGEST_SUBJECT = 72
 
 # Strings are matched so that a "//" in one begins no comment; a ' between digits separates them.
@@ -93,6 +96,9 @@ def comment_faults(root):
         for line, comment in comments_of(file):
             if FRAGMENTS.match(comment) or CLAUSES.match(comment):
                 yield f"{file.relative_to(root)}:{line}: a comment is no fragment: {comment.splitlines()[0]}"
+            vague = VAGUE.search(re.sub(r"`[^`]*`|\"[^\"]*\"|'[^']*'", "", re.sub(r"\s+(?://+|#+|\*)?\s*", " ", comment)))
+            if vague:
+                yield f"{file.relative_to(root)}:{line}: \"{vague[0]}\" is vague: {comment.splitlines()[0]}"
 
 
 def git(root, *arguments):
@@ -141,6 +147,11 @@ CASES = [
     (".sh", "a=$#\n# What it is\n", 2),
     (".sh", "a='# of'; b=${a#of}\n", 0),
     ("/run", "#!/bin/bash\n# As before\n", 2),
+    (".h", "/// Takes what a lamp emits.\n", 1),
+    (".cpp", "int a; // the light that is asked\n       // for\n", 1),
+    (".py", "a = 1  # nobody steers\n", 1),
+    (".h", "/// Drops messages, as nobody() does; `lamp` sets 'a lamp'.\n", 0),
+    (".cpp", 'auto a = "lamp";\n', 0),
 ]
 
 
@@ -183,7 +194,7 @@ def main():
         sys.exit(1 if failures else 0)
     root = pathlib.Path(sys.argv[1]) if sys.argv[1:] else pathlib.Path(__file__).resolve().parent.parent
     faults = list(comment_faults(root)) + list(subject_faults(root))
-    print("\n".join(faults) or "no comment begins as a fragment and no subject is too long")
+    print("\n".join(faults) or "no comment begins as a fragment or is vague, and no subject is too long")
     sys.exit(1 if faults else 0)
 
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Writes a corridor lit by 5,000 small lamps as OBJ, and its MTL beside it: tools/make_corridor.py OUT.obj
+"""Writes a corridor lit by 5,000 small emitters as OBJ, and its MTL beside it: tools/make_corridor.py OUT.obj
 
-A closed corridor 3 m wide, 3 m high and 60 m long with its floor at y = 0, diffuse, of reflectance 0.6. The lamps are triangles with
-edges of 2 cm that hang within half a metre of the ceiling, turned any way that shines downwards, all equally bright: 50 W/(sr m2),
+A closed corridor 3 m wide, 3 m high and 60 m long with its floor at y = 0, diffuse, of reflectance 0.6. The emitters are triangles with
+edges of 2 cm that hang within half a metre of the ceiling, in any orientation that faces down, all equally bright: 50 W/(sr m2),
 from the front. +y up; look along -z from (0, 1.6, 29.5).
 """
 
@@ -25,7 +25,7 @@ def cross(a, b):
 
 
 def lamp(random_):
-    """Corners of one triangle, counterclockwise as seen from where it shines."""
+    """Corners of one triangle, counterclockwise as seen from its emitting side."""
     centre = [random_.uniform(-0.48, 0.48) * WIDTH, HEIGHT - random_.uniform(0.03, 0.5), random_.uniform(-0.495, 0.495) * LENGTH]
     normal = unit([random_.uniform(-0.7, 0.7), -1, random_.uniform(-0.7, 0.7)])
     side = unit(cross(normal, [0, 0, 1]))

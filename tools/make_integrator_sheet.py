@@ -3,8 +3,8 @@
 
     tools/make_integrator_sheet.py build/bin/pertev docs/pictures/integrators.jpg
 
-The scene is the Cornell box with a ball of glass in place of the short block, and a point light below the lamp, because some
-integrators know only lights without size. Needs Pillow.
+The scene is the Cornell box with a ball of glass in place of the short block, and a point light below the emitter,
+because some integrators support only punctual lights. Needs Pillow.
 """
 
 import argparse

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Writes the Cornell box with a lamp and a block that move, for `pertev bench sequence`: make_moving_box.py OUT.gltf
+"""Writes the Cornell box with a moving emitter and a moving block, for `pertev bench sequence`: make_moving_box.py OUT.gltf
 [--mirror]
 
-The box is scenes/cornell-box/cornell-box.gltf. In 2.5 s the lamp sinks below the ceiling and swings from side to side,
+The box is scenes/cornell-box/cornell-box.gltf. In 2.5 s the emitter sinks below the ceiling and swings from side to side,
 the short block slides away from its wall and back. With --mirror the tall block is a mirror.
 """
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Writes scenes/transport/: small scenes in which light comes to what the camera sees by narrow ways, and one of soft light.
 
-blind: a lamp in a housing under the ceiling, behind slanted slats, so that most of the light has met these first.
-caustic: a small lamp over a ball of clear glass, whose light gathers on the floor.
-uplight: a lamp in a bowl that sends its light to the ceiling alone.
+blind: an emitter in a housing under the ceiling, behind slanted slats, so that most of the light has met these first.
+caustic: a small emitter over a ball of clear glass, whose light gathers on the floor.
+uplight: an emitter in a bowl that lights only the ceiling.
 door: a room lit through a door that is ajar, from the room next to it.
-cove: a diffuse room lit by way of its ceiling alone, from lamps behind a ledge.
+cove: a diffuse room lit only by its ceiling, from emitters behind a ledge.
 
 OBJ and MTL in metres, +y up; all faces are flat, so that no normal is interpolated. bench/jobs.json has the cameras.
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How soon `pertev view` shows what is asked for: tools/view_latency.py PERTEV SCENE [-o MEASUREMENT.json] [-- flags of
+"""How soon `pertev view` shows a requested picture: tools/view_latency.py PERTEV SCENE [-o MEASUREMENT.json] [-- flags of
 pertev view], with a GPU by default.
 
 Steers a viewer 60 times a second through a WebSocket on this machine, decodes each picture with libjpeg, as a browser

@@ -60,10 +60,11 @@ void add_build(const std::string& scene, std::string_view tree, const std::strin
                                is_known ? record->optix_fast_trace_s / times.median : 0),
                    ratio_field("ratio_to_optix_fast_build", "to build", is_known,
                                is_known ? record->optix_fast_build_s / times.median : 0)},
-        fmt::format("hploc starts from triangles on the device and ends with compressed nodes and triangles there;\n"
-                    "others run on the CPU. cost: of a ray, by the surface area heuristic; to trace, to build: ratio\n"
-                    "of rates to OptiX's, only on an {}\n",
-                    the_record().device));
+        fmt::format(
+            "hploc starts from triangles on the device and ends with compressed nodes and triangles there;\n"
+            "the others run on the CPU. cost: expected cost of a ray by the surface area heuristic; to trace, to\n"
+            "build: rates relative to OptiX's, only on an {}\n",
+            the_record().device));
 }
 
 void bench_scene(const std::string& name, Queue& queue, const BuildFlags& flags, Reporter& reporter,
@@ -104,7 +105,7 @@ void bench_scene(const std::string& name, Queue& queue, const BuildFlags& flags,
     const RunTimes refits = time([&] { builder.start_refit(there.data()); });
     if (builder.finish().bounds != figures.bounds) {
         throw Error(ErrorCode::DeviceFault,
-                    fmt::format("{}: a tree fitted to its own triangles has other bounds", name));
+                    fmt::format("{}: a tree that was refitted to its own triangles has other bounds", name));
     }
     report.add("refit", head_of(name, "refitted", "hploc", queue.device_name(), count) + time_fields(refits));
 }
@@ -130,7 +131,7 @@ void add_bench_build_command(CLI::App& bench, int& status) {
                                     [flags, &status] { status = bench_build(*flags); });
     add_record_flags(verb, *flags, kBenchBuild, "number of timed builds (3 on the CPU, 25 in CUDA)");
     verb.add_flag("--compare", flags->compare,
-                  "also build sbvh, sbvh-reinsertion, reinsertion, binned and\nploc on the CPU");
+                  "also builds sbvh, sbvh-reinsertion, reinsertion, binned and\nploc on the CPU");
 }
 
 } // namespace pertev

@@ -145,8 +145,10 @@ void add_bench_cameras_command(CLI::App& bench, int& status) {
     flags->render.render.samples = 16;
     add_scene_name(verb, flags->render.scene);
     add_whole(verb, "--pictures", flags->pictures,
-              "pictures of a batch; a sixteenth of them with all samples\n(8192 in CUDA, 32 on the CPU)", 1, 10000000);
-    add_whole(verb, "--runs", flags->runs, "runs, of which the median counts", 1, 10000)->capture_default_str();
+              "number of pictures in a batch; with all samples a sixteenth\n(8192 in CUDA, 32 on the CPU)", 1,
+              10000000);
+    add_whole(verb, "--runs", flags->runs, "number of timed runs; the result is the median", 1, 10000)
+        ->capture_default_str();
     add_bench_report_flags(verb, flags->render.report);
     flags->render.settings.add(verb, kBenchCameras, flags->render);
 }

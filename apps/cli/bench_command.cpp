@@ -99,8 +99,8 @@ std::vector<std::string> default_scenes() {
     }
     if (scenes.empty()) {
         throw Error(ErrorCode::BadInput, "scene", "",
-                    "name scene files, or set PERTEV_SCENES to the folder that holds crytek-sponza/sponza.obj "
-                    "and sibenik/sibenik.obj (docs/scenes.md)");
+                    "name scene files, or set PERTEV_SCENES to the folder with crytek-sponza/sponza.obj and "
+                    "sibenik/sibenik.obj (docs/scenes.md)");
     }
     return scenes;
 }

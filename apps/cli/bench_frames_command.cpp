@@ -39,7 +39,7 @@ int bench_frames(FramesFlags& flags) {
     const auto& [queue, scene, settings, camera, prepared] = *benched;
     refuse(!makes_frames(settings.integrator) && flags.render.reconstruction.has_frame_options(),
            {"integrator", std::string(integrator_name(settings)),
-            "its frames are plain samples; `restir` and `resolution_scale` are for path and hybrid"});
+            "this integrator's frames are plain samples; `restir` and `resolution_scale` apply to path and hybrid"});
     BenchReport report(reporter, flags.render.report, *queue, "Frames in real time");
     Session session(*queue, prepared, camera, settings);
     const ToneMap tone_map = ToneMap::Agx;
@@ -84,7 +84,7 @@ int bench_frames(FramesFlags& flags) {
                                 {"height", "height", settings.height},
                                 {"max_depth", "max depth", settings.path.max_depth},
                                 {"frames", "frames", flags.frames},
-                                {"still", "camera stands still", flags.still},
+                                {"still", "camera is still", flags.still},
                                 {"reconstruction", "reconstruction", ResultCell::raw(reconstruction_json(options))},
                                 {"median_seconds", "frame, median", times.median, "s", "{:.6f}"},
                                 {"least_seconds", "least", times.least, "s", "{:.6f}"},
@@ -110,7 +110,7 @@ void add_bench_frames_command(CLI::App& bench, int& status) {
     add_scene_name(verb, flags->render.scene);
     add_whole(verb, "--frames", flags->frames, "number of frames; the first two are not timed", 1, 100000)
         ->capture_default_str();
-    verb.add_flag("--still", flags->still, "keep the camera still");
+    verb.add_flag("--still", flags->still, "keeps the camera still");
     add_bench_report_flags(verb, flags->render.report);
     flags->render.settings.add(verb, kBenchFrames, flags->render);
 }

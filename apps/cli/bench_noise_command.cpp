@@ -115,8 +115,8 @@ void add_bench_noise_command(CLI::App& bench, int& status) {
     add_scene_name(verb, flags->render.scene);
     add_whole(verb, "--seeds", flags->seeds, "number of pictures of each sampler", 2, 1024)->capture_default_str();
     verb.add_option("--keep", flags->keep_percent,
-                    "share of the pixels that both samplers' figures use: those where\nthe low-discrepancy sampler "
-                    "varies least; a small share with few\nseeds flatters it")
+                    "share of pixels that are compared: those with the least variance\nof the low-discrepancy "
+                    "sampler; a small share of few seeds\nis biased in its favour")
         ->type_name("PERCENT")
         ->check(number_above_zero(100))
         ->capture_default_str();

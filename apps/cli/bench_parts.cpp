@@ -39,7 +39,7 @@ bool is_there(const std::string& scene) {
 
 void check_bench_scene(const std::string& name, std::string_view others) {
     refuse(!is_scene_name(name), {FileLocation{name}, fmt::format("neither {}{}", others, scene_kinds())});
-    refuse(!is_there(name), {FileLocation{name}, "there is no such file"});
+    refuse(!is_there(name), {FileLocation{name}, "the file does not exist"});
 }
 
 void add_record_flags(CLI::App& verb, RecordFlags& flags, SettingVerbs verbs, const char* runs) {
@@ -77,14 +77,14 @@ Scene read_lab_scene(const SceneOptions& options, Sink& sink) {
     const std::string& name = options.scene;
     if (const RecordScene* record = find_named(the_record().scenes, name)) {
         refuse(!options.file_scene.empty(),
-               {"file_scene", options.file_scene, fmt::format("{} has no scenes of its own to choose from", name)});
+               {"file_scene", options.file_scene, fmt::format("{} has fixed scenes", name)});
         return make_record_scene(*record, public_scenes_folder(), sink);
     }
     if (!is_there(name)) {
         std::vector<std::string_view> known = builtin_scene_names();
         for (const RecordScene& record : the_record().scenes) known.emplace_back(record.name);
         throw Error(ErrorCode::BadInput, "scene", name,
-                    fmt::format("neither a file nor a scene of this name; there are {}", fmt::join(known, ", ")));
+                    fmt::format("neither a file nor a scene name; the scenes are {}", fmt::join(known, ", ")));
     }
     return read_any_scene(options, sink);
 }
@@ -104,7 +104,7 @@ std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, SettingVerb
     reporter.report_messages();
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
     benched->scene = open_scene(flags.scene, reporter, SceneUse::Benchmark);
-    if (flags.strict) refuse_what_is_left_out(reporter, "nothing is measured");
+    if (flags.strict) refuse_what_is_left_out(reporter, "nothing was measured");
     const RenderSettings& settings = benched->settings = render_settings(flags, benched->scene);
     check_light(settings, benched->scene, reporter);
     fit_intrinsics({settings.width, settings.height}, flags.scene.camera);
@@ -140,7 +140,7 @@ void add_bench_report_flags(CLI::App& verb, ReportFlags& flags) {
     add_report_flags(verb, flags);
     verb.add_option(
             "--report", flags.measurement,
-            "write the measurement, with machine and command: as JSON, as a page\nthat draws it, or its rows as CSV")
+            "writes the measurement with machine and command as JSON, as a page\nwith plots, or its rows as CSV")
         ->type_name("FILE.json|.html|.csv")
         ->check(file_name());
 }
@@ -232,7 +232,7 @@ CLI::App& add_bench_verb(CLI::App& bench, const char* name, const char* help, st
     verb.callback([&bench, &verb, run = std::move(run)] {
         for (const CLI::Option* flag : bench.get_options()) {
             if (flag->count() == 0) continue;
-            throw Error(ErrorCode::BadInput, fmt::format("{}: is a flag of `bench {}` and must come after that name",
+            throw Error(ErrorCode::BadInput, fmt::format("{} is a flag of `bench {}` and must come after that name",
                                                          flag->get_name(), verb.get_name()));
         }
         run();

@@ -112,7 +112,7 @@ Fields measure(Queue& queue, const RaySet& set, const SetOfScene& of, const Rays
                   {"recorded_hit_share", "its hits", recorded(r.hit_share), "", "{:.3f}"},
                   {"recorded_nodes", "its nodes", recorded(r.nodes), "", "{:.1f}"},
                   {"recorded_triangles", "its tri", recorded(r.triangles), "", "{:.1f}"},
-                  {"traced_by", "traced by", any ? name : "empty: no ray before it hit anything"}};
+                  {"traced_by", "traced by", any ? name : "empty, because no ray before it hit a surface"}};
 }
 
 /// Prints the summary of ratios to the best public tracers, if there are any; `scene` is "" of all scenes together.
@@ -124,14 +124,14 @@ void print_summary(const std::string& scene, std::span<const double> ratios, Rep
                                       {"ratio_to_best", "", mean},
                                       {"least", "", least}}));
     reporter.answer(
-        fmt::format("{}: {:.2f} times the best public tracer, the geometric mean of {} sets; the least {:.2f}\n",
+        fmt::format("{}: {:.2f} times the best public tracer (geometric mean of {} sets; the lowest is {:.2f})\n",
                     scene.empty() ? "all" : scene, mean, ratios.size(), least));
 }
 
 /// Ratios to the best public tracers go to `all`.
 void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, const TracerChoice& choice,
                  BenchReport& report, std::vector<double>& all, Reporter& reporter) {
-    reporter.set_work(fmt::format("{}: making sets of rays", name));
+    reporter.set_work(fmt::format("{}: making ray sets", name));
     Stopwatch watch;
     const Scene scene = read_record_scene(name, reporter);
     const double load_s = watch.seconds();
@@ -169,8 +169,8 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
     print_summary(name, ratios, reporter);
     all.insert(all.end(), ratios.begin(), ratios.end());
     if (flags.check) {
-        reporter.answer(
-            fmt::format("{}: checked; each hit equals that of the binary traversal on the CPU, bit for bit\n", name));
+        reporter.answer(fmt::format(
+            "{}: checked; each hit is the same as that of the binary traversal on the CPU, bit for bit\n", name));
     }
 }
 
@@ -195,11 +195,11 @@ int bench_rays(RaysFlags& flags) {
 
 void add_bench_rays_command(CLI::App& bench, int& status) {
     const auto flags = std::make_shared<RaysFlags>();
-    CLI::App& verb = add_bench_verb(bench, "rays", "Time traversal on ray sets that other tracers use too",
+    CLI::App& verb = add_bench_verb(bench, "rays", "Time traversal on the ray sets that other tracers were timed on",
                                     [flags, &status] { status = bench_rays(*flags); });
     add_whole(verb, "--count", flags->count, "rays per set; the record's is four frames of 1920x1080", 1, 1u << 30)
         ->capture_default_str();
-    verb.add_flag("--check", flags->check, "compare every hit with the binary traversal's on the CPU, bit for bit");
+    verb.add_flag("--check", flags->check, "compares every hit with that of the binary traversal on the CPU");
     verb.add_flag("--axes", flags->axes, "two more sets: diffuse1 along axes, and tilted by a thousandth");
     flags->tracer.default_build = TreeBuild::Best; // no tree's making is timed
     add_record_flags(verb, *flags, kBenchRays, "timed runs per set (5 on the CPU, 25 in CUDA)");

@@ -177,10 +177,10 @@ void add_bench_render_command(CLI::App& bench, int& status) {
         ->required()
         ->expected(1);
     add_whole(verb, "--moves", flags->moves,
-              "also move the camera this often and time one sample per pixel\nafter each move (0)", 0, 100000);
+              "number of camera moves, after each of which one sample per\npixel is timed (0)", 0, 100000);
     verb.add_flag("--isolated", flags->isolated,
-                  "also trace the sets of `bench rays` in isolation and report\nthe job's rate relative to theirs");
-    verb.add_option("-o,--output", flags->output, "write the picture to this file")->type_name("FILE");
+                  "also traces the sets of `bench rays` in isolation and reports\nthe job's rate relative to theirs");
+    verb.add_option("-o,--output", flags->output, "writes the picture to this file")->type_name("FILE");
     add_picture_flags(verb, kBenchRender, flags->picture, "the job's", "the job's");
 }
 

@@ -199,8 +199,8 @@ void add_bench_sequence_command(CLI::App& bench, int& status) {
     flags->render.render.path.max_depth = 4;
     add_scene_name(verb, flags->render.scene);
     verb.add_option("--reference", flags->reference,
-                    "compare each frame with a picture of this many samples, by\nHDR-FLIP; the error's mean change "
-                    "between frames is the flicker")
+                    "compares each frame with a picture of this many samples by\nHDR-FLIP; flicker is the error's "
+                    "mean change between frames")
         ->type_name("SPP")
         ->check(whole_between(2, kMaxSamplesPerPixel));
     add_bench_report_flags(verb, flags->render.report);

@@ -60,8 +60,8 @@ int compare(const CompareFlags& flags) {
                                 "FLIP              {:.6g}\nHDR-FLIP          {:.6g}\n"
                                 "hash A            {}\nhash B            {}\n{}\n",
                                 rel_mse, trimmed.rel_mse, mse, flip_mean, hdr_flip_mean, hash_a.hex(), hash_b.hex(),
-                                equal          ? "the same to the last bit"
-                                : equal_colors ? "the same colours to the last bit, different alpha"
+                                equal          ? "equal to the last bit"
+                                : equal_colors ? "equal colours to the last bit, different alpha"
                                                : "different"));
     return 0;
 }
@@ -76,8 +76,8 @@ void add_compare_command(CLI::App& app, int& status) {
         ->check(file_name())
         ->required();
     verb.add_option("B", flags->reference, "the reference")->type_name("")->check(file_name())->required();
-    add_whole(verb, "--blocks", flags->blocks, "compare means over blocks of N x N pixels: less noise, same structure",
-              1, 4096)
+    add_whole(verb, "--blocks", flags->blocks, "compares means over blocks of N x N pixels, which have less noise", 1,
+              4096)
         ->capture_default_str();
     add_report_flags(verb, flags->report);
     verb.callback([flags, &status] { status = compare(*flags); });

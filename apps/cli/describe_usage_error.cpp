@@ -109,7 +109,7 @@ std::string describe_flag(const std::string& word, const std::vector<const CLI::
     for (std::size_t later = i + 1; later < verbs.size(); ++later) {
         const std::vector<std::string> flags = flags_of(*verbs[later]);
         if (std::ranges::find(flags, flag) != flags.end()) {
-            return fmt::format("{0}: is a flag of {1} and must come after that name", flag, verbs[later]->get_name());
+            return fmt::format("{0} is a flag of {1} and must come after that name", flag, verbs[later]->get_name());
         }
     }
     return fmt::format("{}: no such flag{}", flag, did_you_mean(suggest_name(flag, flags_of(*verbs[i]))));
@@ -157,7 +157,7 @@ std::string describe_repetition(const CLI::App& verb) {
     for (const CLI::Option* flag : verb.get_options()) {
         const int most = std::max(flag->get_items_expected_max(), 1);
         if (flag->get_multi_option_policy() == CLI::MultiOptionPolicy::Throw && int(flag->count()) > most) {
-            return fmt::format("{}: given {} times; it is accepted once", flag->get_name(), flag->count());
+            return fmt::format("{} is given {} times, but only one is accepted", flag->get_name(), flag->count());
         }
     }
     return "";

@@ -145,8 +145,9 @@ std::string settings_of(const std::string& picture) {
     const auto value_of = [&](std::string_view name) {
         const auto entry = std::ranges::find(metadata, name, &ExrMetadata::value_type::first);
         if (entry == metadata.end()) {
-            throw Error(ErrorCode::BadInput, FileLocation{picture},
-                        fmt::format("it holds no settings ({}); EXR files of pertev render do", name));
+            throw Error(
+                ErrorCode::BadInput, FileLocation{picture},
+                fmt::format("the file contains no settings ({}); EXR files of pertev render contain them", name));
         }
         return std::visit([](const auto& value) { return fmt::format("{}", value); }, entry->second);
     };
@@ -216,7 +217,9 @@ void describe_solution(const InfoFlags& flags, Facts& facts) {
     facts.add("shown", solution.patches.size());       // patches and parts of them, as solve says
     facts.add("bytes", solution.bytes());
     const std::string part = describe(solution.extent);
-    facts.add("holds", !solution.light ? "not said: made by an earlier version" : part.empty() ? "all light" : part);
+    facts.add("holds", !solution.light ? "unknown, because an earlier version made it"
+                       : part.empty()  ? "all light"
+                                       : part);
     facts.add("made_by", solution.made);
     facts.add("hash", solution.hash().hex());
     facts.add("geometry", solution.geometry.hex());

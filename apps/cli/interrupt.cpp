@@ -29,7 +29,7 @@ void ignore_second() {
 extern "C" void handle_interrupt(int) {
     g_interrupted = 1;
     ignore_second();
-    constexpr std::string_view hint = "\nends after the step under way; Ctrl-C again ends at once\n";
+    constexpr std::string_view hint = "\nends after the current step; Ctrl-C again ends at once\n";
     if (!g_has_reader) return;
     [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, hint.data(), hint.size());
 }
@@ -43,7 +43,7 @@ extern "C" void end_process(int) {
 } // namespace
 
 void end_at_interrupt(bool json) {
-    const std::string text = "interrupted before there was anything to keep";
+    const std::string text = "interrupted before the first result";
     g_last_line = json ? error_object(ErrorCode::Interrupted, text) + '\n' : "pertev: " + text + '\n';
     g_last_line_goes_to = json ? STDOUT_FILENO : STDERR_FILENO;
     std::signal(SIGTERM, end_process);

@@ -118,7 +118,7 @@ LabSettings lab_settings(const LabFlags& flags, bool is_cuda) {
     if (traces("record")) {
         if (flags.rays.size() > 1 || flags.size || !flags.depths.empty()) {
             throw Error(ErrorCode::BadInput, "rays", "record",
-                        "its sets are fixed; leave out other kinds, --size and --depths");
+                        "the record's ray sets are fixed; leave out other kinds, --size and --depths");
         }
         settings.record_rays = flags.count > 0 ? flags.count : kRecordRays;
         const FrameSize frame = record_frame(settings.record_rays);
@@ -136,7 +136,7 @@ int run(LabFlags& flags) {
     Reporter reporter(flags.report);
     flags.settings.read(flags, reporter);
     if (!flags.thesis && !flags.transport && flags.scene.scene.empty()) {
-        throw Error(ErrorCode::BadInput, "scene", "", "it is required (or --thesis, or --transport)");
+        throw Error(ErrorCode::BadInput, "scene", "", "a scene is required (or --thesis, or --transport)");
     }
     apply_camera_from(flags);
     const std::unique_ptr<Queue> queue = open_queue(flags.machine, reporter);
@@ -151,7 +151,7 @@ int run(LabFlags& flags) {
     if (flags.thesis) return run_thesis(*queue, flags.scene, settings, flags.output, reporter);
 
     const Scene scene = read_lab_scene(flags.scene, reporter);
-    if (flags.strict) refuse_what_is_left_out(reporter, "nothing is measured");
+    if (flags.strict) refuse_what_is_left_out(reporter, "nothing was measured");
     const Camera camera =
         choose_camera(flags.scene.camera, scene, aspect_of(settings.width, settings.height), reporter);
     check_any_can_run(list_combinations(settings, queue->is_cuda())); // before a folder is made
@@ -169,7 +169,7 @@ int run(LabFlags& flags) {
     reporter.end_progress();
     reporter.result(json_of(measurement_of(report, head), "lab"));
     if (!has_findings(report) && report.interrupted) {
-        reporter.print("interrupted before anything was measured; nothing is written");
+        reporter.print("interrupted before the first measurement; nothing is written");
         return exit_status(ErrorCode::Interrupted);
     }
     reporter.answer(text_of(report));
@@ -202,13 +202,13 @@ void add_lab_command(CLI::App& app, int& status) {
         ->delimiter(',')
         ->check(one_of(names_of<TraversalKind>()));
     verb.add_option("--rta", flags->rta,
-                    "redundant traversal avoidance: skip nodes behind the nearest\nhit; nodes: test at nodes and not "
-                    "at pops (compressed only)")
+                    "redundant traversal avoidance: skips nodes behind the nearest\nhit; nodes: tests at nodes and "
+                    "not at pops (compressed only)")
         ->type_name("WHICH,...")
         ->delimiter(',')
         ->check(one_of({"on", "off", "both", "nodes"}))
         ->capture_default_str();
-    add_switch(verb, "--order", flags->order, "visit nearer children first");
+    add_switch(verb, "--order", flags->order, "visits nearer children first");
     verb.add_option(
             "--tests", flags->tests,
             "exact; fast: leaks at edges, as in most tracers; woop: Aila and\nLaine's unit triangles, which leak "
@@ -230,14 +230,14 @@ void add_lab_command(CLI::App& app, int& status) {
     add_whole(verb, "--count", flags->count, "rays per set of the record (8294400)", 1, 1u << 30);
     add_whole(verb, "--runs", flags->runs, "number of timed runs; the result is the median", 1, 10000)
         ->capture_default_str();
-    verb.add_flag("--no-heat-maps", flags->no_heat_maps, "draw no heat maps of traversal tests per pixel");
+    verb.add_flag("--no-heat-maps", flags->no_heat_maps, "omits heat maps of traversal tests per pixel");
     CLI::Option* thesis =
         verb.add_flag("--thesis", flags->thesis,
-                      "repeat chapter 6 of the thesis: the Cornell box and Sibenik\n(SCENE, or found "
+                      "repeats chapter 6 of the thesis: the Cornell box and Sibenik\n(SCENE, or found "
                       "under PERTEV_SCENES), depths 1-8; with -o also\nthe pictures of chapters 2 to 4");
     CLI::Option* transport =
         verb.add_flag("--transport", flags->transport,
-                      "compare integrators instead of traversals: error over time\nagainst a reference");
+                      "compares integrators instead of traversals: error over time\nagainst a reference");
     for (const char* flag : {"--structures", "--traversals", "--rta", "--order", "--tests", "--persistent", "--rays",
                              "--count", "--no-heat-maps"}) {
         thesis->excludes(verb.get_option(flag)); // the comparison of the thesis
@@ -248,7 +248,7 @@ void add_lab_command(CLI::App& app, int& status) {
     CLI::Option* output =
         verb.add_option(
                 "-o,--output", flags->output,
-                "write report.html, .csv and .json here; with --thesis thesis.html\nand .json, its pictures and "
+                "folder for report.html, .csv and .json; with --thesis thesis.html\nand .json, its pictures and "
                 "thesis-1 and -2.csv; with --transport\ntransport.html, .csv, .json and EXR files")
             ->type_name("DIR");
     flags->render.path.max_depth = kTransportDepth;

@@ -13,7 +13,7 @@ void check_lab_folder(const std::filesystem::path& folder) {
     std::filesystem::create_directories(folder, error);
     if (error) {
         throw Error(ErrorCode::FileWrite, FileLocation{folder.string()},
-                    fmt::format("cannot be made: {}", error.message()));
+                    fmt::format("the folder cannot be created: {}", error.message()));
     }
     check_writable(folder / "report.csv");
 }
@@ -37,7 +37,7 @@ void fail_if_wrong(const LabReport& report) {
     }
     if (!names.empty()) {
         throw Error(ErrorCode::DeviceFault,
-                    fmt::format("{}: combinations that differ from the proven traversal:{}", report.scene, names));
+                    fmt::format("{}: combinations that differ from the reference traversal:{}", report.scene, names));
     }
 }
 

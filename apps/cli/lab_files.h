@@ -19,7 +19,7 @@ void write_measurement(const std::filesystem::path& folder, const std::string& n
                        std::string_view csv_table);
 void write_text(const std::filesystem::path& path, const std::string& text);
 
-/// Throws Error(DeviceFault) that names the combinations that differ from the proven traversal, if there are any.
+/// Throws Error(DeviceFault) that names the combinations that differ from the reference traversal, if there are any.
 void fail_if_wrong(const LabReport& report);
 
 } // namespace pertev

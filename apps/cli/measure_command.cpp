@@ -77,7 +77,7 @@ int measure(MeasureFlags& flags) {
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
     const RenderSettings& settings = flags.render;
     Scene scene = open_scene(flags.scene, reporter, SceneUse::Measurement);
-    if (flags.strict) refuse_what_is_left_out(reporter, "nothing is measured");
+    if (flags.strict) refuse_what_is_left_out(reporter, "nothing was measured");
     for (Material& material : scene.materials) material.double_sided = true; // backs are hidden from cameras alone
     PrepareOptions prepare = prepare_options(settings, machine.may_be_cuda());
     prepare.may_be_better = true;

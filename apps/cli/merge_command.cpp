@@ -59,8 +59,7 @@ void add_merge_command(CLI::App& app, int& status) {
         ->allow_extra_args(false)
         ->check(file_name())
         ->required();
-    verb.add_flag("--partial", flags->is_partial,
-                  "Makes a picture of the samples that are there, if some are missing.");
+    verb.add_flag("--partial", flags->is_partial, "Makes a picture of the available samples if some are missing.");
     add_report_flags(verb, flags->report);
     add_progress_flag(verb, flags->report);
     verb.callback([flags, &status] { status = merge(*flags); });

@@ -72,7 +72,7 @@ std::string part_text(const PictureOptions& options) {
 std::string kept_text(const SequenceTally& tally) {
     if (tally.kept == 0) return "";
     if (tally.again == 0) return fmt::format(", {} kept", tally.kept);
-    return fmt::format(", {} kept ({} of them rendered again for the history of others)", tally.kept, tally.again);
+    return fmt::format(", {} kept ({} of them rendered again as history of later frames)", tally.kept, tally.again);
 }
 
 void report_frame(const FrameReport& made, Reporter& reporter) {
@@ -107,11 +107,11 @@ int render_frames(const RenderFlags& flags, const SequenceOfFrames& frames, Repo
     reporter.end_progress();
     reporter.report_messages();
     const bool cut_short = !failure && !tally.is_complete();
-    reporter.print(fmt::format("{} of {} written{} in {:.2f} s, of which {:.1f} ms a frame to move the scene; {}{}",
+    reporter.print(fmt::format("{} of {} written{} in {:.2f} s, including {:.1f} ms per frame to move the scene; {}{}",
                                tally.written, counted(tally.frames, "frame"), kept_text(tally), watch.seconds(),
                                1e3 * tally.update_s / std::max(tally.written, 1u),
                                counted(tally.invalid_samples, "invalid sample"),
-                               cut_short ? "; interrupted: the same command with --continue resumes" : ""));
+                               cut_short ? "; interrupted: add --continue to resume" : ""));
     reporter.result(fmt::format(
         R"({{"event":"sequence","frames":{},"written":{},"kept":{},"rendered_again":{},"seconds":{:.6f},"update_seconds":{:.6f},"invalid_samples":{},"interrupted":{}}})",
         tally.frames, tally.written, tally.kept, tally.again, watch.seconds(), tally.update_s, tally.invalid_samples,

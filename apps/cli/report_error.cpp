@@ -33,8 +33,8 @@ std::string error_object(ErrorCode code, const Remark& remark, const std::string
 
 int report_error(bool json, ErrorCode code, const Remark& remark, const std::string& help) {
     if (!json || !write(stdout, error_object(code, remark, help) + '\n')) {
-        write(stderr, fmt::format("pertev: {}\n{}", phrase(remark),
-                                  help.empty() ? "" : fmt::format("({} lists what there is)\n", help)));
+        write(stderr,
+              fmt::format("pertev: {}\n{}", phrase(remark), help.empty() ? "" : fmt::format("(see {})\n", help)));
     }
     return exit_status(code);
 }

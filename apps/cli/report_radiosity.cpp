@@ -26,11 +26,11 @@ void report_end(const SolvedRadiosity& solved, Reporter& reporter) {
     reporter.end_progress();
     const SolveStats& stats = solved.stats;
     reporter.print(
-        fmt::format("{} patches that shoot, {} that are shown; {} form factors ({:.0f} bytes per patch) in {:.2f} s, "
-                    "{} {:.2f} s ({} steps, {:.2g} unsolved), subdivided in {:.2f} s",
+        fmt::format("{} shooting patches, {} displayed; {} form factors ({:.0f} bytes per patch) in {:.2f} s, {} "
+                    "{:.2f} s ({} steps, {:.2g} unsolved), subdivided in {:.2f} s",
                     stats.patches, stats.shown, stats.factors,
                     static_cast<double>(stats.bytes) / static_cast<double>(std::max<uint64_t>(stats.patches, 1)),
-                    stats.factor_seconds, stats.was_interrupted ? "ended after solving for" : "solved in",
+                    stats.factor_seconds, stats.was_interrupted ? "interrupted after solving for" : "solved in",
                     stats.solve_seconds, stats.steps, stats.left, stats.divide_seconds));
     reporter.event(fmt::format(
         R"({{"event":"radiosity_solved","patches":{},"shown":{},"form_factors":{},"bytes":{},"peak_bytes":{},"steps":{},"left":{},"reached_limit":{},"link_error":{},"factor_seconds":{:.3f},"solve_seconds":{:.3f},"divide_seconds":{:.3f},"hash":{},"interrupted":{},"holds":{}}})",

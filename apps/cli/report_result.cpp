@@ -55,8 +55,8 @@ void report_result(const RenderResult& result, const WrittenPicture& written, co
     const uint64_t host_bytes = peak_memory_bytes();
     if (result.samples == 0) reporter.print("this part has no samples");
     reporter.print(fmt::format(
-        "{} spp in {:.2f} s ({:.2f} s in all), {:.4g} s a frame of 1 spp ({:.4g} frames/s), {:.2f} Msamples/s, {:.1f} "
-        "Mrays/s, peak {:.0f} MiB{}, {}, picture {}{}",
+        "{} spp in {:.2f} s ({:.2f} s in total), {:.4g} s per frame of 1 spp ({:.4g} frames/s), {:.2f} Msamples/s, "
+        "{:.1f} Mrays/s, peak {:.0f} MiB{}, {}, picture {}{}",
         result.samples, result.render_seconds, total_seconds, frame_seconds, 1 / frame_seconds,
         samples_per_second * 1e-6, rays_per_second * 1e-6, mebibytes(host_bytes),
         queue.is_cuda() ? fmt::format(" and {:.0f} MiB on the GPU", mebibytes(result.device_peak_bytes)) : "",

@@ -33,8 +33,9 @@ bool is_drawn_on() {
 } // namespace
 
 void add_report_flags(CLI::App& verb, ReportFlags& flags) {
-    verb.add_flag("-q,--quiet", flags.quiet, "print only errors");
-    verb.add_flag("--json", flags.json, "print one JSON object per line on stdout, errors included, and\nnothing else");
+    verb.add_flag("-q,--quiet", flags.quiet, "prints only errors");
+    verb.add_flag("--json", flags.json,
+                  "prints one JSON object per line on stdout, errors included, and\nnothing else");
 }
 
 void add_progress_flag(CLI::App& verb, ReportFlags& flags) {

@@ -41,8 +41,8 @@ int solve(SolveFlags& flags) {
     flags.settings.read(flags, reporter);
     if (is_picture_name(flags.output)) {
         throw Error(ErrorCode::BadInput, "output", flags.output,
-                    fmt::format("a solution is no picture; -o {0} keeps it, and pertev render --integrator radiosity "
-                                "--solution {0} shows it",
+                    fmt::format("a solution is not a picture; write it with -o {0} and show it with pertev render "
+                                "--integrator radiosity --solution {0}",
                                 solution_name(flags.output)));
     }
     refuse_list(flags.output);
@@ -52,7 +52,7 @@ int solve(SolveFlags& flags) {
     const Stopwatch total_time;
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
     Scene scene = open_scene(flags.scene, reporter, SceneUse::Measurement);
-    if (flags.strict) refuse_what_is_left_out(reporter, "nothing is solved");
+    if (flags.strict) refuse_what_is_left_out(reporter, "nothing was solved");
     check_light(flags.render, scene, reporter);
     PrepareOptions prepare = prepare_options(flags.render, false);
     prepare.may_be_better = true;
@@ -66,7 +66,7 @@ int solve(SolveFlags& flags) {
     reporter.write_output(flags.output, [&] { write_solution(flags.output, solved.solution); });
     const bool cut_short = solved.stats.was_interrupted;
     const std::string holds =
-        cut_short ? fmt::format(", stopped early: it holds {}", describe(solved.solution.extent)) : "";
+        cut_short ? fmt::format(", stopped early: it contains {}", describe(solved.solution.extent)) : "";
     const std::string hash = solved.solution.hash().hex();
     reporter.print(fmt::format("wrote {}{}: hash {}", flags.output, holds, hash));
     const SolveStats& stats = solved.stats;

@@ -34,8 +34,8 @@ std::optional<std::string> find_sibenik() {
     return !root.empty() && std::filesystem::exists(path, none) ? std::optional(path.string()) : std::nullopt;
 }
 constexpr const char* kLacksSibenik =
-    "tables 6.4 and 6.5, figure 6.8, and Sibenik in table 6.6 and figures 6.9 to 6.11: sibenik.obj is not there; name "
-    "it as SCENE, or set PERTEV_SCENES to the folder that holds sibenik/sibenik.obj (docs/scenes.md)";
+    "tables 6.4 and 6.5, figure 6.8, and Sibenik in table 6.6 and figures 6.9 to 6.11: sibenik.obj was not found; "
+    "name it as SCENE, or set PERTEV_SCENES to the folder with sibenik/sibenik.obj (docs/scenes.md)";
 
 struct MeasuredScene {
     std::string name;
@@ -215,7 +215,7 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
     made.interrupted = cut_short;
     reporter.event(json_of(made, "thesis"));
     if (thesis.scenes.empty()) { // only an interrupt comes so early
-        reporter.print("interrupted before anything was measured; nothing is written");
+        reporter.print("interrupted before the first measurement; nothing is written");
         return exit_status(ErrorCode::Interrupted);
     }
     reporter.answer(text_of(thesis));

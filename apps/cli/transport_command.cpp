@@ -56,7 +56,7 @@ Subject read_subject(SceneOptions options, const TransportPreset* preset, float 
 /// Null means the scene of the command line.
 std::vector<const TransportPreset*> presets_of(const SceneOptions& scene, const TransportFlags& flags) {
     if (flags.preset.empty() && !scene.scene.empty()) return {nullptr};
-    refuse(!scene.scene.empty(), {"preset", flags.preset, "has its own scene; leave out SCENE or --preset"});
+    refuse(!scene.scene.empty(), {"preset", flags.preset, "a preset has its own scene; leave out SCENE or --preset"});
     std::vector<const TransportPreset*> presets;
     for (const TransportPreset& preset : the_record().presets) {
         const std::string wanted = flags.preset.empty() ? "cornell" : flags.preset;
@@ -65,9 +65,9 @@ std::vector<const TransportPreset*> presets_of(const SceneOptions& scene, const 
     const CameraChoice& camera = scene.camera;
     refuse(!camera.camera.empty() || camera.eye || camera.target || camera.up || camera.fov_deg || camera.projection ||
                camera.view_height,
-           {"preset", flags.preset, "has its own camera; name a SCENE to use another"});
+           {"preset", flags.preset, "a preset has its own camera; name a SCENE to use another"});
     refuse(presets.size() > 1 && !flags.reference.empty(),
-           {"reference", flags.reference, "belongs to one scene; name one preset"});
+           {"reference", flags.reference, "a reference belongs to one scene; name one preset"});
     return presets;
 }
 
@@ -83,8 +83,8 @@ Image read_linear_image(const std::string& file, Sink& sink) {
     const std::optional<ImageFormat> format = recognise_image(bytes);
     refuse(format == ImageFormat::Png || format == ImageFormat::Jpeg,
            {"reference", file,
-            "a picture for displays, tone-mapped and of few bits; errors are of radiance, which an EXR or HDR file has "
-            "(pertev render -o reference.exr)"});
+            "the picture is tone-mapped; errors are measured in radiance, which an EXR or HDR file has (pertev "
+            "render -o reference.exr)"});
     return read_image(bytes, file, sink);
 }
 
@@ -179,7 +179,7 @@ int run_transport_command(Queue& queue, const PictureOptions& options, const Tra
     reporter.end_progress();
     reporter.event(json_of(measurement_of(report, head), "transport"));
     if (!has_findings(report) && report.interrupted) {
-        reporter.print("interrupted before anything was measured; nothing is written");
+        reporter.print("interrupted before the first measurement; nothing is written");
         return exit_status(ErrorCode::Interrupted);
     }
     reporter.answer(text_of(report));
@@ -213,7 +213,7 @@ void add_transport_flags(CLI::App& verb, CLI::Option* transport, TransportFlags&
         ->delimiter(',')
         ->check(one_of(integrator_names()));
     add(verb.add_option("--photon-search", flags.photon_search,
-                        "structure that finds the photons of photon_map; its picture is the same (grid)"),
+                        "structure that photon_map searches; the picture is the same (grid)"),
         "NAME")
         ->check(one_of(names_of<PhotonSearch>()));
     add(verb.add_option("--seconds", flags.seconds, "rendering time of each integrator over all repetitions"), "S")
@@ -227,12 +227,13 @@ void add_transport_flags(CLI::App& verb, CLI::Option* transport, TransportFlags&
     add(verb.add_option("--spp", flags.max_samples, "maximum samples per pixel of one repetition"), "N")
         ->check(whole_between(1, 1u << 20))
         ->capture_default_str();
-    add(verb.add_option("--reference", flags.reference,
-                        "a picture without noise (.exr, .hdr), of the same size and\ndepth (one is rendered)"),
+    add(verb.add_option(
+            "--reference", flags.reference,
+            "reference picture without noise (.exr, .hdr), of the same size\nand depth (a reference is rendered)"),
         "FILE")
         ->check(file_name());
     add(verb.add_option("--reference-integrator", flags.reference_integrator,
-                        "integrator of the reference (path; bidirectional where it is better)"),
+                        "integrator of the reference (path; bidirectional if it is better)"),
         "NAME")
         ->check(one_of(references));
     add(verb.add_option("--reference-spp", flags.reference_samples,

@@ -52,7 +52,7 @@ bool is_this_machine_alone(const std::string& host) {
 void check_host(const std::string& host) {
     if (host == "0.0.0.0" || host == "::" || host == "[::]" || host == "*") {
         throw Error(ErrorCode::BadInput, "host", host,
-                    "expected the one name or address that browsers will use; requests for another are refused");
+                    "expected the name or address that browsers will use; requests for any other are refused");
     }
 }
 
@@ -74,8 +74,9 @@ void report_address(const ViewFlags& flags, const std::string& address, Reporter
     reporter.event(fmt::format(R"({{"event":"listening","address":{}}})", json_string(address)));
     if (!is_this_machine_alone(flags.host)) {
         reporter.warn(fmt::format(
-            "--host {}: anyone who reaches this machine by that name can try to connect, the connection is not "
-            "encrypted, and anyone with the address below can watch and steer; without --host, ssh -L is a safe way",
+            "--host {}: everyone who reaches this machine by that name can try to connect, the connection is not "
+            "encrypted, and everyone with the address below can watch and steer; the safe way is ssh -L without "
+            "--host",
             flags.host));
         reporter.report_messages();
     }
@@ -115,8 +116,8 @@ int view(ViewFlags& flags) {
     const UseThreads threads(ready->queue->threads());
     if (!makes_frames(ready->settings.integrator) && flags.render.reconstruction.has_frame_options()) {
         reporter.note({"integrator", std::string(integrator_name(ready->settings)),
-                       "its frames are not reconstructed; `restir` and `resolution_scale` apply once the "
-                       "panel's integrator is path or hybrid"});
+                       "this integrator's frames are not reconstructed; `restir` and `resolution_scale` apply once "
+                       "the panel's integrator is path or hybrid"});
     }
     if (flags.render.time_s) report_motion(flags.render, *ready->moving, reporter);
     const uint32_t width = ready->settings.width, height = ready->settings.height;
@@ -132,9 +133,9 @@ int view(ViewFlags& flags) {
     report_display(display, is_metered(flags.render), reporter);
     const ViewerStart start = start_viewer(flags.render, *ready, record, display, source, flags.moving_depth);
     if (!start.why_still.empty()) {
-        reporter.note(
-            {FileLocation{flags.render.scene.scene},
-             fmt::format("the scene {}; `time` shows it at another, `integrator=path` moving", start.why_still)});
+        reporter.note({FileLocation{flags.render.scene.scene},
+                       fmt::format("the scene {}; `time` shows it at another time, `integrator=path` in motion",
+                                   start.why_still)});
         reporter.report_messages();
     }
     const std::unique_ptr<Queue> jpeg_queue = on_cuda ? queue_for_jpeg(flags) : nullptr;
@@ -176,8 +177,8 @@ void add_view_command(CLI::App& app, int& status) {
                     "file with the address's token, for services; PERTEV_TOKEN\nholds one too (otherwise a new one)")
         ->type_name("FILE")
         ->group(group);
-    verb.add_flag("--no-browser", flags->no_browser, "do not open a browser")->group(group);
-    verb.add_flag("--embed", flags->embed, "let other pages, such as notebooks, show the viewer in a frame")
+    verb.add_flag("--no-browser", flags->no_browser, "opens no browser")->group(group);
+    verb.add_flag("--embed", flags->embed, "lets other pages, such as notebooks, show the viewer in a frame")
         ->group(group);
     add_whole(verb, "--moving-depth", flags->moving_depth,
               fmt::format("maximum path depth in motion ({}, or --max-depth if given)", kMovingDepth), 0,

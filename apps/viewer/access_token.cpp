@@ -14,7 +14,7 @@ namespace pertev {
 std::string make_token(int bytes) {
     std::vector<unsigned char> random(static_cast<std::size_t>(bytes));
     if (::getrandom(random.data(), random.size(), 0) != static_cast<ssize_t>(random.size())) {
-        throw Error(ErrorCode::DeviceFault, "the system provides no random numbers, so no safe address can be made");
+        throw Error(ErrorCode::DeviceFault, "the system provides no random numbers for a safe address");
     }
     std::string token;
     for (const unsigned char byte : random) {

@@ -42,7 +42,7 @@ std::string Audience::received(uint32_t id, std::string_view text, double now_s)
     Client& client = found->second;
     if (!may_speak(client, now_s)) return "too many messages";
     std::optional<ClientMessage> message = parse_client_message(text);
-    if (!message) return "not a message";
+    if (!message) return "this is not a message";
     if (!client.has_joined) {
         if (message->kind != MessageKind::Hello) return "no hello";
         client.has_joined = true;
@@ -51,7 +51,7 @@ std::string Audience::received(uint32_t id, std::string_view text, double now_s)
         inbox_.put(Joined{});
         return {};
     }
-    if (message->kind == MessageKind::Hello) return "a second hello";
+    if (message->kind == MessageKind::Hello) return "there was a second hello";
     if (message->kind == MessageKind::Ack) { // an acknowledgement of an outdated frame has no effect
         client.pace.acknowledged(message->frame, now_s, 1e-3 * static_cast<double>(message->milliseconds));
         changed_.notify_one();
@@ -85,9 +85,9 @@ void Audience::note_request(uint32_t id, Client& client, const ClientMessage& me
     client.refused_at_s = now_s;
     const std::string why =
         wheel_.holder() != 0
-            ? fmt::format("viewer {} steers, so this page cannot {}. Viewer {} sees your request and may hand over",
+            ? fmt::format("viewer {} steers, so this page cannot {}. Viewer {} sees your request and can hand over",
                           wheel_.holder(), request, wheel_.holder())
-            : "the viewer that steered has left and has a moment to return. \"ask to steer\" takes over";
+            : "the viewer that steered has left and may return within seconds. \"ask to steer\" takes over";
     put_text(client, notice_text("why", why));
     changed_.notify_one();
 }

@@ -111,7 +111,7 @@ std::vector<std::byte> Nvjpeg::encode(const Rgba8Image& picture, int quality, bo
         for (uint32_t x = 0; x < picture.width; ++x, from += 4, to += 3)
             to[0] = from[0], to[1] = from[1], to[2] = from[2];
     });
-    if (pixels_.size() < rgb_.size()) pixels_ = {queue_, rgb_.size(), "picture to be packed"};
+    if (pixels_.size() < rgb_.size()) pixels_ = {queue_, rgb_.size(), "picture to be encoded"};
     pixels_.upload(rgb_);
     const Functions& call = *functions_;
     void* const stream = queue_.stream();

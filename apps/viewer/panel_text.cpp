@@ -68,22 +68,22 @@ constexpr NumberRow kRows[] = {
     {"Now", "film hash", [](const ViewState&, const ViewNumbers& n) { return n.frame->hash; }},
     {"Now", "exposed by",
      [](const ViewState&, const ViewNumbers& n) { return fmt::format("{:+.2f} stops", n.frame->exposure_stops); }},
-    {"Now", "flags that make it", [](const ViewState&, const ViewNumbers& n) { return n.picture_flags; }},
+    {"Now", "flags for this picture", [](const ViewState&, const ViewNumbers& n) { return n.picture_flags; }},
     {"Now", "scene", [](const ViewState&, const ViewNumbers& n) { return n.why_still; }},
     {"Now", "colours", [](const ViewState&, const ViewNumbers& n) { return n.frame->caption; }},
     {"Frames", "rendered",
      [](const ViewState&, const ViewNumbers& n) {
          return n.frames_per_second > 0 ? fmt::format("{:.1f} a second", n.frames_per_second) : "";
      }},
-    {"Frames", "screen of who steers",
+    {"Frames", "screen of the steering viewer",
      [](const ViewState& v, const ViewNumbers&) {
          return v.screen_rate > 0 ? fmt::format("{:.0f} a second", v.screen_rate) : "";
      }},
-    {"Frames", "size chosen for",
+    {"Frames", "frame rate of automatic size",
      [](const ViewState&, const ViewNumbers& n) {
          if (n.frame->kept_rate == 0) return std::string();
          return fmt::format("{:.0f} a second{}", n.frame->kept_rate,
-                            n.frame->keeps_rate ? "" : ", not reached: the smallest size");
+                            n.frame->keeps_rate ? "" : ", not reached at the smallest size");
      }},
     {"Rays", "camera",
      [](const ViewState&, const ViewNumbers& n) {
@@ -106,7 +106,7 @@ std::string row_json(const char* group, const std::string& label, const std::str
 std::string rows_json(const ViewState& view, const ViewNumbers& numbers) {
     std::string rows;
     if (numbers.made_share < 1) {
-        append(rows, row_json("Now", "made, before samples", fmt::format("{:.0f} %", 100 * numbers.made_share)));
+        append(rows, row_json("Now", "precomputed share", fmt::format("{:.0f} %", 100 * numbers.made_share)));
     }
     if (numbers.frame == nullptr) return rows;
     for (const NumberRow& row : kRows) {

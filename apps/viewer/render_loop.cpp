@@ -219,7 +219,7 @@ void RenderLoop::pick(const Steer& requested) {
         return audience_.notify(requested.client,
                                 picked_text(*start_.scene, point ? &*point : nullptr, message.x, message.y));
     }
-    if (!point) return audience_.notify(requested.client, notice_text("note", "there is only background"));
+    if (!point) return audience_.notify(requested.client, notice_text("note", "the pixel shows only background"));
     if (message.use == PickUse::Orbit) {
         camera_.turn_about(point->position);
         return audience_.notify(requested.client, notice_text("note", "the view now turns about this point"));
@@ -366,7 +366,7 @@ PictureRecord RenderLoop::record() const {
 void RenderLoop::save_pictures() {
     if (saves_.empty() || !last_ || !last_->is_reference) {
         if (saves_.empty() || view_.layer == ShownLayer::Beauty) return;
-        audience_.notify(0, notice_text("error", "a layer is shown; show the picture to save it"));
+        audience_.notify(0, notice_text("error", "a layer is shown; choose the picture to save it"));
         for (const Save& save : std::exchange(saves_, {})) save.reply({});
         return;
     }

@@ -142,7 +142,7 @@ RequestVerdict check_request(const RequestText& request, const ServerIdentity& s
         verdict.gives_cookie = true;
         return verdict;
     }
-    return refuse(403, "Open the address that pertev view printed: it holds the key.");
+    return refuse(403, "Open the address that pertev view printed: it contains the key.");
 }
 
 } // namespace pertev

@@ -193,7 +193,7 @@ Rgba8Image SessionFrames::show(const FrameRequest& request, ShownFrame& frame) {
     const bool nodes = request.view.layer == ShownLayer::NodeHeat;
     const std::vector<RayWork> work = session_.count_camera_work();
     if (work.empty()) {
-        frame.caption = "this traversal traces rays together and cannot count the tests of one";
+        frame.caption = "this traversal traces rays together and cannot count the tests of a single one";
         return shown_picture(session_, request.view.display.tone_map, frame.exposure_stops);
     }
     uint32_t most = 0;
@@ -263,7 +263,7 @@ void SessionFrames::begin_exposed(const FrameRequest& request, float stops) {
     exposure_.set(stops);
 }
 
-/// `is_growing` means at rest before the samples: with all scatterings, and stopped if nobody waits for it.
+/// `is_growing` means at rest before the samples: with all scatterings, and stopped if no client waits for it.
 std::optional<ShownFrame> SessionFrames::reconstruct(const FrameRequest& request, float scale, bool is_growing) {
     const Stopwatch whole;
     const double update_s = std::exchange(update_s_, 0);

@@ -103,7 +103,7 @@ std::vector<std::pair<IntegratorKind, std::string>> dark_integrators(RenderSetti
         const std::optional<Remark> is_dark = why_dark(settings, scene);
         std::string why = is_dark ? panel_phrase(*is_dark) : "";
         if (why.empty() && is_solved(settings.integrator) && !settings.radiosity->solution) {
-            why = "radiosity is solved before anything is shown: start pertev view --integrator radiosity";
+            why = "radiosity is solved before the first frame: start pertev view --integrator radiosity";
         }
         if (!why.empty()) dark.emplace_back(settings.integrator, std::move(why));
     }

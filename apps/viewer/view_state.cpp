@@ -94,7 +94,7 @@ std::string set_rta(ViewState& state, const std::string& name) {
 /// Some layers need frames, which not every integrator makes.
 std::string why_no_layer(ShownLayer layer, const RenderSettings& settings) {
     if (!is_of_frames(layer) || makes_frames(settings.integrator)) return {};
-    return fmt::format("{}: a layer of reconstructed frames, which {} does not make", name_of(layer),
+    return fmt::format("{} is a layer of reconstructed frames, which {} does not make", name_of(layer),
                        integrator_name(settings));
 }
 
@@ -296,8 +296,7 @@ std::vector<ViewSetting> own_settings() {
         });
     choice(
         "clocks", "Time", PanelGroup::Rays,
-        "by kind: each kind of ray and shading is timed separately (Stages, below). Stages wait for each other, so "
-        "frames take longer",
+        "by kind: each kind of ray and shading is timed separately (Stages, below), which makes frames slower",
         {"together", "by kind"},
         [](const ViewState& s) { return s.options.render.time_kinds ? "by kind" : "together"; },
         [](ViewState& s, const std::string& name) { s.options.render.time_kinds = name == "by kind"; });
@@ -309,7 +308,7 @@ std::string why_no_value(const ViewSetting& setting, const SettingValue& value) 
     if (setting.kind == Kind::Choice) {
         const std::string* text = std::get_if<std::string>(&value);
         const bool is_known = text != nullptr && std::ranges::find(setting.choices, *text) != setting.choices.end();
-        return is_known ? "" : fmt::format("{}: no such choice", setting.label);
+        return is_known ? "" : fmt::format("{} is not one of the choices", setting.label);
     }
     const double* given = std::get_if<double>(&value);
     const bool is_whole = setting.kind == Kind::Whole;

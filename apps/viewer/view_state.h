@@ -32,7 +32,7 @@ enum class ShownLayer : uint8_t {
     Deviation,
 };
 
-/// Maximum number of scatterings in moving pictures, unless somebody has chosen a depth.
+/// Maximum number of scatterings in moving pictures, unless a depth was chosen.
 inline constexpr uint32_t kMovingDepth = 4;
 
 struct ViewState {

@@ -44,7 +44,7 @@ def render(scene, *, cameras=None, seeds=None, color=True, layers=(), output=(),
               a part is an output="part.1.pvf" for merge().
 
     The picture has the bytes of `pertev render` with the same settings. The interpreter's lock is released, and Ctrl-C
-    raises KeyboardInterrupt. Messages go to the logger "pertev", but for those of a call that repeats the last one on an
+    raises KeyboardInterrupt. Messages go to the logger "pertev", except those of a call that repeats the last one on an
     open scene. Raises Error (pertev.errors), and TypeError for a name or a type that no setting has.
     """
     check_process()

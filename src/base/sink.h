@@ -128,7 +128,7 @@ public:
 
 private:
     static constexpr std::size_t kMaxLeftOut = 100;
-    static constexpr const char* kMoreLeftOut = "further things are left out; only the first are listed";
+    static constexpr const char* kMoreLeftOut = "more parts are left out; only the first are listed";
 
     std::vector<std::string> texts_of(bool Message::*kind) const {
         std::vector<std::string> texts;

@@ -56,7 +56,7 @@ CameraPath read_camera_path(const std::filesystem::path& path) {
     CameraPath result;
     const JsonValue keys = file.root().at("keys");
     for (const JsonValue& source : keys.elements()) result.keys.push_back(read_key(source, result));
-    if (result.keys.empty()) throw keys.error("there are none; expected at least one");
+    if (result.keys.empty()) throw keys.error("the path has no keys; expected at least one");
     return result;
 }
 

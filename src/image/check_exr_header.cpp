@@ -92,7 +92,7 @@ private:
     std::string_view read_name(std::size_t end) {
         const char* start = reinterpret_cast<const char*>(bytes_.data()) + offset_;
         const void* zero = std::memchr(start, 0, std::min<std::size_t>(end - offset_, 256));
-        if (zero == nullptr) fail("a name without an end");
+        if (zero == nullptr) fail("a name has no end");
         const std::string_view text(start, static_cast<std::size_t>(static_cast<const char*>(zero) - start));
         offset_ += text.size() + 1;
         return text;
@@ -162,7 +162,8 @@ private:
     }
 
     void check_part(const PartHeader& header) {
-        if (header.is_deep) fail("it holds deep samples, which are not supported; flatten it to an ordinary EXR");
+        if (header.is_deep)
+            fail("the file contains deep samples, which are not supported; flatten it to an ordinary EXR");
         if (!header.data || !header.display || !header.compression || header.channels == 0)
             fail("a part lacks its channels, compression, dataWindow or displayWindow");
         const uint64_t decoded_per_pixel = header.channels * sizeof(float); // half becomes float
@@ -178,7 +179,7 @@ private:
         uint64_t chunks =
             (header.data->height() + rows_per_chunk(*header.compression) - 1) / rows_per_chunk(*header.compression);
         if (header.is_tiled) {
-            if (header.tile_width == 0 || header.tile_height == 0) fail("tiles without a size");
+            if (header.tile_width == 0 || header.tile_height == 0) fail("the tiles have no size");
             check_size(header.tile_width, header.tile_height);
             chunks = ((header.data->width() + header.tile_width - 1) / header.tile_width) *
                      ((header.data->height() + header.tile_height - 1) / header.tile_height);

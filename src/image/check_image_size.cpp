@@ -29,8 +29,8 @@ void check_image_size(const std::string& name, uint64_t width, uint64_t height, 
 void check_decoded_bytes(const std::string& name, uint64_t decoded_bytes, uint64_t file_bytes) {
     if (decoded_bytes <= justified_bytes(kFreeImageBytes, file_bytes)) return;
     throw Error(ErrorCode::OverLimit, FileLocation{name},
-                fmt::format("its pixels take {} MiB of memory; the limit for a picture file of {} bytes is {} MiB and "
-                            "{} times its size; make the picture smaller",
+                fmt::format("the pixels take {} MiB of memory; the limit for a picture file of {} bytes is {} MiB "
+                            "plus {} times the file's size; make the picture smaller",
                             decoded_bytes >> 20, file_bytes, kFreeImageBytes >> 20, kMaxExpansion));
 }
 

@@ -67,7 +67,7 @@ private:
         const void* end = std::memchr(start, '\n', left);
         if (end == nullptr) fail("the header is truncated");
         const std::string_view line(start, static_cast<std::size_t>(static_cast<const char*>(end) - start));
-        if (line.size() > 4096) fail("a header line of more than 4096 characters");
+        if (line.size() > 4096) fail("a header line has more than 4096 characters");
         offset_ += line.size() + 1;
         return line.ends_with('\r') ? line.substr(0, line.size() - 1) : line;
     }
@@ -167,7 +167,7 @@ private:
             line.size() >= 8 && line.size() <= 0x7fff && first[0] == 2 && first[1] == 2 && first[2] < 128;
         if (!is_new) return read_flat_or_old(line);
         if (std::size_t(first[2]) * 256 + first[3] != line.size())
-            fail(fmt::format("a line of {} pixels; the header states {}", first[2] * 256 + first[3], line.size()));
+            fail(fmt::format("a line has {} pixels; the header states {}", first[2] * 256 + first[3], line.size()));
         offset_ += 4;
         for (std::size_t channel = 0; channel < 4; ++channel) read_channel(line, channel);
     }
@@ -178,7 +178,7 @@ private:
             const unsigned code = next_byte();
             const bool is_run = code > 128;
             const std::size_t count = is_run ? code - 128 : code;
-            if (count == 0) fail("a run of 0 pixels");
+            if (count == 0) fail("a run has 0 pixels");
             if (count > line.size() - x) fail("a run goes beyond the end of its line");
             if (is_run) {
                 const uint8_t value = next_byte();
@@ -203,8 +203,8 @@ private:
                 continue;
             }
             const std::size_t count = shift < 32 ? std::size_t(pixel[3]) << shift : 0;
-            if (x == 0) fail("a run before the first pixel of a line");
-            if (count == 0 && shift >= 32) fail("a run of more than 2^32 pixels");
+            if (x == 0) fail("a run stands before the first pixel of a line");
+            if (count == 0 && shift >= 32) fail("a run has more than 2^32 pixels");
             if (count > line.size() - x) fail("a run goes beyond the end of its line");
             for (std::size_t k = 0; k < count; ++k, ++x) line[x] = line[x - 1];
             shift += 8;

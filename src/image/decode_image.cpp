@@ -18,7 +18,7 @@ ImageFormat format_of(std::span<const std::byte> bytes, const std::string& name)
     if (const std::optional<ImageFormat> format = recognise_image(bytes)) return *format;
     throw Error(ErrorCode::BadInput, FileLocation{name},
                 fmt::format("{}; a picture must be PNG, JPEG, Radiance HDR or OpenEXR",
-                            bytes.empty() ? "the file is empty" : "its first bytes are of no known picture format"));
+                            bytes.empty() ? "the file is empty" : "the file has no known picture format"));
 }
 
 } // namespace

@@ -92,7 +92,7 @@ ExrReader::ExrReader(std::span<const std::byte> bytes, std::string name) {
     check_exr_header(bytes, name);
     state_ = std::make_unique<State>(bytes, std::move(name));
     try {
-        // No worker threads, and no repair of a broken chunk table: a file cut short is an error.
+        // No worker threads, and no repair of a broken chunk table: a truncated file is an error.
         state_->file.emplace(state_->stream, 0, false);
     } catch (const std::bad_alloc&) {
         throw;

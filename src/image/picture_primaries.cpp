@@ -40,7 +40,7 @@ std::optional<ColorMatrix> color_matrix_of(std::span<const std::byte> bytes, con
         if (std::optional<ColorMatrix> matrix = rec709_from(*found.primaries)) return matrix;
     }
     sink.leave_out(fmt::format(
-        "{}: its chromaticities are not valid primaries and are left out; its colours are read as Rec. 709", name));
+        "{}: the chromaticities are not valid primaries and are left out; the colours are read as Rec. 709", name));
     return std::nullopt;
 }
 

@@ -18,10 +18,10 @@ ImageFormat image_format_for(const std::filesystem::path& path) {
     if (extension == ".png") return ImageFormat::Png;
     if (extension == ".jpg" || extension == ".jpeg") return ImageFormat::Jpeg;
     if (extension == ".hdr") return ImageFormat::Hdr;
-    throw Error(
-        ErrorCode::BadInput, FileLocation{path.string()},
-        fmt::format("{}; a picture is written as .exr, .png, .jpg (.jpeg) or .hdr",
-                    extension.empty() ? "the name has no extension" : fmt::format("unknown extension {}", extension)));
+    throw Error(ErrorCode::BadInput, FileLocation{path.string()},
+                fmt::format("{}; a picture is written as .exr, .png, .jpg (.jpeg) or .hdr",
+                            extension.empty() ? "the file's name has no extension"
+                                              : fmt::format("unknown extension {}", extension)));
 }
 
 void check_image_output(const std::filesystem::path& path, uint32_t width, uint32_t height) {

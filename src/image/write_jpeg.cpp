@@ -138,7 +138,7 @@ std::vector<std::byte> encode_jpeg_strips(const Rgba8Image& picture, int quality
         const uint32_t first = static_cast<uint32_t>(i) * height;
         strips[i] = encode_rows(picture, first, std::min(height, picture.height - first), quality, half_chroma);
     });
-    // The first strip's head is the whole's, but for the height, and with the interval before the scan.
+    // The first strip's head is that of the whole picture, except for the height and the interval before the scan.
     const std::vector<std::byte>& head = strips[0];
     const std::size_t scan = find_segment(head, kStartOfScan), data = start_of_data(head);
     std::size_t bytes = data + 8;

@@ -13,7 +13,7 @@
 
 namespace pertev {
 
-/// A set of rays of one kind, traced as a whole. The proven traversal is compared with brute force; all others are
+/// A set of rays of one kind, traced as a whole. The reference traversal is compared with brute force; all others are
 /// compared with it (lab/run_lab.h).
 struct SetFigures {
     std::string name; // such as "primary", "shadow" or "diffuse1"
@@ -21,7 +21,7 @@ struct SetFigures {
     int depth = 0; // ray's position in a path, 1 for camera rays; 0 if the set is not part of a frame
     uint64_t rays = 0;
     double hit_share = 0;
-    uint64_t brute_force_rays = 0; // number of rays of the proven traversal that were compared with brute force
+    uint64_t brute_force_rays = 0; // number of rays of the reference traversal that were compared with brute force
 };
 
 /// Figures of one combination on one set.
@@ -43,7 +43,7 @@ struct CombinationFigures {
     std::optional<uint32_t> structure; // index into LabReport::structures; absent if it was never reached
     std::string name;
     std::string refused;                       // reason why there are no figures; empty if there are
-    bool wrong = false;                        // it differs from the proven traversal; `refused` says on which rays
+    bool wrong = false;                        // it differs from the reference traversal; `refused` names the rays
     std::optional<int> registers, local_bytes; // registers and local bytes per thread of the closest-hit kernel
     std::optional<double> occupancy;           // resident warps as a share of the possible number, limited by
                                                // registers

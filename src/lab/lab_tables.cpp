@@ -54,7 +54,7 @@ Fields run_fields(const LabReport& report, const CombinationFigures& c, const Ru
                   {"near_first", "near first", o.near_first},
                   {"tests", "tests", name_of(o.tests)},
                   {"distribution", "distribution", name_of(c.combination.distribution)},
-                  {"refused", "not run, reason", if_not_empty(c.refused)},
+                  {"refused", "not run because", if_not_empty(c.refused)},
                   {"wrong", "wrong", c.wrong},
                   {"registers", "registers", of_kernel ? ResultCell(c.registers) : ResultCell()},
                   {"local_bytes", "local bytes", of_kernel ? ResultCell(c.local_bytes) : ResultCell()},
@@ -88,7 +88,7 @@ Fields run_fields(const LabReport& report, const CombinationFigures& c, const Ru
 }
 
 ResultTable sets_of(const LabReport& report) {
-    ResultTable table = {"sets", "Sets of rays"};
+    ResultTable table = {"sets", "Ray sets"};
     for (const SetFigures& s : report.sets) {
         table.add({{"name", "set", s.name},
                    {"any_hit", "any hit", s.any_hit},
@@ -179,7 +179,7 @@ std::string text_of(const LabReport& report) {
     const ResultTable frames = pivot(runs, "combination", "frame_depth", "frames_per_second");
     if (!frames.rows.empty()) text += "\nframes a second by depth of paths\n" + text_of(frames) + '\n';
     for (const std::string& note : notes_of(report)) text += note + '\n';
-    if (report.interrupted) text += "interrupted: this is what had been measured\n";
+    if (report.interrupted) text += "interrupted: the results are incomplete\n";
     return text;
 }
 

@@ -49,7 +49,7 @@ void check_any_can_run(const std::vector<CombinationFigures>& combinations) {
         reasons += fmt::format("\n  {}{}: {}", refusal.names.front(),
                                others > 0 ? fmt::format(" and {} more", others) : "", refusal.reason);
     }
-    throw Error(ErrorCode::BadInput, "traversal", "", "none of the requested combinations can be measured:" + reasons);
+    throw Error(ErrorCode::BadInput, "traversal", "", "the requested combinations cannot be measured:" + reasons);
 }
 
 } // namespace pertev

@@ -51,8 +51,7 @@ std::filesystem::path record_file(const RecordScene& scene, const std::filesyste
     const std::filesystem::path path = folder / scene.file;
     if (folder.empty() || !std::filesystem::exists(path)) {
         throw Error(ErrorCode::BadInput, FileLocation{path.string()},
-                    fmt::format("the scene {} needs this file under the folder that PERTEV_SCENES names "
-                                "(docs/ray_sets.md says how to get it){}",
+                    fmt::format("the scene {} needs this file in the folder PERTEV_SCENES (see docs/ray_sets.md){}",
                                 scene.name, folder.empty() ? "; it is not set" : ""));
     }
     return path;

@@ -22,9 +22,9 @@
 namespace pertev {
 namespace {
 
-/// The proven traversal. Some of its rays are compared with brute force, so that every other combination can be
+/// The reference traversal. Some of its rays are compared with brute force, so that every other combination can be
 /// compared with it on all rays.
-constexpr Combination kProven = {.structure = StructureKind::Binned, .traversal = TraversalKind::WhileWhile};
+constexpr Combination kReference = {.structure = StructureKind::Binned, .traversal = TraversalKind::WhileWhile};
 
 /// Builds the top level over instances that have their own tree, in the file's coordinates, which the ray sets use
 /// too.
@@ -49,7 +49,7 @@ public:
                    .runs = settings.runs,
                    .warm_ups = settings.warm_ups};
         if (report_.triangles == 0)
-            throw Error(ErrorCode::BadInput, "scene", "", "it has no triangles: nothing to trace");
+            throw Error(ErrorCode::BadInput, "scene", "", "the scene has no triangles to trace");
     }
 
     LabReport run() {
@@ -66,7 +66,7 @@ public:
         if (report_.interrupted) {
             for (CombinationFigures& c : report_.combinations) {
                 if ((c.runs.empty() || c.runs.size() < sets_.size()) && c.refused.empty()) {
-                    c.refused = c.runs.empty() ? "interrupted before its turn" : "interrupted";
+                    c.refused = c.runs.empty() ? "interrupted before it was measured" : "interrupted";
                 }
             }
         }
@@ -96,14 +96,14 @@ private:
         }
     }
 
-    /// Makes the rays of a frame, traces them by the proven traversal and compares that with brute force.
+    /// Makes the rays of a frame, traces them by the reference traversal and compares that with brute force.
     void make_sets() {
-        progress("building the tree of the proven traversal");
+        progress("building the tree of the reference traversal");
         const BinaryTrees binary = build_binary_trees(triangles_.parts, BvhBuilder::Binned, sink_);
         triangles_.tlas = tlas_over(scene_, binary);
-        const Tracer proven = tracer_over(kProven, binary);
+        const Tracer reference = tracer_over(kReference, binary);
         const BruteForce oracle(queue_, triangles_.parts, triangles_.tlas);
-        with_memory_for_rays([&] { trace_sets(proven, oracle); });
+        with_memory_for_rays([&] { trace_sets(reference, oracle); });
     }
 
     Tracer tracer_over(const Combination& combination, const BinaryTrees& trees) {
@@ -112,8 +112,8 @@ private:
         return {queue_, combination, built};
     }
 
-    void trace_sets(const Tracer& proven, const BruteForce& oracle) {
-        std::vector<RaySet> sets = make_rays(proven);
+    void trace_sets(const Tracer& reference, const BruteForce& oracle) {
+        std::vector<RaySet> sets = make_rays(reference);
         const bool record = settings_.record_rays > 0;
         int depth = 0;
         std::string parent; // the set whose hits are the next set's origins
@@ -123,10 +123,10 @@ private:
             if (wanted || record) {
                 if (set.rays.empty()) {
                     report_.notes.push_back(
-                        fmt::format("{}: no rays, because none of {} meets the scene", set.name, parent));
+                        fmt::format("{}: there are no rays, because none of {} hits the scene", set.name, parent));
                 } else {
-                    add_set(set, proven, oracle, set.any_hit || record ? 0 : depth); // the record's sets are not part
-                                                                                     // of a frame
+                    // The record's sets are not part of a frame.
+                    add_set(set, reference, oracle, set.any_hit || record ? 0 : depth);
                 }
             }
             if (!set.any_hit && !set.rays.empty()) parent = set.name;
@@ -138,25 +138,25 @@ private:
                             "diffuse rays are the second rays of paths and need a depth of at least 2");
             }
             throw Error(ErrorCode::BadInput, "camera", "",
-                        "none of its rays meets the scene, so no diffuse or shadow rays start");
+                        "none of the camera's rays hits the scene, so there are no diffuse or shadow rays");
         }
     }
 
-    void add_set(const RaySet& set, const Tracer& proven, const BruteForce& oracle, int depth) {
-        const std::string checking = fmt::format("{}: comparing the proven traversal with brute force", set.name);
+    void add_set(const RaySet& set, const Tracer& reference, const BruteForce& oracle, int depth) {
+        const std::string checking = fmt::format("{}: comparing the reference traversal with brute force", set.name);
         progress(checking);
-        const uint64_t checked = check_proven_traversal(queue_, set, proven, oracle, triangles_, kOracleRays,
-                                                        kOracleStressRays, progress_of(checking));
-        const std::string tracing = fmt::format("{}: tracing by the proven traversal", set.name);
-        sets_.push_back(trace_set(queue_, set, proven, progress_of(tracing)));
+        const uint64_t checked = check_reference_traversal(queue_, set, reference, oracle, triangles_, kOracleRays,
+                                                           kOracleStressRays, progress_of(checking));
+        const std::string tracing = fmt::format("{}: tracing by the reference traversal", set.name);
+        sets_.push_back(trace_set(queue_, set, reference, progress_of(tracing)));
         sets_.back().figures.brute_force_rays = checked;
         sets_.back().figures.depth = depth;
         report_.sets.push_back(sets_.back().figures);
     }
 
-    std::vector<RaySet> make_rays(const Tracer& proven) {
+    std::vector<RaySet> make_rays(const Tracer& reference) {
         progress("making rays");
-        const RaySetJob job = {scene_, camera_, settings_.width, settings_.height, ray_tracer(proven)};
+        const RaySetJob job = {scene_, camera_, settings_.width, settings_.height, ray_tracer(reference)};
         return settings_.record_rays > 0 ? make_record_ray_sets(job, settings_.record_rays)
                                          : make_frame_ray_sets(job, settings_.depth - 1);
     }
@@ -188,9 +188,9 @@ private:
 
     uint64_t pixels() const { return uint64_t(settings_.width) * settings_.height; }
 
-    /// Traces by the proven traversal, in pieces.
-    RayTracer ray_tracer(const Tracer& proven) {
-        return [this, trace = make_ray_tracer(queue_, proven)](std::span<const Ray> rays, std::span<RayHit> hits) {
+    /// Traces by the reference traversal, in pieces.
+    RayTracer ray_tracer(const Tracer& reference) {
+        return [this, trace = make_ray_tracer(queue_, reference)](std::span<const Ray> rays, std::span<RayHit> hits) {
             const auto piece = [&](uint64_t begin, uint64_t count) {
                 trace(rays.subspan(begin, count), hits.subspan(begin, count));
             };
@@ -253,7 +253,7 @@ private:
             if (error.code() != ErrorCode::OutOfMemory && error.code() != ErrorCode::OverLimit) throw;
             return error.what();
         } catch (const std::bad_alloc&) {
-            return "does not fit into this machine's memory";
+            return "the tables do not fit into this machine's memory";
         }
     }
 
@@ -313,7 +313,7 @@ private:
         }
     }
 
-    /// Compares a combination with the proven traversal. Returns false if they differ; the combination then has no
+    /// Compares a combination with the reference traversal. Returns false if they differ; the combination then has no
     /// figures.
     bool check(CombinationFigures& c, const TracedSet& set, const Tracer& tracer, const std::string& doing,
                RunFigures& run) {
@@ -326,7 +326,7 @@ private:
             count_different(hits.download(set.figures.any_hit), set.wanted, c.combination.options.is_exact());
         if (run.different == 0 || !c.combination.options.is_exact()) return true;
         c.wrong = true;
-        c.refused = fmt::format("WRONG: {} of {} {} rays differ from the proven traversal; please report it",
+        c.refused = fmt::format("WRONG: {} of {} {} rays differ from the reference traversal; please report this",
                                 run.different, set.rays.size(), set.figures.name);
         return false;
     }

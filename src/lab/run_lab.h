@@ -1,7 +1,7 @@
 #pragma once
 
-// The traversal laboratory. It makes the rays of a frame and compares the proven traversal (while-while over the
-// binned binary tree) with brute force on some of them. It then compares every combination with the proven traversal
+// The traversal laboratory. It makes the rays of a frame and compares the reference traversal (while-while over the
+// binned binary tree) with brute force on some of them. It then compares every combination with the reference traversal
 // on all rays and times those that agree.
 
 #include <cstdint>
@@ -36,15 +36,15 @@ struct LabSettings {
     bool heat_maps = true;
 };
 
-/// Number of rays in each set on which the proven traversal is compared with brute force: rays spread over the set,
+/// Number of rays in each set on which the reference traversal is compared with brute force: rays spread over the set,
 /// and additional rays along axes or exactly at edges of triangles.
 inline constexpr uint32_t kOracleRays = 2000, kOracleStressRays = 200;
 
 /// Measures all combinations of the settings. Stops early, with `interrupted` set, when `sink` stops; a running build
 /// or timed run is finished first. `save` gets the results so far after each structure. Throws Error(BadInput) for a
 /// scene without triangles or if no combination can be measured, Error(OutOfMemory) if the rays do not fit, and
-/// Error(DeviceFault) if the proven traversal differs from brute force. A combination that differs from the proven
-/// traversal or does not fit into memory has no figures but a reason.
+/// Error(DeviceFault) if the reference traversal differs from brute force. A combination that differs from the
+/// reference traversal or does not fit into memory has no figures but a reason.
 LabReport run_lab(Queue& queue, const Scene& scene, const Camera& camera, const LabSettings& settings,
                   Sink& sink = nobody(), const std::function<void(const LabReport&)>& save = {});
 

@@ -28,8 +28,9 @@ struct TransportStopped {};
 RenderSettings settings_of(const TransportSettings& settings, const std::string& integrator, uint32_t seed) {
     RenderSettings picture = settings.picture;
     if (!set_integrator(picture, integrator)) {
-        throw Error(ErrorCode::BadInput, "integrator", integrator,
-                    fmt::format("there is none of this name; there are {}", fmt::join(integrator_names(), ", ")));
+        throw Error(
+            ErrorCode::BadInput, "integrator", integrator,
+            fmt::format("there is no integrator with this name; there are {}", fmt::join(integrator_names(), ", ")));
     }
     picture.path.seed = seed;
     return picture;
@@ -111,7 +112,7 @@ private:
             reference.integrator = settings_.reference_integrator;
             if (const std::string why = why_not(reference.integrator); !why.empty()) {
                 throw Error(ErrorCode::BadInput, "reference", reference.integrator,
-                            fmt::format("it cannot make the reference: {}", why));
+                            fmt::format("it cannot render the reference: {}", why));
             }
             reference.lacks = light_lacking(reference.integrator, scene_);
             return;
@@ -121,11 +122,12 @@ private:
         const RenderSettings& picture = settings_.picture;
         if (given.width != picture.width || given.height != picture.height) {
             throw Error(ErrorCode::BadInput, "reference", reference.file,
-                        fmt::format("it is {0}x{1}, the pictures {2}x{3}; `size={0}x{1}` makes them alike", given.width,
-                                    given.height, picture.width, picture.height));
+                        fmt::format("the reference has {0}x{1} pixels, the pictures {2}x{3}; set `size={0}x{1}`",
+                                    given.width, given.height, picture.width, picture.height));
         }
         if (!std::ranges::all_of(given.pixels, [](float value) { return std::isfinite(value); })) {
-            throw Error(ErrorCode::BadInput, "reference", reference.file, "it has values that are not finite");
+            throw Error(ErrorCode::BadInput, "reference", reference.file,
+                        "the reference has values that are not finite");
         }
     }
 

@@ -35,7 +35,7 @@ std::vector<std::string> notes_of(const ThesisReport& thesis) {
     for (const std::string& line : thesis.lacking) notes.push_back("Not made: " + line);
     for (const LabReport& report : thesis.scenes) {
         for (const std::string& note : measurement_of(report).notes) notes.push_back(report.scene + ": " + note);
-        if (report.interrupted) notes.push_back(report.scene + ": interrupted; this is what had been measured.");
+        if (report.interrupted) notes.push_back(report.scene + ": interrupted; the results are incomplete.");
         for (const CombinationFigures& c : report.combinations) {
             if (c.combination.options.is_exact()) continue;
             for (const RunFigures& run : c.runs) {
@@ -160,7 +160,7 @@ Measurement measurement_of(const ThesisReport& thesis, Measurement m) {
     for (const ThesisVariant& v : thesis_variants(on_cuda(thesis))) {
         variants.add({{"name", "variant", v.name}, {"meaning", "meaning", v.meaning}});
     }
-    for (const std::string& line : thesis.lacking) lacking.add({{"what", "what, and why", line}});
+    for (const std::string& line : thesis.lacking) lacking.add({{"what", "part and reason", line}});
     m.tables = {variants, lacking, scenes_of(thesis), frames_of(thesis), table_of(thesis.pictures)};
     m.notes = notes_of(thesis);
     for (const ThesisPicture& p : thesis.pictures) {

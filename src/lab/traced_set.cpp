@@ -68,11 +68,11 @@ bool differs(const RayHit& a, const RayHit& b, bool exact) {
     return exact ? !(a == b) : a.instance != b.instance || (a.is_hit() && a.primitive != b.primitive);
 }
 
-std::vector<RayHit> trace_proven(Queue& queue, const Tracer& proven, bool any_hit, const Buffer<Ray>& rays,
-                                 const PieceDone& done) {
+std::vector<RayHit> trace_reference(Queue& queue, const Tracer& reference, bool any_hit, const Buffer<Ray>& rays,
+                                    const PieceDone& done) {
     const HitsOnDevice hits(queue, rays.size());
     const auto trace_piece = [&](uint64_t begin, uint64_t count) {
-        trace(proven, any_hit, rays.data() + begin, static_cast<uint32_t>(count), hits.from(begin));
+        trace(reference, any_hit, rays.data() + begin, static_cast<uint32_t>(count), hits.from(begin));
         queue.wait();
     };
     in_pieces(rays.size(), first_piece_of_rays(), trace_piece, done);
@@ -90,28 +90,29 @@ std::vector<Ray> oracle_rays(const RaySet& set, const LabTriangles& triangles, u
     return rays;
 }
 
-uint64_t check_proven_traversal(Queue& queue, const RaySet& set, const Tracer& proven, const BruteForce& oracle,
-                                const LabTriangles& triangles, uint32_t count, uint32_t stress_count,
-                                const PieceDone& done) {
+uint64_t check_reference_traversal(Queue& queue, const RaySet& set, const Tracer& reference, const BruteForce& oracle,
+                                   const LabTriangles& triangles, uint32_t count, uint32_t stress_count,
+                                   const PieceDone& done) {
     const std::vector<Ray> some = oracle_rays(set, triangles, count, stress_count);
     const std::vector<RayHit> truth = oracle.trace(some, done);
     const std::vector<RayHit> found =
-        trace_proven(queue, proven, set.any_hit, Buffer<Ray>(queue, std::span<const Ray>(some), "rays"), {});
+        trace_reference(queue, reference, set.any_hit, Buffer<Ray>(queue, std::span<const Ray>(some), "rays"), {});
     for (std::size_t i = 0; i < some.size(); ++i) {
         if (found[i] == wanted_of(truth[i], set.any_hit)) continue;
-        throw Error(ErrorCode::DeviceFault,
-                    fmt::format("the proven traversal differs from brute force on {} ({}): instance {} instead of {}, "
-                                "primitive {} instead of {}, t {:a} instead of {:a}; please report it",
-                                set.name, text_of(some[i]), found[i].instance, truth[i].instance, found[i].primitive,
-                                truth[i].primitive, found[i].t, truth[i].t));
+        throw Error(
+            ErrorCode::DeviceFault,
+            fmt::format("the reference traversal differs from brute force on {} ({}): instance {} instead of {}, "
+                        "primitive {} instead of {}, t {:a} instead of {:a}; please report it",
+                        set.name, text_of(some[i]), found[i].instance, truth[i].instance, found[i].primitive,
+                        truth[i].primitive, found[i].t, truth[i].t));
     }
     return some.size();
 }
 
-TracedSet trace_set(Queue& queue, const RaySet& set, const Tracer& proven, const PieceDone& done) {
+TracedSet trace_set(Queue& queue, const RaySet& set, const Tracer& reference, const PieceDone& done) {
     TracedSet traced;
     traced.rays = Buffer<Ray>(queue, std::span<const Ray>(set.rays), set.name + " rays");
-    traced.wanted = trace_proven(queue, proven, set.any_hit, traced.rays, done);
+    traced.wanted = trace_reference(queue, reference, set.any_hit, traced.rays, done);
     traced.figures = {.name = set.name, .any_hit = set.any_hit, .rays = set.rays.size()};
     traced.figures.hit_share = hit_share(traced.wanted);
     return traced;

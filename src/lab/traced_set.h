@@ -1,6 +1,6 @@
 #pragma once
 
-// A set of rays with reference hits that every combination is compared with. The proven traversal (lab/run_lab.h)
+// A set of rays with reference hits that every combination is compared with. The reference traversal (lab/run_lab.h)
 // traces them; it is itself compared with brute force on some of the rays.
 
 #include <span>
@@ -29,14 +29,14 @@ struct LabTriangles {
 /// vertices and edges of the scene's triangles. The result depends only on the arguments.
 std::vector<Ray> oracle_rays(const RaySet& set, const LabTriangles& triangles, uint32_t count, uint32_t stress_count);
 
-/// Compares the proven traversal with brute force on some of the set's rays and returns their number. Throws
+/// Compares the reference traversal with brute force on some of the set's rays and returns their number. Throws
 /// Error(DeviceFault) with the ray as hex floats if they differ.
-uint64_t check_proven_traversal(Queue& queue, const RaySet& set, const Tracer& proven, const BruteForce& oracle,
-                                const LabTriangles& triangles, uint32_t count, uint32_t stress_count,
-                                const PieceDone& done);
+uint64_t check_reference_traversal(Queue& queue, const RaySet& set, const Tracer& reference, const BruteForce& oracle,
+                                   const LabTriangles& triangles, uint32_t count, uint32_t stress_count,
+                                   const PieceDone& done);
 
-/// Traces the set by the proven traversal.
-TracedSet trace_set(Queue& queue, const RaySet& set, const Tracer& proven, const PieceDone& done);
+/// Traces the set by the reference traversal.
+TracedSet trace_set(Queue& queue, const RaySet& set, const Tracer& reference, const PieceDone& done);
 
 /// Counts rays whose hit differs from the wanted one: in any bit, or, if `exact` is false, in the surface that is
 /// hit.

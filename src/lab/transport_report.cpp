@@ -153,8 +153,8 @@ std::optional<double> efficiency(const TransportPoint& point) {
 }
 
 std::string describe_reference(const TransportReference& reference) {
-    if (!reference.file.empty()) return reference.file + "; its own noise is not known";
-    if (!reference.rel_mse) return reference.integrator + "; it was not made";
+    if (!reference.file.empty()) return reference.file + "; its own noise is unknown";
+    if (!reference.rel_mse) return reference.integrator + "; it was not rendered";
     return fmt::format("{}, {} samples per pixel, {:.3g} s; its own noise: relMSE {:.2g}, HDR-FLIP of one half "
                        "against the other {:.2g}",
                        reference.integrator, reference.samples, reference.seconds, *reference.rel_mse,

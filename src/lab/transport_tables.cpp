@@ -123,7 +123,7 @@ ResultTable repetitions_of(const TransportReport& report) {
                        {"light", "light found", row.light},
                        {"finds_all", "finds all", row.finds_all},
                        {"is_solved", "is solved", row.is_solved},
-                       {"refused", "not run, reason", if_not_empty(row.refused)},
+                       {"refused", "not run because", if_not_empty(row.refused)},
                        {"device_bytes", "device memory", has_figures ? ResultCell(row.bytes) : ResultCell(), "bytes"},
                        {"host_bytes", "host memory", has_figures ? ResultCell(row.host_bytes) : ResultCell(), "bytes"},
                        {"invalid_samples", "invalid samples",
@@ -154,7 +154,7 @@ std::vector<std::string> rows_without_figures(const TransportScene& scene) {
     for (const TransportRow& row : scene.rows) {
         if (!row.repetitions.empty()) continue;
         lines.push_back(
-            fmt::format("{}: {}", row.name, row.refused.empty() ? "interrupted before its turn" : row.refused));
+            fmt::format("{}: {}", row.name, row.refused.empty() ? "interrupted before it was rendered" : row.refused));
     }
     return lines;
 }
@@ -218,7 +218,7 @@ std::string text_of(const TransportReport& report) {
     }
     text += '\n' + text_of(m.table("equal_time")) + '\n';
     for (const std::string& note : m.notes) text += note + '\n';
-    if (report.interrupted) text += "interrupted: this is what had been measured\n";
+    if (report.interrupted) text += "interrupted: the results are incomplete\n";
     return text;
 }
 

@@ -54,8 +54,9 @@ void check_light_ends(const RadiositySystem& system) {
         const uint64_t endless = count_endless(system, k);
         if (endless == 0) continue;
         throw Error(ErrorCode::BadInput, "scene", "",
-                    fmt::format("light never ends: {} of {} patches reflect all light to each other (lower "
-                                "their reflectances below 1; `integrator=path` follows light up to `max_depth`)",
+                    fmt::format("the system has no solution: {} of {} patches reflect all light to each other; lower "
+                                "their reflectances below 1, or set `integrator=path`, which follows light up to "
+                                "`max_depth`",
                                 endless, system.patches.size()));
     }
 }

@@ -63,8 +63,8 @@ SolvedSystem solve_direct_light(const RadiositySystem& system) {
 void check_matrix_size(std::size_t patches) {
     if (patches <= kMaxMatrixPatches) return;
     throw Error(ErrorCode::OverLimit, "solver", "matrix",
-                fmt::format("{} patches; the limit is {} (`solver=gauss-seidel` or southwell solves more, and a larger "
-                            "`patch_size` makes fewer)",
+                fmt::format("the scene has {} patches; the limit is {} (`solver=gauss-seidel` or southwell solves "
+                            "more, and a larger `patch_size` makes fewer)",
                             patches, kMaxMatrixPatches));
 }
 

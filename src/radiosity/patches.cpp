@@ -60,7 +60,7 @@ PatchCode divide(const DividedScene& divided, PatchTree& tree, Patch patch, uint
     if (levels == 0) {
         if (divided.watch != nullptr && divided.watch->is_over()) {
             throw Error(ErrorCode::Interrupted, "interrupted while surfaces were divided into patches; nothing is "
-                                                "written, because there is no light yet");
+                                                "written, because no light has been solved");
         }
         set_surface(divided.scene, patch);
         tree.patches.push_back(patch);
@@ -150,7 +150,7 @@ uint64_t count_patches(const SceneView& scene, float patch_size) {
 void check_patch_count(uint64_t patches, float patch_size) {
     if (patches <= kMaxPatches) return;
     throw Error(ErrorCode::OverLimit, "patch_size", fmt::format("{}", patch_size),
-                fmt::format("it divides this scene into {} patches; the limit is {}", patches, kMaxPatches));
+                fmt::format("this scene would have {} patches; the limit is {}", patches, kMaxPatches));
 }
 
 PatchTree make_patches(const SceneView& scene, float patch_size, WorkWatch* watch) {
@@ -186,8 +186,8 @@ PatchTree make_patches(const SceneView& scene, float patch_size, WorkWatch* watc
     });
     if (!any_reflects) {
         throw Error(ErrorCode::BadInput, "scene", "",
-                    "no surface of this scene reflects diffusely, so that there is nothing to solve "
-                    "(`integrator=path` supports mirrors, glass and unlit surfaces)");
+                    "no surface of this scene reflects diffusely, so there is nothing to solve (`integrator=path` "
+                    "supports mirrors, glass and unlit surfaces)");
     }
     return tree;
 }

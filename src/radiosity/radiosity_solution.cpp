@@ -106,11 +106,11 @@ std::string describe(const SolvedExtent& extent) {
     case SolvedPart::DirectLight:
         return "only direct light";
     case SolvedPart::SomeBounces:
-        return fmt::format("light of an unfinished solution: its last step changed or left unshot {:.3g} % of it, and "
-                           "patches are not divided as requested",
+        return fmt::format("an unfinished solution: its last step changed or left unshot {:.3g} % of the light, and "
+                           "patches are not subdivided as requested",
                            100 * extent.left);
     case SolvedPart::SomeDivided:
-        return "all light, in patches that are not divided as requested";
+        return "all light, but patches are not subdivided as requested";
     }
     return {};
 }
@@ -207,8 +207,10 @@ RadiositySolution read_any_solution(const std::filesystem::path& path) {
                                      : before + header.text + header.roots * sizeof(PatchCode) +
                                            header.quads * sizeof(PatchQuad) + header.patches * sizeof(PatchLight);
     if (!has_sizes || size != bytes.size()) {
-        refuse_file(path, fmt::format("a radiosity solution that is truncated or damaged: {} bytes, but it states {}",
-                                      file.size(), sizeof header + size));
+        refuse_file(
+            path,
+            fmt::format("a radiosity solution that is truncated or damaged: it has {} bytes, but its header states {}",
+                        file.size(), sizeof header + size));
     }
     RadiositySolution solution;
     if (has_light) take(bytes, std::span(&solution.light.emplace(), 1));
@@ -235,13 +237,13 @@ RadiositySolution read_solution(const std::filesystem::path& path, const Scene& 
     check_scene(path, solution, scene);
     if (!solution.light) {
         sink.warn({FileLocation{path.string()},
-                   "an earlier version made it and did not record its light; if lights or materials have changed "
-                   "since, it shows the old ones; solve the scene again"});
+                   "an earlier version made the solution and did not record the scene's light; if lights or "
+                   "materials have changed since, it shows the old ones; solve the scene again"});
     }
     if (solution.extent.part != SolvedPart::All) {
-        sink.warn(
-            {FileLocation{path.string()},
-             fmt::format("it is unfinished and holds {}; solve the scene again for all", describe(solution.extent))});
+        sink.warn({FileLocation{path.string()},
+                   fmt::format("the solution is unfinished and contains {}; solve the scene again for all light",
+                               describe(solution.extent))});
     }
     return solution;
 }

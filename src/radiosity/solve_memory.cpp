@@ -41,7 +41,7 @@ uint64_t found_factors(const RadiositySettings& s) {
 /// Memory of threads that make rows: a list that grows by doubling, a copy to sort it, and a hemicube.
 Parts making_rows(const RadiositySettings& s, const Counts& counts, uint64_t threads) {
     const std::size_t list = 4 * found_factors(s) * sizeof(FormFactor);
-    Parts parts = {{"rows under construction", threads * (list + 65536)}};
+    Parts parts = {{"rows of form factors in progress", threads * (list + 65536)}};
     if (s.form_factors == FormFactors::Hemicube) {
         const uint64_t pixels = uint64_t(s.hemicube) * s.hemicube;
         parts.push_back({"hemicubes: pixels", threads * max_hemicube_bytes(s.hemicube) + 9 * sizeof(double) * pixels});
@@ -76,10 +76,10 @@ Parts solving_rows(const RadiositySettings& s, const Counts& counts, uint64_t th
 Parts showing(const RadiositySettings& s, const Counts& counts, uint64_t threads) {
     Parts parts = s.subdivisions > 0 ? making_rows(s, counts, threads) : Parts{};
     parts.push_back(
-        {"patches that shoot", tree_bytes(counts.patches, counts.triangles) + 2 * counts.patches * sizeof(Rgb)});
+        {"shooting patches", tree_bytes(counts.patches, counts.triangles) + 2 * counts.patches * sizeof(Rgb)});
     parts.push_back(
-        {"patches that are shown", 2 * (tree_bytes(counts.shown, counts.triangles) + counts.shown * sizeof(Rgb)) +
-                                       2 * counts.shown * sizeof(uint32_t)});
+        {"displayed patches", 2 * (tree_bytes(counts.shown, counts.triangles) + counts.shown * sizeof(Rgb)) +
+                                  2 * counts.shown * sizeof(uint32_t)});
     parts.push_back({"corners", CornerTable::max_bytes(counts.shown) + WeldedVertices::max_bytes(counts.vertices)});
     parts.push_back({"solution", 2 * counts.shown * sizeof(PatchLight)}); // twice: in memory and as a file
     return parts;

@@ -21,7 +21,7 @@ constexpr uint64_t kRowsOfThread = 4; // minimum number per thread, one after th
 [[noreturn]] void interrupt() {
     throw Error(
         ErrorCode::Interrupted,
-        "interrupted while form factors were made; nothing is written, because no light is solved before all are done");
+        "interrupted while form factors were computed; nothing is written, because solving begins after all of them");
 }
 
 /// Makes `count` rows and calls take(k, row) for each, from any thread. Returns false if the watch was over before all
@@ -34,7 +34,7 @@ bool make_rows(const RowMakers& makers, WorkWatch& watch, uint64_t count, const 
         for (uint64_t k = begin; k < end; ++k) {
             const auto [patch, number] = patch_of(k);
             maker->make(*patch, number, row);
-            if (watch.is_over()) return; // it may have been cut short
+            if (watch.is_over()) return; // it may be incomplete
             take(k, row);
             watch.done();
         }
@@ -308,7 +308,8 @@ void warn_of_limits(const SolveStats& stats, const RadiositySettings& settings, 
         sink.warn(
             {"link_error", fmt::format("{}", settings.link_error),
              fmt::format("radiosity has more than {} links, the limit; {} with `link_error={}` (set that to save time)",
-                         kMaxLinks, stats.was_interrupted ? "it is unfinished" : "it is solved", stats.link_error)});
+                         kMaxLinks, stats.was_interrupted ? "the solution is unfinished" : "the system is solved",
+                         stats.link_error)});
     }
     if (!stats.reached_limit) return;
     const bool is_ambient = settings.solver == RadiositySolver::Southwell;

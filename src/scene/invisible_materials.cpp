@@ -67,7 +67,7 @@ void warn_of_invisible_materials(const Scene& scene, const std::string& file, Si
         const Material& material = scene.materials[i];
         sink.warn(
             {FileLocation{file}, fmt::format("the material {} is invisible{}, because its alpha is 0 or below its "
-                                             "cutoff (in MTL d 0 or Tr 1); {} with it cannot be seen",
+                                             "cutoff (in MTL d 0 or Tr 1); {} with it are not shown",
                                              material.name.empty() ? fmt::format("{}", i) : material.name,
                                              material.origin.empty() ? "" : fmt::format(" ({})", material.origin),
                                              counted(unseen[i], "surface"))});

@@ -67,7 +67,7 @@ std::string some_names(const std::vector<Names>& things) {
         if (shown.size() < kMaxShown) shown.push_back(fmt::format("'{}'", name));
     }
     if (shown.empty()) return "none has a name";
-    return fmt::format("there are {}{}", fmt::join(shown, ", "), names.size() > kMaxShown ? ", ..." : "");
+    return fmt::format("the names are {}{}", fmt::join(shown, ", "), names.size() > kMaxShown ? ", ..." : "");
 }
 
 } // namespace pertev

@@ -19,7 +19,7 @@ struct SceneUpdate {
     bool materials_changed = false;        // numbers of materials (visit_parameters)
     bool environment_changed = false;      // Scene::environment, which is there as before
 
-    /// Returns whether surfaces are where they were, but for poses.
+    /// Returns whether surfaces are unchanged, except for poses.
     bool keeps_surfaces() const {
         return moved_instances.empty() && deformed_meshes.empty() && replaced_meshes.empty();
     }

@@ -18,14 +18,14 @@ void refuse(bool is_wrong, const char* setting, std::string value, const char* w
 } // namespace
 
 void check_batch(const CameraBatch& batch, const RenderSettings& settings) {
-    refuse(batch.cameras.empty(), "cameras", "", "a batch needs at least one");
+    refuse(batch.cameras.empty(), "cameras", "", "a batch needs at least one camera");
     refuse(batch.seeds.size() > 1 && batch.seeds.size() != batch.cameras.size(), "seeds",
-           fmt::format("{}", batch.seeds.size()), "expected one, or one for each camera");
+           fmt::format("{}", batch.seeds.size()), "expected one seed, or one for each camera");
     refuse(settings.denoise != Denoise::None, "denoise", "", "batches of pictures are not denoised");
     refuse(settings.light_paths != nullptr, "lpe", "", "batches of pictures have no layers of light paths");
     refuse(settings.irradiance, "false_color", "illuminance", "batches of pictures show radiance");
-    refuse((settings.aovs & kAovMotion) != 0, "aov", "motion", "pictures of a batch have no frame before");
-    refuse(settings.time_limit_s > 0, "time_limit", "", "it would end pictures of a batch at different samples");
+    refuse((settings.aovs & kAovMotion) != 0, "aov", "motion", "pictures of a batch have no earlier frame");
+    refuse(settings.time_limit_s > 0, "time_limit", "", "pictures of a batch would end at different samples");
     refuse(settings.samples == 0 && !has_centres(settings), "spp", "0",
            "without samples there are only layers at centres");
     for (const Camera& camera : batch.cameras) {

@@ -77,17 +77,18 @@ void check_integrator(const RenderSettings& settings) {
     refuse(is_denoised && !makes_frames(settings.integrator), "denoise", name_of(settings.denoise),
            fmt::format("supports {}, not {}", those_that(makes_frames), name));
     refuse(is_denoised && (settings.aovs & kAovDistance) != 0, "aov", "distance",
-           fmt::format("`denoise={}` does not make it; depth is measured along the axis", name_of(settings.denoise)));
+           fmt::format("`denoise={}` does not support it; its depth is measured along the axis",
+                       name_of(settings.denoise)));
     if (settings.light_paths) {
         refuse(!has_light_path_layers(settings.integrator), "lpe", "",
                fmt::format("{} distinguish light paths, {} does not", those_that(has_light_path_layers), name));
         refuse(is_denoised, "lpe", "",
-               fmt::format("layers are means of samples, which `denoise={}` does not have; leave out one of them",
+               fmt::format("layers are means of samples, which `denoise={}` does not keep; leave out one of them",
                            name_of(settings.denoise)));
     }
     refuse(settings.irradiance && (is_denoised || !has_light_path_layers(settings.integrator)), "false_color",
            "illuminance",
-           fmt::format("only {} without denoising find it, not {}{}", those_that(has_light_path_layers), name,
+           fmt::format("only {} without denoising compute it, not {}{}", those_that(has_light_path_layers), name,
                        is_denoised ? ", denoised" : ""));
     if (settings.path.max_depth > max_depth(settings.integrator)) {
         throw Error(ErrorCode::OverLimit, "max_depth", fmt::format("{}", settings.path.max_depth),
@@ -114,7 +115,7 @@ void check_camera(const RenderSettings& settings, const Camera& camera) {
 }
 
 void check_reconstruction(const Camera& camera) {
-    refuse(!has_straight_lens(camera), "distortion", "", "frames in real time need a lens that draws straight lines");
+    refuse(!has_straight_lens(camera), "distortion", "", "real-time frames need a lens without distortion");
 }
 
 std::optional<Remark> why_dark(const RenderSettings& settings, const Scene& scene) {
@@ -128,8 +129,8 @@ std::optional<Remark> why_dark(const RenderSettings& settings, const Scene& scen
     }
     if (!lacks_lights(settings, scene) || has_own_ambient(settings, scene)) return {};
     return why(
-        fmt::format("only point, spot and directional lights light its surfaces, and {}: `integrator=distributed` and "
-                    "path support all lights, and `ambient=0.5` lights all surfaces equally",
+        fmt::format("only point, spot and directional lights light its surfaces, and {}; `integrator=distributed` "
+                    "and path support all lights, and `ambient=0.5` lights all surfaces equally",
                     lights_of(scene)));
 }
 

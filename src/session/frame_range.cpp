@@ -60,12 +60,12 @@ std::optional<Shutter> shutter(const PictureOptions& options) {
     const auto refuse = [&](std::string why) {
         throw Error(ErrorCode::BadInput, "shutter", options.shutter, std::move(why));
     };
-    if (!open || !close) refuse("expected SECONDS, or OPEN,CLOSE, both counted from the picture's time");
+    if (!open || !close) refuse("expected SECONDS, or OPEN,CLOSE, both relative to the picture's time");
     if (std::fabs(*open) > kMaxShutter || std::fabs(*close) > kMaxShutter)
         refuse(fmt::format("OPEN and CLOSE must be within {:g} s of the picture's time", kMaxShutter));
-    if (*close < *open) refuse("it closes before it opens");
+    if (*close < *open) refuse("the shutter closes before it opens");
     if (options.turntable > 0 && options.frames.empty())
-        refuse("with `turntable` the duration of a turn is needed; set `frames` and `fps`");
+        refuse("`turntable` needs the duration of a turn; set `frames` and `fps`");
     return Shutter{*open, *close};
 }
 

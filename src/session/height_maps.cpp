@@ -57,7 +57,7 @@ Image read_heights(const HeightMapText& map, Sink& sink) {
     Image heights = first_channel(decode_image(read_file(map.file), map.file, sink));
     const auto is_bad = [](float h) { return !(std::abs(h) <= kMaxScale); };
     if (std::ranges::any_of(heights.pixels, is_bad)) {
-        refuse(map, fmt::format("a height that is not finite, or beyond {}", kMaxScale));
+        refuse(map, fmt::format("a height is not finite, or beyond {}", kMaxScale));
     }
     return heights;
 }

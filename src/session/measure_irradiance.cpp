@@ -43,7 +43,7 @@ void check_meter(const MeterPoint& meter, uint32_t seed) {
     const Vec3 n = meter.normal;
     if (!(length_squared(n) > 0) || !is_finite(normalize(n))) {
         throw Error(ErrorCode::BadInput, "normal", fmt::format("{},{},{}", n.x, n.y, n.z),
-                    "it is no direction; expected a length above 0");
+                    "the normal has no direction; expected a length above 0");
     }
     if (seed > kMaxMeterSeed)
         throw Error(ErrorCode::BadInput, "seed", fmt::format("{}", seed), fmt::format("at most {}", kMaxMeterSeed));

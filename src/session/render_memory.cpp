@@ -27,7 +27,7 @@ std::string amount(std::size_t bytes, std::size_t other = 0) {
 }
 
 std::string limit_text(std::size_t bytes, const RenderSettings& settings, const MemoryLimit& limit) {
-    if (limit.is_requested) return fmt::format("it allows {}", amount(limit.bytes, bytes));
+    if (limit.is_requested) return fmt::format("the setting allows {}", amount(limit.bytes, bytes));
     return fmt::format("{} has {}, and the finished picture takes {}",
                        is_memory_of_group() ? "this container or service" : "this machine",
                        amount(machine_memory_bytes(), bytes), amount(result_bytes(settings)));
@@ -46,7 +46,7 @@ std::string advice(const RenderSettings& settings, bool is_cuda) {
         const auto [what, less] = memory(settings, size);
         return fmt::format("{} take {}; {} takes less", what, amount(own), less);
     }
-    return fmt::format("{}x{} pixels{} take {} in a film: {} smaller `size`{} takes less", settings.width,
+    return fmt::format("the film of {}x{} pixels{} takes {}: {} smaller `size`{} takes less", settings.width,
                        settings.height, layers > 0 ? " and " + counted(layers, "layer") + " of `lpe`" : "",
                        amount(film), layers > 0 ? "fewer of them or a" : "a",
                        settings.aovs != 0 ? ", or fewer `aov`," : "");

@@ -53,7 +53,7 @@ SampleRange sample_range(const PictureOptions& options) {
     const uint64_t base = options.part_base, count = part->second;
     if (part->first < base || part->first >= base + count) {
         throw Error(ErrorCode::BadInput, "part", options.part,
-                    fmt::format("there are parts {} to {}", base, base + count - 1));
+                    fmt::format("expected a part from {} to {}", base, base + count - 1));
     }
     const uint64_t index = part->first - base;
     return {static_cast<uint32_t>(all * index / count), static_cast<uint32_t>(all * (index + 1) / count)};

@@ -66,11 +66,12 @@ void set_light(const EmitterStrength& emitter, double lumens_per_watt, Light& li
     case EmitterUnit::Nit:
         break;
     }
-    refuse(emitter, fmt::format("{} is a {}, which needs {}", light.name.empty() ? "the light" : "'" + light.name + "'",
-                                is_far       ? "directional light"
-                                : parts.cone ? "spot light"
-                                             : "point light",
-                                is_far ? "lx" : "W, lm or cd"));
+    refuse(emitter,
+           fmt::format("{} is a {}, whose unit must be {}", light.name.empty() ? "the light" : "'" + light.name + "'",
+                       is_far       ? "directional light"
+                       : parts.cone ? "spot light"
+                                    : "point light",
+                       is_far ? "lx" : "W, lm or cd"));
 }
 
 /// Returns a material that only this instance uses, copied if necessary. `users` counts the instances of each
@@ -97,12 +98,11 @@ void set_surface(const EmitterStrength& emitter, double lumens_per_watt, Scene& 
         if (instance.is_hidden) return; // it emits nothing, and has no size now
         const EmitterSurface size = emitter_surface(scene, instance);
         if (before.alpha_mode != AlphaMode::Opaque) {
-            refuse(emitter,
-                   "its surface has holes or transmits light, so that its area is not the emitting one; use nits");
+            refuse(emitter, "the emitting area is unknown, because the surface has holes or transmits light; use nits");
         }
-        if (!(size.area > 0)) refuse(emitter, "its object has no area");
+        if (!(size.area > 0)) refuse(emitter, "the emitter has no area");
         if (emitter.unit == EmitterUnit::Candela && !size.is_flat) {
-            refuse(emitter, "its object is not flat, so that it has no single intensity; use W, lm or nits");
+            refuse(emitter, "the emitter is not flat, so it has no single intensity; use W, lm or nits");
         }
         const double faces = before.two_sided_emission ? 2 : 1;
         nits = emitter.unit == EmitterUnit::Candela ? emitter.value / size.area
@@ -112,7 +112,7 @@ void set_surface(const EmitterStrength& emitter, double lumens_per_watt, Scene& 
         const double textured =
             luminance_of(static_cast<double>(unit.r) * size.texture[0], static_cast<double>(unit.g) * size.texture[1],
                          static_cast<double>(unit.b) * size.texture[2]);
-        if (!(textured > 0)) refuse(emitter, "its emission texture is completely black");
+        if (!(textured > 0)) refuse(emitter, "the emission texture is completely black");
         nits = nits / textured;
     }
     Material& material = own_material(scene, index, users);
@@ -122,7 +122,7 @@ void set_surface(const EmitterStrength& emitter, double lumens_per_watt, Scene& 
 void set_environment(const EmitterStrength& emitter, double lumens_per_watt, Environment& environment) {
     if (emitter.unit != EmitterUnit::Nit) refuse(emitter, "an environment needs nits");
     if (!environment.image.pixels.empty()) {
-        refuse(emitter, "the environment is a panorama without a single luminance; `environment_scale` multiplies it");
+        refuse(emitter, "the environment is a panorama, which has no single luminance; set `environment_scale`");
     }
     environment.scale = with_luminance(emitter, environment.scale, emitter.value / lumens_per_watt);
 }

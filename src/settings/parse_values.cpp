@@ -29,7 +29,7 @@ std::optional<Vec3> three_numbers(std::string_view text) {
 DoubleVec3 parse_doubles(const std::string& setting, const std::string& text) {
     if (const auto value = three_doubles(text)) return *value;
     throw Error(ErrorCode::BadInput, setting, text,
-                fmt::format("expected three numbers X,Y,Z of size {} at most, such as 1,0.5,-2", kMaxFloat));
+                fmt::format("expected three numbers X,Y,Z between -{0} and {0}, such as 1,0.5,-2", kMaxFloat));
 }
 
 /// Returns whether there is a digit other than 0 before the exponent.
@@ -48,7 +48,7 @@ std::string why_not_above(const std::string& text, double low, double high) {
     if (value && *value > static_cast<float>(low) && *value <= static_cast<float>(high)) return "";
     const bool is_rounded = value && *value == 0 && has_digits(text);
     return fmt::format("not a number above {} and at most {}{}", static_cast<float>(low), static_cast<float>(high),
-                       is_rounded ? "; it is so near 0 that it counts as 0" : "");
+                       is_rounded ? "; a number so near 0 counts as 0" : "");
 }
 
 std::string why_not_whole(const std::string& text, uint32_t low, uint32_t high) {
@@ -87,15 +87,16 @@ std::pair<uint32_t, uint32_t> parse_size(const std::string& setting, const std::
         throw Error(ErrorCode::BadInput, setting, text, "expected WIDTHxHEIGHT in pixels, such as 1280x720");
     }
     if (*width > kMaxImageSide || *height > kMaxImageSide || *width * *height > kMaxImagePixels) {
-        throw Error(ErrorCode::OverLimit, setting, text,
-                    fmt::format("over the limit of {} pixels a side and {} in all", kMaxImageSide, kMaxImagePixels));
+        throw Error(
+            ErrorCode::OverLimit, setting, text,
+            fmt::format("over the limit of {} pixels per side and {} in total", kMaxImageSide, kMaxImagePixels));
     }
     return {static_cast<uint32_t>(*width), static_cast<uint32_t>(*height)};
 }
 
 float parse_number(const std::string& setting, const std::string& text) {
     if (const auto value = number_in(text)) return *value;
-    throw Error(ErrorCode::BadInput, setting, text, fmt::format("expected a number of size {} at most", kMaxFloat));
+    throw Error(ErrorCode::BadInput, setting, text, fmt::format("expected a number between -{0} and {0}", kMaxFloat));
 }
 
 Vec3 parse_vec3(const std::string& setting, const std::string& text) { return to_float(parse_doubles(setting, text)); }

@@ -31,7 +31,7 @@ void compare_scene(const JsonValue& root, const std::filesystem::path& file, con
     if (!source) return;
     for (const auto& [key, value] : source->members()) {
         if (key != "name" && key != "hash") {
-            sink.leave_out(fmt::format("{}: unknown name in a file of settings", text_of(value.location())));
+            sink.leave_out(fmt::format("{}: unknown name in a settings file", text_of(value.location())));
         }
     }
     const std::string name = source->string_or("name", ""), hash = source->string_or("hash", "");
@@ -117,7 +117,7 @@ void read_settings(const std::filesystem::path& file, uint32_t verbs, std::span<
     }
     for (const auto& [name, value] : root.members()) {
         if (name != "version" && name != "scene" && name != "settings") {
-            sink.leave_out(fmt::format("{}: unknown name in a file of settings", text_of(value.location())));
+            sink.leave_out(fmt::format("{}: unknown name in a settings file", text_of(value.location())));
         }
     }
 }

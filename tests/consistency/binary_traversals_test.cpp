@@ -34,7 +34,7 @@ using namespace pertev::test;
 
 namespace {
 
-/// AcceptAll or AcceptSome, in one type.
+/// AcceptAll and AcceptSome as one type.
 struct AcceptSomeOrAll {
     bool all;
     HD bool operator()(uint32_t instance, uint32_t primitive, float u, float v) const {
@@ -61,7 +61,7 @@ void check_options(const std::string& name, const SceneTrees<Tree>& scene, const
     });
 }
 
-/// All that traverse a BvhView; the tree has parent links.
+/// Calls check for all traversals of a BvhView. The tree has parent links.
 void check_binary_traversals(const SceneBvhView& scene, const std::vector<Ray>& rays, const std::vector<Hit>& expected,
                              AcceptSomeOrAll accept) {
     check_options<WhileWhileTraversal>("while-while", scene, rays, expected, accept);
@@ -105,7 +105,7 @@ Visits count_visits(const Tree& tree, const Ray& ray, bool any = false) {
     return visits;
 }
 
-/// A closed mesh with much behind each hit, and rays that mostly meet it.
+/// A closed mesh with many triangles behind each hit, and rays that mostly hit it.
 std::vector<BvhTriangle> shells() {
     std::vector<BvhTriangle> triangles;
     for (uint32_t i = 0; i < 6; ++i) {
@@ -196,7 +196,8 @@ TEST_CASE("every traversal matches brute force over instances, with and without 
 }
 
 TEST_CASE("a box entered exactly at the nearest hit is traversed: the first of coincident triangles counts") {
-    // Boxes of no thickness that the fast tests do not grow, and numbers without rounding: entry and hit are equal.
+    // The boxes have no thickness, the fast tests do not enlarge them, and no number is rounded, so entry and hit are
+    // equal.
     constexpr TraversalOptions kFast = {.tests = TestKind::Fast};
     std::vector<BvhTriangle> triangles;
     for (uint32_t i = 0; i < 100; ++i) {
@@ -271,7 +272,7 @@ TEST_CASE(
     CHECK(near_first < far_first);
 }
 
-TEST_CASE("with the laboratory's fast tests every traversal finds the same surfaces, except for rays at edges") {
+TEST_CASE("with the laboratory's fast tests every traversal finds the same surfaces, except at edges") {
     constexpr TraversalOptions kFast = {.tests = TestKind::Fast};
     const Bvh bvh = with_parent_links(build_bvh(shells()));
     const SkipBvh skip = make_skip_bvh(bvh);

@@ -1,5 +1,5 @@
-// Batches of pictures: each picture has the bytes of a render with its camera alone, for all chunks, threads, schedules
-// and devices. With --device cuda the GPU renders.
+// Batches of pictures: each picture has the bytes of a single render with its camera, for all chunks, threads,
+// schedules and devices. With --device cuda the GPU renders.
 
 #include <doctest/doctest.h>
 
@@ -32,7 +32,7 @@ CameraBatch three_cameras() {
 
 RenderSettings batch_settings(LayersAt layers_at) {
     RenderSettings settings;
-    settings.width = 19, settings.height = 11; // tiles do not fit
+    settings.width = 19, settings.height = 11; // not a multiple of a tile
     settings.samples = 3;
     settings.path.max_depth = 4;
     settings.aovs = kAllLayers;
@@ -40,7 +40,7 @@ RenderSettings batch_settings(LayersAt layers_at) {
     return settings;
 }
 
-/// Part of an array that belongs to picture `number` of a chunk.
+/// Returns the part of an array that belongs to picture `number` of a chunk.
 template <class T>
 std::vector<T> part_of_picture(const Buffer<T>& buffer, uint32_t number, std::size_t size) {
     const std::vector<T> all = buffer.download();
@@ -48,7 +48,7 @@ std::vector<T> part_of_picture(const Buffer<T>& buffer, uint32_t number, std::si
     return {first, first + static_cast<std::ptrdiff_t>(size)};
 }
 
-/// Returns the hash of a picture of a chunk, as render_hash() of the picture alone.
+/// Returns the hash of a picture of a chunk, computed like render_hash() of a single picture.
 Hash128 hash_of(const BatchArrays& arrays, uint32_t number, const RenderSettings& settings) {
     const std::size_t pixels = std::size_t(settings.width) * settings.height;
     const uint32_t channels = settings.transparent ? 4 : 3;
@@ -90,7 +90,7 @@ std::vector<Hash128> hashes_of(Queue& queue, const PreparedScene& prepared, cons
     return hashes;
 }
 
-/// Returns the hashes of the cameras alone.
+/// Returns the hashes of single renders of the cameras.
 std::vector<Hash128> hashes_alone(Queue& queue, const PreparedScene& prepared, const CameraBatch& batch,
                                   RenderSettings settings) {
     std::vector<Hash128> hashes;
@@ -103,7 +103,7 @@ std::vector<Hash128> hashes_alone(Queue& queue, const PreparedScene& prepared, c
 
 } // namespace
 
-TEST_CASE("each picture of a batch has the hash of its camera alone, in chunks and by any threads and schedule") {
+TEST_CASE("each picture of a batch has the hash of a single render, for any chunks, threads and schedule") {
     Messages messages;
     MovingScene moving(test::make_rushing_scene(), 0.3, {}, messages, test::kHalfASecond);
     MovingScene still(test::make_rushing_scene(false), 0.3, {}, messages, test::kHalfASecond);
@@ -147,7 +147,7 @@ TEST_CASE("integrators without batches render the pictures one after the other, 
     Queue queue = test::requested_queue();
     CameraBatch batch = three_cameras();
     batch.cameras[0].motion.clear();
-    batch.cameras.push_back(batch.cameras[2]); // this picture comes twice
+    batch.cameras.push_back(batch.cameras[2]); // this picture occurs twice
     batch.seeds = {3};
     for (const IntegratorKind integrator : {IntegratorKind::Whitted, IntegratorKind::Bidirectional}) {
         RenderSettings settings = batch_settings(LayersAt::Centre);
@@ -167,7 +167,7 @@ TEST_CASE("a depth at a pixel's centre unprojects onto the visible plane") {
     RenderSettings settings = batch_settings(LayersAt::Centre);
     settings.width = 64, settings.height = 48, settings.samples = 4;
     settings.path.max_depth = 0;
-    /// Returns the greatest height of an unprojected point over the plane, metres.
+    /// Returns the largest height of an unprojected point over the plane, metres.
     const auto error_of = [&](const RenderResult& result) {
         const CameraView view = make_camera_view(camera, settings.width, settings.height);
         const Image& depths = layer_named(result, "depth");
@@ -185,7 +185,7 @@ TEST_CASE("a depth at a pixel's centre unprojects onto the visible plane") {
     settings.layers_at = LayersAt::Samples;
     CHECK(error_of(render_picture(queue, prepared, camera, settings)) > 1e-3f);
 
-    // Neither samples nor the filter nor the lens change them.
+    // Samples, filter and lens do not change them.
     settings.layers_at = LayersAt::Centre;
     settings.samples = 1;
     settings.filter = PixelFilter::Box;

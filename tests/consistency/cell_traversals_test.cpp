@@ -1,5 +1,5 @@
-// Traversals of kd-trees and octrees give the hits of brute force, bit for bit, with all switches, also for triangles
-// in splitting planes and rays along these.
+// Traversals of kd-trees and octrees find the hits of brute force, bit for bit, with all switches. Triangles in
+// splitting planes and rays along these planes are included.
 
 #include <doctest/doctest.h>
 
@@ -73,7 +73,7 @@ TEST_CASE("octrees of all build settings match brute force bit for bit") {
 
 namespace {
 
-/// Meshes with transforms that rotate, stretch and mirror them, and the hits of brute force.
+/// Meshes with transforms that rotate, scale and mirror, and the hits of brute force.
 struct PlacedMeshes {
     std::vector<BvhTriangle> meshes[4] = {
         triangles_of(make_torus(16, 12)), make_soup(300, 0), make_soup(200, 1000.0f), {}};
@@ -89,10 +89,10 @@ struct PlacedMeshes {
             const Vec3 axis = random.direction();
             const float w = random.within(-1, 1), s = sqrt(1 - w * w);
             Transform place = make_rotation(s * axis.x, s * axis.y, s * axis.z, w);
-            if (i % 5 == 0) place = Transform{}; // identity: exact, and ties with its neighbours
+            if (i % 5 == 0) place = Transform{}; // the identity is exact, and has ties with its neighbours
             if (i % 3 == 0) place = compose(place, make_scale({0.5f, random.within(0.01f, 4), -1}));
             place = compose(make_translation(i % 5 == 0 ? Vec3{} : random.point(-3, 3)), place);
-            if (mesh == 2) place = compose(place, make_translation({-1000, 0, 1000})); // far from its own origin
+            if (mesh == 2) place = compose(place, make_translation({-1000, 0, 1000})); // far from the mesh's origin
             Bounds3 bounds;
             for (const BvhTriangle& t : meshes[mesh]) bounds.extend(t.a), bounds.extend(t.b), bounds.extend(t.c);
             placed.push_back({place, bounds, mesh, i * 3 + 1});

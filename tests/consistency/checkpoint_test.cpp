@@ -1,5 +1,5 @@
-// A film that goes on from a checkpoint has the bytes of one that was never interrupted, and a checkpoint of another
-// picture is refused. The command line's test (tests/robust/cli_checkpoint_test.py) kills renders.
+// A film that resumes from a checkpoint has the bytes of an uninterrupted one, and a checkpoint of another picture is
+// refused. tests/robust/cli_checkpoint_test.py kills renders.
 
 #include <doctest/doctest.h>
 
@@ -14,7 +14,7 @@ using namespace pertev;
 
 namespace {
 
-/// Films of one picture, each with memory of its own, on the requested device.
+/// Makes films of one picture, each with its own memory, on the requested device.
 class Interrupted {
 public:
     explicit Interrupted(RenderSettings of_picture) : settings_(std::move(of_picture)) {
@@ -84,7 +84,7 @@ void check_resumed(const RenderSettings& settings) {
 
 } // namespace
 
-TEST_CASE("a film that goes on from checkpoints has the bytes of one run") {
+TEST_CASE("a film that resumes from checkpoints has the bytes of one run") {
     RenderSettings settings;
     settings.aovs = kAovAlbedo | kAovDepth | kAovIds;
     check_resumed(settings);
@@ -95,7 +95,7 @@ TEST_CASE("a film that goes on from checkpoints has the bytes of one run") {
     check_resumed(settings);
 }
 
-TEST_CASE("a checkpoint keeps the generation before, but not a damaged one") {
+TEST_CASE("a checkpoint keeps the previous generation unless it is damaged") {
     Interrupted work({});
     FilmRender film = work.film();
     Checkpoint checkpoint = work.checkpoint();
@@ -149,7 +149,7 @@ TEST_CASE("a checkpoint of another version, setting, part or size is refused wit
     CHECK(!work.refusal());
 }
 
-TEST_CASE("a checkpoint without samples is one from which a render begins") {
+TEST_CASE("a render can begin from a checkpoint without samples") {
     Interrupted work({});
     FilmRender none = work.film();
     work.checkpoint().write(none, {});

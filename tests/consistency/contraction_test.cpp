@@ -1,6 +1,6 @@
-// The compiler keeps a * b + c as two roundings. A fused one gives other bits on a machine or in a compiler that fuses
-// than in one that does not. The values come from a hash, so that nothing is folded at compile time, and go through the
-// renderer's own inline functions, where contraction would happen.
+// The compiler keeps a * b + c as two roundings. Fusing would give different bits on different machines and compilers.
+// The values come from a hash, so that nothing is folded at compile time, and pass through the renderer's inline
+// functions, where contraction would happen.
 
 #include <cstdint>
 
@@ -18,7 +18,7 @@ namespace {
 
 float value(uint32_t i) { return unit_interval(hash_word(i)) + 0.5f; }
 
-// Out of line, so that no product meets its sum within one function.
+// Is not inlined, so that product and sum are in different functions.
 [[gnu::noinline]] float product_of(float a, float b) { return a * b; }
 [[gnu::noinline]] float sum_of(float a, float b) { return a + b; }
 
@@ -75,17 +75,17 @@ TEST_CASE("a difference of products has the right sign however close the product
     uint32_t wrong = 0, naive_wrong = 0;
     for (uint32_t i = 0; i < 100'000; i++) {
         const float a = value(4 * i), b = value(4 * i + 1), c = value(4 * i + 2);
-        const float d = float_of(bits_of(a * b / c) + (hash_word(i) & 3) - 1); // c d is within a few ulp of a b
+        const float d = float_of(bits_of(a * b / c) + (hash_word(i) & 3) - 1); // c d differs from a b by a few ulp
         const double exact =
             static_cast<double>(a) * static_cast<double>(b) - static_cast<double>(c) * static_cast<double>(d);
         const auto has_sign = [&](auto x) { return (x > 0) == (exact > 0) && (x < 0) == (exact < 0); };
         wrong += !has_sign(difference_of_products(a, b, c, d));
         wrong += !has_sign(difference_of_products_in_double(a, b, c, d));
         naive_wrong += !has_sign(a * b - c * d);
-        // At most 1.5 ulp off; the double is exact to 2^-53 here.
+        // The error is at most 1.5 ulp; the double is exact to 2^-53 here.
         const double error = static_cast<double>(difference_of_products(a, b, c, d)) - exact;
         wrong += !(error * error <= 4e-14 * exact * exact);
-        // Swapping the products turns the sign of the double form and nothing else.
+        // Swapping the products changes only the sign of the result in double precision.
         wrong += difference_of_products_in_double(a, b, c, d) != -difference_of_products_in_double(c, d, a, b);
     }
     CHECK(wrong == 0);
@@ -96,5 +96,5 @@ TEST_CASE("a difference of products keeps its sign where float products vanish, 
     const float tiny = 0x1p-80f, next = float_of(bits_of(tiny) + 1);
     CHECK(difference_of_products_in_double(next, 0x1p-80f, tiny, 0x1p-80f) == 0x1p-183);
     CHECK(difference_of_products_in_double(tiny, 0x1p-80f, next, 0x1p-80f) == -0x1p-183);
-    CHECK(difference_of_products(next, 0x1p-80f, tiny, 0x1p-80f) == 0); // so the double form is needed
+    CHECK(difference_of_products(next, 0x1p-80f, tiny, 0x1p-80f) == 0); // so double precision is needed
 }

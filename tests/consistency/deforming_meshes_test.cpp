@@ -1,6 +1,5 @@
-// Skins and morph targets with vertices computed on the device: pictures equal, to the bit, those with vertices of
-// the host, with every tree layout. The uploads of a time step and the positions in the previous frame are tested,
-// too.
+// Skins and morph targets with vertices computed on the device: pictures have the bits of those with vertices from the
+// host, for every tree layout. Uploads of a time step and positions in the previous frame are tested, too.
 
 #include "device_scene/deforming_meshes.h"
 
@@ -29,8 +28,8 @@ namespace {
 
 constexpr uint32_t kSkinned = 0, kMorphed = 1;
 
-/// Two spheres under a sky: the first bends about a joint, the second is drawn out by two morph targets while its node
-/// goes aside; a third stands still.
+/// Spheres under a sky: the first bends about a joint, the second is stretched by two morph targets while its node
+/// moves aside, and the third is still.
 Scene make_bending_scene() {
     Scene scene = test::make_furnace_scene(0.6f);
     scene.nodes.resize(4);
@@ -89,7 +88,7 @@ Camera camera_of_bending() {
     return camera;
 }
 
-/// Hash of a picture whose vertices are computed on the host.
+/// Returns the hash of a picture whose vertices are computed on the host.
 Hash128 hash_by_host(const Scene& rest, double time_s, const RenderSettings& settings) {
     Messages messages;
     PosedScene posed(rest);
@@ -133,7 +132,7 @@ TEST_CASE("vertices deformed on the device give the picture of vertices deformed
             session.render(settings.samples);
             CHECK(test::render_hash(session.result()) == expected[i]);
         }
-        settings.tracers.reset(); // another tracer takes over the moved meshes
+        settings.tracers.reset(); // another tracer traces the moved meshes
         session.set_settings(settings);
         session.cut();
         session.render(settings.samples);
@@ -159,7 +158,7 @@ TEST_CASE("a step in time uploads joints and weights, not vertices, and allocate
         const uint64_t uploaded = queue.uploaded_bytes(), allocations = queue.allocation_count();
         session.update_scene(moving.prepared(), moving.set_time(0.75, messages));
         const uint64_t of_step = queue.uploaded_bytes() - uploaded;
-        CHECK(of_step < 8192); // and the top level, the instances, the lights and the view of the scene
+        CHECK(of_step < 8192); // and the TLAS, the instances, the lights and the view of the scene
         CHECK(of_step < moving.scene().meshes[0].positions.size() * sizeof(Vec3));
         session.render_frame(2, {});
         CHECK(queue.allocation_count() == allocations);
@@ -210,13 +209,13 @@ void check_rebuilds(Queue& queue) {
     fit();
     CHECK(tree.builds() == 1);
     test::Random random(3);
-    for (std::size_t i = positions.size(); i-- > 1;) { // neighbours are torn apart
+    for (std::size_t i = positions.size(); i-- > 1;) { // neighbours are separated
         std::swap(positions[i], positions[static_cast<std::size_t>(random.unit() * static_cast<float>(i))]);
     }
     fit();
     CHECK(tree.builds() == 2);
     fit();
-    CHECK(tree.builds() == 2); // it is as good as can be
+    CHECK(tree.builds() == 2); // the tree is optimal
 }
 
 } // namespace
@@ -241,14 +240,14 @@ TEST_CASE("reprojection follows skins and morph targets") {
                                                      scene.view().instances + rest.instances.size());
     const uint32_t parts = moving.set_time(0.75, messages);
     scene.update(cpu, moving.prepared(), parts);
-    PosedScene at_0(rest), at_1(rest); // made on the host
+    PosedScene at_0(rest), at_1(rest); // computed on the host
     at_0.set_time(0.5), at_1.set_time(0.75);
     const CameraView view = make_camera_view(camera_of_bending(), 640, 360);
     const FrameCameras cameras = {view, view, 640, 360};
     const Vec3 centre = moving.prepared().centre;
     float most = 0;
     for (const uint32_t instance : {kSkinned, kMorphed, 2u}) {
-        const auto world = [&](const PosedScene& posed, uint32_t primitive) { // its first corner
+        const auto world = [&](const PosedScene& posed, uint32_t primitive) { // its first vertex
             const Mesh& mesh = posed.scene().meshes[instance];
             return transform_point(moved_to(posed.scene().instances[instance].world_from_local, centre),
                                    mesh.positions[mesh.indices[3 * primitive]]);
@@ -301,7 +300,7 @@ TEST_CASE("frames of deforming meshes have the same bytes on every device, in ev
 
 namespace {
 
-/// Motion vectors of frame `k` at 8 frames per second, after frame `first` and those between.
+/// Returns the motion vectors of frame `k` at 8 frames per second, after the frames from `first` on.
 Image motion_of_frame(Queue& queue, const RenderSettings& settings, int first, int k) {
     Messages messages;
     MovingScene moving(make_bending_scene(), 0.1, {}, messages);
@@ -337,9 +336,9 @@ TEST_CASE("motion vectors follow skins and morph targets and depend only on the 
         }
         return moving;
     };
-    CHECK(moving_pixels(0, 40) > 20); // the skinned one
+    CHECK(moving_pixels(0, 40) > 20); // the skinned sphere
     CHECK(moving_pixels(40, 56) > 20);
-    CHECK(moving_pixels(62, 96) == 0); // stands still
+    CHECK(moving_pixels(62, 96) == 0); // the third sphere is still
     if (!test::cuda_requested()) return;
     Queue cuda = test::make_cuda_queue();
     settings.tracers.reset();

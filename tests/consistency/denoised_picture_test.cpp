@@ -37,7 +37,7 @@ double brightness_of(const Image& picture) {
     return sum / static_cast<double>(picture.pixels.size());
 }
 
-/// Mean of the differences' sizes.
+/// Returns the mean absolute difference.
 double mean_difference(const Image& a, const Image& b) {
     double sum = 0;
     for (std::size_t i = 0; i < a.pixels.size(); ++i) sum += static_cast<double>(std::abs(a.pixels[i] - b.pixels[i]));
@@ -58,7 +58,7 @@ TEST_CASE(
 
     RenderSettings wavefront = settings;
     wavefront.body = PathBody::Wavefront;
-    wavefront.batch = 1000; // several rounds begin paths
+    wavefront.batch = 1000; // paths begin in several rounds
     CHECK(hash_of_denoised(cpu, prepared, wavefront, {2, 3}) == expected);
 
     Session session(cpu, prepared, mixed_scene_camera(), settings);
@@ -66,7 +66,7 @@ TEST_CASE(
     aside.world_from_camera.translation.x += 0.2f;
     session.set_camera(aside);
     session.render(2);
-    session.render_frame(0, {}); // shares the frame that takes samples
+    session.render_frame(0, {}); // uses the same frame for samples
     CHECK(picture_hash(session.denoised().value()) != expected);
     session.set_camera(mixed_scene_camera());
     CHECK(!session.denoised().has_value());
@@ -112,7 +112,7 @@ TEST_CASE("denoising does not change the film and its layers") {
     CHECK(are_same);
     REQUIRE(denoised.denoised.has_value());
     CHECK(!plain.denoised.has_value());
-    for (std::size_t i = 3; i < plain.picture.pixels.size(); i += 4) { // alpha is the film's
+    for (std::size_t i = 3; i < plain.picture.pixels.size(); i += 4) { // the alpha is that of the film
         if (denoised.denoised->pixels[i] != plain.picture.pixels[i]) FAIL("alpha of pixel ", i / 4);
     }
 }
@@ -147,7 +147,7 @@ TEST_CASE("memory of a denoised render equals its prediction") {
         settings.samples = 2;
         RenderSettings plain = settings;
         plain.denoise = Denoise::None;
-        plain.samples = 1; // queues hold no more, as samples are taken one by one
+        plain.samples = 1; // queues do not grow, because samples are rendered one by one
         const auto bytes_of = [&](const RenderSettings& requested) {
             Session session(queue, prepared, mixed_scene_camera(), requested);
             session.render(requested.samples);

@@ -1,5 +1,5 @@
-// Every host-device function gives the same bits on the CPU and in CUDA, so results of the other tests on the CPU hold
-// on the GPU. Without --device cuda the second run is the CPU's too and only shows that the stages are deterministic.
+// Every host-device function gives the same bits on the CPU and in CUDA, so CPU tests also hold on the GPU. Without
+// --device cuda the second run is on the CPU, too, and only shows that the stages are deterministic.
 
 #include <doctest/doctest.h>
 
@@ -19,7 +19,7 @@ using namespace pertev;
 
 namespace {
 
-/// The long setting is for two devices: a CPU compared with itself learns nothing from more.
+/// The long setting applies only to two devices, because comparing a CPU with itself longer shows nothing new.
 uint64_t effort_of_two(uint64_t count, uint64_t long_count) {
     return test::cuda_requested() ? test::effort(count, long_count) : count;
 }
@@ -40,7 +40,7 @@ void check_same_bits(uint32_t count, const MakeStage& make_stage) {
     CHECK(different == 0);
 }
 
-/// Rays from around the scene and inside it, some along axes.
+/// Rays that start around and inside the scene, some along axes.
 std::vector<Ray> rays_into(const Bounds3& bounds, uint32_t count) {
     test::Random random(9);
     std::vector<Ray> rays;
@@ -87,7 +87,7 @@ void check_same_hits(const Scene& scene, uint32_t count) {
         disagree += (hits[0][i].instance != kNoHit) == (occluded[0][i] != kNoHit) ? 0 : 1;
     }
     CHECK(different == 0);
-    CHECK(disagree == 0); // a closest hit exists exactly where any does
+    CHECK(disagree == 0); // a closest hit exists if and only if any hit does
     CHECK(found > count / 20);
 }
 
@@ -112,7 +112,7 @@ TEST_CASE("BSDFs have the same bits on both devices") {
                         const Buffer<Bsdf> buffer(queue, std::span<const Bsdf>(bsdfs), "bsdfs");
                         launch(queue, "scatter_randomly", count,
                                test::ScatterRandomly{buffer.data(), static_cast<uint32_t>(bsdfs.size()), out});
-                        queue.wait(); // before the buffer goes
+                        queue.wait(); // before the buffer is freed
                     });
 }
 
@@ -144,7 +144,8 @@ TEST_CASE(
     "elementary functions have the same bits on both devices, with --device cuda and --long over all 2^32 inputs") {
     constexpr uint32_t per_index = 256;
     const uint64_t inputs = effort_of_two(uint64_t(1) << 20, uint64_t(1) << 32);
-    const uint32_t stride = static_cast<uint32_t>((uint64_t(1) << 32) / inputs); // CI: blocks spread over all exponents
+    const uint32_t stride =
+        static_cast<uint32_t>((uint64_t(1) << 32) / inputs); // in CI, blocks spread over all exponents
     for (int function = 0; function < test::kPortableFunctionCount; ++function) {
         CAPTURE(test::portable_function_name(function));
         const auto blocks = static_cast<uint32_t>(inputs / per_index);

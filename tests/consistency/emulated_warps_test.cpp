@@ -1,7 +1,7 @@
-// Code that only a GPU runs gives the hits of the host's traversals for any scheduling of warps: persistent threads,
+// Code that only a GPU runs finds the hits of the host's traversals for any scheduling of warps: persistent threads,
 // dynamic fetch, warp packets, postponed triangles and leaves, counts of live lanes. It runs on emulated warps
-// (tests/support/emulated_warp.h): no vote may name a lane that does not come, each ray is stored once, the pool ends
-// where it must. A failure tells the seed, which replays it.
+// (tests/support/emulated_warp.h). No vote may name a lane that does not arrive, each ray is stored once, and the pool
+// ends at the last ray. A failure prints the seed, which replays it.
 
 #include <doctest/doctest.h>
 
@@ -34,7 +34,7 @@ constexpr uint32_t kRays = 67, kMaxRays = 203, kFew = 1;
 constexpr uint32_t kRays = 331, kMaxRays = 2000, kFew = 3;
 #endif
 
-/// The host's hits as a batch stores them.
+/// Stores the host's hits as a batch does.
 std::vector<Hit> as_stored(std::vector<Hit> hits, const std::vector<Ray>& rays, bool any) {
     for (std::size_t i = 0; i < hits.size(); ++i) {
         const bool found = hits[i].instance != kNoHit;
@@ -49,11 +49,10 @@ std::vector<Hit> as_stored(std::vector<Hit> hits, const std::vector<Ray>& rays, 
 
 struct Expected {
     const std::vector<Ray>& rays;
-    const std::vector<Hit>& hits; // the host's closest
+    const std::vector<Hit>& hits; // the closest hits of the host
 };
 
-/// Runs a batch on warps, of `blocks` blocks where they share a pool, and compares its results with the expected
-/// ones.
+/// Runs a batch on warps and compares its results with the expected ones. With a pool there are `blocks` blocks.
 template <class Run>
 void check_batch(const EmulatedTraversal& traversal, const Expected& expected, uint32_t blocks, uint32_t seed,
                  const Run& run, LaneCounts* lanes = nullptr) {
@@ -84,17 +83,17 @@ void check_batch(const EmulatedTraversal& traversal, const Expected& expected, u
     }
     const uint32_t warps = blocks * (kThreads / 32);
     if (way == "one a thread") CHECK(pool == 0);
-    if (way == "persistent") { // a warp goes on until none of its lanes has got anything
+    if (way == "persistent") { // a warp continues until none of its lanes gets a ray
         CHECK(pool >= count + 32 * warps);
         CHECK(pool <= count + 64 * warps);
     }
     if (way == "dynamic fetch") {
         CHECK(pool >= count);
-        CHECK(pool <= max(count, 1u) - 1 + 32 * warps); // only the last fetch of a warp may lead beyond
+        CHECK(pool <= max(count, 1u) - 1 + 32 * warps); // only the last fetch of a warp may exceed the count
     }
 }
 
-/// Trees over the same triangles in each layout.
+/// Trees over the same triangles in every layout.
 struct TestTrees {
     Bvh bvh;
     CompressedBvh compressed_bvh;
@@ -112,7 +111,7 @@ struct TestTrees {
     }
 };
 
-/// The host's hits by the same tests; exact ones are those of every traversal.
+/// The host's hits with the same tests. With exact tests every traversal has these hits.
 struct HostHits {
     std::vector<Hit> exact, cut_outs, fast_binary, fast_compressed, woop;
 
@@ -152,7 +151,7 @@ TEST_CASE("on warps, every traversal with every distribution of rays finds each 
             const std::vector<Ray> rays = stress_rays(kRays, c, 7 + round);
             const HostHits host(trees, rays);
             for (const EmulatedTraversal& traversal : emulated_traversals()) {
-                // With tests that leak, the hit at a tie depends on the nodes that were skipped before.
+                // With inexact tests, the hit at a tie depends on the nodes that were skipped before.
                 if (traversal.run == nullptr || traversal.counts_lanes ||
                     (traversal.tests != std::string("exact") && has_ties))
                     continue;
@@ -207,7 +206,7 @@ TEST_CASE("on warps, each ray's hit is found over instances where lanes diverge 
             return traversal.run_scene({&binary_scene, &compressed_scene}, batch);
         });
     }
-    CHECK(runs == 26); // four traversals, two ways, and three by dynamic fetch too; closest and any
+    CHECK(runs == 26); // four traversals with two distributions and three with dynamic fetch, for closest and any hits
 }
 
 TEST_CASE("on warps, the active lanes add up to the visits of the rays") {

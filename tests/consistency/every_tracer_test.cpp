@@ -38,7 +38,7 @@ Scene make_single_tree(const Scene& scene) {
     return single;
 }
 
-/// All surfaces as if the file said nothing of alpha and sides.
+/// Makes all surfaces opaque and double sided.
 Scene make_opaque(Scene scene) {
     for (Material& material : scene.materials) material.alpha_mode = AlphaMode::Opaque, material.double_sided = true;
     return scene;
@@ -51,8 +51,8 @@ struct Tally {
     int pictures = 0, refused = 0, wrong = 0;
 };
 
-/// Checks every tracer in one session. Unless `all_switches_everywhere`, trees of most builders are traversed only with
-/// all switches on.
+/// Compares every tracer in one session. Unless `all_switches_everywhere`, trees of most builders are traversed only
+/// with all switches on.
 Tally check_all(const Scene& scene, bool all_switches_everywhere) {
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -112,7 +112,7 @@ TEST_CASE("every tracer gives one picture: opaque surfaces in one tree") {
     check(make_opaque(make_single_tree(test::make_mixed_scene())), false);
 }
 
-TEST_CASE("each kind of ray may have its own tracer") {
+TEST_CASE("each kind of ray can have its own tracer") {
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -160,7 +160,7 @@ TEST_CASE("renders refuse inexact tests and traversals that the device lacks") {
     } else {
         CHECK(refuses({.traversal = TraversalKind::WhileWhile, .distribution = Distribution::DynamicFetch}));
     }
-    settings.tracers.reset(); // and continues with supported combinations
+    settings.tracers.reset(); // the session continues with supported combinations
     session.set_settings(settings);
     CHECK(session.render(1) == 1);
 }

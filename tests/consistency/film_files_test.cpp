@@ -1,5 +1,5 @@
-// Parts of a picture, written as film files and merged in any order, have the bytes of the film of one run, by any
-// device and integrator; parts of different pictures are refused.
+// Parts of a picture that are written as film files and merged in any order have the bytes of the film of one run, for
+// any device and integrator. Parts of different pictures are refused.
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ namespace {
 
 using Files = std::vector<std::string>;
 
-/// Renders parts of a picture of a scene whose lamp is too bright for a film, so that there are invalid samples.
+/// Renders parts of a picture whose emitter is too bright for a film, so that there are invalid samples.
 class Renders {
 public:
     Scene scene = test::make_mixed_scene();
@@ -276,7 +276,7 @@ TEST_CASE("overlaps, gaps and parts of other pictures are refused by name") {
     CHECK(merge_refusal({a, renders.file({2, 5})}) != "no error");
 }
 
-TEST_CASE("samples are added to a finished picture") {
+TEST_CASE("samples can be added to a finished picture") {
     Renders renders;
     const std::string finished = renders.file({0, 5});
     renders.settings.samples = 8;

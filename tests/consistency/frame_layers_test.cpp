@@ -20,7 +20,7 @@ namespace {
 
 RenderSettings layer_settings() {
     RenderSettings settings;
-    settings.width = 200, settings.height = 128; // blocks of 5, of which the last row is cut
+    settings.width = 200, settings.height = 128; // blocks of 5 pixels, of which the last row is incomplete
     settings.path.max_depth = 3;
     return settings;
 }
@@ -31,7 +31,7 @@ struct SeenLayers {
     bool operator==(const SeenLayers&) const = default;
 };
 
-/// Layers of the last of ten frames of a camera that moves sideways.
+/// Returns the layers of the last of ten frames of a camera that moves sideways.
 SeenLayers look_at_frames(Queue& queue) {
     Messages messages;
     const Scene scene = make_mixed_scene();
@@ -96,7 +96,7 @@ TEST_CASE("tones are the means of the displayed picture, and visible emitters do
     CHECK(some > 0.1 * 40 * 26);
     Session dark(queue, prepared, mixed_scene_camera(), [] {
         RenderSettings settings = layer_settings();
-        settings.path.max_depth = 0; // lamps alone
+        settings.path.max_depth = 0; // only emitters
         return settings;
     }());
     dark.render_frame(0, {});
@@ -112,7 +112,7 @@ TEST_CASE("the exposure approaches the metered one and is 1/e of the difference 
     FrameTones tones = {{4, 4, 4, {}}, {4, 4, 3, {}}};
     for (int i = 0; i < 16; ++i) {
         tones.scattered.pixels.insert(tones.scattered.pixels.end(), {0.01f, 0.01f, 0.01f, 1});
-        tones.all.pixels.insert(tones.all.pixels.end(), {9, 9, 9}); // with the sky
+        tones.all.pixels.insert(tones.all.pixels.end(), {9, 9, 9}); // the mean includes the sky
     }
     const float goal = auto_exposure_stops(tones.scattered, ToneMap::Agx);
     CHECK(goal > 3);
@@ -122,7 +122,7 @@ TEST_CASE("the exposure approaches the metered one and is 1/e of the difference 
     CHECK(goal - exposure.stops() == doctest::Approx(4 / std::exp(1.0)).epsilon(1e-3));
     for (int k = 0; k < 200; ++k) exposure.next(tones, ToneMap::Agx);
     CHECK(exposure.stops() == doctest::Approx(goal).epsilon(1e-3));
-    // If nothing but lamps and sky is visible, they count.
+    // Emitters and sky count if nothing else is visible.
     for (float& value : tones.scattered.pixels) value = 0;
     for (int k = 0; k < 300; ++k) exposure.next(tones, ToneMap::Agx);
     CHECK(exposure.stops() == doctest::Approx(auto_exposure_stops(tones.all, ToneMap::Agx)).epsilon(1e-2));
@@ -135,10 +135,10 @@ TEST_CASE("the motion layer holds the motion of each pixel's surface, and layers
     Queue queue = Queue::make_cpu();
     const Camera first = mixed_scene_camera();
     Camera second = first;
-    second.fov_y *= 0.9f; // all goes away from the middle
+    second.fov_y *= 0.9f; // everything moves away from the centre
     Session session(queue, prepared, first, layer_settings()), plain(queue, prepared, first, layer_settings());
     session.render_frame(0, {.keep_layers = true});
-    for (const float x : session.frame().motion().pixels) CHECK(x == 0); // there was none before
+    for (const float x : session.frame().motion().pixels) CHECK(x == 0); // there was no previous frame
     for (Session* each : {&session, &plain}) {
         if (each == &plain) plain.render_frame(0, {});
         each->set_camera(second);

@@ -26,7 +26,7 @@ RenderSettings result_settings() {
     return settings;
 }
 
-/// The mixed scene, one of whose spheres goes aside for a second.
+/// The mixed scene, in which a sphere moves aside for a second.
 Scene sliding_scene() {
     Scene scene = make_mixed_scene();
     scene.nodes.resize(1);
@@ -40,8 +40,8 @@ Scene sliding_scene() {
     return scene;
 }
 
-/// Hashes of the frames of a sequence, all that a program needs to make them; `before`: frames of it that somebody else
-/// has rendered with the session, and that a cut makes forgotten.
+/// Returns the hashes of a sequence's frames. `before` is the number of frames that were rendered with the session
+/// before a cut.
 std::vector<Hash128> hashes_of_sequence(Queue& queue, const FrameRange& sequence, const RenderSettings& settings,
                                         const RestirSettings& restir, uint32_t before = 0) {
     Messages messages;
@@ -76,14 +76,14 @@ TEST_CASE("frames of a moving sequence have the same bytes in every schedule, on
     const RenderSettings settings = result_settings();
     RenderSettings wavefront = settings;
     wavefront.body = PathBody::Wavefront;
-    wavefront.batch = 700; // several rounds begin paths
+    wavefront.batch = 700; // paths begin in several rounds
     for (const RestirLight light : {RestirLight::Off, RestirLight::Indirect}) {
         const RestirSettings restir = {.light = light};
         const std::vector<Hash128> expected = hashes_of_sequence(cpu, sequence, settings, restir);
         CHECK(expected[3] != expected[4]);
         CHECK(hashes_of_sequence(cpu, sequence, wavefront, restir) == expected);
         CHECK(hashes_of_sequence(cpu, sequence, settings, restir, 4) == expected);
-        // A sequence that ends sooner has the same frames, one that begins later has not.
+        // A shorter sequence has the same frames; a sequence that begins later does not.
         const FrameRange shorter = {.first = 3, .last = 5, .fps = 8.0}, later = {.first = 4, .last = 7, .fps = 8.0};
         const std::vector<Hash128> of_shorter = hashes_of_sequence(cpu, shorter, settings, restir);
         CHECK(std::vector<Hash128>(expected.begin(), expected.begin() + 3) == of_shorter);
@@ -108,7 +108,7 @@ TEST_CASE("layers of a frame come from its own sample, in any order of samples")
     const RenderResult frame = session.frame_result();
     REQUIRE(frame.layers.size() == 2);
     REQUIRE(frame.ids.size() == std::size_t(60) * 40);
-    // The contribution of sample 5 to the five before it, from the film.
+    // Computes the contribution of sample 5 from the films of five and six samples.
     RenderSettings plain = settings_of_frames(settings);
     const auto albedo_of = [&](uint32_t samples) {
         plain.samples = samples;
@@ -128,7 +128,7 @@ TEST_CASE("layers of a frame come from its own sample, in any order of samples")
 TEST_CASE("memory of real-time frames with temporal gradients equals its prediction") {
     Messages messages;
     Scene scene = make_mixed_scene();
-    scene.instances.resize(500, scene.instances.back()); // so that their previous positions take memory that counts
+    scene.instances.resize(500, scene.instances.back()); // so that their previous positions take considerable memory
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     Queue queue = requested_queue();
     for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
@@ -140,7 +140,7 @@ TEST_CASE("memory of real-time frames with temporal gradients equals its predict
                 settings.body = body;
                 const ReconstructionSettings reconstruction = {.resolution_scale = scale};
                 Session session(queue, prepared, mixed_scene_camera(), settings);
-                for (uint32_t k = 0; k < 3; ++k) { // the third frame compares small pictures of the two before
+                for (uint32_t k = 0; k < 3; ++k) { // the third frame compares small pictures of the two previous ones
                     session.update_scene(prepared, kPartLights);
                     session.render_frame(k, reconstruction, {.light = light});
                 }

@@ -31,7 +31,7 @@ Camera moved(Camera camera, uint32_t frame) {
     return camera;
 }
 
-/// Hash of the last of `frames`, from frame `first` on.
+/// Returns the hash of the last of `frames` frames that begin with `first`.
 Hash128 hash_of_frames(Session& session, const Camera& camera, uint32_t frames, const ReconstructionSettings& settings,
                        const RestirSettings& restir = {}) {
     for (uint32_t k = 0; k < frames; ++k) {
@@ -81,9 +81,9 @@ TEST_CASE("frame 30 has the same bytes on every device, in every schedule and ba
 
         RenderSettings wavefront = settings;
         wavefront.body = PathBody::Wavefront;
-        wavefront.batch = 600; // several rounds begin paths
+        wavefront.batch = 600; // paths begin in several rounds
         Session other(cpu, prepared, s.camera, wavefront);
-        other.render(1); // the film is apart
+        other.render(1); // the film is separate
         CHECK(hash_of_frames(other, s.camera, kFrames, {}) == expected);
 
         ReconstructionSettings fewer;
@@ -134,7 +134,7 @@ TEST_CASE("a change of size or scene restarts the history, and so does changing 
 
 namespace {
 
-/// Ten frames in which the first instance that is not baked moves aside.
+/// Renders ten frames in which the first instance that is not baked moves aside.
 Hash128 hash_of_motion(Queue& queue, const RenderSettings& settings, bool moves, const RestirSettings& restir = {}) {
     Messages messages;
     Scene scene = make_mixed_scene();
@@ -177,7 +177,7 @@ TEST_CASE("frames of moving scenes have the same bytes on every device and in ev
 TEST_CASE("frames with ReSTIR have the same bytes on every device, in every schedule and batch size, and after a cut") {
     Messages messages;
     const Scene mixed = make_mixed_scene();
-    // In one all surfaces are diffuse, so that frames split no light.
+    // In one scene all surfaces are diffuse, so that frames do not split light.
     for (const Scenes& s : {Scenes{mixed, mixed_scene_camera()}, diffuse_scene()}) {
         const PreparedScene prepared = prepare_scene(s.scene, {}, messages);
         Queue cpu = Queue::make_cpu();
@@ -252,7 +252,7 @@ TEST_CASE("the mean of frames from a still camera is the picture, except for the
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     Queue queue = requested_queue();
     RenderSettings settings = settings_of_frames();
-    settings.width = 96, settings.height = 64; // in smaller ones clamping has more effect
+    settings.width = 96, settings.height = 64; // clamping has more effect in smaller pictures
     Session session(queue, prepared, mixed_scene_camera(), settings);
     session.render(256);
     const double expected = mean_of(session.picture());

@@ -21,7 +21,7 @@ namespace {
 
 RenderSettings hybrid_settings() {
     RenderSettings settings;
-    settings.width = 37; // odd on purpose: tiles do not fit
+    settings.width = 37; // not a multiple of a tile
     settings.height = 21;
     settings.samples = 3;
     settings.aovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
@@ -30,7 +30,7 @@ RenderSettings hybrid_settings() {
     return settings;
 }
 
-/// Picture, layers and ids of what hybrid and path see.
+/// The picture, layers and ids of hybrid and path.
 void check_as_path(const Scene& scene, const Camera& camera, RenderSettings settings) {
     Queue queue = test::requested_queue();
     settings.integrator = IntegratorKind::Hybrid;
@@ -41,7 +41,7 @@ void check_as_path(const Scene& scene, const Camera& camera, RenderSettings sett
     CHECK(hybrid.rays.total() == path.rays.total());
 }
 
-/// Triangles of all sizes around the origin: slivers, points, duplicates, some through the origin.
+/// Triangles of all sizes around the origin, including slivers, points and duplicates. Some contain the origin.
 Mesh soup(uint32_t count, uint32_t seed) {
     test::Random random(seed);
     Mesh mesh;
@@ -66,7 +66,7 @@ Scene soup_scene(uint32_t count, uint32_t seed) {
     return scene;
 }
 
-/// `count` triangles of `size` within `spread` of `middle`.
+/// Returns `count` triangles of `size` within `spread` of `middle`.
 Scene scattered_triangles(uint32_t count, Vec3 middle, float spread, float size) {
     test::Random random(count);
     Mesh mesh;
@@ -118,7 +118,7 @@ TEST_CASE("hybrid has the path tracer's picture of all kinds of surfaces, for an
     }
 }
 
-TEST_CASE("hybrid is denoised as path tracing is and finds the same irradiance") {
+TEST_CASE("hybrid has path tracing's denoised picture and irradiance") {
     const Scene scene = test::make_mixed_scene();
     RenderSettings settings = hybrid_settings();
     settings.denoise = Denoise::Svgf;
@@ -147,8 +147,9 @@ TEST_CASE("hybrid has the path tracer's picture with any pixel filter, field of 
     check_as_path(scene, flat, hybrid_settings());
 }
 
-// Triangles at the very border of a tile: fails if tiles are widened by less than the filter, or not by rounding.
-TEST_CASE("hybrid misses no triangle that a sample meets outside its tile") {
+// Triangles at the border of a tile. The test fails if tiles are enlarged by less than the filter's radius and
+// rounding.
+TEST_CASE("hybrid finds every triangle that a sample hits outside its tile") {
     RenderSettings settings = hybrid_settings();
     settings.width = 96, settings.height = 64;
     settings.samples = 4;
@@ -159,8 +160,8 @@ TEST_CASE("hybrid misses no triangle that a sample meets outside its tile") {
         settings.filter_radius = radius;
         check_as_path(scattered_triangles(2500, {0, 0, 0}, 2, 0.02f), camera, settings);
     }
-    // Triangles of some pixels that are as fine as floats can tell, through a view of a hundred thousandth of a degree:
-    // of their places (baked, of an instance) and of the rays.
+    // Triangles of a few pixels in a view of 1e-5 degrees are at the limit of a float's precision, for positions
+    // (baked or instanced) and rays.
     settings.filter_radius = 0.5f;
     settings.samples = 2;
     const Vec3 middle = {0.7f, 0.3f, -0.6f}, eye = {-0.2f, 0.9f, 0.4f};
@@ -168,7 +169,7 @@ TEST_CASE("hybrid misses no triangle that a sample meets outside its tile") {
         const Camera narrow = camera_at(eye, middle, 1e-5f * scale);
         Scene fine = scattered_triangles(1000, middle, 1e-5f * scale, 1e-6f * scale);
         check_as_path(fine, narrow, settings);
-        fine.instances.push_back(fine.instances.front()); // now neither is baked
+        fine.instances.push_back(fine.instances.front()); // now no mesh is baked
         check_as_path(fine, narrow, settings);
     }
 }
@@ -179,7 +180,7 @@ TEST_CASE("hybrid has the path tracer's picture of triangles close to the camera
         Scene scene = soup_scene(60, 100 + static_cast<uint32_t>(i));
         const Mesh& mesh = scene.meshes.front();
         const Vec3 corner = mesh.positions[random.below(60)], other = mesh.positions[random.below(60)];
-        Vec3 eye = corner; // at a vertex; on an edge; just off a triangle; in a triangle's plane
+        Vec3 eye = corner; // at a vertex, on an edge, just off a triangle, and in a triangle's plane
         if (i % 4 == 1) eye = 0.5f * (corner + other);
         if (i % 4 == 2) eye = corner + Vec3{1e-6f, -1e-6f, 2e-6f};
         if (i % 4 == 3) eye = mesh.positions[0] + 2.0f * (mesh.positions[0] - mesh.positions[1]);
@@ -207,11 +208,11 @@ TEST_CASE("hybrid has the path tracer's picture of rotated, mirrored, squeezed a
     }
     check_as_path(scene, camera_at({0, 0, 9}, {0, 0, 0}, 1), hybrid_settings());
     check_as_path(scene, camera_at({0, 0, 0}, {1, 1, 0}, 1.5f), hybrid_settings());
-    for (Instance& instance : scene.instances) { // 100 km off: floats there are 8 mm apart
+    for (Instance& instance : scene.instances) { // 100 km away, where floats are 8 mm apart
         instance.world_from_local = compose(make_translation({1e5f, 0, -1e5f}), instance.world_from_local);
     }
     scene.instances.push_back(scene.instances.front());
-    scene.instances.back().world_from_local = Transform{}; // so that the world stays where it is
+    scene.instances.back().world_from_local = Transform{}; // so that the world is not translated
     check_as_path(scene, camera_at({1e5f, 0, -1e5f + 9}, {1e5f, 0, -1e5f}, 1), hybrid_settings());
 }
 
@@ -219,7 +220,7 @@ TEST_CASE("where the lists of tiles exceed their memory, tiles become larger and
     Scene scene;
     scene.environment = Environment{};
     Mesh sheets;
-    for (int i = 0; i < 300; ++i) { // each over the whole picture
+    for (int i = 0; i < 300; ++i) { // each triangle covers the whole picture
         const Mesh sheet =
             test::sheet({0, 0, -1.0f - 0.01f * static_cast<float>((i * 37) % 300)}, {9, 0, 0}, {0, 9, 0});
         for (const uint32_t index : sheet.indices) {
@@ -229,7 +230,7 @@ TEST_CASE("where the lists of tiles exceed their memory, tiles become larger and
     }
     test::add(scene, sheets, test::white(0.5f));
     check_as_path(scene, Camera{}, hybrid_settings());
-    check_as_path(Scene{.environment = Environment{}}, Camera{}, hybrid_settings()); // nothing at all
+    check_as_path(Scene{.environment = Environment{}}, Camera{}, hybrid_settings()); // no triangle is visible
 }
 
 TEST_CASE("hybrid has the path tracer's picture of public scenes") {
@@ -260,7 +261,7 @@ TEST_CASE("memory of hybrid equals its prediction, and other cameras and sizes g
     Session session(queue, prepared, test::mixed_scene_camera(), settings);
     session.render(settings.samples);
     const std::size_t predicted = predicted_bytes(prepared, settings, queue.is_cuda());
-    const std::size_t sorting = queue.is_cuda() ? predicted / 10 : 0; // on the device CUB determines its memory
+    const std::size_t sorting = queue.is_cuda() ? predicted / 10 : 0; // on a GPU CUB determines the sorting memory
     CHECK(queue.allocated_bytes() + sorting >= predicted);
     CHECK(queue.allocated_bytes() <= predicted + 4096 + sorting); // the filter's table, the scene's view
     Camera camera = test::mixed_scene_camera();

@@ -1,6 +1,5 @@
-// The one-picture law for irradiance caching: the same bytes for any number of threads, any split of the samples, all
-// stages over all subpaths or a few subpaths a thread, any number of them in flight. With --device cuda the GPU joins
-// in.
+// The one-picture law for irradiance caching: the bytes are the same for any number of threads, any split of the
+// samples, either schedule, and any number of subpaths in flight. With --device cuda the GPU renders, too.
 
 #include <doctest/doctest.h>
 
@@ -21,7 +20,7 @@ namespace {
 
 RenderSettings cache_settings() {
     RenderSettings settings;
-    settings.width = 37; // odd on purpose: tiles do not fit
+    settings.width = 37; // not a multiple of a tile
     settings.height = 21;
     settings.samples = 4;
     settings.aovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
@@ -32,7 +31,7 @@ RenderSettings cache_settings() {
     return settings;
 }
 
-/// The mixed scene, with a mirror on its side that shows it.
+/// The mixed scene, with a mirror beside it.
 Scene scene_with_mirror() {
     Scene scene = test::make_mixed_scene();
     test::add(scene, test::sheet({-2.5f, 1, 0}, {0, 1, 0}, {0, 0, 2}), test::mirror());
@@ -63,13 +62,13 @@ TEST_CASE("irradiance caching has path tracing's first-surface layers and direct
     CHECK(layers_of(IntegratorKind::IrradianceCache) == layers_of(IntegratorKind::Path));
     CHECK(layers_of(IntegratorKind::IrradianceCache, true) == layers_of(IntegratorKind::Path));
     RenderSettings settings = cache_settings();
-    for (const uint32_t depth : {0u, 1u}) { // nothing is in records
+    for (const uint32_t depth : {0u, 1u}) { // records contain no light
         settings.path.max_depth = depth;
         settings.integrator = IntegratorKind::IrradianceCache;
         const RenderResult cached = test::render(queue, scene_with_mirror(), test::camera_with_lens(), settings);
         settings.integrator = IntegratorKind::Path;
         const RenderResult path = test::render(queue, scene_with_mirror(), test::camera_with_lens(), settings);
-        for (std::size_t i = 0; i < path.picture.pixels.size(); ++i) { // sums of other roundings
+        for (std::size_t i = 0; i < path.picture.pixels.size(); ++i) { // the sums are rounded differently
             CHECK(cached.picture.pixels[i] ==
                   doctest::Approx(static_cast<double>(path.picture.pixels[i])).epsilon(1e-4));
         }
@@ -91,7 +90,7 @@ TEST_CASE("a session that switches to irradiance caching and back renders comple
              {std::pair(IntegratorKind::IrradianceCache, 48u), std::pair(IntegratorKind::Path, 48u),
               std::pair(IntegratorKind::IrradianceCache, 20u), std::pair(IntegratorKind::IrradianceCache, 100u)}) {
             settings.integrator = integrator;
-            settings.irradiance_cache.edit().hemisphere_rays = rays; // less memory, and more
+            settings.irradiance_cache.edit().hemisphere_rays = rays; // with less memory, and with more
             test::check_goes_on(session, queue, scene, settings);
         }
     }
@@ -117,7 +116,7 @@ TEST_CASE("records are made once per picture and again for another picture") {
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     RenderSettings settings = cache_settings();
-    constexpr uint64_t kOfRecords = 100 * 48, kOfSample = 37 * 21 * 6; // at least; about
+    constexpr uint64_t kOfRecords = 100 * 48, kOfSample = 37 * 21 * 6; // the lower bound and the approximate number
     for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
         settings.body = body;
         Session session(queue, prepared, test::camera_with_lens(), settings);
@@ -137,11 +136,11 @@ TEST_CASE("records are made once per picture and again for another picture") {
         session.set_settings(settings);
         check_made(false);
         check_picture(settings, test::camera_with_lens());
-        session.meter(ToneMap::Aces); // renders other pictures in between
+        session.meter(ToneMap::Aces); // the session renders other pictures in between
         check_made(false);
         RenderSettings aside_settings = settings;
         aside_settings.width = 9;
-        session.render_separately(test::mixed_scene_camera(), aside_settings); // has its own records
+        session.render_separately(test::mixed_scene_camera(), aside_settings); // this picture has its own records
         check_made(false);
         aside_settings.path.max_depth = 0;
         session.render_separately(test::camera_with_lens(), aside_settings);
@@ -230,7 +229,7 @@ TEST_CASE("an overture's progress rises monotonically from 0 to 1") {
             CHECK(now->made_seconds <= now->seconds);
         }
         CHECK(session.render(1, ProgressSink([&](const Progress& now) { return now.made_share == 1; })) ==
-              1); // all is there
+              1); // all records are complete
     }
 }
 
@@ -238,7 +237,7 @@ TEST_CASE("invalid values in records are reported with sample 0, independent of 
     Queue queue = test::requested_queue();
     Scene scene = test::make_mixed_scene();
     test::add(scene, test::sheet({0, 3, 0}, {1, 0, 0}, {0, 0, 1}),
-              {{.two_sided_emission = true, .emission = {1e18f, 0, 0}}, "too bright"}); // for the film
+              {{.two_sided_emission = true, .emission = {1e18f, 0, 0}}, "too bright"}); // the film's integrator
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     RenderSettings settings = cache_settings();
@@ -248,17 +247,17 @@ TEST_CASE("invalid values in records are reported with sample 0, independent of 
     in_parts.render(1);
     in_parts.render(2);
     CHECK(in_parts.stats().invalid_samples == at_once.stats().invalid_samples);
-    in_parts.render_separately(test::camera_with_lens(), settings, 1); // makes records, too
+    in_parts.render_separately(test::camera_with_lens(), settings, 1); // this one makes records, too
     in_parts.cut();
     in_parts.render(3);
     CHECK(in_parts.stats().invalid_samples == at_once.stats().invalid_samples);
-    settings.path.max_depth = 1; // no records
+    settings.path.max_depth = 1; // there are no records
     in_parts.set_settings(settings);
     in_parts.render(3);
     CHECK(in_parts.stats().invalid_samples + 100 < at_once.stats().invalid_samples);
 }
 
-TEST_CASE("an overture can be stopped by a sink or a time limit, and leaves no trace") {
+TEST_CASE("an overture can be stopped by a sink or a time limit, without any effect") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
@@ -270,7 +269,7 @@ TEST_CASE("an overture can be stopped by a sink or a time limit, and leaves no t
         settings.body = body;
         settings.batch = 500; // many parts
         Session session(queue, prepared, test::camera_with_lens(), settings);
-        for (int most = 0; most < 12; ++most) { // before the first part, between rounds, among records
+        for (int most = 0; most < 12; ++most) { // before the first part, between rounds, and within records
             int connections = 0;
             CHECK(session.render(2, ProgressSink([&](const Progress& now) {
                                      CHECK(now.samples_done == 0);
@@ -280,7 +279,7 @@ TEST_CASE("an overture can be stopped by a sink or a time limit, and leaves no t
             CHECK(session.history().samples == 0);
             CHECK(session.stats().invalid_samples == 0);
         }
-        if (!queue.is_cuda()) { // which checks within a part
+        if (!queue.is_cuda()) { // this stops within a part
             CHECK(session.render(2, test::StopAfter(0)) == 0);
             CHECK(session.render(2, test::StopAfter(5)) == 0);
         }
@@ -304,8 +303,8 @@ TEST_CASE("memory of irradiance caching equals its prediction") {
             settings.body = body;
             settings.irradiance_cache.edit().hemisphere_rays = rays;
             settings.samples = 1;
-            settings.path.max_depth = 1; // room for records is taken, and none is made
-            settings.batch = 1000;       // less than the rays of one record
+            settings.path.max_depth = 1; // memory for records is allocated, and none is made
+            settings.batch = 1000;       // fewer rays than one record needs
             Queue dry = Queue::make_dry_run(false);
             RecordStore store(dry);
             store.allocate(uint64_t(settings.width) * settings.height);

@@ -1,5 +1,5 @@
-// Every combination of structure, traversal and switches gives the hits of the proven traversal, bit for bit, and that
-// traversal those of brute force, in public scenes.
+// In public scenes every combination of structure, traversal and switches finds the hits of the reference traversal,
+// bit for bit, and the reference traversal those of brute force.
 
 #include <doctest/doctest.h>
 
@@ -17,7 +17,7 @@ using namespace pertev::test;
 
 namespace {
 
-// Number of rays of each kind; sanitizers take fifty times as long per ray and tree.
+// The number of rays of each kind. Sanitizers take fifty times as long per ray and tree.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr uint64_t kSceneRays = 3'000, kOtherTreeRays = 3'000;
 constexpr bool kTwoScenes = false;
@@ -80,7 +80,7 @@ std::optional<Scene> read_geometry(const char* name) {
     return read_scene(*file, options, messages);
 }
 
-/// Keeps the triangles that begin at x or beyond.
+/// Keeps the triangles whose first vertex is at x or beyond.
 void keep_beyond(float x, Scene& scene) {
     for (Mesh& mesh : scene.meshes) {
         std::vector<uint32_t> kept;
@@ -107,7 +107,7 @@ void check_scene_by(Queue& queue, const Scene& scene, std::vector<Combination> c
     check_report(report, 36);
 }
 
-/// Traces each combination over all triangles of both scenes, as a GPU and the long setting do.
+/// Traces each combination over all triangles of both scenes, for a GPU and for the long setting.
 void check_all_scenes(Queue& queue) {
     for (const char* name : {kSponzaFile, kSibenikFile}) {
         const auto scene = read_geometry(name);
@@ -124,7 +124,9 @@ TEST_CASE(
     if (kTwoScenes) {
         auto sponza = read_geometry(kSponzaFile);
         if (sponza) {
-            keep_beyond(46, *sponza); // a quarter of its triangles: brute force and builders take a quarter of the time
+            keep_beyond(
+                46,
+                *sponza); // a quarter of the triangles, with which brute force and builders take a quarter of the time
             check_scene_by(queue, *sponza, over_first_trees(false, 0), kSceneRays);
         }
     }
@@ -135,7 +137,7 @@ TEST_CASE(
 }
 
 TEST_CASE("each traversal gives the same hits over each tree on 10,000 rays of each kind in Sibenik") {
-    if (effort(0, 1) != 0) return; // the long setting has these on all rays of both scenes
+    if (effort(0, 1) != 0) return; // the long setting tests these on all rays of both scenes
     const auto sibenik = read_geometry(kSibenikFile);
     if (!sibenik) return;
     Queue queue = Queue::make_cpu();

@@ -1,5 +1,5 @@
-// Every combination of structure, traversal and switches gives the hits of the proven traversal, bit for bit, and that
-// traversal those of brute force: in meshes made to break them, with instances and without. Public scenes are in
+// Every combination of structure, traversal and switches finds the hits of the reference traversal, bit for bit, and
+// the reference traversal those of brute force, in stress meshes with and without instances. Public scenes are in
 // lab_scenes_test.cpp.
 
 #include <doctest/doctest.h>
@@ -21,7 +21,7 @@ using namespace pertev::test;
 
 namespace {
 
-/// The mesh's triangles as one instance a given number.
+/// The mesh's triangles as one instance.
 Scene scene_of(const StressMesh& stress) {
     Scene scene;
     scene.materials.resize(1);
@@ -73,13 +73,13 @@ TEST_CASE("CUDA: every combination gives the same hits in stress meshes and in t
     const Scene mixed = make_mixed_scene(); // has instances
     LabSettings settings = all_combinations(true, true);
     settings.width = 64, settings.height = 48, settings.depth = 3;
-    settings.runs = 1; // timed and counted too
+    settings.runs = 1; // rays are timed and counted, too
     check_report(run_lab(queue, mixed, mixed_scene_camera(), settings));
 }
 
 TEST_CASE("inexact tests miss a few rays, which are counted") {
     Queue queue = requested_queue();
-    const Vec3 centre = {1.5e5f, 0, -1.5e5f}; // 150 km away: a float's last bits are centimetres there
+    const Vec3 centre = {1.5e5f, 0, -1.5e5f}; // 150 km away, where floats are centimetres apart
     const Scene scene = scene_of({"soup", make_soup(1500, 1.5e5f), centre});
     LabSettings settings;
     for (const TestKind tests : kValuesOf<TestKind>) {
@@ -101,7 +101,7 @@ TEST_CASE("inexact tests miss a few rays, which are counted") {
         REQUIRE(c.runs.size() == 3);
         CHECK((c.runs[0].different == 0) == c.combination.options.is_exact());
         CHECK(c.runs[0].different < report.sets[0].rays / 2);
-        if (c.combination.distribution == Distribution::OneAThread) { // the others are not counted
+        if (c.combination.distribution == Distribution::OneAThread) { // other differences are not counted
             CHECK(c.runs[0].nodes > 1);
             CHECK(c.runs[0].triangles > 0);
         }
@@ -146,7 +146,7 @@ TEST_CASE("an interrupted laboratory keeps its measurements") {
 }
 
 TEST_CASE("the laboratory can be stopped inside each stage of long work and reports its progress") {
-    const UseThreads one(1); // pieces are as many rays as threads want
+    const UseThreads one(1); // the number of rays per piece depends on the threads
     Queue queue = Queue::make_cpu();
     const Scene scene = scene_of({"torus", triangles_of(make_torus(20, 10), 0), {}});
     LabSettings settings = all_combinations(false, false);
@@ -168,7 +168,7 @@ TEST_CASE("the laboratory can be stopped inside each stage of long work and repo
         return true;
     });
     CHECK(has_findings(run_lab(queue, scene, camera, settings, recorder)));
-    REQUIRE(stages.size() == 8); // tree, rays, two of the set, three of the combination, and the end
+    REQUIRE(stages.size() == 8); // the tree, the rays, two for the set, three for the combination, and the end
     stages.pop_back();
     CHECK(std::ranges::count(stages, true, &Stage::has_pieces) == 3);
     for (const Stage& stage : stages) {

@@ -1,5 +1,5 @@
-// Pictures through distorting lenses are the same by every schedule and device, have features where OpenCV
-// projects them, and are black outside of the lens's image. With --device cuda a GPU renders too.
+// Pictures through distorting lenses are the same by every schedule and device, show features where OpenCV projects
+// them, and are black outside the lens's image. With --device cuda a GPU renders, too.
 
 #include <cmath>
 
@@ -45,7 +45,7 @@ RenderSettings small_settings() {
 
 } // namespace
 
-TEST_CASE("a picture through a lens is the same by loop, wavefront and device, and no other lens has it") {
+TEST_CASE("a picture through a lens is the same by loop, wavefront and device, and lenses differ") {
     const Scene scene = test::make_mixed_scene();
     std::vector<Hash128> hashes;
     for (const Camera& camera : lenses()) {
@@ -79,7 +79,7 @@ TEST_CASE("small emitters appear where OpenCV projects them, within a tenth of a
     for (const test::Calibration& calibration : {test::kCalibrations[0], test::kCalibrations[3]}) {
         const Camera camera = test::camera_of(calibration);
         RenderSettings settings;
-        settings.width = 640, settings.height = 360, settings.samples = 64; // half the calibration's size
+        settings.width = 640, settings.height = 360, settings.samples = 64; // half of the calibrated size
         settings.filter = PixelFilter::Box;
         settings.path.max_depth = 0;
         const Image picture = test::render(queue, scene, camera, settings).picture;
@@ -118,7 +118,7 @@ TEST_CASE("where a lens shows nothing, every integrator leaves black without alp
         const RenderResult result = test::render(queue, scene, camera, settings);
         CHECK(result.picture.at(0, 0)[0] == 0);
         CHECK(result.picture.at(36, 20)[1] == 0);
-        CHECK(result.picture.at(14, 10)[1] == doctest::Approx(1).epsilon(1e-3)); // background that it shows
+        CHECK(result.picture.at(14, 10)[1] == doctest::Approx(1).epsilon(1e-3)); // the background in the lens's image
         CHECK(result.ids.front().instance == kNoHit);
         CHECK(result.invalid_samples == 0);
         settings.transparent = true;
@@ -143,7 +143,7 @@ TEST_CASE("light tracing and path tracing agree through a lens") {
     }
 }
 
-TEST_CASE("rasterisation refuses a distorting lens, and svgf a fisheye alone") {
+TEST_CASE("rasterisation refuses a distorting lens, and svgf only a fisheye") {
     const Scene scene = test::make_furnace_scene(0.5f);
     Queue queue = Queue::make_cpu();
     RenderSettings settings = small_settings();
@@ -161,7 +161,7 @@ TEST_CASE("rasterisation refuses a distorting lens, and svgf a fisheye alone") {
     CHECK(test::render_hash(test::render(device, scene, lenses()[0], settings)) == cpu);
 }
 
-TEST_CASE("hybrid rasterises a picture with any principal point and focal lengths as paths see it") {
+TEST_CASE("hybrid rasterises the path tracer's picture for any principal point and focal lengths") {
     const Scene scene = test::make_mixed_scene();
     Queue queue = test::requested_queue();
     Camera camera = test::mixed_scene_camera();

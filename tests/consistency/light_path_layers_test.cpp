@@ -21,7 +21,7 @@ using namespace pertev;
 
 namespace {
 
-/// Each path is in one of the first four, and in one of the last two.
+/// Each path is in one of the first four layers, and in one of the last two.
 constexpr const char* kLightLayers[] = {"seen=LE",       "direct=L[DG]E",           "mirrored=L.*SE",
                                         "rest=L.+[DG]E", "sky=L<'environment'>.*E", "lamps=L<^'environment'>.*E"};
 
@@ -33,7 +33,7 @@ std::shared_ptr<const LightPathLayers> light_layers_in(const Scene& scene, std::
 
 RenderSettings with_light_layers(const Scene& scene) {
     RenderSettings settings;
-    settings.width = 61; // odd on purpose: tiles do not fit
+    settings.width = 61; // not a multiple of a tile
     settings.height = 35;
     settings.samples = 4;
     settings.aovs = kAovAlbedo | kAovDepth;
@@ -42,7 +42,7 @@ RenderSettings with_light_layers(const Scene& scene) {
     return settings;
 }
 
-/// A hundred that differ, n0 to n99: many of them take part in the same light.
+/// A hundred different expressions, n0 to n99. Many of them accept the same light.
 std::vector<std::string> hundred_expressions() {
     std::vector<std::string> texts;
     for (const char* end : {"D", "G", "S", ".", "[^D]"}) {
@@ -84,7 +84,7 @@ TEST_CASE("layers do not depend on threads, passes, schedules and batch sizes") 
         other.batch = batch;
         CHECK(cpu_layers_hash(other) == reference_layers_hash());
     }
-    for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) { // hybrid's samples are path's
+    for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) { // hybrid has the samples of path
         other.integrator = IntegratorKind::Hybrid;
         other.body = body;
         CHECK(cpu_layers_hash(other) == reference_layers_hash());
@@ -136,7 +136,7 @@ TEST_CASE("layers that partition all paths add up to the picture within 1e-6") {
     }
 }
 
-TEST_CASE("each of 33, 64, 65 and 100 layers has the bytes of the layer rendered alone") {
+TEST_CASE("each of 33, 64, 65 and 100 layers has the bytes of a render with that layer only") {
     const Scene scene = test::make_mixed_scene();
     const std::vector<std::string> texts = hundred_expressions();
     REQUIRE(texts.size() == 100);
@@ -203,7 +203,7 @@ TEST_CASE("a session that changes its layers renders the pictures of new session
     CHECK(session.layers().size() == 2);
     session.set_settings(settings);
     session.render(1);
-    session.meter(ToneMap::Agx); // a film without layers in between
+    session.meter(ToneMap::Agx); // a film without layers is rendered in between
     session.render(3);
     CHECK(test::render_hash(session.result()) == reference_layers_hash());
 }

@@ -1,5 +1,5 @@
-// The hash of a moving scene's picture at a time does not depend on earlier times, on every device. This includes
-// hidden, mirrored and squeezed instances (beyond the limit of baking), and lights.
+// The hash of a moving scene's picture at a time does not depend on earlier times, on any device. The scene has hidden
+// and mirrored instances, skewed ones beyond the limit of baking, and lights.
 
 #include "session/moving_scene.h"
 
@@ -23,8 +23,8 @@ AnimationChannel channel(uint32_t target, AnimatedPart part, Interpolation inter
     return {target, part, interpolation, std::move(times), std::move(values)};
 }
 
-/// The mixed scene with everything that can move: two instances of a shared mesh, one squeezed flat for a while; a lone
-/// one that a scale of 0 hides; a skinned and a morphed one; the point light; the camera.
+/// The mixed scene with everything that can move: two instances of a shared mesh, one of which is flattened for a
+/// while; a single one that a scale of 0 hides; a skinned and a morphed one; the point light; the camera.
 Scene make_moving_scene() {
     Scene scene = test::make_mixed_scene();
     Messages messages;
@@ -46,7 +46,7 @@ Scene make_moving_scene() {
     add(1, AnimatedPart::Scale, Interpolation::Step, {0, 2, 3}, {1, 1, 1, 1, 1e-5f, 1, -1, 1, 1});
     add(2, AnimatedPart::Scale, Interpolation::Linear, {0, 1, 2}, {1, 1, 1, 0, 0, 0, 1.5f, 1, 1});
 
-    // The last meshes once more, one with a skin of two joints, one with a morph target.
+    // Copies of the last meshes, one with a skin of two joints, one with a morph target.
     const auto add_shape = [&](uint32_t of, uint32_t node) -> MeshShape& {
         const Mesh mesh = scene.meshes[of];
         scene.meshes.push_back(mesh);
@@ -121,12 +121,13 @@ void check_steps(const Scene& rest, const std::vector<double>& times, const Came
 } // namespace
 
 TEST_CASE("a step to a time renders like a scene freshly prepared at that time") {
-    // 1: an instance is hidden; 2 to 3: one of a shared mesh is so squeezed that it is baked, and others with it anew.
+    // From 1 s an instance is hidden. From 2 to 3 s an instance of a shared mesh is so flat that it is baked, which
+    // changes the baked tree.
     check_steps(make_moving_scene(), {0, 0.5, 1, 1.5, 2, 2.5, 3.25, 1, 100, 0}, test::mixed_scene_camera(),
                 test::layered_settings());
 }
 
-TEST_CASE("an instance squeezed past the limit is baked only at that time") {
+TEST_CASE("an instance flattened past the limit is baked only at that time") {
     Messages messages;
     MovingScene moving(make_moving_scene(), 0, {}, messages);
     const auto none_moving_is_baked = [&] { return !moving.prepared().is_baked[1]; };
@@ -141,7 +142,7 @@ TEST_CASE("an instance with a scale of 0 is invisible, casts no shadow and emits
     Messages messages;
     Scene without = test::make_mixed_scene();
     validate(without, "mixed", messages);
-    Scene with = without; // and a lamp, the last of the instances and within the box of the others
+    Scene with = without; // and an emitter, which is the last instance and within the box of the others
     const Transform place = make_translation({0.5f, 2, 0.5f});
     with.nodes.resize(1);
     with.instances.push_back({.name = "lamp",
@@ -173,7 +174,7 @@ TEST_CASE("an edited scene renders like a fresh one with these numbers, at its t
             material.base_color = {0.25f, 0.5f, 0.125f};
             material.emission = 0.5f * material.emission;
         }
-        for (Light& light : scene.lights) light.position.x += 0.25f; // an animation moves its intensity alone
+        for (Light& light : scene.lights) light.position.x += 0.25f; // an animation changes only its intensity
         for (Camera& camera : scene.cameras) camera.fov_y *= 0.5f;
         return {.moved_instances = {},
                 .deformed_meshes = {},

@@ -1,6 +1,6 @@
-// Open Image Denoise, loaded at run time: a stand-in for it (stand_in/oidn.cpp) records its calls and fails on
-// request. Incompatible libraries are refused. Film, layers and frames do not depend on it. The library itself is in
-// robust/cli_oidn_test.py.
+// Open Image Denoise, loaded at run time: a substitute (stand_in/oidn.cpp) records its calls and fails on request.
+// Incompatible libraries are refused. Film, layers and frames do not depend on it. robust/cli_oidn_test.py tests the
+// library itself.
 
 #include <dlfcn.h>
 
@@ -22,7 +22,7 @@ using namespace pertev::test;
 
 namespace {
 
-/// The library that is found while this exists.
+/// Selects the library that is found while this object exists.
 class FoundLibrary {
 public:
     explicit FoundLibrary(const char* path) {
@@ -41,7 +41,7 @@ private:
     std::optional<std::string> before_;
 };
 
-/// The stand-in, and its own controls.
+/// The substitute and its controls.
 struct StandIn {
     FoundLibrary found{PERTEV_OIDN_STAND_IN};
     void* library = ::dlopen(PERTEV_OIDN_STAND_IN, RTLD_NOW);
@@ -124,7 +124,7 @@ TEST_CASE("a library that is missing, lacks a function, has no device or is of a
     std::filesystem::create_symlink(PERTEV_OIDN_STAND_IN, folder / "lib/libOpenImageDenoise.so.2");
     CHECK(!refusal_of(folder.c_str()));
     CHECK(!refusal_of((folder / "lib").c_str()));
-    // Before anything is rendered, and after a library that was found.
+    // Before any render, and after a library was found.
     const FoundLibrary none("/nowhere");
     Queue queue = requested_queue();
     Messages messages;
@@ -163,7 +163,8 @@ TEST_CASE("Open Image Denoise gets means of guides and does not change film and 
     StandIn stand_in;
     if (!stand_in.is_there()) return;
     Messages messages;
-    const Scene scene = read_scene("cornell-box", {}, messages); // diffuse: its albedo is that of the layer
+    const Scene scene =
+        read_scene("cornell-box", {}, messages); // the surface is diffuse, so its albedo is that of the layer
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     Queue queue = requested_queue();
     RenderSettings settings = small_settings(Denoise::Oidn);
@@ -172,7 +173,7 @@ TEST_CASE("Open Image Denoise gets means of guides and does not change film and 
     settings.transparent = true; // alpha is the share of samples that hit something
     Session session(queue, prepared, scene.cameras.front(), settings);
     session.render(7);
-    session.denoised(); // does not change the guides of more samples
+    session.denoised(); // an invalid sample does not change the guides
     session.render(9);
     const RenderResult denoised = session.result();
     CHECK(denoised.denoiser == "Open Image Denoise 2.5.1 on the CPU, high quality");
@@ -198,7 +199,7 @@ TEST_CASE("Open Image Denoise gets means of guides and does not change film and 
     CHECK(largest < 1e-5f);
 }
 
-TEST_CASE("frames are denoised for displays alone, and depend on no denoised one") {
+TEST_CASE("frames are denoised only for display, and do not depend on denoised ones") {
     StandIn stand_in;
     if (!stand_in.is_there()) return;
     Messages messages;
@@ -231,7 +232,7 @@ TEST_CASE("frames are denoised for displays alone, and depend on no denoised one
     }
 }
 
-TEST_CASE("memory for Open Image Denoise, but for its own, equals its prediction") {
+TEST_CASE("memory of buffers for Open Image Denoise equals its prediction") {
     StandIn stand_in;
     if (!stand_in.is_there()) return;
     Messages messages;

@@ -1,5 +1,5 @@
-// The one-picture law, held on the CPU: the picture and all its layers are the same bytes for any number of threads,
-// any split of the samples, either schedule of the path tracer, any batch, any tree. With --device cuda the GPU
+// The one-picture law on the CPU: the picture and all its layers have the same bytes for any number of threads, any
+// split of the samples, either schedule of the path tracer, any batch and any tree. With --device cuda the GPU
 // renders, too.
 
 #include <doctest/doctest.h>
@@ -18,7 +18,7 @@ namespace {
 
 RenderSettings odd_settings() {
     RenderSettings settings;
-    settings.width = 61; // odd on purpose: tiles do not fit
+    settings.width = 61; // not a multiple of a tile
     settings.height = 35;
     settings.samples = 6;
     settings.aovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
@@ -26,7 +26,7 @@ RenderSettings odd_settings() {
     return settings;
 }
 
-/// Hash of the picture, the layers, the ids and the share of hidden backs.
+/// Returns the hash of the picture, the layers, the ids and the share of hidden backs.
 Hash128 hash_of_mixed(const RenderResult& result) {
     Hasher hasher;
     test::add_picture(hasher, result);
@@ -67,7 +67,7 @@ TEST_CASE("the picture does not depend on how the samples are split into passes"
 TEST_CASE("the wavefront gives the bytes of the loop for any number of paths in flight") {
     RenderSettings settings = odd_settings();
     settings.body = PathBody::Wavefront;
-    for (const uint32_t batch : {777u, 5000u, 1u << 20}) { // less than a picture, two samples, all
+    for (const uint32_t batch : {777u, 5000u, 1u << 20}) { // less than a picture, two samples, and all samples
         CAPTURE(batch);
         settings.batch = batch;
         CHECK(cpu_hash(settings) == reference_hash());
@@ -88,7 +88,7 @@ TEST_CASE("the wavefront gives the bytes of the loop under every light sampling 
 
 namespace {
 
-/// The mixed scene in materials of which something is known.
+/// The mixed scene with materials of restricted variants.
 Scene scene_with(ShadingVariant variant) {
     Scene scene = test::make_mixed_scene();
     for (Material& material : scene.materials) {
@@ -108,7 +108,7 @@ ShadingVariant variant_of(const Scene& scene) {
 
 } // namespace
 
-TEST_CASE("vertices that are shaded in lanes give the bytes of those that are shaded one by one") {
+TEST_CASE("vertices shaded in lanes give the bytes of vertices shaded one by one") {
     const Scene scene = scene_with(ShadingVariant::PlainDiffuse);
     Queue queue = Queue::make_cpu();
     const auto check_lanes = [&](const Scene& in_lanes, const RenderSettings& settings) {
@@ -147,7 +147,7 @@ TEST_CASE("shading variants give the bytes of the general one") {
         CAPTURE(static_cast<int>(variant));
         const Scene scene = scene_with(variant);
         CHECK(variant_of(scene) == variant);
-        Scene of_any = scene; // nothing is known of it, for a material that no instance has
+        Scene of_any = scene; // the scene needs the general variant because of an unused material
         of_any.materials.push_back({{.kind = MaterialKind::Conductor}, "unused"});
         CHECK(variant_of(of_any) == ShadingVariant::General);
         RenderSettings settings = odd_settings();
@@ -226,8 +226,8 @@ TEST_CASE("pictures and frames of two wavefronts, or of one with the memory of t
     check(1000, 521, 1); // again
     check(700, 500, 1);  // one of them
     settings.path.max_depth = 17;
-    check(1000, 521, 1); // one again, for its many rounds
-    // A pass of one sample would do with one wavefront; the picture has two.
+    check(1000, 521, 1); // one wavefront again, because it has many rounds
+    // One wavefront would suffice for a pass of one sample, but the picture has two.
     settings.width = 1300, settings.height = 1100;
     on_gpu.set_settings(settings);
     on_gpu.render(3);
@@ -248,7 +248,7 @@ TEST_CASE("frames that split light after a large picture keep their bytes and th
     Hash128 hashes[2];
     for (const bool renders_before : {false, true}) {
         Session session(gpu, prepared, test::mixed_scene_camera(), settings);
-        if (renders_before) session.render(2); // takes all the paths that a picture may have
+        if (renders_before) session.render(2); // allows all paths that a picture can have
         const std::size_t before = gpu.allocated_bytes();
         session.render_frame(0, {});
         session.render_frame(1, {});

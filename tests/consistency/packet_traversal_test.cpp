@@ -1,5 +1,5 @@
-// Rays that share a stack get the hits that they would get alone, bit for bit: closest and any, with every switch and
-// with any of the packet's rays missing. A packet of one ray visits the nodes of that ray alone.
+// Rays that share a stack have the hits of single rays, bit for bit: closest and any, with every switch and with any
+// of the packet's rays missing. A packet of one ray visits the nodes of the single ray.
 
 #include "trace/packet_traversal.h"
 

@@ -1,6 +1,6 @@
-// The one-picture law for photon mapping: the same bytes for any number of threads, any split of the passes, all stages
-// over all subpaths or a few subpaths a thread, any number of them in flight, and any structure for photons. With
-// --device cuda the GPU renders, too.
+// The one-picture law for photon mapping: the bytes are the same for any number of threads, any split of the passes,
+// either schedule, any number of subpaths in flight, and any structure for photons. With --device cuda the GPU
+// renders, too.
 
 #include <doctest/doctest.h>
 
@@ -20,7 +20,7 @@ namespace {
 
 RenderSettings photon_settings(PhotonGather gather = PhotonGather::Final, uint32_t nearest = 0) {
     RenderSettings settings;
-    settings.width = 37; // odd on purpose: tiles do not fit
+    settings.width = 37; // not a multiple of a tile
     settings.height = 21;
     settings.samples = 4;
     settings.aovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
@@ -57,7 +57,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("pictures by crowded photons do not depend on threads, passes, schedules or the search structure") {
+TEST_CASE("pictures with dense photons do not depend on threads, passes, schedules or the search structure") {
     Queue queue = Queue::make_cpu();
     for (const Material& ball : {test::white(0.6f), test::of_roughness(MaterialKind::Dielectric, 0)}) {
         const Scene scene = test::room_with_ball(ball, test::white(0.6f), false);
@@ -109,7 +109,7 @@ TEST_CASE("a session that switches to photon mapping and back renders complete p
              {std::pair(IntegratorKind::PhotonMap, 2000u), std::pair(IntegratorKind::Path, 2000u),
               std::pair(IntegratorKind::PhotonMap, 500u), std::pair(IntegratorKind::PhotonMap, 4000u)}) {
             settings.integrator = integrator;
-            settings.photon_map.edit().photons = photons; // less memory, and more
+            settings.photon_map.edit().photons = photons; // with less memory, and with more
             test::check_goes_on(session, queue, scene, settings);
         }
     }

@@ -1,5 +1,5 @@
-// The one-picture law for pictures of a radiosity solution: the same bytes for any number of threads, any split of the
-// samples, all stages over all samples or a few a thread. With --device cuda the GPU renders, too.
+// The one-picture law for pictures of a radiosity solution: the bytes are the same for any number of threads, any
+// split of the samples and either schedule. With --device cuda the GPU renders, too.
 
 #include <doctest/doctest.h>
 
@@ -28,7 +28,7 @@ RadiosityDisplay look_at_mixed_scene(float patch_size, uint32_t rays = 32) {
 
 RenderSettings shown(const RadiosityDisplay& display) {
     RenderSettings settings;
-    settings.width = 37; // odd on purpose: tiles do not fit
+    settings.width = 37; // not a multiple of a tile
     settings.height = 21;
     settings.samples = 4;
     settings.aovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;

@@ -1,6 +1,5 @@
-// The one-picture law for trees of rays: cast, whitted and distributed give the same bytes for any number of threads,
-// any split of the samples, all stages over all trees or a few trees a thread, any number of them in flight. With
-// --device cuda the GPU joins in.
+// The one-picture law for ray trees: cast, whitted and distributed give the same bytes for any number of threads, any
+// split of the samples, either schedule, and any number of trees in flight. With --device cuda the GPU renders, too.
 
 #include <doctest/doctest.h>
 
@@ -18,7 +17,7 @@ constexpr IntegratorKind kTrees[] = {IntegratorKind::Cast, IntegratorKind::Whitt
 
 RenderSettings tree_settings(IntegratorKind integrator) {
     RenderSettings settings;
-    settings.width = 37; // odd on purpose: tiles do not fit
+    settings.width = 37; // not a multiple of a tile
     settings.height = 21;
     settings.samples = 4;
     settings.aovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
@@ -28,7 +27,7 @@ RenderSettings tree_settings(IntegratorKind integrator) {
     return settings;
 }
 
-/// The mixed scene with more lights than a vertex asks for at once.
+/// The mixed scene with more lights than a vertex samples at once.
 Scene tree_scene() {
     Scene scene = test::make_mixed_scene();
     for (int i = 0; i < 3; ++i) scene.lights.push_back(scene.lights[static_cast<std::size_t>(i)]);
@@ -69,7 +68,7 @@ TEST_CASE("a session that changes its integrator renders the pictures of new ses
     for (const IntegratorKind integrator : {IntegratorKind::Whitted, IntegratorKind::Distributed, IntegratorKind::Path,
                                             IntegratorKind::Cast, IntegratorKind::Whitted}) {
         settings.integrator = integrator;
-        settings.path.max_depth = settings.path.max_depth == 6 ? 3 : 6; // less memory, and more
+        settings.path.max_depth = settings.path.max_depth == 6 ? 3 : 6; // with less memory, and with more
         session.set_settings(settings);
         session.render(1);
         CHECK(test::render_hash(session.result()) ==

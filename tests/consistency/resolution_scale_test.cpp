@@ -39,7 +39,7 @@ Hash128 hash_of_traversal(Session& session, uint32_t frames, const Reconstructio
     return picture_hash(session.frame().picture());
 }
 
-/// Mean of the frames of a still camera, after the first ones, with too little noise to disturb edges.
+/// Returns the mean of a still camera's frames after the first ones, in which noise does not disturb edges.
 Image mean_of_still(Session& session, const ReconstructionSettings& settings) {
     constexpr uint32_t kFirst = 16, kCount = 48;
     session.cut();
@@ -77,7 +77,7 @@ Image doubled(const Image& small) {
     return large;
 }
 
-/// Mean of the differences' sizes where the reference changes from a pixel to the next: at edges and in textures.
+/// Returns the mean absolute difference where neighbouring pixels of the reference differ: at edges and in textures.
 double error_at_edges(const Image& a, const Image& reference) {
     REQUIRE(a.pixels.size() == reference.pixels.size());
     double sum = 0, count = 0;
@@ -108,13 +108,13 @@ TEST_CASE("frames at half the resolution have the same bytes on every device, in
     session.frame().display(ToneMap::Agx, 0);
     const Rgba8Image shown = session.frame().displayed();
     REQUIRE(shown.pixels.size() == std::size_t(4) * 95 * 63);
-    CHECK(shown.pixels[std::size_t(4) * 95 * 63 - 1] == 255); // the last alpha
+    CHECK(shown.pixels[std::size_t(4) * 95 * 63 - 1] == 255); // the last alpha channel
     Session fresh(cpu, prepared, mixed_scene_camera(), settings);
     CHECK(hash_of_traversal(fresh, 12, {}) == whole);
 
     RenderSettings wavefront = settings;
     wavefront.body = PathBody::Wavefront;
-    wavefront.batch = 1000; // several rounds begin paths
+    wavefront.batch = 1000; // paths begin in several rounds
     Session other(cpu, prepared, mixed_scene_camera(), wavefront);
     CHECK(hash_of_traversal(other, 12, scaled(0.5f)) == expected);
     if (cuda_requested()) {
@@ -138,6 +138,6 @@ TEST_CASE("at edges a frame upsampled from half the resolution is closer to the 
     const double plain = error_at_edges(doubled(mean_of_still(small, {})), reference);
     MESSAGE("mean error at edges at half the resolution ", led, ", enlarged by straight lines ", plain,
             ", at the whole ", whole);
-    CHECK(led < 0.95 * plain); // highlights of the gold sphere are edges too, and coarse
+    CHECK(led < 0.95 * plain); // highlights of the gold sphere are edges, too, but have the low resolution
     CHECK(led < 1.6 * whole);
 }

@@ -38,7 +38,7 @@ RenderSettings part_settings() {
     return settings;
 }
 
-/// Common state of the parts of a session.
+/// The state that the parts of a session share.
 struct Parts {
     DeviceScene scene;
     PictureRenderer pictures;
@@ -47,7 +47,7 @@ struct Parts {
     }
 };
 
-/// Ends what goes on once it has heard `most` steps of it.
+/// Stops the work after `most` of its steps.
 struct EndingSink : Sink {
     explicit EndingSink(int steps) : most(steps) {}
     void progress(const Progress& now) override {
@@ -88,7 +88,7 @@ TEST_CASE("frames, the meter and post steps work without a session") {
     CHECK(picture_hash(denoised) != picture_hash(picture));
     CHECK(denoised.channels == 4);
     for (std::size_t i = 3; i < denoised.pixels.size(); i += 4) {
-        REQUIRE(denoised.pixels[i] == picture.pixels[i]); // alpha is the film's
+        REQUIRE(denoised.pixels[i] == picture.pixels[i]); // the alpha is that of the film
     }
 }
 
@@ -110,7 +110,8 @@ TEST_CASE("post steps refuse a film of a window") {
 
 namespace {
 
-/// Returns how many threads do a queue's work at once. Each waits a while for `wanted` of them and one more.
+/// Returns how many threads run a queue's work at once. Each waits for `wanted` threads and one more, for a limited
+/// time.
 int most_at_once(const Queue& queue, int wanted) {
     const UseThreads use(queue.threads());
     std::atomic<int> now{0}, most{0};
@@ -177,7 +178,7 @@ TEST_CASE("a sink stops the preparation of a picture between its steps") {
 
 TEST_CASE("a frame that a sink stops is discarded, and the next one begins a sequence") {
     const MixedWorld world;
-    Queue queue = Queue::make_cpu(); // a GPU's frames are not broken off
+    Queue queue = Queue::make_cpu(); // frames on a GPU are not interrupted
     RenderSettings settings = part_settings();
     Session session(queue, world.prepared, test::mixed_scene_camera(), settings);
     Session fresh(queue, world.prepared, test::mixed_scene_camera(), settings);

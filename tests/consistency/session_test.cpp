@@ -34,7 +34,7 @@ Camera camera_from(Vec3 eye) {
 
 constexpr uint32_t kAllAovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
 
-/// Two scenes, and other settings of a session.
+/// Two scenes, and the state of a session.
 struct World {
     std::array<Scene, 2> scenes = {test::make_mixed_scene(), test::make_furnace_scene(0.5f)};
     std::array<PreparedScene, 2> prepared;
@@ -109,7 +109,7 @@ TEST_CASE("a session after changes of scene, camera, size and settings has the b
             if (random.below(4) == 0) session.meter(ToneMap::Agx);
             if (random.below(4) == 0) session.stats();
         }
-        session.render(1 + random.below(3)); // more, where nothing has changed
+        session.render(1 + random.below(3)); // renders more samples if nothing has changed
         settings.samples = session.history().samples;
         const RenderResult fresh = render_picture(cpu, world.prepared[scene], world.cameras[camera], settings);
         const RenderResult lived = session.result();
@@ -197,7 +197,7 @@ TEST_CASE("a session that updates parts of a scene renders the changed scene and
     check_change(kPartInstances | kPartTrees | kPartLights, 1 << 20);
     for (Light& light : after.lights) light.intensity = 2.0f * light.intensity;
     check_change(kPartLights, 1 << 18);
-    CHECK(session.history().cuts == 0); // one sequence still
+    CHECK(session.history().cuts == 0); // it is still one sequence
 }
 
 TEST_CASE("an integrator independent of the path tracer renders through the same interface") {
@@ -274,7 +274,7 @@ void check_early_end(Queue& queue, const PreparedScene& prepared, RenderSettings
     Session four(queue, prepared, test::mixed_scene_camera(), settings);
     four.render(4);
     CHECK(picture_hash(session.picture()) == picture_hash(four.picture()));
-    // An exception of the callback leaves whole samples too.
+    // An exception of the callback leaves whole samples, too.
     CHECK_THROWS_AS(
         session.render(4, ProgressSink([](const Progress&) -> bool { throw Error(ErrorCode::Interrupted, ""); })),
         Error);

@@ -1,4 +1,4 @@
-// An open shutter. Pictures with motion have the same bytes for any number of threads, any schedule, any tracer. Each
+// Open shutters. Pictures with motion have the same bytes for any number of threads, schedule and tracer. Each
 // ray has the hit that it has in the still scene of its time. Static parts do not change, to the bit. With --device
 // cuda the GPU renders, too.
 
@@ -33,7 +33,7 @@ namespace {
 
 RenderSettings blurred_settings(IntegratorKind integrator) {
     RenderSettings settings = test::layered_settings();
-    settings.width = 37; // odd on purpose: tiles do not fit
+    settings.width = 37; // not a multiple of a tile
     settings.height = 21;
     settings.samples = 4;
     settings.integrator = integrator;
@@ -73,7 +73,7 @@ TEST_CASE("pictures with motion blur do not depend on threads, schedules, paths 
             settings.pass_samples = 3;
         }
         settings.body = PathBody::Wavefront;
-        for (const uint32_t batch : {333u, 1u << 20}) { // less than a picture; all
+        for (const uint32_t batch : {333u, 1u << 20}) { // less than a picture, and all samples
             settings.batch = batch;
             CHECK(picture_of(queue, moving.prepared(), camera, settings) == reference);
             if (!test::cuda_requested()) continue;
@@ -83,7 +83,7 @@ TEST_CASE("pictures with motion blur do not depend on threads, schedules, paths 
     }
 }
 
-TEST_CASE("blur by camera motion alone is the same in the wavefront and in the loop, including depth") {
+TEST_CASE("blur from camera motion is the same in the wavefront and in the loop, including depth") {
     Messages messages;
     MovingScene still(make_rushing_scene(false), 0.3, {}, messages, kHalfASecond);
     REQUIRE(still.prepared().motions == nullptr);
@@ -162,11 +162,11 @@ TEST_CASE("a ray in a moving scene hits what it hits in the still scene at its t
             const bool moves =
                 moving.prepared().motions->of_instance[std::min<uint32_t>(now[i].instance, 8)] != kNoMotion;
             if (now[i].instance != then[i].instance) {
-                ++wrong; // grazes an edge
+                ++wrong; // the ray grazes an edge
             } else if (now[i].instance != kNoHit && moves) {
                 ++on_moving;
-                // Corners are at most 1/2048 of the size off (math/motion_keys.h), 2 m here; on a slope a ray feels
-                // more.
+                // Corners are off by at most 1/2048 of the size (math/motion_keys.h), here 2 m. On a slope the
+                // distance differs more.
                 worst.push_back(std::fabs(now[i].t - then[i].t));
             } else if (now[i].instance != kNoHit) {
                 ++others;
@@ -186,7 +186,8 @@ TEST_CASE("each sample of a blurred picture equals the still scene at the sample
     Messages messages;
     const Scene rest = make_rushing_scene();
     MovingScene moving(rest, 0.3, {}, messages, kHalfASecond);
-    RenderSettings settings = blurred_settings(IntegratorKind::Cast); // which draws only pixel position, lens and time
+    RenderSettings settings =
+        blurred_settings(IntegratorKind::Cast); // this integrator samples only pixel position, lens and time
     settings.width = 16, settings.height = 12, settings.samples = 1;
     settings.aovs = kAovDepth;
     Camera camera = test::mixed_scene_camera();
@@ -216,7 +217,7 @@ TEST_CASE("each sample of a blurred picture equals the still scene at the sample
         wrong += same_depth && same_light ? 0 : 1;
     }
     CHECK(moved > 20);
-    CHECK(wrong <= 3); // at edges of objects and shadows
+    CHECK(wrong <= 3); // only at edges of objects and shadows
 }
 
 TEST_CASE("an open shutter changes nothing if nothing moves") {
@@ -238,7 +239,7 @@ TEST_CASE("frames with an open shutter do not depend on earlier frames") {
     const RenderSettings settings = blurred_settings(IntegratorKind::Path);
     MovingScene moving(make_rushing_scene(), 0, {}, messages, kHalfASecond);
     Session session(queue, moving.prepared(), rushing_camera(), settings);
-    for (const double time_s : {0.2, 0.9, 5.0, 0.3}) { // at 5 s all stand still
+    for (const double time_s : {0.2, 0.9, 5.0, 0.3}) { // at 5 s all objects are still
         CAPTURE(time_s);
         session.update_scene(moving.prepared(), moving.set_time(time_s, messages));
         CHECK((moving.prepared().motions == nullptr) == (time_s > 2));

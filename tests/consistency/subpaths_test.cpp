@@ -1,6 +1,6 @@
-// The one-picture law for light subpaths: light and bidirectional give the same bytes for any number of threads,
-// any split of the samples, all stages over all subpaths or a few subpaths a thread, any number of them in flight. With
-// --device cuda the GPU joins in.
+// The one-picture law for light subpaths: light and bidirectional give the same bytes for any number of threads, any
+// split of the samples, either schedule, and any number of subpaths in flight. With --device cuda the GPU renders,
+// too.
 
 #include <doctest/doctest.h>
 
@@ -18,7 +18,7 @@ constexpr IntegratorKind kSubpaths[] = {IntegratorKind::Light, IntegratorKind::B
 
 RenderSettings subpath_settings(IntegratorKind integrator) {
     RenderSettings settings;
-    settings.width = 37; // odd on purpose: tiles do not fit
+    settings.width = 37; // not a multiple of a tile
     settings.height = 21;
     settings.samples = 4;
     settings.aovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
@@ -74,7 +74,7 @@ TEST_CASE("a session that switches to light subpaths and back, stops and resumes
     for (const IntegratorKind integrator :
          {IntegratorKind::Light, IntegratorKind::Bidirectional, IntegratorKind::Path, IntegratorKind::Bidirectional}) {
         settings.integrator = integrator;
-        settings.path.max_depth = settings.path.max_depth == 6 ? 3 : 6; // less memory, and more
+        settings.path.max_depth = settings.path.max_depth == 6 ? 3 : 6; // with less memory, and with more
         test::check_goes_on(session, queue, scene, settings);
     }
 }

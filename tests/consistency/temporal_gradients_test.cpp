@@ -18,7 +18,7 @@ using namespace pertev::test;
 
 namespace {
 
-/// A scene that a point light alone shines on.
+/// A scene with only a point light.
 Scene emitter_scene() {
     Scene scene = make_mixed_scene();
     scene.environment.reset();
@@ -31,9 +31,10 @@ Scene emitter_scene() {
 }
 
 constexpr uint32_t kStill = 16, kDimming = 6;
-constexpr float kStep = 0.8f; // factor of the lamp's light from frame to frame
+constexpr float kStep = 0.8f; // factor of the emitter's light from frame to frame
 
-/// Frames under a lamp that burns, then dims by kStep each frame. The scene is said to change before all of them.
+/// Renders frames under an emitter that is constant, then dims by kStep per frame. The scene is updated before each
+/// frame.
 Image last_frame(Queue& queue, bool follows, bool dims, Hash128* before_dimming = nullptr) {
     Messages messages;
     Scene scene = emitter_scene();
@@ -61,14 +62,14 @@ TEST_CASE("frames follow a dimming emitter from its first frame on") {
     const double still = mean_of(last_frame(queue, true, false));
     const double expected = still * std::pow(static_cast<double>(kStep), kDimming);
     CHECK(mean_of(last_frame(queue, true, true)) == doctest::Approx(expected).epsilon(0.05));
-    CHECK(mean_of(last_frame(queue, false, true)) > 1.2 * expected); // the change is large enough to follow
+    CHECK(mean_of(last_frame(queue, false, true)) > 1.2 * expected); // the change is large enough to be detected
 }
 
 namespace {
 
 constexpr Vec3 kEmitterAtLeft = {-3, 2, 1}, kEmitterAtRight = {3, 2, 1};
 
-/// Two lamps, one over each half of what the camera sees; the left one times `left`.
+/// Two emitters, one over each half of the view. The left one is scaled by `left`.
 Scene scene_of_two(float left) {
     Scene scene = emitter_scene();
     scene.lights.resize(2, scene.lights[0]);
@@ -78,7 +79,7 @@ Scene scene_of_two(float left) {
     return scene;
 }
 
-/// Light of the left and of the right half of a picture.
+/// Returns the light of the left and of the right half of a picture.
 struct Halves {
     double left = 0, right = 0;
 };
@@ -92,8 +93,7 @@ Halves halves_of(const Image& picture) {
     return halves;
 }
 
-/// Halves of the last frame of a sequence in which the left lamp's light changes by `step` per frame and the right
-/// one's does not.
+/// Returns both halves of the last frame of a sequence in which the left emitter's light changes by `step` per frame.
 Halves halves_of_two(Queue& queue, bool follows, float step) {
     Messages messages;
     Scene scene = scene_of_two(1);
@@ -131,12 +131,12 @@ TEST_CASE("with two emitters, frames follow the loss of the dimming one and part
         const Halves followed = halves_of_two(queue, true, step), late = halves_of_two(queue, false, step);
         MESSAGE("left ", expected.left, ": ", followed.left, ", late ", late.left, "; right ", expected.right, ": ",
                 followed.right, ", late ", late.right);
-        // Fraction of the way from late to right: the lamps' shares change, so the same numbers occasionally select
-        // the other one.
+        // The fraction of the way from delayed to correct. The emitters' shares change, so the same numbers
+        // occasionally select the other one.
         const double followed_share = (followed.left - late.left) / (expected.left - late.left);
         CHECK(followed_share > (dims ? 0.7 : 0.4));
         CHECK(followed_share < 1.1);
-        // Pixels lit by the unchanged lamp.
+        // Pixels that the unchanged emitter lights.
         CHECK(followed.right > (dims ? 0.85 * expected.right : late.right));
         CHECK(followed.right < 1.05 * expected.right);
     }
@@ -144,7 +144,7 @@ TEST_CASE("with two emitters, frames follow the loss of the dimming one and part
 
 namespace {
 
-/// Six frames under a lamp that dims with each; `look` is called with the session after each of them.
+/// Renders six frames under an emitter that dims with each, and calls `look` with the session after each.
 template <class Look>
 Hash128 dimming_frames(Queue& queue, uint32_t width, uint32_t height, const ReconstructionSettings& frames,
                        const Look& look) {
@@ -186,7 +186,7 @@ TEST_CASE("temporal gradients reuse the reconstruction's memory") {
         return dry.allocated_bytes();
     };
     CHECK(bytes(1920, 1080) == std::size_t(248) * 1920 * 1080);
-    // For one pixel: histories, then the small pictures' 7 and 5; squares, then another 7.
+    // A pixel has its histories, 7 and 5 values of the small pictures, the squares, and another 7 values.
     CHECK(bytes(1, 1) == (10 + 7 + 5 + 1 + 7) * sizeof(Float4));
 
     const auto held_by_frames = [&](bool follows) {
@@ -226,8 +226,8 @@ TEST_CASE("frames of a dimming emitter have the same bytes on every device") {
 }
 
 TEST_CASE("a mean follows light by its ratio and never rises by more than the difference") {
-    CHECK(followed(4, 2, 1) == 2);    // half as bright
-    CHECK(followed(1, 2, 3) == 1.5f); // darker than its surroundings
+    CHECK(followed(4, 2, 1) == 2);    // light is half as bright
+    CHECK(followed(1, 2, 3) == 1.5f); // is darker than its surroundings
     CHECK(followed(4, 2, 3) == 5);    // brighter
     CHECK(followed(0.5f, 0, 2) == 2.5f);
     CHECK(followed(0.5f, 0, 0) == 0.5f);
@@ -245,13 +245,13 @@ TEST_CASE("a temporal gradient is taken from a nearby pixel of the same object a
     is[1] = {4, 4, 4, 3};
     guide[1] = pack({{0, 0, 1}, 1, 2, 8});
     const TemporalGradientsView change = {guide.data(), was.data(), is.data(), kWidth, kHeight, 0.25f, 0.25f};
-    const LightStep step = light_step(change, {4, 4}, {0, 0, 1}, 7); // between all of the left four
+    const LightStep step = light_step(change, {4, 4}, {0, 0, 1}, 7); // between all four pixels on the left
     CHECK(step.was.r == doctest::Approx(2));
     CHECK(step.is.r == doctest::Approx(1));
     CHECK(step.gloss_is == doctest::Approx(3));
     CHECK(light_step(change, {4, 4}, {0, 0, 1}, 8).is.r == doctest::Approx(4));
     CHECK(light_step(change, {4, 4}, {0, 0, 1}, 9).is.r == 0); // another object
-    CHECK(light_step(change, {4, 4}, {1, 0, 0}, 7).is.r == 0); // turned away
+    CHECK(light_step(change, {4, 4}, {1, 0, 0}, 7).is.r == 0); // the normal faces away
     CHECK(light_step(change, {-40, 4}, {0, 0, 1}, 7).is.r == 0);
     CHECK(light_step(change, {kInfinity, 1e30f}, {0, 0, 1}, 7).was.r == 0);
 }

@@ -1,5 +1,5 @@
-// Many rays at once on the host, in flight or in packets, have the hits of each alone, bit for bit: degenerate
-// meshes and rays in any mixture, coherent rays, instances.
+// Many rays that the host traces at once, in flight or in packets, have the hits of single rays, bit for bit:
+// degenerate meshes and rays in any mixture, coherent rays, instances.
 
 #include <doctest/doctest.h>
 
@@ -33,7 +33,7 @@ void check_hits(const std::vector<Ray>& rays, const std::vector<Hit>& expected, 
     CHECK(wrong == 0);
 }
 
-/// Checks packets of eight lanes and, where the processor has them, of sixteen.
+/// Tests packets of eight lanes and, if the processor has them, of sixteen.
 template <class Accept>
 void check_many(const HostTrees& scene, RayOrder order, const std::vector<Ray>& rays, const std::vector<Hit>& expected,
                 const Accept& accept) {
@@ -54,7 +54,8 @@ void check_many(const HostTrees& scene, RayOrder order, const std::vector<Ray>& 
 #endif
 }
 
-/// Groups of rays around each of `rays`, from one point or in one direction; axis-parallel ones stay so.
+/// Returns groups of rays around each of `rays`, from one point or in one direction. Axis-parallel rays stay
+/// axis-parallel.
 std::vector<Ray> groups_around(const std::vector<Ray>& rays, uint32_t seed) {
     Random random(seed);
     std::vector<Ray> groups;

@@ -1,6 +1,6 @@
-// The hits do not depend on the distribution of rays to threads: one ray a thread, and in CUDA, with --device cuda,
-// persistent threads with a pool, dynamic fetch, packets of a warp. Counts of live lanes add up to the rays' own
-// visits.
+// The hits do not depend on the distribution of rays to threads: one ray per thread and, with --device cuda,
+// persistent threads with a pool, dynamic fetch, and packets of a warp. Counts of live lanes add up to the visits of
+// the rays.
 
 #include <doctest/doctest.h>
 
@@ -63,7 +63,7 @@ struct BatchOnDevice {
     BatchOnDevice(Queue& queue, const std::vector<Ray>& values)
         : rays(queue, std::span<const Ray>(values), "rays"), hits(queue, values.size(), "hits"),
           pool(queue, 1, "pool") {}
-    /// The batch for one launch. It resets the pool.
+    /// Returns the batch of one launch. It resets the pool.
     TraversalBatch view() {
         pool.zero();
         return {rays.data(), hits.data(), static_cast<uint32_t>(rays.size()), pool.data()};
@@ -166,7 +166,7 @@ TEST_CASE("every distribution of rays to threads finds each ray's hit over insta
         CHECK(count_wrong(batch.hits.download(), expected, s.rays, launch.any) == 0);
         ++launches;
     }
-    // Nine traversals, closest and any; on a GPU from a pool too, and three by dynamic fetch.
+    // Nine traversals for closest and any hits; on a GPU also from a pool, and three with dynamic fetch.
     CHECK(launches == (queue.is_cuda() ? 42 : 18));
 }
 
@@ -197,7 +197,7 @@ TEST_CASE("the active lanes add up to the visits of the rays") {
         CHECK(sums.node_steps <= nodes);
         CHECK(sums.node_steps * warp >= nodes);
         CHECK(sums.triangle_steps * warp >= triangles);
-        CHECK(sums.node_requests == 4 * sums.node_steps); // 64 bytes by 16
+        CHECK(sums.node_requests == 4 * sums.node_steps); // 64 bytes in steps of 16
         CHECK(sums.triangle_requests == 3 * sums.triangle_steps);
         CHECK(sums.node_sectors >= sums.node_requests);
         CHECK(sums.node_sectors <= 4 * sums.node_lanes);

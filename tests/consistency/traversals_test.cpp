@@ -1,5 +1,5 @@
-// The hit is a function of the scene, not of the traversal: trees of every build setting give the hits of brute
-// force, bit for bit, also where many triangles lie at one t, and for rays along the planes of boxes.
+// The hit is a function of the scene, not of the traversal: trees of every build setting give the hits of brute force,
+// bit for bit. Cases include many triangles at the same t and rays along the planes of boxes.
 
 #include <doctest/doctest.h>
 
@@ -73,7 +73,7 @@ TEST_CASE("the TLAS loses no rays at the edges of instances with tight boxes") {
     const BvhView mesh = view_of(bvh);
     Random random(31);
     std::vector<PlacedBvh> placed;
-    for (uint32_t i = 0; i < 30; ++i) { // no rotation: the quad's edges are the world box's
+    for (uint32_t i = 0; i < 30; ++i) { // without rotation the quad's edges are those of the world box
         const Transform place = compose(make_translation(random.point(-1000, 1000)), make_scale(random.point(0.3f, 3)));
         placed.push_back({place, bvh.bounds, 0, i});
     }

@@ -1,5 +1,5 @@
-// Two queues in one process, each with its own scene, do not affect each other's picture. With --device cuda these
-// are two GPUs, or one twice; otherwise the CPU twice.
+// Two queues in one process, each with its own scene, do not affect each other's picture. With --device cuda these are
+// two GPUs or the same one twice, otherwise two queues of the CPU.
 
 #include <thread>
 
@@ -30,13 +30,13 @@ struct Subject {
     uint32_t width, height;
 };
 
-/// Two scenes of different size, so that no buffer of one could serve for the other.
+/// Two scenes of different size, so that the buffers of one do not fit the other.
 const Subject& subject(int which) {
     static const Subject subjects[2] = {{test::make_mixed_scene(), 61, 35}, {test::make_furnace_scene(0.5f), 32, 40}};
     return subjects[which];
 }
 
-/// A render that is taken further sample by sample.
+/// A render that continues sample by sample.
 class Render {
 public:
     Render(Queue& queue, const Subject& subject, IntegratorSettings settings = {})
@@ -119,8 +119,8 @@ TEST_CASE("a picture whose samples are split between two queues equals that of o
         CHECK(first.hash() != alone);
         first.add(second);
         CHECK(first.hash() == alone);
-        // The order of the samples does not matter: photons' radius and the accuracy of records depend on a sample's
-        // number alone.
+        // The order of samples does not matter, because the radius of photons and the accuracy of records depend only
+        // on a sample's number.
         Render late(first_queue, subject(0), settings), early(second_queue, subject(0), settings);
         for (uint32_t sample = kSamples; sample-- > 0;) (sample >= 2 ? late : early).add_sample(sample);
         late.add(early);
@@ -136,7 +136,7 @@ TEST_CASE("two queues used from two threads at once give the pictures of separat
         render.add_all();
         hashes[which] = render.hash();
     };
-    subject(0); // made before the threads begin
+    subject(0); // the scenes are made before the threads begin
     std::thread first(render_on_its_queue, 0), second(render_on_its_queue, 1);
     first.join();
     second.join();

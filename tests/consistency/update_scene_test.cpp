@@ -1,5 +1,5 @@
-// An updated scene gives the picture of a newly prepared one with the same centre, with every structure, and
-// rebuilds only affected trees.
+// An updated scene has the picture of a newly prepared one with the same centre, for every structure. Only affected
+// trees are rebuilt.
 
 #include "render/update_scene.h"
 
@@ -26,7 +26,7 @@ void twist(Mesh& mesh) {
     for (Vec3& p : mesh.positions) p = {p.x + 0.3f * p.y * p.y, 1.1f * p.y, p.z - 0.2f * p.x};
 }
 
-/// A step of the mixed scene: two spheres share mesh 0, which has its own tree; mesh 3 is baked.
+/// One change of the mixed scene. Two spheres share mesh 0, which has its own tree; mesh 3 is baked.
 struct Step {
     const char* what;
     void (*change)(Scene&);
@@ -99,7 +99,7 @@ TEST_CASE("an updated scene renders like a freshly prepared one with every struc
         for (const TraversalKind traversal : kValuesOf<TraversalKind>) {
             const Combination c = {.structure = structure, .traversal = traversal};
             if (why_no_tracer(c, queue.is_cuda())) continue;
-            // Every traversal once by the default's tree, and every structure once.
+            // Every traversal with the default's tree, and every structure, once each.
             const bool first_traversal = traversal == TraversalKind::WhileWhile || traversal == TraversalKind::Kd ||
                                          traversal == TraversalKind::Octree;
             if (structure != structure_of(kDefaultBuild) && structure != StructureKind::Reinsertion && !first_traversal)
@@ -156,7 +156,7 @@ TEST_CASE("a change rebuilds only the trees of changed meshes") {
         SceneUpdate update;
         update.moved_instances = {1};
         CHECK(same(update_scene(before, scene, update, messages)) == all);
-        update.deformed_meshes = {0}; // whose tree is the first after the baked one, or the second
+        update.deformed_meshes = {0}; // the mesh's tree is the first or the second after the baked one
         std::vector<bool> found = same(update_scene(before, scene, update, messages));
         CHECK(std::ranges::count(found, false) == 1);
         CHECK(found[0]);
@@ -164,7 +164,7 @@ TEST_CASE("a change rebuilds only the trees of changed meshes") {
         found = same(update_scene(before, scene, update, messages));
         CHECK(std::ranges::count(found, false) == 1);
         CHECK(!found[0]);
-        // Data derived from the trees is shared too.
+        // Data derived from the trees is shared, too.
         const auto nodes_of = [&](const PreparedScene& of) {
             const auto built = of.structures->get(options.tracers->bounce);
             return std::get<HostTrees>(built->trees()).meshes[0].nodes;

@@ -1,5 +1,5 @@
-// Wide and compressed trees give the hits of brute force, bit for bit, with every traversal, with and without
-// redundant traversal avoidance, children in either order, for all meshes and through instances.
+// Wide and compressed trees give the hits of brute force, bit for bit: by every traversal, with and without redundant
+// traversal avoidance, with children in either order, for all meshes and instances.
 
 #include <doctest/doctest.h>
 
@@ -65,7 +65,7 @@ void check_tree(const Tree& tree, const Expected& expected) {
 TEST_CASE("traversals of wide and compressed trees match brute force bit for bit") {
     for (const StressMesh& c : stress_meshes(static_cast<uint32_t>(effort(3000, 1'000'000)))) {
         CAPTURE(c.name);
-        const bool million = c.triangles.size() > 100'000; // brute force takes its time
+        const bool million = c.triangles.size() > 100'000; // brute force is slow
         const std::vector<Ray> rays = stress_rays(million ? 40 : static_cast<uint32_t>(effort(1000, 10'000)), c, 91);
         const Expected expected = {rays, hits_by_brute_force(c.triangles, rays, AcceptAll{}),
                                    hits_by_brute_force(c.triangles, rays, AcceptSome{})};
@@ -80,8 +80,8 @@ TEST_CASE("traversals of wide and compressed trees match brute force bit for bit
 
 namespace {
 
-/// CompressedTraversal as a ray of a warp sees it whose other lanes have no triangles: its own are put off, at random
-/// times or until it cannot go on without them.
+/// CompressedTraversal in a warp whose other lanes have no triangles. The ray's own triangles are postponed, for
+/// random times or until it cannot continue without them.
 template <TraversalOptions kOptions, bool kAlways>
 struct PostponingTraversal {
     using Traversal = CompressedTraversal<kOptions>;
@@ -163,7 +163,7 @@ struct PlacedMeshes {
             const Vec3 axis = random.direction();
             const float w = random.within(-1, 1), s = sqrt(1 - w * w);
             Transform place = make_rotation(s * axis.x, s * axis.y, s * axis.z, w);
-            if (i % 5 == 0) place = Transform{}; // identity: exact, and ties with its neighbours
+            if (i % 5 == 0) place = Transform{}; // the identity is exact, and has ties with its neighbours
             if (i % 3 == 0) place = compose(place, make_scale({0.5f, random.within(0.01f, 4), -1}));
             if (i % 7 == 0) place = compose(place, make_scale({1e4f, 1e4f, 1e4f}));
             place = compose(make_translation(i % 5 == 0 ? Vec3{} : random.point(-3, 3)), place);
@@ -238,7 +238,7 @@ TEST_CASE("in the compressed traversal RTA at pops saves more nodes than RTA at 
 
 namespace {
 
-/// Many small spheres in a large one, so that each ray hits something.
+/// Many small spheres inside a large one, so that each ray hits a surface.
 std::vector<BvhTriangle> things_in_a_room() {
     std::vector<BvhTriangle> triangles = triangles_of(make_sphere(1, {}, 10));
     Random random(6);
@@ -251,7 +251,7 @@ std::vector<BvhTriangle> things_in_a_room() {
     return triangles;
 }
 
-/// Nodes of searches for any hit of rays that end far outside of all, over those of the same rays without an end.
+/// Returns the visited nodes of any-hit rays that end far outside the scene, relative to the same rays without an end.
 template <class Traversal>
 double nodes_saved_by_no_end(const typename Traversal::Tree& tree) {
     Random random(7);

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Renders Bitterli's Cornell box from his scene file and compares with his reference picture.
+"""Renders Bitterli's Cornell box from his scene file and compares it with his reference picture.
 
 Errors are relMSE over the best 98 % of blocks of pixels (`pertev compare --blocks`) and the channel means over the same
 blocks. The render has the reference's size, filter and depth, so the mean over a block is a mean over the same light in
-both: blocks change nothing but the noise. The samples of a pixel are scrambled Sobol points, so with their number the
-error falls faster than 0.2 / samples of a block, which holds at few. Measured: relMSE 1.9e-3 for blocks of 4 and
+both: blocks change only the noise. The samples of a pixel are scrambled Sobol points, so the error falls faster than
+0.2 / samples of a block, which holds for few samples. Measured: relMSE 1.9e-3 for blocks of 4 and
 2.8e-5 for blocks of 32 at 4 samples a pixel, 1.32e-3 for pixels and 8.5e-5 for blocks of 4 at 64. Bounds on relMSE are
-1.3 to 1.8 times that; for 4096 samples they are the house's goal, 0.001, and 3e-5 over blocks of 4. The reference's own
-noise is small beside them, 1.6e-5 a pixel (from its second differences). Leaving out the worst 2 %, bright outliers as
-a rule, darkens the means: by 0.08 % in the noisiest setting, where 0.2 % is asked of them as everywhere.
+1.3 to 1.8 times that; for 4096 samples they are 0.001, and 3e-5 over blocks of 4. The reference's own noise is small
+in comparison, 1.6e-5 per pixel (from its second differences). Leaving out the worst 2 %, mostly bright outliers,
+darkens the means: by 0.08 % in the noisiest setting. The limit is always 0.2 %.
 """
 
 import pathlib
@@ -20,7 +20,7 @@ from mitsuba_to_gltf import convert  # noqa: E402
 from reference_job import ReferenceJob  # noqa: E402
 
 FOLDER = pathlib.Path("bitterli/cornell-box")
-# Samples a pixel, and for each side of a block relMSE at most.
+# Samples per pixel, and the largest relMSE for each size of a block.
 SETTINGS = {
     "ci": (4, {4: 2.5e-3, 32: 5e-5}),
     "long": (64, {1: 2e-3, 4: 1.3e-4}),

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Renders Bitterli's water caustic by photons from his scene file and compares with his reference picture.
+"""Renders Bitterli's water caustic by photon mapping from his scene file and compares it with his reference picture.
 
-All of the light under water comes through its waves, and the camera looks in through a face of it: photons alone find
-that. Errors are relMSE over the best 98 % of blocks of pixels (`pertev compare --blocks`), and the channel means over
-the same blocks: what photons blur and a pass has of noise is finer than a block of 64. Light within the water that is
-not counted by its refractive index, 1.8, would be 3.2 times as bright.
+All light under water comes through its waves, and the camera looks in through one of its faces, so only photons find
 
-With --long, and on a GPU, `path` renders for as long as photons took, and both errors are printed: nothing is held to
-them.
+it. Errors are relMSE over the best 98 % of blocks of pixels (`pertev compare --blocks`), and the channel means over
+the same blocks: blur and noise are finer than a block of 64. Without scaling by the refractive index of 1.8, light in
+the water would be 3.2 times as bright.
+
+With --long, and on a GPU, `path` renders for the same time, and both errors are printed without a limit.
 """
 
 import json
@@ -26,10 +26,10 @@ SETTINGS = {
     "long": (4, 262144, "final", {8: 9e-3, 64: 7e-4}),
     "cuda": (64, 1048576, "final", {8: 9e-3, 64: 7e-4}),
 }
-PATH_BLOCK = 4  # pixels along a side, over whose means path and photons are set side by side
+PATH_BLOCK = 4  # pixels per side of the blocks whose means compare path and photons
 MEAN_ERROR = 0.04  # per channel; the blur of the edge of each caustic and corner darkens
 
-# The reference is not of the file's own depth and lamp. By 7 scatterings all three channels of walls above the water and
+# The reference has another depth and light than the file. By 7 scatterings all three channels of walls above the water and
 # below are one share of it, 0.934 (medians of blocks); by 8, which is Mitsuba's maxDepth of 9, they are 0.98, 0.97 and
 # 0.96. Tungsten, which made it, counts the emitter's edge in its max_bounces of 8. That share is the lamp's: its own
 # pixels add up to 1.066 times what the file's radiance over its 0.542 pixels does, in green and in blue.
@@ -38,7 +38,7 @@ LAMP = 1.066
 
 
 def brightened(text):
-    """The glTF with the reference's lamp."""
+    """Returns the glTF with the reference's light."""
     scene = json.loads(text)
     for material in scene["materials"]:
         strength = material.get("extensions", {}).get("KHR_materials_emissive_strength")
@@ -48,7 +48,7 @@ def brightened(text):
 
 
 def compare_with_path(job, render, picture, reference, photon_seconds):
-    """Prints relMSE of photons, of `path` after as many seconds, and their ratio."""
+    """Prints the relMSE of photons, of `path` after the same time, and their ratio."""
     other = picture.with_name("path.exr")
     path = job.run("done", *render(other), "--integrator", "path", "--spp", 65536, "--time-limit", photon_seconds)
     print(f"       photon_map {photon_seconds:.1f} s, path {path['seconds']:.1f} s ({path['samples']} samples)")

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Renders McGuire's Cornell box, whose lamp hangs 2 cm under the ceiling, and compares its mean with Mitsuba's.
+"""Renders McGuire's Cornell box, whose emitter is 2 cm under the ceiling, and compares its mean with Mitsuba's.
 
-Mitsuba 3.9 has a red mean of 0.1666 for the view that a scene without a camera gets. A lamp that shines from its back as
-well lights the ceiling from there: 14 % more, found by few paths.
+Mitsuba 3.9 has a red mean of 0.1666 for the view that a scene without a camera gets. An emitter that also emits from
+its back lights the ceiling: 14 % more light, which few paths find.
 """
 
 import pathlib

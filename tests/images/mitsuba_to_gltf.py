@@ -1,13 +1,13 @@
 """Turns the part of Mitsuba's scene formats (3 and 0.6) that Bitterli's Cornell box and water caustic use into a glTF:
 rectangles, cubes and binary PLY files of triangles with a matrix, diffuse materials and smooth glass, one-sided area
-lights, one perspective camera. Anything else is refused, so that no picture is compared with one of another scene.
+lights, one perspective camera. Everything else is refused, so that no picture is compared with one of another scene.
 
 Source: Mitsuba's plugin reference (rectangle, cube, ply, diffuse, twosided, dielectric, area, perspective).
-The one thing to know: an area light of Mitsuba emits from its front alone, as a glTF material that is not double sided
-does here. A diffuse material of Mitsuba that is not two-sided is black from behind; here it is not, which no picture of
-a scene shows whose surfaces are closed or look inwards.
+An area light of Mitsuba emits only from its front, like a glTF material that is not double sided here. A diffuse
+material of Mitsuba that is not two-sided is black from behind, and here it is not. Pictures of closed or inward-facing
+surfaces do not show the difference.
 
-As a program it writes the glTF to the standard output: mitsuba_to_gltf.py SCENE.xml
+The program writes the glTF to the standard output: mitsuba_to_gltf.py SCENE.xml
 """
 
 import base64
@@ -25,7 +25,7 @@ CUBE = [[(-1, -1, -1), (-1, 1, -1), (1, 1, -1), (1, -1, -1)], [(-1, -1, 1), (1, 
 
 
 def only(parent, tag, kind=None):
-    """The one child of that tag, which must be of that type."""
+    """Returns the only child with that tag, which must have that type."""
     children = parent.findall(tag)
     if len(children) != 1 or (kind and children[0].get("type") != kind):
         raise ValueError(f"<{parent.tag} id={parent.get('id')}> needs one <{tag} type={kind}>")
@@ -33,7 +33,7 @@ def only(parent, tag, kind=None):
 
 
 def matrix_of(element):
-    """Rows of the 4x4 matrix of <transform name="to_world">."""
+    """Returns the rows of the 4x4 matrix of <transform name="to_world">."""
     values = [float(word) for word in only(only(element, "transform"), "matrix").get("value").split()]
     return [values[i:i + 4] for i in range(0, 16, 4)]
 
@@ -74,7 +74,7 @@ class GltfScene:
         return self.add("accessors", {"bufferView": view, **accessor})
 
     def add_material(self, reflectance, radiance=None):
-        # A specular weight of 0 takes off the coat of glTF's base material and leaves Lambert's law.
+        # A specular weight of 0 removes the specular layer of glTF's base material and leaves Lambert's law.
         material = {"doubleSided": not radiance,
                     "pbrMetallicRoughness": {"baseColorFactor": [*reflectance, 1], "metallicFactor": 0},
                     "extensions": {"KHR_materials_specular": {"specularFactor": 0}}}
@@ -91,7 +91,7 @@ class GltfScene:
                 "KHR_materials_volume": {"thicknessFactor": 1}}})
 
     def add_mesh(self, name, points, normals, indices, material):
-        """Without `normals` its faces are flat."""
+        """Without `normals` the faces are flat."""
         def vectors(values, **bounds):
             return self.add_accessor(b"".join(struct.pack("<3f", *v) for v in values), componentType=5126, type="VEC3",
                                      count=len(values), **bounds)
@@ -116,7 +116,7 @@ class GltfScene:
 
 
 def read_ply(path):
-    """Points, normals (None without) and corners of the triangles of a binary PLY file."""
+    """Returns points, normals (or None) and triangle indices of a binary PLY file."""
     header, _, data = path.read_bytes().partition(b"end_header\n")
     words = [line.split() for line in header.decode().splitlines()]
     names = [word[2] for word in words if word[:2] == ["property", "float"]]
@@ -133,7 +133,7 @@ def read_ply(path):
 
 
 def add_ply(gltf, folder, shape, material):
-    """Its matrix may scale along the axes alone."""
+    """The matrix may scale only along the axes."""
     matrix = matrix_of(shape)
     scale = [matrix[k][k] for k in range(3)]
     if any(matrix[r][c] != (scale[r] if r == c else 0) for r in range(3) for c in range(4)) or min(scale) <= 0:
@@ -151,7 +151,7 @@ def add_ply(gltf, folder, shape, material):
 
 
 def ior_of(bsdf):
-    """The index of refraction of a smooth glass in air; raises ValueError for any other material."""
+    """Returns the index of refraction of smooth glass in air. Raises ValueError for any other material."""
     values = {f.get("name").replace("_ior", "IOR"): float(f.get("value")) for f in bsdf.findall("float")}
     if set(values) != {"intIOR", "extIOR"} or values["extIOR"] != 1:
         raise ValueError(f"material {bsdf.get('id')} is no glass in air")
@@ -165,7 +165,7 @@ def add_camera(scene, sensor):
     fov = only(sensor, "float")
     if fov.get("name") != "fov":
         raise ValueError("the sensor needs a fov")
-    # Mitsuba's angle of view is that of the width; its camera looks along +z with +x to the left.
+    # Mitsuba's angle of view is horizontal, and its camera looks along +z with +x to the left.
     half_width = math.tan(math.radians(float(fov.get("value"))) / 2)
     m = matrix_of(sensor)
     columns = [[-m[r][0] for r in range(3)], [m[r][1] for r in range(3)], [-m[r][2] for r in range(3)],
@@ -177,8 +177,8 @@ def add_camera(scene, sensor):
 
 
 def convert(source):
-    """glTF text of the Mitsuba scene at path `source`, and the size of its picture. Throws ValueError for what it does
-    not know."""
+    """Returns the glTF text of the Mitsuba scene at path `source`, and the size of its picture. Raises ValueError for
+    unsupported elements."""
     scene = ElementTree.parse(source).getroot()
     gltf = GltfScene()
     reflectances, glasses = {}, {}

@@ -1,4 +1,4 @@
-"""Tests of scenes of arrays: they have the bytes of the file with the same contents, and errors name the argument."""
+"""Tests scenes of arrays: their pictures have the bytes of a file with the same contents, and errors name the argument."""
 
 import pathlib
 import pickle
@@ -28,7 +28,7 @@ def parts(**changes):
 
 
 class Arrays(unittest.TestCase):
-    def test_same_bytes_as_a_file(self):
+    def test_a_scene_of_arrays_has_the_bytes_of_a_file(self):
         with tempfile.TemporaryDirectory() as folder:
             (pathlib.Path(folder) / "a.mtl").write_text("newmtl red\nKd 0.8 0.1 0.1\n")
             file = pathlib.Path(folder) / "a.obj"
@@ -42,7 +42,7 @@ class Arrays(unittest.TestCase):
             self.assertTrue((a.albedo == b.albedo).all())
             self.assertEqual(a.hash, b.hash)
 
-    def test_all_parts(self):
+    def test_all_parts_of_a_scene_are_rendered(self):
         scene = pertev.Scene(**parts())
         picture = pertev.render(scene, **SMALL, camera="front", layers=["ids", "depth"])
         self.assertGreater(picture.color.max(), 0)
@@ -61,7 +61,7 @@ class Arrays(unittest.TestCase):
                                        **SMALL, environment=(0, 0, 0)).hash)
         self.assertEqual(pertev.render(scene, **SMALL).hash, before)
 
-    def test_layouts_and_types_of_arrays(self):
+    def test_arrays_may_have_any_layout_and_type(self):
         expected = pertev.render(pertev.Scene(**parts()), **SMALL).hash
         read_only = VERTICES.copy()
         read_only.flags.writeable = False
@@ -72,8 +72,8 @@ class Arrays(unittest.TestCase):
             mesh = {"vertices": vertices, "faces": faces, "uv": UV}
             self.assertEqual(pertev.render(pertev.Scene(**parts(meshes={"floor": mesh})), **SMALL).hash, expected)
 
-    def test_dlpack(self):
-        class Box: # has nothing else of an array
+    def test_dlpack_objects_are_read(self):
+        class Box: # the object has no other array interface
             def __init__(self, array):
                 self.array = array
 
@@ -88,7 +88,7 @@ class Arrays(unittest.TestCase):
         self.assertEqual(pertev.render(pertev.Scene(**parts(meshes={"floor": mesh})), **SMALL).hash, expected.hash)
         self.assertTrue(numpy.shares_memory(numpy.from_dlpack(expected.color), expected.color))
 
-    def test_torch(self):
+    def test_torch_tensors_are_read(self):
         try:
             import torch
         except ImportError:
@@ -100,7 +100,7 @@ class Arrays(unittest.TestCase):
         color[0, 0, 0] = 7
         self.assertEqual(expected.color[0, 0, 0], 7) # the memory is shared
 
-    def test_textures(self):
+    def test_textures_are_arrays(self):
         image = numpy.zeros((2, 2, 3), numpy.uint8)
         image[0, 0] = (255, 0, 0) # at (u, v) = (0, 0)
         pictures = {}
@@ -112,7 +112,7 @@ class Arrays(unittest.TestCase):
         self.assertEqual(pictures["bytes"][..., 1].max(), 0)
         self.assertTrue((pictures["grey"][..., 0] == pictures["grey"][..., 1]).all())
 
-    def test_environment(self):
+    def test_an_environment_is_an_array(self):
         image = numpy.zeros((8, 16, 3), numpy.float32)
         image[:4] = 1
         scene = pertev.Scene(**parts(lights=None, environment=image))
@@ -127,7 +127,7 @@ class Arrays(unittest.TestCase):
                          pertev.render(pertev.Scene(**parts(lights=None)), **SMALL, environment=(0.5, 0.5, 0.5)).hash)
 
     def test_a_far_scene_keeps_its_digits(self):
-        """Transforms are read in double, so a scene far away looks as it does at the origin."""
+        """Transforms are read in double, so a distant scene has the picture of one at the origin."""
         def at(x):
             moved = numpy.eye(4)
             moved[0, 3] = x
@@ -137,7 +137,7 @@ class Arrays(unittest.TestCase):
         near, far = (pertev.render(at(x), **SMALL, layers="depth").depth for x in (0, 2.0**30))
         self.assertTrue(numpy.allclose(near, far, rtol=1e-5))
 
-    def test_the_hash_is_that_of_the_contents(self):
+    def test_the_hash_depends_on_the_contents(self):
         def hash_of(**changes):
             return pertev.render(pertev.Scene(**parts(**changes)), **SMALL).info["scene_hash"]
         first = hash_of()
@@ -147,7 +147,7 @@ class Arrays(unittest.TestCase):
                   hash_of(lights={"lamp": {"kind": "point", "position": (0, 1, 0), "intensity": (3, 2, 2)}})]
         self.assertEqual(len({first, *others}), 4)
 
-    def test_wrong_arguments_are_named(self):
+    def test_errors_name_the_wrong_argument(self):
         mesh = {"vertices": VERTICES, "faces": FACES}
         wrong = {
             "meshes/floor/vertices": parts(meshes={"floor": {**mesh, "vertices": VERTICES[:, :2]}}),
@@ -170,7 +170,7 @@ class Arrays(unittest.TestCase):
                     pertev.Scene(**arguments)
                 self.assertEqual(caught.exception.setting, name)
 
-    def test_a_scene_without_meshes_or_of_both(self):
+    def test_a_scene_without_meshes_or_with_a_file_and_arrays_is_refused(self):
         with self.assertRaises(TypeError):
             pertev.Scene(meshes={})
         with self.assertRaises(TypeError):
@@ -178,14 +178,14 @@ class Arrays(unittest.TestCase):
         with self.assertRaises(pertev.Error):
             pertev.render(pertev.Scene(meshes={}, instances={}))
 
-    def test_params_of_arrays(self):
+    def test_a_scene_of_arrays_has_params(self):
         scene = pertev.Scene(**parts())
         pertev.render(scene, **SMALL)
         scene.params["materials/red/base_color"] = (0.1, 0.8, 0.1)
         fresh = pertev.Scene(**parts(materials={"red": {"base_color": (0.1, 0.8, 0.1), "kind": "diffuse"}}))
         self.assertEqual(pertev.render(scene, **SMALL).hash, pertev.render(fresh, **SMALL).hash)
 
-    def test_it_is_not_pickled(self):
+    def test_a_scene_of_arrays_is_not_pickled(self):
         with self.assertRaises(TypeError):
             pickle.dumps(pertev.Scene(**parts()))
 

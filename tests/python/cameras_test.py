@@ -1,4 +1,4 @@
-"""Tests of many cameras in one call: the bytes of each camera alone, chunks, arrays that are filled again, and errors."""
+"""Tests many cameras in one call: pictures have the bytes of single renders, in chunks and in reused arrays, and errors."""
 
 import gc
 import importlib
@@ -20,7 +20,7 @@ LAYERS = ["depth", "normal", "ids"]
 
 
 def poses(count):
-    """Cameras before the Cornell box, which lies behind the world's origin, that step aside and turn a little."""
+    """Cameras in front of the Cornell box, which is behind the world's origin. They move sideways and turn slightly."""
     made = numpy.tile(numpy.eye(4), (count, 1, 1))
     for k in range(count):
         angle = 0.05 * k
@@ -39,7 +39,7 @@ class Cameras(unittest.TestCase):
     def setUpClass(cls):
         cls.scene = pertev.load("cornell-box", device=DEVICE)
 
-    def test_each_picture_has_the_bytes_of_its_camera_alone(self):
+    def test_each_picture_has_the_bytes_of_a_single_render(self):
         K = [[22, 0, 11], [0, 20, 9], [0, 0, 1]]
         for more in ({}, {"layers_at": "centre"}, {"integrator": "bidirectional"}):
             batch = pertev.render(self.scene, cameras=pertev.Cameras(poses(3), K), seeds=[4, 5, 6], layers=LAYERS, **SMALL, **more)
@@ -53,7 +53,7 @@ class Cameras(unittest.TestCase):
                     self.assertEqual(host(getattr(batch, name))[k].tobytes(), getattr(alone, name).tobytes(), (name, k, more))
 
     def test_denoising_supports_a_distorting_lens(self):
-        """It removes as much of the error as with a straight lens."""
+        """Denoising removes as much of the error as with a straight lens."""
         left = {}
         for lens in ((), (-0.3, 0.1, 0, 0), (0.25, 0, 0.01, -0.01)):
             view = {"camera_pose": poses(1)[0].ravel(), "intrinsics": (60, 60, 24, 24), "distortion": lens or None, "size": (48, 48)}
@@ -64,7 +64,7 @@ class Cameras(unittest.TestCase):
         self.assertLess(max(left.values()), 0.3)
         self.assertLess(max(left.values()), 1.2 * left[()])
 
-    def test_one_K_or_one_for_each_camera(self):
+    def test_there_may_be_one_K_or_one_for_each_camera(self):
         K = numpy.array([[[20, 0, 12], [0, 20, 8], [0, 0, 1]], [[40, 0, 12], [0, 40, 8], [0, 0, 1]]])
         both = host(pertev.render(self.scene, cameras=pertev.Cameras(poses(2), K), **SMALL).color)
         for k in range(2):
@@ -72,7 +72,7 @@ class Cameras(unittest.TestCase):
             self.assertEqual(both[k].tobytes(), one[k].tobytes())
             self.assertNotEqual(both[1 - k].tobytes(), one[1 - k].tobytes())
 
-    def test_the_axes_of_opencv(self):
+    def test_poses_may_have_the_axes_of_opencv(self):
         turned = poses(2) @ numpy.diag([1, -1, -1, 1])
         pictures = [host(pertev.render(self.scene, cameras=pertev.Cameras(of, convention=convention), **SMALL).color)
                     for of, convention in ((poses(2), None), (turned, "opencv"))]
@@ -105,7 +105,7 @@ class Cameras(unittest.TestCase):
                 pertev.render(scene, **SMALL)
             self.assertEqual(refused.exception.setting, "device")
 
-    def test_layers_without_color(self):
+    def test_layers_need_no_color(self):
         batch = pertev.render(self.scene, cameras=poses(2), color=False, layers=LAYERS, layers_at="centre", size=(24, 16))
         self.assertEqual(sorted(batch.arrays), sorted(LAYERS))
         with self.assertRaises(AttributeError):
@@ -135,7 +135,7 @@ class Cameras(unittest.TestCase):
                 pertev.render(self.scene, **{"layers": LAYERS, **other}, out=first, **SMALL)
             self.assertEqual(refused.exception.setting, "out")
 
-    def test_wrong_arguments_are_named(self):
+    def test_errors_name_the_wrong_argument(self):
         for arguments, name in [(({"cameras": numpy.eye(4)}), "cameras"), ({"cameras": numpy.zeros((0, 4, 4))}, "cameras"),
                                 ({"cameras": pertev.Cameras(poses(2), numpy.zeros((3, 3, 3)))}, "K"),
                                 ({"cameras": pertev.Cameras(poses(2), numpy.zeros((2, 2)))}, "K"),
@@ -150,7 +150,7 @@ class Cameras(unittest.TestCase):
             with self.assertRaises(TypeError):
                 pertev.render(self.scene, **arguments, **SMALL)
 
-    def test_a_single_picture_on_the_device(self):
+    def test_a_single_picture_stays_on_the_device(self):
         for more in ({}, {"layers_at": "centre", "seed": 3}, {"transparent": True}, {"integrator": "bidirectional"},
                      {"lens": "fisheye", "layers_at": "centre"}):
             here = pertev.render(self.scene, layers=LAYERS, **SMALL, **more)
@@ -174,7 +174,7 @@ class Cameras(unittest.TestCase):
         self.assertEqual(numpy.asarray(color).tobytes(), host(color).tobytes())
         self.assertEqual(numpy.asarray(color, dtype=numpy.float64).dtype, numpy.float64)
 
-    def test_a_picture_has_its_camera(self):
+    def test_a_picture_states_its_camera(self):
         picture = pertev.render(self.scene, **SMALL)
         again = pertev.render(self.scene, cameras=pertev.Cameras(picture.pose[None], picture.K), layers="depth", **SMALL)
         self.assertEqual(picture.pose[:3, 3].tolist(), numpy.float32([0.278, 0.273, -0.8]).tolist())
@@ -187,7 +187,7 @@ class Cameras(unittest.TestCase):
         with self.assertRaises(AttributeError):
             pertev.render(self.scene, projection="orthographic", **SMALL).K
 
-    def test_names_and_box_of_a_scene(self):
+    def test_a_scene_has_names_and_a_box(self):
         picture = pertev.render(self.scene, layers="ids", layers_at="centre", filter="box", **SMALL)
         seen = [number for number in numpy.unique(picture.ids[..., 0]).tolist() if number != 0xFFFFFFFF]
         self.assertEqual({str(number): self.scene.instance_names[number] for number in seen}, picture.info["instances"])
@@ -200,7 +200,7 @@ class Cameras(unittest.TestCase):
         box.params["instances/two/transform"] = moved
         self.assertEqual((box.instance_names, box.bounds.tolist()), (["one", "two"], [[0, 0, 0], [2, 4, 3]]))
 
-    def test_cameras_of_files(self):
+    def test_cameras_are_read_from_files(self):
         path = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory())) / "views.json"
 
         def read(*cameras, **more):
@@ -234,7 +234,7 @@ class Cameras(unittest.TestCase):
             self.assertEqual(host(pertev.render(self.scene, cameras=Tensor(copy), **SMALL).color).tobytes(), expected)
 
     @unittest.skipIf(DEVICE == "cpu", "arrays on a GPU are those of CUDA")
-    def test_arrays_on_a_gpu(self):
+    def test_arrays_on_a_gpu_are_shared(self):
         batch = pertev.render(self.scene, cameras=poses(2), layers=LAYERS, **SMALL)
         self.assertIsInstance(batch.color, pertev.DeviceArray)
         description = batch.depth.__cuda_array_interface__

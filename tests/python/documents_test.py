@@ -12,8 +12,8 @@ import pertev
 
 PROGRAM = sys.argv.pop(1)
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-DOCUMENTS = [ROOT / "README.md", *sorted(set((ROOT / "docs").glob("*.md")) - {ROOT / "docs" / "recipes.md"})] # recipes_test.py runs that
-# The readers' own: three cameras before the Cornell box, and a library for which NumPy stands, as both read DLPack.
+DOCUMENTS = [ROOT / "README.md", *sorted(set((ROOT / "docs").glob("*.md")) - {ROOT / "docs" / "recipes.md"})] # recipes_test.py runs its code
+# Objects of the reader: three cameras in front of the Cornell box, and NumPy as a library that reads DLPack.
 GIVEN = {"N": 3, "K": numpy.array([[100.0, 0, 64], [0, 100, 64], [0, 0, 1]]),
          "poses": numpy.tile(numpy.diag([-1.0, -1, 1, 1]) + numpy.eye(4)[:, :1] @ [[0, 0, 0, 0.278]], (3, 1, 1)), "torch": numpy}
 
@@ -42,7 +42,7 @@ class Documents(unittest.TestCase):
         found = 0
         for document in DOCUMENTS:
             text = document.read_text(encoding="utf-8")
-            end = "" if "```python" in text else r"\(" # elsewhere pertev.NAME is also a key of an EXR's metadata
+            end = "" if "```python" in text else r"\(" # in other documents pertev.NAME is also a key of an EXR's metadata
             for name in re.findall(r"(?<![\w./])pertev\.(\w+)" + end, text):
                 with self.subTest(document=document.name, name=name):
                     self.assertTrue(hasattr(pertev, name))

@@ -1,4 +1,4 @@
-"""Tests of errors: each is of its kind, and names the setting or the argument that is wrong, by Python's name."""
+"""Tests errors: each has its kind and names the wrong setting or argument by its Python name."""
 
 import ctypes
 import pathlib
@@ -20,7 +20,7 @@ POSES = numpy.tile(numpy.diag([-1.0, 1, -1, 1]), (2, 1, 1))
 
 
 class Elsewhere:
-    """An array that says by DLPack that it is in the memory of a GPU."""
+    """An array that claims by DLPack to be in the memory of a GPU."""
 
     def __init__(self, array):
         self.array = array
@@ -30,7 +30,7 @@ class Elsewhere:
         ctypes.pythonapi.PyCapsule_GetPointer.restype = ctypes.c_void_p
         ctypes.pythonapi.PyCapsule_GetPointer.argtypes = [ctypes.py_object, ctypes.c_char_p]
         tensor = ctypes.pythonapi.PyCapsule_GetPointer(capsule, b"dltensor")
-        ctypes.c_int32.from_address(tensor + 8).value = 2 # behind the pointer: the kind of device, here CUDA
+        ctypes.c_int32.from_address(tensor + 8).value = 2 # the kind of device follows the pointer, here CUDA
         return capsule
 
     def __dlpack_device__(self):
@@ -53,7 +53,7 @@ class Errors(unittest.TestCase):
         self.assertIsInstance(caught.exception, pertev.Error)
         return caught.exception
 
-    def test_kinds(self):
+    def test_errors_have_their_kind(self):
         folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
         (folder / "is a folder.png").mkdir()
         for kind, of_python, setting, values in [
@@ -76,7 +76,7 @@ class Errors(unittest.TestCase):
                 error = self.refused(pertev.InputError, setting, lambda: pertev.render(self.scene, **{**SMALL, **values}))
                 self.assertNotIn("--", str(error))
 
-    def test_shapes_types_and_devices_of_arrays(self):
+    def test_arrays_of_wrong_shape_type_or_device_are_refused(self):
         mesh = {"vertices": numpy.eye(3), "faces": numpy.array([[0, 1, 2]])}
         picture = numpy.zeros((4, 4, 3), numpy.float32)
 
@@ -93,7 +93,7 @@ class Errors(unittest.TestCase):
             with self.subTest(name):
                 self.refused(pertev.InputError, name, call)
 
-    def test_arrays_to_fill(self):
+    def test_unsuitable_out_arrays_are_refused(self):
         read_only = numpy.empty((6, 8, 3), numpy.float32)
         read_only.flags.writeable = False
         for wrong in (numpy.empty((8, 6, 3), numpy.float32), numpy.empty((6, 8, 3)), numpy.empty((6, 8, 6), numpy.float32)[:, :, ::2],
@@ -102,7 +102,7 @@ class Errors(unittest.TestCase):
             self.assertEqual(error.value, "color")
         self.refused(pertev.InputError, "out", lambda: pertev.render(self.scene, **SMALL, out={"depth": read_only}))
 
-    def test_what_is_not_pickled_says_so(self):
+    def test_objects_that_cannot_be_pickled_raise_an_error(self):
         result = pertev.render(self.scene, **SMALL)
         for thing in (result, pertev.Session(self.scene, **SMALL), pertev.render(self.scene, cameras=POSES, **SMALL)):
             with self.assertRaises(TypeError):
@@ -112,7 +112,7 @@ class Errors(unittest.TestCase):
 
 
 class Interrupts(unittest.TestCase):
-    def test_batches_and_frames_end_soon_and_can_go_on(self):
+    def test_batches_and_frames_end_soon_and_can_continue(self):
         scene = pertev.load("cornell-box", device="cpu")
         session = pertev.Session(scene, size=(16, 12))
         first = next(session).hash
@@ -129,8 +129,8 @@ class Interrupts(unittest.TestCase):
         self.assertEqual(next(session).hash, first)
         self.assertEqual(pertev.render(scene, **SMALL).hash, pertev.render("cornell-box", **SMALL).hash)
 
-    def test_two_threads_are_at_work_at_the_same_time(self):
-        """Pictures of one thread are done while another is at work on a picture that takes five seconds."""
+    def test_two_threads_render_at_the_same_time(self):
+        """One thread finishes pictures while another renders a picture that takes five seconds."""
         alone = [pertev.render("cornell-box", **SMALL, seed=seed).hash for seed in range(3)]
         long = threading.Thread(target=lambda: pertev.render("cornell-box", size=(64, 48), spp=65536, time_limit=5, threads=1, device="cpu"))
         long.start()

@@ -1,4 +1,4 @@
-"""Runs the examples at small sizes and checks what they make."""
+"""Runs the examples at small sizes and checks their results."""
 
 import importlib
 import json
@@ -84,7 +84,7 @@ class DataSet(Example):
             self.assertLess(abs(points[2] - z).max(), 2e-6)
             self.assertLess(abs(arrays["normal"][rows, columns] - (0, 0, -1)).max(), 2e-7)
 
-    def test_pictures(self):
+    def test_the_turntable_has_its_pictures(self):
         files = [image["file_name"] for image in self.coco["images"]]
         pictures = [pertev.read(self.folder / file) for file in files]
         self.assertEqual({picture.shape[:2] for picture in pictures}, {(30, 40)})
@@ -122,7 +122,7 @@ class DataLoader(Example):
         errors = list(example.learn([views[0]] * 12, "cpu"))
         self.assertLess(errors[-1], 0.5 * errors[0])
 
-    def test_without_torch_it_says_so(self):
+    def test_without_torch_there_is_a_clear_error(self):
         done = subprocess.run([sys.executable, "-c", "import sys; sys.modules['torch'] = None; import data_loader"], cwd=EXAMPLES,
                               capture_output=True, text=True)
         self.assertEqual((done.returncode, len(done.stderr.splitlines())), (1, 1))
@@ -138,7 +138,7 @@ class FitCamera(Example):
 
     def test_a_pose_is_moved_along_and_turned_about_its_own_axes(self):
         example = importlib.import_module("fit_camera")
-        pose = example.moved(numpy.eye(4), (0, 0, 0, 0, numpy.pi / 2, 0)) # looks along -x
+        pose = example.moved(numpy.eye(4), (0, 0, 0, 0, numpy.pi / 2, 0)) # the camera looks along -x
         self.assertTrue(numpy.allclose(pose[:3, 2], (1, 0, 0)))
         there = example.moved(pose, (0, 0, -2, 0, 0, 0))
         self.assertTrue(numpy.allclose(there[:3, 3], (-2, 0, 0)))
@@ -146,7 +146,7 @@ class FitCamera(Example):
 
 
 class Turntable(Example):
-    def test_frames_from_all_sides(self):
+    def test_frames_are_views_from_all_sides(self):
         scene = self.folder / "box.obj"
         scene.write_text(OBJECT)
         text = run("turntable.py", scene, self.folder / "out", "--frames", 4, "--size", "32x24", "--spp", 2)
@@ -175,7 +175,7 @@ class NerfAndColmap(Example):
         text = run("nerf_colmap.py", "cornell-box", self.folder, "--count", 3, "--size", "24x16", "--spp", 1)
         errors = [float(error) for error in re.findall(r"3 cameras, rel_mse of their pictures at most (\S+)", text)]
         self.assertEqual((len(errors), errors[0]), (2, 0))
-        self.assertLess(errors[1], 1e-3) # quaternions round
+        self.assertLess(errors[1], 1e-3) # quaternions are rounded
         nerf, colmap = (pertev.read_cameras(self.folder / name) for name in ("transforms.json", "sparse"))
         self.assertTrue(numpy.allclose(nerf.poses, colmap.poses @ numpy.diag([1, -1, -1, 1]), atol=1e-12))
         self.assertTrue((nerf.K == colmap.K).all())

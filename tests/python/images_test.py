@@ -1,4 +1,4 @@
-"""Tests of pictures as arrays and files: they have the bytes and numbers of the program."""
+"""Tests pictures as arrays and files: they have the bytes and numbers of the program."""
 
 import json
 import pathlib
@@ -27,7 +27,7 @@ class Images(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
         self.picture = pertev.render("cornell-box", size=(24, 16), spp=2, device="cpu")
 
-    def test_read_what_was_written(self):
+    def test_written_pictures_are_read_back(self):
         for picture in (self.picture, self.picture.color):
             pertev.write(self.folder / "a.exr", picture)
             self.assertTrue((pertev.read(self.folder / "a.exr") == self.picture.color).all())
@@ -47,7 +47,7 @@ class Images(unittest.TestCase):
         with self.assertRaises(pertev.WriteError):
             pertev.write("/nowhere/a.exr", picture)
 
-    def test_shown_as_the_program_shows_it(self):
+    def test_tone_mapping_is_that_of_the_program(self):
         pertev.render("cornell-box", size=(24, 16), spp=2, device="cpu", tone_map="agx", exposure=1.5,
                       output=self.folder / "a.png")
         for picture in (self.picture, self.picture.color):
@@ -58,7 +58,7 @@ class Images(unittest.TestCase):
         pertev.write(self.folder / "c.png", self.picture, curve="srgb")
         self.assertFalse((pertev.read(self.folder / "a.png") == pertev.read(self.folder / "c.png")).all())
 
-    def test_compare(self):
+    def test_compare_has_the_numbers_of_the_program(self):
         other = pertev.render("cornell-box", size=(24, 16), spp=4, seed=5, device="cpu")
         files = [self.folder / "a.exr", self.folder / "b.exr"]
         for file, picture in zip(files, (self.picture, other)):
@@ -75,7 +75,7 @@ class Images(unittest.TestCase):
         (self.folder / "a.png").write_bytes(png)
         self.assertEqual(pertev.read(self.folder / "a.png").shape, (16, 24, 3))
 
-    def test_wrong_arguments(self):
+    def test_wrong_arguments_are_refused(self):
         with self.assertRaises(pertev.InputError) as caught:
             pertev.tone_map(self.picture, curve="none")
         self.assertEqual(caught.exception.setting, "curve")
@@ -90,7 +90,7 @@ class Images(unittest.TestCase):
 
 class Out(unittest.TestCase):
     def compare(self, out, layers, **values):
-        """Renders into `out`, which is then all that the result has; its bytes are those of an ordinary result."""
+        """Tests that a render into `out` has the bytes of an ordinary result and no other arrays."""
         scene = pertev.load("cornell-box", size=(24, 16), spp=2, device="cpu")
         for seed in (1, 2):
             expected = pertev.render(scene, seed=seed, layers=layers, **values)
@@ -121,7 +121,7 @@ class Out(unittest.TestCase):
         self.compare({"noisy": numpy.empty((16, 24, 3), numpy.float32)}, [])
         self.compare({"depth": numpy.empty((16, 24), numpy.float32)}, ["depth"])
 
-    def test_arrays_of_what_no_film_has(self):
+    def test_arrays_of_quantities_without_a_film_are_filled(self):
         self.compare({"motion": numpy.empty((16, 24, 2), numpy.float32)}, ["motion"])
         self.compare({"direct": numpy.empty((16, 24, 3), numpy.float32)}, [], lpe="direct=LDE")
         self.compare({**self.arrays(), "noisy": numpy.empty((16, 24, 3), numpy.float32)}, ["depth", "ids"], denoise="svgf")
@@ -133,7 +133,7 @@ class Out(unittest.TestCase):
         self.assertNotEqual(pertev.render(scene, seed=5, out=out).hash, first.hash)
         self.assertEqual(pertev.render(scene).hash, first.hash)
 
-    def test_wrong_arrays(self):
+    def test_wrong_arrays_are_refused(self):
         scene = pertev.load("cornell-box", size=(24, 16), spp=1, device="cpu")
         for out in ({"color": numpy.empty((24, 16, 3), numpy.float32)}, {"color": numpy.empty((16, 24, 3))},
                     {"depth": numpy.empty((16, 24), numpy.float32)},

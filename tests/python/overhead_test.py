@@ -1,4 +1,4 @@
-"""Tests of what a call costs beside the samples: time, and memory."""
+"""Tests the overhead of a call besides its samples, in time and memory."""
 
 import os
 import subprocess
@@ -14,7 +14,7 @@ sys.argv.pop(1)
 
 
 def seconds_of(size, **values):
-    """A call's time less that of Session::render in C++, the least of many: others may use this machine too."""
+    """Returns a call's time minus that of Session::render in C++. It is the minimum of many, because other processes may run."""
     scene = pertev.load("cornell-box", device="cpu")
     least = 1.0
     for _ in range(200):
@@ -72,8 +72,8 @@ class Memory(unittest.TestCase):
                               capture_output=True, text=True, timeout=60)
         return [int(word) for word in done.stdout.split()]
 
-    def test_given_arrays_are_all_that_a_picture_takes(self):
-        """A call takes little else, and no more for a larger picture."""
+    def test_a_picture_into_given_arrays_allocates_little(self):
+        """A call allocates little memory, and no more for a larger picture."""
         small, large = self.allocations((64, 64)), self.allocations((256, 128))
         for of_size in (small, large):
             self.assertEqual(len(of_size), 3)
@@ -83,7 +83,7 @@ class Memory(unittest.TestCase):
             self.assertLess(of_python, 8192)
         self.assertAlmostEqual(small[0], large[0], delta=1024)
 
-    def test_the_counters_count(self):
+    def test_the_allocation_counters_work(self):
         allocated, largest, _ = self.allocations((256, 128), "None")
         self.assertGreater(largest, 256 * 128 * 3 * 4 - 1)
         self.assertGreater(allocated, 256 * 128 * 7 * 4 - 1)

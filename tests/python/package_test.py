@@ -1,4 +1,4 @@
-"""Tests of what the package's page says of it: names, versions and the command that pip writes. No wheel is made here."""
+"""Tests the package's metadata: names, versions and the command that pip installs. No wheel is made here."""
 
 import importlib.util
 import os
@@ -24,19 +24,19 @@ def versions_of(metadata):
 
 
 class Names(unittest.TestCase):
-    def test_versions_are_the_program_s(self):
+    def test_versions_are_those_of_the_program(self):
         printed = subprocess.run([PROGRAM, "-V"], check=True, capture_output=True, text=True).stdout
         version = versions_of(PROJECT["tool"]["scikit-build"]["metadata"])
         self.assertIn(version, printed.split()[1].split("-")[0])
         with_cuda = next(row for row in OVERRIDES if row["if"].get("env") == {"PERTEV_WHEEL_CUDA": True})
         self.assertEqual(versions_of(with_cuda["metadata"]), f"{version}+cu13")
 
-    def test_the_stable_abi_has_a_cmake_that_knows_of_it(self):
+    def test_the_stable_abi_requires_a_cmake_that_supports_it(self):
         row = next(row for row in OVERRIDES if "python-version" in row["if"])
         self.assertEqual(PROJECT["tool"]["scikit-build"]["wheel"]["py-api"], "cp312")
         self.assertEqual((row["if"]["python-version"], row["cmake"]["version"]), (">=3.12", ">=3.26"))
 
-    def test_files_that_are_named_exist(self):
+    def test_named_files_exist(self):
         files = PROJECT["tool"]["scikit-build"]["wheel"]
         for name in files["packages"] + files["license-files"]:
             self.assertTrue((ROOT / name).exists(), name)
@@ -44,7 +44,7 @@ class Names(unittest.TestCase):
 
 class Command(unittest.TestCase):
     def run_command(self, *words):
-        """Runs the command of pyproject.toml, in a package that has the program beside it as pip installs it."""
+        """Runs the command of pyproject.toml in a package with the program beside it, as pip installs it."""
         module, function = PROJECT["project"]["scripts"]["pertev"].split(":")
         with tempfile.TemporaryDirectory() as folder:
             package = pathlib.Path(folder) / module
@@ -54,17 +54,17 @@ class Command(unittest.TestCase):
             return subprocess.run([sys.executable, "-c", f"import {module}; {module}.{function}()", *words], text=True,
                                   capture_output=True, env={**os.environ, "PYTHONPATH": folder}, check=False)
 
-    def test_it_is_the_program(self):
+    def test_the_command_runs_the_program(self):
         program = subprocess.run([PROGRAM, "-V"], check=True, capture_output=True, text=True)
         self.assertEqual(self.run_command("-V").stdout, program.stdout)
 
-    def test_words_and_status_pass(self):
+    def test_arguments_and_status_are_passed_on(self):
         program = subprocess.run([PROGRAM, "render", "no such.glb", "-o", "a.png"], capture_output=True, text=True, check=False)
         done = self.run_command("render", "no such.glb", "-o", "a.png")
         self.assertEqual((done.returncode, done.stderr), (program.returncode, program.stderr))
         self.assertNotEqual(done.returncode, 0)
 
-    def test_it_does_not_load_the_module(self):
+    def test_the_command_does_not_load_the_module(self):
         spec = importlib.util.spec_from_file_location("launcher", ROOT / "python/pertev_program/__init__.py")
         spec.loader.exec_module(importlib.util.module_from_spec(spec))
         self.assertNotIn("pertev", sys.modules)

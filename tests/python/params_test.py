@@ -1,4 +1,4 @@
-"""Tests of scene.params: a changed scene has the bytes of a file with these values, and costs what it changes."""
+"""Tests scene.params: a changed scene has the bytes of a file with these values, and only changed parts are updated."""
 
 import base64
 import json
@@ -19,7 +19,7 @@ SMALL = {"size": (24, 16), "spp": 2, "device": "cpu"}
 
 
 def gltf(roughness=0.5, emission=(3, 3, 3), matrix=None, lamp=5.0, fov=0.8, base=(0.8, 0.4, 0.2)):
-    """A floor, a box-like pair of triangles that shares its mesh with nobody, a lit triangle, a light and a camera."""
+    """A floor, a pair of triangles with its own mesh, an emissive triangle, a light and a camera."""
     floor = [(-2, 0, -2), (2, 0, -2), (2, 0, 2), (-2, 0, 2)]
     thing = [(-0.5, 0, 0), (0.5, 0, 0), (0, 1, 0.2)]
     glow = [(-1, 2, -1), (1, 2, -1), (0, 2, 1)]
@@ -63,7 +63,7 @@ CHANGES = [("materials/gold/roughness", 0.25, {"roughness": 0.25}),
            ("materials/gold/base_color", (0.1, 0.9, 0.3), {"base": (0.1, 0.9, 0.3)}),
            ("materials/glow/emission", (0.5, 0.25, 1), {"emission": (0.5, 0.25, 1)}),
            ("instances/thing/transform", MOVED, {"matrix": MOVED}),
-           ("instances/thing/transform", FAR, {"matrix": FAR}), # the middle of the scene moves too
+           ("instances/thing/transform", FAR, {"matrix": FAR}), # the scene's centre moves, too
            ("lights/lamp/intensity", (2, 2, 2), {"lamp": 2.0})]
 
 
@@ -77,7 +77,7 @@ class Params(unittest.TestCase):
         path.write_text(json.dumps(gltf(**values)))
         return path
 
-    def test_paths(self):
+    def test_parameters_have_paths(self):
         scene = pertev.load(self.file())
         paths = list(scene.params)
         for path, _, _ in CHANGES:
@@ -94,9 +94,9 @@ class Params(unittest.TestCase):
         self.assertAlmostEqual(params["cameras/front/fov"], numpy.degrees(0.8), 4)
         self.assertTrue((params["cameras/front/transform"][:3, 3] == numpy.float32((0, 0.7, 3))).all())
 
-    def test_same_bytes_as_a_file_with_these_values(self):
+    def test_a_changed_scene_has_the_bytes_of_a_file_with_these_values(self):
         for path, value, values in CHANGES:
-            for first in (False, True): # changed before the first picture, or between two
+            for first in (False, True): # changes before the first picture, or between two
                 with self.subTest(path=path, first=first):
                     scene = pertev.load(self.file())
                     before = None if first else pertev.render(scene, **SMALL)
@@ -109,7 +109,7 @@ class Params(unittest.TestCase):
                         self.assertNotEqual(changed.info["scene_hash"], before.info["scene_hash"])
                     self.assertTrue(numpy.allclose(scene.params[path], value))
 
-    def test_several_changes_and_back(self):
+    def test_several_changes_can_be_reverted(self):
         scene = pertev.load(self.file())
         first = pertev.render(scene, **SMALL).hash
         old = {path: scene.params[path] for path, _, _ in CHANGES}
@@ -131,7 +131,7 @@ class Params(unittest.TestCase):
             self.assertEqual(pertev.render(scene, **SMALL, **values).hash,
                              pertev.render(self.file("b.gltf", roughness=0.25), **SMALL, **values).hash)
 
-    def test_an_emitter_that_is_switched_off_and_on(self):
+    def test_an_emitter_can_be_switched_off_and_on(self):
         scene = pertev.load(self.file())
         lit = pertev.render(scene, **SMALL).hash
         scene.params["materials/glow/emission"] = (0, 0, 0)
@@ -139,7 +139,7 @@ class Params(unittest.TestCase):
         scene.params["materials/glow/emission"] = (1, 1, 1)
         self.assertEqual(pertev.render(scene, **SMALL).hash, lit)
 
-    def test_the_environment(self):
+    def test_the_environment_can_be_changed(self):
         picture = numpy.zeros((8, 16, 3), numpy.float32)
         picture[:4, :6] = (4, 2, 1)
         sky = pathlib.Path(self.folder.name) / "sky.exr"
@@ -163,7 +163,7 @@ class Params(unittest.TestCase):
             uniform.params["environment/scale"] = (-1, 0, 0)
         self.assertEqual(caught.exception.setting, "environment/scale")
 
-    def test_cameras(self):
+    def test_cameras_can_be_changed(self):
         scene = pertev.load(self.file())
         pertev.render(scene, **SMALL)
         scene.params["cameras/front/fov"] = 60
@@ -178,7 +178,7 @@ class Params(unittest.TestCase):
         pertev.render(scene, **SMALL)
         self.assertTrue((scene.params["lights/lamp/transform"][:3, 3] == (1, 2, 3)).all())
 
-    def test_unknown_paths(self):
+    def test_unknown_paths_are_refused(self):
         params = pertev.load(self.file()).params
         with self.assertRaisesRegex(KeyError, "materials/gold/roughness"):
             params["materials/gold/roughnes"]
@@ -186,7 +186,7 @@ class Params(unittest.TestCase):
             params["materials/gold"] = 1
         self.assertNotIn("lights/lamp/direction", params)
 
-    def test_wrong_values_name_the_path_and_change_nothing(self):
+    def test_errors_of_wrong_values_name_the_path_and_change_nothing(self):
         scene = pertev.load(self.file())
         before = pertev.render(scene, **SMALL).hash
         for path, value in (("materials/gold/roughness", 2), ("materials/gold/roughness", (1, 1)),
@@ -200,8 +200,8 @@ class Params(unittest.TestCase):
                 self.assertEqual(caught.exception.setting, path)
         self.assertEqual(pertev.render(scene, **SMALL).hash, before)
 
-    def test_a_material_costs_no_tree(self):
-        """A scene of many triangles: a changed roughness takes less than a tenth of opening it."""
+    def test_a_changed_material_rebuilds_no_tree(self):
+        """In a scene of many triangles a changed roughness takes less than a tenth of the time to open it."""
         n = 400
         x, y = numpy.meshgrid(numpy.arange(n), numpy.arange(n))
         vertices = numpy.stack([x.ravel(), numpy.sin(x * y).ravel(), y.ravel()], 1).astype(numpy.float32)

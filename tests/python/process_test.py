@@ -1,4 +1,4 @@
-"""Tests of processes: forks, workers, pickled scenes and the viewer."""
+"""Tests processes: forks, workers, pickled scenes and the viewer."""
 
 import multiprocessing
 import os
@@ -35,7 +35,7 @@ class Processes(unittest.TestCase):
                           "else:\n    os.wait()\n")
         self.assertEqual(len(done.stdout.strip()), 32, done.stderr)
 
-    def test_a_fork_after_work_says_what_to_do(self):
+    def test_a_fork_after_work_raises_an_error_with_advice(self):
         done = run_python("import os, pertev\nr = lambda: pertev.render('cornell-box', size=(4, 4), spp=1, device='cpu')\n"
                           "r()\nif os.fork() == 0:\n"
                           "    try:\n        r()\n    except pertev.DeviceError as error:\n        print(error, flush=True)\n"
@@ -53,7 +53,7 @@ class Processes(unittest.TestCase):
                 self.assertEqual(pool.map(hash_of, [scene, scene]), [expected] * 2)
 
     def test_importing_is_quick_and_loads_no_driver(self):
-        with tempfile.TemporaryDirectory() as folder:  # a library that a loader of CUDA would find
+        with tempfile.TemporaryDirectory() as folder:  # a library that CUDA's loader would find
             shutil.copy(next(line.split()[-1] for line in pathlib.Path("/proc/self/maps").read_text().splitlines() if "/libm.so" in line),
                         f"{folder}/libcuda.so.1")
             with unittest.mock.patch.dict(os.environ, {"LD_LIBRARY_PATH": folder}):
@@ -65,7 +65,7 @@ class Processes(unittest.TestCase):
 
 
 class Viewer(unittest.TestCase):
-    def test_it_starts_and_ends(self):
+    def test_the_viewer_starts_and_ends(self):
         with unittest.mock.patch.dict(os.environ, {"PERTEV_PROGRAM": PROGRAM}):
             with pertev.view("cornell-box", device="cpu", size=(64, 48), port=0) as viewer:
                 page = urllib.request.urlopen(viewer.url, timeout=20).read()
@@ -92,7 +92,7 @@ class Viewer(unittest.TestCase):
                 with self.assertRaises(TypeError):
                     pertev.view(changed)
 
-    def test_a_scene_that_is_missing(self):
+    def test_a_missing_scene_is_an_error(self):
         with unittest.mock.patch.dict(os.environ, {"PERTEV_PROGRAM": PROGRAM}):
             with self.assertRaises(pertev.Error):
                 pertev.view("none.glb")

@@ -1,5 +1,5 @@
-"""Runs the Python of docs/recipes.md and docs/python.md at small sizes. Its commands are run by tests/robust/cli_documents_test.py, and the
-examples by examples_test.py."""
+"""Runs the Python code of docs/recipes.md and docs/python.md at small sizes. tests/robust/cli_documents_test.py runs
+their commands, and examples_test.py the examples."""
 
 import contextlib
 import io
@@ -24,7 +24,7 @@ def blocks_of(document):
 
 
 def made_small(text):
-    """Returns a block with small pictures of few samples, and few of them."""
+    """Returns a block that renders few small pictures with few samples."""
     text = re.sub(r"size=\(\d+, \d+\)", "size=(16, 12)", re.sub(r"spp=\d+", "spp=1", text))
     return text.replace("1000", "3")
 
@@ -36,13 +36,13 @@ class Recipes(unittest.TestCase):
         self.enterContext(unittest.mock.patch.dict(os.environ, {"PERTEV_PROGRAM": PROGRAM}))
 
     def run_block(self, text, **names):
-        """Returns the names that a block has defined, and what it has printed."""
+        """Runs a block and returns the names that it defined and its output."""
         printed = io.StringIO()
         with contextlib.redirect_stdout(printed):
             exec(compile(made_small(text), "block", "exec"), names) # pylint: disable=exec-used
         return names, printed.getvalue()
 
-    def test_recipes(self):
+    def test_recipes_run(self):
         views, figure, notebook = blocks_of("recipes.md")
         self.assertEqual(self.run_block(views)[1], "(3, 12, 16, 3)\n")
         names, printed = self.run_block(figure)
@@ -52,7 +52,7 @@ class Recipes(unittest.TestCase):
         names, _ = self.run_block(notebook)
         self.assertEqual(names["scene"].params["materials/white/base_color"].tolist(), [numpy.float32(x) for x in (0.4, 0.6, 0.8)])
 
-    def test_python_s_page(self):
+    def test_the_code_of_the_python_page_runs(self):
         first, cameras = blocks_of("python.md")
         picture = self.run_block(first)[0]["picture"]
         self.assertEqual(pertev.read("box.png").shape, picture.color.shape)

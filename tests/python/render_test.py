@@ -1,4 +1,4 @@
-"""Tests of the Python package in the build folder: `render_test.py PROGRAM`. The program is the oracle of its pictures."""
+"""Tests the Python package in the build folder: `render_test.py PROGRAM`. Its pictures must equal the program's."""
 
 import json
 import logging
@@ -27,7 +27,7 @@ def rendered_by_program(*arguments):
 
 
 class Render(unittest.TestCase):
-    def test_same_bytes_as_the_program(self):
+    def test_pictures_have_the_bytes_of_the_program(self):
         picture = pertev.render("cornell-box", size=(48, 32), spp=4, seed=7, eye=(0, 1, 3.5), device="cpu")
         by_program = rendered_by_program("cornell-box", "--size", "48x32", "--spp", "4", "--seed", "7", "--eye",
                                          "0,1,3.5", "--device", "cpu")
@@ -55,14 +55,14 @@ class Render(unittest.TestCase):
             pertev.render("cornell-box", size=(8, 8), spp=1, seed=5)
         self.assertTrue((color == kept).all())
 
-    def test_denoised_and_noisy(self):
+    def test_a_result_has_the_denoised_and_the_noisy_picture(self):
         picture = pertev.render("cornell-box", size=(16, 16), spp=1, denoise="svgf")
         plain = pertev.render("cornell-box", size=(16, 16), spp=1)
         self.assertEqual(picture.hash, plain.hash)
         self.assertTrue((picture.noisy == plain.color).all())
         self.assertFalse((picture.color == plain.color).all())
 
-    def test_files(self):
+    def test_files_are_written(self):
         with tempfile.TemporaryDirectory() as folder:
             names = [pathlib.Path(folder) / "a.exr", pathlib.Path(folder) / "a.png"]
             picture = pertev.render("cornell-box", size=(8, 8), spp=1, output=names)
@@ -71,7 +71,7 @@ class Render(unittest.TestCase):
             self.assertIn(picture.hash, json.dumps(info))
             self.assertEqual(names[1].read_bytes()[:4], b"\x89PNG")
 
-    def test_layers_beside_a_file_that_has_none(self):
+    def test_layers_may_be_requested_with_a_file_that_has_none(self):
         with tempfile.TemporaryDirectory() as folder:
             picture = pertev.render("cornell-box", size=(8, 8), spp=1, layers="depth", output=f"{folder}/a.png")
             self.assertEqual(picture.depth.shape, (8, 8))
@@ -79,31 +79,31 @@ class Render(unittest.TestCase):
                 pertev.render("cornell-box", size=(8, 8), spp=1, exposure=1, output=f"{folder}/a.exr")
             self.assertEqual(caught.exception.setting, "exposure")
 
-    def test_values_of_all_types(self):
-        """numpy's scalars and arrays are values as Python's own are."""
+    def test_values_may_have_all_types(self):
+        """NumPy's scalars and arrays are valid values, like Python's."""
         a = pertev.render("cornell-box", size=numpy.array([8, 6]), spp=numpy.int64(1), exposure=numpy.float32(0),
                           transparent=numpy.True_, output=())
         self.assertEqual(a.color.shape, (6, 8, 4))
 
 
 class Errors(unittest.TestCase):
-    def test_a_wrong_value_names_its_setting(self):
+    def test_the_error_for_a_wrong_value_names_the_setting(self):
         with self.assertRaises(pertev.InputError) as caught:
             pertev.render("cornell-box", spp=-1)
         self.assertEqual((caught.exception.setting, caught.exception.value), ("spp", "-1"))
         self.assertIsInstance(caught.exception, ValueError)
 
-    def test_a_limit(self):
+    def test_values_over_a_limit_are_refused(self):
         with self.assertRaises(pertev.LimitError) as caught:
             pertev.render("cornell-box", size=(10**6, 10**6))
         self.assertEqual(caught.exception.setting, "size")
 
-    def test_unknown_names_and_types(self):
+    def test_unknown_names_and_types_are_refused(self):
         for wrong in ({"sppp": 1}, {"spp": object()}, {"spp": True}, {"spp": numpy.True_}):
             with self.assertRaises(TypeError):
                 pertev.render("cornell-box", **wrong)
 
-    def test_a_file_that_is_missing_or_broken(self):
+    def test_a_missing_or_broken_file_is_an_error(self):
         with tempfile.TemporaryDirectory() as folder:
             broken = pathlib.Path(folder) / "broken.gltf"
             broken.write_text('{"asset":')
@@ -112,11 +112,11 @@ class Errors(unittest.TestCase):
                     pertev.render(path)
                 self.assertEqual(caught.exception.file, str(path))
 
-    def test_a_file_that_cannot_be_written(self):
+    def test_a_file_that_cannot_be_written_is_an_error(self):
         with self.assertRaises(pertev.Error):
             pertev.render("cornell-box", size=(4, 4), spp=1, output="/nowhere/a.png")
 
-    def test_no_sequence(self):
+    def test_sequences_are_refused(self):
         with self.assertRaises(TypeError):
             pertev.render("cornell-box", frames="0-3")
         with tempfile.TemporaryDirectory() as folder:
@@ -126,11 +126,11 @@ class Errors(unittest.TestCase):
                 pertev.render("cornell-box", settings=file)
             self.assertEqual(caught.exception.setting, "frames")
 
-    def test_settings_that_exclude_each_other(self):
+    def test_settings_that_exclude_each_other_are_refused(self):
         with self.assertRaises(pertev.InputError):
             pertev.render("cornell-box", integrator="path", photons=10)
 
-    def test_text_has_python_names(self):
+    def test_messages_have_python_names(self):
         with self.assertRaises(pertev.Error) as caught:
             pertev.render("cornell-box", integrator="path", photons=10)
         self.assertNotIn("--", str(caught.exception))
@@ -150,7 +150,7 @@ class Running(unittest.TestCase):
             pertev.render("cornell-box", size=(1920, 1080), spp=65536, device="cpu")
         self.assertLess(time.monotonic() - begun, 10)
 
-    def test_keyboard_interrupt_while_a_scene_is_read(self):
+    def test_a_keyboard_interrupt_ends_the_reading_of_a_scene(self):
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "big.obj"
             file.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n" * 4_000_000)
@@ -160,7 +160,7 @@ class Running(unittest.TestCase):
                 pertev.load(file)
             self.assertLess(time.process_time() - begun, 1.5)
 
-    def test_keyboard_interrupt_leaves_files_alone(self):
+    def test_a_keyboard_interrupt_changes_no_files(self):
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "a.exr"
             file.write_text("old")
@@ -169,7 +169,7 @@ class Running(unittest.TestCase):
                 pertev.render("cornell-box", size=(640, 480), spp=65536, device="cpu", output=file)
             self.assertEqual(file.read_text(), "old")
 
-    def test_a_log_handler_that_raises_costs_no_picture(self):
+    def test_a_log_handler_that_raises_does_not_end_a_render(self):
         class Raising(logging.Handler):
             def emit(self, record):
                 raise RuntimeError("of the test")
@@ -198,7 +198,7 @@ class Running(unittest.TestCase):
             thread.join()
         self.assertEqual(alone, beside)
 
-    def test_lock_is_released(self):
+    def test_the_interpreter_lock_is_released(self):
         count = 0
         done = threading.Event()
 

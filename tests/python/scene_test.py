@@ -1,4 +1,4 @@
-"""Tests of scenes that stay open: their pictures are those of scenes that were opened for each."""
+"""Tests scenes that stay open: their pictures are those of scenes opened for each picture."""
 
 import pathlib
 import sys
@@ -13,7 +13,7 @@ import pertev
 
 sys.argv.pop(1)
 
-# Each differs from the one before in something else.
+# Each differs from the previous one in another setting.
 PICTURES = [
     {},
     {},
@@ -39,7 +39,7 @@ SMALL = {"size": (24, 16), "spp": 2}
 
 
 class KeptScene(unittest.TestCase):
-    def test_pictures_as_of_scenes_opened_for_each(self):
+    def test_pictures_are_those_of_scenes_opened_for_each(self):
         scene = pertev.load("cornell-box")
         for values in PICTURES:
             with self.subTest(**values):
@@ -54,7 +54,7 @@ class KeptScene(unittest.TestCase):
         scene = pertev.load("cornell-box")
         first = pertev.render(scene, **SMALL)
         other = pertev.render(scene, **SMALL, seed=1, eye=(0.2, 0.3, -0.7))
-        self.assertEqual(first.info["load_seconds"], other.info["load_seconds"]) # to the bit: it was not read again
+        self.assertEqual(first.info["load_seconds"], other.info["load_seconds"]) # equal bits, so the scene was not read again
         again = pertev.render(scene, **SMALL, environment=(1, 1, 1))
         self.assertNotEqual(first.info["load_seconds"], again.info["load_seconds"])
 
@@ -64,14 +64,14 @@ class KeptScene(unittest.TestCase):
         for values in ({}, {"out": out}, {"eye": True}):
             costs = []
             for number in range(50):
-                if "eye" in values: # another one each time
+                if "eye" in values: # a different one each time
                     values = {"eye": (0.1 + 0.001 * number, 0.3, -0.7), "target": (0, 0, 0)}
                 begun = time.perf_counter()
                 picture = pertev.render(scene, **values)
                 costs.append(time.perf_counter() - begun - picture.seconds)
             self.assertLess(min(costs), 1e-3)
 
-    def test_what_was_made_up_is_that_of_the_picture(self):
+    def test_a_result_lists_the_defaults_of_its_picture(self):
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "triangle.obj"
             file.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
@@ -90,7 +90,7 @@ class KeptScene(unittest.TestCase):
                          pertev.render("cornell-box", size=(8, 8), max_depth=1, spp=1).hash)
         self.assertEqual(pertev.render(scene, size=(8, 8), max_depth=3).info["max_depth"], 3)
 
-    def test_a_file_of_settings_overrules_those_of_load(self):
+    def test_a_settings_file_overrides_the_settings_of_load(self):
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "settings.json"
             file.write_text('{"version":1,"settings":{"max_depth":3}}')
@@ -128,7 +128,7 @@ class KeptScene(unittest.TestCase):
             self.assertEqual(pertev.render(scene, **SMALL).info["scene_hash"], before)
             self.assertNotEqual(pertev.render(file, **SMALL).info["scene_hash"], before)
 
-    def test_remarks_on_a_settings_file_are_not_those_of_the_scene(self):
+    def test_remarks_on_a_settings_file_are_separate_from_those_of_the_scene(self):
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "settings.json"
             file.write_text('{"version":1,"settings":{"sppp":3}}')
@@ -137,7 +137,7 @@ class KeptScene(unittest.TestCase):
             self.assertEqual(len(pertev.render(scene, settings=file, **given).info["left_out"]), 1)
             self.assertEqual(pertev.render(scene, **given).info["left_out"], [])
 
-    def test_load_raises(self):
+    def test_load_raises_errors(self):
         with self.assertRaises(pertev.InputError):
             pertev.load("no-such-scene.glb")
 

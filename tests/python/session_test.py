@@ -1,4 +1,4 @@
-"""Tests of sessions: frames have the bytes of `pertev render --frames`, and scenes at times those of `--time`."""
+"""Tests sessions: frames have the bytes of `pertev render --frames`, and scenes at a time those of `--time`."""
 
 import base64
 import json
@@ -17,7 +17,7 @@ FLAGS = ["--size", "24x16", "--device", "cpu"]
 
 
 def moving_scene(folder):
-    """A triangle that slides to the right for a second, before a larger one, with a light that glows up."""
+    """A triangle that moves to the right for a second in front of a larger one, with a light that brightens."""
     points = [(-0.5, 0, 0), (0.5, 0, 0), (0, 1, 0), (-2, -1, -1), (2, -1, -1), (0, 3, -1)]
     data = b"".join(struct.pack("<3f", *p) for p in points) + struct.pack("<3H", 0, 1, 2) + b"\0\0"
     data += struct.pack("<2f", 0, 1) + struct.pack("<6f", 0, 0, 0, 1, 0, 0)
@@ -56,7 +56,7 @@ class Sessions(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.moves = moving_scene(folder.name)
 
-    def test_frames_of_a_moving_scene(self):
+    def test_frames_of_a_moving_scene_are_those_of_the_program(self):
         session = pertev.Session(pertev.load(self.moves), fps=4, frames="0-5", layers=["depth"], **SMALL)
         frames = list(session)
         self.assertEqual([frame.hash for frame in frames],
@@ -66,15 +66,15 @@ class Sessions(unittest.TestCase):
         self.assertEqual(frames[3].info["time"], 0.75)
         self.assertEqual(len({frame.hash for frame in frames}), 6)
 
-    def test_frames_of_a_turntable(self):
+    def test_frames_of_a_turntable_are_those_of_the_program(self):
         frames = [frame.hash for frame in pertev.Session("cornell-box", turntable=4, **SMALL)]
         self.assertEqual(frames, frames_of_program("cornell-box", "--turntable", "4", "--real-time"))
 
-    def test_ordinary_pictures_as_frames(self):
+    def test_frames_may_be_ordinary_pictures(self):
         frames = [frame.hash for frame in pertev.Session(self.moves, real_time=False, spp=2, fps=2, frames="1-2", **SMALL)]
         self.assertEqual(frames, frames_of_program(self.moves, "--frames", "1-2", "--fps", "2", "--spp", "2"))
 
-    def test_reset(self):
+    def test_reset_restarts_the_sequence(self):
         session = pertev.Session("cornell-box", **SMALL)
         first = [next(session).hash for _ in range(3)]
         self.assertEqual(session.frame, 3)
@@ -82,7 +82,7 @@ class Sessions(unittest.TestCase):
         self.assertEqual([next(session).hash for _ in range(3)], first)
         self.assertEqual(len(set(first)), 3)
 
-    def test_a_camera_that_is_set_between_frames_keeps_the_history(self):
+    def test_setting_a_camera_between_frames_keeps_the_history(self):
         views = [((0, 0.2, 0.9 - 0.05 * k), (0, 0.2, -1)) for k in range(4)]
         session = pertev.Session("cornell-box", fps=1, **SMALL)
         frames = []
@@ -100,7 +100,7 @@ class Sessions(unittest.TestCase):
                 self.fail(error.stderr)
         self.assertEqual(frames, of_path)
 
-    def test_a_changed_scene(self):
+    def test_frames_show_a_changed_scene(self):
         scene = pertev.load("cornell-box")
         material = next(path for path in scene.params if path.endswith("/base_color"))
         session = pertev.Session(scene, **SMALL)
@@ -110,9 +110,9 @@ class Sessions(unittest.TestCase):
         unchanged = pertev.Session("cornell-box", **SMALL)
         next(unchanged)
         self.assertNotEqual(changed.hash, next(unchanged).hash)
-        self.assertEqual(changed.info["first_frame"], 0) # it kept its history
+        self.assertEqual(changed.info["first_frame"], 0) # the history was kept
 
-    def test_pictures_of_the_scene_do_not_disturb_frames(self):
+    def test_pictures_of_the_scene_do_not_affect_frames(self):
         scene = pertev.load("cornell-box")
         session = pertev.Session(scene, **SMALL)
         frames = []
@@ -122,7 +122,7 @@ class Sessions(unittest.TestCase):
         session.reset()
         self.assertEqual([next(session).hash for _ in range(3)], frames)
 
-    def test_wrong_settings(self):
+    def test_wrong_settings_are_refused(self):
         with self.assertRaises(TypeError):
             pertev.Session("cornell-box", fpss=3)
         session = pertev.Session("cornell-box", **SMALL)
@@ -136,7 +136,7 @@ class Sessions(unittest.TestCase):
 
 
 class Times(unittest.TestCase):
-    def test_times_of_an_open_scene(self):
+    def test_an_open_scene_is_rendered_at_any_time(self):
         with tempfile.TemporaryDirectory() as folder:
             file = moving_scene(folder)
             scene = pertev.load(file)
@@ -148,8 +148,8 @@ class Times(unittest.TestCase):
                 self.assertEqual(kept.info["settings"], fresh.info["settings"])
                 self.assertEqual(kept.info["made_up"], fresh.info["made_up"])
                 loads.add(kept.info["load_seconds"])
-            self.assertEqual(len(loads), 1) # it was not read again
-            rest = pertev.render(scene, spp=2, ground="off", **SMALL) # for which it was
+            self.assertEqual(len(loads), 1) # the scene was not read again
+            rest = pertev.render(scene, spp=2, ground="off", **SMALL) # this setting reads it again
             self.assertEqual(rest.hash, pertev.render(file, spp=2, ground="off", **SMALL).hash)
             self.assertNotIn(rest.info["load_seconds"], loads)
 

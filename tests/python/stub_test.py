@@ -1,4 +1,4 @@
-"""Tests of the package's type stub: it is Python, and has each setting with its type."""
+"""Tests the package's type stub: it is valid Python and has each setting with its type."""
 
 import ast
 import pathlib
@@ -18,7 +18,7 @@ def types_of(function):
 
 
 class Stub(unittest.TestCase):
-    def test_all_settings(self):
+    def test_the_stub_has_all_settings(self):
         names = {row["name"] for row in _core.settings()}
         self.assertEqual(set(types_of("load")), names)
         self.assertEqual(set(types_of("render")), names | {row["name"] for row in _core.part_settings()} | {"layers", "output", "settings", "out", "cameras", "seeds", "color",
@@ -35,10 +35,10 @@ class Stub(unittest.TestCase):
         self.assertEqual(names & {"frames", "continue", "real_time", "history", "restir"}, set())
         self.assertLessEqual({"time", "shutter", "spp", "lamp", "device"}, names)
 
-    def test_it_compiles(self):
-        compile(STUB, "__init__.pyi", "exec") # which refuses a parameter that is there twice
+    def test_the_stub_compiles(self):
+        compile(STUB, "__init__.pyi", "exec") # this detects a duplicate parameter
 
-    def test_types(self):
+    def test_settings_have_their_types(self):
         types = types_of("render")
         for name, expected in {"spp": "int | None", "transparent": "bool | None", "fov": "float | None",
                                "size": "tuple[int, int] | str | None", "eye": "Sequence[float] | str | None",
@@ -46,7 +46,7 @@ class Stub(unittest.TestCase):
             self.assertEqual(types[name], expected)
         self.assertIn("'bidirectional'", types["integrator"])
 
-    def test_members(self):
+    def test_classes_have_their_members(self):
         for kind in (pertev.Result, pertev.Scene, pertev.Params, pertev.Session, pertev.Viewer, pertev.BatchResult,
                      pertev.DeviceArray):
             of_stub = {node.name for node in DEFINED[kind.__name__].body if isinstance(node, ast.FunctionDef)}
@@ -54,7 +54,7 @@ class Stub(unittest.TestCase):
             self.assertEqual({name for name in of_stub if not name.startswith("_")},
                              {name for name in own if not name.startswith("_")}, kind.__name__)
 
-    def test_all_names(self):
+    def test_the_stub_has_all_names(self):
         imported = {alias.asname for node in STUB.body if isinstance(node, ast.ImportFrom) for alias in node.names}
         self.assertLessEqual(set(pertev.__all__), imported | set(DEFINED))
 

@@ -72,7 +72,7 @@ class Page(unittest.TestCase):
         self.assertEqual(self.values("document.querySelectorAll('line.guide').length"), 1)
         self.show(measurement([("job", None), ("ours", "s"), ("theirs", "s")], [["a", 1, 2], ["b", 4, "3 ± 1"]]))
         places = self.values("[...document.querySelectorAll('circle')].map((c) => Number(c.getAttribute('cx')))")
-        a, b, c, d = places  # ours of a and b, then theirs
+        a, b, c, d = places  # Pertev's rates of a and b, then the others'
         self.assertAlmostEqual((b - a) / 3, c - a, 3)
         self.assertAlmostEqual((b - a) / 3 * 2, d - a, 3)
 
@@ -92,7 +92,7 @@ class Page(unittest.TestCase):
         self.browser.value(look % (x + 0.75 * width, y + 0.5 * height))
         places = self.values("[...document.querySelectorAll('.inset')].map((i) => i.style.backgroundPosition.match(/[0-9.]+/g).map(Number))")
         self.assertEqual(len(places), 4)
-        for right, down in places:  # 90 less 0.75 of 2 pixels and 0.5 of 1, 8 times as large
+        for right, down in places:  # 90 minus 0.75 of 2 pixels and 0.5 of 1 pixel, magnified 8 times
             self.assertAlmostEqual(right, 78, delta=0.1)
             self.assertAlmostEqual(down, 86, delta=0.1)
 

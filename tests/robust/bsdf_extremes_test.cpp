@@ -1,5 +1,5 @@
-// No direction, parameter or random number makes a BSDF give a value that is not finite, a negative one, a direction
-// that is not of unit length, or a weight that would be a firefly.
+// For no direction, parameter or random number does a BSDF return a value that is negative or not finite, a direction
+// that is not unit, or a weight that would be a firefly.
 
 #include <doctest/doctest.h>
 

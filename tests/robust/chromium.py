@@ -1,4 +1,4 @@
-"""A real headless Chromium, driven over its DevTools protocol with the standard library alone."""
+"""A real headless Chromium, driven over its DevTools protocol with only the standard library."""
 
 import base64
 import contextlib
@@ -17,12 +17,12 @@ NAMES = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"
 
 
 def find_chromium():
-    """Its path, or None."""
+    """Returns Chromium's path, or None."""
     return next((path for path in map(shutil.which, NAMES) if path), None)
 
 
 class Chromium:
-    """One window; what its console says in error is kept."""
+    """One window, which keeps the errors of its console."""
 
     def __init__(self, width=1280, height=720):
         self.size, self.number, self.errors, self.events = (width, height), 0, [], []
@@ -65,14 +65,14 @@ class Chromium:
             return file.read()
 
     def wait(self, wanted, patience=PATIENCE_S):
-        """The first value of wanted() that is not empty."""
+        """Waits for a value of wanted() that is not empty, and returns it."""
         end = time.monotonic() + patience
         while time.monotonic() < end:
             try:
                 if value := wanted():
                     return value
             except (OSError, RuntimeError):
-                pass  # the page, or the browser, is not there yet
+                pass  # the page or the browser does not exist yet
             time.sleep(0.03)
         raise TimeoutError("what was waited for did not come")
 
@@ -101,7 +101,7 @@ class Chromium:
 
     @contextlib.contextmanager
     def visit(self, address):
-        """There for the block; errors before it do not count."""
+        """Exists within the block. Earlier errors do not count."""
         self.errors.clear()
         self.go(address)
         yield self
@@ -111,7 +111,7 @@ class Chromium:
         self.go("about:blank")
 
     def value(self, script):
-        """The value of a script that is run in the page; a promise is awaited."""
+        """Runs a script in the page and returns its value. A promise is awaited."""
         result = self.call("Runtime.evaluate", expression=script, returnByValue=True, awaitPromise=True)
         if "exceptionDetails" in result:
             raise RuntimeError(f"{script}: {result['exceptionDetails']}")
@@ -149,7 +149,7 @@ class Chromium:
                   touchPoints=[{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)])
 
     def clipboard(self):
-        """The text in it."""
+        """Returns the element's text."""
         self.call("Browser.grantPermissions", permissions=["clipboardReadWrite", "clipboardSanitizedWrite"])
         return self.value("navigator.clipboard.readText()")
 
@@ -159,7 +159,7 @@ class Chromium:
 
 
 def ask(port, path):
-    """The browser's answer to an HTTP request, parsed as JSON."""
+    """Returns the browser's answer to an HTTP request, parsed as JSON."""
     with socket.create_connection(("127.0.0.1", port), PATIENCE_S) as made:
         made.sendall(f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nConnection: close\r\n\r\n".encode())
         made.settimeout(5)

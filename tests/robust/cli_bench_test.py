@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`pertev bench` and its verbs: nothing is measured before the whole line is known to be right, and Ctrl-C is heard."""
+"""`pertev bench` and its verbs: nothing is measured before the whole command line is checked, and Ctrl-C ends each."""
 
 import csv
 import json
@@ -95,11 +95,11 @@ class Bench(CliTest):
     def test_errors_of_the_command_line_come_before_anything_is_measured_or_printed(self):
         rays = ["bench", "rays", "--count", "100", "--device", "cpu"]
         lines = [(["bench", "--scene", "cornell-box", "--size", "0x0"], "--size 0x0"),
-                 (["bench", "--scene", "cornell-box", "--scene", "nowhere.obj"], "nowhere.obj: there is no such file"),
+                 (["bench", "--scene", "cornell-box", "--scene", "nowhere.obj"], "nowhere.obj: the file does not exist"),
                  (["bench", "--scene", "cornell-box", "--scene", "spnza"], "spnza: neither"),
-                 (["bench", "render", "--scene", "nowhere.obj", "-o", "x.exr"], "nowhere.obj: there is no such file"),
+                 (["bench", "render", "--scene", "nowhere.obj", "-o", "x.exr"], "nowhere.obj: the file does not exist"),
                  (["bench", "render", "--scene", "cornell-box", "-o", "x.bmp"], "x.bmp"),
-                 ([*rays, "--scene", "cornell-box", "--scene", "nowhere.obj"], "nowhere.obj: there is no such file"),
+                 ([*rays, "--scene", "cornell-box", "--scene", "nowhere.obj"], "nowhere.obj: the file does not exist"),
                  ([*rays, "--scene", "cornell-box", "--scene", "spnza"], "sponza, bunny or forest"),
                  ([*rays, "--scene", "cornell-box", "--scene", "sponza"], "PERTEV_SCENES")]
         environment = dict(self.environment, PERTEV_SCENES=self.folder)
@@ -107,7 +107,7 @@ class Bench(CliTest):
             with self.subTest(line=line):
                 self.assertEqual(self.refuse(2, *line, says=[says], env=environment).stdout, "")
         write(self.path("flat.obj"), "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
-        for verb in [["bench"], rays]:  # detectable only by its content
+        for verb in [["bench"], rays]:  # only its content shows the fault
             self.assertEqual(self.refuse(2, *verb, "--scene", "flat.obj", says=["flat.obj"]).stdout, "")
 
     def test_an_interrupt_ends_every_benchmark_with_75_and_leaves_no_files(self):
@@ -122,13 +122,13 @@ class Bench(CliTest):
                                                stdout=subprocess.PIPE, stderr=subprocess.PIPE)
                     self.addCleanup(program.kill)
                     self.wait_while(program, is_listening=False)
-                    time.sleep(0.5)  # it is measuring
+                    time.sleep(0.5)  # the program is measuring
                     start = time.monotonic()
                     program.send_signal(kind)
                     stdout, stderr = program.communicate(timeout=300)
                     self.assertEqual(program.returncode, 75, stderr)
                     self.assertLess(time.monotonic() - start, 60)
-                    self.assertRegex(stderr.decode(), r"pertev: interrupted( before .*)?\n$")  # the latter while it loads
+                    self.assertRegex(stderr.decode(), r"pertev: interrupted( before .*)?\n$")  # the latter arrives while the program loads
                     self.assertEqual(os.listdir(scratch), [])
                     self.assertEqual(self.files(), [])
                     self.assertEqual(stdout, b"")
@@ -169,10 +169,10 @@ class Bench(CliTest):
         half = self.succeed(*small, "--keep", "50", "--json").events("noise")[0]
         self.assertEqual(half["pixels"], 512)
         self.assertLess(half["rel_mse"], all_pixels["rel_mse"] / 4)
-        # Not that sampler's own best half, which varies as little as the other's: the two choices differ.
+        # The pixels are not the best half of that sampler, which would vary as little: the two choices differ.
         self.assertGreater(half["ratio"], 2 * all_pixels["ratio"])
 
-        # A smooth integrand and a number of samples that fills whole strata.
+        # The integrand is smooth, and the number of samples fills whole strata.
         fine = self.succeed(*line, "--integrator", "direct", "--spp", "64", "--seeds", "4", "--json").events("noise")[0]
         self.assertGreater(fine["ratio"], 1.5)
         self.assertLess(abs(fine["mean"] / fine["mean_independent"] - 1), 0.05)
@@ -237,7 +237,7 @@ class Bench(CliTest):
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         self.addCleanup(program.kill)
         self.wait_while(program, is_listening=False)
-        time.sleep(0.5)  # it is measuring
+        time.sleep(0.5)  # the program is measuring
         program.send_signal(signal.SIGINT)
         stdout, stderr = program.communicate(timeout=300)
         self.assertEqual((program.returncode, stderr), (75, b""))
@@ -245,7 +245,7 @@ class Bench(CliTest):
         self.assertEqual((last["event"], last["status"], last["interrupted"]), ("error", 75, True))
 
     def test_the_seed_of_a_job_changes_its_hash_but_hardly_its_mean(self):
-        # Five sides of a hall around the job's camera, which stands at (-110, 18, -2) and looks along +x; the roof is open.
+        # Five sides of a hall around the job's camera at (-110, 18, -2), which looks along +x. The roof is open.
         corners = [f"v {x} {y} {z}\n" for x in (-120, 70) for y in (-2, 60) for z in (-20, 20)]
         sides = ["1 2 4 3", "1 5 6 2", "1 3 7 5", "2 6 8 4", "5 7 8 6"]
         write(self.path("hall.obj"), "".join(corners) + "".join(f"f {side}\n" for side in sides))
@@ -257,7 +257,7 @@ class Bench(CliTest):
         self.assertNotEqual(zero["hash"], one["hash"])
         self.assertEqual(one["hash"], again["hash"])
         self.assertLess(abs(one["mean"] / zero["mean"] - 1), 0.1)
-        self.assertLess(one["mean"], 0.9)  # it sees the hall
+        self.assertLess(one["mean"], 0.9)  # the camera shows the hall
         for seed in ["-1", "4294967296", "x"]:
             self.refuse(2, *job, "--seed", seed, says=["--seed"])
 

@@ -1,4 +1,4 @@
-"""Cameras by matrices, K and lenses on the command line, from the metadata of a picture, and many of them in a file."""
+"""Cameras on the command line: matrices, K and lenses, the metadata of a picture, and files of many cameras."""
 
 import json
 import math
@@ -12,7 +12,7 @@ VIEW = ["--eye", "0.3,0.35,-0.7", "--target", "0.2,0.25,0.3", "--fov", "40"]  # 
 
 class CamerasOfCalibrations(CliTest):
     def matrix(self, *flags):
-        """The columns of the matrix world from camera."""
+        """Returns the columns of the matrix world from camera."""
         self.render(*flags, output="x.exr")
         return self.info("x.exr")["pertev.world_from_camera"]
 
@@ -84,7 +84,7 @@ class CamerasOfCalibrations(CliTest):
         for verb in (["bench", "frames"], ["bench", "sequence", "--turntable", "90", "--frames", "0-1"], ["view"]):
             self.refuse(2, *verb[:2], "cornell-box", *verb[2:], "--device", "cpu", "--camera-from", "fisheye.exr", says=["distortion"])
 
-    def test_what_excludes_each_other_is_refused(self):
+    def test_settings_that_exclude_each_other_are_refused(self):
         pose = ["--camera-pose", "1,0,0,0,0,1,0,1,0,0,1,4"]
         lens = ["--distortion", "0.1,0,0,0"]
         intrinsics = ["--intrinsics", "20,20,8,8"]
@@ -118,14 +118,14 @@ class ManyCameras(CliTest):
         return self.succeed("render", "cornell-box", "-o", "x.exr", "--spp", "1", "--device", "cpu", "--json",
                             *ALONE[name]).events("done")[0]["hash"]
 
-    def test_each_camera_s_picture_has_the_bytes_of_the_same_camera_alone(self):
+    def test_each_picture_has_the_bytes_of_a_single_render_of_its_camera(self):
         frames = self.succeed(*self.many()).events("frame")
         self.assertEqual([(frame["frame"], frame["camera"]) for frame in frames], [(0, "front"), (1, "side")])
         self.assertEqual([frame["hash"] for frame in frames], [self.alone("front"), self.alone("side")])
         self.assertEqual(read_exr(self.path("front.exr"))[:2], (12, 8))
         self.assertEqual(read_exr(self.path("side.exr"))[:2], (16, 16))
 
-    def test_a_picture_s_settings_make_it_again_alone(self):
+    def test_a_picture_s_settings_reproduce_it(self):
         frames = self.succeed(*self.many("-o", "{name}.png")).events("frame")
         settings = self.succeed("info", "side.exr", "--settings").stdout
         self.assertNotIn("cameras", json.loads(settings)["settings"])
@@ -133,7 +133,7 @@ class ManyCameras(CliTest):
         again = self.succeed("render", "cornell-box", "-o", "again.exr", "-o", "again.png", "--settings", "side.json",
                              "--device", "cpu", "--json")
         self.assertEqual(again.events("done")[0]["hash"], frames[1]["hash"])
-        self.assertEqual(read_png(self.path("again.png")), read_png(self.path("side.png")))  # exposed as the list is
+        self.assertEqual(read_png(self.path("again.png")), read_png(self.path("side.png")))  # with the exposure of the list
 
     def test_an_interrupted_list_continues_where_files_are_missing_and_refuses_other_cameras(self):
         self.succeed(*self.many(output="v-##-{name}.exr"))
@@ -144,7 +144,7 @@ class ManyCameras(CliTest):
         moved = dict(SIDE, intrinsics=[10, 12, 7, 8])
         self.refuse(2, *self.many("--continue", output="v-##-{name}.exr", cameras=[FRONT, moved]), says=["--cameras"])
 
-    def test_a_file_of_cameras_that_is_wrong_is_refused_with_its_place(self):
+    def test_an_invalid_file_of_cameras_is_refused_with_the_location(self):
         for camera, says in [({"name": "front"}, "/cameras/1"), ({"spp": 4}, "spp"), ({"fov": 400}, "/cameras/1"),
                              ({"eye": [0, 0, 1], "camera_pose": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]}, "/cameras/1")]:
             with self.subTest(camera=camera):
@@ -153,14 +153,14 @@ class ManyCameras(CliTest):
         self.refuse(2, *self.many(output="x.exr"), says=["{name}"])
         self.refuse(2, *self.many("--frames", "0-1"), says=["--frames"])
 
-    def test_transforms_and_colmap_show_what_their_poses_say(self):
+    def test_transforms_and_colmap_poses_give_the_expected_picture(self):
         matrix = [[-1, 0, 0, 0.25], [0, 1, 0, 0.3], [0, 0, -1, -0.8], [0, 0, 0, 1]]
         write(self.path("transforms.json"), json.dumps(
             {"fl_x": 10, "fl_y": 12, "cx": 7, "cy": 9, "w": 16, "h": 16, "k1": -0.1,
              "frames": [{"file_path": "images/side.png", "transform_matrix": matrix}]}))
         os.mkdir(self.path("sparse"))
         write(self.path("sparse/cameras.txt"), "1 OPENCV 16 16 10 12 7 9 -0.1 0 0 0\n")
-        # OpenCV's axes of the same camera: turned by half a turn about z, and the inverse of its place.
+        # This camera in OpenCV's axes, rotated by half a turn about z, and the inverse of its pose.
         write(self.path("sparse/images.txt"), "1 0 0 0 1 0.25 0.3 0.8 1 side.png\n\n")
         expected = self.alone("side")
         for cameras in ["transforms.json", "sparse"]:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`render --checkpoint`: whatever ends a render, the next one goes on, and the picture is that of one run."""
+"""`render --checkpoint`: however a render ends, the next one resumes it, and the picture is that of one run."""
 
 import json
 import os
@@ -20,17 +20,17 @@ ALWAYS = [*FILE, "--checkpoint-every", "1e-9"]  # after each pass
 
 
 def with_default(flags, defaults):
-    """The flags, and those of the defaults, in pairs, that are not among them."""
+    """Returns the flags and those defaults, in pairs, that they do not set."""
     return [*flags, *(text for flag, value in zip(defaults[::2], defaults[1::2], strict=True) if flag not in flags for text in (flag, value))]
 
 
 class Checkpoints(CliTest):
     def whole(self, *flags):
-        """The event of a render without a checkpoint; the film file is what an exposure is for."""
+        """Returns the event of a render without a checkpoint. The film file makes it meter the exposure."""
         return self.succeed("render", "cornell-box", "-o", "whole.exr", "-o", "whole.pvf", *SMALL, *flags).events("done")[0]
 
     def go_on(self, *flags, output="x.exr"):
-        """The events of a render with the checkpoint, which succeeds."""
+        """Renders with the checkpoint, which succeeds, and returns the events."""
         return self.succeed("render", "cornell-box", "-o", output, *SMALL, *(FILE if "--checkpoint" not in flags else []), *flags).events()
 
     def done(self, *flags, **options):
@@ -44,7 +44,7 @@ class Checkpoints(CliTest):
         return program
 
     def samples(self, name="c.pvf"):
-        """The number of samples in a film file that is there, and whole."""
+        """Returns the number of samples in an existing, complete film file."""
         self.succeed("merge", name, "--partial", "-o", "preview.exr")
         return int(self.info(name)["samples"].split(":")[1])
 
@@ -81,9 +81,9 @@ class Checkpoints(CliTest):
             else:
                 self.assertEqual(least, 0)
         self.assertGreater(kept, 0)
-        self.assertLessEqual(len([name for name in self.files() if name.startswith(".")]), 1)  # killed between two names
+        self.assertLessEqual(len([name for name in self.files() if name.startswith(".")]), 1)  # killed between two renamings
         events = self.go_on("--spp", kept + 7)
-        self.assertIn(f"goes on from {kept} of {kept + 7} samples in c.pvf", [event.get("text") for event in events])
+        self.assertIn(f"resumes from {kept} of {kept + 7} samples in c.pvf", [event.get("text") for event in events])
         self.assertEqual(events[-1]["samples"], kept + 7)
         self.assertEqual(events[-1]["hash"], self.whole("--spp", kept + 7)["hash"])
         self.assertEqual(self.metadata("x.exr"), self.metadata("whole.exr"))
@@ -117,7 +117,7 @@ class Checkpoints(CliTest):
         self.assertEqual(self.read("c.pvf.previous"), before)
         self.refuse(2, "render", "cornell-box", "-o", "y.exr", *SMALL, *FILE, "--spp", "5", says=["c.pvf", "up to 9", "--spp"])
 
-    def test_a_checkpoint_goes_with_every_integrator_and_all_layers(self):
+    def test_every_integrator_and_all_layers_support_a_checkpoint(self):
         kinds = [[kind] for kind in ["direct", "indirect", "hybrid", "distributed", "light", "bidirectional", "photon_map",
                                      "irradiance_cache", "radiosity"]]
         kinds += [[kind, "--ambient", "0.5"] for kind in ["cast", "whitted", "raster", "reyes"]]
@@ -131,12 +131,12 @@ class Checkpoints(CliTest):
                 for key in ["hash", "layers_hash", "invalid_samples", "samples"]:
                     self.assertEqual(got[key], whole[key], key)
                 got, whole = self.metadata("x.exr"), self.metadata("whole.exr")
-                if kind[0] in ("irradiance_cache", "radiosity"):  # each run makes its records first, whose rays count
+                if kind[0] in ("irradiance_cache", "radiosity"):  # each run makes its records first, and their rays count
                     del got["pertev.rays"], whole["pertev.rays"]
                 self.assertEqual(got, whole)
                 os.remove(self.path("c.pvf"))
 
-    def test_a_part_goes_on_and_merges_and_a_checkpoint_is_a_film_file(self):
+    def test_a_part_resumes_and_merges_and_a_checkpoint_is_a_film_file(self):
         part = ["--spp", "9", "--part", "2/3"]
         self.succeed("render", "cornell-box", "-o", "1.pvf", *SMALL, "--spp", "9", "--part", "1/3")
         self.succeed("render", "cornell-box", "-o", "2.pvf", *SMALL, *part, *FILE)
@@ -148,14 +148,14 @@ class Checkpoints(CliTest):
         self.assertEqual(done["hash"], self.whole("--spp", "9")["hash"])
         self.assertEqual(self.succeed("merge", "1.pvf", "c.pvf", "-o", "all.exr", "--json").events("done")[0]["hash"], done["hash"])
 
-    def test_a_time_limit_is_that_of_each_run(self):
+    def test_a_time_limit_applies_to_each_run(self):
         first = self.done("--spp", "8000000", "--time-limit", "0.2")["samples"]
         second = self.done("--spp", "8000000", "--time-limit", "0.2", "--checkpoint-every", "0.05")["samples"]
         self.assertGreater(second, first)
         self.assertEqual(self.samples(), second)
         self.assertEqual(self.done("--spp", second)["hash"], self.whole("--spp", second)["hash"])
 
-    def test_a_damaged_checkpoint_is_found_and_the_generation_before_is_used(self):
+    def test_a_damaged_checkpoint_is_detected_and_the_previous_generation_is_used(self):
         self.done("--spp", "3")
         whole = self.whole("--spp", "8")["hash"]
         for name, damage in [("flipped", lambda: self.flip("c.pvf")), ("header", lambda: self.flip("c.pvf", 40)),
@@ -170,7 +170,7 @@ class Checkpoints(CliTest):
                 self.assertEqual(len(warnings), 1)
                 self.assertIn("c.pvf.previous, is used", warnings[0])
                 self.assertEqual(events[-1]["hash"], whole)
-                self.assertEqual(self.read("c.pvf.previous"), earlier)  # not the damaged one
+                self.assertEqual(self.read("c.pvf.previous"), earlier)  # this is not the damaged one
                 for kept in ("c.pvf", "c.pvf.previous"):
                     os.remove(self.path(kept))
                 self.done("--spp", "3")
@@ -195,7 +195,7 @@ class Checkpoints(CliTest):
         self.refuse(2, "render", "cornell-box", "-o", "y.exr", *SMALL, "--checkpoint", "text.pvf", says=["text.pvf", "no film file"])
         self.refuse(6, "render", "nowhere.obj", "-o", "y.exr", *SMALL, "--checkpoint", "nowhere/c.pvf", says=["nowhere/c.pvf"])
 
-    def test_what_a_checkpoint_does_not_hold_is_refused(self):
+    def test_settings_that_a_checkpoint_does_not_support_are_refused(self):
         for flags in ["--denoise svgf", "--aov motion", "--turntable 4", "--frames 0-3", "--checkpoint-every 0"]:
             with self.subTest(flags=flags):
                 self.refuse(2, "render", "cornell-box", "-o", "y-#.exr", *SMALL, *FILE, *flags.split(),

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Files with several animations and several scenes: what plays, what is shown, who says so, and how both are chosen."""
+"""Files with several animations and several scenes: which animation plays, which scene is shown, and how to choose them."""
 
 import base64
 import json
@@ -11,13 +11,13 @@ from cli_run import CliTest, main, write
 
 TINY = ["--size", "24x16", "--spp", "2", "--device", "cpu", "--exposure", "0"]
 
-# Each moves node 0 (the last: the lamp's colour) from where it is at 0 s to another place at its end.
+# Each moves node 0 (the last one changes the light's colour) from its position at 0 s to another one at its end.
 CLIPS = [("go", (2, 0, 0), 2), ("rise", (0, 1, 0), 1), ("twin", (-1, 0, 0), 1), ("twin", (0, -1, 0), 4), (None, (1, 1, 0), 3),
          ("1", (-2, 0, 0), 1), ("dim", (0.25, 0, 0), 1)]
 
 
 def gltf(clips, scenes=(("one", [0, 1, 2]),), shown=None):
-    """A triangle that the clips move, a camera, a lamp, and another triangle."""
+    """A triangle that the clips move, a camera, a light, and another triangle."""
     numbers = struct.pack("<9f", -1, -1, 0, 1, -1, 0, 0, 1, 0)
     views, accessors, animations = [(0, 36)], [(3, "VEC3", {"min": [-1, -1, 0], "max": [1, 1, 0]})], []
 
@@ -75,7 +75,7 @@ class Clips(CliTest):
         self.assertNotIn(together, alone)
         write(self.path("last.gltf"), gltf(CLIPS[5:]))  # among animations of one property the later one counts
         self.assertEqual(self.hash_at("--time", "0.5", "--animation", "all", scene="last.gltf"), together)
-        self.assertEqual(self.hash_at("--animation", "all"), self.hash_at())  # at rest nothing plays
+        self.assertEqual(self.hash_at("--animation", "all"), self.hash_at())  # nothing plays at rest
 
     def test_the_error_for_an_unknown_animation_lists_the_known_ones(self):
         write(self.path("still.gltf"), gltf([]))
@@ -125,7 +125,7 @@ class Clips(CliTest):
         self.assertEqual(first[1]["hash"], self.hash_at("--time", "0.5", scene="alone-0.gltf"))
         for words in ["rise", "all"]:
             self.refuse(2, *frames, "--frames", "0-2", "--continue", "--animation", words, says=["--animation", '"go"', f'"{words}"'])
-        for words in [[], ["--animation", "go"], ["--animation", "0"]]:  # one animation, however it is named
+        for words in [[], ["--animation", "go"], ["--animation", "0"]]:  # name and number choose the same animation
             end = self.succeed(*frames, "--frames", "0-2", "--continue", "--json", *words).events("sequence")[0]
             self.assertEqual(end["written"] + end["kept"], 3)
 

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Each command of README.md, CONTRIBUTING.md and docs/ that begins with the program is run, on small stand-ins for the files that it names and at
-small sizes. Commands in PARSED take too long, or need a server, a GPU or a public scene; of these the verb and the flags must exist.
-Other programs' commands are asked what they would do: CTest which tests it would run, CMake for its presets, Ninja for its targets, scripts
-for their help, which has their flags. `tools/check_documents.py` looks at links and at scripts in sentences."""
+"""Each command of README.md, CONTRIBUTING.md and docs/ that begins with the program is run at small sizes, on small
+substitutes for the files that it names. Commands in PARSED take too long or need a server, a GPU or a public scene, so
+only their verb and flags are checked. Commands of other programs make dry runs: CTest lists its tests, CMake its
+presets, Ninja its targets, and scripts their help with their flags. `tools/check_documents.py` checks links and
+scripts in sentences."""
 
 import functools
 import json
@@ -27,7 +28,7 @@ SMALL = {"--size": "24x16", "--spp": "1", "--seconds": "0.3", "--depths": "1-2",
 ADDED = {"render": ["--size", "--spp"], "lab": ["--size", "--runs"], "lab --transport": ["--size", "--seconds", "--repetitions", "--reference-spp"],
          "bench": ["--size", "--spp"], "bench noise": ["--size", "--spp"], "measure": ["--spp"]}
 BUILD = pathlib.Path(PROGRAM).resolve().parents[1]
-ALONE = {"tools/make_tables.py": ["--check"]} # it writes otherwise
+ALONE = {"tools/make_tables.py": ["--check"]} # it would write files
 QUICK = {"solve radiosity": ["--patch-size", "0.3", "--patch-rays", "16"], "lab": ["--no-heat-maps"],
          "bench": ["--device", "cpu"], "lab --transport": []}
 
@@ -38,7 +39,7 @@ def as_glb(text):
 
 
 def verb_of(words):
-    """One word or two, and `lab --transport` as a verb of its own."""
+    """Returns one word or two, with `lab --transport` as a separate verb."""
     if words[0] == "lab" and "--transport" in words:
         return "lab --transport"
     return " ".join(words[:2]) if words[0] in ("bench", "solve") and words[1:] and not words[1].startswith("-") else words[0]
@@ -56,7 +57,7 @@ def made_small(words):
 
 class Commands(CliTest):
     def stand_in(self):
-        """The files that commands of the documents name."""
+        """Makes the files that commands of the documents name."""
         box = self.path("moving.gltf")
         subprocess.run([sys.executable, ROOT / "tools/make_moving_box.py", box], check=True)
         scene = json.loads(pathlib.Path(box).read_text(encoding="utf-8"))
@@ -71,7 +72,7 @@ class Commands(CliTest):
             self.render(scene="room.gltf", size=SMALL["--size"], output=name)
 
     def check_flags(self, words):
-        """The verb and the flags of a command exist."""
+        """Tests that the verb and the flags of a command exist."""
         given = {word.split("=")[0] for word in words if re.match(r"--?[a-z]", word)}
         self.assertLessEqual(given, self.flags_of(verb_of(words)), "flags that the verb has not got")
 
@@ -128,13 +129,13 @@ class Commands(CliTest):
         self.assertEqual(self.run_pertev(*made_small(shlex.split("render cornell-box -o a.png --no-such-flag"))).status, 2)
 
     def said(self, *command):
-        """The output of a command in the folder of the sources, which must succeed."""
+        """Runs a command in the folder of the sources, which must succeed, and returns its output."""
         done = subprocess.run([str(word) for word in command], cwd=ROOT, capture_output=True, text=True, check=False, timeout=120)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         return done.stdout
 
     def check_other(self, words):
-        """A command of another program would do something. Scripts without arguments only read, but for ALONE."""
+        """Tests that a command of another program would do something. Scripts without arguments only read, except for ALONE."""
         program, flags = words[0], [word.split("=")[0] for word in words if word.startswith("--")]
         if program == "ctest":
             listed = self.said("ctest", *[BUILD if word == "build" else word for word in words[1:]], "-N")
@@ -160,7 +161,7 @@ class Commands(CliTest):
             self.said("bash", "-n", ROOT / program)
 
     @unittest.skipUnless((BUILD / "build.ninja").exists() and (BUILD / "CTestTestfile.cmake").exists(), "needs the folder of a build")
-    def test_commands_of_other_programs_would_do_something(self):
+    def test_commands_of_other_programs_have_an_effect(self):
         asked = set()
         for document in check_documents.documents(ROOT):
             for command in check_documents.commands(document.read_text(encoding="utf-8")):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How a render ends before its time: by Ctrl-C, once or twice, or by a limit."""
+"""How a render ends early: by one or two Ctrl-C, or by a limit."""
 
 import json
 import os
@@ -13,7 +13,7 @@ from cli_run import PATIENCE_S, PROGRAM, SANITIZED, CliTest, listen_to, main
 
 
 def user_seconds(pid):
-    """Processor time that a running process has used in its own code, which other processes do not change as they do the clock's."""
+    """Returns the processor time that a running process has used in its own code. Unlike the clock, other processes do not affect it."""
     with open(f"/proc/{pid}/stat", encoding="ascii") as file:
         return int(file.read().rpartition(")")[2].split()[11]) / os.sysconf("SC_CLK_TCK")
 
@@ -51,11 +51,11 @@ class WhenItEnds(CliTest):
                                     "--threads", "1", "--device", "cpu"], cwd=self.folder, env=self.environment, stderr=follower)
         self.addCleanup(program.kill)
         os.close(follower)
-        while b"/640 spp" not in b"".join(said):  # one sample is whole, and the next is under way
+        while b"/640 spp" not in b"".join(said):  # one sample is complete, and the next has begun
             self.assertIsNone(program.poll())
             time.sleep(0.01)
         program.send_signal(signal.SIGINT)
-        self.wait_while(program, is_listening=True)  # until the first is heard
+        self.wait_while(program, is_listening=True)  # until the first signal is handled
         self.assertIsNone(program.poll(), "the first interrupt waits for the sample to be whole")
         program.send_signal(signal.SIGINT)
         program.wait(300)

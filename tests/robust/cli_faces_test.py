@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Which faces shine and which are seen: --two-sided-lights, --show-back-faces, and what is said of both."""
+"""Which faces emit and which are visible: --two-sided-lights, --show-back-faces, and messages about both."""
 
 from cli_run import CliTest, gltf_with_cameras, main, write
 
-# A floor, and a lamp above it that faces down.
+# A floor, and an emitter above it that faces down.
 LAMP = """mtllib lamp.mtl
 v -1 0 -1
 v 1 0 -1
@@ -26,10 +26,10 @@ class FacesTest(CliTest):
         super().setUp()
         write(self.path("lamp.mtl"), "newmtl bulb\nKe 5 5 5\n")
         write(self.path("lamp.obj"), LAMP)
-        write(self.path("sheet.gltf"), gltf_with_cameras())  # nothing in it is double sided
+        write(self.path("sheet.gltf"), gltf_with_cameras())  # no surface is double sided
 
     def told(self, about, *arguments):
-        """Kind, file and reason of each remark about a setting."""
+        """Returns kind, file and reason of each remark about a setting."""
         return [(event["event"], event.get("place", {}).get("file"), event["reason"]) for event in self.remarks(
             "render", *arguments, "-o", "x.png", "--size", "16x16", "--spp", "1", "--device", "cpu", about=about)]
 
@@ -47,7 +47,7 @@ class FacesTest(CliTest):
         self.assertGreater(both, front + 0.1)
 
     def test_one_sided_emitters_of_an_obj_are_reported_with_the_flag_for_two_sides(self):
-        ((kind, file, reason),) = self.told("two_sided_lights", "lamp.obj")  # no warning of fronts beside it
+        ((kind, file, reason),) = self.told("two_sided_lights", "lamp.obj")  # there is no warning about fronts besides
         self.assertEqual((kind, file), ("notice", "lamp.obj"))
         self.assertRegex(reason, r"\b1\b.*\bbulb\b")
         self.assertEqual(self.told("two_sided_lights", "lamp.obj", "--two-sided-lights"), [])

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Scenes far from the origin of their files, in metres of a survey: flags, pictures and numbers keep the digits."""
+"""Scenes far from the origin of their files, in survey coordinates: flags, pictures and numbers keep their digits."""
 
 import math
 
@@ -9,7 +9,7 @@ EAST, NORTH = 448262.257, 5411933.125  # UTM
 
 
 def fence(x, y):
-    """Four slats of 0.125 m, one above the other, with gaps as high, as OBJ."""
+    """Returns an OBJ of four slats of 0.125 m, one above the other, with gaps of the same height."""
     text = ""
     for i in range(4):
         low, high = y + 0.25 * i, y + 0.25 * i + 0.125
@@ -28,12 +28,12 @@ class Far(CliTest):
         write(self.path("far.obj"), fence(EAST, NORTH))
 
     def see(self, scene, x, y, output):
-        """Orthographic, from 5 m in front of the middle of a fence whose corner is there."""
+        """Returns an orthographic view from 5 m in front of the centre of the fence with this corner."""
         return self.render("--projection", "orthographic", "--view-height", "1.2", "--eye", f"{x + .5!r},{y + .4375!r},5",
                            "--target", f"{x + .5!r},{y + .4375!r},0", "--environment", "1,1,1", "--transparent",
                            "--aov", "position", scene=scene, size="48x48", output=output)
 
-    def test_a_fence_far_from_the_origin_looks_like_one_near_it(self):
+    def test_a_fence_far_from_the_origin_has_the_picture_of_one_near_it(self):
         pictures = []
         for scene, x, y in [("near.obj", 0, 0), ("far.obj", EAST, NORTH)]:
             self.see(scene, x, y, f"{scene}.exr")
@@ -41,7 +41,7 @@ class Far(CliTest):
             column = [rows["A"][j][24] > 0.5 for j in range(48)]
             self.assertEqual(sum(1 for a, b in zip(column, column[1:]) if b and not a), 4, scene)
             pictures.append(rows["A"])
-        for near, far in zip(*pictures):  # but for the edges
+        for near, far in zip(*pictures):  # except at edges
             self.assertLess(sum(abs(a - b) for a, b in zip(near, far)), 2)
 
     def test_metadata_gives_the_flags_and_the_origin_of_positions(self):
@@ -76,7 +76,7 @@ class Far(CliTest):
         told = self.info("far.obj")
         for got, wanted in zip(told["bounds_low"] + told["bounds_high"], [EAST, NORTH, 0, EAST + 1, NORTH + 0.875, 0]):
             self.assertAlmostEqual(got, wanted, delta=1e-6)
-        # The point is 5 cm behind a gap and faces the fence, which hides a part of the sky.
+        # The point is 5 cm behind a gap and faces the fence, which blocks a part of the sky.
         numbers = []
         for scene, x, y in [("near.obj", 0, 0), ("far.obj", EAST, NORTH)]:
             outcome = self.succeed("measure", scene, "--at", f"{x + .5!r},{y + .1875!r},0.05", "--normal", "0,0,-1", "--spp",

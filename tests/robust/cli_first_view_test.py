@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A file opened without flags gets a default light, ground and view where it has none."""
+"""A file that is opened without flags gets a default light, ground and view if it has none."""
 
 import base64
 import json
@@ -13,7 +13,7 @@ BACKGROUND = 4294967295
 
 
 def png(value):
-    """One grey pixel of `value` out of 255."""
+    """Returns one grey pixel of `value` out of 255."""
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
@@ -26,7 +26,7 @@ def quad(corners):
 
 
 def box(half, at):
-    """The six sides, with their fronts outside."""
+    """Returns the six sides of a box, facing outwards."""
     numbers = []
     for axis in range(3):
         for sign in (-1, 1):
@@ -41,7 +41,7 @@ def box(half, at):
 
 
 def gltf(parts, cameras=()):
-    """A mesh for each (numbers of triangles' corners, material); cameras stand at places and look along -z."""
+    """Writes a mesh for each (vertex indices of triangles, material), and cameras that look along -z."""
     file = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": []}], "nodes": [], "meshes": [],
             "materials": [], "accessors": [], "bufferViews": [], "buffers": [], "textures": [{"source": 0}],
             "images": [{"uri": "data:image/png;base64," + base64.b64encode(png(255)).decode()}]}
@@ -69,7 +69,7 @@ TEXTURED_LAMP = {**LAMP, "emissiveTexture": {"index": 0}}
 
 
 def lamp_above(y, half):
-    """A square that faces down, as one with its front below."""
+    """A square that faces down."""
     return quad([(-half, y, -half), (half, y, -half), (half, y, half), (-half, y, half)])
 
 
@@ -89,7 +89,7 @@ class FirstView(CliTest):
 
     def test_a_textured_emitter_lights_a_scene_without_a_default_sky(self):
         floor = quad([(-3, 0, 3), (3, 0, 3), (3, 0, -3), (-3, 0, -3)])
-        # Radiance 1 times the form factor of a square of 2 m, 1 m above its middle.
+        # The result is radiance 1 times the form factor of a square of 2 m from 1 m above its centre.
         right = 4 * math.sqrt(0.5) * math.atan(math.sqrt(0.5))
         for name, lamp in (("plain.gltf", LAMP), ("textured.gltf", TEXTURED_LAMP)):
             write(self.path(name), gltf([(floor, GREY), (lamp_above(1, 1), lamp)]))
@@ -121,7 +121,7 @@ class FirstView(CliTest):
                 self.assertEqual(on[layer], off[layer], layer)
         ids = {value for row in on["id.instance"] for value in row}
         self.assertEqual(ids, {0, BACKGROUND})
-        # The thing stands in a shadow of its own, which darkens the ground beneath it, and nothing is brighter.
+        # The object's shadow darkens the ground, and no pixel is brighter.
         darker = sum(on["G"][y][x] < 0.8 * off["G"][y][x] for y in range(48) for x in range(48)
                      if on["id.instance"][y][x] == BACKGROUND)
         self.assertGreater(darker, 20)

@@ -1,4 +1,4 @@
-"""Moving pictures: times, frames, a camera's path, a turntable; and sequences that are interrupted and go on."""
+"""Moving scenes: times, frames, a camera's path, a turntable, and sequences that are interrupted and resumed."""
 
 import base64
 import json
@@ -15,11 +15,11 @@ TINY = ["--size", "24x16", "--spp", "2", "--device", "cpu", "--exposure", "0"]
 
 
 def moving_gltf(way=2):
-    """A triangle that goes along x by this way in 2 s and a camera that goes along with another node; a lamp."""
+    """A triangle that moves along x by this distance in 2 s, a camera that moves with another node, and a light."""
     numbers = struct.pack("<9f", -1, -1, 0, 1, -1, 0, 0, 1, 0)  # 0: positions
     numbers += struct.pack("<2f", 0, 2)  # 36: times
     numbers += struct.pack("<6f", 0, 0, 0, way, 0, 0)  # 44: translations
-    numbers += struct.pack("<6f", 0, 0, 4, 0, 1, 4)  # 68: of the camera
+    numbers += struct.pack("<6f", 0, 0, 4, 0, 1, 4)  # 68: translations of the camera
     views = [(0, 36), (36, 8), (44, 24), (68, 24)]
     uri = "data:application/octet-stream;base64," + base64.b64encode(numbers).decode()
     return json.dumps({
@@ -56,7 +56,7 @@ class MovingPictures(CliTest):
         return self.succeed("render", scene, "-o", output, *TINY, "--json", *arguments)
 
     def test_time_moves_the_scene_and_its_camera(self):
-        self.assertEqual(self.hash_at("--time", "0"), self.hash_at())  # it rests as it begins
+        self.assertEqual(self.hash_at("--time", "0"), self.hash_at())  # the scene at rest is that at time 0
         self.assertNotEqual(self.hash_at("--time", "1"), self.hash_at())
         self.assertEqual(self.hash_at("--time", "2"), self.hash_at("--time", "1000"))
         self.assertEqual(self.hash_at("--time=-1"), self.hash_at("--time", "0"))
@@ -134,7 +134,7 @@ class MovingPictures(CliTest):
         self.assertNotEqual(blurred, sharp)
         self.assertEqual(self.hash_at("--time", "1", "--shutter=0,0.5"), blurred)
         self.assertNotEqual(self.hash_at("--time", "1", "--shutter=-0.5,0"), blurred)
-        self.assertEqual(self.hash_at("--time", "5", "--shutter", "1"), self.hash_at("--time", "5"))  # all is at rest then
+        self.assertEqual(self.hash_at("--time", "5", "--shutter", "1"), self.hash_at("--time", "5"))  # nothing moves at that time
         for integrator in ("distributed", "direct", "whitted", "cast"):
             moved = ["--time", "1", "--integrator", integrator]
             self.assertNotEqual(self.hash_at(*moved, "--shutter", "0.5"), self.hash_at(*moved))
@@ -226,7 +226,7 @@ class MovingPictures(CliTest):
             self.assertEqual(self.read(f"f-{k:02}.png"), self.read(f"again/f-{k:02}.png"), k)
 
     def run_on_a_full_disk(self, limit, *arguments):
-        """The last object and that of the sequence where no file grows past `limit` bytes."""
+        """Returns the last object and that of the sequence if no file may exceed `limit` bytes."""
         outcome = self.run_pertev("render", "m.gltf", *arguments, "--json",
                                   preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
         self.assertEqual((outcome.status, outcome.events()[-1]["event"]), (6, "error"), outcome)
@@ -246,7 +246,7 @@ class MovingPictures(CliTest):
     def test_frames_count_even_if_their_list_cannot_be_written(self):
         names = ["-o", "f-##.png", *TINY]
         self.frames("--frames", "0-0", "--fps", "20", output="f-##.png")
-        limit = os.path.getsize(self.path("f-##.json")) + 500  # some frames' hashes
+        limit = os.path.getsize(self.path("f-##.json")) + 500  # the hashes of some frames
         outcome, end = self.run_on_a_full_disk(limit, *names, "--frames", "0-39", "--fps", "20")
         there = [name for name in self.files() if name.endswith(".png")]
         self.assertEqual((end["frames"], end["written"], end["kept"]), (40, len(there), 0))
@@ -297,7 +297,7 @@ class MovingPictures(CliTest):
         refuse(f'{{"keys":[{key},{{"time":1,"eye":[0,0,1],"target":[0,0,0],"fov":50}}]}}', "/keys/1", "in all or none")
         self.refuse(2, "render", "m.gltf", "-o", "x.png", *TINY, "--camera-path", "no.json", says=["no.json"])
 
-    def test_a_turntable_goes_round_once(self):
+    def test_a_turntable_makes_one_turn(self):
         frames = self.frames("--turntable", "3", scene="cornell-box").events("frame")
         self.assertEqual([event["frame"] for event in frames], [0, 1, 2])
         self.assertEqual([event["time"] for event in frames], [None] * 3)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`--json`: whatever happens, standard output has one object a line, and the last one says how it ended."""
+"""`--json`: standard output always has one object per line, and the last one has the result."""
 
 import json
 import signal
@@ -20,7 +20,7 @@ def is_number(text):
 
 class Errors(CliTest):
     def fail_in_json(self, status, *arguments, **options):
-        """The object that ends it, with nothing said anywhere else."""
+        """Returns the last object. There is no other output."""
         outcome = self.run_pertev(*arguments, **options)
         self.assertEqual((outcome.status, outcome.stderr), (status, ""), outcome)
         last = outcome.events()[-1]
@@ -108,7 +108,7 @@ class Errors(CliTest):
                             self.assertEqual((last["code"], last["interrupted"]), ("interrupted", True))
                             self.assertEqual(stderr, b"")
                         else:
-                            self.assertTrue(stderr.decode().endswith("pertev: interrupted before there was anything to keep\n"))
+                            self.assertTrue(stderr.decode().endswith("pertev: interrupted before the first result\n"))
                             self.assertEqual(stdout, b"")
                         self.assertEqual(self.files(), ["hills.obj"])
 
@@ -163,7 +163,7 @@ class Objects(CliTest):
         write(self.path("floor.obj"), FLOOR)
         self.render("--eye", "0,1,4", scene="floor.obj", output="b.exr")
         made = self.info("b.exr")
-        self.assertEqual(made["pertev.environment"], "made up")  # which is no vector
+        self.assertEqual(made["pertev.environment"], "made up")  # this is not a vector
         self.assertEqual(self.info("floor.obj")["bounds_low"], [-1, 0, -1])
         texts = [value for value in made.values() if isinstance(value, str)]
         self.assertFalse([text for text in texts if text.replace(",", " ").split() and

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`pertev lab`: what it writes, what it leaves alone, and how it ends when it is interrupted."""
+"""`pertev lab`: the files that it writes, those that it keeps, and its end when it is interrupted."""
 
 import csv
 import glob
@@ -23,7 +23,7 @@ def read_text(path):
 
 
 def write_grid(path, side):
-    """A PLY file of side * side squares in the unit square, two triangles each."""
+    """Returns a PLY file of side * side squares in the unit square, with two triangles each."""
     points = b"".join(struct.pack("<3f", x / side, y / side, 0) for y in range(side + 1) for x in range(side + 1))
     corners = (y * (side + 1) + x for y in range(side) for x in range(side))
     face = struct.Struct("<B3iB3i")
@@ -37,12 +37,12 @@ def write_grid(path, side):
 
 class WhatIsWritten(LabTest):
     def check_html(self, path):
-        """Opens without the network and is not cut short. Gives the measurement in it."""
+        """Tests that the page is complete and needs no network. Returns the measurement in it."""
         html = read_text(path)
         self.assertTrue(html.startswith("<!DOCTYPE html>"))
         self.assertTrue(html.rstrip().endswith("</html>"))
         self.assertNotRegex(html, r"<link|<script[^>]*src=|@import")
-        self.assertEqual(html.count("http"), html.count("http://www.w3.org/2000/svg"))  # a namespace's name
+        self.assertEqual(html.count("http"), html.count("http://www.w3.org/2000/svg"))  # the name of a namespace
         (data,) = re.findall(r'<script type="application/json" class="measurement">(.*?)</script>', html)
         self.assertNotIn("<", data)
         return json.loads(data)
@@ -64,7 +64,7 @@ class WhatIsWritten(LabTest):
         return rows
 
     def test_tables_report_and_heat_maps_are_written_and_agree(self):
-        for _ in range(2):  # into a new folder, then over what is there
+        for _ in range(2):  # into a new folder, then over existing files
             report = self.report("cornell-box", *SMALL, "-o", "new/out")
         measurement = self.read_report(self.path("new/out/report.json"))
         self.assertEqual(lab_report({**measurement, "event": "lab"}), report)
@@ -95,7 +95,7 @@ class WhatIsWritten(LabTest):
                 self.report("cornell-box", "--structures", "binned", "--traversals", "if-if", *flags.split(), "-o", "out")
                 self.assertEqual([picture["title"] for picture in self.check_html(self.path("out/report.html"))["pictures"]],
                                  [f"binned if-if {switches}"] * 2)
-        for flags in ["--rays shadow", "--rays record --count 500"]:  # no frame of camera rays
+        for flags in ["--rays shadow", "--rays record --count 500"]:  # there is no frame of camera rays
             with self.subTest(flags=flags):
                 self.report("cornell-box", *SMALL, *flags.split(), "-o", "none")
                 self.assertEqual(self.check_html(self.path("none/report.html"))["pictures"], [])
@@ -161,11 +161,11 @@ class WhatIsWritten(LabTest):
                         self.assertNotEqual(written.read(), b"earlier", file)
                     if scene != longest:
                         write(file, "earlier")
-        # One that is interrupted before it has measured anything leaves all as it is.
+        # A run that is interrupted before its first measurement keeps all files.
         self.check_interrupt_leaves_all("--thesis", "box.obj", *INSIDE)
         self.check_commands_beneath_pictures(outcome)
 
-    def test_the_thesis_lists_what_it_could_not_make(self):
+    def test_the_thesis_lists_missing_results(self):
         os.makedirs(self.path("out/figure-3.6.png"))  # a picture of this name cannot be written
         line = self.lab("--thesis", "--depths", "1-2", "-o", "out", "--json")
         outcome = self.refuse(6, *line, says=["figure-3.6.png"],
@@ -191,12 +191,12 @@ class WhatIsWritten(LabTest):
         self.assertTrue(os.path.exists(self.path("out/figure-6.7-local.png")))
         self.assertFalse(os.path.exists(self.path("out/figure-6.8-local.png")))
         self.assertFalse(os.path.exists(self.path("out/thesis-2.csv")))
-        # It succeeds without pictures; a name that is given must be there.
+        # It succeeds without pictures, but a named scene must exist.
         self.assertIn(lacking, self.succeed(*self.lab("--thesis", "--depths", "1")).stdout)
         self.refuse(2, *self.lab("--thesis", "nowhere.obj", "--json"), says=["nowhere.obj"])
 
     def check_thesis_pictures(self, outcome, page):
-        """That page, files and the last event have the same pictures of chapters 2 to 4; their files."""
+        """Tests that page, files and the last event have the same pictures of chapters 2 to 4. Returns their files."""
         pictures = rows_of(outcome.events("thesis")[-1], "pictures")
         self.assertEqual(rows_of(page, "pictures"), pictures)
         files = [picture["file"] for picture in pictures]
@@ -222,7 +222,7 @@ class WhatIsWritten(LabTest):
         return files
 
     def check_commands_beneath_pictures(self, outcome):
-        """That the command beneath a picture of the thesis makes its very bytes."""
+        """Tests that the command below a picture of the thesis reproduces its bytes."""
         commands = {picture["file"]: picture["command"] for picture in rows_of(outcome.events("thesis")[-1], "pictures")
                     if picture["command"]}
         self.assertGreater(len(commands), 8)
@@ -234,7 +234,7 @@ class WhatIsWritten(LabTest):
                 self.assertEqual(self.pixels(file), self.pixels("out/" + file))
 
     def pixels(self, name):
-        """A PNG file's header fields and its decompressed rows."""
+        """Returns a PNG file's header fields and its decompressed rows."""
         with open(self.path(name), "rb") as file:
             data = file.read()
         rows, at = b"", 8
@@ -247,7 +247,7 @@ class WhatIsWritten(LabTest):
         return data[16:29], zlib.decompress(rows)
 
     def interrupt(self, line, when, after_s=0.2):
-        """Sends SIGINT so long after the first progress whose text has `when`; gives the report, the last line."""
+        """Sends SIGINT this long after the first progress whose text contains `when`. Returns the report, which is the last line."""
         with subprocess.Popen([PROGRAM, *line], cwd=self.folder, env=self.environment, stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE) as program:
             for text in program.stdout:
@@ -277,7 +277,7 @@ class WhatIsWritten(LabTest):
         return report
 
     def test_an_interrupt_in_the_middle_of_a_long_set_keeps_what_was_measured_and_ends_with_75(self):
-        # Each set takes a third of a second and more for its runs, and there are twelve.
+        # Each of twelve sets takes at least a third of a second for its runs.
         report = self.interrupt(self.lab("cornell-box", *SMALL, "--depths", "2", "--size", "256x192", "--threads", "1",
                                          "-o", "out", "--json", runs=100), "^binned .*: shadow")
         self.assertEqual([run["set"] for of in report["combinations"] for run in of["runs"]][:1], ["primary"])
@@ -303,7 +303,7 @@ class WhatIsWritten(LabTest):
         report = json.loads(stdout.splitlines()[-1])
         self.assertEqual((report["event"], report["interrupted"]), ("thesis", True))
         files = [picture["file"] for picture in rows_of(report, "pictures")]
-        self.assertEqual(files[-1], "figure-3.6.png")  # nothing to show of a solution that has just begun
+        self.assertEqual(files[-1], "figure-3.6.png")  # a solution that has just begun has no picture
         for file in files:
             self.assertTrue(os.path.exists(self.path("out/" + file)))
         self.assertEqual(len(self.check_html(self.path("out/thesis.html"))["pictures"]), 4 + len(files))
@@ -327,7 +327,7 @@ class WhatIsWritten(LabTest):
         self.assertEqual((report["sets"], report["structures"]), ([], []))
 
     def contents(self, folder):
-        """Bytes of each file there, by its name."""
+        """Returns the bytes of each file in the folder by its name."""
         found = {}
         for name in os.listdir(self.path(folder)):
             with open(os.path.join(self.path(folder), name), "rb") as file:

@@ -1,14 +1,14 @@
 """Small scenes and command lines that the tests of `pertev lab` share.
 
-Most scenes are closed boxes with the camera inside: every camera ray and every bounce hits, whatever the traversal,
-and no shadow ray does where the box stands alone. Times are compared only with 0.
+Most scenes are closed boxes with the camera inside: every camera ray and every bounce hits, whatever the traversal. If
+the box is the only object, no shadow ray hits. Times are compared only with 0.
 """
 
 import re
 
 from cli_run import CliTest, write
 
-# A closed box from -1 to 1, two triangles a side, and an eye for it.
+# A closed box from -1 to 1 with two triangles per side, and an eye position for it.
 CORNERS = [(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]
 SIDES = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
 INSIDE = ["--eye", "0.1,0.2,0.3", "--target", "0,0,-1"]
@@ -21,14 +21,14 @@ SMALL = ["--structures", "binned", "--traversals", "if-if,wide8"]
 
 
 def rows_of(measurement, name):
-    """The rows of a table of a measurement (src/lab/measurement.h), as dictionaries."""
+    """Returns the rows of a table of a measurement (src/lab/measurement.h) as dictionaries."""
     (table,) = [table for table in measurement["tables"] if table["name"] == name]
     keys = [column["key"] for column in table["columns"]]
     return [dict(zip(keys, row)) for row in table["rows"]]
 
 
 def lab_report(measurement):
-    """A report by combinations: rows of one combination together, its runs among them."""
+    """Returns a report by combinations: the rows of each combination with its runs."""
     (scene,) = rows_of(measurement, "scene")
     combinations = {}
     for row in rows_of(measurement, "runs"):
@@ -50,33 +50,33 @@ class LabTest(CliTest):
         write(self.path("box.obj"), BOX)
 
     def lab(self, *arguments, runs=1, device="cpu", size="16x12"):
-        """A command line of lab, small where it does not say otherwise."""
+        """Returns a command line of lab with small default sizes."""
         arguments = [str(argument) for argument in arguments]
         given = [("--runs", runs), ("--device", device)]
-        if "record" not in arguments:  # its frame follows from --count
+        if "record" not in arguments:  # the size of the frame follows from --count
             given.append(("--size", size))
         return ["lab", *arguments, *(str(part) for pair in given if pair[0] not in arguments for part in pair)]
 
     def report(self, *arguments):
-        """The last JSON line of a run that succeeds."""
+        """Returns the last JSON line of a successful run."""
         last = self.succeed(*self.lab(*arguments, "--json")).events()[-1]
         self.assertEqual((last["event"], last["format"], last["interrupted"]), ("lab", "pertev-measurement", False))
         return lab_report(last)
 
     def refuse_unmeasured(self, status, *arguments, says=(), **options):
-        """Refused as `refuse` has it, and before any work began."""
+        """Tests, like `refuse`, that the line is refused before any work began."""
         outcome = self.refuse(status, *self.lab(*arguments, "--json"), says=says, **options)
         self.assertEqual([event for event in outcome.events() if event["event"] in ("progress", "lab")], [], outcome)
 
     def names_of(self, flag):
-        """The values that a flag accepts, read from its own error message."""
+        """Returns the values that a flag accepts, from its error message."""
         outcome = self.refuse(2, *self.lab("box.obj", flag, "nonsense"), says=[flag, "nonsense"])
         names = re.search("is not one of (.*)", outcome.stderr).group(1).split(", ")
         self.assertGreater(len(names), 3, outcome)
         return names
 
     def check_hits(self, report, allowed_refusals=()):
-        """Every combination that is not refused has figures for closest hits, and its hits are the right ones."""
+        """Tests that every combination that is not refused has figures for closest hits and correct hits."""
         self.assertGreater(len(report["combinations"]), 0)
         self.assertEqual({rest["name"] for rest in report["structures"] if rest["failed"]}, set())
         for of in report["combinations"]:
@@ -84,7 +84,7 @@ class LabTest(CliTest):
                 self.assertTrue(any(text in of["refused"] for text in allowed_refusals), of)
                 self.assertEqual(of["runs"], [])
                 continue
-            # Some traversals are for closest hits alone.
+            # Some traversals support only closest hits.
             wanted = {known["name"] for known in report["sets"]}
             self.assertLessEqual({run["set"] for run in of["runs"]}, wanted, of)
             self.assertLessEqual(wanted - {run["set"] for run in of["runs"]}, {"shadow"}, of)

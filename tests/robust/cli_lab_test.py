@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`pertev lab`: what it refuses and how it says so, and that all combinations find the same hits."""
+"""`pertev lab`: errors of invalid requests, and equal hits of all combinations."""
 
 import base64
 import json
@@ -11,7 +11,7 @@ from cli_run import SANITIZED, limit_addresses, main, write
 
 
 def gltf_of_nested_boxes():
-    """One mesh, the box above, in two nodes: one three times as large as the other."""
+    """The box as one mesh in two nodes. One node is three times as large as the other."""
     indices = [side[k] for side in SIDES for k in (0, 1, 2, 0, 2, 3)]
     data = b"".join(struct.pack("<3f", *corner) for corner in CORNERS) + struct.pack(f"<{len(indices)}H", *indices)
     positions = 12 * len(CORNERS)
@@ -60,7 +60,7 @@ class WhatIsRefused(LabTest):
     def test_the_error_for_an_unknown_scene_lists_the_known_ones(self):
         for line in [["spnza"], ["--thesis", "spnza"], ["a" * 300]]:
             self.refuse(2, *self.lab(*line), says=[line[-1], "cornell-box", "sponza", "bunny", "forest"])
-        # The record's scenes are scenes of --thesis too, where their files are.
+        # The record's scenes are scenes of --thesis, too, if their files exist.
         self.refuse_unmeasured(2, "--thesis", "sponza", says=["PERTEV_SCENES", "crytek-sponza/sponza.obj"])
 
     def test_combinations_that_cannot_be_measured_end_with_2_and_the_reasons(self):
@@ -74,10 +74,10 @@ class WhatIsRefused(LabTest):
             with self.subTest(line=line):
                 self.refuse_unmeasured(2, "box.obj", *INSIDE, *line.split(), "-o", "out", says=["none", reason])
 
-    def test_more_rays_than_memory_holds_are_refused_with_the_flag_that_gives_fewer(self):
+    def test_more_rays_than_memory_holds_are_refused_with_the_flag_for_fewer(self):
         if SANITIZED:
             self.skipTest("addresses cannot be limited, and there may be memory")
-        # The first two are more than most machines have, the third is more than it is given here.
+        # The first two need more memory than most machines have, the third more than its limit here.
         for line, flag, size in [("--rays record --count 1073741824", "--count", "44.0 GiB"),
                                  ("--size 32768x32768", "--size", "44.0 GiB"),
                                  ("--rays record --count 400000000", "--count", "16.4 GiB")]:
@@ -102,7 +102,7 @@ class WhatIsRefused(LabTest):
             for name, file in [("sponza", "crytek-sponza/sponza.obj"), ("bunny", "record/bunny.ply"), ("forest", "record/forest.ply")]:
                 self.refuse_unmeasured(2, name, env=environment, says=["PERTEV_SCENES", file])
 
-    def test_an_output_folder_that_cannot_be_made_ends_with_6_before_anything_is_measured(self):
+    def test_an_output_folder_that_cannot_be_created_ends_with_6_before_any_measurement(self):
         for folder in ["/proc/x", "/proc", "box.obj", "box.obj/x", "a" * 300]:
             with self.subTest(folder=folder):
                 self.refuse_unmeasured(6, "cornell-box", *SMALL, "-o", folder, says=[folder])
@@ -205,7 +205,7 @@ class WhatIsMeasured(LabTest):
         write(self.path("boxes.gltf"), gltf_of_nested_boxes())
         traversals = self.names_of("--traversals")
         self.assertIn("brute-force", traversals)
-        # Between the boxes: the inner one or else the outer one is hit.
+        # Between the boxes a ray hits the inner one or else the outer one.
         report = self.report("boxes.gltf", "--eye", "0.3,0.2,2.5", "--target", "0,0,0", "--traversals", ",".join(traversals),
                              "--structures", "binned,sbvh,kd-sah,octree")
         self.assertEqual((report["instances"], report["triangles"]), (2, 12))  # the mesh counts once

@@ -8,10 +8,10 @@ from cli_run import FLOOR, CliTest, main, read_exr, write
 
 NONE = 4294967295
 DOWN = ["--eye", "0,3,0", "--target", "0,0,0", "--projection", "orthographic", "--view-height", "4", "--filter", "box",
-        "--environment", "1,1,1", "--aov", "albedo,normal,depth,position,ids"]  # pixels of 4/9 m: edges fall between
+        "--environment", "1,1,1", "--aov", "albedo,normal,depth,position,ids"]  # pixels are 4/9 m wide, so edges lie between them
 BELOW = "v -9 -1 -9\nv 9 -1 -9\nv 9 -1 9\nv -9 -1 9\nf 8 7 6 5\n"
 
-# Results of a render; everything else in the metadata is a flag.
+# The results of a render. Everything else in the metadata is a flag.
 RESULTS = {"version", "scene", "world_from_camera", "fov_y", "device", "hash", "invalid_samples", "load_seconds", "build_seconds",
            "render_seconds", "rays", "made_up", "left_out", "position_origin", "scene_hash", "by_default", "by_scene", "by_settings", "by_caller"}
 
@@ -22,7 +22,7 @@ class Layers(CliTest):
         width, height, layers = read_exr(self.path("x.exr"))
         return [{name: rows[y][x] for name, rows in layers.items()} for y in range(height) for x in range(width)]
 
-    def test_layers_at_centres_are_of_one_hit_and_samples_change_them_not(self):
+    def test_layers_at_centres_have_one_hit_and_do_not_depend_on_samples(self):
         write(self.path("floor.obj"), FLOOR)
         pixels = self.pixels("floor.obj", 16, "--layers-at", "centre")
         one = self.pixels("floor.obj", 1, "--layers-at", "centre", "--seed", "5")
@@ -57,7 +57,7 @@ class Layers(CliTest):
             self.assertEqual(ids[0], 0 if of_first["A"] == 1 else NONE)
             if share == 0:
                 self.assertEqual((ids, pixel["position.X"], pixel["position.Z"]), ([NONE] * 3, 0, 0))
-        # Sample 0 may have missed what others hit, and the other way round.
+        # Sample 0 may miss a surface that others hit, and the reverse.
         self.assertTrue(any(pixel["id.instance"] == NONE and pixel["A"] > 0 for pixel in pixels))
         self.assertTrue(any(pixel["id.instance"] != NONE and pixel["A"] < 1 for pixel in pixels))
 

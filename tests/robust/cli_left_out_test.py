@@ -1,4 +1,4 @@
-"""Unreadable parts are left out with a warning; --strict refuses them; lists name what was left out or made up."""
+"""Unreadable parts are left out with a warning, --strict refuses them, and lists name what was left out or added."""
 
 import json
 
@@ -11,7 +11,7 @@ SQUARE = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\n"
 
 class LeftOut(CliTest):
     def model(self, name="model.gltf", **members):
-        """A triangle before two cameras, with further members."""
+        """A triangle in front of two cameras, with additional members."""
         write(self.path(name), json.dumps({**json.loads(gltf_with_cameras()), **members}))
         return name
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""--lpe on the command line: layers of an EXR, what is refused, and what of it stands in the file."""
+"""--lpe on the command line: layers of an EXR, refused expressions, and the metadata."""
 
 import os
 
@@ -32,11 +32,11 @@ class Layers(CliTest):
                      "direct=LDE")
         lit = [sum(map(sum, read_exr(self.path(f"f-{frame}.exr"))[2]["direct.G"])) for frame in range(2)]
         self.assertGreater(lit[0], 0)
-        self.assertEqual(lit[1], 0)  # from behind: the backs of the walls are dark
+        self.assertEqual(lit[1], 0)  # seen from behind, where the backs of the walls are dark
         self.refuse(2, "render", "cornell-box", "-o", "f-#.exr", "--turntable", "2", "--size", "8x8", "--spp", "1",
                     "--continue", "--lpe", "direct=LDDE", says=["--continue"])
 
-    def test_each_of_a_hundred_layers_equals_the_layer_rendered_alone(self):
+    def test_each_of_a_hundred_layers_equals_a_render_with_one_layer(self):
         flags = ["--size", "12x9", "--spp", "2", "--device", "cpu", "--json"]
         many = {f"n{i}": f"L{'D' if i % 2 else ''}.{{{i // 2 % 7}}}{['', 'D', '[^S]', '.*'][i // 14 % 4]}E" for i in range(100)}
         run = self.succeed("render", "cornell-box", "-o", "x.exr", *flags, *lpe(many))

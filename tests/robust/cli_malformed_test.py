@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""A damaged file, wherever it is used, ends in an error that names it or in a warning and a picture: never in a crash,
-a hang or memory that its size does not justify. Files damaged here, and the public collection under PERTEV_SCENES."""
+"""A damaged file, wherever it is used, causes an error that names it or a warning and a picture. It never causes a
+crash, a hang or an allocation that its size does not justify. The files are damaged here or come from the public
+collection under PERTEV_SCENES."""
 
 import json
 import os
@@ -32,8 +33,8 @@ class MalformedTest(CliTest):
     gibibytes = 4
 
     def survive(self, name, *arguments, warns=False):
-        """Runs to an error that names `name`, or to a picture or description; with `warns` after a warning that names
-        it. Gives the status."""
+        """Tests that a run ends with an error that names `name`, or with a picture or description. With `warns` there
+        is a warning that names it. Returns the status."""
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         outcome = self.run_pertev(*arguments, preexec_fn=limit_addresses(self.gibibytes))
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -57,7 +58,7 @@ class MalformedTest(CliTest):
         return status
 
     def use_image(self, path, warns):
-        """Gives the image to each of its readers: as a picture, as an OBJ's and a glTF's texture, as environment."""
+        """Reads the image in each use: as a picture, as a texture of an OBJ and a glTF file, and as environment."""
         name = os.path.basename(path)
         here = self.path(name)
         if os.path.abspath(path) != here:
@@ -77,7 +78,7 @@ class MalformedTest(CliTest):
 
 
 def gltf_with_texture(name):
-    positions = "AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAA"  # (-1,-1,0) (1,-1,0) (0,1,0), which also serve as uv
+    positions = "AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAA"  # (-1,-1,0) (1,-1,0) (0,1,0), which are also the uv
     texture = {"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}
     return json.dumps({
         "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
@@ -130,7 +131,7 @@ class FilesDamagedHere(MalformedTest):
                 for i in range(8):
                     damaged[(seed * 7919 + i * i * 6151) % (len(content) if seed else 64)] ^= 1 << (i + seed) % 8
                 with self.subTest(picture=name, seed=seed):
-                    # Only PNG has checksums: elsewhere other bytes may be another picture.
+                    # Only PNG has checksums. In other formats changed bytes may be another valid picture.
                     self.use_image(self.put(f"damaged{name[5:]}", bytes(damaged)), warns=name.endswith(".png"))
 
     def test_other_files_with_a_picture_extension_are_refused(self):
@@ -171,7 +172,7 @@ class FilesDamagedHere(MalformedTest):
 
 
 def picture_of_one_colour(side, bits):
-    """A grey PNG: about a thousandth of its pixels' packed bytes."""
+    """A grey PNG, whose size is about a thousandth of its pixels' bytes."""
     row = b"\0" * (1 + side * bits // 8)
     packer = zlib.compressobj(9)
     packed = b"".join(packer.compress(row) for _ in range(side)) + packer.flush()
@@ -181,7 +182,7 @@ def picture_of_one_colour(side, bits):
 
 
 class SmallFilesThatUnfold(MalformedTest):
-    gibibytes = 2  # address space, part of which the program and its libraries take
+    gibibytes = 2  # address space, including that of the program and its libraries
 
     def put(self, name, content):
         with open(self.path(name), "wb") as file:
@@ -201,7 +202,7 @@ class SmallFilesThatUnfold(MalformedTest):
         self.assertLess(len(bomb), 40000)
         self.assertEqual(self.use_image(self.put("bomb.png", bomb), warns=True), [3, 3, 0, 0])
         self.assertRegex(self.run_pertev("info", "model.gltf").stderr, r"bomb\.png: .*\b1024 MiB")
-        # Few enough as bytes, too many as the floats of an environment.
+        # The pixels fit as bytes, but not as floats of an environment.
         self.assertEqual(self.survive_render("8k.png", "cornell-box", "--environment",
                                              self.put("8k.png", picture_of_one_colour(8192, 1))), 3)
 
@@ -211,7 +212,7 @@ class SmallFilesThatUnfold(MalformedTest):
         model["images"] = [{"bufferView": 1 + i, "mimeType": "image/png"} for i in range(8)]
         model["textures"] = [{"source": i} for i in range(8)]
         model["materials"] = [{"pbrMetallicRoughness": {"baseColorTexture": {"index": i}}} for i in range(8)]
-        model["bufferViews"] += [{"buffer": 1, "byteLength": len(picture) + i} for i in range(8)]  # all one picture
+        model["bufferViews"] += [{"buffer": 1, "byteLength": len(picture) + i} for i in range(8)]  # all names refer to one picture
         model["buffers"].append({"byteLength": len(picture) + 8, "uri": "one.bin"})
         primitive = model["meshes"][0]["primitives"][0]
         model["meshes"][0]["primitives"] = [{**primitive, "material": i} for i in range(8)]

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Light at a point in numbers, in the units that a file states."""
+"""Light at a point, in the units of the file."""
 
 import json
 import math

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`render --part` and `--samples`, film files, and `merge`: parts make the files of one run, and nothing else is merged."""
+"""`render --part` and `--samples`, film files, and `merge`: merged parts are the files of one run, and other files are refused."""
 
 import json
 import signal
@@ -14,7 +14,7 @@ UNMETERED = ["--exposure", "0"]
 
 
 def take_plane(data, at, count):
-    """A packed plane by docs/film_file.md, and where it ends."""
+    """Returns a packed plane by docs/film_file.md, and its end."""
     kind = data[at]
     if kind < 2:
         return (bytes([data[at + 1]]) * count, at + 2) if kind == 0 else (data[at + 1 : at + 1 + count], at + 1 + count)
@@ -23,7 +23,7 @@ def take_plane(data, at, count):
 
 
 def take_sums(data, at, count, before):
-    """Packed sums of a channel, and where they end."""
+    """Returns the packed sums of a channel, and their end."""
     lengths, at = take_plane(data, at, count)
     lowest, at = take_plane(data, at, count)
     ends = [((a + abs(b).bit_length()) % 128, low) for a, b, low in zip(lengths, before, lowest)]
@@ -38,7 +38,7 @@ def take_sums(data, at, count, before):
 
 
 def sums_of(data):
-    """Header and channels of the target `film`, each a list of whole numbers, of a film file."""
+    """Returns the header of a film file and the channels of its target `film`, each as a list of whole numbers."""
     size = struct.unpack_from("<I", data, 12)[0]
     header, at = json.loads(data[16 : 16 + size]), 16 + size + 16
     target = header["targets"][0]
@@ -83,7 +83,7 @@ class Merge(CliTest):
         return self.succeed("merge", *arguments, "--json").events("done")[0]
 
     def metadata(self, name):
-        """All that an EXR says of itself but its name, times and device."""
+        """Returns an EXR's metadata except its name, times and device."""
         return {key: value for key, value in self.info(name).items()
                 if key not in ("file", "pertev.device") and not key.endswith("_seconds")}
 
@@ -171,7 +171,7 @@ class Merge(CliTest):
             self.assertEqual(self.part(f"{i}.pvf", "--spp", "3", "--part", f"{i}/3", "--part-base", "0")["samples"], 1)
         self.assertEqual(self.merge("1.pvf", "2.pvf", "0.pvf", "-o", "all.exr")["hash"], whole["hash"])
 
-    def test_a_picture_beside_a_film_file_has_the_metadata_of_one_alone(self):
+    def test_a_picture_beside_a_film_file_has_its_usual_metadata(self):
         self.part("alone.exr", "--spp", "2")
         self.succeed("render", "cornell-box", "-o", "beside.exr", "-o", "beside.pvf", *SMALL, "--spp", "2")
         self.assertEqual(self.metadata("beside.exr"), self.metadata("alone.exr"))
@@ -197,7 +197,7 @@ class Merge(CliTest):
             self.assertAlmostEqual(mean, known, places=6)
         self.assertLess(min(channels[4]), 0)
 
-    def test_an_interrupted_render_goes_on_from_its_film(self):
+    def test_an_interrupted_render_resumes_from_its_film(self):
         program = subprocess.Popen([PROGRAM, "render", "cornell-box", "-o", "ended.pvf", *SMALL, *UNMETERED, "--spp", "1000000", "--json"],
                                    cwd=self.folder, env=self.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE)
         self.addCleanup(program.kill)
@@ -213,7 +213,7 @@ class Merge(CliTest):
         done = self.merge("ended.pvf", "more.pvf", "--partial", "-o", "all.exr")
         self.assertEqual((done["hash"], done["samples"]), (whole["hash"], samples + 5))
 
-    def test_parts_that_are_missing_overlap_or_belong_elsewhere_are_refused(self):
+    def test_parts_that_are_missing_overlap_or_belong_to_other_pictures_are_refused(self):
         names = self.parts(3, "--spp", "6")
         self.refuse(2, "merge", names[0], names[2], "-o", "x.exr", says=["samples 2 to 3"])
         self.refuse(2, "merge", *names, names[1], "-o", "x.exr", says=[names[1], "samples 2 to 3"])
@@ -228,7 +228,7 @@ class Merge(CliTest):
         self.part("other.pvf", "--spp", "6", "--part", "2/3", scene="blind")
         self.refuse(2, "merge", names[0], "other.pvf", names[2], "-o", "x.exr", says=["other.pvf", "hash of the scene"])
 
-    def test_files_that_are_no_films_or_are_damaged_are_refused(self):
+    def test_files_that_are_not_films_or_are_damaged_are_refused(self):
         self.part("film.pvf", "--spp", "1", "-o", "film.exr")
         whole = self.read("film.pvf")
         for name, content in [("cut.pvf", whole[:-1]), ("flipped.pvf", whole[:-40] + bytes([whole[-40] ^ 1]) + whole[-39:]),
@@ -243,7 +243,7 @@ class Merge(CliTest):
         self.refuse(2, "merge", "film.pvf", "-o", "x.bmp", says=["x.bmp"])
         self.refuse(2, "merge", "film.pvf")
 
-    def test_parts_that_cannot_be_are_refused(self):
+    def test_impossible_parts_are_refused(self):
         for flags in ["--part 0/2", "--part 3/2", "--part 1", "--part 1/0", "--part -1/2", "--part 1/2x", "--part 2/2 --part-base 0",
                       "--part-base 1", "--samples 4", "--samples 4:4", "--samples 5:4", "--samples 0:9000000", "--samples 1:2 --spp 4",
                       "--samples 1:2 --part 1/2", "--part 1/2 --time-limit 1", "--samples 0:1 --time-limit 1", "--part 1/2 --turntable 4",

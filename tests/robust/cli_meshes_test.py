@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""OBJ and PLY files as other programs write them: units and axes, names of files, colours, textures, what nobody sees."""
+"""OBJ and PLY files of other programs: units and axes, names of files, colours, textures, invisible materials."""
 
 import struct
 import zlib
 
 from cli_run import CliTest, main, read_exr, write
 
-# A square of 2 by 2 m that faces +z, and a view of all of it, lit evenly.
+# A uniformly lit square of 2 by 2 m that faces +z, and a view of it.
 SQUARE = "v -1 -1 0{0}\nv 1 -1 0{0}\nv 1 1 0{0}\nv -1 1 0{0}\n"
 TEXTURED = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3 4/4\n"
 VIEW = ["--projection", "orthographic", "--view-height", "2", "--eye", "0,0,5", "--target", "0,0,0", "--environment", "1,1,1",
@@ -81,7 +81,7 @@ class Meshes(CliTest):
         self.assertIn(self.path("My Model.mtl"), of_obj["reason"])
         self.assertIn(self.path("Plain.PNG"), of_mtl["reason"])
         write_png(self.path("plain.Png"), (0, 255, 0))
-        candidates = self.warnings_of("a.obj")[1]["reason"]  # both, of which none is read
+        candidates = self.warnings_of("a.obj")[1]["reason"]  # both files match, so none is read
         self.assertTrue(self.path("Plain.PNG") in candidates and self.path("plain.Png") in candidates)
 
     def test_ply_files_have_colours_in_bytes_and_textures(self):

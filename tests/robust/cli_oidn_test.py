@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""`--denoise oidn` by Open Image Denoise itself, of PERTEV_OIDN or of this Python's pyoidn; and the refusal without it. Where there is
-none the rest is skipped, which CTest says. `--device cuda` runs all of it on a GPU."""
+"""`--denoise oidn` with Open Image Denoise from PERTEV_OIDN or this Python's pyoidn, and the error without it. Without
+the library the other tests are skipped. `--device cuda` runs all of them on a GPU."""
 
 import glob
 import importlib.util
@@ -50,7 +50,7 @@ class Denoised(CliTest):
         done = self.render("--aov", "albedo,normal", *arguments, size=SIZE, spp=spp, output=name)
         return done, read_exr(self.path(name))[2]
 
-    def test_pictures_through_distorting_lenses(self):
+    def test_pictures_through_distorting_lenses_are_denoised(self):
         view = ["--eye", "0.278,0.273,-0.3", "--target", "0.278,0.273,0"]
         for lens in (["--distortion", "0.2,0,0,0"], ["--lens", "fisheye"]):
             _, noisy = self.picture("plain.exr", *view, *lens)
@@ -60,7 +60,7 @@ class Denoised(CliTest):
             errors = [relative_error(layer(of, ""), layer(reference, "")) for of in (rows, noisy)]
             self.assertLess(errors[0], 0.3 * errors[1], lens)
 
-    def test_four_samples_come_far_nearer_to_the_reference_and_the_film_is_that_without(self):
+    def test_four_samples_are_much_closer_to_the_reference_and_the_film_is_unchanged(self):
         plain, noisy = self.picture("plain.exr")
         done, rows = self.picture("x.exr", "--denoise", "oidn")
         self.assertEqual((done["hash"], done["rays_per_second"] > 0), (plain["hash"], True))
@@ -76,7 +76,7 @@ class Denoised(CliTest):
         said = self.succeed("render", "cornell-box", "-o", "y.exr", "--size", SIZE, "--spp", "4", "--denoise", "oidn", "--device", DEVICE)
         self.assertIn("Open Image Denoise 2.", said.stdout + said.stderr)
 
-    def test_it_makes_what_pyoidn_makes_of_the_same_layers(self):
+    def test_the_picture_is_that_of_pyoidn_with_the_same_layers(self):
         python = next((path for path in [sys.executable, *glob.glob(os.path.join(LIBRARY, "../../../../../../bin/python3"))]
                        if subprocess.run([path, "-c", "import pyoidn, numpy"], check=False, stderr=subprocess.DEVNULL).returncode == 0), None)
         if python is None:
@@ -94,7 +94,7 @@ class Denoised(CliTest):
         print(f"mean difference from pyoidn {mean_difference(ours, theirs):.3g}, from the samples {mean_difference(ours, layer(rows, 'noisy')):.3g}")
         self.assertLess(mean_difference(ours, theirs), 1e-3 * mean_difference(ours, layer(rows, "noisy")))
 
-    def test_frames_are_denoised_and_their_hashes_are_those_before_it(self):
+    def test_frames_are_denoised_and_their_hashes_are_those_before_denoising(self):
         line = ["render", "cornell-box", "--size", "48x48", "--device", DEVICE, "--turntable", "90", "--frames", "0-2", "--real-time", "--json"]
         plain = self.succeed(*line, "-o", "a-#.exr", "--no-reconstruction").events("frame")
         made = self.succeed(*line, "-o", "b-#.exr", "--frame-denoiser", "oidn").events("frame")
@@ -104,7 +104,7 @@ class Denoised(CliTest):
         self.assertNotEqual(layer(rows, ""), layer(before, ""))
         self.assertRegex(self.info("b-2.exr")["pertev.denoiser"], "fast quality$")
 
-    def test_a_sequence_is_compared_with_it(self):
+    def test_a_sequence_is_compared_with_denoised_pictures(self):
         line = ["bench", "sequence", "cornell-box", "--device", DEVICE, "--size", "48x48", "--turntable", "90", "--frames", "0-2"]
         made = self.succeed(*line, "--reference", "32", "--denoise", "oidn", "--json").events("sequence_errors")[0]
         self.assertLess(made["denoised"]["hdr_flip"], 0.7 * made["sample"]["hdr_flip"])

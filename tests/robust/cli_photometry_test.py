@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Lamps in units, false colours with their scale, and a camera's exposure, on the command line."""
+"""Emitters in photometric units, false colours with their scale, and a camera's exposure, on the command line."""
 
 from cli_run import CliTest, main, read_exr, read_png
 

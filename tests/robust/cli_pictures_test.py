@@ -1,4 +1,4 @@
-"""PNG and JPEG as people keep them: exposed and tone-mapped without a flag; and a camera of which flags say only half."""
+"""PNG and JPEG output, which is exposed and tone-mapped without a flag, and cameras whose flags are incomplete."""
 
 import json
 import math
@@ -6,7 +6,7 @@ import re
 
 from cli_run import FLOOR, CliTest, as_flag, gltf_with_cameras, main, read_exr, read_png, write
 
-# The floor, and a sheet upright behind its far edge.
+# The floor, and an upright sheet behind its far edge.
 SHEET = FLOOR + "v -1 0 -1\nv 1 0 -1\nv 1 2 -1\nv -1 2 -1\nf 5 6 7 8\n"
 VIEW = ["--eye", "0,2,4", "--target", "0,0,0"]
 PLAIN = ["--tone-map", "srgb", "--exposure", "0"]
@@ -14,7 +14,7 @@ PLAIN = ["--tone-map", "srgb", "--exposure", "0"]
 
 class HowPicturesAreShown(CliTest):
     def show(self, *arguments, scene="cornell-box", size="16x16", spp=1, outputs=("x.png",)):
-        """Renders on the CPU; gives the notices that tell of an exposure."""
+        """Renders on the CPU and returns the notices about exposure."""
         named = [word for output in outputs for word in ("-o", output)]
         said = self.succeed("render", scene, *named, "--size", size, "--spp", spp, "--device", "cpu", "--json",
                             *arguments)
@@ -51,7 +51,7 @@ class HowPicturesAreShown(CliTest):
                     self.assertEqual(self.show(*again, outputs=[name]), [])
                     self.assertEqual(self.read(name), found)
 
-    def test_neither_samples_nor_noise_nor_seed_nor_size_move_the_exposure(self):
+    def test_samples_noise_seed_and_size_do_not_change_the_exposure(self):
         write(self.path("sheet.obj"), SHEET)
         for scene, flags in [("cornell-box", []), ("sheet.obj", VIEW)]:
             notices = {notice for spp, seed, size in [(1, 0, "16x9"), (64, 0, "16x9"), (2, 99, "32x18")]
@@ -83,7 +83,7 @@ class HowPicturesAreShown(CliTest):
         self.assertEqual(self.info("x.exr")["hash"], beside)
         self.assertNotIn("pertev.exposure", self.info("x.exr"))
 
-    def test_auto_exposure_of_the_cornell_box_burns_out_few_pixels_and_is_medium_bright(self):
+    def test_auto_exposure_of_the_cornell_box_clips_few_pixels_and_has_a_medium_mean(self):
         self.show(size="64x64", spp=64)
         pixels = read_png(self.path("x.png"))
         self.render("--max-depth", 0, size="64x64", spp=64, output="lamp.exr")
@@ -96,7 +96,7 @@ class HowPicturesAreShown(CliTest):
 
 
 class RecordedPictures(CliTest):
-    """Whoever changes one of them says why, and records it again (bench/results/one_picture.json has the second one)."""
+    """A change of these hashes needs a reason and new records (bench/results/one_picture.json has the second one)."""
 
     def test_the_cornell_box_has_the_recorded_hashes(self):
         recorded = {("320x240", 4): "ac245b79834309455f77746a055129b2",
@@ -126,7 +126,7 @@ class WhatHalfACameraSees(CliTest):
                     given = "{},{},{}".format(*eye)
                     notices, made = self.notices("--eye", given, scene=scene)
                     told = [text for text in notices if "--eye" in text]
-                    self.assertEqual(len(told), 1, notices)  # and no camera is named that is not used
+                    self.assertEqual(len(told), 1, notices)  # and no unused camera is named
                     flags = re.search(r"\((--eye \S+ --target \S+)\)", told[0]).group(1).split()
                     self.assertEqual(flags[1], given)
                     self.assertEqual(tuple(float(x) for x in flags[3].split(",")), middle)
@@ -136,7 +136,7 @@ class WhatHalfACameraSees(CliTest):
                              for word in ["--" + name, as_flag(told["pertev." + name])]]
                     self.assertEqual(self.hash_again(again, scene), made)
 
-    def test_lab_aims_an_eye_alone_too(self):
+    def test_lab_aims_an_eye_without_a_target_too(self):
         write(self.path("sheet.obj"), SHEET)
         said = self.succeed("lab", "sheet.obj", "--eye", "3,2.5,4", "--structures", "binned", "--traversals", "if-if", "--runs",
                             "1", "--device", "cpu", "--size", "16x12", "--json")
@@ -150,7 +150,7 @@ class WhatHalfACameraSees(CliTest):
         self.assertIn("--target 0,2,0", told[0])
 
     def test_an_aperture_alone_focuses_on_the_centre_of_the_picture_with_a_notice(self):
-        cameras = json.loads(gltf_with_cameras())  # the first is 4 m before a triangle in the picture's middle
+        cameras = json.loads(gltf_with_cameras())  # the first is 4 m in front of a triangle at the picture's centre
         write(self.path("two.gltf"), json.dumps(cameras))
         notices, made = self.notices("--aperture", "0.2", scene="two.gltf")
         told = [text for text in notices if "--focus" in text]
@@ -163,7 +163,7 @@ class WhatHalfACameraSees(CliTest):
 
     def test_without_a_surface_in_the_centre_the_focus_is_at_the_centre_of_the_scene(self):
         cameras = json.loads(gltf_with_cameras())
-        cameras["nodes"][1]["translation"] = [3, 0, 4]  # looks past the triangle
+        cameras["nodes"][1]["translation"] = [3, 0, 4]  # the camera looks past the triangle
         write(self.path("two.gltf"), json.dumps(cameras))
         notices, _ = self.notices("--aperture", "0.2", scene="two.gltf")
         self.assertEqual(len([text for text in notices if "(--focus 5)" in text]), 1, notices)

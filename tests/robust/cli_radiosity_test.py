@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""pertev solve radiosity, its file, and pictures of it: what a user is told, and what is refused before it costs time."""
+"""pertev solve radiosity, its file and pictures of it: messages, and requests that are refused before any work."""
 
 import json
 import os
@@ -24,7 +24,7 @@ class Radiosity(CliTest):
         return self.succeed("render", scene, *SMALL, "-o", "x.png", "--json", *arguments).events("done")[0]["hash"]
 
     def hash_of(self, *flags):
-        """The hash of a picture: 16x16 pixels with one sample unless flags say otherwise."""
+        """Returns the hash of a picture of 16x16 pixels with one sample, unless flags change these."""
         given = ["--integrator", "radiosity", "--device", "cpu", *UNMETERED, *flags]
         for flag, value in [("--size", "16x16"), ("--spp", "1")]:
             given += [] if flag in flags else [flag, value]
@@ -42,7 +42,7 @@ class Radiosity(CliTest):
                                 ["--solver", "southwell", "--steps", "20"], ["--form-factors", "hemicube", "--hemicube", "16"],
                                 ["--environment", "1,1,1"], ["--lamp", "light=100lm"]]}
         self.assertEqual(len(hashes), 8)
-        # Divided patches too, with each solver: the file is accepted, and the picture equals that without one.
+        # With subdivided patches and each solver the file is accepted, and the picture equals that without a file.
         divided = [*COARSE[:-1], "1", "--contrast", "0.02"]
         for flags in [["--solver", "southwell"], ["--solver", "southwell", "--steps", "50"], ["--solver", "matrix"], []]:
             solved, _ = self.solve(*divided, *flags)
@@ -67,7 +67,7 @@ class Radiosity(CliTest):
             self.solve(*COARSE, *light, output="other.rad")
             self.assertEqual(self.picture("--solution", "other.rad", *light), self.picture(*COARSE, *light), light)
             self.refuse(2, *show[:-1], "other.rad", says=["other.rad: ", says])
-        # A scene without light is given some, which its view has no say in.
+        # A scene without light gets a default light, which does not depend on the view.
         write(self.path("floor.mtl"), "newmtl a\nKd 0.5 0.5 0.5\n")
         write(self.path("floor.obj"), "mtllib floor.mtl\nusemtl a\n" + FLOOR)
         self.solve(*COARSE, scene="floor.obj", output="floor.rad")
@@ -106,7 +106,7 @@ class Radiosity(CliTest):
         return program
 
     def end(self, program):
-        """Ctrl-C; gives the events that follow, and the processor time that they took."""
+        """Sends Ctrl-C and returns the events that follow and their processor time."""
         before = spent = sum(self.times_of(program))
         program.send_signal(signal.SIGINT)
         while program.poll() is None:
@@ -117,7 +117,7 @@ class Radiosity(CliTest):
 
     @staticmethod
     def times_of(program):
-        """Seconds of user and system time."""
+        """Returns the seconds of user and system time."""
         with open(f"/proc/{program.pid}/stat", encoding="ascii") as file:
             fields = file.read().rsplit(")", 1)[1].split()
         return [int(fields[i]) / os.sysconf("SC_CLK_TCK") for i in (11, 12)]
@@ -143,13 +143,13 @@ class Radiosity(CliTest):
             time.sleep(0.3)
             events, seconds = self.end(program)
             self.assertEqual(program.returncode, 75)
-            self.assertLess(seconds, 1)  # a row alone takes as long
+            self.assertLess(seconds, 1)  # a single row takes as long
             self.assertEqual([event["event"] for event in events if event["event"] != "progress"], ["error"])
             self.assertEqual(events[-1]["code"], "interrupted")
         self.assertEqual([name for name in self.files() if name.startswith("long")], [])
 
     def check_unfinished(self, file, holds):
-        """A picture of an unfinished solution has a warning with what the file holds."""
+        """Tests that a picture of an unfinished solution has a warning that names the file's light."""
         warnings = [event for event in self.remarks("render", "cornell-box", *SMALL, "-o", "x.png", "--solution", file)
                     if event.get("place") == {"file": file}]
         self.assertEqual([event["event"] for event in warnings], ["warning"])
@@ -201,7 +201,7 @@ class Radiosity(CliTest):
             self.assertLessEqual(done["seconds"], done["total_seconds"])
             self.assertGreater(done["peak_bytes"], 2**20)
             self.assertEqual(solved["link_error"], 0.1 if solver == "hierarchical" else None)
-        # A solve that is part of a picture reports it too.
+        # Solving within a render reports it, too.
         outcome = self.succeed("render", "cornell-box", *SMALL, "-o", "x.png", "--json", *COARSE)
         self.assertIn("form factors", [event["step"] for event in outcome.events("progress")])
         self.assertEqual(outcome.events("progress")[-1]["step"], "samples")

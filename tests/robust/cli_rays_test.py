@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`pertev bench rays`: what it refuses and how it says so, and that what it measures is what was asked for."""
+"""`pertev bench rays`: errors of invalid requests, and measurements of the requested rays."""
 
 from cli_run import FLOOR, CliTest, main, write
 
@@ -60,7 +60,7 @@ class RaysOnTheRecord(CliTest):
         self.assertLess(abs(along["hit_share"] - beside["hit_share"]), 0.01)
         self.assertLess(along["nodes"], 1.1 * beside["nodes"])
 
-    def test_rays_are_traced_as_the_flags_say(self):
+    def test_rays_are_traced_according_to_the_flags(self):
         for flags, tracer in [("--build fast", "binned wide8-simd"), ("--traversal skip-links", "sbvh-reinsertion skip-links"),
                               ("--structure octree", "octree octree")]:
             with self.subTest(flags=flags):
@@ -76,8 +76,8 @@ class RaysOnTheRecord(CliTest):
         self.assertEqual([(of["rays"], of["hit_share"]) for of in up], [(1000, 0)] + [(0, 0)] * 4)
         self.assertEqual([of["rays_per_second"] is None for of in up], [False] + [True] * 4)
 
-    def test_cameras_are_those_of_pictures(self):
-        """Rays hit the share of the floor that each camera sees, however it is stated."""
+    def test_cameras_are_the_same_as_for_pictures(self):
+        """The share of rays that hit the floor is that of the camera's view, however the camera is stated."""
         write(self.path("floor.obj"), FLOOR)
         above = ["--scene", "floor.obj", "--count", "1000"]
         pose = ["--camera-pose", "1,0,0,0,0,0,1,1,0,-1,0,0", "--intrinsics-size", "64x36"]

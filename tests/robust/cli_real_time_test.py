@@ -1,4 +1,4 @@
-"""Sequences in real time, pertev render --real-time: frames that are made of those before them, stopped and continued."""
+"""Sequences of pertev render --real-time: frames depend on earlier ones, and sequences are stopped and continued."""
 
 import json
 import os
@@ -54,7 +54,7 @@ class RealTime(CliTest):
         later = hashes("--frames", "2-3", "--fps", "4")
         self.assertNotEqual(later[0], whole[2])
         self.assertEqual(hashes("--frames", "2-2", "--fps", "4"), later[:1])
-        # Frames of a scene at rest differ by their samples, that of the first one too.
+        # Frames of a scene at rest differ in their samples, including the first frame.
         still = hashes("--frames", "0-2", scene="cornell-box")
         self.assertEqual(len(set(still)), 3)
         self.assertNotEqual(hashes("--frames", "2-2", scene="cornell-box")[0], still[0])
@@ -143,7 +143,7 @@ class RealTime(CliTest):
         self.assertEqual((info["pertev.frame"], info["pertev.first_frame"], info["pertev.spp"]), (4, 3, 1))
         made = json.loads(info["pertev.reconstruction"])
         self.assertEqual((made["restir"], made["passes"], made["history"], made["no_anti_alias"]), ("di", 2, 32, False))
-        write(self.path("kept.json"), json.dumps({"version": 1, "settings": made})) # its names are those of the table
+        write(self.path("kept.json"), json.dumps({"version": 1, "settings": made})) # the names are those of the table
         said = self.render("y", "--frames", "3-4", "--fps", "4", "--settings", "kept.json", output="f-#.exr")
         self.assertEqual(said.events("frame")[1]["hash"], info["pertev.hash"])
         self.assertIn("albedo.R", info["channels"])

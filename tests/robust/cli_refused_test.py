@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Errors and warnings of the command line: their exit status, what they name, and that no file is left behind."""
+"""Errors and warnings of the command line: exit status, named settings, and no remaining file."""
 
 import json
 import os

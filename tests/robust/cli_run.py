@@ -1,4 +1,4 @@
-"""Runs the program as a stranger would, for the tests of its command line: in an empty folder, with its own cache."""
+"""Runs the program for the tests of its command line, in an empty folder and with a separate cache."""
 
 import json
 import os
@@ -18,16 +18,16 @@ import zlib
 # Sanitized programs are slow and reserve terabytes of addresses.
 SANITIZED = "--sanitized" in sys.argv
 PROGRAM = os.path.abspath(next(argument for argument in sys.argv[1:] if not argument.startswith("-")))
-# The scripts that take `--device NAME` render on it (cli_integrators); the others on the CPU.
+# Scripts with `--device NAME` render on that device (cli_integrators), the others on the CPU.
 DEVICE = sys.argv[sys.argv.index("--device") + 1] if "--device" in sys.argv[:-1] else "cpu"
 TONED = (".png", ".jpg", ".jpeg")
-UNMETERED = ["--exposure", "0"]  # finding an exposure takes thirty times as long as one of these small pictures
+UNMETERED = ["--exposure", "0"]  # metering an exposure takes thirty times as long as one of these small pictures
 
-PATIENCE_S = 300  # a machine under load; what must be quick is measured by itself
+PATIENCE_S = 300  # allows for a loaded machine; separate tests measure speed
 
 
 def limit_addresses(gibibytes):
-    """For preexec_fn: an allocation that the input does not justify fails instead of filling the machine."""
+    """Limits memory (preexec_fn), so that an excessive allocation fails instead of filling the machine."""
 
     def limit():
         if not SANITIZED:
@@ -40,7 +40,7 @@ KEYS = json.load(open(os.path.join(os.path.dirname(__file__), "../../docs/json_k
 
 
 def refuse_unlisted_keys(line):
-    """Every key of an event stands in docs/json_keys.json; attributes of an EXR are the file's."""
+    """Tests that docs/json_keys.json lists every key of an event. Attributes of an EXR belong to the file."""
     unlisted = {key for key in line if key not in KEYS[line["event"]] and not key.startswith("pertev.")} - {"event"}
     if line["event"] == "info" and "channels" in line:
         unlisted -= {"pixelAspectRatio", "screenWindowWidth"}
@@ -54,7 +54,7 @@ class Outcome:
         self.stdout, self.stderr = stdout.decode("utf-8", "replace"), stderr.decode("utf-8", "replace")
 
     def events(self, kind=None):
-        """The JSON lines of stdout, all of them or those of one kind; anything else there is an error."""
+        """Returns the JSON lines of stdout, all or those of one kind. Other output is an error."""
         lines = [json.loads(line, parse_constant=refuse_constant) for line in self.stdout.split("\n") if line]
         for line in lines:
             if "event" in line:
@@ -62,7 +62,7 @@ class Outcome:
         return lines if kind is None else [line for line in lines if line["event"] == kind]
 
     def error(self):
-        """The error message: the text of the JSON object that ends stdout, or all of stderr."""
+        """Returns the error message: the text of stdout's last JSON object, or all of stderr."""
         if "--json" not in self.arguments:
             return self.stderr
         last = (self.events() or [{}])[-1]
@@ -108,14 +108,14 @@ class CliTest(unittest.TestCase):
         return outcome
 
     def remarks(self, *arguments, about=None, **options):
-        """The notices and warnings of a command that succeeds, in JSON: all, or those that name the setting `about`."""
+        """Returns the notices and warnings of a successful command as JSON: all, or those about the setting `about`."""
         events = self.succeed(*arguments, "--json", **options).events()
         return [event for event in events if event["event"] in ("notice", "warning")
                 and (about is None or about == event.get("setting") or about in event.get("settings", {}))]
 
     def refuse(self, status, *arguments, says=(), **options):
-        """Ends with this status, says each of `says` on stderr, with --json in an object, and leaves the folder as it
-        was."""
+        """Tests that a command ends with this status, prints each of `says` (with --json in an object), and does not
+        change the folder."""
         before = self.files()
         outcome = self.run_pertev(*arguments, **options)
         self.assertEqual(outcome.status, status, outcome)
@@ -129,7 +129,7 @@ class CliTest(unittest.TestCase):
         return outcome
 
     def stderr_on_a_terminal(self, arguments):
-        """The text that the program writes to stderr when it is a terminal; the program must succeed."""
+        """Returns the text that the program writes to a terminal as stderr. The program must succeed."""
         leader, follower = pty.openpty()
         listener, said = listen_to(leader)
         outcome = self.run_pertev(*arguments, stderr=follower)
@@ -139,7 +139,7 @@ class CliTest(unittest.TestCase):
         return b"".join(said).decode()
 
     def wait_while(self, program, is_listening):
-        """Until the running program begins to hear Ctrl-C, at once after its start, or has heard one, or has ended."""
+        """Waits until the running program handles Ctrl-C, has received one, or has ended."""
         while program.poll() is None:
             with open(f"/proc/{program.pid}/status", encoding="ascii") as file:
                 caught = int(re.search(r"SigCgt:\s*([0-9a-f]+)", file.read()).group(1), 16)
@@ -148,7 +148,7 @@ class CliTest(unittest.TestCase):
             time.sleep(0.01)
 
     def render(self, *arguments, scene="cornell-box", size="16x16", spp=1, output="picture.png"):
-        """A small picture on DEVICE, exposed as it is unless `arguments` say how; gives the event that ends it."""
+        """Renders a small picture on DEVICE, without metering unless `arguments` set an exposure. Returns the last event."""
         fixed = UNMETERED if output.lower().endswith(TONED) and "--exposure" not in arguments else []
         outcome = self.succeed("render", scene, "-o", output, "--size", size, "--spp", spp, "--device", DEVICE, "--json",
                                *fixed, *arguments)
@@ -159,8 +159,8 @@ class CliTest(unittest.TestCase):
 
 
 def listen_to(leader):
-    """Reads what a terminal gets (the leader of a pty, which it closes) until all have left it: a thread to join, and the
-    pieces that it found so far."""
+    """Reads the output of a terminal (the leader of a pty, which it closes) until all writers have closed it. Returns
+    a thread to join, and the pieces read so far."""
     said = []
 
     def listen():
@@ -168,7 +168,7 @@ def listen_to(leader):
             while chunk := os.read(leader, 65536):
                 said.append(chunk)
         except OSError:
-            pass  # how Linux tells that the other side is closed
+            pass  # on Linux the other side is closed
         os.close(leader)
 
     listener = threading.Thread(target=listen)
@@ -177,7 +177,7 @@ def listen_to(leader):
 
 
 def as_flag(value):
-    """A value of info's JSON as a flag spells it: a vector's numbers are separated by commas."""
+    """Returns a value of info's JSON in a flag's form: a vector's numbers are separated by commas."""
     return ",".join(str(number) for number in value) if isinstance(value, list) else str(value)
 
 
@@ -191,7 +191,7 @@ FLOOR = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 4 3 2 1\n"
 
 
 def gltf_with_cameras():
-    """Two cameras, one square before them: "wide" is 2:1, "tall" 1:2."""
+    """Two cameras in front of a square: "wide" is 2:1, "tall" 1:2."""
     def camera(name, aspect):
         return {"name": name, "type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1, "aspectRatio": aspect}}
 
@@ -208,7 +208,7 @@ def gltf_with_cameras():
 
 
 def read_exr(path):
-    """{channel: [[value of each column] of each row]} and size of a picture as pertev writes it: lines, ZIP."""
+    """Returns {channel: [[value of each column] of each row]} and the size of an EXR that pertev wrote (scanlines, ZIP)."""
     with open(path, "rb") as file:
         data = file.read()
     assert data[:8] == struct.pack("<II", 20000630, 2), "one part of lines"
@@ -244,13 +244,13 @@ def read_exr(path):
 
 
 def read_png(path):
-    """Reads a PNG file; decode_png says what is returned."""
+    """Reads a PNG file and returns the result of decode_png."""
     with open(path, "rb") as file:
         return decode_png(file.read())
 
 
 def decode_png(data):
-    """[(r, g, b) of each pixel], row by row, of an 8-bit RGB picture."""
+    """Returns [(r, g, b) of each pixel], row by row, of an 8-bit RGB picture."""
     packed, at = b"", 8
     while at < len(data):
         size, kind = struct.unpack_from(">I4s", data, at)
@@ -274,7 +274,7 @@ def decode_png(data):
 
 
 def unpack_zip(packed):
-    """Undoes OpenEXR's differences between bytes, then its split into even and odd ones."""
+    """Inverts OpenEXR's differences between bytes, then its split into even and odd bytes."""
     values, last = bytearray(len(packed)), 128
     for i, byte in enumerate(packed):
         last = byte if i == 0 else (last + byte - 128) & 255
@@ -285,7 +285,7 @@ def unpack_zip(packed):
 
 
 def main():
-    """Runs the tests of the calling file; the program's path, --sanitized and --device are ours, the rest is unittest's."""
+    """Runs the tests of the calling file. The program's path, --sanitized and --device are read here; the other arguments go to unittest."""
     ours = {"--sanitized", "--device", *([DEVICE] if "--device" in sys.argv else [])}
     rest = [argument for argument in sys.argv[1:] if argument not in ours and os.path.abspath(argument) != PROGRAM]
     unittest.main(argv=[sys.argv[0], *rest])

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Files of settings, and what is made of the table of settings: help, completion, a page for man, docs/settings.md."""
+"""Settings files, and everything generated from the table of settings: help, completion, the man page, docs/settings.md."""
 
 import json
 import os
@@ -35,7 +35,7 @@ class SettingsFiles(CliTest):
                 self.assertEqual(a.get("pertev.by_scene"), b.get("pertev.by_scene"))
                 for name in ["hash", "channels", "pertev.hash", "pertev.settings", "pertev.scene_hash", "width", "height"]:
                     self.assertEqual(a[name], b[name], name)
-                self.assertEqual(read_exr(self.path("a.exr")), read_exr(self.path("b.exr")))  # each number of each layer
+                self.assertEqual(read_exr(self.path("a.exr")), read_exr(self.path("b.exr")))  # every number of every layer
 
     def test_flags_override_a_settings_file_and_info_shows_the_origin_of_each_setting(self):
         write(self.path("s.json"), '{"version": 1, "settings": {"spp": 3, "seed": 5, "size": "8x8"}}')
@@ -48,7 +48,7 @@ class SettingsFiles(CliTest):
         self.assertNotIn("pertev.by_default", info)
         origins = dict(re.findall(r"(?m)^pertev\.(seed|camera|projection) .*?(?:\((.*)\))?$", self.succeed("info", "a.exr").stdout))
         self.assertEqual(len({origins["seed"], origins["camera"], origins["projection"]}), 3, origins)
-        self.assertEqual(origins["projection"], "")  # the scene's camera has it
+        self.assertEqual(origins["projection"], "")  # this comes from the scene's camera
 
     def test_info_lists_the_settings_a_scene_suggests_and_the_defaults_it_needs(self):
         write(self.path("f.obj"), FLOOR)
@@ -97,7 +97,7 @@ class SettingsFiles(CliTest):
 
 
 class Documents(CliTest):
-    def test_help_fits_a_terminal_and_groups_have_the_rest(self):
+    def test_help_fits_a_terminal_and_groups_show_the_rest(self):
         lines = self.succeed("render", "--help").stdout.splitlines()
         self.assertLessEqual(len(lines), 50)
         self.assertLessEqual(max(map(len, lines)), 80)
@@ -130,7 +130,7 @@ class Documents(CliTest):
         told = {key for row in table.splitlines() for key in re.findall(r"`([a-z_]+)`", row.split("|")[1])}
         self.assertEqual(keys - settings, told - settings)
 
-    def test_every_event_stands_in_the_document(self):
+    def test_the_document_lists_every_event(self):
         events = set()
         for folder in ["src", "apps"]:
             for path in pathlib.Path(ROOT, folder).rglob("*.cpp"):

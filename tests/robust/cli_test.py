@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The command line's contract: exit codes, what it says on which stream, and that no file is left behind."""
+"""The command line: exit codes, output streams, and no remaining files."""
 
 import json
 import math
@@ -38,7 +38,7 @@ FLAGS = {
 
 
 def limit_files():
-    """For preexec_fn: no file grows past 4 KiB, as on a disk that is full."""
+    """Limits files to 4 KiB (preexec_fn), as on a full disk."""
     resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
 
 
@@ -111,7 +111,7 @@ class WhatIsWritten(CliTest):
     def test_an_output_that_is_a_symbolic_link_stays_one(self):
         os.mkdir(self.path("real"))
         os.symlink("real/picture.png", self.path("link.png"))
-        for _ in range(2):  # first there is nothing at its end, then a picture
+        for _ in range(2):  # the link first has no target, then a picture
             self.render(output="link.png")
             self.assertTrue(os.path.islink(self.path("link.png")))
             self.assertEqual(os.listdir(self.path("real")), ["picture.png"])
@@ -143,7 +143,7 @@ class WhatIsWritten(CliTest):
             self.assertEqual(self.run_pertev("info", "nowhere.obj", stderr=full).status, 2)
 
     def test_a_cache_folder_that_cannot_be_written_is_a_warning(self):
-        n = 130  # enough triangles that their tree is kept
+        n = 130  # so many triangles that their tree is cached
         mesh = "".join(f"v {x} {math.sin(x * y)} {y}\n" for y in range(n) for x in range(n))
         mesh += "".join(f"f {x + n * y} {x + 1 + n * y} {x + n + n * y}\n" for y in range(n - 1) for x in range(1, n))
         write(self.path("hills.obj"), mesh)
@@ -207,7 +207,7 @@ class WhatIsSaid(CliTest):
             self.assertRegex(self.succeed("--version").stdout, r"^pertev \d+\.\d+\.\d+ \([0-9a-f]+(, changed)?|unknown\)")
             seconds.append(time.monotonic() - start)
         print(f"pertev --version: median {1000 * statistics.median(seconds):.1f} ms", flush=True)
-        self.assertLess(statistics.median(seconds), 2.0 if SANITIZED else 0.2)  # 5 ms alone; machines are loaded
+        self.assertLess(statistics.median(seconds), 2.0 if SANITIZED else 0.2)  # takes 5 ms on an idle machine
 
     def test_help_of_each_verb_lists_every_flag(self):
         verbs = self.succeed("--help").stdout
@@ -217,7 +217,7 @@ class WhatIsSaid(CliTest):
             listed = set(re.findall(r"(?<![\w-])--?[a-z][a-z-]*", re.sub(r" {3,}.*", "", text)))
             self.assertEqual(listed - {"-h", "--help"}, set(flags.split()), verb)
 
-    def test_the_progress_bar_shows_share_samples_rate_and_time_left_on_a_terminal_alone(self):
+    def test_the_progress_bar_shows_share_samples_rate_and_time_left_only_on_a_terminal(self):
         arguments = ["render", "cornell-box", "-o", "x.png", "--size", "16x16", "--spp", "8", "--device", "cpu", *UNMETERED]
         self.assertNotIn("\r", self.succeed(*arguments).stderr)
         self.assertNotIn("spp  ", self.succeed(*arguments).stderr)
@@ -268,7 +268,7 @@ class WhatIsRendered(CliTest):
                     if value not in [None, "made up", "none"]:
                         again += ["--" + name.replace("_", "-"), as_flag(value)]
                 self.assertEqual(self.render(*again, scene=scene)["hash"], made["hash"], again)
-        self.render(scene="floor.obj", output="x.exr")  # a view that is made up: as near as its numbers go
+        self.render(scene="floor.obj", output="x.exr")  # a default view is as precise as its printed numbers
         told = self.info("x.exr")
         same = [word for name in ["eye", "target", "up", "fov", "ground"] for word in ["--" + name, as_flag(told["pertev." + name])]]
         near = self.render(*same, scene="floor.obj", output="y.exr")
@@ -291,7 +291,7 @@ class WhatIsRendered(CliTest):
         self.assertEqual(self.info("two.gltf")["cameras"], ["wide", "1"])
 
     def test_aov_layers_are_in_the_exr_and_agree_with_each_other(self):
-        # The tall and the short box before the open side; one sample a pixel, so that no pixel is a mean of two things.
+        # The tall and the short box in front of the open side. With one sample per pixel no pixel is a mean of two surfaces.
         self.render("--aov", "albedo,normal,depth", "--aov", "position,ids", size="24x24", output="x.exr")
         width, height, layers = read_exr(self.path("x.exr"))
         self.assertEqual((width, height), (24, 24))
@@ -402,7 +402,7 @@ class WhatIsRendered(CliTest):
         for x in range(20):
             column = [layers["position.X"][y][x] for y in range(20)]
             self.assertTrue(all(abs(value - (x - 9.5) * 0.08) < 0.03 for value in column), column)
-        # Without a height, what the perspective view shows in the plane of the target.
+        # Without a height, the view is as high as the perspective one in the target's plane.
         done = self.render(*view, "--fov", "30", scene="floor.obj")
         same = self.render(*view, "--view-height", 6 * math.tan(math.radians(15)), scene="floor.obj")
         self.assertEqual(self.picture_difference(done, same), 0)
@@ -425,7 +425,7 @@ class WhatIsCompared(CliTest):
         self.assertFalse(other["equal"])
         self.assertGreater(min(other[key] for key in ["rel_mse", "mse", "flip", "hdr_flip"]), 0)
 
-    def test_pictures_that_differ_only_in_alpha_are_reported_so(self):
+    def test_pictures_that_differ_only_in_alpha_are_reported(self):
         self.render(output="a.exr")
         self.render("--transparent", output="b.exr")
         for blocks in [[], ["--blocks", "4"]]:

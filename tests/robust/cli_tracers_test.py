@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How rays are traced is asked for by flags, and shows in no picture; what cannot be says why."""
+"""Flags select how rays are traced, which changes no picture. Impossible combinations are refused with the reason."""
 
 from cli_run import FLOOR, CliTest, main, write
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`pertev lab --transport`: what it writes, that its files agree, what it refuses, and how Ctrl-C ends it."""
+"""`pertev lab --transport`: its files, which agree, refused requests, and its end by Ctrl-C."""
 
 import csv
 import json
@@ -17,7 +17,7 @@ SMALL = {"--size": "12x12", "--max-depth": 3, "--spp": 4, "--repetitions": 3, "-
 
 class Transport(CliTest):
     def transport(self, *arguments):
-        """A command line, small where it does not say otherwise."""
+        """Returns a command line with small default sizes."""
         left = [str(part) for pair in SMALL.items() if pair[0] not in arguments for part in pair]
         return ["lab", "--transport", *left, *(str(argument) for argument in arguments)]
 
@@ -89,7 +89,7 @@ class Transport(CliTest):
             [row["rel_mse"] for row in self.repetitions("--integrators", "path", *seed)] for seed in ([], [], ["--seed", 7]))
         self.assertEqual(first, again)
         self.assertNotEqual(first, other)
-        # Against a picture that is given: its own 4 samples of seed 0 leave no error.
+        # If the reference is the picture's own 4 samples of seed 0, the error is 0.
         self.render("--max-depth", "3", size="12x12", spp=4, output="given.exr")
         ran = self.repetitions("cornell-box", "--reference", "given.exr", "--integrators", "path")
         last = {row["repetition"]: row for row in ran if row["samples"] == 4}

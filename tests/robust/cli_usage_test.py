@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Help that the command line gives: hints at misspelled words and missing files, and signs of progress in logs."""
+"""Help of the command line: suggestions for misspelled words and missing files, and progress in logs."""
 
 import os
 import pty
@@ -57,7 +57,7 @@ class Flags(CliTest):
                     says=["2, 3: not understood; components of a vector are joined by commas: 1,2,3\n"])
         self.refuse(2, "bench", "cornell-box", says=["cornell-box: not understood; scenes are named by --scene\n"])
 
-    def test_help_before_a_verb_is_that_of_the_verb(self):
+    def test_help_before_a_verb_is_the_help_of_the_verb(self):
         for verb in [[], ["render"], ["bench", "sequence"]]:
             self.assertEqual(self.succeed("help", *verb).stdout, self.succeed(*verb, "--help").stdout)
         self.refuse(2, "help", "rendr", says=["rendr: not understood"])
@@ -66,7 +66,7 @@ class Flags(CliTest):
         self.assertEqual(self.succeed("-V").stdout, self.succeed("--version").stdout)
         lines = self.succeed("--list-devices").stdout.splitlines()
         self.assertRegex(lines[-1], rf"^cpu +.+, \d+ MiB, {len(os.sched_getaffinity(0))} threads, (8|16) lanes$")
-        for line in lines[:-1]:  # CUDA_VISIBLE_DEVICES is empty, which a build without CUDA says otherwise
+        for line in lines[:-1]:  # CUDA_VISIBLE_DEVICES is empty; a build without CUDA has another message
             self.assertRegex(line, "^(no CUDA device: |cuda:\\d+ )")
 
     def test_an_empty_name_is_reported_as_empty(self):
@@ -76,7 +76,7 @@ class Flags(CliTest):
             self.refuse(2, *line, says=[f"pertev: {what}: the name is empty\n"])
 
     def test_the_error_for_a_flag_before_its_verb_names_the_verb(self):
-        self.refuse(2, "--spp", "4", "render", "cornell-box", "-o", "x.png", says=["--spp: is a flag of render"])
+        self.refuse(2, "--spp", "4", "render", "cornell-box", "-o", "x.png", says=["--spp is a flag of render"])
         self.refuse(2, "--json", "info", "cornell-box", says=[])
 
     def test_json_that_is_switched_off_gives_errors_as_text(self):
@@ -88,7 +88,7 @@ class Flags(CliTest):
         for on in [["--json"], ["--json=true"], ["--json=false", "--json"]]:
             outcome = self.run_pertev("info", "gone.obj", *on)
             self.assertEqual((outcome.stderr, outcome.events("error")[0]["status"]), ("", 2), outcome)
-        self.refuse(2, "--quiet", "bench", "rays", says=["--quiet: is a flag of bench"])
+        self.refuse(2, "--quiet", "bench", "rays", says=["--quiet is a flag of bench"])
 
     def test_a_comma_separated_list_of_outputs_is_refused_with_the_right_flags(self):
         for given, meant in [("a.png,b.exr", "-o a.png -o b.exr\n"), ("a.png,b", "-o a.png -o b\n"),
@@ -160,7 +160,7 @@ class Strictness(CliTest):
             for flags in [["--strict"], ["--strict", "-q"], ["--strict", "--json"]]:
                 with self.subTest(scene=scene, flags=flags):
                     outcome = self.refuse(2, "render", scene + ".obj", "-o", "x.png", *flags, *look,
-                                          says=["--strict: ", missing, "nothing is rendered"])
+                                          says=["--strict: ", missing, "nothing was rendered"])
                     self.assertNotIn("progress", outcome.stdout)
         self.refuse(2, "render", "two.obj", "-o", "x.png", "--strict", *look, says=["gone.png", "and 1 warning like it"])
         for scene in ["gone", "broken", "nowhere"]:
@@ -196,7 +196,7 @@ class Pipes(CliTest):
                 self.assertNotIn("standard output", outcome.stderr)
         reading, writing = os.pipe()
         os.close(reading)
-        outcome = self.run_pertev("info", "nowhere.obj", "--json", stdout=writing)  # the error is reported, and counts
+        outcome = self.run_pertev("info", "nowhere.obj", "--json", stdout=writing)  # the error is reported and determines the status
         os.close(writing)
         self.assertEqual(outcome.status, 2, outcome)
         self.assertIn("nowhere.obj", outcome.stderr)
@@ -213,7 +213,7 @@ class SignsOfLife(CliTest):
         return program
 
     def on_a_terminal(self, *flags, **terms):
-        """The text that a terminal gets when TERM has this value, or is unset."""
+        """Returns the output on a terminal with this value of TERM, or without TERM."""
         leader, follower = pty.openpty()
         environment = {name: value for name, value in self.environment.items() if name != "TERM"}
         program = self.start(*flags, stderr=follower, env={**environment, **terms})
@@ -226,7 +226,7 @@ class SignsOfLife(CliTest):
         quiet = self.start(*enough, "-q")
         dumb, listener, said = self.on_a_terminal(*enough, TERM="dumb")
         in_a_sample = self.start("--exposure", "0", size="4000x2250")
-        # They sleep for most of that time, which is told by the clock: others have use for the processor.
+        # They sleep for most of that time, which the clock measures, so other tests can use the processor.
         time.sleep(1)
         for signalled, seconds in [(signal.SIGSTOP, 8), (signal.SIGCONT, 0)]:
             for program in [to_a_file, quiet, dumb, in_a_sample]:

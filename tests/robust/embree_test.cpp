@@ -1,7 +1,7 @@
-// Hits agree with Embree's robust single-ray traversal: another primitive only where both lie at one t or the ray meets
-// an edge, and on one primitive one t; of the rest at most 10 in 10^7. One t: within 1e-5 of it, or within 4 units in
-// the last place of the coordinates that it is computed from (Sponza has duplicate walls, and rays that start just
-// before them).
+// Hits agree with Embree's robust single-ray traversal: primitives differ only if both have the same t or the ray hits
+// an edge, and the same primitive has the same t. At most 10 rays in 10^7 are exceptions. Equal t means within 1e-5 of
+// it, or within 4 units in the last place of the coordinates that it is computed from (Sponza has duplicate walls, and
+// rays that start just in front of them).
 
 #include <doctest/doctest.h>
 
@@ -27,7 +27,7 @@ struct Tally {
     uint64_t hits = 0, other = 0, unexplained = 0;
 };
 
-/// Least weight of the hit's three vertices: near 0 on an edge.
+/// Returns the smallest weight of the hit's three vertices, which is near 0 on an edge.
 float edge_distance(float u, float v) { return min(min(u, v), 1 - u - v); }
 
 template <class Traversal, class Tree>

@@ -1,6 +1,7 @@
-// A closed shape under a sky of radiance 1000 with the camera inside is black: a ray that starts on the wrong side of a
-// wall is a lit pixel. Boxes small and large, near the file's origin and far from it, rotated and not, alone and with a
-// distant object, as vertices, as a node and as instances; and shapes with sharp edges and with uneven triangles.
+// A closed shape under a sky of radiance 1000 is black from inside. A ray that starts on the wrong side of a wall
+// makes a lit pixel. Boxes are small and large, near the file's origin and far from it, rotated and not, with and
+// without a distant object, and positioned by vertices, a node and instances. Other shapes have sharp edges and uneven
+// triangles.
 
 #include <doctest/doctest.h>
 
@@ -19,10 +20,10 @@ namespace {
 
 /// Ways in which a file positions the shape.
 enum class Placing {
-    Vertices,  // its vertices are where it is
-    Node,      // moved there by the node's transform: baked
+    Vertices,  // vertices at the shape's position
+    Node,      // moved by the node's transform and baked
     Instances, // with a second instance, so that each has its own space
-    FarMesh,   // far vertices with a second instance: far from the origin in its own space too
+    FarMesh,   // far vertices with a second instance, thus far from the origin in its own space, too
 };
 constexpr Placing kPlacings[] = {Placing::Vertices, Placing::Node, Placing::Instances, Placing::FarMesh};
 
@@ -31,13 +32,13 @@ struct Placement {
     Vec3 at;
     Transform turn; // about its middle
     Placing placing = Placing::Vertices;
-    Vec3 other_at = {}; // position of a second object of this shape; {0, 0, 0}: none
+    Vec3 other_at = {}; // position of a second object of this shape; none if {0, 0, 0}
 };
 
 const Transform kTurns[] = {{}, make_rotation(0.48f, 0.6f, 0, 0.64f)};
 
 struct Shape {
-    std::vector<Vec3> positions; // about its middle, a size of 1 or so
+    std::vector<Vec3> positions; // about its centre, with a size of about 1
     std::vector<uint32_t> indices;
 };
 
@@ -51,7 +52,7 @@ Shape cube() {
     return shape;
 }
 
-/// A floor and a roof that meet at the edge x = y = -0.5 under an angle whose tangent is `slope`.
+/// A floor and a roof that meet at the edge x = y = -0.5 at an angle with the tangent `slope`.
 Shape wedge(float slope) {
     Shape shape;
     for (const float z : {-0.5f, 0.5f}) {
@@ -94,7 +95,7 @@ Scene scene_of(const Shape& shape, const Placement& place) {
     return scene;
 }
 
-/// A view from one point of the shape's own to another.
+/// A view from one point in the shape's coordinates to another.
 struct View {
     Vec3 from, to;
     float fov_y;
@@ -124,13 +125,14 @@ uint64_t lit_pixels(const PreparedScene& scene, const Placement& place, const Vi
     return lit;
 }
 
-/// Size of a view so narrow that one sample of thousands starts within rounding of an edge; in a picture of the whole
-/// scene it is one of millions. It is as wide as the precision of the file's coordinates requires to aim the camera.
+/// Returns the size of a view so narrow that one of thousands of samples starts within rounding of an edge. In a
+/// picture of the whole scene it would be one of millions. The precision of the file's coordinates limits how narrow
+/// it can be.
 float narrow(const Placement& place) {
     return min(0.3f, max(2e-4f, 2e-6f * max_component(abs(place.at)) / place.size_m));
 }
 
-/// The whole box, two edges and a corner.
+/// Returns views of the whole box, two edges and a corner.
 uint64_t lit_pixels_of_box(const Placement& place) {
     const Scene box = scene_of(cube(), place);
     const PreparedScene scene = prepared_of(box);
@@ -143,7 +145,7 @@ uint64_t lit_pixels_of_box(const Placement& place) {
     return lit;
 }
 
-/// All placings and turns of it.
+/// Tests all positions and rotations of the shape.
 template <class LitPixels>
 void check_black(Placement place, const LitPixels& lit_pixels_there) {
     CAPTURE(place.size_m);
@@ -160,8 +162,7 @@ void check_black(Placement place, const LitPixels& lit_pixels_there) {
 
 } // namespace
 
-// Where origins are moved along the normal alone, 72 of the 96 placings below have lit pixels, up to 401 of a box's
-// 4096.
+// If origins are moved only along the normal, 72 of the 96 cases below have lit pixels, up to 401 of a box's 4096.
 
 TEST_CASE("no light leaks into a closed box of any position and size") {
     for (const auto& [size_m, at] : {std::pair{2.0f, Vec3{0, 0, 0}},

@@ -33,7 +33,7 @@ std::string checksum_of(const std::string& bytes) {
     return text;
 }
 
-/// Checksum of the checksums of the header and of each block; each follows a size and as many bytes.
+/// Returns the checksum of all checksums. Each of them follows a size and that many bytes.
 std::string checksum_of_checksums(const std::string& film) {
     std::string all;
     for (std::size_t at = kBeforeHeader - sizeof(uint32_t); at < film.size();) {
@@ -46,7 +46,7 @@ std::string checksum_of_checksums(const std::string& film) {
     return checksum_of(all);
 }
 
-/// A film of 5x3 pixels with ids and sums that differ.
+/// A film of 5x3 pixels with different ids and sums.
 std::string small_film(const fs::path& path) {
     Queue queue = Queue::make_cpu();
     FilmHeader header;
@@ -65,7 +65,7 @@ std::string small_film(const fs::path& path) {
     return film_bytes(path);
 }
 
-/// Reads all of a file; the memory of its film is small unless the reader allocates what the file does not justify.
+/// Reads a whole file. The memory of its film is small unless the reader allocates more than the file justifies.
 std::optional<Error> error_of(const fs::path& path, const std::string& bytes) {
     test::write_text(path, bytes);
     return test::thrown_error([&] {
@@ -75,7 +75,7 @@ std::optional<Error> error_of(const fs::path& path, const std::string& bytes) {
     });
 }
 
-/// The file with another header, whose checksums are right.
+/// Returns the file with another header and valid checksums.
 std::string with_header(const std::string& film, const std::string& header) {
     uint32_t size = 0;
     std::memcpy(&size, film.data() + kBeforeHeader - sizeof size, sizeof size);
@@ -104,7 +104,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 } // namespace
 
-TEST_CASE("every changed byte of a film file is found") {
+TEST_CASE("every changed byte of a film file is detected") {
     const fs::path path = test::scratch_folder() / "film.pvf";
     const std::string film = small_film(path);
     CHECK(!error_of(path, film));
@@ -117,7 +117,7 @@ TEST_CASE("every changed byte of a film file is found") {
     }
 }
 
-TEST_CASE("a film file that is cut off or too long is found") {
+TEST_CASE("a film file that is truncated or too long is detected") {
     const fs::path path = test::scratch_folder() / "film.pvf";
     const std::string film = small_film(path);
     for (std::size_t size = 0; size < film.size(); ++size) {
@@ -127,7 +127,7 @@ TEST_CASE("a film file that is cut off or too long is found") {
     CHECK(test::says(error_of(path, film + '\0'), "1 bytes follow"));
 }
 
-TEST_CASE("a header with right checksums is read strictly") {
+TEST_CASE("a header with valid checksums is read strictly") {
     const fs::path path = test::scratch_folder() / "film.pvf";
     const std::string film = small_film(path), header = header_of(film);
     CHECK(!error_of(path, with_header(film, header)));
@@ -163,7 +163,7 @@ TEST_CASE("a header with right checksums is read strictly") {
                                                           {R"("samples":[0,2])", R"("samples":[0,9000000])"}}) {
         CHECK(code_of(from, to) == ErrorCode::OverLimit);
     }
-    // Whose targets fit: refused because no file of this length holds so many blocks.
+    // The targets fit, but no file of this length has so many blocks.
     std::string large = replaced(header, R"("size":[5,3])", R"("size":[65536,16384])");
     for (const uint64_t stride : {80, 12}) {
         large = replaced(large, fmt::format(R"("bytes":{},"stride":{})", 15 * stride, stride),
@@ -173,7 +173,7 @@ TEST_CASE("a header with right checksums is read strictly") {
     CHECK(test::says(error_of(path, replaced(film, "\x1a\n\x02", "\x1a\n\x03")), "version 3"));
 }
 
-TEST_CASE("a reader survives headers and blocks that a fuzzer made, with right checksums") {
+TEST_CASE("a reader survives fuzzed headers and blocks with valid checksums") {
     const fs::path path = test::scratch_folder() / "film.pvf";
     const std::string film = small_film(path), header = header_of(film);
     test::Random random(3);
@@ -191,7 +191,7 @@ TEST_CASE("a reader survives headers and blocks that a fuzzer made, with right c
         const auto error = error_of(path, with_header(film, changed));
         if (error) CHECK(error->code() != ErrorCode::FileWrite);
     }
-    // The first block, whose size and checksum are made right.
+    // The first block gets a valid size and checksum.
     const std::size_t begin = kBeforeHeader + header.size() + kHashBytes;
     uint32_t size = 0;
     std::memcpy(&size, film.data() + begin, sizeof size);

@@ -1,4 +1,4 @@
-// Broken glTF files end in an Error that names the file, or in a scene, within seconds.
+// Malformed glTF files cause an Error that names the file, or a scene, within seconds.
 
 #include <doctest/doctest.h>
 
@@ -21,7 +21,7 @@ using namespace pertev;
 
 namespace {
 
-/// Checks that every number is finite at some times of a valid scene, or that there is an Error.
+/// Tests that every number is finite at some times of a valid scene, or that there is an Error.
 void play(Scene scene) {
     PosedScene posed(std::move(scene));
     for (const double time_s : {-1.0, 0.25, 1.0, 1e300}) {
@@ -40,7 +40,7 @@ void play(Scene scene) {
     }
 }
 
-/// Text of the Error; "" if there is a scene, which is then played. `messages` receives the messages.
+/// Returns the text of the Error; "" if there is a scene, which is then played. `messages` receives the messages.
 std::string read_outcome(const fs::path& path, std::vector<std::byte> bytes, Messages& messages) {
     std::optional<Scene> scene;
     try {
@@ -85,7 +85,7 @@ std::string rich_document() {
 
 } // namespace
 
-TEST_CASE("every public malformed glTF file ends in an Error that names it, or in a scene, within 5 s") {
+TEST_CASE("every public malformed glTF file causes an Error that names it, or a scene, within 5 s") {
     const auto folder = test::test_scene("malformed/gltf");
     if (!folder) return;
     int files = 0;
@@ -127,10 +127,10 @@ TEST_CASE("no change of a single number in a document crashes the reader") {
             faults += is_complete(good.substr(0, at) + other + good.substr(end)) ? 0 : 1;
         }
     }
-    CHECK(faults > 300); // most of these changes cannot be right
+    CHECK(faults > 300); // most of these changes are invalid
 }
 
-TEST_CASE("a document cut off anywhere is an Error") {
+TEST_CASE("a document truncated anywhere is an Error") {
     const std::string good = rich_document();
     const fs::path path = test::scratch_folder() / "model.gltf";
     for (std::size_t size = 0; size < good.size(); size += 31) {

@@ -1,5 +1,5 @@
-// No damaged file may crash a reader, make it hang, or make it allocate memory that the file's size does not justify:
-// the result is an Error that names the file, or a picture. Inputs are the public collection of malformed files, and
+// No damaged file may crash a reader, let it hang, or let it allocate memory that the file's size does not justify.
+// The result is an Error that names the file, or a picture. Inputs are the public collection of malformed files, and
 // every kind of picture truncated at each length and with flipped bits.
 
 #include <doctest/doctest.h>
@@ -33,7 +33,7 @@ namespace {
 
 enum class Outcome { Picture, Refused };
 
-// Anything but a whole picture or an Error of the right kind fails the test.
+// Any result except a whole picture or an Error of the expected kind fails the test.
 Outcome try_to_decode(std::span<const std::byte> bytes) {
     const auto start = std::chrono::steady_clock::now();
     Outcome outcome = Outcome::Picture;
@@ -52,7 +52,8 @@ Outcome try_to_decode(std::span<const std::byte> bytes) {
     return outcome;
 }
 
-// Peak memory of this process so far, in bytes. AddressSanitizer keeps freed memory, so it says nothing there.
+// Returns the peak memory of this process so far, in bytes. With AddressSanitizer it is meaningless, because freed
+// memory is kept.
 uint64_t peak_memory() {
 #if defined(__SANITIZE_ADDRESS__)
     return 0;
@@ -110,7 +111,7 @@ TEST_CASE("a truncated picture is refused") {
         REQUIRE(try_to_decode(sample.bytes) == Outcome::Picture);
         for (std::size_t left = 0; left < sample.bytes.size(); ++left) {
             CAPTURE(left);
-            // Copied, so that a sanitizer sees one byte too far.
+            // The bytes are copied, so that a sanitizer detects reads beyond the end.
             const std::vector<std::byte> cut(sample.bytes.begin(),
                                              sample.bytes.begin() + static_cast<std::ptrdiff_t>(left));
             CHECK(try_to_decode(cut) == Outcome::Refused);
@@ -128,7 +129,7 @@ TEST_CASE("pictures with a few flipped bits or replaced bytes end in an error or
             std::vector<std::byte> bytes = sample.bytes;
             const uint64_t edits = 1 + next_random(state) % 4;
             for (uint64_t k = 0; k < edits; ++k) {
-                // Half of them in the header, where sizes are.
+                // Half of the changes are in the header, which has the sizes.
                 const std::size_t range =
                     next_random(state) % 2 == 0 ? std::min<std::size_t>(bytes.size(), 340) : bytes.size();
                 const std::size_t at = next_random(state) % range;
@@ -169,7 +170,7 @@ TEST_CASE("decoded pictures of every format have a size limit") {
     constexpr uint64_t limit = kFreeImageBytes + kMaxExpansion * 100'000;
     CHECK(outcome(8192, limit, 100'000) == fine);
     CHECK(outcome(8192, limit + 1, 100'000) == over_limit);
-    CHECK(outcome(8192, limit, 1000) == bad_input); // more than the bytes could hold
+    CHECK(outcome(8192, limit, 1000) == bad_input); // more than the bytes can hold
     CHECK(outcome(kMaxImageSide + 1, 4, 100'000) == over_limit);
     CHECK(outcome(0, 0, 100'000) == bad_input);
 }

@@ -14,8 +14,8 @@ using namespace pertev;
 
 namespace {
 
-/// Checks that reading gives an Error that names the file (or one that it refers to) or a scene, within five
-/// processor seconds.
+/// Tests that reading ends within five processor seconds with a scene or an Error that names the file or one that it
+/// refers to.
 void check_survives(const fs::path& path) {
     CAPTURE(path.string());
     const double start = test::cpu_seconds();
@@ -43,7 +43,7 @@ const std::string kSmallPly = "ply\nformat ascii 1.0\nelement vertex 4\nproperty
                               "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
                               "0 0 0 1 2 3\n1 0 0 1 2 3\n1 1 0 1 2 3\n0 1 0 1 2 3\n4 0 1 2 3\n3 0 1 2\n";
 
-/// A few bytes changed, doubled or taken out, as a fuzzer does.
+/// Changes, doubles or removes a few bytes, like a fuzzer.
 std::string damaged(std::string text, std::mt19937& random) {
     const auto below = [&](std::size_t n) { return random() % std::max<std::size_t>(n, 1); };
     for (std::size_t edits = 1 + below(4); edits > 0; --edits) {
@@ -69,7 +69,7 @@ std::string damaged(std::string text, std::mt19937& random) {
 
 } // namespace
 
-TEST_CASE("every malformed public mesh ends in an error or a scene") {
+TEST_CASE("every malformed public mesh causes an error or a scene") {
     for (const char* folder : {"malformed/obj", "malformed/ply", "malformed/scene"}) {
         const auto path = test::test_scene(folder);
         if (!path) continue;
@@ -77,7 +77,7 @@ TEST_CASE("every malformed public mesh ends in an error or a scene") {
     }
 }
 
-TEST_CASE("damaged OBJ, MTL and PLY files end in an error or a scene") {
+TEST_CASE("damaged OBJ, MTL and PLY files cause an error or a scene") {
     std::mt19937 random(7);
     const fs::path folder = test::scratch_folder();
     const uint64_t rounds = test::effort(1500, 60'000);
@@ -89,7 +89,7 @@ TEST_CASE("damaged OBJ, MTL and PLY files end in an error or a scene") {
     }
 }
 
-TEST_CASE("a damaged binary PLY ends in an error or a scene") {
+TEST_CASE("a damaged binary PLY causes an error or a scene") {
     const auto path = test::test_scene("malformed/ply/truncated_binary.ply");
     if (!path) return;
     std::mt19937 random(11);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Scripts that measure by bench/jobs.json: what they write is a measurement, and a difference between devices ends with 1."""
+"""Scripts that measure the jobs of bench/jobs.json: they write measurements, and a difference between devices has status 1."""
 
 import pathlib
 import subprocess
@@ -23,7 +23,7 @@ class Scripts(CliTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("bunny", done.stderr)
         measured = make_tables.load(pathlib.Path(self.path("out/cornell-box,-path.json")).read_text(encoding="utf-8"))
-        faults = [fault for fault in make_tables.faults_of("x", measured) if "names no commit" not in fault]  # a build without Git
+        faults = [fault for fault in make_tables.faults_of("x", measured) if "names no commit" not in fault]  # for a build without Git
         self.assertEqual(faults, [])
         self.assertEqual(len(measured["tables"][-1]["rows"]), 1)
         self.assertTrue(pathlib.Path(self.path("out/page.html")).exists())
@@ -31,7 +31,7 @@ class Scripts(CliTest):
     def test_comparing_devices_that_differ_or_fail_ends_with_1(self):
         same = self.run_script("compare_devices.py", "1", "--only", "cornell-box", "--devices", "cpu", "cpu")
         self.assertEqual(same.returncode, 0, same.stdout + same.stderr)
-        self.assertEqual(same.stdout.count(" same\n"), 2)  # a picture, and light at a place
+        self.assertEqual(same.stdout.count(" same\n"), 2)  # a picture, and light at a point
         bad = self.run_script("compare_devices.py", "1", "--only", "cornell-box", "--devices", "cpu", "nothing")
         self.assertEqual((bad.returncode, bad.stdout.count(" DIFFERENT\n")), (1, 2))
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The made scenes of rays on the record: the same triangles to the byte everywhere, and the program reads all of them."""
+"""The generated scenes of the ray record: they have the same bytes everywhere, and the program reads all triangles."""
 
 import hashlib
 import importlib.util
@@ -21,7 +21,7 @@ def digest(positions, triangles):
 @unittest.skipUnless(importlib.util.find_spec("numpy"), "numpy is not here")
 class Made(CliTest):
     def rays_in(self, name, mesh):
-        """The sets of rays that the program traces in a scene of the record with that mesh."""
+        """Returns the ray sets that the program traces in a scene of the record with that mesh."""
         import make_record_scenes
         make_record_scenes.write_ply(pathlib.Path(self.path(f"record/{name}.ply")), *mesh)
         environment = {**self.environment, "PERTEV_SCENES": self.path(".")}

@@ -1,4 +1,4 @@
-"""A client of `pertev view` by sockets alone, for its tests: HTTP, WebSocket, and the viewer as a process."""
+"""A client of `pertev view` for tests, over plain sockets: HTTP, WebSocket, and the viewer as a process."""
 
 import base64
 import hashlib
@@ -21,7 +21,7 @@ HEADER = struct.Struct("<BBHIIIHHHHII")
 
 
 class Viewer:
-    """A viewer of a small picture, on a port of its own; ends with the block."""
+    """A viewer of a small picture on its own port, which ends with the block."""
 
     def __init__(self, *arguments, scene="cornell-box", size="64x48", spp=4, device="cpu", desktop="", folder=None):
         """`desktop`: a folder with a desktop's programs; it may then open a browser. `size`: empty: the window's shape.
@@ -62,7 +62,7 @@ class Viewer:
         self.scratch.cleanup()
 
     def end(self, how=signal.SIGINT):
-        """Ends it as Ctrl-C does; gives its status and how long that took."""
+        """Ends the viewer like Ctrl-C. Returns the status and the time that it took."""
         began = time.monotonic()
         self.process.send_signal(how)
         status = self.process.wait(PATIENCE_S)
@@ -81,7 +81,7 @@ class Viewer:
         return {"Host": f"{self.host}:{self.port}", "Cookie": self.let_in()}
 
     def let_in(self):
-        """The cookie that the token is exchanged for."""
+        """Exchanges the token for the cookie and returns it."""
         if not self.cookie:
             status, headers, _ = self.get(f"/?token={self.token}", {"Host": f"{self.host}:{self.port}"})
             assert status == 200, status
@@ -89,7 +89,7 @@ class Viewer:
         return self.cookie
 
     def send_raw(self, data):
-        """The viewer's answer to these bytes, up to the closing of the connection."""
+        """Returns the viewer's answer to these bytes until the connection closes."""
         with self.connect() as made:
             try:
                 made.sendall(data)
@@ -99,7 +99,7 @@ class Viewer:
                 return b""
 
     def get(self, target, headers=None, method="GET"):
-        """Status, headers by small names, and body."""
+        """Returns status, headers by lower-case names, and body."""
         lines = [f"{method} {target} HTTP/1.1"]
         given = self.own_headers() if headers is None else headers
         lines += [f"{name}: {value}" for name, value in given.items()] + ["Connection: close", "", ""]
@@ -120,8 +120,8 @@ def read_all(made):
 
 
 class Tunnel:
-    """A relay between a page and the viewer, like ssh -L, on its own port. It can be cut, and its way to the page can
-    be limited to a number of bytes a second. A Client accepts it in the viewer's place."""
+    """A relay between a page and the viewer, like ssh -L, on its own port. It can be disconnected, and its rate to the
+    page can be limited. A Client accepts it instead of the viewer."""
 
     def __init__(self, viewer, bytes_per_second=0):
         self.viewer, self.ends, self.is_cut, self.bytes_per_second = viewer, [], False, bytes_per_second
@@ -150,7 +150,7 @@ class Tunnel:
                 for here, there in [(near, far), (far, near)]:
                     threading.Thread(target=self.pass_on, args=(here, there), daemon=True).start()
         except OSError:
-            pass  # it was closed
+            pass  # the socket was closed
 
     def pass_on(self, here, there):
         try:
@@ -187,11 +187,11 @@ class Tunnel:
 
 
 class Closed(Exception):
-    """The other side closed the WebSocket; holds code and reason."""
+    """The other side closed the WebSocket, with a code and a reason."""
 
 
 class WebSocket:
-    """The side of a WebSocket that asks for it."""
+    """The client's side of a WebSocket."""
 
     def __init__(self, made, path, headers):
         self.socket, self.buffer = made, b""
@@ -245,7 +245,7 @@ class WebSocket:
         return data
 
     def receive_data(self, timeout=PATIENCE_S):
-        """Kind and bytes of the next message: 1 is text, 2 is not."""
+        """Returns kind and bytes of the next message. Kind 1 is text, 2 is binary."""
         self.socket.settimeout(timeout)
         while True:
             first, size = self.take(2)
@@ -264,7 +264,7 @@ class WebSocket:
 
 
 class Client(WebSocket):
-    """A client of the viewer. Acknowledges pictures as a page does, unless it is told not to."""
+    """A client of the viewer. It acknowledges pictures like a page unless that is turned off."""
 
     def __init__(self, viewer, key="test", says_hello=True, headers=None, acknowledges=True):
         self.acknowledges, self.input = acknowledges, 0
@@ -274,7 +274,7 @@ class Client(WebSocket):
             self.say(type="hello", key=key)
 
     def steer(self, **message):
-        """Sends an input; gives its number."""
+        """Sends an input and returns its number."""
         self.input += 1
         self.say(n=self.input, **message)
         return self.input
@@ -283,7 +283,7 @@ class Client(WebSocket):
         return self.steer(type="set", name=name, value=value)
 
     def receive(self, timeout=PATIENCE_S):
-        """The next message: a dictionary, or (header, bytes)."""
+        """Returns the next message: a dictionary, or (header, bytes)."""
         kind, data = self.receive_data(timeout)
         if kind == 1:
             return json.loads(data)
@@ -295,7 +295,7 @@ class Client(WebSocket):
         return header, data[32:]
 
     def until(self, wanted, timeout=PATIENCE_S):
-        """The first message that `wanted` accepts."""
+        """Returns the first message that `wanted` accepts."""
         end = time.monotonic() + timeout
         while True:
             message = self.receive(max(end - time.monotonic(), 0.01))
@@ -309,11 +309,11 @@ class Client(WebSocket):
         return self.until(lambda m: isinstance(m, tuple) and wanted(m[0]), timeout)
 
     def done(self, wanted=lambda state: True, timeout=PATIENCE_S):
-        """The state once all samples are there."""
+        """Returns the state once all samples are complete."""
         return self.text("state", lambda s: s["phase"] == "done" and wanted(s), timeout)
 
     def png(self):
-        """The bytes of the still picture, put together from its pieces."""
+        """Returns the bytes of the still picture, joined from its pieces."""
         whole = b""
         while True:
             header, data = self.picture(lambda h: h["kind"] == 2)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Clients of `pertev view` together, and what their links do: who steers, and that no client harms another."""
+"""Several clients of `pertev view` and their links: who steers, and that no client affects another."""
 
 import json
 import os
@@ -13,17 +13,17 @@ from viewer_test import WithViewer
 
 
 class Together(WithViewer):
-    arguments = ["--threads", "1"]  # it renders all the while
+    arguments = ["--threads", "1"]  # it keeps rendering
     options = {"size": "160x120", "spp": 100000}
 
     def test_one_client_steers_hands_over_control_and_keeps_it_after_reconnecting(self):
         with Client(self.viewer, key="first") as first, Client(self.viewer, key="second") as second:
-            first.say(type="ask")  # a test before this one may have left a wheel that waits
+            first.say(type="ask")  # an earlier test may have left reserved control
             people = second.text("people", lambda p: len(p["people"]) == 2 and p["steers"] == p["you"] - 1)
             first.steer(type="home")
             first.set("exposure", 2)
             before = second.text("state", lambda s: s["values"]["exposure"] == 2)["flags"]
-            second.steer(type="orbit", dx=1, dy=0)  # is not heard
+            second.steer(type="orbit", dx=1, dy=0)  # this has no effect
             number = first.steer(type="set", name="exposure", value=3)
             state = second.text("state", lambda s: s["values"]["exposure"] == 3)
             self.assertEqual(state["flags"], before)
@@ -44,7 +44,7 @@ class Together(WithViewer):
             self.assertGreater(number, 0)
 
     def watch(self, client, seconds=1.0):
-        """Pictures that it is sent in this time."""
+        """Returns the pictures that the client gets in this time."""
         count, end = 0, time.monotonic() + seconds
         while time.monotonic() < end:
             client.steer(type="orbit", dx=0.001, dy=0)
@@ -99,12 +99,12 @@ class Together(WithViewer):
             with Client(self.viewer, key="bad") as client:
                 client.text("welcome")
                 spoil(client)
-                self.assertIn(client.close_reason(10)[0], (code, 0))  # 0: what was not read any more cuts it short
+                self.assertIn(client.close_reason(10)[0], (code, 0))  # 0 if unread data interrupts the closing
         self.assertEqual(self.viewer.get("/")[0], 200)
 
 
 class SlowLink(WithViewer):
-    """Pictures of some 8 KiB at first, and a link that takes 32 KiB a second."""
+    """The first pictures have about 8 KiB, and the link takes 32 KiB per second."""
 
     options = {"size": "320x240", "spp": 64}
     arguments = ("--max-depth", "1")
@@ -114,7 +114,7 @@ class SlowLink(WithViewer):
         with Tunnel(self.viewer, 32 << 10) as tunnel, Client(tunnel, key="far") as far:
             far.set("moving_scale", "1")
 
-            def goes_on():  # a machine under load takes longer
+            def goes_on():  # a loaded machine takes longer
                 now = time.monotonic()
                 return now < end or (len(delays) < 16 and now < end + 60)
 
@@ -135,7 +135,7 @@ class SlowLink(WithViewer):
             hand.join()
         third = len(delays) // 3
         self.assertGreater(third, 3)
-        # Under load fewer pictures come, and better ones again.
+        # Under load fewer pictures arrive, with a better quality.
         self.assertTrue(max(coarse) > 1.2 * AT_FIRST or min(sizes) < WIDTH, (coarse, sizes))
         self.assertLess(max(delays[-third:]), max(1.0, 1.5 * max(delays[:third])), delays)
 
@@ -164,11 +164,11 @@ class Paths(CliTest):
 
 
 WIDTH = 320
-AT_FIRST = 1477  # coarseness of quality 80, by which pictures for a client begin
+AT_FIRST = 1477  # coarseness of quality 80, with which pictures for a client begin
 
 
 def coarseness(jpeg):
-    """The sum of its first table of steps: the larger, the lower is the quality."""
+    """Returns the sum of a JPEG's first quantisation table. A larger sum means a lower quality."""
     at = jpeg.index(b"\xff\xdb")
     return sum(jpeg[at + 5 : at + 5 + 64])
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The page of `pertev view` in a real headless Chromium: it loads without a complaint, shows the picture, and every key
-does what its help says. Skipped where there is no Chromium."""
+"""The page of `pertev view` in a real headless Chromium: it loads without errors, shows the picture, and every key has
+the effect in its help. Skipped without Chromium."""
 
 import json
 import os
@@ -25,7 +25,7 @@ if find_chromium() is None:
     sys.exit(77)
 
 
-BROWSER = Chromium()  # one for all, as its start takes long
+BROWSER = Chromium()  # shared by all tests, because its start takes long
 
 
 def setUpModule():  # pylint: disable=invalid-name
@@ -64,7 +64,7 @@ class Page(unittest.TestCase):
         self.assertEqual(self.browser.errors, [])
 
     def moved(self, do):
-        """The view's flags before and after `do`, as numbers by flag."""
+        """Returns the view's flags before and after `do`, as numbers by flag."""
         before = self.flags
         do()
         self.flags = self.eye.text("state", lambda s: s["flags"] != before, 20)["flags"]
@@ -77,20 +77,20 @@ class Page(unittest.TestCase):
     def test_initially_the_page_shows_the_picture_and_removes_the_token_from_the_address(self):
         page = self.browser
         self.assertNotIn("token", page.value("location.href"))
-        self.assertEqual(page.value("document.cookie"), "")  # scripts do not see it
-        # The floor is lit, and the wall is red. Waited for: the state may come before the picture.
+        self.assertEqual(page.value("document.cookie"), "")  # scripts cannot read it
+        # The floor is lit and the wall is red. The state may arrive before the picture, so this waits.
         page.until("(() => { const copy = new OffscreenCanvas(1280, 720).getContext('2d', {willReadFrequently: true}); "
                    "copy.drawImage(document.querySelector('#picture'), 0, 0); "
                    "const all = copy.getImageData(0, 0, 1280, 720).data; const at = (x, y) => all.slice(4 * (1280 * y + x), 4 * (1280 * y + x) + 3); "
                    "const floor = at(640, 690), wall = at(360, 300); "
                    "return floor[0] + floor[1] + floor[2] > 150 && wall[0] > 2 * wall[1]; })()")
         self.assertIn("film hash", page.value("document.querySelector('#readings').innerText"))
-        rate = page.until("/screen of who steers\\s*(\\d+) a second/.exec(document.querySelector('#readings').textContent)?.[1]")
+        rate = page.until("/screen of the steering viewer\\s*(\\d+) a second/.exec(document.querySelector('#readings').textContent)?.[1]")
         self.assertTrue(10 <= int(rate) <= 300, rate)
         rendered = self.eye.done()["hash"]
         self.assertEqual(page.value("document.body.dataset.hash"), rendered)
 
-    def test_keys_of_movement_go_by_their_position_on_the_keyboard(self):
+    def test_movement_keys_depend_on_their_position_on_the_keyboard(self):
         # The scene's camera looks along +z with +y up: its right is -x. Three keys at once, one for each axis.
         for signs in [{"KeyD": -1, "KeyE": 1, "KeyW": 1}, {"KeyA": 1, "KeyQ": -1, "KeyS": -1}]:
 
@@ -110,7 +110,7 @@ class Page(unittest.TestCase):
         depth = page.value("document.querySelector('#setting-max_depth').value")
         for code in ["KeyS", "KeyD", "KeyT", "KeyH", "Digit7"]:
             page.key(code, "x", 0.05, modifiers=CONTROL)
-        page.key("BracketRight", "]")  # a later key arrives, so the earlier ones did
+        page.key("BracketRight", "]")  # a later key has arrived, so the earlier ones have, too
         self.eye.done(lambda s: s["values"]["exposure"] == 0.25)
         page.key("BracketLeft", "[")
         state = self.eye.done(lambda s: s["values"]["exposure"] == 0)
@@ -132,14 +132,14 @@ class Page(unittest.TestCase):
 
     def test_mouse_drags_and_the_wheel_steer(self):
         before, after = self.moved(lambda: self.browser.drag("left", 100, 0))
-        self.assertAlmostEqual(far(before), far(after), 3)  # turned about the centre
+        self.assertAlmostEqual(far(before), far(after), 3)  # the drag orbits the centre
         self.assertNotAlmostEqual(before["eye"][0], after["eye"][0], 2)
         before, after = self.moved(lambda: self.browser.drag("right", 60, 20))
-        self.assertEqual(before["eye"], after["eye"])  # looked around
+        self.assertEqual(before["eye"], after["eye"])  # the drag turns the view
         before, after = self.moved(lambda: self.browser.drag("middle", 60, 0))
         change = [[b - a for a, b in zip(before[k], after[k])] for k in ["eye", "target"]]
         for along_eye, along_target in zip(*change):
-            self.assertAlmostEqual(along_eye, along_target, 3)  # panned
+            self.assertAlmostEqual(along_eye, along_target, 3)  # the drag pans
         before, after = self.moved(lambda: self.browser.mouse("mouseWheel", 500, 300, deltaX=0, deltaY=-200))
         self.assertLess(far_from(before, after), far(before))
 
@@ -156,7 +156,7 @@ class Page(unittest.TestCase):
             before, after = self.moved(lambda: page.key("KeyE", "e", 0.2))
             ways.append(after["eye"][1] - before["eye"][1])
         fast, normal = (float(text.split()[1]) for text in speeds)
-        self.assertAlmostEqual(fast / normal, 1.25 ** 10, 1)  # but for the digits that are told
+        self.assertAlmostEqual(fast / normal, 1.25 ** 10, 1)  # up to the printed digits
         self.assertGreater(ways[0], 2 * ways[1])
 
     def test_clicks_pick_set_the_orbit_centre_and_focus(self):
@@ -210,7 +210,7 @@ class Page(unittest.TestCase):
         step = [b - a for a, b in zip(before["eye"], after["eye"])]
         self.assertGreater(step[1], 0.02)  # the target moves down with the fingers
         self.assertGreater(abs(step[1]), 3 * max(abs(step[0]), abs(step[2])))
-        self.browser.key("KeyR", "r")  # how far the fingers went depends on how many of their moves came one by one
+        self.browser.key("KeyR", "r")  # the distance depends on how many moves were merged
         self.browser.until(f"document.body.dataset.flags == {json.dumps(self.home)} && document.body.dataset.phase == 'done'")
         touch("touchStart", (640, 690))
         touch("touchEnd")
@@ -233,7 +233,7 @@ class Page(unittest.TestCase):
         page.key("KeyT", "t")
         self.set_to("mode", "reference")
         page.until(f"document.body.dataset.kind == 'png' && document.body.dataset.hash == '{rendered}'")
-        # However soon the next comes: what the page says is older than what was pressed does not count.
+        # Keys may follow quickly. A page's state that is older than the last key does not count.
         before = page.value("Number(document.querySelector('#setting-exposure').value)")
         for _ in range(3):
             page.key("KeyT", "t")
@@ -253,7 +253,7 @@ class Page(unittest.TestCase):
         for name, typed, enter in [("max_depth", "5", "Enter"), ("max_depth", "6", "NumpadEnter")]:
             page.value(f"(() => {{ const f = document.querySelector('#setting-{name}'); f.focus(); f.select(); }})()")
             page.call("Input.insertText", text=typed)
-            page.key("KeyW", "w", 0.1)  # goes to the field, which takes no letters
+            page.key("KeyW", "w", 0.1)  # the key goes to the field, which accepts no letters
             page.key(enter, "Enter")
             self.set_to(name, int(typed))
             self.assertEqual(self.eye.done()["flags"], self.flags)
@@ -309,7 +309,7 @@ class Page(unittest.TestCase):
         rendered = render("cornell-box", "--camera-path", file, "--time", done["clock"]["at"], "--max-depth",
                           done["values"]["max_depth"], size=SIZE, spp=2)
         self.assertEqual(done["hash"], rendered)
-        page.drag("left", 60, 20)  # one's own
+        page.drag("left", 60, 20)  # the page's own view
         page.until("document.querySelector('#time').hidden")
         for _ in range(2):
             page.value("document.querySelector('#key-remove-0').click()")
@@ -349,7 +349,7 @@ class Page(unittest.TestCase):
         page = self.browser
         end, resident, heap, waits = time.monotonic() + STEERING_S, 0, 0, []
 
-        def heap_bytes():  # heap of the page's scripts
+        def heap_bytes():  # the heap of the page's scripts
             page.call("HeapProfiler.collectGarbage")
             return page.call("Runtime.getHeapUsage")["usedSize"]
 
@@ -361,11 +361,11 @@ class Page(unittest.TestCase):
             if resident == 0 and time.monotonic() > end - 0.7 * STEERING_S:
                 resident, heap = self.viewer.resident_bytes(), heap_bytes()
         page.key("KeyA", "a", down=False)
-        if not SANITIZED:  # which keeps freed memory
+        if not SANITIZED:  # it keeps freed memory
             self.assertLess(self.viewer.resident_bytes() - resident, GROWTH_BYTES)
         self.assertLess(heap_bytes() - heap, HEAP_GROWTH_BYTES)
         median = sorted(waits)[len(waits) // 2]
-        self.assertLess(median, 10_000 if SANITIZED else 1000)  # some 50 ms; but the machine may be busy
+        self.assertLess(median, 10_000 if SANITIZED else 1000)  # about 50 ms, but the machine may be busy
         print(f"input to picture: median {median} ms of {len(waits)}", file=sys.stderr)
 
 
@@ -394,8 +394,8 @@ class Moving(unittest.TestCase):
                            "const v = document.querySelector('#time-speed'); v.value = '4'; v.dispatchEvent(new Event('change'));"
                            "document.querySelector('#play').click()")
                 page.until("document.body.dataset.time == '2' && document.body.dataset.plays == 'false'")
-                page.key("Space", " ")  # from its beginning
-                page.key("Space", " ")  # and at once again: each counts
+                page.key("Space", " ")  # from the beginning
+                page.key("Space", " ")  # pressed again immediately: each press counts
                 page.until("document.body.dataset.time < 2 && document.body.dataset.plays == 'false'"
                            "&& document.body.dataset.phase == 'done'")
                 with Client(viewer, key="eye") as eye:
@@ -423,7 +423,7 @@ class Comings(unittest.TestCase):
     def test_a_wrong_token_is_refused_and_the_page_comes_back_after_the_connection_was_lost(self):
         with Viewer(size="64x48", spp=2) as viewer, \
                 BROWSER.visit(viewer.address[:-1] + ("0" if viewer.address[-1] != "0" else "1")) as page, \
-                Tunnel(viewer) as tunnel:  # on a port of its own, as ssh -L may have it
+                Tunnel(viewer) as tunnel:  # on its own port, as with ssh -L
             page.until("document.body && document.body.innerText.includes('pertev view printed')")
             self.assertEqual([error for error in page.errors if "403 (Forbidden)" not in error], [])
             page.go(viewer.address.replace(f":{viewer.port}/", f":{tunnel.port}/"))
@@ -455,7 +455,7 @@ class Comings(unittest.TestCase):
 
 
 def render(scene, *arguments, size, spp, output=""):
-    """The film's hash of a picture by pertev render."""
+    """Returns the film's hash of a picture by pertev render."""
     with tempfile.TemporaryDirectory() as folder:
         done = subprocess.run([PROGRAM, "render", scene, "-o", output or os.path.join(folder, "x.png"), "--size", size, "--spp", str(spp),
                                "--device", "cpu", "--json", *map(str, arguments)], check=True, stdout=subprocess.PIPE)
@@ -463,7 +463,7 @@ def render(scene, *arguments, size, spp, output=""):
 
 
 def numbers(flags):
-    """{"eye": [..], "target": [..], ...} of "--eye 1,2,3 --target ..."."""
+    """Returns {"eye": [..], "target": [..], ...} for "--eye 1,2,3 --target ..."."""
     words = flags.replace("'", "").split()
     return {name[2:]: [float(x) for x in value.split(",")] for name, value in zip(words[::2], words[1::2])
             if re.match(r"^[-0-9.e,]+$", value)}
@@ -474,7 +474,7 @@ def far(view):
 
 
 def far_from(before, after):
-    """How far the eye is from where the target was."""
+    """Returns the distance of the eye from the earlier target."""
     return sum((a - b) ** 2 for a, b in zip(after["eye"], before["target"])) ** 0.5
 
 

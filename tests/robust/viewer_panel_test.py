@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The panel of `pertev view` in a real headless Chromium: its groups, a phone's window, two windows, and a viewer that has
-ended. Skipped where there is no Chromium."""
+"""The panel of `pertev view` in a real headless Chromium: its groups, a phone's window, two windows, and a viewer that
+has ended. Skipped without Chromium."""
 
 import contextlib
 import http.server
@@ -18,7 +18,7 @@ if find_chromium() is None:
     sys.exit(77)
 
 
-BROWSER = Chromium()  # one for all, as its start takes long
+BROWSER = Chromium()  # shared by all tests, because its start takes long
 READY = "document.body.dataset.phase == 'done' && document.body.dataset.steers == 'true'"
 
 
@@ -35,7 +35,7 @@ def window(page, width, height, ratio=1):
 
 
 def shown(page, selector):
-    """Whether somebody sees this."""
+    """Returns whether the element is visible."""
     return page.value(f"(() => {{ const e = document.querySelector({json.dumps(selector)}); "
                       "return e.checkVisibility() && e.getBoundingClientRect().height > 0; })()")
 
@@ -78,7 +78,7 @@ class Panel(unittest.TestCase):
             for opens in (True, False):
                 spot = page.value(f"(() => {{ const r = document.querySelector('#panel-{'open' if opens else 'close'}')"
                                   ".getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2, r.width]; })()")
-                self.assertGreater(spot[2], 30)  # a finger finds it
+                self.assertGreater(spot[2], 30)  # large enough for a finger
                 page.click(spot[0], spot[1])
                 page.until(f"document.querySelector('#panel').hidden == {json.dumps(not opens)}")
                 if opens:
@@ -86,12 +86,12 @@ class Panel(unittest.TestCase):
                     self.assertLessEqual(over, 0)
                     page.go(viewer.address)
                     page.until(READY)
-                    self.assertTrue(shown(page, "#panel"))  # remembered
+                    self.assertTrue(shown(page, "#panel"))  # the page remembers this
             page.call("Emulation.setTouchEmulationEnabled", enabled=False)
             size = page.value("document.body.dataset.flags.match(/--size (\\d+)x(\\d+)/).slice(1).map(Number)")
             self.assertAlmostEqual(size[0] / size[1], 390 / 844, 2)
             self.assertLessEqual(size[0] * size[1], 1280 * 720)
-            window(page, 600, 300)  # it is turned
+            window(page, 600, 300)  # the phone is rotated
             page.until("document.body.dataset.flags.includes('--size 600x300') && document.body.dataset.phase == 'done'")
             page.value("localStorage.clear()")
             self.assertEqual(page.errors, [])
@@ -169,14 +169,14 @@ class Ended(unittest.TestCase):
             self.assertIn("pertev view cornell-box", text)
             self.assertNotIn("comes back", text)
             self.assertFalse(shown(page, "#gone-again"))
-            self.assertEqual(page.errors, [])  # it does not even try
+            self.assertEqual(page.errors, [])  # the page makes no attempt
 
     def test_the_page_stops_reconnecting_to_a_killed_viewer_and_shows_how_to_start_one(self):
         with Viewer(spp=1) as viewer, BROWSER.visit(viewer.address) as page:
             page.until(READY)
-            # The page waits for half a minute in all between its tries; here an eighth of it.
+            # The page waits for half a minute in total between its attempts, here an eighth of that.
             page.value("(() => { const later = setTimeout; window.setTimeout = (call, ms) => later(call, ms / 8); })()")
-            viewer.process.kill()  # without a word
+            viewer.process.kill()  # without a message
             page.until("document.body.dataset.gone == 'trying'")
             page.until("document.body.dataset.gone == 'lost'")
             text = page.value("document.querySelector('#gone').innerText")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""`pertev view` as a program sees it: the picture takes the window's shape, grows on a slow machine, and keeps what it has;
-a second client is told why it does not steer; and nobody is told where files lie."""
+"""`pertev view` for a program: the picture has the window's shape, grows on a slow machine and keeps its samples. A
+second client learns why it does not steer, and no client learns the folders of files."""
 
 import math
 import os
@@ -32,7 +32,7 @@ class Shape(CliTest):
             for width, height in [(120, 80), (64, 100)]:
                 client.say(type="shape", width=width, height=height)
                 state = client.done(lambda s, w=width, h=height: s["flags"].endswith(f" --size {w}x{h}") and s["hash"])
-                self.assertTrue(dict(row[1:] for row in state["rows"])["flags that make it"].endswith(state["flags"]))
+                self.assertTrue(dict(row[1:] for row in state["rows"])["flags for this picture"].endswith(state["flags"]))
                 self.assertIn(["Now", "size", f"{width} x {height}"], state["rows"])
                 size, camera = f"{width}x{height}", state["flags"].removesuffix(f" --size {width}x{height}")
                 made = self.render("--exposure", "auto", *camera.replace("'", "").split(), size=size, spp=2,
@@ -43,12 +43,12 @@ class Shape(CliTest):
                 client.steer(type="orbit", dx=0.1, dy=0)
                 self.assertTrue(client.done(lambda s: s["input"] == 1)["flags"].endswith("64x100"))
 
-    def test_a_window_gets_at_most_the_default_number_of_pixels_and_a_requested_size_stays(self):
+    def test_a_window_gets_at_most_the_default_number_of_pixels_and_a_requested_size_is_kept(self):
         with Viewer(size="", spp=1) as viewer, Client(viewer) as client:
             client.say(type="shape", width=3840, height=2160)
             client.picture()
             client.say(type="shape", width=2000, height=4000)
-            header, _ = client.picture(lambda h: h["full_height"] > h["full_width"])  # not one of the shape before
+            header, _ = client.picture(lambda h: h["full_height"] > h["full_width"])  # not a picture of the previous shape
             self.assertLessEqual(header["full_width"] * header["full_height"], 1280 * 720)
             self.assertAlmostEqual(header["full_height"] / header["full_width"], 2, 2)
         with Viewer(size="64x48", spp=1) as viewer, Client(viewer) as client:
@@ -78,13 +78,13 @@ class Shape(CliTest):
 class Keeps(CliTest):
     def test_a_setting_that_is_refused_keeps_the_samples(self):
         with Viewer("--threads", "1", size="64x48", spp=100000) as viewer, Client(viewer) as client:
-            # So many that a picture that begins again has fewer for seconds.
+            # So many samples that a restarted picture has fewer for seconds.
             before = client.text("state", lambda s: s["samples"] > 200)["samples"]
             for name, value in [("integrator", "whitted"), ("max_depth", -1), ("integrator", "nothing"), ("fov", 500),
                                 ("integrator", "path"), ("structure", 7), ("home", "where it is")]:
                 number = client.steer(type="home") if name == "home" else client.set(name, value)
             client.text("state", lambda s: s["input"] == number)
-            for _ in range(3):  # the first may have been told before the last setting was taken
+            for _ in range(3):  # the first state may precede the last setting
                 self.assertGreaterEqual(client.text("state", lambda s: s["hash"])["samples"], before)
 
 
@@ -97,12 +97,12 @@ class Grows(CliTest):
                 if not widths or header["width"] != widths[-1]:
                     widths.append(header["width"])
             self.assertGreater(len(widths), 2, widths)
-            self.assertEqual(widths[-3:], sorted(widths[-3:]))  # before, sizes follow what frames have told of the machine
+            self.assertEqual(widths[-3:], sorted(widths[-3:]))  # until then the size depends on earlier frames
             for name, value in [("max_depth", 3), ("integrator", "distributed"), ("layer", "albedo")]:
                 began = time.monotonic()
                 number = client.set(name, value)
                 header, _ = client.picture(lambda h, n=number: h["input"] == n)
-                self.assertLess(time.monotonic() - began, 10 if SANITIZED else 3, name)  # a second, on a quiet machine
+                self.assertLess(time.monotonic() - began, 10 if SANITIZED else 3, name)  # takes a second on an idle machine
                 self.assertLess(header["width"], 640, name)
 
 
@@ -145,9 +145,9 @@ class Secrets(CliTest):
             self.assertNotIn("a-secret", str(welcome) + str(state))
 
 
-class Waits(CliTest):  # the last by its name, as its viewer waits beside all others
+class Waits(CliTest):  # the last test by name, because its viewer waits during all others
     def test_the_log_of_an_idle_viewer_has_no_line_twice(self):
-        heard, end = b"", WAITING_SINCE + 11  # a log is written to every 10 s while there is news
+        heard, end = b"", WAITING_SINCE + 11  # the log gets a line every 10 s if there is progress
         while (left := end - time.monotonic()) > 0 or select.select([WAITING.process.stderr], [], [], 0)[0]:
             if select.select([WAITING.process.stderr], [], [], max(left, 0))[0]:
                 chunk = os.read(WAITING.process.stderr.fileno(), 4096)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`pertev view` as a program sees it: who is let in, and what pictures come."""
+"""`pertev view` for a program: who has access, and which pictures arrive."""
 
 import json
 import os
@@ -64,7 +64,7 @@ class Access(WithViewer):
             self.assertNotIn("frame-ancestors", headers["content-security-policy"])
             self.assertEqual(viewer.get("/", {"Host": f"127.0.0.1:{viewer.port}"})[0], 403)
 
-    def test_all_files_of_the_page_come_with_the_cookie_and_their_type(self):
+    def test_all_files_of_the_page_need_the_cookie_and_have_their_type(self):
         for path, kind in [("/", "text/html"), ("/main.js", "text/javascript"), ("/link.js", "text/javascript"),
                            ("/keys.js", "text/javascript"), ("/panel.js", "text/javascript"), ("/time.js", "text/javascript"),
                            ("/screen.js", "text/javascript"), ("/people.js", "text/javascript"),
@@ -146,7 +146,7 @@ class Access(WithViewer):
 
 class Fuzzed(WithViewer):
     def test_malformed_requests_and_messages_get_an_answer_or_a_closed_connection(self):
-        """Half of them requests, half messages; spoiled good ones, so that many get far."""
+        """Half of them are requests and half messages. They are valid ones with faults, so that many are parsed far."""
         chance = random.Random(7)
 
         def spoil(data):
@@ -185,7 +185,7 @@ class Fuzzed(WithViewer):
                     '{"type":"hello","key":"again"}']
         with open(os.path.join(SOURCES, "apps", "viewer", "client_message.cpp"), encoding="utf-8") as file:
             kinds = set(re.findall(r'{"(\w+)", MessageKind::', file.read()))
-        self.assertEqual({json.loads(message)["type"] for message in messages}, kinds)  # each of them
+        self.assertEqual({json.loads(message)["type"] for message in messages}, kinds)  # for each of them
         client, before = None, 0
         for number in range(FUZZED // 2):
             self.viewer.send_raw(spoil(chance.choice(requests)))
@@ -195,7 +195,7 @@ class Fuzzed(WithViewer):
             try:
                 client.send_frame(chance.choice([1, 1, 1, 1, 1, 2, 9, 10, 3, 8]), spoil(chance.choice(messages).encode()))
                 if number % 16 == 0:
-                    raise ConnectionError  # it goes without a word
+                    raise ConnectionError  # the connection closes without a message
             except OSError:
                 client.socket.close()
                 client = None
@@ -205,7 +205,7 @@ class Fuzzed(WithViewer):
         if client:
             client.socket.close()
         self.assertEqual(self.viewer.get("/")[0], 200)
-        if not SANITIZED:  # which keeps freed memory
+        if not SANITIZED:  # it keeps freed memory
             self.assertLess(self.viewer.resident_bytes() - before, 48 << 20)
 
 
@@ -222,7 +222,7 @@ class Pictures(CliTest):
             state = client.done()
             self.assertEqual((state["hash"], png), self.rendered())
             self.assertEqual((state["values"]["max_depth"], state["values"]["moving_depth"]), (16, 4))
-            # After a flight too: the flags that are shown for the view give the same bytes.
+            # After flying, too, the displayed flags reproduce the bytes.
             client.steer(type="look", dx=0.1, dy=-0.05)
             client.steer(type="orbit", dx=-0.2, dy=0.1)
             client.steer(type="pan", dx=0.02, dy=0.1)
@@ -259,8 +259,8 @@ class Pictures(CliTest):
                 kept = ["--max-depth", "1"] if name != "max_depth" else []
                 kept += ["--integrator", "direct"] if name == "spp" else []
                 self.assertEqual(state["hash"], self.rendered(*kept, *arguments, spp=state["spp"])[0], name)
-            # The flags that are shown for the picture make it, without any others.
-            words = shlex.split(dict(row[1:] for row in state["rows"])["flags that make it"])
+            # The displayed flags alone reproduce the picture.
+            words = shlex.split(dict(row[1:] for row in state["rows"])["flags for this picture"])
             again = self.succeed("render", "cornell-box", "-o", "again.png", "--device", "cpu", "--json", *words)
             self.assertEqual(again.events("done")[0]["hash"], state["hash"])
             client.set("spp", -1)
@@ -291,7 +291,7 @@ class Pictures(CliTest):
 
         with Viewer() as viewer, Client(viewer) as client:
             home = client.done()
-            # Up to the lamp, which leaves little but a wall behind it.
+            # Moves up to the emitter, so that the view shows little besides a wall.
             last = client.steer(type="move", right=0, up=0.5, forward=1, ms=250, pace="fast")
             for _ in range(30):
                 last = client.steer(type="look", dx=0.001, dy=0.012)
@@ -337,7 +337,7 @@ class Pictures(CliTest):
 
     def test_saved_files_equal_those_of_render(self):
         with Viewer() as viewer:
-            status, headers, png = viewer.get("/save?format=png")  # nobody need look
+            status, headers, png = viewer.get("/save?format=png")  # no client needs to watch
             self.assertEqual(status, 200)
             self.assertIn("attachment", headers["content-disposition"])
             self.assertEqual(png[:8], b"\x89PNG\r\n\x1a\n")
@@ -395,7 +395,7 @@ class Pictures(CliTest):
             header, _ = client.picture()
             self.assertLess(header["width"], 2560)
             self.assertEqual((header["full_width"], header["full_height"]), (2560, 1440))
-            # Nothing is known of the machine yet, and yet the first step is shown soon.
+            # The machine's speed is still unknown, but the first step is shown soon.
             began = time.monotonic()
             last = client.steer(type="orbit", dx=0.01, dy=0)
             client.picture(lambda h: h["input"] >= last)
@@ -412,14 +412,14 @@ class Pictures(CliTest):
                 self.assertEqual((header["full_width"], header["full_height"]), (640, 480))
             waited = time.monotonic() - began
             self.assertLess(waited, 2)
-            self.assertTrue(header["width"] < 640 or waited < 0.25, (header, waited))  # a fast machine keeps the rate at full size
+            self.assertTrue(header["width"] < 640 or waited < 0.25, (header, waited))  # a fast machine keeps the frame rate at full size
             rates = set()
-            for _ in range(20):  # a state that comes late is of a picture at rest, which is made for no rate
+            for _ in range(20):  # a late state belongs to a picture at rest, which has no frame rate
                 if rates or header["width"] == 640:
                     break
                 number = client.steer(type="orbit", dx=0.01, dy=0)
                 rows = client.text("state", lambda s, n=number: s["input"] >= n)["rows"]
-                rates = {row[2] for row in rows if row[:2] == ["Frames", "size chosen for"]}
+                rates = {row[2] for row in rows if row[:2] == ["Frames", "frame rate of automatic size"]}
             if header["width"] < 640:
                 self.assertEqual(rates, {"8 a second"})
             # Input comes faster than pictures: these come all the same, five a second where the machine has a moment for
@@ -465,7 +465,7 @@ class Ends(CliTest):
                 self.assertEqual(client.text("state")["values"]["moving_depth"], depth)
                 status, seconds = viewer.end(how)
                 self.assertEqual(status, 0)
-                self.assertLess(seconds, 1.5)  # a second, and what a machine under load adds
+                self.assertLess(seconds, 1.5)  # a second, and more on a loaded machine
                 self.assertIn(client.close_reason(5)[0], (0, 1001))
 
     def test_a_used_port_and_an_invalid_host_are_refused(self):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Time in `pertev view`: animations play and stand, cameras that time moves, the recorded path."""
+"""Time in `pertev view`: animations that play and pause, moving cameras, the recorded path."""
 
 import json
 import math
@@ -18,7 +18,7 @@ def words_of(state):
 
 
 class Times(CliTest):
-    """Each viewer shows files of this test's own folder, and what it shows at rest is a picture of pertev render."""
+    """Each viewer shows files of the test's folder, and its picture at rest is that of pertev render."""
 
     def setUp(self):
         super().setUp()
@@ -34,7 +34,7 @@ class Times(CliTest):
         return client.steer(type="play", on=on, loops=loops, speed=speed)
 
     def still(self, client, number):
-        """The state once all samples are there that are asked for by this input."""
+        """Returns the state once all samples that this input requested are complete."""
         return client.done(lambda s: s["input"] >= number)
 
     def test_paused_animation_has_the_hash_of_render_at_that_time(self):
@@ -49,8 +49,8 @@ class Times(CliTest):
             words = words_of(stands)
             self.assertEqual(words[-2], "--time")
             self.assertEqual(stands["hash"], self.rendered(*words))
-            self.assertEqual(stands["hash"], self.rendered("--time", words[-1]))  # its camera goes along by itself
-            again = client.text("state", timeout=5)  # it does stand
+            self.assertEqual(stands["hash"], self.rendered("--time", words[-1]))  # the camera moves with it
+            again = client.text("state", timeout=5)  # the animation is paused
             self.assertEqual(again["clock"]["at"], stands["clock"]["at"])
 
     def test_the_panel_lists_the_animations_and_scenes_of_the_file_and_which_is_shown(self):
@@ -102,7 +102,7 @@ class Times(CliTest):
                 self.assertEqual(played["hash"], begins["hash"])
                 gone = self.still(client, client.steer(type="time", at=1.5))
                 self.assertEqual((gone["hash"], gone["flags"]), (begins["hash"], begins["flags"]))
-                # A path that is recorded has times, and they are the camera's.
+                # A recorded path has times, which move the camera.
                 client.steer(type="key", at=0)
                 client.steer(type="move", right=0.3, up=0, forward=0.5, ms=200, pace="normal")
                 client.steer(type="key", at=2)
@@ -178,7 +178,7 @@ class Times(CliTest):
     def test_only_the_steering_client_sets_the_time_and_all_see_it(self):
         with self.view("--time", "0") as viewer, Client(viewer) as client, Client(viewer, key="second") as other:
             client.done()
-            other.steer(type="time", at=2)  # is not heard
+            other.steer(type="time", at=2)  # this has no effect
             client.steer(type="time", at=1)
             self.assertEqual(other.done(lambda s: s["clock"]["at"] > 0)["clock"]["at"], 1)
 
@@ -196,7 +196,7 @@ class Times(CliTest):
             self.assertEqual([key["time"] for key in keys], [0.5, 3])
             self.assertAlmostEqual(keys[0]["fov"], 50, 3)
             write(self.path("path.json"), json.dumps({"keys": keys}))
-            client.set("aperture", 0.02)  # keys do not say it: it stays
+            client.set("aperture", 0.02)  # keys do not contain it, so it stays
             client.steer(type="follow")
             self.play(client, False)
             for at in ["0.5", "1.75", "3"]:
@@ -226,7 +226,7 @@ class Times(CliTest):
             self.assertEqual(quarter["hash"], self.rendered(*words_of(quarter), scene="cornell-box"))
             self.assertNotEqual(quarter["hash"], first["hash"])
             own = self.still(client, client.steer(type="zoom", steps=1))
-            self.assertEqual(own["clock"]["end"], 0)  # nothing moves now
+            self.assertEqual(own["clock"]["end"], 0)  # nothing moves any more
             back = self.still(client, client.steer(type="home"))
             self.assertEqual((back["hash"], back["clock"]["end"]), (quarter["hash"], 4))
 

@@ -1,7 +1,7 @@
-// A ray that starts inside a closed mesh must hit it. Rays are aimed where leaks live: at vertices and along edges,
-// with the mesh at the origin, 1 km and 150 km away, baked and as an instance. They are traced as the laboratory traces
-// its own, on the GPU with --device cuda, by the traversal of pictures (on the CPU that of wide nodes) and by binary
-// nodes. One miss fails the test and prints the ray as hex floats.
+// A ray that starts inside a closed mesh must hit it. Rays are aimed where leaks occur: at vertices and along edges,
+// with the mesh at the origin, 1 km and 150 km away, baked and as an instance. They are traced like the laboratory's
+// rays, with --device cuda on the GPU, by the traversal of pictures (on the CPU that of wide nodes) and by that of
+// binary nodes. One miss fails the test and prints the ray as hex floats.
 
 #include <doctest/doctest.h>
 
@@ -26,7 +26,7 @@ namespace {
 
 enum class Aim { Vertex, Edge, Bent, Anywhere };
 
-/// Ray `i` of the set numbered `set`: other sets and other numbers give other rays.
+/// Returns ray `i` of the set numbered `set`. All rays of all sets differ.
 Ray ray_from_inside(const TriangleMesh& mesh, Vec3 centre, Aim aim, uint32_t i, uint32_t set) {
     const Hash4 a = hash_words(i, set, static_cast<uint32_t>(aim), 0), b = hash_words(i, set, 1, 1);
     Ray ray;
@@ -59,7 +59,7 @@ std::string text_of(const Ray& r) {
                        r.direction.x, r.direction.y, r.direction.z);
 }
 
-/// Instance 0 of a scene, closed, about `centre`; `world` is its mesh there.
+/// A closed mesh, instance 0 of a scene, about `centre`. `world` is its mesh in world space.
 struct ClosedInstance {
     Queue queue = requested_queue();
     Messages messages;
@@ -71,7 +71,7 @@ struct ClosedInstance {
         : prepared(prepare_scene(scene, {.bvh = {}, .bvh_cache = {}, .keep_coordinates = true}, messages)),
           world(std::move(in_world)), centre(about) {}
 
-    /// The rays that miss the mesh.
+    /// Returns the rays that miss the mesh.
     std::vector<Ray> lost(const Tracer& tracer, const RaySet& set) {
         RaysOnDevice rays(queue, set);
         rays.trace(tracer);
@@ -83,7 +83,7 @@ struct ClosedInstance {
         return lost;
     }
 
-    /// Traces rays [0, count) of the set, every eighth to any hit as well, and reports one of those that are lost.
+    /// Traces rays [0, count) of the set, every eighth also as any-hit ray, and reports one of the lost rays.
     void check_none_is_lost(const Tracer& tracer, Aim aim, uint64_t count, uint32_t set_number) {
         constexpr uint64_t kPiece = 1 << 18;
         std::vector<Ray> lost_rays;
@@ -102,7 +102,7 @@ struct ClosedInstance {
         CHECK_MESSAGE(lost_rays.empty(), lost_rays.size(), " lost, one of them: ", text_of(lost_rays.front()));
     }
 
-    /// `count` rays at vertices, as many at edges, and a few others.
+    /// Returns `count` rays at vertices, as many at edges, and a few others.
     void check_tracer(const Combination& combination, uint64_t count, uint32_t set_number) {
         const Tracer tracer = make_tracer(queue, prepared, combination);
         for (const Aim aim : {Aim::Vertex, Aim::Edge, Aim::Bent, Aim::Anywhere}) {
@@ -126,19 +126,19 @@ Scene scene_of(const TriangleMesh& triangles, std::initializer_list<Transform> p
 
 } // namespace
 
-// Both together aim 3 * 2 * (1,100,000 + 300,000 + 2 * 150,000) rays, 10.2 million, and ten times as many in the long
-// setting.
+// Both tests together trace 3 * 2 * (1,100,000 + 300,000 + 2 * 150,000) = 10.2 million rays, and ten times as many in
+// the long setting.
 
 TEST_CASE("no ray leaves a closed sphere") {
     uint32_t set_number = 0;
     for (const float away_m : {0.0f, 1e3f, 1.5e5f}) {
         CAPTURE(away_m);
         const Vec3 centre = {away_m, 0, -1.5f * away_m};
-        // At 150 km a float is 1/64 m: smaller faces would fold over each other.
+        // At 150 km floats are 1/64 m apart, so smaller faces would overlap.
         const TriangleMesh sphere = make_sphere(away_m > 1e4f ? 2 : 5, centre, 1);
         ClosedInstance instance(scene_of(sphere, {{}}), sphere, centre);
         REQUIRE(instance.prepared.tlas.root == kNoLink); // baked
-        // Binary nodes take thrice as long a ray on a CPU. Their triangle test is that of wide nodes.
+        // Binary nodes take three times as long per ray on a CPU. Their triangle test is that of wide nodes.
         const uint64_t count = effort(1'100'000, 7'000'000), count_of_binary = effort(300'000, 7'000'000);
         instance.check_tracer(default_tracers(instance.queue.is_cuda()).bounce, count, ++set_number);
         instance.check_tracer(kBinaryTracer, count_of_binary, ++set_number);
@@ -156,7 +156,7 @@ TEST_CASE("no ray leaves a closed sphere that is an instance") {
                                               compose(make_scale({0.5f, 0.5f, 0.5f}), make_translation({-3, -4, -5}))));
         TriangleMesh world = local;
         for (Vec3& v : world.positions) v = transform_point(place, v);
-        // The second one is there because a mesh that is used once is baked.
+        // The second instance prevents baking.
         ClosedInstance instance(scene_of(local, {place, compose(make_translation({0, 20, 0}), place)}), world, centre);
         REQUIRE(instance.prepared.tlas.root != kNoLink);
         const uint64_t count = effort(150'000, 1'500'000);

@@ -1,7 +1,7 @@
 #pragma once
 
-// AbsorbingBlock is a test's medium in a block of the space between surfaces. It absorbs each colour separately, and
-// scatters isotropically if `kScatters`.
+// AbsorbingBlock is a test medium in a block of space. It absorbs each colour separately, and scatters isotropically
+// if `kScatters`.
 //
 // Source: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., section 14.2.
 
@@ -14,7 +14,7 @@ inline constexpr Vec3 kBlockLow = {-1, 2, -1}, kBlockHigh = {1, 2.5f, 1}; // met
 inline constexpr Rgb kBlockAbsorbs = {0.5f, 1, 2};                        // 1/m
 inline constexpr float kBlockScatters = 3;                                // 1/m
 
-/// A point of the medium, as SurfaceVertex is one of a surface.
+/// A scattering point in the medium, with the functions of SurfaceVertex.
 struct BlockVertex {
     Vec3 point;
 
@@ -65,7 +65,7 @@ private:
     struct Part {
         float begin, length; // metres
     };
-    /// Part of a ray of unit direction, at most `distance` metres long.
+    /// The part of a ray inside the block. The ray has a unit direction and is at most `distance` metres long.
     HD static Part part_within(Vec3 origin, Vec3 direction, float distance) {
         float begin = 0, end = distance;
         for (int axis = 0; axis < 3; ++axis) {
@@ -85,7 +85,7 @@ private:
     }
 };
 
-/// Features of code that supports the block; the product has none.
+/// The features of code that supports the block. The product has no such code.
 inline constexpr Features kAbsorbing = 1u << 30, kScattering = 1u << 29;
 
 template <Features kBlock>

@@ -1,5 +1,5 @@
-// A block that absorbs and scatters is rendered through the path tracer's functions, by test code alone: camera and
-// shadow rays are attenuated by the Beer-Lambert law, and single scattering equals its integral.
+// Test code renders a block that absorbs and scatters through the path tracer's functions: the Beer-Lambert law
+// attenuates camera and shadow rays, and single scattering equals its integral.
 
 #include "tests/seams/absorbing_block.h"
 
@@ -18,10 +18,10 @@ using namespace pertev;
 
 namespace {
 
-constexpr uint32_t kBlockColumns = 40, kBlockRows = 5; // a pixel shows a fifth of a metre
+constexpr uint32_t kBlockColumns = 40, kBlockRows = 5; // a pixel covers a fifth of a metre
 constexpr double kBlockDepth = 0.5;
 
-/// Sunlight, and perhaps a grey floor.
+/// A directional light and optionally a grey floor.
 Scene sunny_scene(Vec3 sun, bool has_floor) {
     Scene scene;
     if (has_floor) test::add_emitter(scene, test::make_square(1), {0, 0, 0}, make_scale({20, 1, 20}));
@@ -33,7 +33,7 @@ Scene sunny_scene(Vec3 sun, bool has_floor) {
     return scene;
 }
 
-/// View of a camera from above, 8 m wide in x around x = 1.
+/// A camera's view from above, 8 m wide in x around x = 1.
 template <Features kBlock>
 Image render_block(Queue& queue, const Scene& scene, PathSettings settings, uint32_t samples) {
     Messages messages;

@@ -1,5 +1,5 @@
-// A film of a window of a picture has the bytes of the whole picture there, with layers, ids and light-path layers,
-// in every integrator and schedule.
+// The film of a window has the bytes of that part of the whole picture, with layers, ids and light-path layers, for
+// every integrator and schedule.
 
 #include <algorithm>
 #include <cstring>
@@ -49,7 +49,7 @@ CropResult render_crop(Queue& queue, const PreparedScene& prepared, const Integr
     return result;
 }
 
-/// Pixels of a window that are not those of the whole image.
+/// Returns how many pixels of a window differ from those of the whole image.
 uint32_t differing_in_window(const Image& window, const Image& whole) {
     REQUIRE(window.channels == whole.channels);
     const std::size_t channels = static_cast<std::size_t>(whole.channels);
@@ -61,7 +61,7 @@ uint32_t differing_in_window(const Image& window, const Image& whole) {
     return count;
 }
 
-/// Checks that a window has the bytes of the whole picture: all layers, and the ids, of several things.
+/// Tests that a window has the bytes of the whole picture, in all layers and in ids of several objects.
 void check_window(Queue& queue, const PreparedScene& prepared, const IntegratorSettings& settings) {
     const CropResult whole = render_crop(queue, prepared, settings, kWhole);
     const CropResult window = render_crop(queue, prepared, settings, kWindow);
@@ -94,7 +94,7 @@ TEST_CASE("slots of a window and pixels of the picture convert into each other")
     CHECK(kWhole.pixel_in(14, 20) == 1234);
 }
 
-TEST_CASE("the windows around a window hold every other pixel of the picture once") {
+TEST_CASE("the windows around a window contain every other pixel of the picture once") {
     const PixelWindow corner = {.picture_width = kUncroppedWidth, .x = 38, .y = 21, .width = 23, .height = 14};
     for (const PixelWindow& window : {kWindow, corner}) {
         std::vector<uint32_t> times(kWhole.count());
@@ -171,7 +171,7 @@ TEST_CASE("integrators refuse a window beyond the picture, and a frame that they
     NoisyFrame frame(queue, kUncroppedWidth, kUncroppedHeight, true);
     test::PictureOnDevice picture(queue, prepared, test::mixed_scene_camera(), kUncroppedWidth, kUncroppedHeight);
     for (const IntegratorDescriptor& kind : integrators()) {
-        if (kind.value == IntegratorKind::Radiosity) continue; // it needs a solution
+        if (kind.value == IntegratorKind::Radiosity) continue; // radiosity needs a solution
         CAPTURE(kind.name);
         IntegratorSettings settings;
         settings.integrator = kind.value;

@@ -1,5 +1,5 @@
-// A film is rendered in two parts, samples [0, a) on one device and [a, n) on another. Each part is serialised and
-// restored; the sum has the bytes of the film of one run in every target.
+// A film is rendered in two parts: samples [0, a) on one device and [a, n) on another. Each part is serialised and
+// restored. Their sum has the bytes of one run's film in every target.
 
 #include <doctest/doctest.h>
 
@@ -13,7 +13,7 @@ using namespace pertev;
 
 namespace {
 
-/// A scene that is prepared once. Its lamp is too bright for a film, so that there are invalid samples.
+/// A scene that is prepared once. Its emitter is too bright for a film, so that there are invalid samples.
 struct BlindingWorld {
     Scene scene = test::make_mixed_scene();
     PreparedScene prepared;
@@ -52,7 +52,7 @@ std::vector<std::vector<std::byte>> bytes_of_targets(const Film& film) {
     return all;
 }
 
-/// A film of bytes, on any device.
+/// Returns a film restored from bytes, on any device.
 Film film_of_bytes(Queue& queue, const RenderSettings& settings, const std::vector<std::vector<std::byte>>& bytes,
                    SampleRange samples) {
     Film film(queue, settings.width, settings.height, settings.aovs, light_layers_of(settings));

@@ -1,6 +1,5 @@
-// A light tree of two nodes is rendered through the path tracer's functions, by test code alone: it gives the picture
-// of the light table, each draw has the density used to weight a hit of the light, and both devices give the same
-// bytes.
+// Test code renders with a light tree of two nodes through the path tracer's functions. The picture is that of the
+// light table, each sample has the density used to weight a hit of the light, and both devices give the same bytes.
 
 #include "tests/seams/two_node_tree.h"
 
@@ -21,7 +20,7 @@ namespace {
 
 constexpr uint32_t kTreeWidth = 16, kTreeHeight = 12;
 
-/// A floor, and a sheet that is seen from behind, under two lamps of which each is near to a part of them, and a sky.
+/// A floor and a sheet seen from behind, under a sky and two emitters. Each emitter is near a part of them.
 Scene two_emitter_scene() {
     Scene scene;
     const auto add = [&](Rgb color, Rgb emission, Vec3 at, Vec3 scale) {
@@ -108,7 +107,7 @@ TEST_CASE("a light tree converges to the light table's picture under every strat
         const test::PictureEstimate table = emitters.estimate<test::TableRounds>(strategy, kRenders, kOfOne);
         const test::PictureEstimate tree = emitters.estimate<test::TreeRounds>(strategy, kRenders, kOfOne);
         CHECK(test::p_value(tree, table) > 0.01);
-        CHECK(test::p_value(test::brightened(tree, 1.02, 0), table) < 1e-6); // so 2 % would be noticed
+        CHECK(test::p_value(test::brightened(tree, 1.02, 0), table) < 1e-6); // so an error of 2 % would be detected
         double of_table = 0, of_tree = 0;
         for (const double variance : table.variance_of_mean) of_table += variance;
         for (const double variance : tree.variance_of_mean) of_tree += variance;

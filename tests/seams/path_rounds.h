@@ -1,9 +1,9 @@
 #pragma once
 
-// PathRounds is a schedule of the tests' own over the functions of the path tracer, beside the product's two. It takes
-// one sample of all pixels at a time. Each stage runs over all pixels, and the scene's tracer traces their rays; a path
-// that has ended keeps its place, with a ray that meets nothing. So any job, mask of features and listeners can be
-// rendered on either device, with no code in the product for it.
+// PathRounds is a schedule for tests over the functions of the path tracer, besides the product's two. It renders one
+// sample of all pixels at a time. Each stage runs over all pixels, and the scene's tracer traces their rays. A path
+// that has ended keeps its index, with a ray that hits nothing. Thus any job, mask of features and listeners can be
+// rendered on either device without code in the product.
 
 #include "device/buffer.h"
 #include "integrators/path/generate_path.h"
@@ -12,7 +12,7 @@
 
 namespace pertev::test {
 
-/// Rays of all pixels on a device, and the triangles that they leave and lead to.
+/// The rays of all pixels on a device, and the triangles at their starts and targets.
 struct RoundRays {
     Ray* rays;
     Uint2 *starts, *targets;
@@ -23,7 +23,7 @@ struct RoundRays {
         starts[i] = {start.instance, start.primitive};
         targets[i] = {target.instance, target.primitive};
     }
-    /// Stores a ray that meets nothing.
+    /// Stores a ray that hits nothing.
     HD void store_none(uint32_t i) const { store(i, {{0, 0, 0}, 0, {0, 0, 1}, 0}, {}, {}); }
 };
 
@@ -32,7 +32,7 @@ struct RoundPath {
     PathState state;
     typename Listener::PathData kept;
     typename Listener::ShadowData shadow_data;
-    Rgb connection_light; // light of the shadow ray
+    Rgb connection_light; // the shadow ray's light
     bool goes_on, has_shadow_ray;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// The body of PathRounds::render, included only by the .cu file that instantiates it with its stages, as that of launch
-// is (device/launch_body.h): elsewhere a compiler may put it in place of a call, and its launches have no body there.
+// The body of PathRounds::render, included only by the .cu file that instantiates it with its stages, like that of
+// launch (device/launch_body.h). Elsewhere a compiler could inline it, and its launches have no body there.
 
 #include "device/launch.h"
 #include "tests/seams/path_rounds.h"

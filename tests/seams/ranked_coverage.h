@@ -1,10 +1,10 @@
 #pragma once
 
-// A film target that counts samples per instance in each pixel, for mattes: when resolved, the ids of most coverage
-// come first. The film does not depend on it.
+// A film target that counts samples per instance in each pixel, for mattes. Its layers list the ids in order of
+// coverage. The film does not depend on it.
 //
-// If a pixel has more ids than room, it keeps the least. That is a function of the set of samples, so that parts of
-// a film add up exactly: who is among the least of all is so in each part, and was never left out there.
+// A pixel with more ids than fit keeps the smallest. These depend only on the set of samples, so parts of a film add
+// up exactly: an id that is among the smallest of all is so in each part.
 //
 // Source: Friedman, Jones, "Fully Automatic ID Mattes with Support for Motion Blur and Transparency", SIGGRAPH 2015
 // posters.
@@ -18,7 +18,7 @@
 
 namespace pertev::test {
 
-/// Ids and counts of samples, from the least id on; kNoHit behind the last one.
+/// Ids and counts of samples, in the order of ids. kNoHit follows the last one.
 template <uint32_t kIds>
 struct PixelCoverage {
     uint32_t ids[kIds], samples[kIds];
@@ -53,7 +53,8 @@ public:
         : ElementTarget<PixelCoverage<kIds>, AddCoverage<kIds>, 0xff>(queue, pixels, "coverage") {}
     void show(FilmView&) const override {}
 
-    /// One layer: id and share of the samples of each rank, from most to least; a share of 0 ends them.
+    /// One layer: the id and the share of samples of each rank, from the largest share to the smallest. A share of 0
+    /// ends the list.
     std::vector<FilmLayer> layers(uint32_t width, uint64_t samples) const override {
         const std::vector<PixelCoverage<kIds>> pixels = this->elements().download();
         FilmLayer layer = {"coverage", {}, {width, static_cast<uint32_t>(pixels.size()) / width, 2 * kIds, {}}};
@@ -78,7 +79,7 @@ struct CoverageJob : PathJob {
     PixelCoverage<kIds>* coverage; // [pixels of the film]
 };
 
-/// Listens for what camera rays meet first. One sample of a pixel is under way at a time, as in PathRounds.
+/// A listener for the first hits of camera rays. Each pixel has one sample in flight at a time, as in PathRounds.
 template <uint32_t kIds>
 class CoverageListener : public PathListener<CoverageListener<kIds>> {
 public:

@@ -1,5 +1,5 @@
-// A film gets a target that ranks instances by coverage, by test code alone. Samples of a render are added to it, parts
-// of a film add up to the whole, byte for byte, across serialisation and devices, and its results are correct.
+// Test code adds a target that ranks instances by coverage to a film. A render adds samples to it, its results are
+// correct, and parts of a film add up to the whole, byte for byte, across serialisation and devices.
 
 #include "tests/seams/ranked_coverage.h"
 
@@ -16,7 +16,7 @@ namespace {
 
 constexpr uint32_t kMatteWidth = 13, kMatteHeight = 9, kMatteSamples = 8;
 
-/// Black squares in a row that emit red, green and blue in turns; three at most lie side by side in a pixel.
+/// Black squares in a row that emit red, green and blue in turn. At most three are in one pixel.
 Scene striped_scene() {
     Scene scene;
     for (uint32_t i = 0; i < 9; ++i) {
@@ -64,8 +64,8 @@ struct Matte {
     const test::CoverageTarget<kIds>* coverage;
 };
 
-/// Samples [0, 3) and [3, 8) on two devices: either film, made again from its bytes and with the other added to it, has
-/// the bytes of the film of all.
+/// Renders samples [0, 3) and [3, 8) on two devices. Each film, restored from its bytes and added to the other, has
+/// the bytes of the whole film.
 template <uint32_t kIds>
 void check_parts(const PreparedScene& prepared) {
     Queue cpu = Queue::make_cpu(), shadow_data = test::requested_queue();
@@ -106,7 +106,7 @@ TEST_CASE("a film target defined by a test ranks the objects in each pixel, and 
         uint32_t count = 0;
         for (; count < 6 && ranks[2 * count + 1] > 0; ++count) {
             const auto id = static_cast<uint32_t>(ranks[2 * count]);
-            const float share = ranks[2 * count + 1]; // eighths: sums are exact
+            const float share = ranks[2 * count + 1]; // the values are eighths, so sums are exact
             REQUIRE(share <= last);
             last = share;
             of_color[id % 3] += share, covered += share;
@@ -121,5 +121,5 @@ TEST_CASE("a film target defined by a test ranks the objects in each pixel, and 
     CHECK(shared > 5);
 
     check_parts<6>(prepared);
-    check_parts<2>(prepared); // pixels with more ids than there is room for
+    check_parts<2>(prepared); // pixels with more ids than fit
 }

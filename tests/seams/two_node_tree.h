@@ -4,7 +4,7 @@
 // the shading context. The environment has its own share, and there are no punctual lights.
 //
 // Source: Conty Estevez, Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", HPG 2018, section 5:
-// a node counts by its power and the cosine towards it, over the squared distance.
+// a node's importance is its power times the cosine towards it, divided by the squared distance.
 
 #include "device/atomics.h"
 #include "integrators/path/film_listener.h"
@@ -38,7 +38,8 @@ struct TwoNodeTree {
         const uint32_t node = light >= first && light < first + view.emitters[0].triangle_count ? 0 : 1;
         const float share = share_of_first(view, context), sky = pmf_of_environment(view, context);
         const float of_node = (1.0f - sky) * (node == 0 ? share : 1.0f - share);
-        return of_node * (view.triangles[light].pmf / cdf_pmf(view.choice, node)); // the table's, within the node
+        return of_node *
+               (view.triangles[light].pmf / cdf_pmf(view.choice, node)); // the light of the table, within the node
     }
     HD static float pmf_of_environment(const LightSetView& view, const LightContext&) {
         return view.has_environment() ? 0.3f : 0.0f;
@@ -52,7 +53,7 @@ private:
         const float squared = max(length_squared(to_node), size);
         const float cosine =
             context.normal == Vec3{0, 0, 0} ? 1.0f : max(dot(to_node, context.normal) / sqrt(squared), 0.0f);
-        return cdf_pmf(view.choice, node) * (cosine + 0.05f) / squared; // lights are larger than a point
+        return cdf_pmf(view.choice, node) * (cosine + 0.05f) / squared; // lights have an area
     }
     HD static float share_of_first(const LightSetView& view, const LightContext& context) {
         const float first = importance(view, context, 0);
@@ -60,13 +61,13 @@ private:
     }
 };
 
-/// The feature of code that chooses by it. No code of the product has it.
+/// The feature of code that selects lights by the tree. The product has no such code.
 inline constexpr Features kTwoNodeTree = 1u << 31;
 
-/// Listens for light that paths run into: whether its density is the one by which the tree draws it for the vertex
-/// before, but for the offset of the ray's origin.
+/// A listener for emitters that paths hit. It tests that their density is that of the tree at the previous vertex,
+/// except for the offset of the ray's origin.
 struct DensityJob : PathJob {
-    uint32_t *right, *wrong; // one count each
+    uint32_t *right, *wrong; // one counter each
 };
 class DensityListener : public PathListener<DensityListener> {
 public:

@@ -1,5 +1,5 @@
-// Takes the place of the C library's allocation functions in a program that preloads it, for tests: it counts the bytes
-// that are requested, and remembers the largest request.
+// Replaces the C library's allocation functions in a test program that preloads it. It counts the requested bytes and
+// records the largest request.
 
 #include <atomic>
 #include <cerrno>

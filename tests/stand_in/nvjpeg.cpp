@@ -1,6 +1,6 @@
 // A library for tests with the functions of nvJPEG that the viewer calls, by their documented signatures. It records
 // its calls in a file with the markers of a JPEG, counts objects that were not destroyed, and fails on request.
-// Pictures lie in the host's memory.
+// Pictures are in the host's memory.
 
 #include <cstdio>
 #include <cstring>
@@ -36,7 +36,7 @@ typedef struct {
     size_t pitch[4];
 } nvjpegImage_t;
 
-// The test calls these.
+// The test calls these functions.
 void stand_in_fail(const char* name) { failing = name; }
 int stand_in_objects() { return made; }
 

@@ -1,6 +1,6 @@
 // A library with the functions of Open Image Denoise that the renderer calls, by their documented signatures, for
 // tests: a pixel becomes half of its colour plus a quarter of its albedo and an eighth of its normal. It counts
-// objects that were not released, keeps the values that were set, and fails on request. Images lie in the host's
+// objects that were not released, keeps the values that were set, and fails on request. Images are in the host's
 // memory.
 
 #include <cstddef>
@@ -38,7 +38,7 @@ void call(const char* name) {
 
 extern "C" {
 
-// The test calls these.
+// The test calls these functions.
 void stand_in_fail(const char* name, int with) { failing = name, failing_with = with; }
 int stand_in_objects() { return made; }
 int stand_in_value(const char* name) { return values[name]; }

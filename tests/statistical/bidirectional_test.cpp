@@ -20,7 +20,7 @@ using namespace pertev;
 
 namespace {
 
-/// A box's six sheets, their fronts outwards, edges along the axes turned by an eighth about y.
+/// The six sheets of a box, facing outwards. The box is rotated by an eighth of a turn about y.
 void add_box(Scene& scene, Vec3 centre, Vec3 half, const Material& material) {
     const Vec3 x = {0.8f * half.x, 0, 0.6f * half.x}, y = {0, half.y, 0}, z = {-0.6f * half.z, 0, 0.8f * half.z};
     for (const float side : {1.0f, -1.0f}) {
@@ -30,7 +30,7 @@ void add_box(Scene& scene, Vec3 centre, Vec3 half, const Material& material) {
     }
 }
 
-/// A room that is open to the camera: a lamp under its ceiling, and a box.
+/// A room that is open to the camera, with an emitter under its ceiling and a box.
 Scene allocate(const Material& box, const Material& floor = test::white(0.6f), bool has_emitter = true) {
     Scene scene;
     const Material red = {{.base_color = {0.7f, 0.2f, 0.2f}}, "red"};
@@ -65,12 +65,12 @@ struct Case {
     Scene scene;
     Camera camera = room_camera();
     bool light_finds_all = true;
-    bool light_is_even = true; // otherwise few particles contribute much, and Student's t does not hold
+    bool light_is_even = true; // otherwise few particles contribute most of the light, and Student's t does not apply
     PixelFilter filter = PixelFilter::BlackmanHarris;
     float filter_radius = 0; // the filter's default
     uint32_t pixels = 12;    // across
 
-    /// `samples` of each pixel of a picture of 12x12, of fewer pixels so many more.
+    /// Takes `samples` samples per pixel of 12x12 pixels, and proportionally more for fewer pixels.
     uint32_t samples_for(uint32_t samples) const { return samples * (144 / (pixels * pixels)); }
 };
 
@@ -83,13 +83,14 @@ std::vector<Case> cases() {
         "metal"};
     all.push_back({.name = "glossy", .scene = allocate(metal, plastic(0.5f)), .filter = PixelFilter::Gaussian});
 
-    // A box: in the far tail of a filter particles of pixels beside the glass count, and a path is hardly ever drawn.
+    // Uses a box filter. In the tail of another filter particles of pixels beside the glass count, and paths are very
+    // rare.
     all.push_back({.name = "glass", .scene = allocate(glass()), .light_finds_all = false, .filter = PixelFilter::Box});
 
     all.push_back(
         {.name = "frosted glass", .scene = allocate(glass(0.4f)), .light_is_even = false, .filter = PixelFilter::Box});
 
-    // Room and camera lie in glass, to which the light comes from without: radiance is power over the square of the
+    // Room and camera are inside glass, and the light comes from outside: radiance is scaled by the square of the
     // index.
     Case within = {.name = "within glass", .scene = allocate(plastic(0.6f), test::white(0.6f), false)};
     within.scene.environment = test::make_mixed_scene().environment;
@@ -112,7 +113,7 @@ std::vector<Case> cases() {
 
     Case environment = {.name = "environment", .scene = allocate(metal, test::white(0.6f), false)};
     environment.scene.environment = test::make_mixed_scene().environment;
-    environment.scene.materials[1].alpha = 0.5f; // the wall behind, seen through half of the time
+    environment.scene.materials[1].alpha = 0.5f; // the wall behind is visible in half of the samples
     environment.scene.materials[1].alpha_mode = AlphaMode::Blend;
     environment.camera.projection = Projection::Orthographic;
     environment.camera.ortho_height = 2.4f;
@@ -121,7 +122,7 @@ std::vector<Case> cases() {
     all.push_back(environment);
 
     Case lens = {.name = "depth of field", .scene = allocate(test::white(0.8f))};
-    // The camera sees through its back; light is blocked.
+    // The camera sees through its back, which blocks light.
     test::add(lens.scene, test::sheet({-0.3f, 0.5f, 0.8f}, {-0.3f, 0, 0}, {0, 0.3f, 0}), test::white(0.7f));
     lens.scene.materials.back().double_sided = false;
     lens.camera.aperture_radius = 0.2f;
@@ -157,14 +158,14 @@ TEST_CASE(
         const test::PictureEstimate path = estimate(IntegratorKind::Path, 32, 1000);
         const test::PictureEstimate both = estimate(IntegratorKind::Bidirectional, 8, 1);
         CHECK(test::p_value(both, path) > 0.001);
-        CHECK(test::p_value(test::brightened(both, 1.07, 5e-3), path) < 1e-4); // the test can see
+        CHECK(test::p_value(test::brightened(both, 1.07, 5e-3), path) < 1e-4); // the test detects a difference
         if (!c.light_is_even) continue;
         const test::PictureEstimate light = estimate(IntegratorKind::Light, 16, 5000);
         const double same = test::p_value(light, path);
         if (c.light_finds_all) {
             CHECK(same > 0.001);
             CHECK(test::p_value(test::brightened(light, 1.1, 5e-3), path) < 1e-3);
-        } else { // light that connects to the camera: scattered by a surface there, or emitted
+        } else { // light that connects to the camera, scattered by a surface or emitted
             CHECK(same < 1e-6);
             RenderSettings settings = settings_of(c);
             settings.samples = c.samples_for(32);
@@ -181,7 +182,7 @@ TEST_CASE(
 TEST_CASE("distributed ray tracing gives its light paths the brightness that path tracing gives them") {
     Queue queue = test::requested_queue();
     for (const Case& c : cases()) {
-        if (c.name == "within glass") continue; // only light of the sky is traced
+        if (c.name == "within glass") continue; // only light from the sky is traced
         CAPTURE(c.name);
         Messages messages;
         const PreparedScene prepared = prepare_scene(c.scene, {}, messages);
@@ -195,13 +196,13 @@ TEST_CASE("distributed ray tracing gives its light paths the brightness that pat
         settings.integrator = IntegratorKind::Distributed;
         const test::PictureEstimate distributed = test::estimate_picture(queue, prepared, c.camera, settings, 24, 1);
         CHECK(test::p_value(distributed, path) > 0.001);
-        CHECK(test::p_value(test::brightened(distributed, 1.05, 5e-3), path) < 1e-4); // the test can see
-        CHECK(test::p_value(distributed, all) < 1e-4);                                // and there is more light
+        CHECK(test::p_value(test::brightened(distributed, 1.05, 5e-3), path) < 1e-4); // the test detects a difference
+        CHECK(test::p_value(distributed, all) < 1e-4); // the path tracer finds more light
     }
 }
 
 TEST_CASE("light tracing and bidirectional path tracing match the closed form of a floor under an area light to 1 %") {
-    constexpr double kHalf = 1; // half size of the visible patch of floor, metres
+    constexpr double kHalf = 1; // half the side of the visible part of the floor, metres
     Queue queue = test::requested_queue();
     const auto mean_of = [&](const Mesh& emitter, IntegratorKind integrator, uint32_t samples) {
         Scene scene;
@@ -215,7 +216,7 @@ TEST_CASE("light tracing and bidirectional path tracing match the closed form of
         const Camera camera = test::camera_down({0.4f, 0.1f, 0.2f}, 2 * float(kHalf));
         return test::mean_of(test::render(queue, scene, camera, settings).picture);
     };
-    const auto over_patch = [&](const auto& factor) { // Simpson's rule, either way
+    const auto over_patch = [&](const auto& factor) { // uses Simpson's rule in both directions
         double sum = 0;
         constexpr int kWeights[] = {1, 4, 2, 4, 2, 4, 2, 4, 1};
         for (int i = 0; i < 9; ++i) {

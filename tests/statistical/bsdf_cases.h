@@ -1,6 +1,6 @@
 #pragma once
 
-// The BSDFs of the statistical tests, and shared functions of these.
+// The BSDFs of the statistical tests, and functions that the tests share.
 
 #include <cmath>
 #include <string>
@@ -19,7 +19,7 @@ struct BsdfCase {
 
 inline constexpr Rgb kGoldEta = {0.2f, 0.92f, 1.1f}, kGoldK = {3.9f, 2.45f, 2.14f};
 
-/// GGX width of the narrowest lobe that is not delta; 1 where there is none.
+/// the GGX width of the narrowest lobe that is not delta; 1 without such a lobe
 inline float narrowest_alpha(const Bsdf& bsdf) {
     float least = 1;
     const auto add = [&](float alpha) { least = alpha < kSmoothAlpha ? least : std::fmin(least, alpha); };
@@ -32,7 +32,7 @@ inline float narrowest_alpha(const Bsdf& bsdf) {
     return least;
 }
 
-/// Layers on each other and on every base.
+/// Returns layers on each other and on every base.
 inline std::vector<BsdfCase> layered_bsdf_cases() {
     const Bsdf plastic = make_metallic_roughness({0.2f, 0.5f, 0.8f}, 0, 0.6f, 1.5f);
     const Bsdf half_metal = make_metallic_roughness({0.9f, 0.5f, 0.1f}, 0.5f, 0.4f, 1.5f);
@@ -47,7 +47,7 @@ inline std::vector<BsdfCase> layered_bsdf_cases() {
              make_sheen(make_coated(half_metal, 0.5f, 0.3f, 1.5f), {0.5f, 0.4f, 0.3f}, 0.3f)}};
 }
 
-/// One of each kind at several roughnesses, and layers; lobes that are not delta, but for one.
+/// Returns each kind at several roughnesses, and layers. All but one have no delta lobes.
 inline std::vector<BsdfCase> rough_bsdf_cases() {
     std::vector<BsdfCase> cases = {{"diffuse", make_diffuse({0.8f, 0.5f, 0.2f})}};
     for (const float r : {0.1f, 0.3f, 0.6f, 1.0f}) {
@@ -65,7 +65,7 @@ inline std::vector<BsdfCase> rough_bsdf_cases() {
     return cases;
 }
 
-/// Unit vector at height `z` in [-1, 1], `turns` of a full turn about the normal.
+/// Returns the unit vector with height `z` in [-1, 1] and azimuth `turns`, in full turns about the normal.
 inline Vec3 direction_at(float z, float turns = 0.1f) {
     const float across = std::sqrt((1.0f - z) * (1.0f + z)), angle = 6.2831853f * turns;
     return {across * std::cos(angle), across * std::sin(angle), z};
@@ -76,13 +76,13 @@ struct SamplePoint {
     Vec2 u;
 };
 
-/// Independent points, by index and seed.
+/// Returns independent points for index and seed.
 inline SamplePoint random_point(uint32_t i, uint32_t seed) {
     const Hash4 h = hash_words(i, seed, 0x9e3779b9u, i ^ seed);
     return {unit_interval(h.x), {unit_interval(h.y), unit_interval(h.z)}};
 }
 
-/// Point i of the Hammersley set of `count` points: means over it are off by little more than 1 / count.
+/// Returns point i of the Hammersley set of `count` points. The error of means over it is little more than 1 / count.
 inline SamplePoint even_point(uint32_t i, uint32_t count) {
     double thirds = 0, digit = 1.0 / 3;
     for (uint32_t rest = i; rest != 0; rest /= 3, digit /= 3) thirds += digit * (rest % 3);
@@ -97,7 +97,8 @@ struct MeanWeight {
     double least() const { return std::fmin(r, std::fmin(g, b)); }
 };
 
-/// Mean of sample()'s weight over `count` even points: the light that a closed furnace of radiance 1 sends to wo.
+/// Returns the mean weight of sample() over `count` even points. It is the light that a furnace of radiance 1 sends to
+/// wo.
 inline MeanWeight mean_weight(const Bsdf& bsdf, Vec3 wo, uint32_t count) {
     MeanWeight mean;
     for (uint32_t i = 0; i < count; i++) {

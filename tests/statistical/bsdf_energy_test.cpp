@@ -16,7 +16,7 @@ namespace {
 constexpr float kRoughnesses[] = {0.033f, 0.1f, 0.2f, 0.35f, 0.5f, 0.75f, 1.0f};
 constexpr float kCosines[] = {1e-4f, 3e-3f, 0.03f, 0.12f, 0.35f, 0.65f, 1.0f};
 
-/// Least and largest mean weight over roughness times angle, on the side that `side` (+-1) says.
+/// The smallest and largest mean weight over all roughnesses and angles, on the side of the sign of `side` (+-1).
 template <class Make>
 MeanWeight furnace_range(Make make, float side, uint32_t points) {
     double least = 1e9, largest = 0;
@@ -62,7 +62,7 @@ TEST_CASE("a rough conductor that absorbs nothing returns all light to 0.5 %") {
     CHECK(range.b < 1.005);
 }
 
-TEST_CASE("the furnace test notices a rough conductor without its second lobe") {
+TEST_CASE("the furnace test detects a rough conductor without its second lobe") {
     double mean = 0;
     constexpr uint32_t kPoints = 10'000;
     const Vec3 wo = direction_at(0.9f);
@@ -103,7 +103,7 @@ TEST_CASE("no bsdf returns more than 1 + 1e-3 of the light") {
     const auto count = static_cast<uint32_t>(effort(300, 10'000));
     for (uint32_t i = 0; i < count; i++) {
         const Hash4 a = hash_words(i, 1, 2, 3), b = hash_words(i, 4, 5, 6);
-        // Half of the colours are saturated at 1, half of the directions gather at grazing.
+        // Half of the colours are saturated at 1, and half of the directions are at grazing angles.
         const auto channel = [](uint32_t bits) { return std::min(2.0f * unit_interval(bits), 1.0f); };
         const Rgb color = {channel(a.x), channel(a.y), channel(a.z)};
         const float roughness = unit_interval(a.w), u = unit_interval(b.x);
@@ -118,8 +118,8 @@ TEST_CASE("no bsdf returns more than 1 + 1e-3 of the light") {
         if (((i >> 6) & 1) != 0) bsdf = make_sheen(bsdf, channel(b.z) * color, channel(b.w));
         const Vec3 wo = direction_at((b.w & 1) != 0 ? z : -z);
         MeanWeight mean = mean_weight(bsdf, wo, 1 << 12);
-        if (mean.largest() > 1 - 5e-3) mean = mean_weight(bsdf, wo, 1 << 15); // the first try may be off by as much
-        if (mean.largest() > 1 + 3e-4) mean = mean_weight(bsdf, wo, 1 << 18); // and the second by twice as much
+        if (mean.largest() > 1 - 5e-3) mean = mean_weight(bsdf, wo, 1 << 15); // the error of the first estimate
+        if (mean.largest() > 1 + 3e-4) mean = mean_weight(bsdf, wo, 1 << 18); // the second may have twice the error
         INFO("case " << i << " base " << static_cast<int>(bsdf.base.kind) << " cos(wo) " << wo.z << " roughness "
                      << roughness << " ior " << ior << " metallic " << metallic << " mean " << mean.largest());
         CHECK(mean.largest() < 1 + 1e-3);
@@ -133,7 +133,7 @@ TEST_CASE("every bsdf is reciprocal, refraction up to the squares of the indices
         for (uint32_t i = 0; i < count / 10; i++) {
             const SamplePoint p = random_point(i, 77), q = random_point(i, 78);
             const Vec3 wo = direction_at(2.0f * p.u.x - 1.0f, p.u.y);
-            // Half of the pairs where the lobes are, half anywhere.
+            // Half of the pairs are near the lobes, the others anywhere.
             const BsdfSample s = c.bsdf.sample(wo, q.lobe, q.u);
             const Vec3 wi = (i & 1) != 0 && s.pdf > 0 ? s.wi : direction_at(2.0f * q.u.x - 1.0f, q.u.y);
             const Rgb there = f_of(c.bsdf, wo, wi);
@@ -145,7 +145,7 @@ TEST_CASE("every bsdf is reciprocal, refraction up to the squares of the indices
             const float size = std::max(max_component(there), max_component(back));
             if (size < 1e-12f) continue;
             compared++;
-            // The half vectors of the two ways round differently, by about 1e-7 / alpha of the lobe's width.
+            // The half vectors of both directions are rounded differently, by about 1e-7 / alpha of the lobe's width.
             const float error = max(max_component(there - back), max_component(back - there)) / size;
             INFO(c.name << " wo.z " << wo.z << " wi.z " << wi.z << " there " << there.r << " back " << back.r);
             CHECK(error < 5e-4f + 1e-5f / std::max(narrowest_alpha(c.bsdf), 1e-2f));
@@ -198,7 +198,7 @@ TEST_CASE("diffuse and glossy light add up to all light, and each equals its lob
     const Rgb base = plastic.evaluate(wo, wi, only(LobeClass::Diffuse)).f;
     CHECK(base.g / base.r == doctest::Approx(2.5).epsilon(1e-5));
     CHECK(is_black(black.evaluate(wo, wi, only(LobeClass::Diffuse)).f));
-    // A sample says which lobe drew it.
+    // A sample names the lobe that drew it.
     for (uint32_t i = 0; i < 500; ++i) {
         const SamplePoint p = random_point(i, 93);
         const Bsdf& varnished = make_coated(plastic, 1, 0, 1.5f);

@@ -1,5 +1,5 @@
-// Every BSDF's sample() draws from its pdf(), its weight is eval / pdf, and the mean weight is the integral of eval.
-// Directions are counted in a chart about the mirror direction, so that narrow lobes spread over many cells.
+// Every BSDF's sample() follows its pdf(), its weight is eval / pdf, and the mean weight is the integral of eval.
+// Directions are counted in a chart about the mirror direction, so that narrow lobes cover many cells.
 
 #include <doctest/doctest.h>
 
@@ -26,7 +26,7 @@ struct SamplingReport {
     double mean_deviations = 0; // |mean weight - integral of eval| in standard errors, the worst channel
 };
 
-/// Evaluates a BSDF's value and density together. One with a flaw has its own eval() and pdf().
+/// Evaluates a BSDF's value and density together. BSDFs with a deliberate fault have their own eval() and pdf().
 template <class AnyBsdf>
 BsdfValue value_of(const AnyBsdf& bsdf, Vec3 wo, Vec3 wi) {
     if constexpr (std::is_same_v<AnyBsdf, Bsdf>) {
@@ -61,7 +61,7 @@ SamplingReport test_sampling(const AnyBsdf& bsdf, Vec3 wo, const DirectionChart&
             sum[c] += weight[c];
             squares[c] += weight[c] * weight[c];
         }
-        if (i % 4 != 0) continue; // a check of each sample takes as long as sampling
+        if (i % 4 != 0) continue; // checking a sample takes as long as drawing it
         const BsdfValue value = value_of(bsdf, wo, s.wi);
         const double pdf = static_cast<double>(value.pdf), drawn = static_cast<double>(s.pdf);
         const Rgb f = value.f;
@@ -84,29 +84,29 @@ SamplingReport test_sampling(const AnyBsdf& bsdf, Vec3 wo, const DirectionChart&
         expected[static_cast<size_t>(k)] = samples * part.value[3];
         for (int c = 0; c < 4; c++) total[c] += part.value[c];
     }
-    // Failed samples are one more cell.
+    // Failed samples have their own cell.
     expected[kCells] = samples * (1 - total[3]);
-    // Rounding may put a sample next to the horizon into a cell that lies behind it: so small a count only joins that
-    // cell to the pool of rare cells.
+    // Rounding may put a sample next to the horizon into a cell behind it. With so small a count that cell is pooled
+    // with other rare cells.
     for (double& count : expected) count = std::max(count, 1e-3);
     report.chi_square = chi_square(observed, expected);
     report.chi_square.integral = total[3];
     if (total[3] > 1 + 1e-4) report.chi_square.p_value = 0;
     for (int c = 0; c < 3; c++) {
         const double mean = sum[c] / samples, variance = std::max(squares[c] / samples - mean * mean, 0.0);
-        const double error = std::sqrt(variance / samples) + 2e-5; // the latter for the integration
+        const double error = std::sqrt(variance / samples) + 2e-5; // the second is for the integration
         report.mean_deviations = std::max(report.mean_deviations, std::fabs(mean - total[c]) / error);
     }
     return report;
 }
 
-/// About the mirror direction of wo; as wide as the lobe of GGX width alpha.
+/// Returns the chart about the mirror direction of wo, with the width of a GGX lobe of roughness alpha.
 DirectionChart chart_for(Vec3 wo, float alpha) {
     if (alpha > 0.3f || alpha < kSmoothAlpha) return {make_frame(Vec3{0, 0, 1}), 1.0};
     return {make_frame(normalize(Vec3{-wo.x, -wo.y, wo.z})), static_cast<double>(alpha)};
 }
 
-/// About the refracted direction.
+/// Returns the chart about the refracted direction.
 DirectionChart chart_through(Vec3 wo, const Bsdf& glass) {
     const float eta = glass.base.dielectric.eta_from(wo), across = std::sqrt(1.0f - wo.z * wo.z);
     const float down = std::sqrt(std::max(1.0f - square(across / eta), 0.0f));
@@ -114,8 +114,8 @@ DirectionChart chart_through(Vec3 wo, const Bsdf& glass) {
     return {make_frame(wi), std::max(0.5 * static_cast<double>(narrowest_alpha(glass)), 0.02)};
 }
 
-/// The heights of wi at which eval() and pdf() may jump: the horizon and, through glass, the direction whose half
-/// vector lies in the surface, beyond which no microfacet refracts to.
+/// Returns the heights of wi at which eval() and pdf() may be discontinuous: the horizon and, for glass, the direction
+/// whose half vector lies in the surface. No microfacet refracts beyond that.
 std::vector<double> jumps_of(const Bsdf& bsdf, Vec3 wo) {
     std::vector<double> jumps = {0};
     if (bsdf.base.kind == LobeKind::Dielectric)
@@ -154,24 +154,24 @@ TEST_CASE("every bsdf samples directions by its pdf, with the weight eval over p
 
 namespace {
 
-/// Diffuse, with the flaw that its pdf lacks the cosine.
+/// A diffuse BSDF whose pdf lacks the cosine.
 struct NoCosineInPdf : Bsdf {
     float pdf(Vec3 wo, Vec3 wi) const { return wo.z * wi.z > 0 ? 0.5f * kInvPi : 0.0f; }
 };
 
-/// Diffuse, with the flaw that its value lacks the cosine.
+/// A diffuse BSDF whose value lacks the cosine.
 struct NoCosineInEval : Bsdf {
     Rgb eval(Vec3 wo, Vec3 wi) const { return wo.z * wi.z > 0 ? kInvPi * base.diffuse.albedo : Rgb{}; }
 };
 
-/// Rough metal that forgets, in its pdf alone, the lobe of returned energy.
+/// Rough metal whose pdf lacks the energy compensation lobe.
 struct ForgottenLobe : Bsdf {
     float pdf(Vec3 wo, Vec3 wi) const {
         return wi.z > 0 ? evaluate_ggx_reflection(wo, wi, base.conductor.alpha).pdf : 0.0f;
     }
 };
 
-/// Rough metal whose weights are 2 % too bright, in the samples alone.
+/// Rough metal whose samples have weights that are 2 % too large.
 struct BrightWeights : Bsdf {
     BsdfSample sample(Vec3 wo, float u_lobe, Vec2 u) const {
         BsdfSample s = Bsdf::sample(wo, u_lobe, u);
@@ -182,7 +182,7 @@ struct BrightWeights : Bsdf {
 
 } // namespace
 
-TEST_CASE("the sampling test notices a missing cosine, a forgotten lobe and bright weights") {
+TEST_CASE("the sampling test detects a missing cosine, a missing lobe and weights that are too large") {
     const Vec3 wo = direction_at(0.7f);
     const DirectionChart chart = chart_for(wo, 1);
     const std::vector<double> horizon = {0};
@@ -202,8 +202,8 @@ TEST_CASE("the sampling test notices a missing cosine, a forgotten lobe and brig
     CHECK(of_bright.weight_error > 1e-2);
 }
 
-TEST_CASE("the integrals over a chart's cells miss no sliver next to a discontinuity") {
-    // The caps above the horizon and above a circle just below it.
+TEST_CASE("the integrals over a chart's cells include slivers next to a discontinuity") {
+    // Integrates the caps above the horizon and above a circle just below it.
     const std::vector<double> heights = {0, -0.1333};
     const auto caps = [&](Vec3 d) {
         const double z = static_cast<double>(d.z);

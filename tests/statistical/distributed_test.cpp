@@ -1,4 +1,4 @@
-// Distributed ray tracing against closed forms, and against path tracing where both reach the same light.
+// Distributed ray tracing against closed forms, and against path tracing where both find the same light.
 
 #include <doctest/doctest.h>
 
@@ -27,7 +27,7 @@ RenderSettings distributed_settings(uint32_t side, uint32_t samples) {
     return settings;
 }
 
-/// A flat lamp of `emitter`, facing down, over a white floor, and the floor's radiosity seen from just above.
+/// A flat emitter that faces down over a white floor, and the floor's radiosity seen from just above.
 double floor_radiance(const Mesh& emitter, Vec3 at) {
     Scene scene;
     test::add(scene, test::floor_at(0, 50), test::white(1));
@@ -54,7 +54,7 @@ TEST_CASE("irradiance under a disc light matches the closed form") {
 
 namespace {
 
-/// The mixed scene, of which each diffuse surface becomes a metal.
+/// The mixed scene, in which each diffuse surface becomes a metal.
 Scene make_metal_scene() {
     Scene scene = test::make_mixed_scene();
     for (Material& material : scene.materials) {
@@ -69,7 +69,8 @@ Scene make_metal_scene() {
     return scene;
 }
 
-/// A diffuse or a plastic sphere alone: none of its scattered light returns. Point, spot and sun, and a sky.
+/// A single diffuse or plastic sphere, to which no scattered light returns, under a point light, a spot, a sun and a
+/// sky.
 Scene make_convex_scene(bool is_glossy) {
     Scene scene = test::make_furnace_scene(0.7f);
     const Scene mixed = test::make_mixed_scene();
@@ -81,7 +82,7 @@ Scene make_convex_scene(bool is_glossy) {
     return scene;
 }
 
-/// p-values of distributed against path, and of distributed 5 % brighter.
+/// The p-values of distributed against path, and of distributed made 5 % brighter.
 std::pair<double, double> compare_with_path(const Scene& scene, float aperture, uint32_t samples) {
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -128,15 +129,15 @@ TEST_CASE("distributed ray tracing misses only interreflection between diffuse s
     CHECK(less > 0.7 * path);
 }
 
-// The thin lens: 1 / f = 1 / o + 1 / i, for an object at distance o and its image at i behind the lens.
+// The thin lens equation is 1 / f = 1 / o + 1 / i for an object at distance o and its image at i behind the lens.
 TEST_CASE("a lens is sharp at its focus distance and blurs other points over their circle of confusion") {
-    constexpr uint32_t kSide = 33; // the lamp is in the middle of a pixel
+    constexpr uint32_t kSide = 33; // the emitter is at the centre of a pixel
     constexpr float kFocus = 4, kAperture = 0.6f;
     Camera camera;
-    camera.fov_y = 2 * 0.24497866f; // the view is half as high as it is far away
+    camera.fov_y = 2 * 0.24497866f; // the height of the view is half of its distance
     camera.aperture_radius = kAperture;
     camera.focus_distance = kFocus;
-    // A lens of this focal length, with the film at the image of the plane in focus.
+    // The lens has this focal length, and the film is at the image of the plane in focus.
     constexpr double kFocalLength = 0.5;
     const auto image_of = [](double object) { return 1 / (1 / kFocalLength - 1 / object); };
     const double film = image_of(static_cast<double>(kFocus));
@@ -150,15 +151,15 @@ TEST_CASE("a lens is sharp at its focus distance and blurs other points over the
         CAPTURE(static_cast<int>(integrator));
         CAPTURE(distance);
         Scene scene;
-        const float half = 0.007f * distance; // almost a pixel, as seen
+        const float half = 0.007f * distance; // almost a pixel wide
         test::add(scene, test::sheet({0, 0, -distance}, {half, 0, 0}, {0, half, 0}),
                   {{.base_color = {0, 0, 0}, .emission = {1000, 1000, 1000}}, "lamp"});
         Queue queue = test::requested_queue();
         RenderSettings settings = distributed_settings(kSide, 256);
         settings.integrator = integrator;
         const RenderResult result = test::render(queue, scene, camera, settings);
-        // Light of the lamp goes through all of the lens to its image, before or behind the film: what is wide A at the
-        // lens is wide A |film - image| / image on the film.
+        // The emitter's light passes through the whole lens to its image before or behind the film. A width of A at
+        // the lens is A |film - image| / image on the film.
         const double image = image_of(static_cast<double>(distance));
         const double radius = static_cast<double>(kAperture) * std::abs(film - image) / image * pixels_a_metre;
         double sum = 0, squares = 0, farthest = 0;
@@ -172,11 +173,11 @@ TEST_CASE("a lens is sharp at its focus distance and blurs other points over the
             }
         }
         CHECK(sum > 0);
-        CHECK(farthest < radius + 1.5); // the pixel's half diagonal, and the lamp's
+        CHECK(farthest < radius + 1.5); // half of the pixel's diagonal, and of the emitter's
         CHECK(farthest > radius - 1.5);
         if (distance == kFocus) {
             CHECK(farthest == 0);
-        } else { // the mean square of an even disc is r^2 / 2, that of pixel and lamp about 1/6 each
+        } else { // the mean square of a uniform disc is r^2 / 2, of pixel and emitter about 1/6 each
             CHECK(squares / sum == doctest::Approx(radius * radius / 2 + 1.0 / 3).epsilon(0.15));
         }
     }

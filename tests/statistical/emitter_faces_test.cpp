@@ -15,7 +15,7 @@ using namespace pertev;
 
 namespace {
 
-constexpr float kHalf = 0.44f, kRadiance = 78.9f, kAlbedo = 0.5f; // the lamp, 1 m above the floor
+constexpr float kHalf = 0.44f, kRadiance = 78.9f, kAlbedo = 0.5f; // the emitter, 1 m above the floor
 
 Mesh square_at(float half, float y) {
     Mesh mesh;
@@ -24,8 +24,8 @@ Mesh square_at(float half, float y) {
     return mesh;
 }
 
-/// A floor and a black lamp above its middle that faces down, or up; in one of two ways, by its mesh or by a node that
-/// turns an up-facing mesh over as a mirror does.
+/// A floor, and above its centre a black emitter that faces down or up, either by its mesh or by a mirroring node with
+/// an up-facing mesh.
 Scene emitter_over_floor(bool faces_down, bool is_two_sided, bool by_mirror) {
     Scene scene;
     scene.meshes = {square_at(1, 0), square_at(kHalf, by_mirror ? -1.0f : 1.0f)};
@@ -38,7 +38,7 @@ Scene emitter_over_floor(bool faces_down, bool is_two_sided, bool by_mirror) {
     return scene;
 }
 
-/// Radiance of the floor under the lamp's middle, from a rectangle parallel to it.
+/// Returns the radiance of the floor under the emitter's centre, from a parallel rectangle.
 double floor_radiance() {
     const double x = static_cast<double>(kHalf), p = std::sqrt(1 + x * x);
     return static_cast<double>(kAlbedo * kRadiance) / 3.141592653589793 * 4 * (x / p * std::atan(x / p));
@@ -48,7 +48,8 @@ struct SeenFloor {
     double mean, error;
 };
 
-/// Renders a tiny patch of the scene, between lamp and floor: down at the floor, or up at the lamp from `y`.
+/// Renders a small part of the scene from between emitter and floor: the floor seen from above, or the emitter seen
+/// from `y`.
 SeenFloor render(const Scene& scene, PathSettings path, bool up = false, float y = 0.5f) {
     RenderSettings settings;
     settings.width = settings.height = 32;

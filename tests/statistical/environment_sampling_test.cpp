@@ -27,7 +27,7 @@ namespace {
 
 double luminance_in_double(Rgb c) { return as_double(c.r) + as_double(c.g) + as_double(c.b); }
 
-/// Some dark noise, a black band and a sun of one texel.
+/// Dark noise, a black band and a sun of one texel.
 Environment make_sky(uint32_t width, uint32_t height, float rotation) {
     Environment sky;
     sky.image = {width, height, 3, {}};
@@ -51,18 +51,18 @@ EnvironmentData build(const Environment& environment) {
     return data;
 }
 
-/// Density of sample_environment at `direction`, 1/sr.
+/// Returns the density of sample_environment at `direction`, 1/sr.
 float environment_pdf(const EnvironmentView& view, Vec3 direction) {
     return find_environment(view, direction, true).pdf;
 }
 
-/// Direction at longitude and polar angle by the convention of scene/light.h, in double.
+/// Returns the direction of a longitude and polar angle by the convention of scene/light.h, in double precision.
 Vec3 direction_at(double longitude, double theta) {
     return {static_cast<float>(std::sin(theta) * std::sin(longitude)), static_cast<float>(std::cos(theta)),
             static_cast<float>(-std::sin(theta) * std::cos(longitude))};
 }
 
-/// Integral over the sphere of f(direction), by midpoints in `steps` x 2 `steps` cells of equal angle.
+/// Returns the integral of f(direction) over the sphere, from midpoints of `steps` x 2 `steps` cells of equal angles.
 double integrate_sphere(int steps, const std::function<double(Vec3)>& f) {
     double sum = 0;
     const double d = std::numbers::pi / steps;
@@ -90,7 +90,7 @@ TEST_CASE("environment: directions, columns, rows and rotation match scene/light
     CHECK(column(view, {0, 0, -1}) == doctest::Approx(3.5)); // between the two middle columns
     CHECK(column(view, {1, 0, 0}) == doctest::Approx(5.5));
     CHECK(column(view, {-1, 0, 0}) == doctest::Approx(1.5));
-    CHECK(column(view, {0, 0, 1}) == doctest::Approx(3.5)); // the seam: mean of the first and the last
+    CHECK(column(view, {0, 0, 1}) == doctest::Approx(3.5)); // at the seam, the mean of the first and the last column
     CHECK(environment_radiance(view, {0, 1, 0}).g == 0);
     CHECK(environment_radiance(view, {0, -1, 0}).g == 3);
     CHECK(as_double(environment_radiance(view, {0.3f, 0, -0.7f}).g) == doctest::Approx(1.5));
@@ -99,7 +99,7 @@ TEST_CASE("environment: directions, columns, rows and rotation match scene/light
     const EnvironmentData turned = build(sky);
     CHECK(column(view_of(turned), {-1, 0, 0}) == doctest::Approx(3.5));
     CHECK(column(view_of(turned), {0, 0, -1}) == doctest::Approx(5.5));
-    sky.rotation = kPi / 2 - 40 * kPi; // any number of turns
+    sky.rotation = kPi / 2 - 40 * kPi; // rotates by several turns
     CHECK(column(view_of(build(sky)), {-1, 0, 0}) == doctest::Approx(3.5).epsilon(1e-4));
 }
 
@@ -149,8 +149,8 @@ TEST_CASE("environment: samples follow the density, even within texels") {
     const EnvironmentData data = build(sky);
     const EnvironmentView view = view_of(data);
     const uint32_t samples = static_cast<uint32_t>(effort(1'000'000, 10'000'000));
-    // Each texel is cut into 4 x 4 cells of equal angles, so that no cell crosses the edge of a patch. A cell's
-    // expected count is the density's integral by midpoints, whose positions follow from the convention's formulas.
+    // Each texel is divided into 4 x 4 cells of equal angles, so that no cell crosses the edge of a patch. A cell's
+    // expected count is the density's integral from midpoints, whose positions follow from the convention.
     std::vector<double> observed(width * height * parts * parts), expected(observed.size());
     const double part = 1.0 / (parts * steps);
     for (uint32_t y = 0; y < height * parts * steps; ++y) {
@@ -195,15 +195,15 @@ TEST_CASE("environment: radiance over density averages to the integral of radian
         });
         CAPTURE(width);
         CHECK(std::abs(power.mean - exact) < 4 * power.error + 2e-4 * exact);
-        // The colours differ, and drawn by their sum each has some variance; the sum has little.
+        // The channels differ, so each has some variance when texels are drawn by the sum. The sum has little.
         CHECK(power.variance < 0.02 * exact * exact);
         CHECK(luminance_in_double(data.mean_radiance) * 4 * std::numbers::pi == doctest::Approx(exact).epsilon(0.02));
     }
 }
 
 TEST_CASE("environment: a sun of one texel has hardly more variance than a uniform sky") {
-    // Drawn evenly over a texel its relative variance would be 0.888. A third sun stands at the seam, the last one at
-    // the pole, where its texel is a triangle.
+    // Uniform sampling of a texel would have a relative variance of 0.888. The third sun is at the seam, the last at
+    // the pole, where the texel is a triangle.
     for (const auto& [x, y] : {std::pair{20u, 10u}, {5u, 31u}, {63u, 16u}, {30u, 1u}, {30u, 0u}}) {
         Environment sky;
         sky.image = {64, 32, 3, std::vector<float>(64 * 32 * 3)};
@@ -256,7 +256,7 @@ TEST_CASE("environment: an image with one bright row at the pole is sampled with
     const EnvironmentData data = build(sky);
     const EnvironmentView view = view_of(data);
     Random random(4);
-    // Light reaches half a row past the first: radiance falls from 1 at theta = 1/2 row to 0 at 3/2 rows.
+    // Light extends half a row past the first row: radiance falls from 1 at theta = 1/2 row to 0 at 3/2 rows.
     const double row = std::numbers::pi / 8192;
     const double exact = 2 * std::numbers::pi * row * row * (13.0 / 24.0);
     const Estimate power = estimate(100'000, [&] {

@@ -1,5 +1,5 @@
-// The bias of each biased part of real-time frames alone (docs/real_time.md, "Bias"). A still camera's frames are
-// compared with frames of the same samples without the part, so that most of the noise is in both.
+// The bias of each biased part of real-time frames (docs/real_time.md, "Bias"). A still camera's frames are compared
+// with frames of the same samples without that part, so that most of the noise is the same.
 
 #include <doctest/doctest.h>
 
@@ -21,7 +21,7 @@ using namespace pertev::test;
 namespace {
 
 constexpr uint32_t kBiasWidth = 64, kBiasHeight = 48, kBiasBlocks = 4; // along each side
-constexpr uint32_t kSettled = 16, kCounted = 48;                       // frames before those that count, and these
+constexpr uint32_t kSettled = 16, kCounted = 48; // the numbers of frames before the mean and in the mean
 
 RenderSettings bias_settings() {
     RenderSettings settings;
@@ -61,13 +61,13 @@ Image mean_of_frames(Session& session, const ReconstructionSettings& settings, c
     return mean;
 }
 
-/// The deviation of a mean from another, as shares of the other's light. Visible emitters are left out, because a few
-/// of their pixels would dominate.
+/// The deviations of one mean from another, relative to the other's light. Visible emitters are left out, because a
+/// few of their pixels would dominate.
 struct Bias {
-    double whole = 0;         // deviation of the picture's mean; below 0: darker
-    double of_block = 0;      // greatest size, of a sixteenth of the picture that has at least a tenth of the mean
-    double of_pixels = 0;     // mean of the sizes of the pixels' differences
-    double with_emitters = 0; // like `whole`, with emitters
+    double whole = 0;     // the deviation of the picture's mean; negative if darker
+    double of_block = 0;  // the largest deviation of a sixteenth of the picture that has at least a tenth of the mean
+    double of_pixels = 0; // the mean absolute difference of pixels
+    double with_emitters = 0; // `whole` with emitters
 };
 
 Bias bias_of(const Image& mean, const Image& expected) {
@@ -92,7 +92,7 @@ Bias bias_of(const Image& mean, const Image& expected) {
     return bias;
 }
 
-/// Everything that is no mean over time is off.
+/// Turns off everything except the mean over time.
 ReconstructionSettings history_alone() {
     ReconstructionSettings settings = of_samples_alone({});
     settings.history = 32;
@@ -104,14 +104,14 @@ void print_bias(const std::string& scene, const std::string& part, const Bias& b
             ", with lamps ", bias.with_emitters);
 }
 
-/// Mean of frames of a scene of bias_scenes(). It is rendered once, because several cases compare with the same mean.
+/// Returns the mean of the frames of a scene of bias_scenes(). It is rendered once, because several cases need it.
 const Image& known_mean(Session& session, const std::string& scene, const ReconstructionSettings& settings) {
     struct KnownMean {
         std::string scene;
         ReconstructionSettings settings;
         Image mean;
     };
-    static std::deque<KnownMean> all; // a deque, so that references stay
+    static std::deque<KnownMean> all; // a deque, so that references stay valid
     for (const KnownMean& known : all) {
         if (known.scene == scene && known.settings == settings) return known.mean;
     }
@@ -124,7 +124,7 @@ struct Part {
     Bias most;
 };
 
-/// Bounds the bias of each part in each scene. `without`: settings that differ by the part alone from `with`.
+/// Tests bounds of the bias in each scene. The settings `without` differ from `with` only by the part.
 void bound_bias(const ReconstructionSettings& without, const std::vector<Part>& parts) {
     for (const BiasScene& s : bias_scenes()) {
         Messages messages;
@@ -179,7 +179,7 @@ TEST_CASE("anti-aliasing and a lower resolution each lose little light") {
 
 namespace {
 
-/// Waves in both directions, steep ones, as a normal map.
+/// Returns a normal map of steep waves in both directions.
 TextureImage wavy_normals() {
     TextureImage image;
     image.name = "waves";
@@ -195,8 +195,8 @@ TextureImage wavy_normals() {
     return image;
 }
 
-/// The mixed scene with reflecting layers on diffuse surfaces everywhere, waves on all that has texture coordinates,
-/// seen from just over its floor. Its spheres have interpolated normals.
+/// The mixed scene with Fresnel layers on all diffuse surfaces and waves on all surfaces with texture coordinates,
+/// seen from just above its floor. Its spheres have interpolated normals.
 BiasScene bent_normals() {
     BiasScene bent = {"bent normals", make_mixed_scene(), {}};
     bent.scene.images.push_back(wavy_normals());
@@ -240,7 +240,7 @@ TEST_CASE("light beneath a layer with Fresnel reflection does not lag behind a r
         {{.kind = MaterialKind::MetallicRoughness, .base_color = grey(0.8f), .metallic = 0, .roughness = 0.7f},
          "varnished"});
     scene.environment = Environment{};
-    constexpr uint32_t kTurn = 32, kTimes = 4; // frames of a turn, and turns, by other samples each
+    constexpr uint32_t kTurn = 32, kTimes = 4; // the frames per turn and the number of turns, each with other samples
     const auto camera_at = [](uint32_t frame) {
         const float angle = 0.05f + 1.3f * static_cast<float>(frame) / static_cast<float>(kTurn - 1);
         Camera camera;
@@ -288,7 +288,7 @@ TEST_CASE("clamped shared bounces carry the light of clamped paths") {
         const double direct = mean_with(kClamp, RestirLight::Direct), shared = mean_with(kClamp, RestirLight::Indirect);
         MESSAGE(s.name, ": all ", all, ", clamped ", clamped, ", di ", direct, ", gi ", shared);
         CHECK(clamped < 0.97 * all);
-        CHECK(direct == doctest::Approx(clamped).epsilon(0.02)); // which scatters once, and is not clamped
-        CHECK(shared == doctest::Approx(clamped).epsilon(0.02)); // equal to the sent light with the earlier clamp
+        CHECK(direct == doctest::Approx(clamped).epsilon(0.02)); // this path scatters once and is not clamped
+        CHECK(shared == doctest::Approx(clamped).epsilon(0.02)); // equals the emitted light with the earlier clamp
     }
 }

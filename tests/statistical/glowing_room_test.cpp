@@ -1,6 +1,6 @@
 // In a closed room whose walls emit radiance 1 and have reflectance a, radiance is the same everywhere: 1 + a + ... +
-// a^n after at most n scatterings. In it all of light transport has a closed form: the depth limit, Russian roulette,
-// next-event estimation to many triangles, BSDF sampling and their weights.
+// a^n after at most n scatterings. Thus the depth limit, Russian roulette, next-event estimation to many triangles,
+// BSDF sampling and MIS weights have closed forms.
 
 #include <cmath>
 
@@ -54,8 +54,8 @@ Seen look_around(float albedo, const PathSettings& path) {
     return {mean, std::sqrt((square_sum / pixels - mean * mean) / (pixels - 1))};
 }
 
-/// Within four standard errors, which must themselves be under 0.5 %, and a thousandth for what they do not show:
-/// beside an edge of the wall next-event estimation has rare, very bright samples.
+/// Allows four standard errors, which must be under 0.5 %, plus a thousandth, because next-event estimation near edges
+/// of the wall has rare, very bright samples.
 void check_radiance(double wanted, float albedo, const PathSettings& path) {
     const Seen seen = look_around(albedo, path);
     CAPTURE(seen.mean);
@@ -67,7 +67,7 @@ void check_radiance(double wanted, float albedo, const PathSettings& path) {
 
 } // namespace
 
-TEST_CASE("a depth limit of n leaves the first n scatterings, none of them lost or counted twice") {
+TEST_CASE("a depth limit of n keeps the first n scatterings, each counted once") {
     for (const LightStrategy strategy : test::kLightStrategies) {
         double wanted = 0;
         for (uint32_t depth = 0; depth <= 4; ++depth) {
@@ -83,7 +83,7 @@ TEST_CASE("a depth limit of n leaves the first n scatterings, none of them lost 
     }
 }
 
-TEST_CASE("Russian roulette takes no light away and adds none") {
+TEST_CASE("Russian roulette neither removes nor adds light") {
     for (const LightStrategy strategy : test::kLightStrategies) {
         for (const Roulette roulette : {Roulette::Throughput, Roulette::NearCubeRoot, Roulette::FourthRoot}) {
             CAPTURE(static_cast<int>(strategy));

@@ -24,7 +24,7 @@ namespace {
 Scene room_with_boxes() {
     Scene scene = test::closed_box(test::white(0.6f));
     test::add(scene, test::sheet({0, 0.98f, 0}, {0.4f, 0, 0}, {0, 0, 0.4f}),
-              test::emitter_material(0, 5)); // its front down
+              test::emitter_material(0, 5)); // faces down
     test::add(scene, test::sheet({-0.3f, -0.2f, 0}, {0.4f, 0, 0}, {0, 0, 0.4f}), test::white(0.4f));
     return scene;
 }
@@ -40,7 +40,7 @@ SolvedRadiosity solved_by(const Scene& scene, RadiositySolver solver, float patc
     return solve_radiosity(prepared, settings);
 }
 
-/// Each into four, so often.
+/// Subdivides each triangle into four, this number of times.
 void divide_triangles(Mesh& mesh, int times) {
     for (; times > 0; --times) {
         std::vector<uint32_t> indices;
@@ -60,7 +60,7 @@ void divide_triangles(Mesh& mesh, int times) {
     }
 }
 
-/// Root mean squared difference of the displayed light over the scene, relative to the mean.
+/// Returns the root mean squared difference of the displayed light over the scene, relative to the mean.
 double difference_of(const RadiositySolution& a, const RadiositySolution& b) {
     double squares = 0, sum = 0, count = 0;
     test::Random random(3);
@@ -87,14 +87,14 @@ TEST_CASE("links converge to the solution of form factor rows as their error bou
         const double difference = difference_of(links.solution, rows.solution);
         CAPTURE(link_error);
         CAPTURE(difference);
-        CHECK(difference < 1.05 * before); // few links may be lucky
+        CHECK(difference < 1.05 * before); // few links can be accurate by chance
         CHECK(links.stats.factors > links_before);
         CHECK(links.stats.left < 1e-3);
         before = difference;
         links_before = links.stats.factors;
     }
     CHECK(before < 0.04);
-    // All pairs of patches would be this many.
+    // This is the number of all pairs of patches.
     CHECK(links_before < rows.stats.patches * rows.stats.patches / 10);
 }
 
@@ -102,7 +102,7 @@ TEST_CASE("links lose no light to surfaces inside solids") {
     Scene scene = test::closed_box(test::white(0.7f));
     test::add(scene, test::sheet({0, 0.98f, 0}, {0.2f, 0, 0}, {0, 0, 0.2f}), test::emitter_material(0, 20));
     for (int x = 0; x < 4; ++x) {
-        for (int z = 0; z < 4; ++z) { // pillars, whose sides face inwards as well as outwards
+        for (int z = 0; z < 4; ++z) { // pillars whose sides face both inwards and outwards
             const float r = 0.12f, h = 0.6f;
             const Vec3 c = {-0.675f + 0.45f * static_cast<float>(x), -1 + h, -0.675f + 0.45f * static_cast<float>(z)};
             test::add(scene, test::sheet(c + Vec3{r, 0, 0}, {0, h, 0}, {0, 0, r}), test::white(0.7f));
@@ -122,7 +122,8 @@ TEST_CASE("links lose no light to surfaces inside solids") {
         by_links += static_cast<double>(links.view().irradiance(face, 0.3f, 0.3f).g);
         by_rows += light;
     }
-    CHECK(by_links == doctest::Approx(by_rows).epsilon(0.03)); // 0.08 where clusters hold insides and outsides
+    CHECK(by_links ==
+          doctest::Approx(by_rows).epsilon(0.03)); // it is 0.08 if clusters contain both inner and outer faces
 }
 
 TEST_CASE("a closed box that emits E and reflects r has radiosity E / (1 - r) with links") {
@@ -217,7 +218,7 @@ TEST_CASE("light leaving a cluster depends on its direction") {
     std::vector<Vec3> normals;
     for (int i = 0; i < 200; ++i) {
         Vec3 normal = random.direction();
-        normal.z = pertev::abs(normal.z); // a hill
+        normal.z = pertev::abs(normal.z); // the scene is a hill
         normals.push_back(normal);
         sent.add(normal, {0.5f, 1, 0});
     }
@@ -240,7 +241,7 @@ TEST_CASE("clusters contain each face once, within their bounding spheres") {
         levels.push_back(static_cast<int>(random.below(5)) - 3);
         faces.push_back(7 * i);
         balls.push_back({random.point(-3, 3), random.within(0.01f, 0.5f)});
-        normals.push_back(i % 2 == 0 ? random.direction() : -normals.back()); // and a back
+        normals.push_back(i % 2 == 0 ? random.direction() : -normals.back()); // adds a back
     }
     const ClusterTree tree = make_clusters(faces, balls, normals, levels);
     CHECK(tree.clusters.size() == 1999);
@@ -250,7 +251,7 @@ TEST_CASE("clusters contain each face once, within their bounding spheres") {
     for (const Cluster& cluster : tree.clusters) {
         for (uint32_t i = cluster.first; i < cluster.first + cluster.count; ++i) {
             const Ball& ball = balls[tree.faces[i] / 7];
-            if (cluster.count < 10) { // about one way
+            if (cluster.count < 10) { // the faces have about the same direction
                 CHECK(dot(normals[tree.faces[i] / 7], normals[tree.faces[cluster.first] / 7]) > -0.5f);
                 CHECK(levels[tree.faces[i] / 7] == levels[tree.faces[cluster.first] / 7]);
             }

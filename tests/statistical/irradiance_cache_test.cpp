@@ -1,5 +1,5 @@
-// Irradiance caching against path tracing: the error falls with the number of records and of their rays at least as
-// fast as published, to a stated bound, and no light is lost or counted twice.
+// Irradiance caching against path tracing: the error falls with the number of records and rays at least as fast as
+// published and below a bound, and light counts once.
 
 #include <doctest/doctest.h>
 
@@ -37,7 +37,7 @@ std::vector<CacheCase> cache_cases() {
 struct CacheBudget {
     float accuracy;
     uint32_t rays, samples;
-    uint32_t size = 24; // pixels, either way
+    uint32_t size = 24; // pixels per side
 };
 
 Image cached_picture(Queue& queue, const PreparedScene& prepared, IntegratorKind integrator, const CacheBudget& budget,
@@ -87,8 +87,8 @@ TEST_CASE("irradiance caching converges to path tracing with more and better rec
             }
             return sum / seeds;
         };
-        // Each takes about four times as long: a record's error is proportional to the accuracy, the number of records
-        // to its square, and noise falls with rays and samples.
+        // Each step takes about four times as long: a record's error is proportional to the accuracy, the number of
+        // records to the inverse of its square, and noise falls with rays and samples.
         const double coarse = error_of({1.0f, 16, 16}, 0.05);
         const double middle = error_of({0.5f, 32, 64}, 0.02);
         const double fine = error_of({0.25f, 256, 256}, 0.005, 1);
@@ -104,7 +104,7 @@ TEST_CASE("irradiance caching converges to path tracing with more and better rec
 
 namespace {
 
-/// The room with a point light, so that all but the light between surfaces is found without noise.
+/// The room with a point light, so that only light between surfaces has noise.
 Scene room_under_a_point() {
     Scene scene = test::room_with_ball(test::white(0.8f), test::white(0.6f), true);
     scene.environment.reset();
@@ -113,14 +113,14 @@ Scene room_under_a_point() {
     return scene;
 }
 
-/// Picture with one ray through the middle of each pixel.
+/// Returns a picture with one ray through the centre of each pixel.
 Image middles(Queue& queue, const PreparedScene& prepared, IntegratorKind integrator, const CacheBudget& budget,
               uint32_t seed) {
     return cached_picture(queue, prepared, integrator, budget, seed, 0x1p-20f);
 }
 
-/// Mean of (a - b) (c - d) over that of the light squared. Of pictures c = a and references b, d of noise of their own
-/// it is a's squared error, whatever the noise of the references.
+/// Returns the mean of (a - b) (c - d) divided by that of the squared light. With c = a and independent references b
+/// and d it is the squared error of a, whatever their noise.
 double relative_product(const Image& a, const Image& b, const Image& c, const Image& d) {
     double sum = 0, light = 0;
     for (std::size_t i = 0; i < a.pixels.size(); ++i) {
@@ -131,7 +131,7 @@ double relative_product(const Image& a, const Image& b, const Image& c, const Im
     return sum / light;
 }
 
-/// Slope of the least-squares line through (log x, log y).
+/// Returns the slope of the least-squares line through (log x, log y).
 double slope(const std::vector<double>& x, const std::vector<double>& y) {
     double sx = 0, sy = 0, sxx = 0, sxy = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -154,7 +154,8 @@ TEST_CASE("the error of irradiance caching falls with the accuracy and the rays 
     const auto cached = [&](float accuracy, uint32_t rays, uint32_t seed) {
         return middles(queue, prepared, IntegratorKind::IrradianceCache, {accuracy, rays, 1, 32}, seed);
     };
-    // Ward et al. 1988: between records the error is at most proportional to the accuracy, so its square to that's.
+    // By Ward et al. 1988 the error between records is at most proportional to the accuracy, so its square falls with
+    // the square.
     const std::vector<double> accuracies = {1, 0.7, 0.5, 0.35, 0.25};
     std::vector<double> errors;
     for (const double accuracy : accuracies) {
@@ -170,7 +171,7 @@ TEST_CASE("the error of irradiance caching falls with the accuracy and the rays 
     CAPTURE(by_accuracy);
     CHECK(by_accuracy > 1.8);
     CHECK(errors.back() < 2e-4);
-    // A record's light is a mean over its rays: its variance is at most proportional to one over their number.
+    // A record's light is a mean over its rays, so its variance is at most proportional to the inverse of their number.
     const std::vector<double> rays = {32, 128, 512};
     std::vector<double> variances;
     for (const double count : rays) {
@@ -191,8 +192,8 @@ TEST_CASE("the error of irradiance caching falls with the accuracy and the rays 
 
 namespace {
 
-/// A closed room with a ball of clear glass beneath a small bright lamp. Of a thousand rays that leave the floor a few
-/// find the lamp by way of the ball.
+/// A closed room with a ball of clear glass below a small, bright emitter. Of a thousand rays from the floor a few
+/// reach the emitter through the ball.
 Scene room_with_caustic() {
     Scene scene = test::room_with_ball(test::of_roughness(MaterialKind::Dielectric, 0), test::white(0.7f), true);
     scene.environment.reset();
@@ -205,7 +206,7 @@ Scene room_with_caustic() {
     return scene;
 }
 
-/// Median of red in each block of pixels: a few bright pixels do not change it, a blotch does.
+/// Returns the median of red in each block of pixels, which a blotch changes but a few bright pixels do not.
 std::vector<double> block_medians(const Image& picture, uint32_t side) {
     std::vector<double> medians;
     for (uint32_t top = 0; top + side <= picture.height; top += side) {
@@ -233,7 +234,7 @@ TEST_CASE("records show no blotches of emitters that later bounces see through g
     };
     const std::vector<double> reference = medians({0.25f, 4096, 16, 48}, 100);
     double most = 0, least = kInfinity;
-    uint32_t lit = 0; // blocks that show no edge of the room, where half of a block may be empty
+    uint32_t lit = 0; // leaves out blocks with an edge of the room, because half of such a block may be empty
     for (uint32_t seed = 0; seed < 3; ++seed) {
         const std::vector<double> found = medians({0.25f, 256, 16, 48}, seed);
         for (std::size_t i = 0; i < found.size(); ++i) {

@@ -19,7 +19,7 @@ void request_layers(RenderSettings& settings, std::initializer_list<const char*>
     settings.light_paths = std::make_shared<const LightPathLayers>(bind_to_scene(std::move(expressions), scene));
 }
 
-/// A film's sums of floats that were added in another order.
+/// The tolerance of floats that are summed in another order.
 void check_same_light(const Image& layer, const Image& expected) {
     REQUIRE(layer.pixels.size() == expected.pixels.size());
     std::size_t wrong = 0;
@@ -39,7 +39,7 @@ RenderSettings small_lpe_settings(uint32_t samples) {
     return settings;
 }
 
-/// An open floor that is diffuse under a rough dielectric reflection, and one camera over it.
+/// An open diffuse floor with a rough dielectric reflection, and a camera above it.
 Scene varnished_floor(float albedo) {
     Scene scene;
     Material varnished = test::white(albedo);
@@ -98,13 +98,14 @@ TEST_CASE("each emitter's layer equals the picture with only that emitter") {
     const Camera camera = test::camera_down({0, 3, 0}, 4);
     const RenderResult layers = test::render(queue, both, camera, settings);
     settings.light_paths = nullptr;
-    settings.samples = 1; // one light: no chance left
+    settings.samples = 1; // with one light there is no random choice
     for (int i = 0; i < 2; ++i) {
         Scene one = varnished_floor(0.6f);
         one.lights.push_back(lights[i]);
         const Image alone = test::render(queue, one, camera, settings).picture;
         const Image& layer = layer_named(layers, i == 0 ? "warm" : "cold");
-        for (std::size_t k = 0; k < alone.pixels.size(); ++k) { // the choice of the lamp is stratified: little noise
+        for (std::size_t k = 0; k < alone.pixels.size();
+             ++k) { // the choice of the emitter is stratified, so there is little noise
             CHECK(layer.pixels[k] == doctest::Approx(static_cast<double>(alone.pixels[k])).epsilon(0.01));
         }
     }
@@ -120,7 +121,7 @@ TEST_CASE("a point light's diffuse and glossy parts equal those of the lobes") {
     const Camera camera = test::camera_down({0, 3, 0}, 4);
     const RenderResult result = test::render(queue, scene, camera, settings);
     settings.light_paths = nullptr;
-    const Image reflection = test::render(queue, black, camera, settings).picture; // the very lobe, over nothing
+    const Image reflection = test::render(queue, black, camera, settings).picture; // the lobe without a base
     const Image &diffuse = layer_named(result, "diffuse"), &glossy = layer_named(result, "glossy");
     for (std::size_t i = 0; i < reflection.pixels.size(); ++i) {
         const auto whole = static_cast<double>(result.picture.pixels[i]);
@@ -137,7 +138,7 @@ TEST_CASE("randomly chosen lobe classes have the same mean as split ones") {
     Scene scene = varnished_floor(0.6f);
     Material glow = test::white(0);
     glow.emission = {4, 3, 2};
-    test::add(scene, test::sheet({0, 1.5f, 0}, {2, 0, 0}, {0, 0, 2}), glow); // its front looks down
+    test::add(scene, test::sheet({0, 1.5f, 0}, {2, 0, 0}, {0, 0, 2}), glow); // faces down
     RenderSettings settings = small_lpe_settings(static_cast<uint32_t>(test::effort(4096, 65536)));
     settings.width = settings.height = 4;
     settings.path.max_depth = 2;
@@ -163,7 +164,7 @@ TEST_CASE("an emitter within glass lights a floor only by caustics") {
     test::add(scene, test::sheet({0.05f, 0, 0}, {0, 0, 10}, {10, 0, 0}), test::white(0.5f));
     Material glow = test::white(0);
     glow.emission = {50, 50, 50};
-    test::add(scene, test::sheet({0, 1, 0}, {0.2f, 0, 0}, {0, 0, 0.2f}), glow); // its front looks down
+    test::add(scene, test::sheet({0, 1, 0}, {0.2f, 0, 0}, {0, 0, 0.2f}), glow); // faces down
     Material glass = test::white();
     glass.kind = MaterialKind::Dielectric;
     glass.roughness = 0;

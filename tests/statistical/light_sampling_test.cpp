@@ -23,7 +23,7 @@ using namespace pertev::test;
 
 namespace {
 
-/// A checkered texture of n x n squares, black first, as the emission of the scene's last material.
+/// Gives the scene's last material an emission texture of n x n checkered squares, starting with black.
 void add_checkers(Scene& scene, uint32_t n, TextureFilter filter) {
     TextureImage image;
     image.rgba8 = {n, n, {}};
@@ -37,14 +37,14 @@ void add_checkers(Scene& scene, uint32_t n, TextureFilter filter) {
     ref.filter = filter;
 }
 
-/// Probability that sample_light draws a light, in the order of triangles, punctual lights, the environment.
+/// The probability that sample_light draws a light, in the order of triangles, punctual lights and the environment.
 float light_pmf(const LightSetView& view, uint32_t light) {
     if (view.choice.starts == nullptr) return 0;
     if (light < view.triangle_count) return view.triangles[light].pmf;
     return cdf_pmf(view.choice, view.emitter_count + light - view.triangle_count);
 }
 
-/// Irradiance (red) at the origin of a surface that faces `normal`, drawn by sample_light.
+/// Estimates the irradiance (red) at the origin on a surface that faces `normal`, by sample_light.
 Estimate irradiance(const LightSetView& view, Vec3 point, Vec3 normal, uint64_t draws, uint32_t seed) {
     Random random(seed);
     double sum = 0, squares = 0;
@@ -67,13 +67,14 @@ void check_irradiance(const LightSetView& view, double exact, uint64_t draws = 1
     CHECK(std::abs(got.mean - exact) <= 4 * got.error + 1e-5 * exact);
 }
 
-/// Irradiance from a rectangle (half sides a, b) parallel to the surface, centred at height h above it.
+/// Returns the irradiance from a rectangle with half sides a and b, parallel to the surface and centred at height h
+/// above it.
 double rectangle_irradiance(double a, double b, double h, double radiance) {
     const double x = a / h, y = b / h, p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
     return 2 * radiance * (x / p * std::atan(y / p) + y / q * std::atan(x / q));
 }
 
-/// Number of the quarter that holds a point; the midpoints of a triangle's edges cut it into four.
+/// Returns the number of the quarter that contains a point. The midpoints of a triangle's edges divide it into four.
 uint32_t quarter(float b1, float b2) { return b1 > 0.5f ? 1 : b2 > 0.5f ? 2 : b1 + b2 < 0.5f ? 3 : 0; }
 
 uint32_t octant(Vec3 w) { return (w.x > 0 ? 1u : 0u) + (w.y > 0 ? 2u : 0u) + (w.z > 0 ? 4u : 0u); }
@@ -88,7 +89,7 @@ Light make_light(LightKind kind, Vec3 position, Vec3 direction) {
 
 } // namespace
 
-TEST_CASE("lights: a square of few or many triangles, moved and stretched, gives its closed-form irradiance") {
+TEST_CASE("lights: a square of few or many triangles, moved and scaled, gives its closed-form irradiance") {
     for (const uint32_t n : {1u, 64u}) { // 64: 8192 triangles
         Scene scene;
         const Transform place = compose(make_translation({0, 2, 0}), make_scale({1.5f, 7, 0.5f}));
@@ -135,7 +136,7 @@ TEST_CASE("lights: emission follows its texture") {
         add_emitter(scene, make_square(1), {2, 2, 2}, make_translation({0, 1, 0}));
         add_checkers(scene, 4, filter);
         const Lights lights(scene);
-        // Quadrature over the square: cos^2 / d^2 of each point.
+        // Sums cos^2 / d^2 over points of the square.
         double exact = 0;
         constexpr int steps = 400;
         for (int i = 0; i < steps; ++i) {
@@ -171,7 +172,7 @@ TEST_CASE("lights: a triangle with one bright texel is sampled, and a black one 
         ref.filter = i % 5 == 0 ? TextureFilter::Nearest : TextureFilter::Linear;
         const Lights lights(scene);
 
-        std::array<bool, 2> is_lit{};             // each triangle, seen in every part
+        std::array<bool, 2> is_lit{};             // all parts of each triangle
         const int steps = i % 2 == 0 ? 100 : 300; // shorter than a texel
         for (int a = 0; a <= steps; ++a) {
             for (int b = 0; a + b <= steps; ++b) {
@@ -208,7 +209,7 @@ TEST_CASE("lights: triangles of a textured mesh are sampled by their emission") 
         const Vec2 centre = 0.25f * (t.uv0 + t.uv1) + 0.5f * t.uv2;
         if (!is_black(surface_emission(lights.view, 0, centre))) on_bright += as_double(light_pmf(lights.view, i));
     }
-    CHECK(on_bright > 0.8); // some dark ones touch a bright square
+    CHECK(on_bright > 0.8); // some dark triangles touch a bright square
 }
 
 TEST_CASE("lights: point, spot and directional lights match their definitions") {
@@ -252,7 +253,7 @@ TEST_CASE("lights: point, spot and directional lights match their definitions") 
     spot.direction = {1, 0, 0};
     CHECK(only(spot) == 0);
     spot.direction = down;
-    spot.cos_inner = spot.cos_outer = 1; // no width at all
+    spot.cos_inner = spot.cos_outer = 1; // the cone has no width
     CHECK(std::isfinite(only(spot)));
 }
 
@@ -274,7 +275,7 @@ TEST_CASE("lights: rays that a punctual light emits carry its power") {
         }
         CHECK(watts == doctest::Approx(punctual_power(light, 3, 5)).epsilon(1e-3));
     }
-    CHECK(punctual_power(light, 3, 5) == doctest::Approx(25 * 3 * 3.14159265358979)); // W through the disc
+    CHECK(punctual_power(light, 3, 5) == doctest::Approx(25 * 3 * 3.14159265358979)); // the power through the disc in W
     light.kind = LightKind::Point;
     CHECK(punctual_power(light, 3, 5) == doctest::Approx(4 * 3 * 3.14159265358979));
 }
@@ -321,12 +322,12 @@ TEST_CASE("lights: samples follow the density over eight decades of power, for e
             for (int k = 0; k < 3; ++k) mesh.positions.push_back(random.point(1, 2));
             mesh.indices = {0, 1, 2};
             add_emitter(scene, mesh, grey(std::pow(10.0f, random.within(-8, 0))), {});
-            scene.materials.back().two_sided_emission = true; // half of them have their backs to the origin
+            scene.materials.back().two_sided_emission = true; // half of them face away from the origin
         }
         scene.environment = Environment{};
         const Lights lights(scene);
         REQUIRE(lights.view.triangle_count == count);
-        // Four cells of equal area a triangle, and eight octants of the sky.
+        // Each triangle has four cells of equal area, and the sky eight octants.
         std::vector<double> observed(4 * std::size_t(count) + 8), expected;
         for (uint32_t light = 0; light <= count; ++light) {
             const uint32_t cells = light < count ? 4 : 8;
@@ -343,7 +344,7 @@ TEST_CASE("lights: samples follow the density over eight decades of power, for e
         double drawn = 0;
         for (const double n : observed) drawn += n;
         CHECK(drawn == draws);
-        // Lights too dim to be counted one by one are held to it by the decade of their probability.
+        // Lights that are too dim to be counted singly are compared by the decade of their probability.
         std::vector<double> observed_decades(40), expected_decades(40);
         for (std::size_t i = 0; i < expected.size(); ++i) {
             const auto decade = static_cast<std::size_t>(std::max(0.0, -std::log10(expected[i] / draws)));
@@ -398,7 +399,7 @@ TEST_CASE("lights: the density of directions to a triangle integrates to its pro
     add_emitter(scene, make_square(1), {1, 1, 1}, make_translation({0, 1, 0}));
     scene.lights = {make_light(LightKind::Point, {0, 2, 0}, {})};
     const Lights lights(scene);
-    // Directions as points of the plane of the square: solid angle = cos^3 times area at height 1.
+    // Directions are points in the square's plane, where the solid angle is cos^3 times the area at height 1.
     double integral = 0;
     constexpr int steps = 500;
     for (int i = 0; i < steps; ++i) {
@@ -450,14 +451,14 @@ TEST_CASE("lights: unlit points yield no sample, and no value is infinite or NaN
     Mesh mesh = make_square(1);
     mesh.positions.push_back(mesh.positions[0]);
     mesh.uv[0].push_back({});
-    mesh.indices.insert(mesh.indices.end(), {0, 4, 1}); // no area
+    mesh.indices.insert(mesh.indices.end(), {0, 4, 1}); // the square has no area
     add_emitter(scene, mesh, {1, 1, 1}, {});
     scene.lights = {make_light(LightKind::Point, {0, 1, 0}, {})};
     const Lights lights(scene);
     CHECK(light_pmf(lights.view, 2) == 0);
     Random random(7);
     for (int i = 0; i < 20'000; ++i) {
-        // In the plane of the square, on it, at the point light, and next to them.
+        // Points are in the plane of the square, on it, at the point light, and next to them.
         const float tiny = i % 2 == 0 ? 0.0f : 1e-38f;
         const Vec3 from = i % 3 == 0 ? Vec3{0, 1 + tiny, 0} : Vec3{3 * random.unit(), tiny, random.unit() - 0.5f};
         if (!sample_light(lights.view, from, random_bits(random), sample)) continue;

@@ -1,6 +1,6 @@
 // Samples of a pixel are stratified over lights, points on them and the sky. The test compares the variance of a
-// light's estimate with the low-discrepancy sampler and with independent samples. A table that scatters the order of
-// the numbers leaves a factor of 2 or 3 where an ordered one has ten and more.
+// light's estimate with the low-discrepancy sampler and with independent samples. A table that scrambles the order of
+// the numbers reduces the variance by a factor of 2 or 3, an ordered one by 10 and more.
 
 #include <doctest/doctest.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 constexpr uint32_t kPixels = 2048, kSamples = 64;
 
-/// Variance, relative to the squared mean, of a pixel's mean of `draw` over kSamples samples.
+/// Returns the variance of a pixel's mean of `draw` over kSamples samples, relative to the squared mean.
 double relative_variance_of(const std::function<double(SampleKey)>& draw) {
     double sum = 0, squares = 0;
     for (uint32_t pixel = 0; pixel < kPixels; ++pixel) {
@@ -31,7 +31,7 @@ double relative_variance_of(const std::function<double(SampleKey)>& draw) {
     return squares / (sum * sum) - 1;
 }
 
-/// Returns how many times less variance the estimate of the irradiance at the origin, facing +y, has with strata.
+/// Returns the factor by which stratification reduces the variance of the irradiance at the origin, facing +y.
 double gain(const LightSetView& view) {
     const auto variance = [&](SamplerKind kind) {
         return relative_variance_of([&](SampleKey key) {
@@ -44,7 +44,7 @@ double gain(const LightSetView& view) {
     return variance(SamplerKind::Independent) / variance(SamplerKind::Sobol);
 }
 
-/// A square lamp of side `side` about `centre` that faces down, cut into 2 n^2 triangles.
+/// A square emitter of side `side` about `centre` that faces down, divided into 2 n^2 triangles.
 void add_square_emitter(Scene& scene, Vec3 centre, float side, uint32_t n, float radiance) {
     add_emitter(scene, make_square(n), grey(radiance),
                 compose(make_translation(centre), make_scale({0.5f * side, 1, 0.5f * side})));
@@ -90,8 +90,8 @@ TEST_CASE("strata: a row of emitters of different power") {
 TEST_CASE("strata: a spherical emitter, and emitters on a square grid") {
     Scene ball, square;
     add_square_emitter(ball, {0, 0, 0}, 2, 24, 1);
-    ball.materials[0].two_sided_emission = true; // whichever way the wrapping turns it
-    for (Vec3& p : ball.meshes[0].positions) {   // the square of side 2 wrapped around a ball by height and angle
+    ball.materials[0].two_sided_emission = true; // in either winding
+    for (Vec3& p : ball.meshes[0].positions) {   // maps the square of side 2 to a ball by height and angle
         const double angle = 3.141592653589793 * (static_cast<double>(p.x) + 1),
                      height = 0.95 * static_cast<double>(p.z);
         const double ring = std::sqrt(std::max(0.0, 1 - height * height));
@@ -99,12 +99,12 @@ TEST_CASE("strata: a spherical emitter, and emitters on a square grid") {
              static_cast<float>(ring * std::sin(angle))};
     }
     for (int i = 0; i < 64; ++i) {
-        const int k = 29 * i % 64; // a file's order may be any
+        const int k = 29 * i % 64; // a file may have any order
         add_square_emitter(square, {static_cast<float>(k % 8) - 3.5f, 2, static_cast<float>(k / 8) - 3.5f}, 0.2f, 1, 1);
     }
     const double on_ball = gain(Lights(ball).view), in_square = gain(Lights(square).view);
     MESSAGE("ball: ", on_ball, " times less variance, square: ", in_square);
-    CHECK(on_ball > 2.5); // 1.6 in the order of the file
+    CHECK(on_ball > 2.5); // it is 1.6 in the order of the file
     CHECK(in_square > 100);
 }
 
@@ -134,6 +134,6 @@ TEST_CASE("strata: a path's directions and light samples are stratified together
         };
         const double times = variance(SamplerKind::Independent) / variance(SamplerKind::Sobol);
         MESSAGE("depth ", depth, ": ", times, " times less variance");
-        CHECK(times > 20); // pairs of two groups: 4
+        CHECK(times > 20); // the variance falls by 4 for pairs of two groups
     }
 }

@@ -1,4 +1,4 @@
-// Motion blur against closed forms, and against the mean of pictures of single moments.
+// Motion blur against closed forms, and against the mean of still pictures.
 
 #include <doctest/doctest.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 constexpr Shutter kASecond = {0, 1};
 
-/// `share` of a disc of radius 1/2 about the origin, facing +z, from the x-axis on.
+/// The part `share` of a disc of radius 1/2 about the origin that faces +z, beginning at the x-axis.
 Mesh disc(double share) {
     constexpr int kEdges = 512;
     Mesh mesh;
@@ -33,7 +33,7 @@ Mesh disc(double share) {
     return mesh;
 }
 
-/// An unlit white mesh on a node, of which an animation over a second sets `part` from `begin` to `end`.
+/// An unlit white mesh on a node. An animation of a second changes the node's `part` from `begin` to `end`.
 Scene unlit_scene(Mesh mesh, AnimatedPart part, std::vector<float> begin, const std::vector<float>& end) {
     Scene scene;
     test::add(scene, std::move(mesh), {{.kind = MaterialKind::Unlit, .base_color = {1, 1, 1}}, "white"});
@@ -55,8 +55,8 @@ Camera flat_camera() {
     return camera;
 }
 
-/// 64x20 pixels, each of which sees the point in its middle: metres from the origin are (x - 31.5) / 16, (9.5 - y)
-/// / 16.
+/// Renders 64x20 pixels with samples at their centres, which are (x - 31.5) / 16, (9.5 - y) / 16 metres from the
+/// origin.
 Image picture_of(const MovingScene& moving, const Camera& camera) {
     RenderSettings settings;
     settings.width = 64, settings.height = 20;
@@ -82,14 +82,14 @@ void check_shares(const Image& picture, const ShareAt& share_at) {
     CHECK(sum > 100);
 }
 
-/// Share of a second in which a disc that goes from x = -1 to 1 covers a point.
+/// Returns the share of a second in which a disc that moves from x = -1 to 1 covers a point.
 double share_of_disc(double x, double y) {
     const double half = std::sqrt(std::max(0.25 - y * y, 0.0));
     const double from = std::clamp((x + 1 - half) / 2, 0.0, 1.0), to = std::clamp((x + 1 + half) / 2, 0.0, 1.0);
     return to - from;
 }
 
-/// A lamp and a glossy block that move, over a floor.
+/// A moving emitter and a moving glossy block over a floor.
 Scene make_lit_scene() {
     Scene scene;
     test::add(scene, test::floor_at(0, 2), test::white(0.7f));
@@ -106,7 +106,7 @@ Scene make_lit_scene() {
         channels.push_back({node, part, Interpolation::Linear, {0, 1}, std::move(values)});
     };
     add(0, AnimatedPart::Translation, {-0.8f, 1, 0, 0.8f, 1.5f, 0});
-    add(0, AnimatedPart::Rotation, {0, 0, 0.2f, 0.98f, 0, 0, -0.3f, 0.95f}); // faces down at one end and the other
+    add(0, AnimatedPart::Rotation, {0, 0, 0.2f, 0.98f, 0, 0, -0.3f, 0.95f}); // faces down at both ends
     add(1, AnimatedPart::Translation, {-0.5f, 0.5f, -0.3f, 0.4f, 0.6f, -0.3f});
     add(1, AnimatedPart::Rotation, {0, 0, 0, 1, 0, 0.5f, 0, 0.8660254f});
     Messages messages;
@@ -129,7 +129,7 @@ RenderSettings lit_settings(IntegratorKind integrator) {
     return settings;
 }
 
-/// Estimate from pictures of single moments, drawn at random while the shutter is open.
+/// Estimates the picture from still pictures at random times while the shutter is open.
 test::PictureEstimate estimate_of_moments(Queue& queue, MovingScene& moving, const Camera& camera,
                                           RenderSettings settings, uint32_t renders) {
     test::Random random(5);
@@ -150,13 +150,13 @@ TEST_CASE("a moving disc is blurred by the share of time in which it covers a po
     const MovingScene moving(scene, 0, {}, messages, kASecond);
     check_shares(picture_of(moving, flat_camera()), share_of_disc);
 
-    // A camera that moves the other way sees the same.
+    // A camera that moves in the opposite direction has the same picture.
     MovingScene still(scene, 0.5, {}, messages, Shutter{0, 0});
     Camera camera = flat_camera();
     camera.motion = {{{0, 0, 0, 1}, {1, 0, 5}}, {{0, 0, 0, 1}, {-1, 0, 5}}};
     check_shares(picture_of(still, camera), share_of_disc);
 
-    // Open for the last quarter of the way, opened before the picture's time.
+    // The shutter opens before the picture's time, for the last quarter of the motion.
     const MovingScene late(scene, 1, {}, messages, Shutter{-0.25, 0});
     check_shares(picture_of(late, flat_camera()), [](double x, double y) {
         const double half = std::sqrt(std::max(0.25 - y * y, 0.0));
@@ -168,7 +168,7 @@ TEST_CASE("a moving disc is blurred by the share of time in which it covers a po
 
 TEST_CASE("a turning half disc is blurred evenly over the angle") {
     Messages messages;
-    // A quarter turn about z: from 0 on it covers the angles [turn, turn + 180 degrees].
+    // During a quarter turn about z the half disc covers the angles [turn, turn + 180 degrees].
     const float half = 0.70710678f;
     const Scene scene = unlit_scene(disc(0.5), AnimatedPart::Rotation, {0, 0, 0, 1}, {0, 0, half, half});
     const MovingScene moving(scene, 0, {}, messages, kASecond);
@@ -205,12 +205,12 @@ TEST_CASE("light sampling and BSDF sampling agree on moving emitters") {
     Queue queue = test::requested_queue();
     Messages messages;
     Scene scene = make_lit_scene();
-    // It turns far, because the density of a point of a lamp depends on where the lamp faces, not on where it is.
+    // The emitter turns far, because the density of a point on it depends on its orientation, not on its position.
     scene.animations[0].channels[1].values = {0, 0, 0.6f, 0.8f, 0, 0, -0.6f, 0.8f};
     const MovingScene moving(scene, 0, {}, messages, kASecond);
     const auto estimate_by = [&](LightStrategy strategy, uint32_t seed) {
         RenderSettings settings = lit_settings(IntegratorKind::Path);
-        const uint64_t more = strategy == LightStrategy::BsdfOnly ? 10 : 1; // few of its paths find the lamp
+        const uint64_t more = strategy == LightStrategy::BsdfOnly ? 10 : 1; // few of these paths find the emitter
         settings.samples = static_cast<uint32_t>(more * test::effort(16, 128));
         settings.path.max_depth = 1;
         settings.path.strategy = strategy;

@@ -1,5 +1,5 @@
-// Particles from the lights see the same surface as paths from the camera: for any light and any camera the power that
-// one carries to the other is the same number, summed over paths or over particles (render/particle_scatter.h).
+// Particles from the lights scatter like paths from the camera: for any light and camera the transported power is the
+// same number, summed over paths or over particles (render/particle_scatter.h).
 
 #include <doctest/doctest.h>
 
@@ -20,8 +20,8 @@ using namespace pertev::test;
 
 namespace {
 
-/// Radiance over n^2 that arrives along w, and importance of a camera that sees the surface along w: any two smooth
-/// functions. Both are dark near the triangle's plane, where delta directions are folded back.
+/// The radiance over n^2 that arrives along w, and the importance of a camera along w: two smooth functions. Both are
+/// small near the triangle's plane, where delta directions are folded back.
 double light_at(const Surface& surface, Vec3 w) {
     const float height = std::fabs(dot(w, surface.geometric_normal));
     return static_cast<double>(square(max(height - 0.25f, 0.0f)) * (1.2f + w.x - 0.5f * w.y));
@@ -38,14 +38,15 @@ double etendue(const Surface& surface, Vec3 w) {
     return n * n * std::fabs(static_cast<double>(dot(w, surface.geometric_normal)));
 }
 
-/// Power from the light to the camera: paths start along even directions from the camera, particles from the light.
+/// Returns the power from the light to the camera. Paths start in evenly distributed directions from the camera,
+/// particles from the light.
 Estimate transported(const Surface& surface, bool particles, uint32_t count) {
     double sum = 0, squares = 0;
     for (uint32_t i = 0; i < count; ++i) {
         const SamplePoint p = random_point(i, particles ? 31 : 32), q = random_point(i, particles ? 33 : 34);
         const Vec3 start = sample_uniform_sphere(q.u);
         const double at_start = particles ? light_at(surface, start) : camera_at(surface, start);
-        if (at_start == 0) continue; // for any scattered direction
+        if (at_start == 0) continue; // applies to any scattered direction
         const BsdfSample s =
             particles ? sample_adjoint(surface, start, p.lobe, p.u) : surface.sample(start, p.lobe, p.u);
         if (!(s.pdf > 0)) continue;
@@ -69,7 +70,7 @@ std::vector<BsdfCase> cases_with_deltas() {
 
 } // namespace
 
-TEST_CASE("particles carry the power that paths carry for every BSDF, with flat and bent normals") {
+TEST_CASE("particles carry the power of paths for every BSDF, with geometric and interpolated normals") {
     const std::vector<BsdfCase> cases = cases_with_deltas();
     constexpr float tilts[] = {0, 0.1f, 0.3f};
     const auto count = static_cast<uint32_t>(effort(60'000, 10'000'000));
@@ -89,7 +90,7 @@ TEST_CASE("particles carry the power that paths carry for every BSDF, with flat 
     }
 }
 
-TEST_CASE("the particle test notices missing cosines of the two normals") {
+TEST_CASE("the particle test detects missing cosines of both normals") {
     const Surface surface = tilted_surface(make_diffuse(grey(1)), 0.3f);
     const Estimate by_path = transported(surface, false, 100'000);
     double bare = 0; // the BSDF's own adjoint about the shading normal
@@ -113,7 +114,7 @@ TEST_CASE("a particle's direction is sampled by the adjoint's density, and its w
         if (!(alpha > 0.05f)) continue; // too narrow for an even grid
         for (const float tilt : tilts) {
             const Surface surface = tilted_surface(c.bsdf, tilt);
-            const Vec3 wi = direction_at(0.45f, 0.45f); // within the reach of the raise
+            const Vec3 wi = direction_at(0.45f, 0.45f); // within the range of the raise
             const auto [result, weight_error] =
                 test_tilted_sampling([&](float lobe, Vec2 u) { return sample_adjoint(surface, wi, lobe, u); },
                                      [&](Vec3 wo) { return evaluate_adjoint(surface, wi, wo); });

@@ -1,5 +1,5 @@
-// Path = Direct + Indirect: the same random numbers, so the parts of each sample add up to rounding. And light that is
-// found by next-event estimation alone, by BSDF sampling alone, or by both weighted is the same light.
+// Path = Direct + Indirect: the random numbers are the same, so the parts of each sample add up except for rounding.
+// Next-event estimation, BSDF sampling and their weighted combination find the same light.
 
 #include <doctest/doctest.h>
 
@@ -14,8 +14,8 @@ using test::PictureEstimate;
 
 namespace {
 
-/// The mixed scene without lights that only one of the techniques can find, and without lobes so narrow that light
-/// sampling alone meets them once in a million draws: a mean without that draw looks certain, and is off.
+/// The mixed scene without lights that only one technique can find, and without lobes so narrow that light sampling
+/// hits them once in a million draws. A mean without that draw would look certain but be wrong.
 Scene make_area_lit_scene() {
     Scene scene = test::make_mixed_scene();
     scene.lights.clear();
@@ -30,7 +30,7 @@ PictureEstimate estimate(LightStrategy strategy, uint32_t first_seed) {
     settings.width = 24;
     settings.height = 16;
     settings.samples = static_cast<uint32_t>(test::effort(32, 512));
-    settings.path.sampler = SamplerKind::Independent; // BSDF sampling rarely meets the sun
+    settings.path.sampler = SamplerKind::Independent; // BSDF sampling rarely hits the sun
     settings.path.strategy = strategy;
     settings.path.max_depth = 5;
     const Scene scene = make_area_lit_scene();
@@ -71,9 +71,9 @@ TEST_CASE("next-event estimation, BSDF sampling and MIS of both converge to one 
     const PictureEstimate bsdf = estimate(LightStrategy::BsdfOnly, 200'000);
     CHECK(p_value(mis, nee) > 0.001);
     CHECK(p_value(mis, bsdf) > 0.001);
-    // The test can see, on a picture 2 % brighter where means are off by 0.2 % or more, and on one 5 % brighter where
-    // they are off by 1 % or more, which is what light transport does to most pixels here. (1 % and 2 % it cannot.)
-    const double error = static_cast<double>(test::effort(4, 1)) / 4; // sixteen times the samples in the long setting
+    // The test detects a picture that is 2 % brighter where means have an error of 0.2 % or more, and one 5 % brighter
+    // where they have 1 % or more, as most pixels here. (It does not detect 1 % and 2 %.)
+    const double error = static_cast<double>(test::effort(4, 1)) / 4; // the long setting has sixteen times the samples
     for (const PictureEstimate& brighter : {brightened(mis, 1.02, 2e-3 * error), brightened(mis, 1.05, 1e-2 * error)}) {
         CHECK(p_value(brighter, nee) < 1e-6);
         CHECK(p_value(brighter, bsdf) < 1e-6);

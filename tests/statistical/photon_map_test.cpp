@@ -1,5 +1,5 @@
-// Photon mapping against path tracing: blur and noise fall with the passes at least as fast as published, to a
-// stated bound, and no light is lost or counted twice.
+// Photon mapping against path tracing: blur and noise fall with the passes at least as fast as published and below a
+// bound, and light counts once.
 
 #include <doctest/doctest.h>
 
@@ -27,7 +27,7 @@ struct PhotonCase {
     std::string name;
     Scene scene;
     double bound = 4e-3;              // bound of the squared error after four times 64 passes
-    uint32_t reference_samples = 512; // samples of a pixel in each of two references
+    uint32_t reference_samples = 512; // samples per pixel in each of two references
 };
 
 std::vector<PhotonCase> photon_cases() {
@@ -39,7 +39,7 @@ std::vector<PhotonCase> photon_cases() {
         {"glass", test::room_with_ball(test::of_roughness(MaterialKind::Dielectric, 0), wall, false)},
         {"glossy", test::room_with_ball(test::of_roughness(MaterialKind::MetallicRoughness, 0.3f, 1), plastic, false)},
         {"mirrors under the sky", test::room_with_ball(test::of_roughness(MaterialKind::Conductor, 0), varnished, true),
-         4e-2, 2048}}; // its sun is small
+         4e-2, 2048}}; // because its sun is small
 }
 
 /// Returns the mean relative squared error, as the product of the differences from two references, so that the
@@ -97,7 +97,7 @@ TEST_CASE("photon mapping converges to path tracing at least at Knaus and Zwicke
             CAPTURE(few);
             CAPTURE(many);
             CAPTURE(end);
-            // The squared error falls with the passes to the power -2/3, or is small already.
+            // The squared error falls with the passes to the power -2/3, unless it is already small.
             CHECK(many < std::max(few * std::pow(16, -2.0 / 3), 3 * c.bound));
             CHECK(end < c.bound);
             CHECK(means == doctest::Approx(light).epsilon(0.01));
@@ -109,11 +109,11 @@ TEST_CASE("photon mapping has at most a 60th of path tracing's error on a causti
     Messages messages;
     const Scene scene = open_scene("caustic", messages);
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    Camera camera; // it sees the floor under the ball, not the lamp's reflection in it
+    Camera camera; // the camera sees the floor under the ball, not the emitter's reflection in it
     camera.world_from_camera = look_at({0, 0.6f, 2}, {-0.25f, 0, -0.1f}, {0, 1, 0});
     camera.fov_y = 0.14f;
     Queue all_threads = Queue::make_cpu();
-    Queue one_thread = Queue::make_cpu(Threads(1)); // threads that wait for each other take time of the CPU too
+    Queue one_thread = Queue::make_cpu(Threads(1)); // threads that wait for each other use CPU time, too
     Queue* queue = &all_threads;
     const auto render = [&](IntegratorKind integrator, uint32_t samples, uint32_t seed) {
         RenderSettings settings;
@@ -141,13 +141,13 @@ TEST_CASE("photon mapping has at most a 60th of path tracing's error on a causti
     CHECK(path > 60 * photons);
 }
 
-TEST_CASE("an emitter standing on the floor is no noisier than with path tracing, from millimetres on") {
+TEST_CASE("an emitter on the floor has at most path tracing's noise from millimetres on") {
     const Material floors[] = {test::white(0.7f), test::of_roughness(MaterialKind::MetallicRoughness, 0.4f)};
     for (const Material& floor : floors) {
         CAPTURE(floor.name);
         Scene scene;
         test::add(scene, test::sheet({0, 0, 0}, {0, 0, 1}, {1, 0, 0}), floor);
-        test::add(scene, test::sheet({0, 0.1f, 0}, {0.3f, 0, 0}, {0, 0.1f, 0}), // it shines to +z
+        test::add(scene, test::sheet({0, 0.1f, 0}, {0.3f, 0, 0}, {0, 0.1f, 0}), // the emitter faces +z
                   {{.base_color = grey(0), .emission = {20, 20, 20}}, "lamp"});
         Messages messages;
         const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -156,7 +156,7 @@ TEST_CASE("an emitter standing on the floor is no noisier than with path tracing
         settings.width = settings.height = 8;
         settings.filter = PixelFilter::Box;
         settings.samples = 16;
-        settings.path.max_depth = 1; // light of the lamp alone: no photons
+        settings.path.max_depth = 1; // only light of the emitter, without photons
         settings.photon_map.edit().gather = PhotonGather::Direct;
         const Camera camera = test::camera_down({0, 0.05f, 0.006f}, 0.2f); // floor 1 to 11 mm in front of the wall
         const auto render = [&](IntegratorKind integrator, VarianceOfPictures& variance) {
@@ -183,7 +183,7 @@ TEST_CASE("an emitter standing on the floor is no noisier than with path tracing
 
 TEST_CASE("tiny radii and coincident photons do not divide by zero") {
     Queue queue = Queue::make_cpu();
-    Scene scene = test::closed_box(test::white(0.5f)); // where photons are stored, so that lookups find some
+    Scene scene = test::closed_box(test::white(0.5f)); // the view shows surfaces with photons
     scene.lights.push_back(test::point_light({0, 0.5f, 0}, {1, 1, 1}));
     RenderSettings settings;
     settings.integrator = IntegratorKind::PhotonMap;

@@ -1,4 +1,4 @@
-// Radiosity against closed forms and path tracing: its error falls with the patch size, to a stated bound.
+// Radiosity against closed forms and path tracing: its error falls with the patch size and below a bound.
 
 #include <doctest/doctest.h>
 
@@ -28,7 +28,7 @@ Image shown_picture(Queue& queue, const PreparedScene& prepared, const Camera& c
     return render_picture(queue, prepared, camera, settings).picture;
 }
 
-/// The mean difference over the mean, without pixels of the lamp, which are far brighter than all others and
+/// The mean difference relative to the mean, without the emitter's pixels, which are far brighter than all others and
 /// independent of patches.
 double mean_difference(const Image& a, const Image& b) {
     double sum = 0, all = 0;
@@ -62,7 +62,7 @@ TEST_CASE("a closed box that emits E and reflects r has radiosity E / (1 - r) ev
             const RadiosityView view = solution.view();
             for (uint32_t triangle = 0; triangle < 12; ++triangle) {
                 const Rgb inside = view.irradiance(2 * triangle, 0.3f, 0.2f);
-                const auto received = static_cast<double>(inside.g); // light from all others
+                const auto received = static_cast<double>(inside.g); // light from all other patches
                 CHECK(received == doctest::Approx(known).epsilon(2e-4));
             }
         }
@@ -130,7 +130,7 @@ TEST_CASE("a sphere in a furnace has the irradiance pi times the furnace's radia
     for (const FormFactors method : {FormFactors::Rays, FormFactors::Hemicube}) {
         RadiositySettings settings;
         settings.patch_size = 0.7f;
-        settings.rays = method == FormFactors::Rays ? 64 : 4096; // hemicubes see the sky by a quarter as many
+        settings.rays = method == FormFactors::Rays ? 64 : 4096; // hemicubes need a quarter as many for the sky
         settings.hemicube = 8;
         settings.form_factors = method;
         settings.subdivisions = 0;
@@ -153,7 +153,7 @@ TEST_CASE("radiosity converges to path tracing in the Cornell box as patches shr
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     Queue queue = test::requested_queue();
     RenderSettings picture;
-    picture.width = picture.height = 10; // each a mean over an area as large as the smallest patches
+    picture.width = picture.height = 10; // each pixel is a mean over an area of the smallest patches' size
     picture.filter = PixelFilter::Box;
     picture.path.max_depth = 32;
     picture.samples = 4096;
@@ -167,7 +167,7 @@ TEST_CASE("radiosity converges to path tracing in the Cornell box as patches shr
         settings.subdivisions = subdivisions;
         return mean_difference(shown_picture(queue, prepared, camera, picture, solved(prepared, settings)), reference);
     };
-    // Fewer patches get more rays each, so that noise does not hide the error of their size.
+    // If there are fewer patches, each gets more rays, so that noise does not hide the error of their size.
     const double errors[] = {error_by(1.0f / 2, 1024, 0), error_by(1.0f / 4, 512, 0), error_by(1.0f / 8, 256, 0),
                              error_by(1.0f / 16, 128, 0)};
     CAPTURE(errors[0]);

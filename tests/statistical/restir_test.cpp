@@ -34,7 +34,7 @@ RestirCase builtin_case(const std::string& name) {
     return {name, std::move(scene), camera};
 }
 
-/// The mixed scene by its panorama alone.
+/// The mixed scene with only its panorama as light.
 RestirCase sky_case() {
     Scene scene = make_mixed_scene();
     scene.lights.clear();
@@ -55,14 +55,15 @@ RestirCase glossy_case() {
     return box;
 }
 
-/// The Cornell box with a point, a spot and a directional light instead of its lamp.
+/// The Cornell box with a point, a spot and a directional light instead of its emitter.
 RestirCase lights_case() {
     RestirCase box = builtin_case("cornell-box");
     box.name = "lights";
     for (Material& material : box.scene.materials) material.emission = {0, 0, 0};
     box.scene.lights = make_mixed_scene().lights;
     const Vec3 places[] = {{0.15f, 0.4f, 0.1f}, {0.45f, 0.5f, 0.2f}, {}};
-    const Vec3 directions[] = {{0, -1, 0}, {-0.5f, -1, 0.5f}, {0.3f, -0.6f, 1}}; // the sun shines in by the open front
+    const Vec3 directions[] = {
+        {0, -1, 0}, {-0.5f, -1, 0.5f}, {0.3f, -0.6f, 1}}; // the directional light enters through the open front
     const float strengths[] = {0.02f, 0.004f, 0.5f};
     for (std::size_t i = 0; i < box.scene.lights.size(); ++i) {
         Light& light = box.scene.lights[i];
@@ -90,7 +91,7 @@ RenderSettings restir_settings() {
     return settings;
 }
 
-/// Sums over pixels and channels, of the picture and of its blocks.
+/// Sums over pixels and channels of the picture and of its blocks.
 struct BlockMeans {
     double whole = 0;
     std::vector<double> blocks = std::vector<double>(kRestirBlocks * kRestirBlocks);
@@ -108,8 +109,8 @@ struct BlockMeans {
     }
 };
 
-/// Returns the light of the emitters that the camera's first `samples` rays hit directly. It is noisy for small ones,
-/// and frames of the same samples show the same: pictures are compared without it.
+/// Returns the light of the emitters that the camera's first `samples` rays hit directly. It is noisy for small
+/// emitters and the same in frames of the same samples, so pictures are compared without it.
 Image emitted_light(Session& session, uint32_t samples) {
     RenderSettings settings = session.settings();
     settings.path.max_depth = 0;
@@ -127,7 +128,7 @@ BlockMeans scattered_light(Session& session, const Image& emitted, uint32_t samp
     return means;
 }
 
-/// Returns the scattered light of `frames` frames, after `settled` frames that do not count.
+/// Returns the scattered light of `frames` frames, after `settled` frames that are discarded.
 BlockMeans scattered_light_in_frames(Session& session, const Image& emitted, const RestirSettings& restir,
                                      uint32_t frames, uint32_t settled) {
     BlockMeans means;
@@ -145,7 +146,7 @@ void check_equal_light(const BlockMeans& means, const BlockMeans& expected, doub
     CHECK(means.whole == doctest::Approx(expected.whole).epsilon(whole));
     for (std::size_t i = 0; i < means.blocks.size(); ++i) {
         CAPTURE(i);
-        // Dark blocks hold a few pixels of something bright: also of the blocks' mean.
+        // Dark blocks have a few bright pixels, so the difference is also taken relative to the blocks' mean.
         const double least = 0.01 * expected.whole / (kRestirBlocks * kRestirBlocks);
         CHECK(std::fabs(means.blocks[i] - expected.blocks[i]) <= block * expected.blocks[i] + least);
     }
@@ -160,12 +161,12 @@ TEST_CASE("without history the mean over frames with ReSTIR equals the path trac
         const PreparedScene prepared = prepare_scene(c.scene, {}, messages);
         Queue queue = requested_queue();
         Session session(queue, prepared, c.camera, restir_settings());
-        // By the same samples: the noise of what ReSTIR leaves to the paths is then the same.
+        // The samples are the same, so the light that ReSTIR leaves to paths has the same noise.
         const auto frames = static_cast<uint32_t>(effort(384, 8192));
         const Image emitted = emitted_light(session, frames);
         const BlockMeans expected = scattered_light(session, emitted, frames);
         for (const RestirLight light : {RestirLight::Direct, RestirLight::Indirect}) {
-            // Indirect shares direct light by the same stages, so Direct needs only a few scenes.
+            // Indirect resampling uses the stages of direct resampling, so Direct needs only a few scenes.
             if (frames < 8192 && light == RestirLight::Direct && c.name != "cornell-box" && c.name != "sky") continue;
             CAPTURE(static_cast<int>(light));
             const RestirSettings restir = {.light = light, .radius = 6, .history = 0};

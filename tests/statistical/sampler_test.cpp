@@ -1,5 +1,5 @@
-// The samplers look random where they should: one sample is uniform over pixels; neighbouring pixels, dimensions and
-// seeds are independent; over the samples of one pixel, dimensions are not correlated.
+// The samplers behave like random numbers: one sample is uniform over pixels; neighbouring pixels, dimensions and
+// seeds are independent; dimensions are not correlated over the samples of one pixel.
 
 #include <cmath>
 #include <cstdint>
@@ -17,10 +17,10 @@ using namespace pertev;
 namespace {
 
 constexpr SamplerKind kKinds[] = {SamplerKind::Sobol, SamplerKind::Independent};
-constexpr int kSamplerTests = 90; // more than this file makes
+constexpr int kSamplerTests = 90; // more tests than this file has
 constexpr uint32_t kPairs = 1u << 20;
 
-/// Are the points (first, second) uniform in the square? 32 x 32 boxes.
+/// Tests by 32 x 32 boxes that the points (first, second) are uniform in the square.
 void check_uniform(const std::function<Vec2(uint32_t)>& pair, const char* what) {
     constexpr uint32_t n = 32;
     std::vector<double> observed(n * n), expected(n * n, static_cast<double>(kPairs) / (n * n));
@@ -76,7 +76,7 @@ TEST_CASE("samples of one pixel are uncorrelated in different dimensions and in 
                     sum[2] += ax * ay;
                 }
             }
-            // A term has variance 1/144 at most; 4 standard deviations.
+            // The variance of a term is at most 1/144; the bound is 4 standard deviations.
             for (const double s : sum) CHECK(std::fabs(s) < 4 * std::sqrt(1.0 / 144 * pixels * samples));
         }
     }
@@ -88,8 +88,8 @@ TEST_CASE("successive samples of white noise are independent") {
     check_uniform([&](uint32_t i) { return Vec2{one(i), one(i + kPairs)}; }, "sample 2^20 later");
 }
 
-TEST_CASE("for a smooth product of two pairs a group has a thirtieth of the variance of white noise") {
-    // The mean of x y z w over 64 samples, as a share of itself.
+TEST_CASE("for a smooth product of two pairs the variance of a group is a thirtieth of white noise") {
+    // The relative variance of the mean of x y z w over 64 samples.
     double error[2] = {};
     for (const SamplerKind kind : kKinds) {
         for (uint32_t pixel = 0; pixel < 2048; pixel++) {
@@ -103,7 +103,7 @@ TEST_CASE("for a smooth product of two pairs a group has a thirtieth of the vari
         }
     }
     MESSAGE("relative errors: ", std::sqrt(error[0]), ", white noise ", std::sqrt(error[1]));
-    CHECK(std::sqrt(error[0]) < std::sqrt(error[1]) / 5); // two pairs of their own: half
+    CHECK(std::sqrt(error[0]) < std::sqrt(error[1]) / 5); // two independent pairs give half
 }
 
 TEST_CASE("a stratified sequence integrates better than white noise") {
@@ -119,5 +119,5 @@ TEST_CASE("a stratified sequence integrates better than white noise") {
                 (mean - 0.7853981633974483) * (mean - 0.7853981633974483) / 512;
         }
     }
-    CHECK(std::sqrt(error[0]) < 0.35 * std::sqrt(error[1])); // a discontinuous integrand: N^-3/4 against N^-1/2
+    CHECK(std::sqrt(error[0]) < 0.35 * std::sqrt(error[1])); // for a discontinuous integrand N^-3/4 against N^-1/2
 }

@@ -38,8 +38,8 @@ TEST_CASE("uniform directions follow their density") {
 
 TEST_CASE("cones follow their density, wide and narrow") {
     for (const float one_minus_cos : {1.5f, 0.2f, 1e-3f}) {
-        // A narrow cone is one cell of the sphere's grid, so the grid is laid over the cone: turns about z, and
-        // |w - z|^2 = 2 (1 - cos) as a fraction of its greatest value, which is uniform by solid angle.
+        // A narrow cone is one cell of the sphere's grid, so the grid covers the cone: the azimuth about z, and |w -
+        // z|^2 = 2 (1 - cos) relative to its largest value, which is uniform in solid angle.
         const auto sample = [&](Vec2 u) {
             const Vec3 w = sample_uniform_cone(u, one_minus_cos);
             const float turns = std::atan2(w.y, w.x) / kTwoPi;
@@ -51,7 +51,7 @@ TEST_CASE("cones follow their density, wide and narrow") {
     }
 }
 
-TEST_CASE("the chi-square test refuses a density that is tilted by 5 % or off by 0.1 %") {
+TEST_CASE("the chi-square test refuses a density that is tilted by 5 % or scaled by 0.1 %") {
     const auto sample = [](float, Vec2 u) -> std::optional<Vec3> { return sample_uniform_sphere(u); };
     CHECK(!chi_square_of_directions(sample, [](Vec3 w) {
                return 0.0795774715 * (1 + 0.05 * static_cast<double>(w.z));

@@ -1,5 +1,5 @@
-// Interpolated normals: surfaces scatter as their BSDF says, no light is lost or cut off at the triangles' horizons,
-// none leaks through, and all sampling techniques agree (shading/shadow_terminator.h).
+// Interpolated normals: surfaces scatter by their BSDF, no light is lost or cut off at the triangles' horizons, none
+// leaks through, and all sampling techniques agree (shading/shadow_terminator.h).
 
 #include <doctest/doctest.h>
 
@@ -32,7 +32,8 @@ Mesh smooth_sphere(int subdivisions) {
     return mesh;
 }
 
-/// 80 triangles for one subdivision, whose vertex normals are tilted by up to 20 degrees; 320 and 10 degrees for two.
+/// One subdivision has 80 triangles with vertex normals tilted by up to 20 degrees, two have 320 triangles and 10
+/// degrees.
 Scene sphere_scene(int subdivisions, const Material& material) {
     Scene scene;
     scene.meshes.push_back(smooth_sphere(subdivisions));
@@ -76,7 +77,8 @@ Brightness furnace(const Scene& scene, LightStrategy strategy, uint32_t samples)
     for (uint32_t y = 0; y < kSize; ++y) {
         for (uint32_t x = 0; x < kSize; ++x) {
             const double r = std::hypot(x + 0.5 - kSize / 2.0, y + 0.5 - kSize / 2.0) * 2.1 / kSize;
-            if (r > 0.97) continue; // the polygon's outline lies between 0.93 and 1; the sky behind it is 1 as well
+            if (r > 0.97)
+                continue; // the polygon's outline lies between 0.93 and 1; the sky behind it has radiance 1, too
             const auto value = static_cast<double>(result.picture.at(x, y)[1]);
             all += value;
             all_count += 1;
@@ -88,7 +90,7 @@ Brightness furnace(const Scene& scene, LightStrategy strategy, uint32_t samples)
     return {all / all_count, rim / rim_count};
 }
 
-/// The largest step from a pixel to the next across or down, over the brightest pixel, well within the outline.
+/// Returns the largest step between neighbouring pixels well within the outline, relative to the brightest pixel.
 double largest_step(int subdivisions) {
     constexpr uint32_t kSize = 160;
     Scene scene = sphere_scene(subdivisions, {{.base_color = grey(0.8f)}, "chalk"});
@@ -134,7 +136,7 @@ TEST_CASE("raised directions clear the horizon, and lowering inverts raising") {
                 if (i == 0) continue;
                 CHECK(length(down.direction - w) < 2e-4f);
                 CHECK(down.slope == doctest::Approx(up.slope).epsilon(1e-3));
-                CHECK(up.direction.z * side > before); // nothing is folded
+                CHECK(up.direction.z * side > before); // no direction is folded
                 if (side < 0) before = -up.direction.z;
             }
         }
@@ -154,7 +156,7 @@ TEST_CASE("sampling a tilted surface follows its density for every BSDF") {
     const int tests = static_cast<int>(cases.size() * std::size(tilts));
     for (const BsdfCase& c : cases) {
         const float alpha = narrowest_alpha(c.bsdf);
-        const bool fits = alpha > 0.05f && alpha < 1; // not too narrow for an even grid; 1 adds nothing
+        const bool fits = alpha > 0.05f && alpha < 1; // not too narrow for a uniform grid; 1 has no effect
         if (!fits && c.name != "diffuse") continue;
         for (const float tilt : tilts) {
             CAPTURE(c.name);
@@ -174,9 +176,9 @@ TEST_CASE("raising loses no light: every BSDF sample leaves its triangle on the 
     std::vector<BsdfCase> cases = rough_bsdf_cases();
     cases.push_back({"smooth glass", make_dielectric(1.5f, 0, grey(1))});
     cases.push_back({"mirror", make_conductor(kGoldEta, kGoldK, 0)});
-    constexpr uint32_t kPoints = 1000; // a thousandth of the light, of which no more may be lost
+    constexpr uint32_t kPoints = 1000; // the loss is at most a thousandth of the light
     for (const BsdfCase& c : cases) {
-        // From within glass at a height of -0.755 light is refracted to just above the shading horizon.
+        // From inside glass, light at a height of -0.755 is refracted to just above the shading horizon.
         for (const float height : {0.5f, 0.9f, -0.5f, -0.755f, -0.9f}) {
             const Vec3 wo = direction_at(height, height == -0.755f ? 0.0f : 0.45f);
             double bare = 0;
@@ -225,7 +227,7 @@ TEST_CASE("the value over the geometric cosine stays bounded down to the horizon
             }
         }
         CHECK(largest < 9);
-        // One function of (wo, wi): Lambert's does not depend on wo.
+        // For Lambert's law the function of (wo, wi) does not depend on wo.
         const Vec3 wi = direction_at(0.35f, 0.2f);
         CHECK(surface.evaluate(direction_at(0.9f, 0.7f), wi).f.g == surface.evaluate(wo, wi).f.g);
     }
@@ -247,8 +249,9 @@ TEST_CASE("coarse smooth spheres and their rims are invisible in a white furnace
             scene.environment = Environment{};
             for (const LightStrategy strategy : {LightStrategy::BsdfOnly, LightStrategy::Mis}) {
                 const Brightness seen = furnace(scene, strategy, material.roughness == 0.5f ? 64 : 16);
-                // Not lost at the surface: total reflection keeps some of the light within the coarsest smooth glass
-                // for thousands of bounces, for with interpolated normals its sides do not let out what they let in.
+                // The surface does not lose this light. In the coarsest smooth glass total reflection keeps some light
+                // inside for thousands of bounces, because with interpolated normals it does not leave through the
+                // sides by which it entered.
                 const bool traps = material.roughness == 0 && subdivisions == 1;
                 CHECK(seen.all == doctest::Approx(1).epsilon(0.01));
                 CHECK(seen.rim == doctest::Approx(1).epsilon(traps ? 0.03 : 0.01));
@@ -259,7 +262,7 @@ TEST_CASE("coarse smooth spheres and their rims are invisible in a white furnace
 
 TEST_CASE("a coarse smooth sphere next to an emitter has a soft terminator") {
     const double of_80 = largest_step(1), of_320 = largest_step(2);
-    CHECK(of_80 < 0.12); // 0.21 and 0.10 where light is cut off at the triangles' horizons
+    CHECK(of_80 < 0.12); // 0.21 and 0.10 if light is cut off at the triangles' horizons
     CHECK(of_320 < 0.06);
 }
 
@@ -269,7 +272,7 @@ TEST_CASE("no light leaks into a coarse smooth room") {
     mirror.metallic = 1;
     mirror.roughness = 0;
     for (const Material& material : {Material{{.base_color = grey(0.8f)}, "chalk"}, plastic, mirror}) {
-        for (const int subdivisions : {0, 1}) { // 0: so coarse that not all is raised clear of the horizon
+        for (const int subdivisions : {0, 1}) { // 0 is so coarse that some directions are not raised above the horizon
             CAPTURE(material.name);
             CAPTURE(subdivisions);
             Scene scene = sphere_scene(subdivisions, material);
@@ -296,7 +299,7 @@ TEST_CASE("light sampling strategies agree on coarse smooth meshes") {
     for (const Material& material : {Material{{.base_color = grey(0.8f)}, "chalk"}, metal, plastic}) {
         CAPTURE(material.name);
         Scene scene = sphere_scene(1, material);
-        Mesh quad; // next to the sphere, so that much of its light arrives at grazing angles
+        Mesh quad; // the emitter is next to the sphere, so much of its light arrives at grazing angles
         quad.positions = {{1.5f, -2, -2}, {1.5f, 2, -2}, {1.5f, 2, 2}, {1.5f, -2, 2}};
         quad.indices = {0, 2, 1, 0, 3, 2};
         scene.meshes.push_back(quad);
@@ -307,7 +310,7 @@ TEST_CASE("light sampling strategies agree on coarse smooth meshes") {
         Queue queue = requested_queue();
         RenderSettings settings;
         settings.width = settings.height = 16;
-        settings.samples = static_cast<uint32_t>(effort(32, 256)); // stratified: as good as four times as many
+        settings.samples = static_cast<uint32_t>(effort(32, 256)); // stratified samples count as four times as many
         settings.path.max_depth = 1;
         constexpr int kRenders = 24;
         double mean[3], variance[3];

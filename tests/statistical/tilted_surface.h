@@ -1,6 +1,6 @@
 #pragma once
 
-// A surface whose interpolated normal differs from its triangle's, and the test of its sampling.
+// A surface whose interpolated normal differs from its triangle's normal, and a test of its sampling.
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@
 
 namespace pertev::test {
 
-/// A surface whose shading normal is +z and whose triangle is turned by asin(tilt) about y.
+/// A surface with the shading normal +z and a triangle that is rotated by asin(tilt) about y.
 inline Surface tilted_surface(const Bsdf& bsdf, float tilt) {
     Surface surface = {};
     surface.geometric_normal = {tilt, 0, std::sqrt(1.0f - tilt * tilt)};
@@ -26,7 +26,7 @@ inline Surface tilted_surface(const Bsdf& bsdf, float tilt) {
 
 struct TiltedSampling {
     ChiSquareResult directions;
-    double weight_error; // greatest relative error of weight times pdf from the value
+    double weight_error; // the largest relative error of weight times pdf against the value
 };
 
 /// Compares the directions that `sample` draws with the density that `evaluate` returns, and their weights with its

@@ -1,6 +1,6 @@
 #pragma once
 
-// An acceptance rule of tests.
+// An acceptance rule for tests.
 
 #include <cstdint>
 

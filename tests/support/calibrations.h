@@ -1,7 +1,7 @@
 #pragma once
 
-// Calibrated cameras of 1280x720 pixels, and where OpenCV 5.0 projects six points by them (cv2.projectPoints,
-// cv2.fisheye.projectPoints, with y and z turned to its axes).
+// Calibrated cameras of 1280x720 pixels, and the pixels to which OpenCV 5.0 projects six points (cv2.projectPoints,
+// cv2.fisheye.projectPoints, with y and z converted to its axes).
 
 #include <vector>
 

@@ -21,8 +21,8 @@ inline bool holds(const Bounds3& outer, const Bounds3& inner) {
     return min(outer.lo, inner.lo) == outer.lo && max(outer.hi, inner.hi) == outer.hi;
 }
 
-/// Checks the list of leaf `node` with cell `cell`: ids in range, ascending, and of triangles whose boxes reach into
-/// the cell. Returns what is wrong, or nothing.
+/// Checks the list of leaf `node` with cell `cell`: ids are in range and ascend, and boxes of the triangles overlap
+/// the cell. Returns the fault, if any.
 inline std::optional<std::string> find_list_fault(std::span<const uint32_t> list,
                                                   std::span<const BvhTriangle> triangles, const Bounds3& cell,
                                                   uint32_t node) {
@@ -37,8 +37,8 @@ inline std::optional<std::string> find_list_fault(std::span<const uint32_t> list
     return std::nullopt;
 }
 
-/// Returns the first triangle with a point outside the bounds or where is_listed(id, TrianglePoint) finds no leaf
-/// that lists it.
+/// Returns the first triangle with a point that is outside the bounds or for which is_listed(id, TrianglePoint) is
+/// false.
 template <class IsListed>
 std::optional<std::string> find_uncovered(std::span<const BvhTriangle> triangles, const Bounds3& bounds,
                                           const IsListed& is_listed) {
@@ -72,7 +72,7 @@ std::optional<std::string> find_fault_of(const Tree& tree, const CheckStructure&
     return find_uncovered(tree.triangles, tree.bounds, is_listed);
 }
 
-/// Returns which of these counts of what a traversal reached is not the tree's.
+/// Returns which of a traversal's counts differs from the tree's.
 template <class Tree>
 std::optional<std::string> find_unreached(const Tree& tree, uint64_t nodes, uint64_t references, int depth) {
     if (nodes != tree.nodes.size()) return fmt::format("{} of {} nodes are reached", nodes, tree.nodes.size());

@@ -9,7 +9,7 @@
 
 namespace pertev {
 
-/// Returns what is wrong, or nothing. In a valid tree every node is reached exactly once and no deeper than the
+/// Returns the fault, if any. In a valid tree every node is reached exactly once and no deeper than the
 /// stated depth. Cells are exact in floats and the root's holds the bounds. Each leaf has its own references, to
 /// triangles that reach into its cell, none twice. Each of 28 points of every triangle, corners included, lies in the
 /// cell of a leaf that lists the triangle.

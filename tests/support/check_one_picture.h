@@ -34,7 +34,7 @@ inline CheckedPicture checked_picture(Queue& queue, const Scene& scene, const Re
     return {render_hash(result), result.rays};
 }
 
-/// Hash of everything but the picture: the layers of the first surface.
+/// Returns the hash of the layers of the first surface.
 inline Hash128 hash_of_layers(Queue& queue, const Scene& scene, const RenderSettings& settings,
                               const Camera& camera = camera_with_lens()) {
     RenderResult result = render(queue, scene, camera, settings);
@@ -60,7 +60,7 @@ inline CheckedPicture check_one_picture(const Scene& scene, RenderSettings setti
     settings.pass_samples = 3;
     check_same(checked_picture(five, scene, settings), reference);
     settings.body = PathBody::Wavefront;
-    for (const uint32_t batch : {333u, 1u << 20}) { // less than a picture; all
+    for (const uint32_t batch : {333u, 1u << 20}) { // less than a picture, and all samples
         settings.batch = batch;
         check_same(checked_picture(queue, scene, settings), reference);
         if (!cuda_requested()) continue;

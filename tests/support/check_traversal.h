@@ -13,7 +13,7 @@
 
 namespace pertev::test {
 
-/// The result of testing every triangle.
+/// Hits found by testing every triangle.
 template <class Accept>
 std::vector<Hit> hits_by_brute_force(const std::vector<BvhTriangle>& triangles, const std::vector<Ray>& rays,
                                      const Accept& accept) {
@@ -40,7 +40,7 @@ void check_traversal(const SceneTrees<typename Traversal::Tree>& scene, const st
     CHECK(wrong == 0);
 }
 
-/// A scene that is one tree over baked triangles.
+/// A scene of one tree over baked triangles.
 template <class Tree>
 SceneTrees<Tree> scene_of(const Tree& tree) {
     SceneTrees<Tree> scene;

@@ -201,7 +201,7 @@ private:
     uint64_t triangles_ = 0;
 };
 
-/// Checks the leaf at node i and marks its triangles as seen. Returns what is wrong, or nothing.
+/// Checks the leaf at node i and marks its triangles as seen. Returns the fault, if any.
 std::optional<std::string> find_leaf_fault(const SkipBvh& bvh, std::size_t i, bool boxes_hold_triangles,
                                            std::vector<bool>& seen) {
     const SkipNode& node = bvh.nodes[i];

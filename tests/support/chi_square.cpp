@@ -34,11 +34,11 @@ double gauss(const Density& f, const Cell& c) {
     return 0.25 * (c.x1 - c.x0) * (c.y1 - c.y0) * sum;
 }
 
-// The error along a jump of the density is then a small part of a cell's standard deviation. Each quartering more takes
-// twice the time.
+// The error along a discontinuity of the density is then a small part of a cell's standard deviation. Each further
+// subdivision takes twice the time.
 constexpr int kMaxQuarterings = 6;
 
-/// Quarters the cell until the quarters' sum agrees with the whole, at least `least` times.
+/// Subdivides the cell into quarters until their sum agrees with the whole, at least `least` times.
 double integrate(const Density& f, const Cell& c, double whole, double tolerance, int depth, int least) {
     const double xm = 0.5 * (c.x0 + c.x1), ym = 0.5 * (c.y0 + c.y1);
     const Cell quarters[4] = {{c.x0, xm, c.y0, ym}, {xm, c.x1, c.y0, ym}, {c.x0, xm, ym, c.y1}, {xm, c.x1, ym, c.y1}};
@@ -61,7 +61,7 @@ struct Grid {
         return {x0 + i * dx, x0 + (i + 1) * dx, y0 + j * dy, y0 + (j + 1) * dy};
     }
     int count() const { return cells_x * cells_y; }
-    /// Cell of a point, or count() for one outside.
+    /// Returns the cell of a point, or count() for a point outside.
     int find(double x, double y) const {
         if (!(x >= x0 && x <= x1 && y >= y0 && y <= y1)) return count();
         const int i = std::min(static_cast<int>((x - x0) / (x1 - x0) * cells_x), cells_x - 1);
@@ -70,7 +70,7 @@ struct Grid {
     }
 };
 
-/// `next(i)` is the cell of the i-th sample.
+/// Counts samples. `next(i)` returns the cell of sample i.
 ChiSquareResult test_grid(const Grid& grid, const std::function<int(uint32_t)>& next, const Density& pdf,
                           const ChiSquareSettings& settings) {
     const uint32_t samples = settings.samples;
@@ -86,11 +86,11 @@ ChiSquareResult test_grid(const Grid& grid, const std::function<int(uint32_t)>& 
         integral += part;
         expected[static_cast<size_t>(k)] = samples * part;
     }
-    // Less than 1e-6 of the samples is the integration's own error, and no cell.
+    // Less than 1e-6 of the samples is the error of the integration, and not a cell.
     expected[count] = integral < 1 - 1e-6 ? samples * (1 - integral) : 0;
     ChiSquareResult result = chi_square(observed, expected);
     result.integral = integral;
-    if (integral > 1 + 1e-4) result.p_value = 0; // not a density
+    if (integral > 1 + 1e-4) result.p_value = 0; // this is not a density
     return result;
 }
 
@@ -98,14 +98,14 @@ ChiSquareResult test_grid(const Grid& grid, const std::function<int(uint32_t)>& 
 
 double upper_gamma(double a, double x) {
     if (x <= 0) return 1;
-    int sign; // std::lgamma() keeps it in a global, which threads would race for
+    int sign; // std::lgamma() stores the sign in a global, which would be a data race
     const double scale = std::exp(a * std::log(x) - x - ::lgamma_r(a, &sign));
     if (x < a + 1) { // series of the lower function
         double term = 1 / a, sum = term;
         for (double n = a + 1; term > 1e-16 * sum; n += 1) sum += term *= x / n;
         return std::max(0.0, 1 - scale * sum);
     }
-    // Continued fraction of the upper one (modified Lentz).
+    // The continued fraction of the upper function (modified Lentz).
     double b = x + 1 - a, c = 1e300, d = 1 / b, fraction = d;
     for (int n = 1; n < 100'000; n++) {
         const double numerator = -n * (n - a);

@@ -1,8 +1,8 @@
 #pragma once
 
 // Chi-square test of samples against a density, for warps and BSDFs: draws samples, counts them in a grid of cells, and
-// compares with the integral of the density over each cell. Cells too rare to count are pooled; what the density does
-// not integrate to, or the sampler rejects, is one more cell, so a density of the wrong scale fails as well.
+// compares with the integral of the density over each cell. Cells with small expected counts are pooled. The missing
+// part of the density's integral and rejected samples form another cell, so a density of the wrong scale fails, too.
 //
 // Source: Pearson's test; the pooling and the correction for many tests as in Mitsuba's chi2 (Jakob).
 
@@ -20,9 +20,9 @@ namespace pertev::test {
 struct ChiSquareResult {
     double statistic = 0;
     int degrees_of_freedom = 0;
-    double p_value = 1;     // chance of a statistic at least as large where the samples do follow the density
+    double p_value = 1;     // the probability of a statistic at least as large if the samples follow the density
     double integral = 0;    // integral of the density over the whole grid
-    std::string worst_cell; // where observed and expected differ the most, for the failure's message
+    std::string worst_cell; // the cell with the largest difference, for the failure's message
 
     /// Returns false if the difference is significant at level 0.01 for the worst of `tests` tests (Sidak).
     bool passes(int tests) const;
@@ -40,7 +40,7 @@ struct ChiSquareSettings {
     uint32_t samples = 1'000'000;
     uint32_t seed = 1;
     int cells_x = 40, cells_y = 20; // along phi and cos(theta) of a sphere, or along x and y of a rectangle
-    int min_quarterings = 2;        // the least of a cell, so that no narrow peak is stepped over
+    int min_quarterings = 2;        // the minimum per cell, so that no narrow peak is missed
 };
 
 /// Tests directions. `sample(lobe, u)` returns a unit vector or nothing (the sample failed), for independent uniform

@@ -8,7 +8,7 @@
 namespace pertev::test {
 namespace {
 
-/// Chance of |T| >= t where T is Student's, by its integral over atan(t / sqrt(degrees)).
+/// Returns the probability of |T| >= t for Student's T, by its integral over atan(t / sqrt(degrees)).
 double student_p_value(double t, double degrees) {
     constexpr int kSteps = 250; // Simpson's rule
     const double from = std::atan(t / std::sqrt(degrees)), step = (1.5707963267948966 - from) / kSteps;

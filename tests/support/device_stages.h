@@ -1,7 +1,7 @@
 #pragma once
 
-// Stages that run the renderer's host-device functions one by one and store the bits of their results. A test compares
-// these on the CPU and in CUDA, so that results of the statistical tests on the CPU hold on the GPU.
+// Stages that call the renderer's host-device functions and store the bits of their results. A test compares these on
+// the CPU and in CUDA, so that results of CPU tests also hold on the GPU.
 
 #include "base/parallel_for.h"
 #include "math/sampler.h"
@@ -75,8 +75,8 @@ struct DrawLights {
     }
 };
 
-/// The shears of rays whose directions have components of any sign and size down to 2^-110 of the largest, 0, as large
-/// ones and denormal ones among them: 256 an index.
+/// The shears of rays whose directions have components of any sign and size: down to 2^-110 of the largest, 0, equally
+/// large and denormal ones. Each index has 256 rays.
 struct ShearRays {
     uint32_t* out;
 
@@ -84,7 +84,7 @@ struct ShearRays {
         uint32_t hash = 1;
         for (uint32_t k = 0; k < 256; ++k) {
             const Hash4 h = hash_words(i, k, 23, 29);
-            // Numbers from 23 random bits; the largest is within [2^-39, 2^40], the others are no larger.
+            // Makes numbers from 23 random bits. The largest is within [2^-39, 2^40].
             const auto number = [](uint32_t bits, int least, int greatest) {
                 const int exponent = least + static_cast<int>((bits >> 24) % static_cast<uint32_t>(greatest - least));
                 if (exponent < -126) return float_of((bits & 0x80000000u) | (bits & 0x7fffffu) >> (-126 - exponent));
@@ -135,7 +135,7 @@ struct EvaluateMath {
     }
 };
 
-/// Returns the number of CPU threads that run the stage; 0 on a GPU.
+/// Stores the number of CPU threads that run the stage; 0 on a GPU.
 struct CountThreads {
     int* count;
 

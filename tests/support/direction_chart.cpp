@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kFullTurn = 6.283185307179586;
 
-/// The circle of directions of one height z in the chart's polar coordinates, a the angle from the axis, y the turn:
+/// The circle of directions of height z in the chart's polar coordinates, where a is the angle from the axis and y the
+/// turn:
 ///     height = normal.z cos(a) + across(y) sin(a),   across(y) = tangent.z cos(2 pi y) + bitangent.z sin(2 pi y).
 struct HeightCircle {
     double along, max_across, turn_of_max; // normal.z; the largest across and its y, in radians
@@ -23,7 +24,7 @@ struct HeightCircle {
         turn_of_max = std::atan2(y, x);
     }
 
-    /// Appends the two x at which the circle crosses the line y, moved into [x0, x1]; x1 for one that is missing.
+    /// Appends the two x at which the circle crosses the line y, clamped to [x0, x1]. A missing one is x1.
     void add_crossings(double y, double x0, double x1, std::vector<double>& xs) const {
         const double across = max_across * std::cos(kFullTurn * y - turn_of_max), r = std::hypot(along, across);
         const double middle = std::atan2(across, along), half = std::fabs(height) < r ? std::acos(height / r) : 0;
@@ -45,7 +46,7 @@ struct HeightCircle {
         add_turns_of_across((height - along * std::cos(angle)) / std::sin(angle), ys);
     }
 
-    /// Appends the y of the lines that touch the circle.
+    /// Appends the y of the lines that are tangent to the circle.
     void add_touching_turns(std::vector<double>& ys) const {
         const double square = height * height - along * along;
         if (square < 0) return;
@@ -64,13 +65,13 @@ private:
     }
 };
 
-/// Part of a rectangle of the chart between two neighbouring circles: for each y of a strip from one circle's x to the
-/// next one's. Integrands see it as a rectangle of s in [0, 1] across and y.
+/// The part of the chart between two neighbouring circles: for each y of a strip, from one circle's x to the next
+/// one's. Integrands get it as a rectangle with s in [0, 1] and y.
 struct Piece {
     const DirectionChart& chart;
     const ChartRectangle& rectangle;
     const std::vector<HeightCircle>& circles;
-    size_t index; // 0: from the rectangle's x0 to the first circle
+    size_t index; // 0 is the part from the rectangle's x0 to the first circle
 
     struct Sides {
         double x0, x1;
@@ -152,7 +153,7 @@ DirectionChart::ChartPoint DirectionChart::chart_point(Point p) const {
 ChartIntegral integrate_over(const DirectionChart& chart, const ChartRectangle& rectangle, double tolerance,
                              const std::function<ChartIntegral(Vec3)>& f, std::span<const double> jumps) {
     constexpr int kMaxQuarterings = 8;
-    // Strips of y in which the same circles cross the same sides of the rectangle.
+    // Returns strips of y in which the same circles cross the same sides of the rectangle.
     std::vector<double> turns;
     std::vector<HeightCircle> circles;
     for (const double height : jumps) {

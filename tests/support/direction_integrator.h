@@ -1,7 +1,7 @@
 #pragma once
 
-// A second integrator that uses only render/: the light of a sample is its camera ray's direction, as a colour in [0,
-// 1]. It is independent of the path tracer, and shows that the interface is, too.
+// A second integrator that uses only render/. The light of a sample is the direction of its camera ray, as a colour in
+// [0, 1]. It shows that the interface does not depend on the path tracer.
 
 #include "integrators/integrator.h"
 

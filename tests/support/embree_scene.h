@@ -1,6 +1,6 @@
 #pragma once
 
-// Embree 3 or 4 as an oracle and as a peer: one mesh, traced by its robust single-ray functions.
+// Embree 3 or 4 for comparison of hits and speed: one mesh, traced by its robust single-ray functions.
 
 #if PERTEV_EMBREE == 4
 #include <embree4/rtcore.h>
@@ -20,7 +20,7 @@ public:
     EmbreeScene(const EmbreeScene&) = delete;
     EmbreeScene& operator=(const EmbreeScene&) = delete;
 
-    /// The primitive is an index into the mesh's triangles; the instance 0.
+    /// The primitive is an index into the mesh's triangles; the instance is 0.
     Hit closest(const Ray& ray) const;
     bool any(const Ray& ray) const;
 

@@ -1,12 +1,11 @@
 #pragma once
 
-// Emulates compilation for a device: CUDA's names, over the warps of emulated_warp.h. A file that includes this
-// before any header of src/ gets the device's code of all later includes, kernels too, and can run them on the host.
+// Emulates compilation for a device: CUDA's names, over the warps of emulated_warp.h. A file that includes this before
+// any header of src/ gets the device code of all later includes, including kernels, and can run it on the host.
 //
-// One definition rule: such code must never be linked with the host's of the same name. So from here on `pertev` is
-// spelled pertev_emulated, and everything that such a file compiles is in that namespace, which nothing else uses;
-// views of the host are passed by address (emulated_traversals.cpp). In the object no symbol of the host's namespace is
-// weak:
+// One definition rule: such code must never be linked with host code of the same name. So from here on `pertev` is
+// pertev_emulated, which nothing else uses, and everything that such a file compiles is in that namespace. Views of
+// the host are passed by address (emulated_traversals.cpp). The object has no weak symbol of the host's namespace:
 //   nm -C OBJECT | grep ' [VWu] ' | grep pertev::    lists only templates of std
 // It is compiled with frame pointers (tests/CMakeLists.txt), because __activemask() distinguishes places by their
 // call stacks.
@@ -22,7 +21,7 @@
 #include "tests/support/emulated_warp.h"
 
 namespace pertev_emulated::lane {
-using namespace pertev::test::lane; // NOLINT: before the name means something else
+using namespace pertev::test::lane; // NOLINT: before the name changes its meaning
 }
 
 #define PERTEV_EMULATED_WARPS
@@ -74,8 +73,8 @@ inline int __clzll(long long x) { return x == 0 ? 64 : __builtin_clzll(static_ca
 inline uint32_t __funnelshift_l(uint32_t low, uint32_t high, uint32_t shift) {
     return static_cast<uint32_t>((uint64_t(high) << 32 | low) << (shift & 31) >> 32);
 }
-/// Permutes bytes: byte k of the result is the one of the eight of y and x that digit k of the selector names, or its
-/// sign if bit 3 of the digit is set.
+/// Permutes bytes. Digit k of the selector chooses byte k of the result from the eight bytes of y and x, or that
+/// byte's sign if bit 3 of the digit is set.
 inline uint32_t __byte_perm(uint32_t x, uint32_t y, uint32_t selector) {
     const uint64_t bytes = uint64_t(y) << 32 | x;
     uint32_t result = 0;

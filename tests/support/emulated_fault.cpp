@@ -5,7 +5,7 @@
 
 #include "tests/support/emulated_lanes.h"
 
-extern "C" const char __executable_start; // the linker's: addresses are printed relative to it
+extern "C" const char __executable_start; // defined by the linker; addresses are printed relative to it
 
 namespace pertev::test {
 namespace {
@@ -49,7 +49,7 @@ std::string describe_calls(const EmulatedLane& lane) {
     return text;
 }
 
-/// Describes the state of lanes that have not reached a meeting.
+/// Describes the state of lanes that have not reached a warp operation.
 std::string describe_missing(const EmulatedWarp& warp, const Meeting& meeting) {
     uint32_t other_mask = 0, elsewhere = 0;
     for_each_lane(meeting.mask & warp.live, [&](unsigned k) {

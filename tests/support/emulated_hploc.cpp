@@ -1,8 +1,8 @@
-// tracer/hploc/warp_kernels.h compiled as for a device: see tests/support/emulated_device.h.
+// Compiles tracer/hploc/warp_kernels.h as device code (tests/support/emulated_device.h).
 
 #include "tests/support/emulated_hploc.h"
 
-#include "tests/support/emulated_device.h" // from here on the device's
+#include "tests/support/emulated_device.h" // device code from here on
 
 #include <cstring>
 #include <vector>
@@ -45,10 +45,10 @@ inline float __uint_as_float(uint32_t x) { return __builtin_bit_cast(float, x); 
 
 } // namespace pertev
 
-#define __shared__ static // for kernels that are not run here: only their bodies are, with their own memory
+#define __shared__ static // for kernels whose bodies run here with their own memory
 #include "tracer/hploc/warp_kernels.h"
 
-#include "base/remark.cpp" // which the sink of a build's settings calls
+#include "base/remark.cpp" // the sink of a build's settings calls this
 
 #undef pertev
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// The lanes and warps that emulated_warp.cpp lets run and whose faults emulated_fault.cpp describes; for these two
-// alone.
+// The lanes and warps that emulated_warp.cpp runs and whose faults emulated_fault.cpp describes. No other file
+// includes it.
 
 #include <array>
 #include <cstddef>
@@ -24,21 +24,22 @@ struct Meeting {
 };
 
 struct Fiber {
-    void* stack_pointer = nullptr; // while it does not run: six saved registers and where it goes on lie there
-    char* stack = nullptr;         // its lowest address
+    void* stack_pointer = nullptr; // while the lane is suspended, six saved registers and its next address are there
+    char* stack = nullptr;         // the lowest address of its stack
     std::size_t stack_bytes = 0;
-    void* fake_stack = nullptr; // AddressSanitizer's
+    void* fake_stack = nullptr; // for AddressSanitizer
 };
 
 struct EmulatedLane {
     Fiber fiber;
     Meeting meeting;
-    uint64_t result; // result of the meeting
+    uint64_t result; // the result of the warp operation
 };
 
 struct EmulatedWarp {
     uint32_t block, first_thread;
-    uint32_t live, ready, waiting, pending; // lanes: have not ended; can go on; are at a meeting; at __activemask
+    uint32_t live, ready, waiting,
+        pending; // sets of lanes: not ended; able to continue; at a warp operation; at __activemask
     std::array<EmulatedLane, 32> lanes;
 };
 
@@ -47,11 +48,11 @@ void for_each_lane(uint32_t mask, const Do& what) {
     for (; mask != 0; mask &= mask - 1) what(static_cast<unsigned>(__builtin_ctz(mask)));
 }
 
-/// Return addresses, from that of the call in which a lane waits to that with which it began.
+/// Returns the return addresses, from the call in which a lane waits to its first call.
 template <class Do>
 void for_each_call(const EmulatedLane& lane, const Do& what) {
     const void *above = lane.fiber.stack, *end = lane.fiber.stack + lane.fiber.stack_bytes - 2 * sizeof(void*);
-    // The bounds are for a caller that was compiled without frame pointers.
+    // The bounds are needed for a caller that was compiled without frame pointers.
     for (void* const* frame = lane.meeting.frame; frame > above && frame <= end && frame[1] != nullptr;
          frame = static_cast<void* const*>(frame[0])) {
         what(frame[1]);

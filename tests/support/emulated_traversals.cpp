@@ -1,11 +1,10 @@
 // The kernels of src/device/launch_body.h, src/trace/warps/persistent.h and src/trace/dynamic_fetch.h with the
-// traversals that vote, compiled as for a device: see tests/support/emulated_device.h. The host's views, rays and hits
-// have the layout of the device's, so addresses of the ones serve as addresses of the others; nothing else passes
-// between the two.
+// traversals that vote, compiled as device code (tests/support/emulated_device.h). Views, rays and hits of the host
+// have the device's layout, so their addresses are valid for both. Nothing else passes between host and device.
 
 #include "tests/support/emulated_traversals.h"
 
-#include "tests/support/emulated_device.h" // from here on the device's
+#include "tests/support/emulated_device.h" // device code from here on
 
 #include <type_traits>
 
@@ -82,7 +81,7 @@ void run_persistent(const Scene& scene, const Batch& batch, uint32_t* pool) {
     run_stage_persistent(TraceBatch<Traversal, kAny, Accept, Counter, Scene>{scene, batch}, batch.count, pool);
 }
 
-/// The batch with what counts for each ray, as the kernel takes it.
+/// The batch with the acceptance rule of each ray, in the kernel's form.
 template <class Accept>
 struct BatchAccepting : Batch {
     struct AcceptOf : Accept {
@@ -100,7 +99,7 @@ void run_dynamic(const Scene& scene, const Batch& batch, uint32_t* pool) {
 } // namespace
 } // namespace pertev
 
-#undef pertev // from here on the host's again
+#undef pertev // host code from here on
 
 namespace pertev::test {
 namespace {
@@ -109,15 +108,15 @@ namespace device = pertev_emulated;
 using device::AcceptAll, device::AcceptSome, device::LaneCounter, device::NoTraversalCounter, device::SingleTree,
     device::TestKind, device::TraversalOptions;
 
-/// The host's object as the device sees it.
+/// Returns the host's object as one of the device.
 template <class Device, class Host>
 const Device& seen_by_device(const Host* host) {
     return *reinterpret_cast<const Device*>(host);
 }
 
-constexpr uint64_t kMaxStepsARay = 20'000; // some 5 times as many as seen
+constexpr uint64_t kMaxStepsARay = 20'000; // about 5 times the observed number
 
-/// Runs a thread's part in all threads.
+/// Runs one thread's work in all threads.
 template <class Run>
 std::string run_threads(const EmulatedBatch& batch, bool one_a_thread, const Run& run) {
     constexpr uint32_t threads = device::kTraversalThreads;
@@ -132,7 +131,7 @@ std::string run_threads(const EmulatedBatch& batch, bool one_a_thread, const Run
                      [&] { run(rays, batch.pool); });
 }
 
-/// The member of EmulatedTrees or EmulatedScenes that the traversal reads.
+/// Returns the member of EmulatedTrees or EmulatedScenes that the traversal reads.
 template <class Traversal>
 const auto* pick(const auto& trees) {
     if constexpr (std::is_same_v<typename Traversal::Tree, device::CompressedBvhView>) {
@@ -232,7 +231,8 @@ std::vector<EmulatedTraversal> emulated_traversals() {
     add_woop<device::SpeculativeTraversal>("speculative", rows);
     add_all<device::CompressedTraversal, true>("compressed", rows);
     add_ways<device::CompressedTraversal, TraversalOptions{.rta_at_pops = false}, false, true>("compressed", rows);
-    // With exact tests alone: it tests triangles before t_min, where the fast ones may hit just behind it.
+    // It runs only with exact tests, because it tests triangles before t_min, where the fast tests may hit just behind
+    // it.
     add_ways<device::OctantTraversal, TraversalOptions{}, false, false>("octants", rows);
     add_ways<device::OctantTraversal, TraversalOptions{}, true, false>("octants", rows);
     add_ways<device::OctantTraversal, TraversalOptions{false, false}, false, false>("octants", rows);

@@ -1,7 +1,7 @@
 #pragma once
 
-// The laboratory's traversals whose lanes vote, as kernels on emulated warps: the device's code of src/trace, every way
-// of handing out rays. This header is the host's, and names the host's types only.
+// The laboratory's traversals whose lanes vote, as kernels on emulated warps with every distribution of rays. This
+// header belongs to the host and names only types of the host.
 
 #include <cstdint>
 #include <string>
@@ -24,12 +24,12 @@ namespace pertev::test {
 struct EmulatedBatch {
     const Ray* rays;
     Hit* hits;
-    uint32_t* stores; // [count + 1]: how often each hit was stored, and how often one of no ray was
+    uint32_t* stores; // [count + 1]: how often each hit was stored, and how often a hit without a ray
     uint32_t count;
     uint32_t* pool;  // 0 at first
     uint32_t blocks; // blocks of 128 threads; with one ray per thread as many as needed
     uint32_t seed;
-    LaneCounts* lanes = nullptr; // for those that count
+    LaneCounts* lanes = nullptr; // for batches that count
 };
 
 /// Trees over the same triangles.
@@ -50,7 +50,7 @@ struct EmulatedTraversal {
     bool rta, near_first, any;
     bool cut_outs = false; // AcceptSome of tests/support/check_traversal.h
     bool counts_lanes = false;
-    // One of the two is set. It returns an error, or an empty text.
+    // Either one is set. It returns an error, or an empty text.
     std::string (*run)(const EmulatedTrees&, const EmulatedBatch&) = nullptr;
     std::string (*run_scene)(const EmulatedScenes&, const EmulatedBatch&) = nullptr;
 };

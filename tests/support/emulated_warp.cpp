@@ -1,6 +1,6 @@
-// The lanes' fibers, the random scheduler, the meetings. A lane that waits goes straight on to another lane; only those
-// that end, and faults, lead back to run_warps(). ucontext would do, but its two system calls a switch cost more than
-// all that lanes do between them.
+// The fibers of lanes, the random scheduler, and warp operations. A lane that waits switches directly to another lane.
+// Only ended lanes and faults return to run_warps(). ucontext would be sufficient, but the two system calls of a
+// switch cost more than the lanes' work.
 
 #include "tests/support/emulated_warp.h"
 
@@ -35,8 +35,8 @@ constexpr std::size_t kStackBytes = 128 << 10, kGuardBytes = 4 << 10;
 constexpr uint32_t kMaxWarps = 8; // at once
 
 #if defined(__SANITIZE_ADDRESS__)
-/// Announces to the sanitizer a switch from the running fiber to `to`. `kept` receives its fake stack; null if it never
-/// resumes.
+/// Announces a switch from the running fiber to `to` to the sanitizer. `kept` receives the fake stack of the running
+/// fiber; null if it never resumes.
 void about_to_go(void** kept, const Fiber& to) { __sanitizer_start_switch_fiber(kept, to.stack, to.stack_bytes); }
 /// Reports to the sanitizer that the switch is complete. The first fiber comes from `main`, whose stack is recorded
 /// then.
@@ -47,7 +47,7 @@ void came_from(void* kept, Fiber& main) {
     if (main.stack == nullptr)
         main.stack = const_cast<char*>(static_cast<const char*>(bottom)), main.stack_bytes = bytes;
 }
-/// A lane never returns from its first function, so that frames of its last run are still marked.
+/// A lane never returns from its first function, so frames of its last run are still marked.
 void forget_frames(const Fiber& fiber) { __asan_unpoison_memory_region(fiber.stack, fiber.stack_bytes); }
 #else
 void about_to_go(void**, const Fiber&) {}
@@ -55,7 +55,7 @@ void came_from(void*, Fiber&) {}
 void forget_frames(const Fiber&) {}
 #endif
 
-/// Saves where the caller stands and goes on where another one stood.
+/// Saves the caller's state and resumes another one's.
 [[gnu::naked, gnu::noinline]] void switch_stack(void** /*save*/, void* /*to*/) {
     asm("pushq %rbp\n pushq %rbx\n pushq %r12\n pushq %r13\n pushq %r14\n pushq %r15\n"
         "movq %rsp, (%rdi)\n movq %rsi, %rsp\n"
@@ -84,13 +84,13 @@ private:
     bool chance(uint32_t of_256) { return (random_.bits() >> 24) < of_256; }
 
     std::vector<std::unique_ptr<EmulatedWarp>> slots_;
-    std::vector<EmulatedWarp*> warps_; // that have not ended
-    std::vector<uint32_t> to_come_;    // numbers of warps, the next one last
+    std::vector<EmulatedWarp*> warps_; // number of lanes that have not ended
+    std::vector<uint32_t> to_come_;    // indices of warps, the next one last
     EmulatedLaunch launch_;
     const std::function<void()>* kernel_ = nullptr;
     Random random_{0};
-    uint32_t roam_ = 0, hurry_ = 0, partly_ = 0; // probabilities of 256: switch the warp, answer __activemask at
-                                                 // once, answer with a part
+    uint32_t roam_ = 0, hurry_ = 0, partly_ = 0; // probabilities out of 256: to switch the warp, to answer
+                                                 // __activemask at once, to answer with a part
     uint64_t steps_ = 0;
     EmulatedWarp* warp_ = nullptr; // who runs
     EmulatedLane* lane_ = nullptr;
@@ -131,7 +131,7 @@ void Machine::lane_main() {
     m.leave_lane(true);
 }
 
-/// The next warp to start, in the slot of one that has ended.
+/// Starts the next warp in the slot of an ended one.
 void Machine::start_warp(EmulatedWarp& warp) {
     const uint32_t warps_a_block = launch_.threads / 32;
     warp.block = to_come_.back() / warps_a_block;
@@ -142,7 +142,7 @@ void Machine::start_warp(EmulatedWarp& warp) {
     for (EmulatedLane& lane : warp.lanes) {
         forget_frames(lane.fiber);
         void** top = reinterpret_cast<void**>(lane.fiber.stack + lane.fiber.stack_bytes) - 8;
-        std::fill_n(top, 8, nullptr); // six registers, where to go, and an end to the chain of frames
+        std::fill_n(top, 8, nullptr); // six registers, the start address, and the end of the chain of frames
         top[6] = reinterpret_cast<void*>(&Machine::lane_main);
         lane.fiber.stack_pointer = top;
     }
@@ -165,21 +165,21 @@ void Machine::leave_lane(bool for_good) {
     Fiber& from = lane_->fiber;
     about_to_go(for_good ? nullptr : &from.fake_stack, main_);
     switch_stack(&from.stack_pointer, main_.stack_pointer);
-    std::abort(); // no warp continues it
+    std::abort(); // no warp continues this lane
 }
 
-/// Lets some lane go on, perhaps the one that runs. Returns when this one goes on.
+/// Resumes a random lane, possibly the running one. Returns when the caller resumes.
 void Machine::go_on() {
     EmulatedLane* next = choose_lane();
     if (next == nullptr) return leave_lane(false);
     if (next != lane_) switch_to(*next);
 }
 
-/// Nothing when there is a fault.
+/// Does nothing after a fault.
 EmulatedLane* Machine::choose_lane() {
     if (++steps_ > launch_.max_steps) fail("no end after " + std::to_string(launch_.max_steps) + " steps");
     if (!fault_.empty()) return nullptr;
-    // Only a warp's own lanes can let it go on, so one that cannot never will.
+    // Only a warp's own lanes can let it continue, so a warp that cannot continue never will.
     if (warp_ != nullptr && warp_->live != 0 && (warp_->ready | warp_->pending) == 0) {
         fail("no lane can go on");
         return nullptr;
@@ -205,7 +205,7 @@ std::string Machine::run(const EmulatedLaunch& launch, const std::function<void(
     lane::block_size.x = launch.threads;
     for (uint32_t w = 0; w < launch.blocks * (launch.threads / 32); ++w) {
         to_come_.push_back(w);
-        std::swap(to_come_.back(), to_come_[random_.below(w + 1)]); // in any order
+        std::swap(to_come_.back(), to_come_[random_.below(w + 1)]); // in random order
     }
     const std::size_t at_once = one_of({1, 2, 3, 5, kMaxWarps});
     for (std::size_t i = 0; i < at_once && !to_come_.empty(); ++i) start_warp(*slots_[i]);
@@ -259,7 +259,7 @@ uint64_t Machine::meet(const Meeting& meeting) {
     return lane.result;
 }
 
-/// All of `mask` have come.
+/// All lanes of `mask` have arrived.
 void Machine::hold_meeting(EmulatedWarp& warp, uint32_t mask) {
     uint32_t yes = 0;
     for_each_lane(mask, [&](unsigned k) { yes |= warp.lanes[k].meeting.value != 0 ? 1u << k : 0; });
@@ -318,7 +318,7 @@ void Machine::answer_active_mask(EmulatedWarp& warp) {
 }
 
 uint64_t meet(MeetingKind kind, uint32_t mask, uint64_t value, int source, const CodeLocation& at, void* frame) {
-    if (!machine().is_running()) std::abort(); // no lane calls
+    if (!machine().is_running()) std::abort(); // no lane is calling
     const Meeting meeting = {kind, mask, value, source, at, static_cast<void* const*>(frame)};
     return kind == MeetingKind::ActiveMask ? machine().wait_for_active_mask(meeting) : machine().meet(meeting);
 }
@@ -331,7 +331,7 @@ std::string run_warps(const EmulatedLaunch& launch, const std::function<void()>&
 
 namespace lane {
 
-// Each is a separate call, whose frame holds the caller's address.
+// Each function is a separate call, whose frame contains the caller's address.
 [[gnu::noinline]] uint32_t active_mask(CodeLocation at) {
     return static_cast<uint32_t>(meet(MeetingKind::ActiveMask, 0, 0, 0, at, __builtin_frame_address(0)));
 }

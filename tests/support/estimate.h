@@ -10,7 +10,7 @@
 namespace pertev::test {
 
 struct Estimate {
-    double mean = 0, error = 0, variance = 0; // error: the standard error of the mean; variance: of one draw
+    double mean = 0, error = 0, variance = 0; // `error` is the standard error of the mean, `variance` that of one draw
 };
 
 inline Estimate estimate(uint64_t count, const std::function<double()>& draw) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Flat lamps over a floor, and their form factors from points of it in closed form.
+// Flat emitters over a floor, and closed forms of their form factors from points of the floor.
 
 #include <cmath>
 #include <cstdint>
@@ -11,13 +11,13 @@ namespace pertev::test {
 
 inline constexpr double kPiInDouble = 3.141592653589793;
 
-/// Share of a surface's view that a parallel rectangle takes which has a corner above it, sides over its height.
+/// Returns the form factor of a parallel rectangle with a corner above the point; its sides are relative to its height.
 inline double corner_factor(double x, double y) {
     const double sx = std::sqrt(1 + x * x), sy = std::sqrt(1 + y * y);
     return (x / sx * std::atan(y / sx) + y / sy * std::atan(x / sy)) / (2 * kPiInDouble);
 }
 
-/// Form factor of a rectangle from -x to x and from -z to z, `height` above, seen from (at_x, at_z).
+/// Returns the form factor of a rectangle from -x to x and from -z to z at `height`, from the point (at_x, at_z).
 inline double rectangle_factor(double x, double z, double height, double at_x, double at_z) {
     double sum = 0;
     for (const double right : {x - at_x, x + at_x}) {
@@ -26,7 +26,7 @@ inline double rectangle_factor(double x, double z, double height, double at_x, d
     return sum;
 }
 
-/// Form factor of a disc around the axis, seen from a point `off` the axis.
+/// Returns the form factor of a disc around the axis, from a point at distance `off` from the axis.
 inline double disc_factor(double radius, double height, double off) {
     const double a = off * off, h = height * height, r = radius * radius;
     return 0.5 * (1 - (a + h - r) / std::sqrt((a + h + r) * (a + h + r) - 4 * a * r));

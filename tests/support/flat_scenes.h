@@ -1,6 +1,6 @@
 #pragma once
 
-// Scenes of a few flat sheets with closed-form pictures, and an orthographic camera above them.
+// Scenes of a few flat sheets whose pictures have closed forms, and an orthographic camera above them.
 
 #include "scene/scene.h"
 
@@ -21,7 +21,7 @@ inline void add(Scene& scene, Mesh mesh, const Material& material) {
         {"", static_cast<uint32_t>(scene.meshes.size() - 1), static_cast<uint32_t>(scene.materials.size() - 1), {}});
 }
 
-/// A sheet of side 2 `half` in the plane y = `height` about (0, height, 0), its front up.
+/// A sheet of side 2 `half` in the plane y = `height` about (0, height, 0) that faces up.
 inline Mesh floor_at(float height, float half) { return sheet({0, height, 0}, {0, 0, half}, {half, 0, 0}); }
 
 inline Material white(float albedo = 1) { return {{.base_color = grey(albedo)}, "white"}; }
@@ -39,7 +39,7 @@ inline Light point_light(Vec3 position, Rgb intensity) {
     return light;
 }
 
-/// A floor under a spot light that stands one metre above it and shines straight down.
+/// A floor under a spot light that is one metre above it and points straight down.
 inline Scene floor_under_spot() {
     Scene scene;
     add(scene, floor_at(0, 4), white(0.5f));
@@ -52,7 +52,7 @@ inline Scene floor_under_spot() {
     return scene;
 }
 
-/// A camera that looks straight down from `eye` without perspective; the picture's right is +x, its lower edge +z.
+/// An orthographic camera that looks straight down from `eye`; the picture's right is +x, its lower edge +z.
 inline Camera camera_down(Vec3 eye, float height) {
     Camera camera;
     camera.projection = Projection::Orthographic;

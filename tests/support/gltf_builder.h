@@ -1,6 +1,6 @@
 #pragma once
 
-// Small glTF files made by tests: binary data given as numbers, the rest as JSON text.
+// Small glTF files made by tests, from numbers for binary data and JSON text for the rest.
 
 #include <cstddef>
 #include <cstdint>
@@ -21,15 +21,15 @@ std::string base64(std::span<const std::byte> bytes);
 
 class GltfBuilder {
 public:
-    /// Appends numbers to the buffer (at a multiple of 4 bytes) and returns the index of a view of them. `members`:
-    /// further JSON members of the view, starting with a comma.
+    /// Appends numbers to the buffer (at a multiple of 4 bytes) and returns the index of a view of them. `members` are
+    /// additional JSON members of the view, starting with a comma.
     template <class T>
     int add_view(const std::vector<T>& numbers, const std::string& members = "") {
         return add_view_of_bytes(std::as_bytes(std::span(numbers)), members);
     }
     int add_view_of_bytes(std::span<const std::byte> bytes, const std::string& members = "");
-    /// A view of `count` elements of `stride` bytes that EXT_meshopt_compression holds in `bytes`. `members`: the
-    /// extension's mode and filter.
+    /// Adds a view of `count` elements of `stride` bytes, compressed by EXT_meshopt_compression into `bytes`.
+    /// `members` are the extension's mode and filter.
     int add_compressed_view(const std::vector<unsigned char>& bytes, std::size_t stride, std::size_t count,
                             const std::string& members);
 
@@ -41,12 +41,12 @@ public:
                             ",\"componentType\":" + std::to_string(component_type<T>()) + ",\"type\":\"" + type +
                             "\",\"count\":" + std::to_string(count) + members);
     }
-    /// An accessor from the members of its JSON object.
+    /// Adds an accessor with these members of its JSON object.
     int add_accessor(const std::string& members);
 
-    /// The document: `members` are its further top-level members, without the outer braces.
+    /// Returns the document. `members` are its other top-level members, without the outer braces.
     std::string json(const std::string& members) const;
-    /// The document as a GLB file.
+    /// Returns the document as a GLB file.
     std::vector<std::byte> glb(const std::string& members) const;
 
 private:
@@ -74,7 +74,7 @@ Scene read_gltf_text(const std::string& json);
 /// warning of something left out, without the part that names it; "" if there is neither. Other exceptions are passed
 /// on.
 std::string gltf_fault(const std::string& json);
-/// Returns whether a warning holds all of `parts`.
+/// Returns whether a warning contains all of `parts`.
 bool has_warning(const Messages& messages, const std::vector<std::string>& parts);
 
 } // namespace pertev::test

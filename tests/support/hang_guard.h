@@ -1,7 +1,7 @@
 #pragma once
 
-// Names work that does not finish: a hanging kernel leaves no other trace, because the test is killed from
-// outside.
+// Prints the name of work that does not finish. A hanging kernel leaves no other trace, because the test is killed
+// from outside.
 
 #include <chrono>
 #include <condition_variable>
@@ -28,7 +28,7 @@ public:
 private:
     std::mutex mutex_;
     std::condition_variable_any ended_;
-    std::jthread thread_; // last: it ends before what it waits by
+    std::jthread thread_; // last, so that the thread ends before its members
 };
 
 } // namespace pertev::test

@@ -30,11 +30,11 @@ InstancedScene make_instanced_scene(uint32_t ray_count) {
         const Vec3 axis = random.direction();
         const float w = random.within(-1, 1), sine = sqrt(1 - w * w);
         Transform place = make_rotation(sine * axis.x, sine * axis.y, sine * axis.z, w);
-        if (i % 5 == 0) place = Transform{}; // identity: exact, and ties with its neighbours
+        if (i % 5 == 0) place = Transform{}; // the identity is exact, and has ties with its neighbours
         if (i % 3 == 0) place = compose(place, make_scale({0.5f, random.within(0.01f, 4), -1}));
         if (i % 7 == 0) place = compose(place, make_scale({1e4f, 1e4f, 1e4f}));
         place = compose(make_translation(i % 5 == 0 ? Vec3{} : random.point(-3, 3)), place);
-        if (mesh == 2) place = compose(place, make_translation({-1000, 0, 1000})); // far from its own origin
+        if (mesh == 2) place = compose(place, make_translation({-1000, 0, 1000})); // far from the mesh's origin
         s.placed.push_back({place, s.trees[mesh].bounds, mesh, i * 3 + 1});
     }
     s.top = build_tlas(s.placed);

@@ -1,7 +1,7 @@
 #pragma once
 
-// A scene of instances that is hard on traversals: rotated, mirrored, squeezed, far from their local origins, some of
-// them identical, with or without a baked mesh among them; and its hits by brute force.
+// A scene of instances that are difficult for traversals: rotated, mirrored, flattened, far from their local origins,
+// some of them identical, with or without a baked mesh. It has the hits of brute force.
 
 #include <vector>
 
@@ -13,14 +13,14 @@ namespace pertev::test {
 
 struct InstancedScene {
     std::vector<std::vector<BvhTriangle>> meshes; // [InstanceRecord::blas]
-    std::vector<Bvh> trees;                       // trees of the meshes
+    std::vector<Bvh> trees;                       // the trees of the meshes
     std::vector<BvhTriangle> baked;
     Bvh baked_tree;
     std::vector<PlacedBvh> placed;
     Tlas top;
     std::vector<Ray> rays;
 
-    /// Makes a scene over views of the meshes' trees, which must outlive it, of any kind. `baked` may be empty.
+    /// Makes a scene over views of the meshes' trees of any kind, which must outlive it. `baked` may be empty.
     template <class Tree>
     SceneTrees<Tree> scene(const std::vector<Tree>& views, const Tree& baked_view = {}) const {
         return {baked_view, top.nodes.data(), top.instances.data(), views.data(), top.root, top.reach, top.growth};

@@ -1,6 +1,6 @@
 #pragma once
 
-// The combinations of the traversal laboratory that tests trace, and the check of its report.
+// The laboratory's combinations that tests trace, and the check of its report.
 
 #include <doctest/doctest.h>
 
@@ -11,7 +11,7 @@
 
 namespace pertev::test {
 
-/// All combinations on a device; brute force only for a small scene.
+/// Returns all combinations on a device, with brute force only for a small scene.
 inline LabSettings all_combinations(bool is_cuda, bool brute_force) {
     LabSettings settings;
     settings.structures.assign(kValuesOf<StructureKind>.begin(), kValuesOf<StructureKind>.end());
@@ -26,7 +26,7 @@ inline LabSettings all_combinations(bool is_cuda, bool brute_force) {
     return settings;
 }
 
-/// Checks that at least `least` combinations were traced and that none of them differs from the proven traversal.
+/// Tests that at least `least` combinations were traced and that none of them differs from the reference traversal.
 inline void check_report(const LabReport& report, uint64_t least = 40) {
     uint64_t checked = 0;
     for (const CombinationFigures& c : report.combinations) {

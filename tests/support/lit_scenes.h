@@ -1,6 +1,6 @@
 #pragma once
 
-// Scenes of emissive squares for the tests of light sampling, and a light set with all that its view points to.
+// Scenes of emissive squares for the tests of light sampling, and a light set with the data of its view.
 
 #include <array>
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace pertev::test {
 
 inline double as_double(float x) { return static_cast<double>(x); }
 
-/// Linear values of encoded bytes. They are linear on purpose: textures of the tests then mean the same with and
+/// Returns the linear values of encoded bytes. They are linear, so textures of the tests have the same values with and
 /// without is_srgb.
 inline std::array<float, 256> make_linear_table() {
     std::array<float, 256> table{};
@@ -22,7 +22,7 @@ inline std::array<float, 256> make_linear_table() {
 }
 inline const std::array<float, 256> kTable = make_linear_table();
 
-/// A scene's light set and everything that its view points to.
+/// A scene's light set and the data of its view.
 struct Lights {
     LightSetData data;
     std::vector<TextureImageView> images;
@@ -35,7 +35,8 @@ struct Lights {
     }
 };
 
-/// Square of side 2 in the plane y = 0 about the origin, facing -y, 2 n^2 triangles, (u, v) from (0, 0) to (1, 1).
+/// A square of side 2 in the plane y = 0 about the origin that faces -y, with 2 n^2 triangles and (u, v) from (0, 0) to
+/// (1, 1).
 inline Mesh make_square(uint32_t n) {
     Mesh mesh;
     for (uint32_t i = 0; i <= n; ++i) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// The shortest way to a tracer over a prepared scene, or over one tree.
+// Makes a tracer over a prepared scene, or over one tree.
 
 #include <memory>
 #include <vector>
@@ -12,7 +12,7 @@
 namespace pertev::test {
 
 using pertev::kBinaryTracer;
-/// The combination that pictures use: on a CPU eight boxes at a time.
+/// Returns the combination that pictures use; on a CPU it tests eight boxes at a time.
 inline constexpr Combination kSimdTracer = {.structure = StructureKind::Binned, .traversal = TraversalKind::Wide8Simd};
 
 inline Tracer make_tracer(Queue& queue, const PreparedScene& prepared, const Combination& combination = kBinaryTracer) {

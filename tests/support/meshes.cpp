@@ -39,7 +39,7 @@ TriangleMesh make_sphere(int subdivisions, Vec3 centre_m, float radius_m) {
 TriangleMesh make_torus(int segments, int sides) {
     TriangleMesh mesh;
     for (int i = 0; i < segments; ++i) {
-        // Uneven on purpose: large and small triangles are adjacent.
+        // The mesh is uneven: large and small triangles are adjacent.
         const float s = kTwoPi * square(static_cast<float>(i) / static_cast<float>(segments));
         for (int j = 0; j < sides; ++j) {
             const float r = kTwoPi * static_cast<float>(j) / static_cast<float>(sides);

@@ -22,14 +22,14 @@ struct TriangleMesh {
     Vec3 corner(uint32_t triangle, int k) const { return positions[indices[3 * triangle + static_cast<uint32_t>(k)]]; }
 };
 
-/// Icosahedron, each face cut in four `subdivisions` times, vertices on the sphere. Closed.
+/// A closed icosahedron whose faces are divided into four `subdivisions` times, with vertices on the sphere.
 TriangleMesh make_sphere(int subdivisions, Vec3 centre_m, float radius_m);
-/// Bumpy closed torus of 2 * segments * sides triangles of very uneven sizes.
+/// A closed, bumpy torus of 2 * segments * sides triangles of very different sizes.
 TriangleMesh make_torus(int segments, int sides);
 /// Reads only the vertices and faces of an OBJ file; polygons become fans.
 TriangleMesh read_obj_geometry(const std::filesystem::path& path);
 
-/// Triangles for builders; primitive ids in the mesh's order.
+/// Returns triangles for builders, with primitive ids in the mesh's order.
 std::vector<BvhTriangle> triangles_of(const TriangleMesh& mesh, uint32_t instance = 0);
 
 /// Tests every triangle by the result rule of docs/conventions.md, and stores a better hit in `best`.

@@ -24,7 +24,7 @@ std::optional<std::filesystem::path> test_scene(const std::filesystem::path& rel
 /// Returns whether test_scene() found nothing so far.
 bool scene_was_missing();
 
-/// A new empty folder, removed at exit.
+/// Returns a new empty folder, which is removed at exit.
 std::filesystem::path scratch_folder();
 
 } // namespace pertev::test

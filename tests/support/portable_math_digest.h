@@ -1,7 +1,7 @@
 #pragma once
 
-// One number per (function of portable_math.h or scalar.h, 32-bit input), on host and device: comparing a sum or hash
-// of these over all 2^32 inputs shows whether two compilers or devices compute one and the same function.
+// One number per function of portable_math.h or scalar.h and 32-bit input, on host and device. A sum or hash of these
+// over all 2^32 inputs shows whether two compilers or devices compute the same function.
 
 #include <cstdint>
 
@@ -52,7 +52,8 @@ HD inline const char* portable_function_name(int function) {
     return "";
 }
 
-/// A second argument for the functions of two: another float of like size for every fourth input, any bits otherwise.
+/// Returns the second argument for functions of two: another float of similar size for every fourth input, arbitrary
+/// bits otherwise.
 HD inline float portable_second_argument(uint32_t input) {
     uint32_t h = input * 0x9e3779b1u;
     h = (h ^ (h >> 15)) * 0x85ebca77u;
@@ -64,7 +65,8 @@ HD inline float portable_second_argument(uint32_t input) {
 /// Returns whether reciprocal_of_normal accepts x; for other inputs its value counts as 0.
 HD inline bool has_reciprocal(float x) { return abs(x) >= 0x1p-126f && abs(x) < 0x1p126f; }
 
-/// Bits of function(input as a float). sin_cos_2pi takes the input as a fraction of 2^32; its results are in
+/// Returns the bits of function(input as a float). sin_cos_2pi takes the input as a fraction of 2^32; its results are
+/// in
 /// [-1, 1]. The functions of two arguments take portable_second_argument() as the second.
 HD inline uint32_t portable_math_value(int function, uint32_t input) {
     const float x = float_of(input);
@@ -112,7 +114,7 @@ HD inline uint32_t portable_math_value(int function, uint32_t input) {
     return 0;
 }
 
-/// A sum that depends on every value but not on their order, so that it may be added up over any split of the inputs.
+/// A sum that depends on every value but not on their order, so it can be computed over any split of the inputs.
 HD inline uint64_t portable_math_term(uint32_t input, uint32_t value) {
     uint64_t h = (static_cast<uint64_t>(input) << 32 | value) * 0x9e3779b97f4a7c15u;
     h = (h ^ (h >> 29)) * 0xbf58476d1ce4e5b9u;

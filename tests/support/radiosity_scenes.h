@@ -11,7 +11,7 @@
 
 namespace pertev::test {
 
-/// The axis-parallel box from -`half` to `half` with its fronts inside, six sheets of `material`.
+/// The axis-parallel box from -`half` to `half` of six sheets of `material` that face inwards.
 inline Scene closed_box(const Material& material, float half = 1) {
     Scene scene;
     const Vec3 x = {half, 0, 0}, y = {0, half, 0}, z = {0, 0, half};
@@ -28,7 +28,7 @@ inline Material emitter_material(float reflectance, float radiance) {
     return {{.base_color = grey(reflectance), .emission = grey(radiance)}, "lamp"};
 }
 
-/// A scene with its patches.
+/// A scene and its patches.
 struct PatchedScene {
     PatchedScene(Scene made, float patch_size, Messages messages = {})
         : scene(std::move(made)), prepared(prepare_scene(scene, {}, messages)), solved(prepared),
@@ -43,7 +43,7 @@ struct PatchedScene {
         });
         return all;
     }
-    /// The form factor from side `side` of all of instance `from` to instance `to`.
+    /// Returns the form factor from side `side` of instance `from` to instance `to`.
     double factor(const std::vector<FormFactorRow>& rows, uint32_t from, uint32_t side, uint32_t to) const {
         double sum = 0, area = 0;
         for (std::size_t i = 0; i < rows.size(); ++i) {

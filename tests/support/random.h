@@ -1,9 +1,10 @@
 #pragma once
 
-// Random numbers for tests: a seed and an order of calls give the same numbers everywhere, which the distributions of
-// <random> do not promise.
+// Random numbers for tests. A seed and an order of calls give the same numbers everywhere, which the distributions of
+// <random> do not guarantee.
 //
-// Source: O'Neill, "PCG", 2014, RXS-M-XS with 32 bits of state: the period is 2^32, so no more than some 10^8 draws.
+// Source: O'Neill, "PCG", 2014, RXS-M-XS with 32 bits of state: the period is 2^32, so at most about 10^8 draws are
+// useful.
 
 #include <cmath>
 #include <cstdint>
@@ -23,9 +24,9 @@ public:
         const uint32_t w = ((state_ >> ((state_ >> 28) + 4)) ^ state_) * 277803737u;
         return (w >> 22) ^ w;
     }
-    /// A number in (0, 1).
+    /// Returns a number in (0, 1).
     float unit() { return (static_cast<float>(bits() >> 9) + 0.5f) * 0x1p-23f; }
-    /// A point of (0, 1)^2.
+    /// Returns a point of (0, 1)^2.
     Vec2 pair() {
         const float x = unit();
         return {x, unit()};
@@ -36,7 +37,7 @@ public:
         const float x = within(lo, hi), y = within(lo, hi);
         return {x, y, within(lo, hi)};
     }
-    /// A uniform point of the unit sphere.
+    /// Returns a uniform point on the unit sphere.
     Vec3 direction() {
         const float z = within(-1, 1), phi = kTwoPi * unit(), r = std::sqrt(max(0.0f, 1 - z * z));
         return {r * std::cos(phi), r * std::sin(phi), z};

@@ -27,7 +27,7 @@ Mesh square_mesh() {
     return mesh;
 }
 
-/// Eight by eight texels of two colours and two alphas.
+/// Returns eight by eight texels of two colours and two alphas.
 TextureImage checker_image() {
     TextureImage image;
     image.name = "checker";
@@ -65,9 +65,9 @@ void place(Scene& scene, uint32_t mesh, uint32_t material, Vec3 at, Vec3 scale) 
     scene.instances.push_back({"", mesh, material, compose(make_translation(at), make_scale(scale))});
 }
 
-/// A sheet of `mesh` standing upright, turned to the camera.
+/// An upright sheet of `mesh` that faces the camera.
 void stand(Scene& scene, uint32_t mesh, uint32_t material, Vec3 at, float size) {
-    const float half = 0.70710678f; // a quarter turn about x
+    const float half = 0.70710678f; // rotates by a quarter turn about x
     scene.instances.push_back(
         {"", mesh, material,
          compose(make_translation(at), compose(make_rotation(half, 0, 0, half), make_scale({size, size, size})))});
@@ -79,7 +79,7 @@ Scene make_mixed_scene() {
     Scene scene;
     scene.images.push_back(checker_image());
     for (int i = 0; i < 3; ++i) scene.meshes.push_back(i == 0 ? sphere_mesh(3) : square_mesh());
-    scene.meshes.push_back(sphere_mesh(2)); // used once: baked, as the two squares are not
+    scene.meshes.push_back(sphere_mesh(2)); // used once and thus baked, unlike the two squares
     scene.meshes.push_back(square_mesh());
 
     TextureRef checker{.image = 0, .is_srgb = true, .m00 = 3, .m11 = 3};
@@ -107,7 +107,7 @@ Scene make_mixed_scene() {
     place(scene, 1, emitter, {-0.5f, 4, -0.5f}, {0.6f, -1, 0.6f});
     stand(scene, 2, mask, {-1, 0.9f, 1}, 0.8f);
     stand(scene, 4, blend, {2.4f, 0.7f, 1.2f}, 0.5f);
-    stand(scene, 1, turned, {0.2f, 0.5f, 2}, -0.4f); // through the middle: its front then faces away from the camera
+    stand(scene, 1, turned, {0.2f, 0.5f, 2}, -0.4f); // mirrored, so that its front faces away from the camera
 
     scene.lights.push_back({.name = "point",
                             .kind = LightKind::Point,

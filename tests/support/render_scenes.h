@@ -1,6 +1,6 @@
 #pragma once
 
-// Scenes made by the tests, with something of everything a path can meet, and the shortest way to a picture of one.
+// Scenes for tests that have every kind of surface and light, and a function that renders one.
 
 #include <cstdint>
 
@@ -17,7 +17,7 @@ inline constexpr LightStrategy kLightStrategies[] = {LightStrategy::Mis, LightSt
 /// floor, a cut-out and a blended sheet, one that hides its back from the camera, an emissive quad that faces down, a
 /// point, a spot and a directional light.
 Scene make_mixed_scene();
-/// A camera that sees all of it.
+/// A camera that shows the whole scene.
 Camera mixed_scene_camera();
 
 /// A sphere of `albedo` with smooth normals, about the origin, radius 1, under an environment of radiance 1.
@@ -27,17 +27,17 @@ Queue make_cuda_queue(); // for tests under cuda_requested()
 /// Makes the queue of the GPU with --device cuda, otherwise of the CPU.
 Queue requested_queue();
 
-/// Renders a scene, for which it builds the trees.
+/// Builds the trees of a scene and renders it.
 RenderResult render(Queue& queue, const Scene& scene, const Camera& camera, const RenderSettings& settings,
                     const PrepareOptions& prepare = {});
 
-/// Mean of all numbers of a picture.
+/// Returns the mean of all numbers of a picture.
 double mean_of(const Image& picture);
 
 /// Settings of a small picture with layers, for comparing scenes before and after a change.
 RenderSettings layered_settings();
 
-/// Everything that a render shows: its picture, its layers and its ids.
+/// Hashes everything that a render shows: its picture, its layers and its ids.
 void add_picture(Hasher& hasher, const RenderResult& result);
 Hash128 render_hash(const RenderResult& result);
 

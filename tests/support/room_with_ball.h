@@ -1,6 +1,6 @@
 #pragma once
 
-// A room that is open to the camera, with a ball in it, for integrators that are compared with path tracing.
+// A room that is open to the camera and contains a ball. Integrators are compared with path tracing there.
 
 #include "tests/support/flat_scenes.h"
 #include "tests/support/meshes.h"
@@ -30,7 +30,7 @@ inline Scene room_with_ball(const Material& ball_material, const Material& floor
     return scene;
 }
 
-/// A camera that sees all of the room.
+/// A camera that shows the whole room.
 inline Camera room_camera() {
     Camera camera;
     camera.world_from_camera = look_at({0.4f, 1.1f, 3.6f}, {0, 0.9f, 0}, {0, 1, 0});

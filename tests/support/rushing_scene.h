@@ -10,7 +10,7 @@ namespace pertev::test {
 
 inline constexpr Shutter kHalfASecond = {-0.1, 0.4};
 
-/// The mixed scene, in which two spheres of one mesh, a lamp and a sheet go and turn. `moves`: or nothing does.
+/// The mixed scene, in which two spheres of one mesh, an emitter and a sheet move and turn if `moves`.
 inline Scene make_rushing_scene(bool moves = true) {
     Scene scene = make_mixed_scene();
     Messages messages;
@@ -39,7 +39,7 @@ inline Scene make_rushing_scene(bool moves = true) {
     return scene;
 }
 
-/// The mixed scene's, which goes to the right and turns.
+/// The camera of the mixed scene, which moves to the right and turns.
 inline Camera rushing_camera() {
     Camera camera = mixed_scene_camera();
     const Vec3 eye = camera.world_from_camera.translation;

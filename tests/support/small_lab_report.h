@@ -12,13 +12,13 @@ namespace pertev::test {
 inline constexpr TraversalOptions kNoRta = {.rta = false};
 inline constexpr TraversalOptions kFastTests = {.tests = TestKind::Fast};
 
-/// Figures of structure 0, with its own name.
+/// Returns the figures of structure 0.
 CombinationFigures figures(const Combination& c, std::vector<RunFigures> runs);
-/// Figures of a set whose runs all take `seconds`.
+/// Returns the figures of a set whose runs all take `seconds`.
 RunFigures timed(uint32_t set, double seconds);
 
-/// A report of a CPU with the sets primary, shadow and diffuse1, and two combinations: the default one with all figures
-/// (4 Mrays/s in each set), and one that was refused before any structure was built.
+/// Returns a report of a CPU with the sets primary, shadow and diffuse1 and two combinations: the default one with all
+/// figures (4 Mrays/s in each set), and one that was refused before any structure was built.
 LabReport small_report();
 
 bool has(const std::string& text, const std::string& part);

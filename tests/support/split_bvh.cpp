@@ -51,7 +51,7 @@ private:
             if (component(box.lo, axis) <= middle) parts[0].push_back(i);
             if (component(box.hi, axis) >= middle) parts[1].push_back(i);
         }
-        for (int k = 0; k < 2; ++k) { // an empty half is cut off
+        for (int k = 0; k < 2; ++k) { // an empty half is removed
             if (parts[k].empty()) return build(halves[1 - k], parts[1 - k], depth + 1);
         }
         const auto index = static_cast<uint32_t>(bvh_.nodes.size());

@@ -1,8 +1,8 @@
 #pragma once
 
-// A tree with spatial splits (Stich, Friedrich, Dietrich, HPG 2009) in the simplest form: each node cuts its cell in
-// the middle, and a triangle whose box reaches into both halves lies in both. Boxes are the cells, so hits on a
-// triangle lie outside of all but one of the leaves that hold it.
+// A tree with spatial splits (Stich, Friedrich, Dietrich, HPG 2009) in the simplest form: each node halves its cell,
+// and a triangle whose box overlaps both halves is in both. Boxes are the cells, so a hit on a triangle lies outside
+// all but one of the leaves that contain it.
 
 #include <vector>
 

@@ -7,7 +7,7 @@ namespace pertev::test {
 namespace {
 
 std::vector<BvhTriangle> grid_with_doubles() {
-    // An axis-aligned lattice of quads, each triangle there twice: every hit is a tie, every box is flat.
+    // An axis-aligned lattice of quads in which each triangle occurs twice: every hit is a tie, and every box is flat.
     std::vector<BvhTriangle> triangles;
     for (int axis = 0; axis < 3; ++axis) {
         for (int k = -3; k <= 3; ++k) {
@@ -47,7 +47,7 @@ std::vector<BvhTriangle> coincident(uint32_t count) {
     return triangles;
 }
 
-/// A thousand times longer than wide, in every direction.
+/// Slivers a thousand times longer than wide, in every direction.
 std::vector<BvhTriangle> slivers(uint32_t count) {
     std::vector<BvhTriangle> triangles;
     Random random(7);
@@ -62,7 +62,7 @@ std::vector<BvhTriangle> slivers(uint32_t count) {
     return triangles;
 }
 
-/// Triangles one behind the other, so that a split at the spatial median separates few.
+/// Triangles in a line, so that a split at the spatial median separates few.
 std::vector<BvhTriangle> in_a_line(uint32_t count) {
     std::vector<BvhTriangle> triangles;
     for (uint32_t i = 0; i < count; ++i) {
@@ -89,7 +89,7 @@ std::vector<BvhTriangle> make_soup(uint32_t count, float away) {
         BvhTriangle t;
         t.a = at + random.point(-size, size);
         t.b = at + random.point(-size, size);
-        t.c = i % 11 == 0 ? t.a : at + random.point(-size, size); // some without area
+        t.c = i % 11 == 0 ? t.a : at + random.point(-size, size); // some have no area
         t.primitive = i / 2, t.instance = i % 2;
         triangles.push_back(t);
     }
@@ -125,7 +125,7 @@ std::vector<Ray> stress_rays(uint32_t count, const StressMesh& mesh, uint32_t se
         if (i % 16 == 2) ray.direction = {0.0f, -0.0f, random.unit() < 0.5f ? 1.0f : -1.0f};
         if (i % 16 == 6) ray.direction = {1.0f, 0x1p-140f, -0x1p-90f};
         if (i % 5 == 1 && !mesh.triangles.empty()) ray.direction = triangle().b - ray.origin;
-        if (i % 20 == 3 && !mesh.triangles.empty()) { // along an edge
+        if (i % 20 == 3 && !mesh.triangles.empty()) { // the ray runs along an edge
             const BvhTriangle& t = triangle();
             ray.direction = t.b - t.a;
             ray.origin = t.a - 2 * ray.direction;

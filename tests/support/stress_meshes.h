@@ -1,6 +1,7 @@
 #pragma once
 
-// Meshes and rays that break structures and traversals: ties, slivers, flat boxes, huge coordinates, rays along planes.
+// Meshes and rays that are difficult for structures and traversals: ties, slivers, flat boxes, huge coordinates, rays
+// along planes.
 
 #include <cstdint>
 #include <string>
@@ -16,21 +17,21 @@ struct StressMesh {
     const char* name;
     std::vector<BvhTriangle> triangles; // (instance, primitive) pairs are unique unless the name says otherwise
     Vec3 centre;
-    float extent = 1; // rays start within 4 of these of the centre, metres
+    float extent = 1; // in metres; rays start within 4 extents of the centre
 };
 
-/// Triangles of random sizes around (away, 0, -away), some without area.
+/// Returns triangles of random sizes around (away, 0, -away), some without area.
 std::vector<BvhTriangle> make_soup(uint32_t count, float away);
 
-/// A lattice of doubled quads, coincident triangles, long slivers, soups at the origin and 150 km away, huge
-/// coordinates, `line` triangles in a line, a torus, one triangle, nothing.
+/// Returns a lattice of doubled quads, coincident triangles, long slivers, soups at the origin and 150 km away, huge
+/// coordinates, `line` triangles in a line, a torus, one triangle, and an empty mesh.
 std::vector<StressMesh> stress_meshes(uint32_t line = 3000);
 
-/// Rays at random, at vertices, along edges, axes and planes of boxes, through lattice points, with components near 0,
-/// and with short t ranges.
+/// Returns random rays, rays at vertices, along edges, axes and planes of boxes, through lattice points, with
+/// components near 0, and with short t ranges.
 std::vector<Ray> stress_rays(uint32_t count, const StressMesh& mesh, uint32_t seed);
 
-/// A ray as hex floats.
+/// Returns a ray as hex floats.
 std::string text_of(const Ray& ray);
 
 } // namespace pertev::test

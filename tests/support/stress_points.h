@@ -1,7 +1,7 @@
 #pragma once
 
-// Sets of points that break searches: ties, duplicates, planes, lattices, all at one position, none. It also has a
-// brute-force search.
+// Sets of points that are difficult for searches: ties, duplicates, planes, lattices, all points at one position, and
+// no points. It also has a brute-force search.
 
 #include <algorithm>
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace pertev::test {
 struct StressPoints {
     const char* name;
     std::vector<Vec3> points;
-    float extent = 1; // query points are within 2 of these of 0
+    float extent = 1; // query points are within 2 extents of 0
 };
 
 inline std::vector<StressPoints> stress_points(uint32_t count) {
@@ -39,7 +39,7 @@ inline std::vector<StressPoints> stress_points(uint32_t count) {
         const auto snap = [](float x) { return floor(4 * x + 0.5f) * 0.25f; };
         sets[3].points.push_back({0.25f, -0.5f, 0.75f});
         sets[4].points.push_back(p);
-        sets[5].points.push_back({snap(p.x), snap(p.y), snap(p.z)}); // each many times
+        sets[5].points.push_back({snap(p.x), snap(p.y), snap(p.z)}); // each point occurs many times
         sets[6].points.push_back({p.x, i % 2 ? 0.0f : -0.0f, p.z});
         sets[7].points.push_back({0.5f, p.y, 0.5f});
         sets[8].points.push_back(0x1p40f * p);
@@ -49,7 +49,7 @@ inline std::vector<StressPoints> stress_points(uint32_t count) {
     return sets;
 }
 
-/// Positions near and far, at points, and on lattice planes.
+/// Returns positions near and far, at points, and on lattice planes.
 inline std::vector<Vec3> query_points(const StressPoints& set, uint32_t count) {
     std::vector<Vec3> places;
     Random random(8);
@@ -79,9 +79,9 @@ inline std::vector<NearPoint> within_by_brute_force(const std::vector<Vec3>& poi
     return found;
 }
 
-inline const float kRadii[] = {0, 1e-6f, 0.1f, 0.25f, 0.5f, 1, 4, -1, kInfinity}; // times the extent
+inline const float kRadii[] = {0, 1e-6f, 0.1f, 0.25f, 0.5f, 1, 4, -1, kInfinity}; // in multiples of the extent
 
-/// Checks both searches of a tree over `set` against brute force.
+/// Compares both searches of a tree over `set` with brute force.
 template <class View>
 std::string find_wrong_search(const View& view, const StressPoints& set, uint32_t places) {
     const auto n = static_cast<uint32_t>(set.points.size());

@@ -59,7 +59,7 @@ void run_stage_of(Queue& queue, const Stage& stage, const TraversalBatch& batch)
     if constexpr (!kPersistent) launch(queue, "trace", batch.count, stage);
 }
 
-/// The one of TraversalTrees or TraversalScenes that the traversal is for.
+/// Returns the member of TraversalTrees or TraversalScenes for the traversal.
 template <class Traversal>
 const auto& pick(const auto& trees) {
     if constexpr (std::is_same_v<typename Traversal::Tree, CompressedBvhView>) {

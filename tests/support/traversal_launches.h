@@ -14,12 +14,12 @@
 
 namespace pertev::test {
 
-/// Device pointers. Of an any-hit search a hit's instance is 0 or kNoHit and the rest is as of a new Hit.
+/// Device pointers. In an any-hit search a hit's instance is 0 or kNoHit, and the rest is that of a new Hit.
 struct TraversalBatch {
     const Ray* rays;
     Hit* hits;
     uint32_t count;
-    uint32_t* pool; // one number, 0
+    uint32_t* pool; // one counter, 0 at first
 };
 
 /// Trees over the same triangles.
@@ -37,12 +37,12 @@ struct TraversalLaunch {
     const char* distribution;
     bool rta, near_first, any;
     void (*run)(Queue&, const TraversalTrees&, const TraversalBatch&);        // one tree
-    void (*run_scene)(Queue&, const TraversalScenes&, const TraversalBatch&); // null: not for scenes
+    void (*run_scene)(Queue&, const TraversalScenes&, const TraversalBatch&); // null if scenes are not supported
 };
 /// Returns the launches of all traversals on a device; on a CPU only with one ray per thread.
 std::vector<TraversalLaunch> traversal_launches(bool on_cuda);
 
-/// A launch that counts the lanes of closest-hit searches by while-while with all switches on.
+/// Counts the lanes of closest-hit searches by while-while with all switches on.
 using LaneLaunch = void (*)(Queue&, const BvhView&, const TraversalBatch&, LaneCounts*);
 std::vector<LaneLaunch> lane_launches(bool on_cuda);
 

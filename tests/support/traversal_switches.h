@@ -21,8 +21,8 @@ inline bool is_switched_on(const TraversalOptions& options) {
     return options.rta && options.near_first && options.rta_at_pops;
 }
 
-/// Returns whether every traversal is traced over it with every switch. Trees of the other builders are traversed by
-/// the same code as those with spatial splits, so that with them most switches need no test of their own.
+/// Returns whether every traversal is tested over the structure with every switch. Trees of the other builders are
+/// traversed by the same code as those with spatial splits, so most switches need no separate test.
 inline bool is_first_tree(StructureKind structure) {
     return structure == StructureKind::SpatialSplits || !builder_of(structure);
 }

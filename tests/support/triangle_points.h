@@ -13,7 +13,7 @@ struct TrianglePoint {
     double at[3];
 };
 
-/// Point k of the lattice with 7 points per side, exact up to a few roundings of a double.
+/// Returns point k of the lattice with 7 points per side, exact up to a few roundings of a double.
 inline TrianglePoint triangle_point(const BvhTriangle& t, int k) {
     int row = 0;
     while (k > row) k -= ++row; // row r has r + 1 points

@@ -1,6 +1,6 @@
 #pragma once
 
-// Small input files written by the test itself.
+// Small input files that tests write.
 
 #include <filesystem>
 #include <fstream>

@@ -17,7 +17,7 @@ namespace {
 
 enum InstanceIndex : uint32_t { kSolid, kMasked, kBlended, kTinted, kInstances };
 
-/// Four squares of two triangles: opaque; cut out by a texture, opaque left and clear right; blended at 0.3; blended at
+/// Four squares of two triangles: opaque; cut out by a texture that is opaque on the left; blended at 0.3; blended at
 /// 0.8 with vertex colours of alpha 1 on the left and 0 on the right.
 struct AlphaScene {
     AlphaScene() : device(queue, prepare()) {}
@@ -43,7 +43,7 @@ struct AlphaScene {
         return prepare_scene(scene, {}, messages);
     }
 
-    /// Share of `count` paths whose ray is stopped at barycentrics (u, v) of the instance's first triangle.
+    /// Returns the share of `count` paths whose ray stops at barycentrics (u, v) of the instance's first triangle.
     double stopped(uint32_t instance, float u, float v, uint32_t count = 20'000) const {
         uint32_t hits = 0;
         for (uint32_t key = 0; key < count; ++key)
@@ -95,7 +95,7 @@ TEST_CASE("the random decision at a blended surface is a function of path, insta
         const AcceptHit accept{test.device.view(), {}, {}, key};
         const bool first = accept(kBlended, 0, 0.3f, 0.3f);
         other_primitive += first != accept(kBlended, 1, 0.3f, 0.3f);
-        other_place += first != accept(kBlended, 0, 0.1f, 0.6f); // equal alpha there, thus the same coin
+        other_place += first != accept(kBlended, 0, 0.1f, 0.6f); // has the same alpha, but another random decision
     }
     CHECK(other_primitive > 300);
     CHECK(other_place == 0);
@@ -133,7 +133,7 @@ Mesh triangle_of_alpha(float a, float b, float c) {
     return mesh;
 }
 
-/// The share of the triangle where the surface stops rays.
+/// Returns the share of the triangle where the surface stops rays.
 double share_stopped(const OneSurface& surface, uint32_t places = 20'000) {
     test::Random random(3);
     uint32_t stopped = 0;
@@ -151,18 +151,18 @@ TEST_CASE("a cut-out stops rays where the alpha of vertices equals the cutoff") 
         const Material masked = {{.alpha_mode = AlphaMode::Mask, .alpha_cutoff = alpha}};
         CAPTURE(alpha);
         CHECK(share_stopped({triangle_of_alpha(alpha, alpha, alpha), masked}) == 1);
-        // A step of 16 bits less is less.
+        // The next smaller 16-bit alpha is below the cutoff.
         const float less = alpha - 1.0f / 65535;
         CHECK(share_stopped({triangle_of_alpha(less, less, less), masked}) == 0);
     }
-    // Products that are less than the cutoff when they are rounded: 0.7 x 0.7 and 0.9 x 0.9.
+    // The rounded products 0.7 x 0.7 and 0.9 x 0.9 are less than the cutoff.
     CHECK(0.7f * 0.7f < 0.49f);
     CHECK(share_stopped({triangle_of_alpha(0.7f, 0.7f, 0.7f),
                          {{.alpha_mode = AlphaMode::Mask, .alpha = 0.7f, .alpha_cutoff = 0.49f}}}) == 1);
     CHECK(0.9f * 0.9f < 0.81f);
     CHECK(share_stopped({triangle_of_alpha(0.9f, 0.9f, 0.9f),
                          {{.alpha_mode = AlphaMode::Mask, .alpha = 0.9f, .alpha_cutoff = 0.81f}}}) == 1);
-    // A cutoff above 1 hides all, however little it is above.
+    // A cutoff that is barely above 1 hides everything.
     CHECK(share_stopped({triangle_of_alpha(1, 1, 1), {{.alpha_mode = AlphaMode::Mask, .alpha_cutoff = 1.0000001f}}}) ==
           0);
 }
@@ -198,7 +198,7 @@ Mesh fan(uint32_t sides, test::Random& random) {
     Mesh mesh;
     for (uint32_t i = 0; i < sides; ++i) {
         const Vec3 corners[3] = {{0, i % 2 == 0 ? 0.0f : -0.0f, 0}, rim[i], rim[(i + 1) % sides]};
-        for (uint32_t k = 0; k < 3; ++k) { // each triangle begins with another of its corners
+        for (uint32_t k = 0; k < 3; ++k) { // the triangles begin with different corners
             mesh.indices.push_back(static_cast<uint32_t>(mesh.positions.size()));
             mesh.positions.push_back(corners[(i + k) % 3]);
         }
@@ -206,7 +206,7 @@ Mesh fan(uint32_t sides, test::Random& random) {
     return mesh;
 }
 
-/// The triangles of the mesh that a ray along -z meets at (x, y), and where.
+/// Returns the triangles of the mesh that a ray along -z hits at (x, y), with the position on each.
 struct Met {
     uint32_t primitive;
     float u, v;
@@ -246,7 +246,7 @@ TEST_CASE("triangles of a blended surface that a ray meets on a common edge or c
         REQUIRE(middle.size() == sides);
         ++at_corners;
         stop_alike(middle);
-        // Halfway to a rim's vertex is exactly on the edge that leads there.
+        // The point halfway to a vertex of the rim lies exactly on the edge to that vertex.
         for (uint32_t i = 0; i < mesh.positions.size(); ++i) {
             const Vec3 half = 0.5f * mesh.positions[i];
             const std::vector<Met> met = triangles_met(mesh, half.x, half.y);

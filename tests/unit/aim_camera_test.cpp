@@ -1,4 +1,4 @@
-// Default targets and focus distances of a camera.
+// The default target and focus distance of a camera.
 
 #include <doctest/doctest.h>
 
@@ -8,7 +8,7 @@ using namespace pertev;
 
 namespace {
 
-/// Two upright squares, 2 m wide, at z = 0 and, moved and turned round by its instance, at z = -3.
+/// Two upright squares, 2 m wide: one at z = 0, and one whose instance turns it round and moves it to z = -3.
 Scene make_two_sheets() {
     Scene scene;
     Mesh mesh;
@@ -23,7 +23,7 @@ Scene make_two_sheets() {
 
 } // namespace
 
-TEST_CASE("an eye without a target looks at the middle of the scene, and from the middle along its length") {
+TEST_CASE("an eye without a target looks at the scene's centre, and from the centre along the scene") {
     const Scene scene = make_two_sheets();
     const Target far = target_from(scene, {5, 6, 7});
     CHECK(far.is_middle);
@@ -33,7 +33,7 @@ TEST_CASE("an eye without a target looks at the middle of the scene, and from th
     CHECK(near.position == Vec3{0, 1, -3});
 }
 
-TEST_CASE("the distance in the middle of the picture is that of the nearest surface") {
+TEST_CASE("the distance at the picture's centre is that of the nearest surface") {
     const Scene scene = make_two_sheets();
     Camera camera;
     camera.world_from_camera = look_at({0.3f, 1, 4}, {0.3f, 1, 0}, {0, 1, 0});
@@ -46,7 +46,7 @@ TEST_CASE("the distance in the middle of the picture is that of the nearest surf
     CHECK(!distance_in_the_middle(scene, camera).has_value());
 }
 
-TEST_CASE("hidden backs do not count as the surface in the middle of the picture") {
+TEST_CASE("hidden backs do not count as the surface at the picture's centre") {
     Scene scene = make_two_sheets();
     scene.instances[1].world_from_local = make_translation({0, 0, -3}); // both face +z
     Camera camera;
@@ -54,11 +54,12 @@ TEST_CASE("hidden backs do not count as the surface in the middle of the picture
     CHECK(distance_in_the_middle(scene, camera).value() == doctest::Approx(2));
     scene.materials[0].double_sided = false;
     CHECK(!distance_in_the_middle(scene, camera).has_value());
-    scene.instances[0].world_from_local = make_rotation(0, 1, 0, 0); // the far one turns its front
+    scene.instances[0].world_from_local = make_rotation(0, 1, 0, 0); // the front of the far square faces the camera
     CHECK(distance_in_the_middle(scene, camera).value() == doctest::Approx(5));
-    scene.instances[1].world_from_local = compose(make_translation({0, 0, -3}), make_scale({-1, 1, 1})); // still a back
+    scene.instances[1].world_from_local =
+        compose(make_translation({0, 0, -3}), make_scale({-1, 1, 1})); // the near square still shows its back
     CHECK(distance_in_the_middle(scene, camera).value() == doctest::Approx(5));
-    scene.materials.emplace_back(); // its own material, whose back is visible
+    scene.materials.emplace_back(); // gets its own material, whose back is visible
     scene.instances[1].material = 1;
     CHECK(distance_in_the_middle(scene, camera).value() == doctest::Approx(2));
 }

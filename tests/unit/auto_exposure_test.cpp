@@ -13,7 +13,7 @@ namespace {
 
 constexpr ToneMap kAll[] = {ToneMap::Srgb, ToneMap::Agx, ToneMap::Aces, ToneMap::Neutral};
 
-/// 160 x 80 grey pixels, each as `value(x, y)` says.
+/// Returns 160 x 80 grey pixels with the values value(x, y).
 template <class Value>
 Image picture(Value value) {
     Image image{160, 80, 3, {}};
@@ -25,7 +25,7 @@ Image picture(Value value) {
 
 float stops_of(const Image& image, ToneMap tone_map = ToneMap::Agx) { return auto_exposure_stops(image, tone_map); }
 
-/// Share of the pixels that come out white.
+/// Returns the share of pixels that are displayed as white.
 double burnt_share(const Image& image, ToneMap tone_map, float stops) {
     const Rgba8Image shown = tone_map_image(image, tone_map, stops);
     std::size_t burnt = 0;
@@ -67,7 +67,7 @@ TEST_CASE("a few very bright pixels clip at most 0.5 % of the picture") {
         for (const ToneMap tone_map : kAll) {
             const float stops = stops_of(image, tone_map);
             CHECK(burnt_share(image, tone_map, stops) <= 0.005);
-            CHECK(burnt_share(image, tone_map, stops + 0.5f) > 0.005); // and no darker than that
+            CHECK(burnt_share(image, tone_map, stops + 0.5f) > 0.005); // the exposure is not lower than necessary
         }
     }
     const Image sparks = picture([](uint32_t x, uint32_t y) { return x == 7 && y < 60 ? 1e6f : 0.18f; }); // 0.47 %
@@ -84,7 +84,7 @@ TEST_CASE("paint keeps its colour: its largest channel stays below 0.8 except in
         for (const ToneMap tone_map : kAll) {
             const float largest = max_component(paint), stops = stops_of(image, tone_map);
             CHECK(pertev::tone_map(grey(largest), tone_map, exposure_scale(stops)).g <= 0.801f);
-            CHECK(stops > -2); // and is not dark for it
+            CHECK(stops > -2); // the picture is not darkened for it
         }
     }
 }
@@ -102,7 +102,7 @@ TEST_CASE("the middle of the picture weighs more in the mean than a pale backgro
 }
 
 TEST_CASE("an object that fills a tenth of the picture clips no more than one that fills the whole picture") {
-    Image image{160, 80, 4, {}}; // bright: 4.7 % of the thing, 0.47 % of the picture
+    Image image{160, 80, 4, {}}; // 4.7 % of the object, which is 0.47 % of the picture, is bright
     for (uint32_t i = 0; i < 160 * 80; ++i) {
         const uint32_t x = i % 160;
         const bool is_thing = x >= 72 && x < 88;
@@ -115,7 +115,7 @@ TEST_CASE("an object that fills a tenth of the picture clips no more than one th
 TEST_CASE("pixels without alpha do not count, and partly covered pixels count in part") {
     Image image{160, 80, 4, {}};
     for (uint32_t i = 0; i < 160 * 80; ++i) {
-        const bool is_emitter = i % 160 >= 40, is_edge = i % 160 == 39; // half covered, its light is half as much
+        const bool is_emitter = i % 160 >= 40, is_edge = i % 160 == 39; // a half-covered pixel has half the light
         const float light = is_emitter ? 1000.0f : (is_edge ? 0.5f : 1.0f) * 0.72f;
         image.pixels.insert(image.pixels.end(), {light, light, light, is_emitter ? 0.0f : (is_edge ? 0.5f : 1.0f)});
     }

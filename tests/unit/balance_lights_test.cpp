@@ -9,7 +9,7 @@ using namespace pertev;
 
 namespace {
 
-/// A box of side 2 about the origin, seen from inside and outside; without the lid where it is open.
+/// A box of side 2 about the origin, visible from inside and outside. An open box has no lid.
 Mesh make_box(bool is_open) {
     Mesh mesh;
     for (int i = 0; i < 8; ++i) {
@@ -20,7 +20,7 @@ Mesh make_box(bool is_open) {
     return mesh;
 }
 
-/// A box with a lamp of this radiance in it, under a sky of radiance 1; the camera may be anywhere.
+/// A box that contains an emitter of this radiance, under a sky of radiance 1. The camera can be anywhere.
 double far_share_of(bool is_open, float emitter_radiance, float scale = 1) {
     Scene scene;
     Mesh emitter = make_box(false);
@@ -42,8 +42,8 @@ double far_share_of(bool is_open, float emitter_radiance, float scale = 1) {
 } // namespace
 
 TEST_CASE("kinds of lights separated by a wall are balanced by the surfaces that they light") {
-    // Half of the points lie outside of the box, where only the sky gives light, the others inside, with the lamp;
-    // both need enough samples.
+    // Half of the points are outside the box, where only the sky gives light. The others are inside, with the emitter.
+    // Both need enough samples.
     for (const float radiance : {30.0f, 300.0f}) {
         const double share = far_share_of(false, radiance);
         CAPTURE(radiance);

@@ -1,5 +1,5 @@
-// The order in which samples begin: each sample of each pixel once, those of a pixel together, and samples in flight
-// form an approximate square.
+// The order in which samples begin: each sample of each pixel begins once, samples of a pixel are consecutive, and
+// samples in flight form an approximate square.
 
 #include <doctest/doctest.h>
 

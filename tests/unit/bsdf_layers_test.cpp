@@ -1,4 +1,4 @@
-// Numbers of layers on a BSDF. Their reflection is tested in tests/statistical/bsdf_sampling_test.cpp.
+// The number of layers on a BSDF. tests/statistical/bsdf_sampling_test.cpp tests their reflection.
 
 #include "shading/bsdf.h"
 

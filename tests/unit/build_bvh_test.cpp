@@ -81,7 +81,7 @@ std::vector<NamedTriangles> hard_inputs() {
                             [](uint32_t i) {
                                 return Vec3{0, static_cast<float>(i), 0};
                             })},
-            {"each twice as far as the last", // cuts by cost peel off one box at a time
+            {"each twice as far as the last", // the SAH separates one box at a time
              points(160,
                     [](uint32_t i) {
                         return Vec3{float_of((i + 7) << 23), 0, 0};
@@ -113,7 +113,7 @@ TEST_CASE("every tree is valid for all triangles and settings") {
             CHECK(bvh.nodes.size() < std::max<std::size_t>(input.triangles.size(), 1));
             CHECK(is_finite(bvh.sah_cost));
 
-            // Equal triangles in another order.
+            // Builds over the triangles in another order.
             const auto key = [](const BvhTriangle& t) { return std::tuple(t.primitive, t.a.x, t.b.y, t.c.z); };
             REQUIRE(bvh.triangles.size() == input.triangles.size());
             std::vector<BvhTriangle> sorted = bvh.triangles;
@@ -128,7 +128,7 @@ TEST_CASE("every tree is valid for all triangles and settings") {
 
 TEST_CASE("the builder keeps flags that it does not own") {
     std::vector<BvhTriangle> triangles = random_triangles(100, 0.1f, 1);
-    for (BvhTriangle& t : triangles) t.flags = (t.primitive << 1) | kLastInLeaf; // left over from another tree
+    for (BvhTriangle& t : triangles) t.flags = (t.primitive << 1) | kLastInLeaf; // a flag of an earlier tree
     const Bvh bvh = build_bvh(triangles);
     CHECK(!find_fault(bvh));
     for (const BvhTriangle& t : bvh.triangles) CHECK((t.flags >> 1) == t.primitive);

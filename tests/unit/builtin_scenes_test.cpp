@@ -43,7 +43,7 @@ TEST_CASE("the Cornell box is read without a warning, and its surfaces are Lambe
     const Material& light = scene.materials[instance_named(scene, "light").material];
     CHECK(light.is_emissive());
     CHECK(light.emission.r > light.emission.g);
-    CHECK(light.emission.g > light.emission.b); // a warm lamp
+    CHECK(light.emission.g > light.emission.b); // the emitter is warm white
 }
 
 TEST_CASE("in the Cornell box the red wall is on the camera's left and the green one on its right") {

@@ -1,5 +1,5 @@
-// Every builder of the laboratory gives, on degenerate meshes, a valid tree that does not depend on threads and in
-// which traversals find the hits of brute force; and its SAH cost is as good as published.
+// Every builder of the laboratory makes a valid tree of degenerate meshes, which does not depend on threads.
+// Traversals of it find the hits of brute force, and its SAH cost is as good as published.
 
 #include "accel/builders/builders.h"
 
@@ -29,7 +29,7 @@ std::optional<std::string> fault_of(BvhBuilder builder, const Bvh& bvh, const st
     if (cuts_triangles(builder)) return find_split_fault(bvh, mesh);
     if (bvh.triangles.size() != mesh.size()) return "not as many triangles as the mesh";
     const auto fault = find_fault(bvh);
-    return fault ? fault : find_split_fault(bvh, mesh); // that each is one of the mesh's
+    return fault ? fault : find_split_fault(bvh, mesh); // each must be a triangle of the mesh
 }
 
 } // namespace
@@ -90,7 +90,7 @@ TEST_CASE("no builder's tree exceeds the traversals' depth, however long the lin
         if (std::string_view(mesh.name) == "a line") line = std::move(mesh.triangles);
     }
     REQUIRE(!line.empty());
-    std::vector<BvhTriangle> doubling; // cuts by cost, and clusters, peel off one triangle at a time
+    std::vector<BvhTriangle> doubling; // the SAH and clustering separate one triangle at a time
     for (uint32_t i = 0; i < 250; ++i) {
         const Vec3 p = {float_of((i / 2 + 30) << 23), 0, 0};
         doubling.push_back({p, i, p, 0, {p.x, p.x, p.x}, 0});
@@ -103,7 +103,7 @@ TEST_CASE("no builder's tree exceeds the traversals' depth, however long the lin
             if (effort(0, 1))
                 MESSAGE(std::string(name_of(builder)), ": ", triangles->size(), " triangles, depth ", bvh.depth, ", ",
                         time.seconds(), " s");
-            const auto fault = fault_of(builder, bvh, *triangles); // also holds the depth to kMaxBvhDepth
+            const auto fault = fault_of(builder, bvh, *triangles); // also checks that the depth is at most kMaxBvhDepth
             CHECK_MESSAGE(!fault, fault.value_or(""));
         }
     }
@@ -126,13 +126,13 @@ TEST_CASE("a chain of clusters that is too deep is flattened to the traversals' 
     CHECK_MESSAGE(!fault, fault.value_or(""));
     CHECK(bvh.depth == kMaxBvhDepth);
     CHECK(bvh.triangles.size() == triangles.size());
-    uint32_t levels = 0; // that peel off one triangle, as the chain does
+    uint32_t levels = 0; // levels that separate one triangle, as in the chain
     for (uint32_t at = bvh.root; (bvh.nodes[at].child[0] & kLeafBit) || (bvh.nodes[at].child[1] & kLeafBit); ++levels) {
         at = bvh.nodes[at].child[bvh.nodes[at].child[0] & kLeafBit ? 1 : 0];
     }
     CHECK(levels == static_cast<uint32_t>(kMaxBvhDepth - levels_needed(5000)));
 
-    limit_depth(chain, levels_needed(5000)); // the least that holds them
+    limit_depth(chain, levels_needed(5000)); // the smallest depth that holds them
     CHECK(make_bvh(chain, triangles, {.max_leaf = 1}).depth == levels_needed(5000));
 }
 
@@ -148,13 +148,13 @@ TEST_CASE("any number of coincident triangles neither stalls a builder nor makes
         const Bvh bvh = build_bvh(builder, triangles);
         const auto fault = fault_of(builder, bvh, triangles);
         CHECK_MESSAGE(!fault, fault.value_or(""));
-        CHECK(bvh.depth <= (builder == BvhBuilder::Insertion ? 45 : 21)); // by chance, so twice the logarithm
+        CHECK(bvh.depth <= (builder == BvhBuilder::Insertion ? 45 : 21)); // random splits can need twice the logarithm
     }
 }
 
 TEST_CASE("a builder keeps other owners' flags and resets its own") {
     std::vector<BvhTriangle> triangles = make_soup(500, 0);
-    for (BvhTriangle& t : triangles) t.flags = (t.primitive << 1) | kLastInLeaf; // left over from another tree
+    for (BvhTriangle& t : triangles) t.flags = (t.primitive << 1) | kLastInLeaf; // a flag of an earlier tree
     for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {
         CAPTURE(name_of(builder));
         const Bvh bvh = build_bvh(builder, triangles);
@@ -249,7 +249,7 @@ TEST_CASE("both parts of a split triangle together contain all of its points, an
             if (!p.is_in(parts.left, slack) && !p.is_in(parts.right, slack)) ++lost;
         }
         const Vec3 corners[3] = {t.a, t.b, t.c};
-        for (int k = 0; k < 3; ++k) { // where edges meet the plane: rounded to the nearest, every other would be lost
+        for (int k = 0; k < 3; ++k) { // points where edges meet the plane: rounding to nearest would lose half of them
             const double a = static_cast<double>(component(corners[k], axis));
             const double b = static_cast<double>(component(corners[(k + 1) % 3], axis));
             const double w = (static_cast<double>(plane) - a) / (b - a);
@@ -260,7 +260,7 @@ TEST_CASE("both parts of a split triangle together contain all of its points, an
             ++cuts;
             if (!p.is_in(parts.left, slack) || !p.is_in(parts.right, slack)) ++lost_on_cut;
         }
-        const Bounds3 both = intersection(parts.left, parts.right); // the plane's own cut through the triangle
+        const Bounds3 both = intersection(parts.left, parts.right); // the segment in which the plane cuts the triangle
         if (!both.is_empty() && component(both.size(), axis) > 0) ++wide;
     }
     CHECK(cuts > 20000);
@@ -331,7 +331,7 @@ TEST_CASE("the checker notices faults of trees with spatial splits") {
     const Bvh good = build_bvh(BvhBuilder::SpatialSplits, mesh);
     REQUIRE(!find_split_fault(good, mesh));
     REQUIRE(good.triangles.size() > mesh.size());
-    REQUIRE(find_fault(good)); // its leaves do not hold their triangles whole
+    REQUIRE(find_fault(good)); // its leaves do not contain whole triangles
     const auto broken = [&](auto&& change) {
         Bvh bvh = good;
         change(bvh);
@@ -343,10 +343,10 @@ TEST_CASE("the checker notices faults of trees with spatial splits") {
     CHECK(broken([](Bvh& b) { b.nodes[0].x[0] = -kInfinity; }));
     CHECK(broken([](Bvh& b) { b.triangles[7].a.x += 10; }));
     CHECK(broken([](Bvh& b) { b.triangles[7].primitive = 0xffffff; }));
-    CHECK(broken([&](Bvh& b) { // one triangle left out everywhere
+    CHECK(broken([&](Bvh& b) { // one triangle is in no leaf
         for (BvhTriangle& t : b.triangles) t.primitive = t.primitive == 5 ? 6 : t.primitive;
     }));
-    uint32_t noticed = 0, leaves = 0; // a leaf's box that loses a strip
+    uint32_t noticed = 0, leaves = 0; // a leaf's box lacks a strip
     for (uint32_t i = 0; i < good.nodes.size() && leaves < 200; ++i) {
         for (int k = 0; k < 2; ++k) {
             if (!(good.nodes[i].child[k] & kLeafBit)) continue;
@@ -355,5 +355,5 @@ TEST_CASE("the checker notices faults of trees with spatial splits") {
         }
     }
     CHECK(leaves >= 200);
-    CHECK(noticed >= leaves * 3 / 4); // the rest of it may lie in a neighbour's box
+    CHECK(noticed >= leaves * 3 / 4); // the rest of the triangle may lie in the neighbour's box
 }

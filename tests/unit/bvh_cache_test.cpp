@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 namespace {
 
 void write_bytes(const fs::path& path, std::span<const std::byte> bytes) {
-    fs::remove(path); // cutting a file short makes some file systems wait for the disk
+    fs::remove(path); // some file systems wait for the disk when a file is truncated
     std::ofstream(path, std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
 }
@@ -130,7 +130,7 @@ TEST_CASE("a corrupt cached file with a correct checksum never yields indices ou
         std::vector<std::byte> bad = good;
         for (uint32_t k = 0; k <= random.below(3); ++k) {
             const uint32_t words = static_cast<uint32_t>(bad.size() / 4);
-            uint32_t at = random.below(round % 2 == 0 ? 26 : words); // the header, or anywhere
+            uint32_t at = random.below(round % 2 == 0 ? 26 : words); // half of the changes are in the header
             if (round % 8 == 1)
                 at = 26 + 16 * random.below(static_cast<uint32_t>(stored.tree.nodes.size())) + 12 + k % 2;
             const uint32_t value = random.below(3) == 0 ? random.bits() : random.below(1u << random.below(32));
@@ -147,7 +147,7 @@ TEST_CASE("a corrupt cached file with a correct checksum never yields indices ou
         }
         (loaded ? taken : refused) += 1;
     }
-    CHECK(refused > 1000); // most of it cannot be true
+    CHECK(refused > 1000); // most values are out of range
     CHECK(taken > 0);      // changed boxes cannot be detected
 }
 
@@ -159,12 +159,12 @@ TEST_CASE("an invalid cached tree causes a warning, and the render continues") {
     const fs::path file = folder / (bvh_cache_key(triangles, {}).hex() + ".bvh");
     Messages messages;
 
-    SUBCASE("a folder is where the file should be") {
+    SUBCASE("a folder with the name of the cache's file is kept, and the tree is built") {
         fs::create_directories(file);
         CHECK(same_bytes(load_or_build_bvh(triangles, kBinnedAlone, {}, folder, messages).nodes, built.nodes));
-        CHECK(messages.all().size() == 2); // not read, not written
+        CHECK(messages.all().size() == 2); // the cache is neither read nor written
     }
-    SUBCASE("a file is where the folder should be") {
+    SUBCASE("a file with the name of the cache's folder is kept, and the tree is built") {
         write_bytes(folder / "taken", {});
         CHECK(
             same_bytes(load_or_build_bvh(triangles, kBinnedAlone, {}, folder / "taken", messages).nodes, built.nodes));
@@ -179,7 +179,7 @@ TEST_CASE("an invalid cached tree causes a warning, and the render continues") {
         CHECK(load_cached_bvh(bvh_cache_key(triangles, {}), folder, triangles, messages));
         CHECK(messages.all().size() == 1);
     }
-    SUBCASE("no folder is given") {
+    SUBCASE("without a folder nothing is cached") {
         CHECK(same_bytes(load_or_build_bvh(triangles, kBinnedAlone, {}, std::nullopt, messages).nodes, built.nodes));
         CHECK(messages.all().empty());
     }
@@ -216,7 +216,7 @@ TEST_CASE("a better cached tree is used unless a structure is named") {
     CHECK(same_bytes(load_or_build_bvh(triangles, kBinnedAlone, {}, folder, messages).nodes, binned.nodes));
     BvhBuilder taken = BvhBuilder::Binned;
     CHECK(same_bytes(load_or_build_bvh(triangles, any, {}, folder, messages, &taken).nodes, better.nodes));
-    CHECK(taken == best[0]); // though the other is there too
+    CHECK(taken == best[0]); // although the other tree is in the cache, too
     CHECK(messages.all().empty());
 }
 
@@ -232,7 +232,7 @@ TEST_CASE("the cache evicts the least recently used entries when it is full") {
         store_cached_bvh(key, folder, tree, triangles.size(), messages,
                          k < 3 ? 1 << 30 : fs::file_size(files[0]) * 5 / 2);
         fs::last_write_time(files.back(), fs::file_time_type::clock::now() - std::chrono::hours(k == 1 ? 1 : 9 - k));
-        if (k == 2) { // leftovers of processes that were killed an hour and a moment ago
+        if (k == 2) { // temporary files of processes that were killed an hour ago and just now
             for (const char* name : {".00.bvh.aB3dE6", ".00.bvh.xYz123"}) std::ofstream(folder / name) << "half a tree";
             fs::last_write_time(folder / ".00.bvh.aB3dE6", fs::file_time_type::clock::now() - std::chrono::hours(2));
         }

@@ -1,4 +1,4 @@
-// Cameras as calibrations and pictures state them: a matrix in three conventions, K, a lens, an EXR's metadata.
+// Cameras of calibrations and pictures: a matrix in three conventions, K, a lens, an EXR's metadata.
 
 #include <cmath>
 
@@ -18,7 +18,7 @@ namespace {
 
 using Convention = PoseConvention;
 
-/// The matrix by rows whose columns are these.
+/// Returns the matrix with these columns, row by row.
 std::vector<double> rows_of(Vec3 x, Vec3 y, Vec3 z, DoubleVec3 place) {
     const auto d = [](float f) { return static_cast<double>(f); };
     return {d(x.x), d(y.x), d(z.x), place.x, d(x.y), d(y.y), d(z.y), place.y,
@@ -30,7 +30,7 @@ const Transform kPlaced = look_at({1.25f, 2.5f, 3}, {-0.3f, 0.7f, -1}, {0.1f, 1,
 std::vector<double> pose_in(Convention convention) {
     const Vec3 x = column(kPlaced, 0), y = column(kPlaced, 1), z = column(kPlaced, 2);
     const Vec3 at = kPlaced.translation;
-    const auto blender = [](Vec3 v) { return Vec3{v.x, -v.z, v.y}; }; // to a world with z up
+    const auto blender = [](Vec3 v) { return Vec3{v.x, -v.z, v.y}; }; // converts to a world with z up
     switch (convention) {
     case Convention::OpenGl:
         break;
@@ -47,7 +47,7 @@ Camera made_of(const CameraChoice& choice, const Scene& scene = {}) {
     return choose_camera(choice, scene, 1.5f, messages);
 }
 
-/// The error of a pose.
+/// Returns the error of a pose.
 std::optional<Error> fault_of_pose(std::vector<double> pose) {
     return test::thrown_error([&] { made_of({.pose = std::move(pose)}); });
 }
@@ -64,7 +64,7 @@ std::filesystem::path written_camera(const CameraSource& source, ExrMetadata mor
     return path;
 }
 
-/// The camera that camera_from makes of the file, with further settings.
+/// Returns the camera that camera_from makes of the file, with further settings.
 Camera read_back(const std::filesystem::path& path, const std::vector<std::pair<std::string, std::string>>& more = {},
                  const Scene& scene = {}) {
     PictureOptions options;
@@ -85,14 +85,14 @@ TEST_CASE("all three conventions of a pose place the camera of eye and target, t
         CHECK(made_of({.pose = pose, .convention = convention}).world_from_camera == kPlaced);
     }
     CHECK(made_of({.pose = pose_in(Convention::OpenGl)}).world_from_camera == kPlaced); // the default
-    // A camera at Blender's origin that is not turned looks down, with the world's y up in its picture.
+    // An unrotated camera at Blender's origin looks down, with the world's y up in the picture.
     const Camera down = made_of({.pose = {1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1, 7}, .convention = Convention::Blender});
     CHECK(column(down.world_from_camera, 2) == Vec3{0, 1, 0});
     CHECK(column(down.world_from_camera, 1) == Vec3{0, 0, -1});
     CHECK(down.world_from_camera.translation == Vec3{5, 7, -6});
 }
 
-TEST_CASE("a pose of few digits becomes a rotation, and one that is none is refused") {
+TEST_CASE("a pose with few digits is rounded to a rotation, and a matrix that is not a rotation is refused") {
     const Camera camera = made_of({.pose = {0.7071, 0, 0.7071, 0, 0, 1, 0, 0, -0.7071, 0, 0.7071, 0}});
     CHECK(length(column(camera.world_from_camera, 2)) == doctest::Approx(1).epsilon(1e-6));
     CHECK(column(camera.world_from_camera, 0).x == doctest::Approx(std::sqrt(0.5)).epsilon(1e-4));
@@ -113,7 +113,7 @@ TEST_CASE("a pose is in the coordinates of the scene's file") {
     CHECK(camera.world_from_camera.translation == Vec3{1.5f, 2, 0.25f});
 }
 
-TEST_CASE("intrinsics are four numbers or the nine of K, and anything else in K is refused") {
+TEST_CASE("intrinsics are four numbers or the nine of K, and unsupported entries of K are refused") {
     const Camera four = made_of(of_intrinsics({500, 550, 310, 250})),
                  nine = made_of(of_intrinsics({500, 0, 310, 0, 550, 250, 0, 0, 1}));
     CHECK(four.intrinsics == Intrinsics{500, 550, 310, 250, 640, 480});
@@ -146,7 +146,7 @@ TEST_CASE("intrinsics take the picture's size if they have none, and refuse a pi
     fit_intrinsics({640, 480}, choice);
     CHECK(choice.intrinsics_size == PictureSize{640, 480});
     fit_intrinsics({320, 240}, choice);
-    fit_intrinsics({333, 250}, choice); // the nearest that whole pixels come
+    fit_intrinsics({333, 250}, choice); // the nearest size in whole pixels
     CHECK(choice.intrinsics_size == PictureSize{640, 480});
     const auto error = test::thrown_error([&] { fit_intrinsics({1280, 720}, choice); });
     CHECK(test::is_about(error, ErrorCode::BadInput, "intrinsics_size", "640x480"));
@@ -167,7 +167,7 @@ TEST_CASE("the metadata of a picture give its camera back to the bit") {
     CameraSource source;
     Camera& camera = source.camera;
     camera.world_from_camera = kPlaced;
-    for (const float fov_y : {0.7f, 0.70000005f, 0.7000001f, 1.1f, 1.1000001f}) { // not all have degrees
+    for (const float fov_y : {0.7f, 0.70000005f, 0.7000001f, 1.1f, 1.1000001f}) { // some have no angle in degrees
         camera.fov_y = fov_y;
         const Camera again = read_back(written_camera(source));
         CHECK(again.world_from_camera == kPlaced);
@@ -188,7 +188,7 @@ TEST_CASE("the metadata of a picture give its camera back to the bit") {
     CHECK(again.aperture_radius == camera.aperture_radius);
     CHECK(again.focus_distance == camera.focus_distance);
 
-    SUBCASE("other settings overrule it") {
+    SUBCASE("other settings override a picture's camera") {
         const Camera turned =
             read_back(file, {{"eye", "0,0,5"}, {"target", "0,0,0"}, {"fov", "40"}, {"aperture", "0"}});
         CHECK(turned.world_from_camera == look_at({0, 0, 5}, {0, 0, 0}, {0, 1, 0}));
@@ -198,7 +198,7 @@ TEST_CASE("the metadata of a picture give its camera back to the bit") {
         const Camera flat = read_back(file, {{"projection", "orthographic"}});
         CHECK((flat.projection == Projection::Orthographic && flat.distortion.empty() && !flat.intrinsics));
     }
-    SUBCASE("an orthographic camera and one of a far scene, too") {
+    SUBCASE("the metadata of an orthographic camera and of a far scene give the camera back, too") {
         camera = {.projection = Projection::Orthographic, .world_from_camera = kPlaced, .ortho_height = 2.7f};
         Scene far;
         source.origin = far.origin_in_file = {500000, 100, -4000000};

@@ -68,5 +68,6 @@ TEST_CASE("a file's times are read as doubles, and unused numbers beyond doubles
     REQUIRE(path.keys.size() == 3);
     CHECK(path.keys[0].time_s == 0.1);
     CHECK(path.keys[2].time_s == 86400.0002);
-    CHECK_THROWS_AS(read(R"({"time":NaN)" + place), Error); // our own files are not repaired if they are no JSON
+    CHECK_THROWS_AS(read(R"({"time":NaN)" + place),
+                    Error); // Pertev's own formats are not repaired if they are invalid JSON
 }

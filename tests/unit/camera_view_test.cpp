@@ -10,7 +10,7 @@ using namespace pertev;
 
 namespace {
 
-/// A camera somewhere, turned about all axes.
+/// A camera away from the origin, rotated about all axes.
 Camera placed_camera() {
     Camera camera;
     camera.world_from_camera = look_at({3, -2, 5}, {-1, 0.5f, 0.25f}, {0.3f, 1, -0.2f});
@@ -42,7 +42,7 @@ TEST_CASE("a pinhole camera's rays start at the camera and have unit directions 
     }
 }
 
-TEST_CASE("the middle of the picture looks along the camera's axis, with up and right as defined") {
+TEST_CASE("the ray of the picture's centre follows the camera's axis, with up and right as defined") {
     const Camera camera = placed_camera();
     const CameraView view = make_camera_view(camera, 640, 360);
     const Vec3 middle = make_camera_ray(view, {320, 180}, {}).direction;

@@ -11,10 +11,10 @@ using namespace pertev;
 namespace {
 
 constexpr uint32_t kSide = 20; // pixels
-constexpr float kView = 4;     // metres that these see
+constexpr float kView = 4;     // metres that they cover
 constexpr float kInvPiF = 0.318309886f;
 
-/// One sample through the middle of each pixel.
+/// Takes one sample through the centre of each pixel.
 RenderSettings centre_settings(IntegratorKind integrator = IntegratorKind::Cast) {
     RenderSettings settings;
     settings.width = settings.height = kSide;
@@ -25,13 +25,13 @@ RenderSettings centre_settings(IntegratorKind integrator = IntegratorKind::Cast)
     return settings;
 }
 
-/// Returns where on the floor y = 0 the middle of a pixel lies.
+/// Returns the point of the floor y = 0 at the centre of a pixel.
 Vec3 floor_point(uint32_t x, uint32_t y) {
     const float pixel = kView / kSide;
     return {(static_cast<float>(x) + 0.5f) * pixel - kView / 2, 0, (static_cast<float>(y) + 0.5f) * pixel - kView / 2};
 }
 
-/// No pixel's middle lies on the edge between its triangles, which hits keep off (device_scene/surface.h).
+/// No pixel's centre lies on the edge between its triangles, because hits are moved off edges (device_scene/surface.h).
 Mesh wide_floor() { return test::sheet({0.05f, 0, 0}, {0, 0, 10}, {10, 0, 0}); }
 
 RenderResult look_down(const Scene& scene, float from_height, const RenderSettings& settings) {
@@ -63,7 +63,7 @@ TEST_CASE("cast matches Lambert's law on a floor under a point light") {
     });
     CHECK(result.rays.camera == kSide * kSide);
     CHECK(result.rays.bounce == 0);
-    CHECK(result.rays.shadow == kSide * kSide); // one light
+    CHECK(result.rays.shadow == kSide * kSide); // there is one light
 }
 
 TEST_CASE("cast shows the cone of a spot light, which is dark from its outer angle on") {
@@ -92,10 +92,11 @@ TEST_CASE("cast shows the cone of a spot light, which is dark from its outer ang
 TEST_CASE("cast puts the edge of a hard shadow at its geometric position") {
     Scene scene;
     test::add(scene, wide_floor(), test::white(1));
-    test::add(scene, test::floor_at(0.5f, 0.32f), test::white(1)); // half way: its shadow is twice as large
+    test::add(scene, test::floor_at(0.5f, 0.32f),
+              test::white(1)); // the sheet is half way to the light, so its shadow is twice as large
     scene.lights.push_back(test::point_light({0, 1, 0}, {1, 1, 1}));
     uint32_t dark = 0;
-    check_floor(look_down(scene, 0.4f, centre_settings()), [&](Vec3 p) { // from below the sheet
+    check_floor(look_down(scene, 0.4f, centre_settings()), [&](Vec3 p) { // the camera is below the sheet
         const bool is_dark = max(abs(p.x), abs(p.z)) < 0.64f;
         dark += is_dark ? 1 : 0;
         const float d2 = 1 + p.x * p.x + p.z * p.z;
@@ -103,7 +104,8 @@ TEST_CASE("cast puts the edge of a hard shadow at its geometric position") {
     });
     CHECK(dark == 36); // pixels of 0.2 m
     scene.lights.front().kind = LightKind::Directional;
-    scene.lights.front().direction = normalize(Vec3{1, -1, 0}); // moves it to the right by its height
+    scene.lights.front().direction =
+        normalize(Vec3{1, -1, 0}); // the direction moves the shadow to the right by the sheet's height
     check_floor(look_down(scene, 0.4f, centre_settings()), [&](Vec3 p) {
         const bool is_dark = max(abs(p.x - 0.5f), abs(p.z)) < 0.32f;
         return is_dark ? 0.0f : kInvPiF * 0.70710678f;
@@ -119,8 +121,9 @@ TEST_CASE("ambient light equals the reflection of a uniform radiance by a diffus
 
     scene.environment = Environment{.image = {}, .scale = {2, 2, 2}};
     settings.ambient.reset();
-    check_floor(look_down(scene, 3, settings), [](Vec3) { return 0.0f; }); // cast does not have this setting
-    settings.integrator = IntegratorKind::Whitted; // takes the environment's mean: right for a floor under an even sky
+    check_floor(look_down(scene, 3, settings), [](Vec3) { return 0.0f; }); // cast lacks this setting
+    settings.integrator =
+        IntegratorKind::Whitted; // cast uses the environment's mean, which is exact for a floor under a uniform sky
     check_floor(look_down(scene, 3, settings), [](Vec3) { return 1.0f; });
     settings.ambient = Rgb{0, 0, 0};
     check_floor(look_down(scene, 3, settings), [](Vec3) { return 0.0f; });

@@ -11,7 +11,7 @@ using namespace pertev;
 
 namespace {
 
-/// Message about the scene: the error, the note, or an empty reason.
+/// Returns the error or the notice about the scene; without either, an empty reason.
 Remark message(IntegratorKind integrator, const Scene& scene, std::optional<Rgb> ambient = {}, uint32_t depth = 4) {
     RenderSettings settings;
     settings.integrator = integrator;
@@ -40,15 +40,15 @@ TEST_CASE("a scene that cast or whitted would render black is refused with alter
         CHECK(dark.setting == "integrator");
         CHECK(dark.value == name);
         CHECK((names(dark, "`integrator=distributed`") && names(dark, "`ambient=0.5`")));
-        CHECK(is_fine(message(kind, scene, Rgb{0, 0, 0}))); // asked for
-        CHECK(is_fine(message(kind, scene, {}, 0)));        // emission alone
+        CHECK(is_fine(message(kind, scene, Rgb{0, 0, 0}))); // the setting requests it
+        CHECK(is_fine(message(kind, scene, {}, 0)));        // shows only emission
     }
     CHECK(is_fine(message(IntegratorKind::Distributed, scene)));
     CHECK(is_fine(message(IntegratorKind::Path, scene)));
 
     scene.environment = Environment{};
     CHECK(message(IntegratorKind::Cast, scene).value == "cast");
-    CHECK_FALSE(is_fine(message(IntegratorKind::Whitted, scene))); // its environment lights surfaces by its mean alone
+    CHECK_FALSE(is_fine(message(IntegratorKind::Whitted, scene))); // this integrator uses only the environment's mean
 
     scene.lights.push_back(test::point_light({0, 2, 0}, {1, 1, 1}));
     CHECK(is_fine(message(IntegratorKind::Cast, scene)));
@@ -74,7 +74,7 @@ TEST_CASE(
         for (const IntegratorKind kind :
              {IntegratorKind::Cast, IntegratorKind::Whitted, IntegratorKind::Raster, IntegratorKind::Reyes}) {
             CHECK(names(message(kind, scene), "this scene has none"));
-            CHECK(is_fine(message(kind, scene, Rgb{1, 1, 1}))); // asked for
+            CHECK(is_fine(message(kind, scene, Rgb{1, 1, 1}))); // the setting requests it
         }
     };
     scene.environment = Environment{.image = {}, .scale = {0, 0, 0}, .rotation = 0};
@@ -84,7 +84,7 @@ TEST_CASE(
     scene.environment->image.pixels[5] = 1e-6f;
     CHECK(is_fine(message(IntegratorKind::Path, scene)));
     CHECK(is_fine(message(IntegratorKind::PhotonMap, scene)));
-    scene.environment->scale.b = 0; // which is all that it has
+    scene.environment->scale.b = 0; // the scene has only this light
     check_dark();
     test::add(scene, test::floor_at(1, 1), {{.emission = {1, 1, 1}}, "lamp"});
     CHECK(is_fine(message(IntegratorKind::Path, scene)));

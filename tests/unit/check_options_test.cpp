@@ -118,7 +118,7 @@ TEST_CASE("outputs that coincide, need a frame number or ignore a given setting 
     CHECK(unwritable->location()->file.ends_with("a.bmp"));
 
     PictureOptions options = options_of({{"aov", "depth"}, {"transparent", "true"}});
-    for (auto& [name, origin] : options.given) origin = SettingOrigin::File; // which may be for other outputs
+    for (auto& [name, origin] : options.given) origin = SettingOrigin::File; // the setting may apply to other outputs
     Messages messages;
     const std::vector<std::string> outputs = {test::scratch_folder() / "a.jpg"};
     CHECK_NOTHROW(check_outputs(options, outputs, messages));

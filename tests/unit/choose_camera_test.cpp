@@ -61,7 +61,7 @@ TEST_CASE("a lens without a focus distance focuses on the middle of the picture 
     CHECK(choose({.aperture = 0.1f, .focus = 7.0f}).focus_distance == 7);
 }
 
-TEST_CASE("an orthographic view of a perspective camera shows as much at its target") {
+TEST_CASE("an orthographic view of a perspective camera has the same height at its target") {
     CameraChoice choice = {.eye = DoubleVec3{0, 0, 4}, .target = DoubleVec3{0, 0, 0}, .fov_deg = 90.0f};
     choice.projection = Projection::Orthographic;
     CHECK(choose(choice).projection == Projection::Orthographic);

@@ -17,7 +17,7 @@
 namespace fs = std::filesystem;
 using namespace pertev;
 
-namespace color_primaries_test { // tests are compiled several files at once
+namespace color_primaries_test { // test files are compiled together
 
 constexpr ColorPrimaries kAcesCg = {{0.713, 0.293}, {0.165, 0.830}, {0.128, 0.044}, {0.32168, 0.33767}};
 constexpr ColorPrimaries kP3 = {{0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}, {0.3127, 0.3290}};
@@ -84,7 +84,7 @@ TEST_CASE("matrices of ACEScg, P3, ACES 2065-1 and XYZ match the published ones 
     check_matrix(kP3, {{{1.22494, -0.22494, 0}, {-0.04206, 1.04206, 0}, {-0.01964, -0.07864, 1.09828}}});
     check_matrix(kAces,
                  {{{2.52169, -1.13413, -0.38756}, {-0.27648, 1.37272, -0.09624}, {-0.01538, -0.15298, 1.16835}}});
-    // sRGB from XYZ under D65, times Bradford from E.
+    // The matrix is sRGB from XYZ under D65, times Bradford's adaptation from E.
     check_matrix(kXyz, {{{3.14666, -1.66646, -0.48019}, {-0.99552, 1.95576, 0.03976}, {0.06359, -0.21456, 1.15097}}});
     CHECK(is_rec709(kRec709));
     CHECK(is_rec709({{0.6400, 0.3300}, {0.3, 0.6}, {0.1500, 0.0600}, {0.31271, 0.32902}}));
@@ -99,9 +99,9 @@ TEST_CASE("white stays white for all primaries, and degenerate primaries have no
     const double nan = std::numeric_limits<double>::quiet_NaN();
     CHECK(!rec709_from({}));
     CHECK(!rec709_from({{0.64, 0.33}, {0.64, 0.33}, {0.15, 0.06}, {0.3127, 0.3290}}));
-    CHECK(!rec709_from({{0.64, 0.33}, {0.30, 0.60}, {0.47, 0.465}, {0.3127, 0.3290}})); // on one line
-    CHECK(!rec709_from({{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}, {0.9, 0.05}}));       // white outside
-    CHECK(!rec709_from({{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}, {0.3127, 0}}));       // black
+    CHECK(!rec709_from({{0.64, 0.33}, {0.30, 0.60}, {0.47, 0.465}, {0.3127, 0.3290}})); // the primaries lie on a line
+    CHECK(!rec709_from({{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}, {0.9, 0.05}})); // white lies outside the triangle
+    CHECK(!rec709_from({{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}, {0.3127, 0}})); // black
     CHECK(!rec709_from({{nan, 0.33}, {0.30, 0.60}, {0.15, 0.06}, {0.3127, 0.3290}}));
     CHECK(!rec709_from({{1e30, 0.33}, {0.30, 0.60}, {0.15, 0.06}, {0.3127, 0.3290}}));
 }
@@ -112,7 +112,8 @@ TEST_CASE("an EXR picture is converted to Rec. 709 when it is used, and kept as 
     Messages messages;
     check_pixel(read_image(bytes, "t.exr", messages), kRight);
     CHECK(std::get<Image>(decode_image(bytes, "t.exr")).pixels == kPicture.pixels);
-    CHECK(read_image(plain, "t.exr", messages).pixels == kPicture.pixels); // without the attribute: as it is
+    CHECK(read_image(plain, "t.exr", messages).pixels ==
+          kPicture.pixels); // without the attribute the colours are unchanged
     CHECK(read_image(with_chromaticities(plain, kRec709), "t.exr", messages).pixels == kPicture.pixels);
     CHECK(messages.all().empty());
 
@@ -128,7 +129,7 @@ TEST_CASE("an EXR picture is converted to Rec. 709 when it is used, and kept as 
     CHECK(read_image(with_chromaticities(encode_exr(bright), kAcesCg), "t.exr").pixels == bright.pixels);
 }
 
-TEST_CASE("the line PRIMARIES of a Radiance HDR works like an EXR's chromaticities, and zeros like none") {
+TEST_CASE("PRIMARIES of a Radiance HDR works like an EXR's chromaticities, and zeros are ignored") {
     const auto read = [](const std::string& line, Messages& messages) {
         std::string text = "#?RADIANCE\n" + line + "FORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n";
         for (const int byte : {64, 128, 32, 129}) text += static_cast<char>(byte); // (.5, 1, .25)

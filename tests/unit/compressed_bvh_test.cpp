@@ -23,15 +23,15 @@ using namespace pertev::test;
 
 namespace {
 
-/// Exponents of coordinates from below the least float that is normal to the largest that is allowed.
+/// Exponents of coordinates, from below the least normal float to the largest allowed one.
 constexpr int kScales[] = {-149, -130, -100, -88, -80, -60, -20, 0, 10, 30, 40};
 
 float scaled(float x, int exponent) {
-    for (; exponent < -100; exponent += 20) x *= 0x1p-20f; // in steps, for powers that are no floats
+    for (; exponent < -100; exponent += 20) x *= 0x1p-20f; // multiplies in steps, because some powers are not floats
     return x * float_of(static_cast<uint32_t>(127 + exponent) << 23);
 }
 
-/// A box near the origin or far out, thick, flat or a point.
+/// A box near the origin or far from it: thick, flat or a point.
 Bounds3 random_box(Random& random, int scale) {
     Bounds3 box;
     const auto point = [&] {
@@ -70,7 +70,7 @@ TEST_CASE("decoded boxes contain the exact ones and exceed them by less than a q
             greatest = std::max(greatest, exponent);
             REQUIRE(exponent >= kMinQuantumExponent);
             REQUIRE(exponent <= kMaxQuantumExponent);
-            // No finer grid would reach, but for where its origin is rounded to.
+            // No finer grid would cover the boxes, except where rounding of its origin decides.
             const float extent = component(all.hi, axis) - component(all.lo, axis);
             const float far = std::max(std::abs(component(all.lo, axis)), std::abs(node.origin[axis]));
             const float place = std::nextafter(far, kInfinity) - far;
@@ -79,7 +79,7 @@ TEST_CASE("decoded boxes contain the exact ones and exceed them by less than a q
         for (int s = 0; s < 8; ++s) {
             if (slots[s].is_empty()) continue;
             REQUIRE(holds(node, s, slots[s]));
-            // One quantum less on any side and it does not.
+            // Moving any side inwards by one quantum uncovers the exact box.
             for (int p = 0; p < 6; ++p) {
                 CompressedBvhNode tight = node;
                 const uint32_t one = 1u << 8 * (s % 4), byte = tight.planes[p][s / 4] >> 8 * (s % 4) & 0xff;
@@ -123,7 +123,7 @@ TEST_CASE("meshes with grids at the ends of their range match brute force") {
         std::vector<Ray> rays = stress_rays(1500, mesh, 3);
         const auto shrink = [&](Vec3 p) { return Vec3{scaled(p.x, scale), scaled(p.y, scale), scaled(p.z, scale)}; };
         for (BvhTriangle& t : mesh.triangles) t.a = shrink(t.a), t.b = shrink(t.b), t.c = shrink(t.c);
-        for (Ray& ray : rays) { // directions as they are
+        for (Ray& ray : rays) { // directions are not normalised
             ray.origin = shrink(0.4f * ray.origin);
             ray.t_min = scaled(ray.t_min, scale);
             if (ray.t_max < kInfinity) ray.t_max = scaled(ray.t_max, scale);
@@ -138,7 +138,7 @@ TEST_CASE("meshes with grids at the ends of their range match brute force") {
 }
 
 TEST_CASE("a child is visited early by rays of its slot's octant") {
-    // Eight boxes at the corners of a cube, in any order: each finds its own octant's slot.
+    // Eight boxes at the corners of a cube, in any order, get the slots of their octants.
     std::vector<int> corners(8);
     std::iota(corners.begin(), corners.end(), 0);
     Random random(9);
@@ -208,7 +208,7 @@ TEST_CASE("the checker of compressed trees detects faults") {
         change(broken);
         return find_fault(broken).has_value();
     };
-    int leaf = 0; // a slot of the last node
+    int leaf = 0; // changes a slot of the last node
     while ((sound.nodes.back().triangles >> leaf & 1) == 0) ++leaf;
     const uint32_t one = 1u << 8 * (leaf % 4);
     CHECK(with([&](auto& b) { b.nodes.back().planes[0][leaf / 4] += one; }));
@@ -228,7 +228,7 @@ TEST_CASE("the checker of compressed trees detects faults") {
     CHECK(with([&](auto& b) { b.triangles.push_back(b.triangles.back()); }));
     CHECK(with([&](auto& b) { b.triangles[7].a.x += 100; }));
     CHECK(with([&](auto& b) { ++b.depth; }));
-    // A clipped tree's boxes need not hold their triangles, but must lie where they are.
+    // Boxes of a clipped tree need not contain their triangles, but must overlap them.
     CompressedBvh moved = sound;
     moved.nodes.back().origin[1] += 10;
     CHECK(find_fault(moved, true));

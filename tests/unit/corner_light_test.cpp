@@ -35,7 +35,7 @@ std::vector<PatchLight> lights_of(const test::PatchedScene& patched, const std::
     return light_corners(patched.solved.view(), patched.tree, irradiance);
 }
 
-/// A cone of `count` triangles that meet at its tip.
+/// A cone of `count` triangles that share its tip.
 Mesh cone_of(uint32_t count) {
     Mesh mesh;
     mesh.positions.push_back({0, 1, 0});
@@ -71,7 +71,8 @@ TEST_CASE("a small object keeps its own light in a scene a hundred thousand time
         for (int k = 0; k < 3; ++k) {
             const Vec2 at = patch.corners.at[k];
             const float x = x_of(triangle.at(at.x, at.y));
-            CHECK(std::abs(lights[i].corner[k].r - (1 + x)) < 0.15f); // at the rim of one side alone: a cell's size
+            CHECK(std::abs(lights[i].corner[k].r - (1 + x)) <
+                  0.15f); // the difference is at the rim of one side only, and at most a cell wide
             ++compared;
         }
     }
@@ -113,7 +114,7 @@ TEST_CASE("corners are found quickly where tens of thousands of triangles meet")
     for (const bool is_cone : {true, false}) {
         Scene scene;
         Mesh mesh = is_cone ? cone_of(60000) : grid_at({0, 0, 0}, 1, 1);
-        if (!is_cone) { // one lies on the other
+        if (!is_cone) { // one triangle lies on the other
             for (int i = 0; i < 30000; ++i) {
                 for (int k = 0; k < 6; ++k) mesh.indices.push_back(mesh.indices[static_cast<std::size_t>(k)]);
             }

@@ -18,14 +18,14 @@
 using namespace pertev;
 using namespace pertev::test;
 
-namespace corner_tangents_test { // tests are compiled several files at once
+namespace corner_tangents_test { // test files are compiled together
 
 struct Case {
     std::string name;
     std::vector<Vec3> positions, normals;
     std::vector<Vec2> uv;
     std::vector<uint32_t> indices;
-    std::vector<Vec4> tangents; // [corners] what mikktspace says
+    std::vector<Vec4> tangents; // [corners] the results of mikktspace
 
     TangentMesh mesh() const { return {.positions = positions, .normals = normals, .uv = uv, .indices = indices}; }
 };
@@ -99,7 +99,8 @@ TEST_CASE("a vertex of very many triangles takes time linear in their number") {
     }
     for (uint32_t i = 0; i < sides; ++i) {
         for (const uint32_t corner : {0u, 1 + i, 1 + (i + 1) % sides}) fan.indices.push_back(corner);
-        for (const uint32_t corner : {0u, 1u, 2u}) fan.indices.push_back(corner); // and one edge of as many
+        for (const uint32_t corner : {0u, 1u, 2u})
+            fan.indices.push_back(corner); // adds one edge that as many triangles share
     }
     const std::vector<Vec4> tangents = tangents_of(fan.mesh());
     CHECK(tangents[6 * (sides / 8)].x > 0.9f);

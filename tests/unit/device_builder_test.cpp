@@ -1,5 +1,5 @@
-// The device's builder gives valid trees of every mesh, with published SAH cost, and the same bytes for any number of
-// threads. emulated_warps_hploc_test.cpp tests that warps give these bytes, too.
+// The device builder makes valid trees of every mesh, with the published SAH cost and the same bytes for any number of
+// threads. emulated_warps_hploc_test.cpp tests that warps make these bytes, too.
 
 #include "tracer/hploc/device_builder.h"
 
@@ -64,7 +64,7 @@ TEST_CASE("trees built on the device cost rays little more than those of PLOC on
         CAPTURE(mesh.name);
         const float by_host = make_compressed_bvh(build_ploc_bvh(mesh.triangles)).sah_cost;
         CHECK(build(queue, mesh.triangles).sah_cost < 1.06f * by_host);
-        // A tree that halves the curve ignores the triangles' boxes, so it should not be much better.
+        // A tree that halves the Morton curve ignores the triangles' boxes, so it must not be much better.
         CHECK(build(queue, mesh.triangles).sah_cost <= 1.05f * build(queue, mesh.triangles, true).sah_cost);
     }
 }
@@ -82,7 +82,7 @@ TEST_CASE("a builder can be reused for meshes of other sizes") {
 
 namespace {
 
-/// A mesh that has bent.
+/// Returns the mesh, bent.
 std::vector<BvhTriangle> bent(std::vector<BvhTriangle> triangles) {
     for (BvhTriangle& t : triangles) {
         for (Vec3* p : {&t.a, &t.b, &t.c}) *p = {p->y - 3.0f, 0.5f * p->x + 0.25f * p->z, 2.0f * p->z + p->x};
@@ -90,7 +90,7 @@ std::vector<BvhTriangle> bent(std::vector<BvhTriangle> triangles) {
     return triangles;
 }
 
-/// The tree over `triangles`, fitted to `moved`.
+/// Returns the tree over `triangles`, refitted to `moved`.
 CompressedBvh refit(Queue& queue, const std::vector<BvhTriangle>& triangles, const std::vector<BvhTriangle>& moved) {
     const auto count = static_cast<uint32_t>(triangles.size());
     const Buffer<BvhTriangle> there(queue, std::span(triangles), "triangles");
@@ -145,7 +145,7 @@ TEST_CASE("a GPU builds the bytes that the CPU builds") {
         for (const bool balanced : {false, true}) {
             const CompressedBvh wanted = build(cpu, mesh.triangles, balanced);
             CHECK(are_same(build(gpu, mesh.triangles, balanced), wanted));
-            CHECK(are_same(build(gpu, mesh.triangles, balanced), wanted)); // other warps come first
+            CHECK(are_same(build(gpu, mesh.triangles, balanced), wanted)); // the order of warps differs
         }
         const std::vector<BvhTriangle> moved = bent(mesh.triangles);
         CHECK(are_same(refit(gpu, mesh.triangles, moved), refit(cpu, mesh.triangles, moved)));

@@ -1,4 +1,4 @@
-// Messages about lamps in files that cannot say which of their faces emit.
+// Messages about emitters of file formats that cannot state which faces emit.
 
 #include <doctest/doctest.h>
 
@@ -10,7 +10,8 @@ using namespace pertev;
 
 namespace {
 
-/// A lamp of side 0.5 at height `y` in a box of side 2 without front and back; `face` orders its corners 9 to 12.
+/// A square emitter of side 0.5 at height `y` in a box of side 2 without front and back. `face` is the order of its
+/// corners 9 to 12.
 std::string room(float y, const std::string& face) {
     std::string text = "mtllib a.mtl\nv -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv -1 2 -1\nv 1 2 -1\nv 1 2 1\nv -1 2 1\n";
     for (const char* corner : {"-0.25 {} -0.25", "0.25 {} -0.25", "0.25 {} 0.25", "-0.25 {} 0.25"}) {
@@ -70,12 +71,12 @@ TEST_CASE("an emitter over an open floor causes no warning") {
     for (const char* height : {"2", "0.1"}) {
         const std::string y = height;
         const std::string emitter = "v -.5 " + y + " -.5\nv .5 " + y + " -.5\nv .5 " + y + " .5\nv -.5 " + y + " .5\n";
-        for (const char* face : {"5 6 7 8", "8 7 6 5"}) { // down, and up to the sky
+        for (const char* face : {"5 6 7 8", "8 7 6 5"}) { // faces down, then up to the sky
             CAPTURE(y);
             CHECK_FALSE(warns_of_fronts(read(floor + emitter + "usemtl bulb\nf " + face + "\n")));
         }
     }
-    CHECK_FALSE(warns_of_fronts(read(room(2.01f, kDown)))); // on the roof, with nothing above
+    CHECK_FALSE(warns_of_fronts(read(room(2.01f, kDown)))); // lies on the roof, with nothing above it
 }
 
 TEST_CASE("an emitter whose front faces a wall, with most of the scene but no surface behind it, causes a warning") {

@@ -10,7 +10,7 @@ using namespace pertev::test;
 
 namespace {
 
-/// Two squares of lamps, a point light, a directional one, and a sky of 4 x 2 pixels.
+/// Two square emitters, a point light, a directional light, and a sky of 4 x 2 pixels.
 Scene make_kept_emitters() {
     Scene scene;
     add_emitter(scene, make_square(2), {1, 2, 3}, make_translation({0, 3, 0}));

@@ -1,5 +1,5 @@
-// The emulated warp of kernel tests: meetings behave as CUDA specifies, __activemask() returns any permitted mask, and
-// faulty kernels are reported with their fault.
+// The emulated warp of kernel tests: warp operations behave as CUDA specifies, __activemask() returns any permitted
+// mask, and faulty kernels are reported with their fault.
 
 #include "tests/support/emulated_warp.h"
 
@@ -22,7 +22,7 @@ uint32_t me() { return lane::thread_index.x & 31u; }
 uint32_t my_bit() { return 1u << me(); }
 uint32_t seeds() { return static_cast<uint32_t>(effort(100, 5000)); }
 
-/// Result of run_warps for a kernel of one warp, which must be equal for each schedule.
+/// Returns the result of run_warps for a kernel of one warp, which must be the same for each schedule.
 template <class Kernel>
 std::set<std::string> headlines(const Kernel& kernel) {
     std::set<std::string> faults;
@@ -33,7 +33,7 @@ std::set<std::string> headlines(const Kernel& kernel) {
     return faults;
 }
 
-/// Returns whether each run's fault holds all of these words.
+/// Returns whether each run's fault contains all of these words.
 template <class Kernel>
 bool says(const Kernel& kernel, const std::vector<std::string>& words) {
     for (uint32_t seed = 0; seed < seeds(); ++seed) {
@@ -104,12 +104,12 @@ TEST_CASE("lanes at one call get the same active mask, which holds all or some o
     bool once_whole = false, once_single = false, once_between = false;
     for (uint32_t seed = 0; seed < seeds(); ++seed) {
         std::vector<uint32_t> first(32), second(32);
-        const auto ask = [] { return lane::active_mask(); }; // one source line, two calls
+        const auto ask = [] { return lane::active_mask(); }; // these are two calls on one source line
         const std::string fault = run_warps({.seed = seed}, [&] {
             if (me() < 12) {
                 first[me()] = ask();
                 lane::step();
-            } else { // in another order, or a compiler may make one call of the two
+            } else { // the branches differ in order, so that the compiler does not merge the two calls
                 lane::step();
                 second[me()] = ask();
             }
@@ -203,7 +203,7 @@ TEST_CASE("a lane that passes a mask without itself, or reads a lane outside of 
 }
 
 TEST_CASE("a mask read before lanes diverged is a fault where it is used") {
-    // Some schedules let it pass, as on a GPU; some must not.
+    // Some schedules let the fault pass, as a GPU does, but not all may.
     bool noticed = false;
     for (uint32_t seed = 0; seed < seeds(); ++seed) {
         noticed |= run_warps({.seed = seed}, [] {

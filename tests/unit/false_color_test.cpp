@@ -1,4 +1,4 @@
-// Pictures as false colours: where a value lies on the scale, and the scale beneath.
+// False-colour pictures: the position of a value on the scale, and the scale below the picture.
 
 #include <doctest/doctest.h>
 
@@ -43,7 +43,8 @@ TEST_CASE("a wide picture has the scale with numbers and the unit below") {
         for (uint32_t x = 0; x < 400; ++x) ink[x / 100] += image.pixels[4 * (std::size_t(y) * 400 + x)] == 0 ? 1 : 0;
     }
     for (const uint32_t points : ink) CHECK(points > 20);
-    const Rgba8Image small = draw_false_colors(grey_row({1}), 1, {1, 1000, "cd/m2"}); // no room: no numbers
+    const Rgba8Image small =
+        draw_false_colors(grey_row({1}), 1, {1, 1000, "cd/m2"}); // numbers are omitted where there is no room
     CHECK(small.width == 1);
 }
 

@@ -104,9 +104,9 @@ TEST_CASE("the file whose path has the longest common end with a name is found, 
     CHECK(access.find(at(f.file), "C:/p/stone/x.png", messages) == f.scene / "b/stone/x.png");
     CHECK(access.find(at(f.scene / "a" / "m.mtl"), "C:/p/wood/x.png", messages) == f.scene / "a/wood/x.png");
     CHECK(access.find(at(f.scene / "c" / "m.mtl"), "C:/p/stone/x.png", messages) == f.scene / "b/stone/x.png");
-    CHECK(access.find(at(f.file), "C:/p/y.png", messages) == f.scene / "y.png"); // the others lie deeper
+    CHECK(access.find(at(f.file), "C:/p/y.png", messages) == f.scene / "y.png"); // the others are in deeper folders
     const std::size_t before = messages.all().size();
-    CHECK(!access.find(at(f.file), "C:/p/wood/x.png", messages)); // a's or b's
+    CHECK(!access.find(at(f.file), "C:/p/wood/x.png", messages)); // both a's and b's match
     REQUIRE(messages.all().size() == before + 1);
     for (const char* candidate : {"a/wood/x.png", "b/wood/x.png"}) {
         CHECK(messages.all().back().text.find((f.scene / candidate).string()) != std::string::npos);
@@ -156,7 +156,7 @@ TEST_CASE("a file outside is replaced by one of that name below with a warning, 
     const FileAccess access(f.file, {});
     Messages messages;
     CHECK(access.find(at(f.file), "/no such home/artist/a.obj", messages) == f.file);
-    CHECK(!access.find(at(f.file), "/no such home/artist/u.png", messages)); // nothing that could be allowed
+    CHECK(!access.find(at(f.file), "/no such home/artist/u.png", messages)); // no folder could allow it
     CHECK(access.find(at(f.scene / "textures" / "b.mtl"), (f.other / "t.png").string(), messages) ==
           f.scene / "textures/t.png");
     REQUIRE(messages.all().size() == 2);
@@ -168,7 +168,7 @@ TEST_CASE("a file outside is replaced by one of that name below with a warning, 
     CHECK(error->location() == FileLocation{f.file.string(), 7});
     CHECK(test::says(error, "`allow_path=" + f.other.string() + "`"));
 
-    fs::create_symlink(f.other / "u.png", f.scene / "u.png"); // a sibling may lead outside too
+    fs::create_symlink(f.other / "u.png", f.scene / "u.png"); // a sibling can lead outside, too
     CHECK_THROWS_AS((void)access.find(at(f.file), "../scene2/u.png", messages), Error);
     CHECK(!access.find(at(f.file), "/no such home/artist/u.png", messages));
 }

@@ -1,4 +1,4 @@
-// Choice among a file's animations and scenes by a name or a number, and the texts of choices.
+// Choice of a file's animation and scene by name or number, and the text of a choice.
 
 #include <algorithm>
 
@@ -10,11 +10,11 @@
 
 using namespace pertev;
 
-namespace file_choices_test { // tests are compiled several files at once
+namespace file_choices_test { // test files are compiled together
 
 using Names = std::vector<std::string>;
 
-/// The only one that plays.
+/// Returns the only animation that plays.
 std::size_t chosen(const Names& names, const std::string& choice) {
     const std::vector<bool> plays = choose_clips("a.glb", names, choice);
     REQUIRE(plays.size() == names.size());
@@ -43,12 +43,12 @@ TEST_CASE("a name takes precedence over a number, and without a choice the first
     CHECK(chosen(names, "") == 0);
     CHECK(chosen(names, "run") == 1);
     CHECK(chosen(names, "1") == 1);
-    CHECK(chosen(names, "0") == 2); // it is called so
+    CHECK(chosen(names, "0") == 2); // this animation has the number as its name
     CHECK(chosen(names, "3") == 3);
     CHECK(choose_file_scene("a.glb", names, "0") == 2);
     CHECK(choose_clips("a.glb", names, "all") == std::vector<bool>(4, true));
     CHECK(choose_clips("a.glb", {}, "").empty());
-    CHECK(chosen({"walk", "all"}, "1") == 1); // "all" is every one, also where one is called so
+    CHECK(chosen({"walk", "all"}, "1") == 1); // "all" selects every animation, even if one has that name
     CHECK(choose_clips("a.glb", Names{"walk", "all"}, "all") == std::vector<bool>(2, true));
     CHECK(choose_file_scene("a.glb", Names{"walk", "all"}, "all") == 1);
 }
@@ -62,7 +62,7 @@ TEST_CASE("each of several can be chosen, even if the number of one is the name 
             plays[i] = false;
         }
     }
-    CHECK(chosen({"walk", "walk", "1"}, "1") == 1); // which no name denotes
+    CHECK(chosen({"walk", "walk", "1"}, "1") == 1); // no name is this number
 }
 
 TEST_CASE("a choice that matches none or two is an error that lists all") {
@@ -70,7 +70,7 @@ TEST_CASE("a choice that matches none or two is an error that lists all") {
           "a.glb: `animation=jump`: no such animation; the file has:\n  walk\n  run");
     CHECK(
         refusal({"walk", "", "walk"}, "walk") ==
-        "a.glb: `animation=walk`: 2 animations are called so; choose one by its number:\n  0 (walk)\n  1\n  2 (walk)");
+        "a.glb: `animation=walk`: 2 animations have this name; choose one by its number:\n  0 (walk)\n  1\n  2 (walk)");
     CHECK(refusal({}, "all") == "a.glb: `animation=all`: no such animation; the file has no animations");
     for (const char* choice : {"2", "-1", "1.0", " 1", "+1", "99999999999999999999"})
         CHECK(!refusal({"a", "b"}, choice).empty());
@@ -87,7 +87,7 @@ TEST_CASE("the animation and scene in use are reported by words that choose them
         CHECK(chosen(names, clip_choice(clips(names, plays))) == i);
     }
     CHECK(clip_choice(clips(names, std::vector<bool>(5, true))) == "all");
-    CHECK(clip_choice(clips({"walk"}, {true})).empty()); // nothing to choose from
+    CHECK(clip_choice(clips({"walk"}, {true})).empty()); // the file has only one
     CHECK(clip_choice({}).empty());
     CHECK(list_clips(clips(names, std::vector<bool>(5))) == Names{"walk", "1 (twin)", "2 (twin)", "3", "4 (all)"});
 

@@ -1,4 +1,4 @@
-// Names of files in letters of either case.
+// Extensions of file names in upper and lower case.
 
 #include <doctest/doctest.h>
 
@@ -14,7 +14,7 @@ TEST_CASE("extensions are compared without case everywhere") {
     CHECK(lower_case_extension("folder.X/Leaf.PnG") == ".png");
     CHECK(lower_case_extension("a.b.GLB") == ".glb");
     CHECK(lower_case_extension("folder.X/leaf").empty());
-    CHECK(lower_case_extension("leaf.\xc3\x84") == ".\xc3\x84"); // letters of other alphabets stay
+    CHECK(lower_case_extension("leaf.\xc3\x84") == ".\xc3\x84"); // letters of other alphabets are unchanged
     CHECK(is_picture_name("A.EXR"));
     CHECK(image_format_for("A.JPEG") == ImageFormat::Jpeg);
     CHECK(is_scene_name("A.GLTF"));

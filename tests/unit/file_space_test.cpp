@@ -10,11 +10,11 @@
 namespace fs = std::filesystem;
 using namespace pertev;
 
-namespace file_space_test { // tests are compiled several files at once
+namespace file_space_test { // test files are compiled together
 
 const std::string kCorner = "v 0 0 0\nv 1000 0 0\nv 0 2000 0\nv 0 0 4000\nf 1 2 3\nf 1 3 4\n";
 
-/// Bounds of a file that is read in this space.
+/// Returns the bounds of a file that is read in this space.
 Bounds3 bounds_in(const FileSpace& space, const std::string& name = "a.obj", const std::string& text = kCorner) {
     Messages messages;
     ReadOptions options;
@@ -52,7 +52,7 @@ TEST_CASE("coordinates far from the origin keep their digits when they are rotat
     ReadOptions options;
     options.space = {UpAxis::Z, 0.001};
     const std::string text = "v 448262257.5 5411933125.25 12000\nv 448263257.5 5411933125.25 12000\n"
-                             "v 448262257.5 5411933125.25 13000\nf 1 2 3\n"; // millimetres of a survey
+                             "v 448262257.5 5411933125.25 13000\nf 1 2 3\n"; // survey coordinates in millimetres
     const Scene scene = read_scene(test::write_text(test::scratch_folder() / "a.obj", text), options, messages);
     const Bounds3 box = bounds_of(scene);
     const DoubleVec3 lo = in_file(scene, box.lo), hi = in_file(scene, box.hi);

@@ -19,7 +19,8 @@ namespace {
 constexpr uint32_t kAovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
 constexpr uint32_t kWidth = 17, kHeight = 9, kSamples = 6;
 
-/// One made-up sample of every pixel of a film in the CPU's memory. Some are not finite, some miss.
+/// Adds one arbitrary sample to every pixel of a film in the CPU's memory. Some samples are not finite, and some miss
+/// the scene.
 void take_sample(const FilmView& view, uint32_t sample) {
     test::Random random(100 + sample);
     for (uint32_t pixel = 0; pixel < kWidth * kHeight; ++pixel) {
@@ -63,7 +64,7 @@ TEST_CASE("films of parts of the samples add up to the film of all samples on an
     Film whole(cpu, kWidth, kHeight, kAovs);
     take_samples(whole, {0, kSamples});
     CHECK(whole.invalid_samples() == kSamples);
-    for (const uint32_t with_first : {0u, 1u}) { // which of the two parts holds sample 0
+    for (const uint32_t with_first : {0u, 1u}) { // the part that holds sample 0
         CAPTURE(with_first);
         Film parts[2] = {Film(cpu, kWidth, kHeight, kAovs), Film(other_cpu, kWidth, kHeight, kAovs)};
         take_samples(parts[with_first], {0, 2});
@@ -103,7 +104,7 @@ TEST_CASE("a film is restored from the bytes of its targets on any device") {
 
 namespace {
 
-/// A test's counts, a kind of target that the film does not know.
+/// Counts of a test, which are a kind of target that the film does not know.
 class CountTarget : public ElementTarget<uint64_t, AddCounts, 0> {
 public:
     using ElementTarget::ElementTarget;
@@ -144,7 +145,7 @@ TEST_CASE("targets given to a film are added and cleared with its own, and those
     CHECK(counts_of(a).elements().download() == std::vector<uint64_t>(5, 0));
 }
 
-TEST_CASE("all films of a session have the targets that it was given, also those of passes that may be left") {
+TEST_CASE("all films of a session have its additional targets, including films of passes that can be interrupted") {
     Queue cpu = Queue::make_cpu(); // a GPU's passes are short
     Messages messages;
     const Scene scene = test::make_mixed_scene();
@@ -160,7 +161,7 @@ TEST_CASE("all films of a session have the targets that it was given, also those
         CHECK(session.render(1) == 1);
         CHECK(counts_of(session.film()).elements().download() == std::vector<uint64_t>(5, 0));
         counts_of(session.film()).count(3);
-        CHECK(session.render(2) == 2); // from films of one pass each
+        CHECK(session.render(2) == 2); // adds films of one pass each
         CHECK(counts_of(session.film()).elements().download() == std::vector<uint64_t>(5, 3));
     }
 }
@@ -217,8 +218,8 @@ TEST_CASE("a film reports its samples and rows and refuses others that do not fo
     CHECK(sum_of({0, 9, {4, 6}}, {0, 9, {6, 7}}) == FilmPart{0, 9, {4, 7}});
     CHECK(sum_of({0, 9, {4, 6}}, {0, 9, {0, 4}}) == FilmPart{0, 9, {0, 6}});
     CHECK(sum_of({5, 9, {0, 4}}, {0, 5, {0, 4}}) == FilmPart{0, 9, {0, 4}});
-    CHECK_THROWS_AS(sum_of({0, 9, {4, 6}}, {0, 9, {5, 7}}), std::logic_error); // one of them twice
-    CHECK_THROWS_AS(sum_of({0, 9, {4, 6}}, {0, 9, {7, 8}}), std::logic_error); // a gap
+    CHECK_THROWS_AS(sum_of({0, 9, {4, 6}}, {0, 9, {5, 7}}), std::logic_error); // one part is added twice
+    CHECK_THROWS_AS(sum_of({0, 9, {4, 6}}, {0, 9, {7, 8}}), std::logic_error); // samples between them are missing
     CHECK_THROWS_AS(sum_of({0, 5, {0, 4}}, {5, 9, {0, 5}}), std::logic_error); // more samples of some rows
     CHECK_THROWS_AS(sum_of({0, 5, {0, 4}}, {4, 9, {0, 4}}), std::logic_error);
     Film film = film_of({0, 9, {0, 4}});
@@ -257,7 +258,7 @@ TEST_CASE("frames split into pixels on either device are merged") {
     }
 }
 
-TEST_CASE("a film's elements come from another device, or from bytes, by way of one buffer for each target") {
+TEST_CASE("elements from another device or from bytes pass through one buffer per target") {
     constexpr uint32_t kSide = 1500; // 9 million sums, of which 2^20 are copied at once
     Queue cpu = Queue::make_cpu(), other_cpu = Queue::make_cpu();
     Film from(other_cpu, kSide, kSide, 0), added(cpu, kSide, kSide, 0), restored(cpu, kSide, kSide, 0);

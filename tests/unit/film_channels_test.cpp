@@ -6,7 +6,7 @@
 
 using namespace pertev;
 
-TEST_CASE("the present groups of channels follow each other in the order of their bits") {
+TEST_CASE("the requested groups of channels are stored in the order of their bits") {
     constexpr uint32_t kAll = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
     CHECK(film_channel_count(0) == 4);
     CHECK(film_channel_count(kAovIds) == 4);

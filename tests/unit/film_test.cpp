@@ -105,7 +105,7 @@ TEST_CASE("layers have a fixed order of channels; geometry is a mean over hits, 
     Queue queue = Queue::make_cpu();
     Film film(queue, 2, 1, kAovAlbedo | kAovNormal | kAovDepth | kAovPosition);
     const FilmView view = film.view();
-    for (int hit = 0; hit < 2; ++hit) { // pixel 1: two samples of four hit something; pixel 0: none
+    for (int hit = 0; hit < 2; ++hit) { // in pixel 1 two of four samples hit a surface, in pixel 0 none does
         add_channel(view, 1, 3, 1.0f);
         add_channels(view, 1, kFilmColorChannels, {0.5f, 0.25f, 1.0f});
         add_channels(view, 1, kFilmColorChannels + 3, {0, -1, 0});
@@ -157,11 +157,12 @@ TEST_CASE("a sample with a channel that is not finite or too large adds 0 to all
     }
     CHECK(film.invalid_samples() == 15);
     CHECK(picture_of(film, 1, false).pixels == std::vector<float>{0, 0, 0});
-    add_radiance(film.view(), 0, {0x1p40f, -0x1p40f, 0.5f}); // the largest there is
+    add_radiance(film.view(), 0, {0x1p40f, -0x1p40f, 0.5f}); // the largest float
     add_channel(film.view(), 0, 3, 1.0f);
     CHECK(film.invalid_samples() == 15);
     CHECK(picture_of(film, 1, false).pixels == std::vector<float>{0x1p40f, -0x1p40f, 0.5f});
-    CHECK(layers_of(film, 1)[0].image.pixels == std::vector<float>{0, 10, 0}); // valid channels of a layer count
+    CHECK(layers_of(film, 1)[0].image.pixels ==
+          std::vector<float>{0, 10, 0}); // the valid channels of a layer are added
 }
 
 TEST_CASE("concurrent additions to a pixel lose nothing") {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint32_t kColumns = 8, kRows = 4;
 
-/// A large square at z = -3, and a camera at z = 2 that looks along -z at 8 x 4 metres of it, one a pixel.
+/// A large square at z = -3, and a camera at z = 2 that looks along -z. A pixel covers one of its 8 x 4 square metres.
 RenderResult render_plane(PixelFilter filter, bool whole_plane) {
     Scene scene;
     Mesh square;
@@ -59,7 +59,7 @@ TEST_CASE("albedo, normal, depth and ids are those of the first surface") {
     const RenderResult result = render_plane(PixelFilter::Box, true);
     for (uint32_t i = 0; i < kColumns * kRows; ++i) {
         CHECK(result.layers.at(0).image.pixels[3 * i + 2] == 0.75f);
-        CHECK(result.layers.at(1).image.pixels[3 * i + 2] == 1.0f); // towards the camera
+        CHECK(result.layers.at(1).image.pixels[3 * i + 2] == 1.0f); // the normal points towards the camera
         CHECK(result.layers.at(2).image.pixels[i] == doctest::Approx(5).epsilon(1e-6));
         CHECK(result.picture.pixels[4 * i + 3] == 1.0f);
         CHECK(result.ids.at(i).instance == 0);
@@ -68,7 +68,8 @@ TEST_CASE("albedo, normal, depth and ids are those of the first surface") {
 }
 
 TEST_CASE("in a partly covered pixel alpha is the covered part and depth is the surface's own") {
-    const RenderResult result = render_plane(PixelFilter::Tent, false); // covers x < 0; the tent reaches a pixel far
+    const RenderResult result = render_plane(
+        PixelFilter::Tent, false); // the square covers x < 0, and the tent filter has a radius of one pixel
     const auto alpha = [&](uint32_t x) { return static_cast<double>(result.picture.at(x, 1)[3]); };
     CHECK(alpha(2) == 1);
     CHECK(alpha(3) == doctest::Approx(0.875).epsilon(3e-3)); // 1 - the tent's integral over [0.5, 1]

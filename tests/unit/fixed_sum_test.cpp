@@ -11,13 +11,13 @@ using namespace pertev;
 
 namespace {
 
-/// Value of a fixed-point number, exact where it fits 64 significant bits.
+/// Returns the value of a fixed-point number, exactly if it has at most 64 significant bits.
 long double value_of(FixedSum sum) {
     return std::ldexp(static_cast<long double>(static_cast<int64_t>(sum.high)), 0) +
            std::ldexp(static_cast<long double>(sum.low), -64);
 }
 
-/// mean_of by the C library's ldexp, which IEEE 754 fixes to the last bit: for the host alone.
+/// Computes mean_of with the C library's ldexp, whose result IEEE 754 defines exactly. Only the host has it.
 float mean_by_ldexp(FixedSum sum, uint64_t count) {
     __extension__ using Wide = unsigned __int128;
     const bool negative = (sum.high >> 63) != 0;
@@ -127,7 +127,7 @@ TEST_CASE("the mean has the bits of the C library's division, including the smal
         if (i % 7 == 0) sum = {~sum.low + 1, ~sum.high + (sum.low == 0 ? 1u : 0u)};
         uint64_t count = 1 + (bits64() >> (27 + random.below(37)));
         if (i % 11 == 0) count = uint64_t(1) << random.below(38);
-        if (i % 3 == 0) { // the least sums over the largest counts
+        if (i % 3 == 0) { // the smallest sums with the largest counts
             sum = {1 + random.below(40), 0};
             count = (uint64_t(1) << 37) - (bits64() >> 30);
         }

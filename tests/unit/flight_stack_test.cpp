@@ -1,4 +1,4 @@
-// Pending children of a ray in flight: each entered child once, in the requested order.
+// The stack of a ray in flight returns each entered child once, in the requested order.
 
 #include "trace/wide/flight_stack.h"
 
@@ -49,7 +49,7 @@ TEST_CASE(
     "the nearest child comes first, or the builder's first, or the farthest, and the others in the builder's order") {
     Random random(2);
     for (unsigned mask = 0; mask < 256; ++mask) {
-        for (int started_in = 0; started_in <= 8; ++started_in) { // so many of the boxes, on average
+        for (int started_in = 0; started_in <= 8; ++started_in) { // the average number of entered boxes
             float entries[kWideChildren];
             for (float& entry : entries) {
                 entry = random.below(8) < static_cast<uint32_t>(started_in) ? 0.0f : random.within(0, 1000);
@@ -83,7 +83,7 @@ TEST_CASE(
 
 namespace {
 
-/// Ends at the first candidate that it sees.
+/// Accepts the first candidate and ends the traversal.
 struct FirstSeen {
     AcceptAll accept;
     float t_max, seen = -1;
@@ -98,7 +98,7 @@ struct FirstSeen {
     }
 };
 
-/// The candidate that rays along x see first, of triangles at x = 1, 2, ... 64.
+/// Returns the first candidate of rays along x among triangles at x = 1, 2, ... 64.
 std::vector<float> first_seen(bool is_far) {
     std::vector<BvhTriangle> triangles(64);
     for (uint32_t i = 0; i < triangles.size(); ++i) {

@@ -29,7 +29,7 @@ double standing_squares() {
 
 Scene squares(bool is_parallel) {
     Scene scene;
-    test::add(scene, test::sheet({0, 0, 0}, {0, 0, 0.5f}, {0.5f, 0, 0}), test::white(0.5f)); // its front up
+    test::add(scene, test::sheet({0, 0, 0}, {0, 0, 0.5f}, {0.5f, 0, 0}), test::white(0.5f)); // faces up
     test::add(scene,
               is_parallel ? test::sheet({0, 1, 0}, {0.5f, 0, 0}, {0, 0, 0.5f})
                           : test::sheet({-0.5f, 0.5f, 0}, {0, 0.5f, 0}, {0, 0, 0.5f}),
@@ -57,7 +57,7 @@ TEST_CASE("rays find the form factors of squares to 1e-4") {
         CAPTURE(back);
         CHECK(std::abs(there - known) < 1e-4);
         CHECK(std::abs(back - known) < 1e-4);
-        CHECK(patched.factor(rows, 0, 1, 1) == 0); // from behind
+        CHECK(patched.factor(rows, 0, 1, 1) == 0); // the back receives nothing
     }
 }
 
@@ -101,7 +101,7 @@ TEST_CASE("a hemicube's pixels cover the cosine-weighted hemisphere") {
 TEST_CASE("form factors of a closed room sum to 1, whatever it contains") {
     Scene scene = test::closed_box(test::white(0.5f));
     test::add(scene, test::sheet({0, 0.9f, 0}, {0.3f, 0, 0}, {0, 0, 0.3f}),
-              test::emitter_material(0.2f, 5)); // its front down
+              test::emitter_material(0.2f, 5)); // faces down
     const test::PatchedScene patched(std::move(scene), 0.8f);
     for (const FormFactors method : {FormFactors::Rays, FormFactors::Hemicube}) {
         const auto rows = patched.rows({.rays = 256, .hemicube = 32, .form_factors = method});
@@ -109,12 +109,12 @@ TEST_CASE("form factors of a closed room sum to 1, whatever it contains") {
             const Patch& patch = patched.tree.patches[i];
             CHECK(std::ranges::is_sorted(rows[i].factors, {}, &FormFactor::patch));
             if (patch.instance < 6 && patch.side() == 1) {
-                CHECK(rows[i].factors.empty()); // the outside sees nothing
+                CHECK(rows[i].factors.empty()); // the outer faces receive nothing
             } else {
                 CHECK(sum_of(rows[i]) == doctest::Approx(1).epsilon(1e-5));
             }
             for (const FormFactor& factor : rows[i].factors) {
-                CHECK(factor.patch != i); // a flat patch does not see itself
+                CHECK(factor.patch != i); // a flat patch receives nothing from itself
                 CHECK(factor.factor > 0);
             }
         }
@@ -125,22 +125,23 @@ TEST_CASE("few rays find the form factor of an emitter") {
     Scene scene;
     test::add(scene, test::floor_at(0, 0.05f), test::white(0.5f));
     const float half = 0.1f;
-    test::add(scene, test::sheet({0, 2, 0}, {half, 0, 0}, {0, 0, half}),
-              test::emitter_material(0, 1)); // its front down
+    test::add(scene, test::sheet({0, 2, 0}, {half, 0, 0}, {0, 0, half}), test::emitter_material(0, 1)); // faces down
     const test::PatchedScene patched(std::move(scene), 10);
     const auto rows = patched.rows({.rays = 64});
-    // A small lamp far above: its area over pi times the distance squared. One ray in 314 would meet it.
+    // For a small, distant emitter the form factor is its area over pi times the squared distance. One ray in 314 would
+    // hit it.
     const double known = 4.0 * 0.01 / (std::numbers::pi * 4);
     CHECK(patched.factor(rows, 0, 0, 1) == doctest::Approx(known).epsilon(0.02));
 }
 
-TEST_CASE("light found by both kinds of rays counts once") {
+TEST_CASE("light that both kinds of rays find counts once") {
     Scene scene;
     test::add(scene, test::floor_at(0, 0.02f), test::white(0.5f));
-    test::add(scene, test::sheet({0, 1, 0}, {1, 0, 0}, {0, 0, 1}), test::emitter_material(0, 1)); // its front down
+    test::add(scene, test::sheet({0, 1, 0}, {1, 0, 0}, {0, 0, 1}), test::emitter_material(0, 1)); // faces down
     const test::PatchedScene patched(std::move(scene), 10);
     const auto rows = patched.rows({.rays = 4096});
-    // From a point to a parallel square of twice its distance (Howell, B-4): each finds half of the light.
+    // The form factor from a point to a parallel square twice as wide as its distance (Howell, B-4); each kind of ray
+    // finds half of the light.
     const double root = std::sqrt(0.5), known = 4 * root * std::atan(root) / std::numbers::pi;
     CHECK(known == doctest::Approx(0.55413).epsilon(1e-4));
     CHECK(patched.factor(rows, 0, 0, 1) == doctest::Approx(known).epsilon(0.01));

@@ -33,14 +33,14 @@ TEST_CASE("a search in a point tree finds the nearest points and visits few node
         CHECK(found->tested.size() < found->points.size() / 3);
         CHECK(found->visited < found->nodes / 2);
         const std::string svg = svg_of(*found);
-        // A circle a point, and the one about them.
+        // There is one circle per point, and one for the search radius.
         std::size_t circles = 0;
         for (std::size_t at = svg.find("<circle"); at != std::string::npos; at = svg.find("<circle", at + 1)) ++circles;
         CHECK(circles == found->points.size() + 1);
     }
     CHECK(kd.nodes == kd.points.size());
     CHECK(kd.visited == kd.tested.size());
-    // Each plane of a kd-tree lies within the square and has its node's point on it.
+    // Each plane of the kd-tree lies within the square and contains its node's point.
     CHECK(kd.lines.size() == kd.points.size() / 2);
     for (const FoundPoints::Line& line : kd.lines) {
         const bool is_upright = line.from.x == line.to.x;
@@ -50,7 +50,7 @@ TEST_CASE("a search in a point tree finds the nearest points and visits few node
                               : p.y == line.from.y && p.x >= line.from.x && p.x <= line.to.x;
         }));
     }
-    // Each point lies in one box of an octree.
+    // Each point lies in one box of the octree.
     for (const Vec3& p : octree.points) {
         CHECK(std::ranges::count_if(octree.boxes, [&](const FoundPoints::Box& box) {
                   return p.x >= box.lo.x && p.x <= box.hi.x && p.y >= box.lo.y && p.y <= box.hi.y;

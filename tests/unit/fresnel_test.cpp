@@ -9,7 +9,7 @@ using namespace pertev;
 
 namespace {
 
-/// Textbook form in complex double arithmetic: n is the far side's index over the near side's.
+/// The textbook formula in complex double arithmetic. n is the index of the far side relative to the near side.
 double reflectance(double cosine, std::complex<double> n) {
     const std::complex<double> far = std::sqrt(1.0 - (1.0 - cosine * cosine) / (n * n));
     const std::complex<double> s = (cosine - n * far) / (cosine + n * far);
@@ -69,8 +69,7 @@ TEST_CASE("conductor reflectance agrees with complex arithmetic to 1e-4") {
         for (const float k : {0.0f, 0.5f, 2.0f, 7.0f})
             for (int i = 1; i <= 100; i++) {
                 const float cosine = static_cast<float>(i) / 100.0f;
-                // A real index below 1 is the dielectric's total reflection, where the complex root's branch is at
-                // stake.
+                // A real index below 1 causes total reflection, which tests the branch of the complex root.
                 if (k == 0 && eta < 1) continue;
                 INFO("cosine " << cosine << " eta " << eta << " k " << k);
                 const std::complex<double> n = {double(eta), double(k)};

@@ -24,7 +24,7 @@ std::vector<double> random_weights(std::size_t count, uint32_t seed) {
     return weights;
 }
 
-/// The owner found by testing every index.
+/// Finds the index by testing each interval.
 uint32_t owner_of(const GuidedCdf& table, uint32_t number) {
     uint32_t owner = 0;
     for (std::size_t i = 0; i + 1 < table.starts.size(); ++i) {
@@ -35,8 +35,7 @@ uint32_t owner_of(const GuidedCdf& table, uint32_t number) {
 
 } // namespace
 
-TEST_CASE(
-    "guided cdf: every index has an interval proportional to its weight, at least one number, and weight 0 none") {
+TEST_CASE("guided cdf: intervals are proportional to weights, hold at least one number, and are empty for weight 0") {
     for (const std::size_t count : {1u, 2u, 3u, 7u, 64u, 1000u, 4096u, 100'000u}) {
         const std::vector<double> weights = random_weights(count, static_cast<uint32_t>(count));
         const GuidedCdf table = build_guided_cdf(weights);
@@ -47,16 +46,16 @@ TEST_CASE(
         for (const double weight : weights) total += weight, positive += weight > 0 ? 1 : 0;
         uint64_t wrong = 0;
         for (std::size_t i = 0; i < count; ++i) {
-            const double owned = table.starts[i + 1] - table.starts[i]; // unsigned: a step back would be huge
+            const double owned = table.starts[i + 1] - table.starts[i]; // unsigned, so a negative length would be huge
             if ((weights[i] > 0) != (owned > 0)) ++wrong;
             worst = std::max(worst, std::abs(owned - weights[i] / total * kNumbers) -
-                                        positive * (weights[i] / total)); // the share that the single numbers for
-                                                                          // each weight take from all
+                                        positive * (weights[i] / total)); // the share of numbers that each weight has
+                                                                          // for certain
             if (cdf_pmf(view_of(table), static_cast<uint32_t>(i)) != static_cast<float>(owned / kNumbers)) ++wrong;
         }
         CAPTURE(count);
         CHECK(wrong == 0);
-        CHECK(worst <= 2); // its own one, and the rounding of its ends
+        CHECK(worst <= 2); // its guaranteed number, and the rounding of both ends
     }
 }
 
@@ -97,7 +96,7 @@ TEST_CASE("guided cdf: the order of numbers is kept by the index and the rest") 
 }
 
 TEST_CASE("guided cdf: the rest of a number is uniform again, and exactly so for a second cdf") {
-    // Every (rest, more) of an index, with more in steps: each of the drawn numbers' top bits must come equally often.
+    // Tries every rest of an index with steps of more: all top bits of the resulting numbers must be equally frequent.
     for (const uint32_t owned : {1u, 3u, 5u, 96u, 1000u}) {
         constexpr uint32_t cells = 64, steps = 1u << 12;
         std::vector<uint64_t> drawn(cells);
@@ -121,7 +120,7 @@ TEST_CASE("guided cdf: the rest of a number is uniform again, and exactly so for
     CHECK(number_of_rest({0, (1u << 31) - 1, 0x7ffffffeu - 1, 0xffffffffu}) >= 0xfffffffdu);
 }
 
-TEST_CASE("guided cdf: the bits behind a pair of numbers are a permutation of either one") {
+TEST_CASE("guided cdf: the bits of a pair of numbers are a permutation of each of them") {
     constexpr uint32_t count = 1u << 18;
     for (const uint32_t fixed : {0u, 1u, 0x9e3779b9u}) {
         std::vector<uint32_t> by_x, by_y;

@@ -13,7 +13,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// Waits until `count` is reached: long, where the machine is loaded.
+/// Waits until `count` is reached, which takes long on a loaded machine.
 bool reaches(const std::atomic<int>& reports, int count) {
     for (int i = 0; i < 3000 && reports < count; ++i) std::this_thread::sleep_for(10ms);
     return reports >= count;
@@ -36,7 +36,7 @@ TEST_CASE("a heartbeat repeats the work's name while it makes no progress") {
     }
     const std::size_t count = works.size();
     std::this_thread::sleep_for(60ms);
-    REQUIRE(works.size() == count); // none after its end
+    REQUIRE(works.size() == count); // there are no beats after the end
     for (std::size_t i = 0; i < count; ++i) {
         CHECK(works[i] == "the trees");
         CHECK(seconds[i] >= 0.02 * static_cast<double>(i + 1));

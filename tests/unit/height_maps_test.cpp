@@ -1,4 +1,4 @@
-// Parsing of --displacement, and reading of its heights.
+// Parsing of `displacement` and reading of its heights.
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Backs of surfaces that are not double sided: the camera sees through them, other light is blocked.
+// Backs of single-sided surfaces: camera rays pass through them, and other rays do not.
 
 #include <algorithm>
 #include <cmath>
@@ -106,7 +106,7 @@ TEST_CASE("a closed room stays dark, seen through its walls' backs or from insid
     for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
         Scene scene;
         scene.environment = Environment{};
-        add(scene, turned(cube()), false); // faces inwards: a room
+        add(scene, turned(cube()), false); // the faces point inwards, as in a room
         const Camera outside = looking({0, 0, 4}, {0, 0, 0}, 0.5f);
         const RenderResult into = render(scene, outside, body);
         CHECK(brightest(into.picture) == 0);
@@ -118,7 +118,7 @@ TEST_CASE("a closed room stays dark, seen through its walls' backs or from insid
         CHECK(at.layers[0].image.pixels[0] == doctest::Approx(3.5));
         CHECK(at.hidden_back_share == 0);
 
-        Scene solid; // faces outwards: its walls are backs to all that is inside, the camera and a sheet
+        Scene solid; // the faces point outwards, so the camera and a sheet inside see only backs
         solid.environment = Environment{};
         add(solid, cube(), false);
         add(solid, sheet(0.4f), true);
@@ -127,7 +127,7 @@ TEST_CASE("a closed room stays dark, seen through its walls' backs or from insid
         CHECK(inside.layers[0].image.pixels[0] == doctest::Approx(0.3));
         CHECK(inside.hidden_back_share == 0);
         const RenderResult through = render(solid, looking({0, 0, 0.3f}, {0, 0, 1}, 0.5f), body);
-        CHECK(darkest(through.picture) == 1); // out of a wall, at the sky
+        CHECK(darkest(through.picture) == 1); // looks out through a wall at the sky
         CHECK(through.hidden_back_share == 1);
     }
 }
@@ -141,7 +141,7 @@ TEST_CASE("the share of rays through hidden backs depends on scene and view, not
         CHECK(render(scene, looking({0, 0, -1}, {0, 0, 0}, 2), PathBody::Wavefront, size).hidden_back_share == 0.5);
     }
     CHECK(render(scene, looking({0, 0, 1}, {0, 0, 0}, 2)).hidden_back_share == 0);
-    add(scene, sheet(), true, make_translation({1, 0, -0.5f})); // stands before it: nothing is passed
+    add(scene, sheet(), true, make_translation({1, 0, -0.5f})); // stands before the wall, so no ray passes a back
     CHECK(render(scene, looking({0, 0, -1}, {0, 0, 0}, 2)).hidden_back_share == 0);
 }
 
@@ -166,7 +166,7 @@ TEST_CASE("a picture's sink gets a notice of hidden backs, and an error states w
             render_samples(session, sink);
         } catch (const Error& error) {
             code = error.code();
-            CHECK(error.setting().empty()); // not `time_limit`
+            CHECK(error.setting().empty()); // the error is not about `time_limit`
         }
         CHECK(code == ErrorCode::Interrupted);
         CHECK(sink.messages().all().empty());

@@ -10,7 +10,7 @@
 using namespace pertev;
 
 TEST_CASE("the Hilbert curve visits every cell once, each adjacent to the previous one") {
-    // The first 8^4 places of the curve fill the first 16 x 16 x 16 cells.
+    // The first 8^4 points of the curve fill the first 16 x 16 x 16 cells.
     constexpr uint32_t side = 16, count = side * side * side;
     std::vector<std::array<int, 3>> cells(count, {-1, -1, -1});
     for (uint32_t i = 0; i < count; ++i) {

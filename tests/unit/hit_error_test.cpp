@@ -19,7 +19,7 @@ DoubleVec3 turned(const Transform& m, DoubleVec3 v) {
     return {dot(to_double(m.row0), v), dot(to_double(m.row1), v), dot(to_double(m.row2), v)};
 }
 
-/// One triangle of a mesh and where an instance puts it.
+/// One triangle of a mesh, and its position in the world.
 struct OneTriangle {
     Vec3 positions[3];
     uint32_t indices[3] = {0, 1, 2};
@@ -57,14 +57,14 @@ struct OneTriangle {
     }
 };
 
-/// a + u (b - a) + v (c - a), exact enough.
+/// Computes a + u (b - a) + v (c - a) in higher precision.
 DoubleVec3 point_at(const Vec3 (&corners)[3], double u, double v) {
     const DoubleVec3 a = to_double(corners[0]);
     return a + (u * (to_double(corners[1]) - a) + v * (to_double(corners[2]) - a));
 }
 
-/// Returns whether it is no sliver and large beside its error: neither cuts short how far a point is kept off its
-/// edges.
+/// Returns whether the triangle is not a sliver and is much larger than its error, so that neither limits the distance
+/// of points from its edges.
 bool has_room(const WorldTriangle& placed) {
     const double size = static_cast<double>(max_component(max(abs(placed.ab), abs(placed.ac))));
     const double width = length(cross(to_double(placed.ab), to_double(placed.ac))) / size;
@@ -103,8 +103,8 @@ TEST_CASE("a hit position is within its error bound of the traversed surface, ba
             most = std::max(most, part_of(off, placed.error));
         }
         CAPTURE(most);
-        CHECK(most <= (is_baked ? 0.6 : 1.0)); // for a baked one, the rest belongs to later steps
-        CHECK(most > 0.2);                     // so the bound says something
+        CHECK(most <= (is_baked ? 0.6 : 1.0)); // the rest belongs to later steps if the mesh is baked
+        CHECK(most > 0.2);                     // the bound is not trivial
         CHECK(tried > 50'000);
     }
 }

@@ -45,7 +45,7 @@ private:
     std::size_t offset_ = 0;
 };
 
-// A value that identifies pixel and channel and is exact in half.
+// Returns a value that identifies pixel and channel and is exact in half precision.
 float value_at(int x, int y, int channel) {
     return static_cast<float>(x + 16 * y) + 0.25f * static_cast<float>(channel);
 }
@@ -59,7 +59,7 @@ struct Source {
     int sampling = 1;
 };
 
-// Header, and the pixels of `data` that it writes.
+// A header, and the pixels of `data` that are written.
 struct Prepared {
     Imf::Header header;
     std::vector<std::vector<float>> floats;
@@ -190,7 +190,7 @@ TEST_CASE("an EXR without colour is an error that lists its channels; so is one 
     CHECK(message_of(make_exr({.sampling = 2})) != "no error");
 }
 
-TEST_CASE("an EXR cut short anywhere is an error that names the file") {
+TEST_CASE("an EXR that is truncated anywhere is an error that names the file") {
     const std::vector<std::byte> bytes = make_exr({});
     for (std::size_t left = 4; left < bytes.size(); left += 7) {
         const std::string message = message_of({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(left)});
@@ -240,7 +240,7 @@ TEST_CASE("an EXR holds rows of any length, and packs each alone if sixteen exce
                 {"n" + std::to_string(i), {"R", "G", "B"}, std::vector<float>(3 * kWidth, static_cast<float>(i))});
         }
         const std::vector<std::byte> bytes = encode_exr(picture, layers);
-        const char name[] = "compression\0compression\0\1\0\0"; // its size, 1, has a 0 more, which ends the array
+        const char name[] = "compression\0compression\0\1\0\0"; // the size 1 gets another 0, which ends the array
         const auto* const first = reinterpret_cast<const char*>(bytes.data());
         const auto* const found = std::search(first, first + bytes.size(), name, name + sizeof name);
         REQUIRE(found != first + bytes.size());
@@ -273,7 +273,7 @@ TEST_CASE("an EXR whose rows would exceed 1 GiB is refused before it is made") {
     for (const auto& [width, channels] : {std::pair(kMaxImageSide, 4097u), std::pair((1u << 14) + 1, 16384u)}) {
         const auto error = test::thrown_error([&, w = width, c = channels] { check_exr_row(w, c); });
         REQUIRE((error && error->code() == ErrorCode::OverLimit));
-        CHECK(test::says(error, std::to_string(channels - 1))); // the largest number that is possible
+        CHECK(test::says(error, std::to_string(channels - 1))); // the largest possible number
     }
 }
 

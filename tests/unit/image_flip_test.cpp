@@ -17,7 +17,7 @@ using namespace pertev;
 namespace {
 
 using Colour = std::array<double, 3>;
-using Kernel = std::function<double(int, int)>; // weight at an offset
+using Kernel = std::function<double(int, int)>; // the weight at an offset
 
 constexpr double kPiInDouble = 3.14159265358979323846;
 
@@ -33,7 +33,7 @@ const double kMatrix[3][3] = {{10135552.0 / 24577794, 8788810.0 / 24577794, 4435
                               {2613072.0 / 12288897, 8788810.0 / 12288897, 887015.0 / 12288897},
                               {1425312.0 / 73733382, 8788810.0 / 73733382, 70074185.0 / 73733382}};
 
-// XYZ over that of white.
+// Returns XYZ relative to white.
 Colour relative_xyz(const Colour& rgb) {
     Colour result{};
     for (std::size_t i = 0; i < 3; ++i) {

@@ -26,7 +26,7 @@ std::string pixel(int r, int g, int b, int e) {
     return {static_cast<char>(r), static_cast<char>(g), static_cast<char>(b), static_cast<char>(e)};
 }
 
-// Red of the picture's pixels in rows from the top.
+// Returns the red values of the pixels, row by row from the top.
 std::vector<float> reds(const Image& image) {
     std::vector<float> result;
     for (std::size_t i = 0; i < image.pixels.size(); i += 3) result.push_back(image.pixels[i]);

@@ -87,7 +87,7 @@ TEST_CASE("colour JPEGs decode to their colours, baseline and progressive, as YC
 }
 
 TEST_CASE("CMYK and YCCK JPEGs become RGB, and with Adobe's marker 255 is no ink") {
-    // Light left by each ink: (1, 0.6, 0.2), times black's 0.8.
+    // The inks transmit (1, 0.6, 0.2), times 0.8 for black.
     const std::vector<unsigned char> no_ink_is_255 = {255, 153, 51, 204}, no_ink_is_0 = {0, 102, 204, 51};
     JpegSource source{.in = JCS_CMYK, .stored = JCS_CMYK, .components = 4, .pixel = no_ink_is_0};
     check_is_filled_with(make_jpeg(source), {204, 122, 41, 255});
@@ -109,7 +109,7 @@ TEST_CASE("a written JPEG is close to the picture and drops its alpha") {
         CHECK(std::abs(back.pixels[i] - (i % 4 == 3 ? 255 : image.pixels[i])) <= 8);
 }
 
-TEST_CASE("a JPEG cut short is an error, not a picture with a grey end") {
+TEST_CASE("a truncated JPEG is an error, not a picture with a grey end") {
     std::vector<std::byte> bytes = make_jpeg({.pixel = {77}});
     for (const std::size_t left : {bytes.size() - 2, bytes.size() - 8, bytes.size() / 2, std::size_t(3)}) {
         const auto error = test::thrown_error([&] { decode_image(std::span(bytes).first(left), "floor.jpg"); });
@@ -139,7 +139,7 @@ TEST_CASE("the writer refuses a JPEG wider than the format allows") {
 }
 
 TEST_CASE("strips encoded in parallel decode to the pixels of the picture encoded at once") {
-    // Sides that end inside a block, one strip alone, more strips than restart numbers.
+    // Sizes that end inside a block, a single strip, and more strips than there are restart numbers.
     for (const auto& [width, height] :
          {std::pair{1u, 1u}, {7u, 9u}, {64u, 8u}, {61u, 250u}, {333u, 517u}, {9000u, 70u}}) {
         CAPTURE(width);

@@ -77,7 +77,7 @@ TEST_CASE("the variance of pictures is the unbiased variance of each channel ove
     CHECK(all.rel_mse == doctest::Approx(0.0625 / (0.25 + 0.01)).epsilon(1e-12));
     CHECK(all.mean == doctest::Approx(0.5).epsilon(1e-12));
 
-    // One channel alone: a third of its figure. Alpha is left out.
+    // If only one channel varies, the figure is a third of that channel's. Alpha is ignored.
     const VarianceOfPictures green = variance_of({Image{1, 1, 4, {1, 2, 3, 0}}, Image{1, 1, 4, {1, 4, 3, 1}}});
     CHECK(green.over({0}).rel_mse == doctest::Approx(2 / (9 + 0.01) / 3).epsilon(1e-12));
     CHECK(green.over({0}).mean == doctest::Approx(7.0 / 3).epsilon(1e-12));
@@ -92,7 +92,7 @@ TEST_CASE("the variance of pictures keeps its digits where they are bright and d
 
 TEST_CASE("the best pixels are those that vary least, and the variance of others can be requested") {
     Image low = filled(10, 10, 1), high = filled(10, 10, 1);
-    for (uint32_t x = 0; x < 10; ++x) { // row 2 varies, its right end more
+    for (uint32_t x = 0; x < 10; ++x) { // row 2 varies, most at its right end
         low.at(x, 2)[0] = 1 - 0.01f * static_cast<float>(x + 1);
         high.at(x, 2)[0] = 1 + 0.01f * static_cast<float>(x + 1);
     }
@@ -127,7 +127,7 @@ TEST_CASE("a pixel with a value that is not finite in any picture varies most") 
 TEST_CASE("the variance of pictures of different sizes is an error that names both") {
     VarianceOfPictures variance;
     variance.add(filled(4, 3, 0));
-    const auto error = test::thrown_error([&] { variance.add(filled(3, 4, 0)); }); // an equal number of pixels
+    const auto error = test::thrown_error([&] { variance.add(filled(3, 4, 0)); }); // the number of pixels is equal
     REQUIRE(error);
     CHECK(error->code() == ErrorCode::BadInput);
     CHECK(test::says(error, "3 x 4 and 4 x 3"));

@@ -150,7 +150,8 @@ TEST_CASE("a written PNG reads back to the same pixels, with and without alpha, 
 
 namespace {
 
-/// Bytes that the file's one zlib stream holds, by zlib alone, which checks their sum; 0 for a broken one.
+/// Returns how many bytes zlib itself reads from the file's only stream, whose checksum it verifies; 0 if the stream is
+/// broken.
 std::size_t inflated_bytes(const std::vector<std::byte>& file, std::size_t at_most) {
     std::vector<std::byte> stream;
     const auto number_at = [&](std::size_t at) {
@@ -183,7 +184,7 @@ TEST_CASE("a PNG written by several threads holds the picture, and its bytes do 
         return image;
     };
     struct Case {
-        uint32_t width, height, bits; // 8: what deflate cannot shorten
+        uint32_t width, height, bits; // 8 selects noise, which deflate cannot shorten
     };
     for (const Case& of : {Case{700, 500, 5}, {700, 500, 8}, {700, 500, 1}, {60000, 3, 8}, {1, 40000, 5}}) {
         CAPTURE(of.width);

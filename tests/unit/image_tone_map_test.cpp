@@ -35,7 +35,7 @@ void check_close(Rgb got, const Colour& wanted, double tolerance = 2e-5) {
     for (std::size_t c = 0; c < 3; ++c) CHECK(values[c] == doctest::Approx(wanted[c]).scale(1).epsilon(tolerance));
 }
 
-// Reference values: each operator once more, in double, from its publication.
+// Reference values: each operator in double precision, written from its publication.
 
 Colour neutral_in_double(Colour c) {
     const double x = std::min({c[0], c[1], c[2]});
@@ -150,7 +150,7 @@ TEST_CASE("below its knee PBR Neutral is the colour minus the 4 % of a dielectri
         CHECK(shown.g == doctest::Approx(double(base.g)).epsilon(1e-5));
         CHECK(shown.b == doctest::Approx(double(base.b)).epsilon(1e-5));
     }
-    // Above it: peak 1.96 after the offset goes to 1 - 0.0576 / 1.44 = 0.96.
+    // Above the knee, a peak of 1.96 after the offset becomes 1 - 0.0576 / 1.44 = 0.96.
     CHECK(srgb_decode(tone_map(grey(2.0f), ToneMap::Neutral)).g == doctest::Approx(0.96).epsilon(1e-5));
 }
 

@@ -24,7 +24,7 @@ Image gradient(uint32_t channels) {
 
 } // namespace
 
-TEST_CASE("the extension determines the format, in either case") {
+TEST_CASE("the extension determines the format, in upper or lower case") {
     const std::filesystem::path folder = test::scratch_folder();
     const Image image = gradient(3);
     const struct {

@@ -1,4 +1,4 @@
-// The triangle test against values that are known exactly, and against the same test in exact-enough arithmetic.
+// The triangle test against exactly known values, and against the same test in higher precision.
 
 #include "trace/intersect/intersect_triangle.h"
 
@@ -48,10 +48,10 @@ TEST_CASE("a ray through the middle of a triangle gives the distance and the wei
     const Vec3 a = {0, 0, 5}, b = {4, 0, 5}, c = {0, 4, 5};
     TriangleHit hit;
     REQUIRE(intersect({1, 2, 1}, {0, 0, 2}, a, b, c, hit));
-    CHECK(hit.t == 2.0f); // in lengths of the direction
+    CHECK(hit.t == 2.0f); // in multiples of the direction's length
     CHECK(hit.u == 0.25f);
     CHECK(hit.v == 0.5f);
-    REQUIRE(intersect({1, 2, 9}, {0, 0, -1}, a, b, c, hit)); // the back face counts as well
+    REQUIRE(intersect({1, 2, 9}, {0, 0, -1}, a, b, c, hit)); // the back face is hit, too
     CHECK(hit.t == 4.0f);
     CHECK(hit.u == 0.25f);
     CHECK(hit.v == 0.5f);
@@ -123,7 +123,7 @@ TEST_CASE("hits agree with extended precision and lie within the boxes' toleranc
             CHECK(hit.u >= 0);
             CHECK(hit.v >= 0);
             CHECK(hit.u + hit.v <= 1 + 0x1p-22f);
-            // How far the ray at t is outside the triangle's box, in units of 2^-24 of |origin| + |bounds|.
+            // Returns the distance of the ray at t from the triangle's box, in units of 2^-24 of |origin| + |bounds|.
             const auto out = [&](float oo, float dd, float x, float y, float z) {
                 const double p = static_cast<double>(oo) + static_cast<double>(hit.t) * static_cast<double>(dd);
                 const double lo = static_cast<double>(min(min(x, y), z)), hi = static_cast<double>(max(max(x, y), z));
@@ -162,7 +162,7 @@ TEST_CASE("products that underflow keep their sign") {
     CHECK_FALSE(intersect({s, s, -1}, {0, 0, 1}, {-s, -s, 0}, {s, -s, 0}, {0, s, 0}, hit));
 }
 
-TEST_CASE("an edge along the ray, or of length zero, leaves the decision to the others at every size") {
+TEST_CASE("an edge along the ray or of length zero does not affect the result, at any size") {
     Random random(9);
     uint64_t hits = 0, along = 0, wrong = 0;
     for (int i = 0; i < 200000; ++i) {
@@ -171,7 +171,7 @@ TEST_CASE("an edge along the ray, or of length zero, leaves the decision to the 
         for (int k = 0; k < 3; ++k) x[k] = whole(), y[k] = whole();
         if (i % 2 == 0) x[1] = x[0], y[1] = y[0]; // the edge from a to b is along the ray
         const int ox = whole(), oy = whole();
-        // Exact for whole numbers: edges opposite a, b and c as seen by the ray.
+        // The edge functions opposite a, b and c, which are exact for whole numbers.
         const auto edge = [&](int p, int q) { return (x[p] - ox) * (y[q] - oy) - (y[p] - oy) * (x[q] - ox); };
         const int ea = edge(2, 1), eb = edge(0, 2), ec = edge(1, 0);
         const bool is_outside = (ea < 0 || eb < 0 || ec < 0) && (ea > 0 || eb > 0 || ec > 0);

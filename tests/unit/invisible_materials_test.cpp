@@ -4,7 +4,7 @@
 
 using namespace pertev;
 
-namespace invisible_materials_test { // tests are compiled several files at once
+namespace invisible_materials_test { // test files are compiled together
 
 /// A triangle of one material.
 struct Case {
@@ -57,7 +57,7 @@ TEST_CASE("a material that is visible anywhere is not named") {
     Case unused(AlphaMode::Opaque);
     unused.scene.materials.push_back({{.alpha_mode = AlphaMode::Blend, .alpha = 0}, "ghost"});
     CHECK_FALSE(unused.is_named());
-    Case shared = Case(AlphaMode::Blend).with_vertices(0); // another mesh with the material has alpha
+    Case shared = Case(AlphaMode::Blend).with_vertices(0); // another mesh with the material has an alpha above 0
     shared.scene.meshes.push_back(shared.scene.meshes[0]);
     shared.scene.meshes[1].colors.clear();
     shared.scene.instances.push_back({.name = "j", .mesh = 1, .material = 0});

@@ -29,7 +29,7 @@ TEST_CASE("under a point light a floor has the irradiance I cos(t) / r^2, whatev
     glass.kind = MaterialKind::Dielectric;
     glass.roughness = 0;
     Material glow = test::white(0);
-    glow.emission = {1e-3f, 1e-3f, 1e-3f}; // less power than the light, which most samples then draw
+    glow.emission = {1e-3f, 1e-3f, 1e-3f}; // the floor has less power than the light, so most samples choose the light
     Material unlit = test::white();
     unlit.kind = MaterialKind::Unlit;
     const Vec3 light = {0.3f, 1, -0.4f};
@@ -39,7 +39,7 @@ TEST_CASE("under a point light a floor has the irradiance I cos(t) / r^2, whatev
         test::add(scene, test::sheet({0.05f, 0, 0}, {0, 0, 10}, {10, 0, 0}), material);
         scene.lights.push_back(test::point_light(light, {7, 6, 5}));
         RenderSettings settings = irradiance_settings(kPixels, 1);
-        const bool is_emitter = material.emission.r > 0; // then the sample may be drawn of the floor
+        const bool is_emitter = material.emission.r > 0; // the sample may choose the floor
         if (is_emitter) settings.samples = 1024;
         Queue queue = test::requested_queue();
         const RenderResult result = test::render(queue, scene, test::camera_down({0, 3, 0}, 4), settings);

@@ -14,7 +14,8 @@ TEST_CASE("a mix of rays has the rate of its kinds traced one after the other") 
     CHECK(rates.of_mix({.camera = 4, .bounce = 4, .shadow = 8}) == 4.0); // 16 rays in 1 + 2 + 1 seconds
     CHECK(rates.of_mix({.camera = 4, .bounce = 0, .shadow = 0}) == 4.0);
     CHECK(rates.of_mix({}) == 0.0);
-    CHECK(IsolatedRates{.camera = 4}.of_mix({.camera = 4, .bounce = 1, .shadow = 0}) == 0.0); // no rate, no mix
+    CHECK(IsolatedRates{.camera = 4}.of_mix({.camera = 4, .bounce = 1, .shadow = 0}) ==
+          0.0); // without a rate there is no mix
 }
 
 TEST_CASE("rays of each kind have a rate, and the sink can stop the measurement") {

@@ -1,4 +1,4 @@
-// Vectors as JSON has them: texts of flags and of an EXR's metadata become arrays, and nothing else does.
+// Vectors in JSON: texts of flags and of an EXR's metadata become arrays, and no others.
 
 #include <doctest/doctest.h>
 
@@ -10,7 +10,7 @@ using namespace pertev;
 TEST_CASE("numbers between commas are a JSON array, to all their digits") {
     CHECK(json_vector("0.3,2.1,-4.7") == "[0.3,2.1,-4.7]");
     CHECK(json_vector("448262.257,5411933.125,1e-07") == "[448262.257,5411933.125,1e-07]");
-    CHECK(json_vector("0,-0") == "[0,-0.0]"); // whose sign readers of JSON keep
+    CHECK(json_vector("0,-0") == "[0,-0.0]"); // JSON readers keep the sign
     CHECK(json_vector("0,1e-400,0.5") == "[0,0,0.5]");
     CHECK(!json_vector("0,1e400"));
     CHECK(json_vector("1,0,0 0,1,0 0,0,1 4,5,6") == "[[1,0,0],[0,1,0],[0,0,1],[4,5,6]]");

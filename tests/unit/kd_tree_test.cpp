@@ -1,5 +1,5 @@
-// kd-trees: the builders' bounds of depth, memory and cost hold, threads do not matter, and the checker detects
-// broken trees.
+// kd-trees: the builders keep their limits of depth, memory and cost for any number of threads, and the checker
+// detects broken trees.
 
 #include <doctest/doctest.h>
 
@@ -78,9 +78,9 @@ TEST_CASE("clipping to the cells of a grid keeps every point of a triangle and n
         const float scale = i % 3 == 0 ? 1.0f : (i % 3 == 1 ? 0x1p38f : 0x1p-30f);
         BvhTriangle t;
         t.a = scale * random.point(-1, 1), t.b = scale * random.point(-1, 1), t.c = scale * random.point(-1, 1);
-        if (i % 4 == 0) t.c.x = t.b.x = t.a.x;                             // in a plane
-        if (i % 8 == 0) t.a.x = t.b.x = t.c.x = 0.5f * scale;              // in the plane between two cells
-        if (i % 5 == 0) t.c = t.a + 0x1p-20f * scale * random.direction(); // a sliver
+        if (i % 4 == 0) t.c.x = t.b.x = t.a.x;                             // lies in a plane
+        if (i % 8 == 0) t.a.x = t.b.x = t.c.x = 0.5f * scale;              // lies in the plane between two cells
+        if (i % 5 == 0) t.c = t.a + 0x1p-20f * scale * random.direction(); // is a sliver
         const Vec3 corner = scale * Vec3{0.5f, random.within(-0.5f, 0), random.within(-0.5f, 0)};
         const double slack = clip_slack(2 * scale);
         for (int cell = 0; cell < 8; ++cell) { // the octants about a corner
@@ -136,7 +136,7 @@ TEST_CASE("the checker detects a broken kd-tree") {
     CHECK(is_noticed([](KdTree& t) { t.bounds.hi.y = 0; }));
     CHECK(is_noticed([](KdTree& t) { t.nodes[0] = make_kd_inner(0, 100.0f, t.nodes[0].above()); }));
     CHECK(is_noticed([](KdTree& t) { t.nodes[0] = make_kd_inner(t.nodes[0].axis(), t.nodes[0].plane(), 0); }));
-    CHECK(is_noticed([](KdTree& t) { // the plane is a little off
+    CHECK(is_noticed([](KdTree& t) { // the plane is moved slightly
         const float size = component(t.bounds.size(), t.nodes[0].axis());
         t.nodes[0] = make_kd_inner(t.nodes[0].axis(), t.nodes[0].plane() + 0.05f * size, t.nodes[0].above());
     }));

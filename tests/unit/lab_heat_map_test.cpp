@@ -11,7 +11,7 @@ TEST_CASE("a heat map gets lighter as counts rise, and carries its scale below")
     }
     std::vector<uint32_t> counts(64 * 32, 5);
     counts[64 * 31 + 63] = 1'000'000;
-    CHECK(scale_end(counts) == 5); // one mad pixel does not darken the rest
+    CHECK(scale_end(counts) == 5); // one outlier does not darken the rest
     CHECK(scale_end({}) == 1);
     const Rgba8Image image = draw_heat_map(counts, 64, 32, 10);
     CHECK(image.width == 64);

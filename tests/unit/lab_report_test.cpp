@@ -34,24 +34,24 @@ TEST_CASE("the laboratory's table of runs has each figure and empty cells where 
     CHECK(runs.at(0, "mrays") == 4.0);
     CHECK(runs.at(0, "mrays_slowest") == 2.0);
     CHECK(runs.at(0, "mrays_fastest") == 8.0);
-    CHECK(runs.at(0, "triangles_per_ray") == 0.0); // measured: none
+    CHECK(runs.at(0, "triangles_per_ray") == 0.0); // nothing was measured
     CHECK(!runs.at(1, "triangles_per_ray").is_there());
     CHECK(runs.at(0, "different_rays") == 0);
     CHECK(!runs.at(0, "node_lanes").is_there());
     CHECK(runs.at(0, "registers") == 40);
     CHECK(runs.at(0, "local_bytes") == 0);
-    CHECK(!runs.at(1, "registers").is_there()); // any hit: another kernel
+    CHECK(!runs.at(1, "registers").is_there()); // any-hit rays use another kernel
     CHECK(runs.at(3, "wrong") == true);
     CHECK(runs.at(3, "refused") == "no <planes>, none");
     CHECK(runs.at(1, "is_copy") == true);
-    CHECK(!runs.at(1, "frame_depth").is_there()); // shadow rays are no frame
+    CHECK(!runs.at(1, "frame_depth").is_there()); // a frame has no shadow rays
     CHECK(runs.at(2, "frame_depth") == 2);
     CHECK(runs.at(2, "frames_per_second") == 0.4);
     CHECK(runs.at(2, "frame_mrays") == 4.0);
     for (const char* name : {"nodes", "leaf_triangles", "build_seconds", "sah_cost", "depth", "bytes"}) {
         CAPTURE(name);
         CHECK(runs.at(0, name).is_there());
-        CHECK(!runs.at(3, name).is_there()); // its structure's turn never came
+        CHECK(!runs.at(3, name).is_there()); // its structure was never measured
     }
     CHECK(runs.at(3, "structure") == "binned");
 }
@@ -86,7 +86,7 @@ TEST_CASE("the laboratory's other tables describe its scene, ray sets and struct
     CHECK(has(text_of(report), "octree: too <large>"));
 }
 
-TEST_CASE("a wrong combination is named first and has no figures anywhere") {
+TEST_CASE("an incorrect combination is named first and has no figures") {
     LabReport report = small_report();
     CombinationFigures& c = report.combinations[0];
     c.wrong = true, c.refused = "WRONG: 3 of 9 <primary> rays differ", c.runs.clear();
@@ -122,7 +122,7 @@ TEST_CASE("heat maps of a report share one scale") {
 
 TEST_CASE("the terminal's table has a column for each set, gaps included, and the fastest combination first") {
     LabReport report = small_report();
-    // Interrupted: it has figures of diffuse rays but not of shadow rays.
+    // An interrupted combination has figures of diffuse rays but not of shadow rays.
     const Combination gap = {
         .structure = StructureKind::EqualCounts, .traversal = TraversalKind::RestartTrail, .options = kNoRta};
     report.combinations.push_back(figures(gap, {timed(0, 1), timed(2, 2)}));
@@ -133,7 +133,7 @@ TEST_CASE("the terminal's table has a column for each set, gaps included, and th
     CHECK(line_with(table, name_of(gap)).ends_with("8.00       -      1.00"));
     const std::string frames = text.substr(text.find("frames a second by depth"));
     CHECK(has(line_with(frames, "binned while-while"), "0.50  0.40"));
-    CHECK(text.ends_with("interrupted: this is what had been measured\n"));
+    CHECK(text.ends_with("interrupted: the results are incomplete\n"));
 }
 
 TEST_CASE("combinations that were checked but not timed have no speed") {

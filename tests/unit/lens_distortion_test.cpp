@@ -41,7 +41,7 @@ TEST_CASE("a lens projects points where OpenCV does, at every size of the pictur
     }
 }
 
-TEST_CASE("a lens shows the directions that OpenCV finds") {
+TEST_CASE("a lens maps pixels to the directions that OpenCV computes") {
     struct Undistorted {
         Vec2 pixel, at;
     };
@@ -73,7 +73,7 @@ TEST_CASE("projecting a pixel's point returns the pixel, and lanes have the same
             CHECK(lanes.direction.z[7] == ray.direction.z);
             if (is_outside_lens(ray.origin)) continue;
             ++seen;
-            // A float near 1280 has steps of 1.2e-4; where a lens is nearly no longer monotone, angles change fast.
+            // Floats near 1280 are 1.2e-4 apart, and where a lens is barely monotone, angles change fast.
             const ProjectedPoint at = project_point(rays.view, 3.0f * ray.direction);
             CHECK(std::abs(at.pixel.x - x) < 0.02f);
             CHECK(std::abs(at.pixel.y - y) < 0.02f);
@@ -109,14 +109,14 @@ TEST_CASE("a lens shows nothing where its model is no longer monotone") {
     CHECK_FALSE(is_outside_lens(make_camera_ray(view, {170, 100}, {}).origin));
     CHECK(is_outside_lens(make_camera_ray(view, {170.6f, 100}, {}).origin));
     CHECK(is_outside_lens(make_camera_ray(view, {199, 199}, {}).origin));
-    CHECK(std::isnan(project_point(view, {1.2f, 0, -1}).pixel.x)); // which it would show a second time
+    CHECK(std::isnan(project_point(view, {1.2f, 0, -1}).pixel.x)); // the lens would show this direction a second time
     CameraConnection seen;
     CHECK_FALSE(connect_to_camera(rays_of(barrel), {1.2f, 0, -1}, {}, seen));
     CHECK(camera_density(rays_of(barrel), {}, normalize(Vec3{1.2f, 0, -1})) == 0);
 
     Camera fisheye = barrel;
     fisheye.lens = LensModel::Fisheye;
-    fisheye.distortion = {-1 / 12.0, 0, 0, 0}; // turns back at 2 radians, which is behind the camera
+    fisheye.distortion = {-1 / 12.0, 0, 0, 0}; // stops being monotone at 2 radians, which is behind the camera
     CHECK(make_camera_view(fisheye, 200, 200).lens.limit == doctest::Approx(2));
     fisheye.distortion = {};
     const CameraView equidistant = make_camera_view(fisheye, 200, 200);

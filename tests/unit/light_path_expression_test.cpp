@@ -1,5 +1,5 @@
-// Light-path expressions: errors name the character, and the automaton accepts the words of the standard
-// library's regular expressions.
+// Light-path expressions: errors name the character, and the automaton accepts the words that the standard library's
+// regular expressions accept.
 
 #include <doctest/doctest.h>
 
@@ -21,7 +21,7 @@ namespace {
 constexpr LobeClass kLobeClasses[] = {LobeClass::Diffuse, LobeClass::Glossy, LobeClass::Specular};
 constexpr char kLobeLetters[] = "DGS";
 
-/// Everything has one tag, through which all filters see.
+/// All objects have one tag, which every filter accepts.
 LightPathAutomaton automaton_of(const std::vector<std::string>& texts) {
     std::vector<LightPathExpression> expressions;
     std::size_t filters = 0;
@@ -33,7 +33,7 @@ LightPathAutomaton automaton_of(const std::vector<std::string>& texts) {
     return make_automaton(expressions, {{tag}, {tag}});
 }
 
-/// Returns where a path stands whose scatterings are `word`, from the light to the eye; small letters are
+/// Returns the state of a path with the scatterings `word`, from the light to the eye. Lower-case letters are
 /// transmissions.
 uint16_t state_after(const LightPathAutomaton& automaton, const std::string& word) {
     uint16_t state = automaton.start;
@@ -46,13 +46,13 @@ uint16_t state_after(const LightPathAutomaton& automaton, const std::string& wor
     return state;
 }
 
-/// The layers that take its light, of 32 at most.
+/// Returns the layers that receive the path's light, of at most 32.
 uint32_t layers_of_word(const LightPathAutomaton& automaton, const std::string& word) {
     REQUIRE(automaton.words == 1);
     return automaton.layers_of(state_after(automaton, word), 0)[0];
 }
 
-/// Translates an expression to the syntax of the standard library.
+/// Translates an expression into the syntax of the standard library.
 std::regex as_regex(const std::string& text) {
     return std::regex(
         std::regex_replace(std::regex_replace(text, std::regex("\\."), "[DGS]"), std::regex("\\[\\^S\\]"), "[DG]"));
@@ -65,7 +65,7 @@ bool is_over(const std::vector<std::string>& texts, const std::string& says) {
     return error && error->code() == ErrorCode::OverLimit && std::string(error->what()).find(says) != std::string::npos;
 }
 
-/// All words of up to `most` letters.
+/// Returns all words of at most `most` letters.
 std::vector<std::string> words_of_lobes(std::size_t most) {
     std::vector<std::string> all = {""};
     for (std::size_t first = 0, length = 0; length < most; ++length) {
@@ -81,7 +81,7 @@ std::string lpe_refusal(const std::string& text) {
     return test::bad_input_message([&] { parse_light_path(text); });
 }
 
-/// Returns where the caret stands: the letter in the last line but its two blanks.
+/// Returns the position of the caret in the last line, without its two blanks.
 std::size_t lpe_caret(const std::string& message) { return message.size() - message.rfind("\n  ") - 4; }
 
 } // namespace
@@ -129,7 +129,7 @@ TEST_CASE("an automaton of many expressions accepts each expression's words") {
                 REQUIRE(takes == std::regex_match("L" + word + "E", oracle[i]));
                 is_taken[i] = is_taken[i] || takes;
             }
-            const std::size_t beyond = automaton.words * 32 - count; // bits of no layer
+            const std::size_t beyond = automaton.words * 32 - count; // bits without a layer
             if (beyond > 0) REQUIRE((automaton.layers_of(state, 0).back() >> (32 - beyond)) == 0);
         }
         CHECK(std::ranges::count(is_taken, false) == 0);
@@ -137,7 +137,7 @@ TEST_CASE("an automaton of many expressions accepts each expression's words") {
 }
 
 TEST_CASE("the automaton is minimal") {
-    CHECK(automaton_of({"L.*E"}).state_count() == 2); // that, and the one that takes nothing
+    CHECK(automaton_of({"L.*E"}).state_count() == 2); // the state, and the one that accepts nothing
     CHECK(automaton_of({"L(D|G|S)*E", "L[DGS]*E"}).state_count() == 2);
     CHECK(automaton_of({"LS+DE"}).state_count() == 4);            // E, DE, SDE
     CHECK(automaton_of({"L(DD|DS|SD|SS)*E"}).state_count() == 3); // even, odd
@@ -166,13 +166,13 @@ TEST_CASE("a bad expression points at its character") {
     };
     points_at("LXE", 1, "unknown letter; expected L");
     points_at("L(DE", 1, "not closed");
-    points_at("LD)E", 2, "no ( before it");
+    points_at("LD)E", 2, "no (");
     points_at("L[DE", 3, "a set can hold only scatterings");
     points_at("L[D", 1, "not closed");
     points_at("L[]E", 2, "at least one letter");
     points_at("L[Q]E", 2, "unknown letter of a set");
-    points_at("*LE", 0, "nothing before it");
-    points_at("L(|+)E", 3, "nothing before it");
+    points_at("*LE", 0, "repeat");
+    points_at("L(|+)E", 3, "repeat");
     points_at("LD{2E", 4, "} is missing");
     points_at("LD{}E", 3, "a whole number");
     points_at("LD{3,2}E", 2, "smaller than the first");
@@ -184,15 +184,15 @@ TEST_CASE("a bad expression points at its character") {
     points_at("L<''>E", 3, "expected a name");
     points_at("LD<^>E", 3, "before names");
     points_at("L<T>E", 0, "apply only to scattering");
-    points_at("L[DG]<'x'>E", 5, "also in brackets");
-    points_at("L(D|G)<'x'>E", 6, "also in brackets");
-    points_at("LD<R><'x'>E", 5, "after a single letter");
+    points_at("L[DG]<'x'>E", 5, "in brackets");
+    points_at("L(D|G)<'x'>E", 6, "in brackets");
+    points_at("LD<R><'x'>E", 5, "a single letter");
     points_at("L'lamp'E", 1, "names are enclosed in < and >");
-    points_at("LE,b=LDE", 2, "needs its own `lpe` NAME=EXPRESSION");
+    points_at("LE,b=LDE", 2, "its own `lpe` NAME=EXPRESSION");
     points_at("CD*L", 0, "from the light to the eye");
     points_at("lde", 0, "upper case");
     points_at("LdE", 1, "upper case");
-    points_at("LDE<'x'>", 3, "the eye has no name");
+    points_at("LDE<'x'>", 3, "takes no name");
     points_at("", 0, "expected an expression");
     points_at(" DE", 1, "begins with one L");
     points_at("LD", 1, "ends with one E");
@@ -216,7 +216,7 @@ TEST_CASE("texts other than NAME=EXPRESSION are refused") {
 TEST_CASE("expressions that grow without bound are refused") {
     CHECK(is_over({"L" + std::string(5000, 'D') + "E"}, "more than 4096 characters"));
     CHECK(is_over({"L((D{255}){255}){255}E"}, "more than 4096 letters"));
-    CHECK(is_over({"L.{15}D.*E"}, "16384 states")); // from the eye it needs a state for each of 2^15 pasts
+    CHECK(is_over({"L.{15}D.*E"}, "16384 states")); // read from the eye it needs a state for each of 2^15 histories
     CHECK(lpe_refusal("x=L" + std::string(300, '(') + "D" + std::string(300, ')') + "E").find("nested parentheses") !=
           std::string::npos);
     parse_light_path("x=LD" + std::string(4000, '*') + "E"); // nested as deeply as possible
@@ -229,10 +229,10 @@ TEST_CASE("expressions whose total size is too large are refused") {
         return texts;
     };
     CHECK(is_over(repeated(600, [](std::size_t) { return std::string("L(D{255}){16}E"); }),
-                  "too many letters in 600 expressions in total"));
+                  "600 expressions have too many letters"));
     const auto counting = [](std::size_t i) {
         return fmt::format("L(.{{{0}}})*E", 2 * i + 3);
-    }; // states: their product
+    }; // the number of states is the product
     CHECK(automaton_of(repeated(4, counting)).state_count() == 3 * 5 * 7 * 9 / 3 + 1);
     CHECK(is_over(repeated(12, counting), "16384 states"));
 }
@@ -241,7 +241,7 @@ TEST_CASE("an automaton that takes too long to build is refused") {
     const std::vector<LightPathExpression> expressions = {parse_light_path("x=LD{30}(SS|SD|SG)E")};
     const LightPathTags tags = {{std::vector<bool>()}, {std::vector<bool>()}};
     const auto with_steps = [&](uint64_t steps) { return make_automaton(expressions, tags, steps); };
-    uint64_t enough = 50; // to make one at all
+    uint64_t enough = 50; // the time to make one automaton
     for (;; enough += 10) {
         const auto error = test::thrown_error([&] { with_steps(enough); });
         if (!error) break;

@@ -11,7 +11,7 @@ using namespace pertev;
 
 namespace {
 
-/// A wall and a lamp under the node "house", a floor, a light under the house and one by itself.
+/// A wall, an emitter and a light under the node "house", a floor, and a light without a parent.
 Scene make_named_scene() {
     Scene scene;
     scene.nodes.resize(2);
@@ -45,7 +45,7 @@ LightPathLayers put_layers(std::initializer_list<const char*> texts, const Scene
     return bind_to_scene(std::move(expressions), scene);
 }
 
-/// Returns for wall, lamp and floor whether LD<filter>E lets light scatter there.
+/// Returns for wall, emitter and floor whether LD<filter>E accepts scattering there.
 std::vector<bool> surfaces_of_filter(const char* expression) {
     const LightPathLayers layers = put_layers({expression}, make_named_scene());
     std::vector<bool> are;
@@ -56,7 +56,7 @@ std::vector<bool> surfaces_of_filter(const char* expression) {
     return are;
 }
 
-/// Returns for lamp, bulb, sun and environment whether the expression accepts light that goes from it to the eye.
+/// Returns for emitter, bulb, sun and environment whether the expression accepts light that goes from it to the eye.
 std::vector<bool> lights_of_filter(const char* expression) {
     const LightPathLayers layers = put_layers({expression}, make_named_scene());
     const LightPathAutomaton& automaton = layers.automaton;
@@ -99,7 +99,7 @@ TEST_CASE("an unknown name is refused at its character, with a list of names") {
     const auto fault = [](const char* text) {
         return test::thrown_error([&] { put_layers({"a=LE", text}, make_named_scene()); });
     };
-    for (const char* text : {"b=LD<'wal'>E", "b=LD<'wall' 'x*'>E", "b=L<'wall'>E"}) { // a wall gives no light
+    for (const char* text : {"b=LD<'wal'>E", "b=LD<'wall' 'x*'>E", "b=L<'wall'>E"}) { // the wall emits no light
         CHECK(test::is_about(fault(text), ErrorCode::BadInput, "lpe", "b"));
     }
     CHECK(test::says(fault("b=LD<'wal'>E"), "character 5"));

@@ -1,4 +1,4 @@
-// Limits of memory that a container or a service has, by files laid out as Linux does.
+// Memory limits of a container or a service, read from files in Linux's layout.
 
 #include <doctest/doctest.h>
 
@@ -45,13 +45,13 @@ TEST_CASE("memory is limited by the tightest of the control groups that a proces
 
     const Groups first;
     first.write("self", "5:cpu,cpuacct:/a\n4:memory:/a/b\n1:name=systemd:/a\n");
-    first.write("mounted/memory/a/b/memory.limit_in_bytes", "9223372036854771712\n"); // "none", in that version's way
+    first.write("mounted/memory/a/b/memory.limit_in_bytes", "9223372036854771712\n"); // how that version writes "none"
     CHECK(first.limit() > (std::size_t(1) << 62));
     first.write("mounted/memory/a/memory.limit_in_bytes", "2000000000\n");
     CHECK(first.limit() == 2000000000u);
 }
 
-TEST_CASE("a container whose group has another name outside is limited by its visible root") {
+TEST_CASE("a container that does not see its group's name is limited by its visible root") {
     const Groups container;
     container.write("self", "0::/docker/0123456789\n");
     container.write("mounted/memory.max", "536870912\n");

@@ -1,5 +1,5 @@
-// Scenes with normal maps and without tangents: which meshes get them, how vertices are split, and what moves with
-// them.
+// Scenes with normal maps but no tangents: which meshes get tangents, how vertices are split, and what moves with the
+// tangents.
 
 #include "scene/tangents/make_tangents.h"
 
@@ -21,7 +21,7 @@
 
 using namespace pertev;
 
-namespace make_tangents_test { // tests are compiled several files at once
+namespace make_tangents_test { // test files are compiled together
 
 Vec3 xyz(Vec4 v) { return {v.x, v.y, v.z}; }
 bool close(Vec3 a, Vec3 b) { return length(a - b) < 1e-5f; }
@@ -32,7 +32,7 @@ Mesh mirrored_squares() {
     mesh.positions = {{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}, {-1, 1, 0}, {0, 1, 0}, {1, 1, 0}};
     mesh.normals.assign(6, {0, 0, 1});
     mesh.uv[0] = {{1, 1}, {0, 1}, {1, 1}, {1, 0}, {0, 0}, {1, 0}};
-    mesh.uv[1] = {{0, 0}, {0, 1}, {0, 2}, {1, 0}, {1, 1}, {1, 2}}; // along y, mirrored nowhere
+    mesh.uv[1] = {{0, 0}, {0, 1}, {0, 2}, {1, 0}, {1, 1}, {1, 2}}; // runs along y and is not mirrored
     for (int i = 0; i < 6; ++i) mesh.colors.push_back({0.1f * static_cast<float>(i), 0, 0, 1});
     mesh.indices = {0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4};
     return mesh;
@@ -63,7 +63,7 @@ MeshShape& add_shape(Scene& scene, std::vector<MorphTarget> targets, bool has_sk
     scene.nodes[0].morph_weights.assign(targets.size(), 0.0f);
     shape.targets = std::move(targets);
     if (has_skin) {
-        scene.nodes.resize(2); // node 1: the joint
+        scene.nodes.resize(2); // node 1 is the joint
         scene.skins.push_back({.joints = {1, 1}, .joint_from_mesh = {}});
         scene.nodes[0].skin = shape.skin = 0;
         shape.joints_per_vertex = 2;
@@ -86,7 +86,7 @@ TEST_CASE("a mesh with a normal map gets tangents, and more vertices where its t
     const Mesh before = scene.meshes[0];
     validate_quietly(scene);
     const Mesh& mesh = scene.meshes[0];
-    CHECK(mesh.positions.size() == 8); // the two of the shared edge are duplicated
+    CHECK(mesh.positions.size() == 8); // the two vertices of the shared edge are duplicated
     CHECK(mesh.indices.size() == before.indices.size());
     for (std::size_t corner = 0; corner < mesh.indices.size(); ++corner) {
         const uint32_t is = mesh.indices[corner], was = before.indices[corner];
@@ -95,13 +95,13 @@ TEST_CASE("a mesh with a normal map gets tangents, and more vertices where its t
         CHECK(mesh.uv[0][is] == before.uv[0][was]);
         CHECK(mesh.uv[1][is] == before.uv[1][was]);
         CHECK(mesh.colors[is] == before.colors[was]);
-        // y is up on both squares; u grows away from the middle.
+        // On both squares v is along y, and u grows away from the shared edge.
         CHECK(mesh.tangents[is] == (corner < 6 ? Vec4{-1, 0, 0, -1} : Vec4{1, 0, 0, 1}));
     }
 }
 
 TEST_CASE("tangents follow the normal map's set of coordinates and are made only where needed") {
-    // No normal map, one over set 1, one over set 0, set 1 again.
+    // Materials without a normal map, with one over set 1, over set 0, and over set 1 again.
     Scene scene =
         scene_of(mirrored_squares(), {Material(), with_normal_map(1), with_normal_map(0), with_normal_map(1)});
     validate_quietly(scene);
@@ -111,7 +111,7 @@ TEST_CASE("tangents follow the normal map's set of coordinates and are made only
     CHECK(scene.instances[2].mesh == 1);
     CHECK(scene.instances[3].mesh == 0);
     CHECK(scene.meshes[0].positions.size() == 6);
-    for (const Vec4 t : scene.meshes[0].tangents) CHECK(t == Vec4{0, 1, 0, 1}); // u along y, v along x
+    for (const Vec4 t : scene.meshes[0].tangents) CHECK(t == Vec4{0, 1, 0, 1}); // u is along y, v along x
     CHECK(scene.meshes[1].positions.size() == 8);
 
     Scene without = scene_of(mirrored_squares(), {Material()});
@@ -127,7 +127,7 @@ TEST_CASE("tangents follow the normal map's set of coordinates and are made only
 }
 
 TEST_CASE("without normals tangents lie in their triangles, which stay flat-shaded") {
-    Mesh roof; // two squares that meet in an edge along y
+    Mesh roof; // the squares share an edge along y
     roof.positions = {{-1, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 1, 0}, {0, 1, 1}, {1, 1, 0}};
     roof.uv[0] = {{0, 1}, {1, 1}, {2, 1}, {0, 0}, {1, 0}, {2, 0}};
     roof.indices = {0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4};
@@ -145,7 +145,7 @@ TEST_CASE("without normals tangents lie in their triangles, which stay flat-shad
 
 TEST_CASE("skinned and morphed vertices are split in the same way, and their tangents follow") {
     Scene scene = scene_of(mirrored_squares(), {with_normal_map()});
-    // The target turns the mesh by a quarter about z; a second one moves nothing.
+    // The first target turns the mesh by a quarter about z. The second moves nothing.
     MorphTarget turn;
     for (const Vec3 p : scene.meshes[0].positions) turn.positions.push_back(Vec3{-p.y, p.x, 0} - p);
     MeshShape& shape = add_shape(scene, {turn, {}}, true);
@@ -181,7 +181,7 @@ TEST_CASE("skinned and morphed vertices are split in the same way, and their tan
     scene.animations[0].channels = {channel(0, AnimatedPart::Weights, {0, 0, 1, 0}),
                                     channel(1, AnimatedPart::Scale, {1, 1, 1, 1, -1, 1})};
     PosedScene posed(std::move(scene));
-    posed.set_time(1); // turned by the target: x is y now, and y is -x; and mirrored in y by the joint: x is -y
+    posed.set_time(1); // the target turns x to y and y to -x; the joint mirrors y, so x becomes -y
     const Mesh& now = posed.scene().meshes[0];
     for (std::size_t corner = 0; corner < now.indices.size(); ++corner) {
         const Vec4 t = now.tangents[now.indices[corner]];
@@ -204,7 +204,7 @@ TEST_CASE("a joint that mirrors at rest does not change the tangents of the file
     for (std::size_t triangle = 0; triangle < 4; ++triangle) {
         for (std::size_t k = 0; k < 3; ++k) {
             const uint32_t is = mesh.indices[3 * triangle + k];
-            const uint32_t was = plain.indices[3 * triangle + (3 - k) % 3]; // wound the other way
+            const uint32_t was = plain.indices[3 * triangle + (3 - k) % 3]; // the winding is reversed
             CHECK(close(mesh.positions[is], {-plain.positions[was].x, plain.positions[was].y, 0}));
             CHECK(scene.shapes[0].tangents[is] == (triangle < 2 ? Vec4{-1, 0, 0, -1} : Vec4{1, 0, 0, 1}));
             CHECK(mesh.tangents[is] == (triangle < 2 ? Vec4{1, 0, 0, 1} : Vec4{-1, 0, 0, -1}));

@@ -1,5 +1,5 @@
-// A light meter against closed forms: lamps with and without extent, an environment, a glowing room. Its standard
-// error is tested, too.
+// Light meters against closed forms: area and point lights, an environment, a glowing room. The standard error is
+// tested, too.
 
 #include <cmath>
 
@@ -43,7 +43,7 @@ struct Room {
     }
 };
 
-/// Five standard errors, and for what rounding does a 50000th.
+/// Allows five standard errors, and a 50000th for rounding.
 void check_measured(const Measured& measured, double wanted, double error_share) {
     CAPTURE(measured.value);
     CAPTURE(measured.standard_error);
@@ -54,8 +54,8 @@ void check_measured(const Measured& measured, double wanted, double error_share)
 
 Material black_emitter(float radiance) { return {{.base_color = {0, 0, 0}, .emission = grey(radiance)}, "lamp"}; }
 
-/// Faces down, about (0, height, 0); its corners lie a little farther out than on the circle, so that its area is the
-/// circle's.
+/// Makes a disc that faces down, about (0, height, 0). Its corners lie slightly outside the circle, so that it has the
+/// circle's area.
 Mesh disc(float radius, float height) {
     constexpr uint32_t kCorners = 256;
     const double step = 2 * kPiExact / kCorners, out = static_cast<double>(radius) * std::sqrt(step / std::sin(step));
@@ -86,7 +86,7 @@ TEST_CASE("under a disc a meter reads pi L R^2 / (R^2 + h^2), unshadowed by the 
     check_measured(irradiance.luminance, kUnderDisc, 2e-3);
     CHECK(irradiance.invalid_paths == 0);
     CHECK(irradiance.paths == 4 * kMeterRepeats * kMeterSide * kMeterSide);
-    CHECK(room.measure({{0, 0, 0}, {0, -2, 0}}, samples_of(1)).luminance.value == 0); // turned away
+    CHECK(room.measure({{0, 0, 0}, {0, -2, 0}}, samples_of(1)).luminance.value == 0); // the meter faces away
 }
 
 TEST_CASE("under a rectangle a meter matches the closed form in each channel") {
@@ -121,7 +121,7 @@ TEST_CASE("a point light gives I cos / r^2 without an error, a directional one i
     check_measured(under_sun.measure(kUpwards, samples_of(1)).luminance, 80, 1e-7);
 }
 
-TEST_CASE("under an environment of radiance 1 a meter reads pi, whichever way it looks") {
+TEST_CASE("under an environment of radiance 1 a meter reads pi in every direction") {
     Scene scene;
     scene.environment.emplace();
     const Room room(std::move(scene));
@@ -146,7 +146,7 @@ TEST_CASE("in a glowing room a meter reads all scattered light up to the max dep
     }
 }
 
-TEST_CASE("a meter refuses a normal without direction and a seed whose estimates another one has") {
+TEST_CASE("a meter refuses a normal without direction and a seed that repeats another seed's estimates") {
     const auto refusal = [](Vec3 normal, uint32_t seed) {
         return test::thrown_error([&] { check_meter({{0, 0, 0}, normal}, seed); });
     };
@@ -164,7 +164,7 @@ TEST_CASE("the error of a measurement matches the deviation of measurements with
         const Measured measured = room.measure(kUpwards, samples_of(1, seed)).luminance;
         squares += std::pow((measured.value - kUnderDisc) / measured.standard_error, 2);
     }
-    // A mean of kSeeds squares, of expectation 31 / 29 and standard error 0.33.
+    // This mean of kSeeds squares has the expectation 31 / 29 and the standard error 0.33.
     CHECK(squares / kSeeds > 0.3);
     CHECK(squares / kSeeds < 2.4);
 }

@@ -28,7 +28,7 @@ RaySet random_rays(uint32_t count, bool any_hit) {
 
 } // namespace
 
-TEST_CASE("the traversal of a ray set gives the hits and the work of each ray's own traversal") {
+TEST_CASE("the traversal of a ray set has the hits and the work of separate traversals of its rays") {
     const Bvh bvh = build_bvh(triangles_of(make_torus(32, 24)));
     const SceneBvhView binary = scene_of(view_of(bvh));
     Queue queue = Queue::make_cpu();
@@ -85,7 +85,7 @@ TEST_CASE("runs are timed one by one, and the median of an even number is the me
     Queue queue = Queue::make_cpu();
     int calls = 0;
     const RunTimes times = time_runs(queue, 2, 5, [&] {
-        // The clock must show the one slow run as the greatest, and not count the warm-ups.
+        // The one slow run must be the longest, and warm-up runs must not count.
         const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(calls < 2    ? 60
                                                                                         : calls == 4 ? 30
                                                                                                      : 2);

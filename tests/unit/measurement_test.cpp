@@ -1,4 +1,4 @@
-// The one output of measurements: cells, JSON, CSV, text, and the page with the JSON inside.
+// The output of measurements: cells, JSON, CSV, text, and the page that contains the JSON.
 
 #include <doctest/doctest.h>
 
@@ -47,7 +47,8 @@ TEST_CASE("tables become CSV and aligned text") {
     m.tables.back().add({{"x", "", std::optional<int>()}, {"y", "", 2}});
     CHECK(has(csv_of(m, "times"), "device,x,y,name,"));
     CHECK(has(csv_of(m, "times"), ",CPU,,2,,0,1\n"));
-    CHECK(text_of(two_rows()) == "name      time s\na \"b\", c   0.250\n-          0.000\n"); // bytes have no title
+    CHECK(text_of(two_rows()) ==
+          "name      time s\na \"b\", c   0.250\n-          0.000\n"); // the column of bytes has no title
     ResultTable signs = {"signs", "Signs"};
     signs.add({{"a", "longer name", "x"}, {"b", "y", "±1%"}}); // ± is one character of two bytes
     CHECK(text_of(signs) == "longer name    y\nx            ±1%\n");
@@ -100,7 +101,7 @@ TEST_CASE("the page holds the JSON of each measurement and needs nothing else") 
     CHECK(count(page, "\\u003c/script>\\u003cb>") == 2); // a text cannot end the element
     CHECK(count(page, "data:image/png;base64,iVBORw0KGgo") == 1);
     CHECK(!has(page, "{{"));
-    CHECK(count(page, "http") == 1); // a namespace's name: nothing is fetched
+    CHECK(count(page, "http") == 1); // this is the name of a namespace, which is not fetched
     CHECK(has(page, R"("exr":"a.exr")"));
     CHECK(embedded_file("nothing").empty());
 }

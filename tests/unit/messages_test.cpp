@@ -35,7 +35,7 @@ TEST_CASE("left-out parts cause warnings, defaults cause notices, and both are l
     CHECK(messages.since(3).made_up() == messages.made_up());
 }
 
-TEST_CASE("a user's sink gets the messages of parts and ends them") {
+TEST_CASE("a user's sink gets the messages of partial work and stops it") {
     struct Own final : Sink {
         std::vector<std::string> texts;
         bool stops = false;

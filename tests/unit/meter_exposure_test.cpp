@@ -32,7 +32,7 @@ Scene make_room_with_window() {
     Scene scene;
     scene.materials.push_back({{.base_color = grey(0.7f)}, "white"});
     const float l = -2, r = 2, h = 3, n = 0, f = -5;   // left, right, height, near, far
-    const float wl = -1, wr = 1, wb = 0.8f, wt = 2.2f; // the window's sides
+    const float wl = -1, wr = 1, wb = 0.8f, wt = 2.2f; // the sides of the window
     add_quad(scene, {l, 0, n}, {r, 0, n}, {r, 0, f}, {l, 0, f});
     add_quad(scene, {l, h, f}, {r, h, f}, {r, h, n}, {l, h, n});
     add_quad(scene, {l, 0, n}, {l, 0, f}, {l, h, f}, {l, h, n});
@@ -60,9 +60,9 @@ RenderSettings metered_settings() {
     return settings;
 }
 
-/// Tones of the pixels that show surfaces, not emitters or sky.
+/// Tones of the pixels that show surfaces other than emitters.
 struct Shown {
-    double mean = 0, burnt = 0; // mean of [0, 1]; burnt: share of all pixels
+    double mean = 0, burnt = 0; // the mean, in [0, 1], and the share of all pixels that are clipped
 };
 
 Shown show_surfaces(Queue& queue, const Scene& scene, const Camera& camera, float stops) {
@@ -105,7 +105,7 @@ TEST_CASE("samples, seed, sampler, filter, size, time and alpha do not move the 
         CHECK(stops_of(queue, scene, camera, other) == stops);
     }
     other = settings;
-    other.path.max_depth = 1; // this is another picture
+    other.path.max_depth = 1; // this setting makes another picture
     CHECK(stops_of(queue, scene, camera, other) != stops);
 }
 
@@ -132,7 +132,7 @@ TEST_CASE("a room with a bright window stays legible") {
 
 TEST_CASE("a visible emitter does not darken what it lights") {
     Queue queue = test::requested_queue();
-    Scene scene; // a white floor that fills the lower half of the picture, and a lamp that fills much of the upper half
+    Scene scene; // a white floor fills the lower half of the picture, and an emitter much of the upper half
     scene.materials.push_back({{.base_color = grey(0.5f)}, "white"});
     scene.materials.push_back({{.base_color = grey(0), .emission = grey(300)}, "lamp"});
     add_quad(scene, {-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9});

@@ -19,7 +19,7 @@ Transform turned_about(Vec3 axis, float angle) {
     return make_rotation(half.x, half.y, half.z, std::cos(0.5f * angle));
 }
 
-/// A box of one metre's size, put somewhere with a scale and a shear.
+/// A box of one metre, with a random position, scale and shear.
 PlacedBox skewed_box() {
     Transform skew = make_scale({2, 0.5f, 1});
     skew.row0.y = 0.4f;
@@ -91,7 +91,7 @@ TEST_CASE("still objects have no keys, and motions that are not rigid are left o
     CHECK(distance(end.move(transform_point(box.world_from_local, middle)), transform_point(*grown(1), middle)) < 1e-5);
     const Vec3 a = transform_point(box.world_from_local, box.box.lo),
                b = transform_point(box.world_from_local, box.box.hi);
-    CHECK(distance(end.move(a), end.move(b)) == doctest::Approx(distance(a, b)).epsilon(1e-5)); // not grown
+    CHECK(distance(end.move(a), end.move(b)) == doctest::Approx(distance(a, b)).epsilon(1e-5)); // is not enlarged
 
     // A time without a transform repeats the previous one.
     const FittedMotions gone = fit_motions({&box, 1}, [&](double time) {
@@ -108,11 +108,11 @@ TEST_CASE("motion between equal poses at evenly spaced times is found") {
         CHECK(!fitted.motions.front().keys.empty());
         return fitted.segments;
     };
-    // A wheel that goes round eight times, which is in its place at each of the first keys.
+    // A wheel turns eight times, so that it is in its initial pose at each of the first keys.
     CHECK(segments_of([&](double time) {
               return compose(box.world_from_local, turned_about({0, 0, 1}, 50.26548246f * static_cast<float>(time)));
           }) > kFewestMotionSegments);
-    // A hop so short that it is missed unless its time is among the given keys.
+    // A hop is so short that it is missed unless its time is among the given keys.
     const auto hop = [&](double time) {
         const double height = std::max(0.0, 1 - 100 * std::fabs(time - 0.29));
         return compose(make_translation({0, static_cast<float>(height), 0}), box.world_from_local);
@@ -147,7 +147,7 @@ TEST_CASE("the swept box contains every position of an object") {
         CHECK(swept_bounds(with_another, 0, rest) == swept);
         bool holds_all = true;
         for (int i = 0; i < 4000; ++i) {
-            const int corner = i % 8; // the corners reach farthest
+            const int corner = i % 8; // the corners move farthest
             const Vec3 p = {corner & 1 ? rest.hi.x : rest.lo.x, corner & 2 ? rest.hi.y : rest.lo.y,
                             corner & 4 ? rest.hi.z : rest.lo.z};
             const Vec3 at = keys.view().at(0, random.within(0, 1)).move(p);

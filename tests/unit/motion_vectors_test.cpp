@@ -1,4 +1,4 @@
-// Motion vectors of pixels: of the camera, of instances, of the sky; still pictures have none.
+// Motion vectors of pixels for moving cameras, instances and skies. Still pictures have no motion.
 
 #include "denoise/motion_vectors.h"
 
@@ -36,7 +36,7 @@ Vec2 at(const Image& motion, uint32_t x, uint32_t y) {
     return {pixel[0], pixel[1]};
 }
 
-/// Pixels that a metre takes, 4 m away.
+/// The number of pixels per metre at a distance of 4 m.
 float pixels_a_metre(const CameraView& view) { return 0.5f * 64 / (4 * view.half_width); }
 
 } // namespace
@@ -47,7 +47,7 @@ TEST_CASE("an object that moves right and up has that motion in pixels") {
     const Camera camera = camera_of_ball();
     const RenderSettings settings = motion_settings();
     Scene scene = test::make_furnace_scene(0.5f);
-    scene.instances.push_back(scene.instances[0]); // so that the mesh has its own tree
+    scene.instances.push_back(scene.instances[0]); // another instance, so that the mesh has its own BLAS
     scene.instances[1].world_from_local = make_translation({0, 0, -40});
     PreparedScene prepared = prepare_scene(scene, {}, messages);
     Session session(queue, prepared, camera, settings);
@@ -84,7 +84,7 @@ TEST_CASE("a camera moving right moves near objects to the left, and a turning o
     const CameraView view = make_camera_view(camera, 64, 48);
     Image motion = session.motion();
     CHECK(at(motion, 32, 24).x == doctest::Approx(-0.1f * pixels_a_metre(view)).epsilon(0.02));
-    CHECK(std::abs(at(motion, 1, 1).x) < 1e-3f); // the sky is endlessly far
+    CHECK(std::abs(at(motion, 1, 1).x) < 1e-3f); // the sky is infinitely far away
 
     Camera turned = camera; // by a hundredth to the left
     turned.world_from_camera.row0 = {1, 0, 0.01f};
@@ -97,7 +97,7 @@ TEST_CASE("a camera moving right moves near objects to the left, and a turning o
     CHECK(std::abs(at(motion, 32, 24).y) < 1e-2f);
 }
 
-TEST_CASE("a picture without a previous frame has no motion, nor have surfaces that were behind the camera or hidden") {
+TEST_CASE("there is no motion without a previous frame, and none of surfaces that were behind the camera or hidden") {
     Messages messages;
     Queue queue = test::requested_queue();
     Scene scene = test::make_furnace_scene(0.5f);

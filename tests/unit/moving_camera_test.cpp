@@ -12,7 +12,7 @@ using namespace pertev;
 
 namespace {
 
-/// A sphere about the origin that goes along x by 1 m/s, and a camera that goes along z.
+/// A sphere that starts at the origin and moves along x at 1 m/s, and a camera that moves along z.
 Scene make_scene(bool with_camera) {
     Scene scene = test::make_furnace_scene(0.5f);
     scene.nodes.resize(2);
@@ -34,7 +34,7 @@ Vec3 eye_of(const Camera& camera) { return camera.world_from_camera.translation;
 
 } // namespace
 
-TEST_CASE("a default camera is that of the scene at rest at all times") {
+TEST_CASE("a default camera is that of the scene at rest, whatever the time") {
     PosedScene posed(make_scene(false));
     Messages messages;
     const MovingCamera moving({}, std::nullopt, posed.scene(), 1, messages);
@@ -43,12 +43,13 @@ TEST_CASE("a default camera is that of the scene at rest at all times") {
     CHECK(moving.at(posed.scene(), 8.0) == at_rest);
 }
 
-TEST_CASE("a scene's camera moves with its node and keeps what flags set") {
+TEST_CASE("a scene's camera moves with its node and keeps values of settings") {
     PosedScene posed(make_scene(true));
     Messages messages;
     CameraChoice choice;
     choice.fov_deg = 30.0f;
-    choice.aperture = 0.1f; // focuses on what is in the middle, at rest: nothing is, so on the scene's middle
+    choice.aperture =
+        0.1f; // no surface is at the picture's centre at rest, so the camera focuses on the scene's centre
     const MovingCamera moving(choice, std::nullopt, posed.scene(), 1, messages);
     const Camera at_rest = moving.at(posed.scene(), std::nullopt);
     posed.set_time(6);
@@ -61,7 +62,7 @@ TEST_CASE("a scene's camera moves with its node and keeps what flags set") {
     CHECK(aimed.at(posed.scene(), 6.0).focus_distance == 10);
 }
 
-TEST_CASE("a path moves the camera, and an error names the time at which it cannot") {
+TEST_CASE("a path moves the camera, and an error names the time of an invalid camera") {
     PosedScene posed(make_scene(true));
     Messages messages;
     const CameraPath path = {
@@ -72,7 +73,7 @@ TEST_CASE("a path moves the camera, and an error names the time at which it cann
     CHECK_THROWS_WITH_AS(moving.at(posed.scene(), 1.0), doctest::Contains("the camera's path at 1 s"), Error);
 }
 
-TEST_CASE("a turntable goes counter-clockwise around the target and returns") {
+TEST_CASE("a turntable orbits the target counter-clockwise and returns") {
     PosedScene posed(make_scene(true));
     Messages messages;
     CameraChoice choice;

@@ -11,7 +11,8 @@ using namespace pertev;
 
 namespace {
 
-/// Instances of one mesh each, on nodes 0 to 3; node 1 is a child of node 3, node 0 of node 1, node 2 stands alone.
+/// Instances of one mesh each, on nodes 0 to 3. Node 1 is a child of node 3, node 0 of node 1, and node 2 has no
+/// parent.
 Scene make_scene() {
     Scene scene;
     scene.materials.resize(1);
@@ -42,11 +43,11 @@ TEST_CASE("parents_first puts each node after its parent, whatever their indices
     Scene scene = make_scene();
     CHECK(parents_first(scene.nodes) == std::vector<uint32_t>{3, 1, 0, 2});
     scene.nodes.resize(6);
-    scene.nodes[3].parent = 0; // 0, 1, 3 go round
-    scene.nodes[4].parent = 1; // below them
+    scene.nodes[3].parent = 0; // 0, 1 and 3 form a cycle
+    scene.nodes[4].parent = 1; // lie below the cycle
     scene.nodes[5].parent = 2;
     CHECK(parents_first(scene.nodes) == std::vector<uint32_t>{2, 5});
-    std::vector<Node> chain(1'000'000); // would be too deep for recursion
+    std::vector<Node> chain(1'000'000); // the chain is too deep for recursion
     for (uint32_t i = 0; i + 1 < chain.size(); ++i) chain[i].parent = i + 1;
     const std::vector<uint32_t> order = parents_first(chain);
     CHECK(order.size() == chain.size());
@@ -56,11 +57,11 @@ TEST_CASE("parents_first puts each node after its parent, whatever their indices
 TEST_CASE("an instance may move if an animation changes its node or an ancestor") {
     Scene scene = make_scene();
     CHECK(may_move(scene) == Moves{false, false, false, false});
-    SUBCASE("a node in the middle moves what is below it") {
+    SUBCASE("an inner node moves its descendants") {
         animate(scene, 1, AnimatedPart::Rotation);
         CHECK(may_move(scene) == Moves{true, true, false, false});
     }
-    SUBCASE("morph weights reshape their own node's mesh alone") {
+    SUBCASE("morph weights deform only their own node's mesh") {
         animate(scene, 3, AnimatedPart::Weights);
         CHECK(may_move(scene) == Moves{false, false, false, true});
     }
@@ -68,7 +69,7 @@ TEST_CASE("an instance may move if an animation changes its node or an ancestor"
         scene.skins.push_back({.joints = {2, 0}});
         scene.nodes[3].skin = 0;
         animate(scene, 3, AnimatedPart::Translation);
-        CHECK(may_move(scene) == Moves{true, true, false, true}); // joint 0 hangs below node 3
+        CHECK(may_move(scene) == Moves{true, true, false, true}); // joint 0 is below node 3
         scene.skins[0].joints = {2};
         CHECK(may_move(scene) == Moves{true, true, false, false});
         scene.animations.clear();

@@ -1,4 +1,4 @@
-// Octrees: the builder's bounds of depth and memory hold, threads do not matter, and the checker detects broken
+// Octrees: the builder keeps its limits of depth and memory for any number of threads, and the checker detects broken
 // trees.
 
 #include <doctest/doctest.h>
@@ -44,7 +44,7 @@ TEST_CASE("octrees over stress meshes are valid and respect their limits") {
     }
 }
 
-TEST_CASE("an octree holds a point, a line, and bounds of any position and size of floats") {
+TEST_CASE("an octree can be built over a point, a line, and bounds at any position and of any size") {
     const Vec3 places[] = {
         {0, 0, 0}, {-0x1p40f, 0x1p40f, 0x1.fffffep39f}, {0x1p-140f, -0x1p-140f, 0}, {3, -0x1p30f, 1}};
     const float sizes[] = {0, 0x1p-149f, 0x1p-100f, 1e-6f, 1, 0x1p39f};
@@ -77,7 +77,7 @@ TEST_CASE("an octree does not depend on the number of threads") {
     CHECK(one.nodes.size() > mesh.size() / 16);
     CHECK(one.depth == four.depth);
     CHECK(one.sah_cost == four.sah_cost);
-    // Families that are built at once lie elsewhere than one after the other would put them: by size, not by threads.
+    // Subtrees that are built in parallel have positions that depend on their sizes, not on the threads.
     REQUIRE(one.nodes.size() == four.nodes.size());
     CHECK(std::memcmp(one.nodes.data(), four.nodes.data(), one.nodes.size() * sizeof(OctreeNode)) == 0);
     CHECK(one.references == four.references);

@@ -1,4 +1,4 @@
-// Opacity micromaps agree with textures at every point or are undecided, and are decided for most.
+// Opacity micromaps agree with the texture at every point or are undecided there. They are decided for most points.
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ using namespace pertev;
 
 namespace {
 
-/// A disc of alpha 1 in a square of alpha 0, `size` texels a side, whose edge is `soft` texels wide.
+/// A disc of alpha 1 in a square of alpha 0 with `size` texels per side. The disc's edge is `soft` texels wide.
 Rgba8Image disc(uint32_t size, float soft) {
     Rgba8Image image = {size, size, std::vector<uint8_t>(size_t(4) * size * size, 255)};
     for (uint32_t y = 0; y < size; ++y) {
@@ -55,7 +55,7 @@ struct CutOuts {
         scene.images.push_back(of_numbers(13, 5, random));
     }
 
-    /// Triangles that lie about a texture, from a part of a texel to several images.
+    /// Triangles anywhere over a texture, from part of a texel to several repetitions.
     Mesh triangles(uint32_t count, float most) {
         Mesh mesh;
         for (uint32_t i = 0; i < count; ++i) {
@@ -78,7 +78,7 @@ struct CutOuts {
     }
 };
 
-/// Opacity at points of a scene, with micromaps and with textures only, on the CPU.
+/// The opacity at points of a scene, with micromaps and with textures only, on the CPU.
 struct Micromaps {
     explicit Micromaps(const Scene& of)
         : scene(of), prepared(prepare_scene(scene, {}, messages)), device(queue, prepared) {
@@ -121,7 +121,8 @@ struct Pyramid {
     TexelBoundsView bounds = {};
 };
 
-/// Places: anywhere, on edges, corners and the lines between micro-triangles, and as far beside as a hit may be.
+/// Barycentrics anywhere: inside, on edges, corners and lines between micro-triangles, and as far outside as a hit can
+/// be.
 Vec2 some_place(test::Random& random) {
     float u = random.unit(), v = random.unit();
     if (u + v > 1) u = 1 - u, v = 1 - v;
@@ -161,7 +162,7 @@ TEST_CASE("each micro-triangle has a unique index, which all of its points have"
             CHECK(micro_index(level, micro_triangle_of(level, at.x, at.y)) == i);
         }
         CHECK(seen.size() == micro_triangles(level));
-        for (int i = 0; i < 10'000; ++i) { // and no place has one that is not there
+        for (int i = 0; i < 10'000; ++i) { // and no point has an invalid index
             const Vec2 at = some_place(random);
             CHECK(micro_index(level, micro_triangle_of(level, at.x, at.y)) < micro_triangles(level));
         }
@@ -218,7 +219,7 @@ TEST_CASE("micromaps never contradict their textures, whatever these hold and ho
                 Mesh even = mesh; // alpha equals the cutoff where the texture's is 1
                 even.colors.assign(mesh.positions.size(), {1, 1, 1, 0.3f});
                 made.add(even, {{.alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0.3f, .base_color_texture = texture}});
-                Mesh far = mesh; // so far from 0 that coordinates are coarse
+                Mesh far = mesh; // coordinates so far from 0 that their steps are large
                 for (Vec2& uv : far.uv[0]) uv.x += 3000, uv.y -= 700;
                 made.add(far, {{.alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0.5f, .base_color_texture = texture}});
             }
@@ -244,7 +245,7 @@ TEST_CASE("micromaps never contradict their textures, whatever these hold and ho
 
 TEST_CASE("a texture's values on a micro-triangle lie within its range") {
     test::Random random(11);
-    TextureImage fine, wide; // texels a rounding apart, some of them no number; and an image of many columns
+    TextureImage fine, wide; // texels that differ by rounding, some of them NaN, and an image of many columns
     fine.rgba_float = {5, 4, 4, std::vector<float>(size_t(4) * 5 * 4)};
     for (float& value : fine.rgba_float.pixels) {
         value = 0.75f + 0x1p-24f * static_cast<float>(random.below(9));
@@ -343,7 +344,7 @@ TEST_CASE("micromaps are remade when textures, materials or meshes change, and k
         return count;
     };
     CHECK(opaque_places() > 400);
-    Scene clear = made.scene; // equal in size, but all its texels are transparent
+    Scene clear = made.scene; // the image has the same size, but all its texels are transparent
     for (TextureImage& image : clear.images) std::ranges::fill(image.rgba8.pixels, uint8_t(0));
     {
         const PreparedScene prepared_clear = prepare_scene(clear, {}, messages);
@@ -351,7 +352,7 @@ TEST_CASE("micromaps are remade when textures, materials or meshes change, and k
         maps.update(queue, clear, clear_device.view(), true);
     }
     CHECK(opaque_places() == 0);
-    Scene other = made.scene; // another instance has the cut-out now
+    Scene other = made.scene; // now another instance has the cut-out
     std::swap(other.instances[0].material, other.instances[1].material);
     maps.update(queue, other, device.view(), false);
     REQUIRE(maps.of_instances() != nullptr);

@@ -23,7 +23,7 @@ PackedBytes unpack(const PackedBytes& packed, std::size_t stride, std::size_t si
     return elements;
 }
 
-/// `count` elements of four bytes: constant, rising, random and one of two.
+/// Returns `count` elements of four bytes: a constant, a ramp, a random value and one of two values.
 PackedBytes four_kinds(std::size_t count) {
     test::Random random(1);
     PackedBytes elements;
@@ -39,7 +39,7 @@ PackedBytes bytes_of(const std::vector<FixedSum>& sums) {
     return {bytes.begin(), bytes.end()};
 }
 
-/// Sums of `samples` samples, brighter than 0.04, of `count` pixels of three channels and the number of hits.
+/// Returns sums of `samples` samples brighter than 0.04 of `count` pixels, with three channels and the number of hits.
 std::vector<FixedSum> noisy_pixels(std::size_t count, uint32_t samples) {
     test::Random random(2);
     std::vector<FixedSum> sums;
@@ -83,7 +83,7 @@ TEST_CASE("sums of any sign and size are unpacked to their bits") {
         const PackedBytes elements = bytes_of(sums);
         CHECK(unpack(pack_block(elements, stride), stride, elements.size()) == elements);
     }
-    sums.push_back({0, 1ull << 63}); // -2^63, whose size has no sign
+    sums.push_back({0, 1ull << 63}); // the negation of -2^63 overflows
     const PackedBytes elements = bytes_of(sums);
     CHECK(unpack(pack_block(elements, 16), 16, elements.size()) == elements);
 }
@@ -93,8 +93,8 @@ TEST_CASE("a constant channel takes 17 bytes, noise one byte an element, and oth
     CHECK(pack_block(PackedBytes(64 * count, std::byte(5)), 64).size() == 4 * 17);
     CHECK(pack_block(PackedBytes(12 * count, std::byte(5)), 12).size() == 13);
     const std::size_t packed = pack_block(four_kinds(count), 4).size();
-    CHECK(packed > 1 + 2 + (1 + count) + count / 8);               // a bit for one of two
-    CHECK(packed < 1 + 2 + (1 + count) + count / 8 * 3 / 2 + 120); // a table of codes, and 64 values in their order
+    CHECK(packed > 1 + 2 + (1 + count) + count / 8);               // one bit selects one of two values
+    CHECK(packed < 1 + 2 + (1 + count) + count / 8 * 3 / 2 + 120); // a table of codes, and 64 values in order
 }
 
 TEST_CASE("noisy sums take five bytes a channel that varies") {
@@ -102,11 +102,11 @@ TEST_CASE("noisy sums take five bytes a channel that varies") {
     const PackedBytes elements = bytes_of(noisy_pixels(count, 256));
     const PackedBytes packed = pack_block(elements, 64);
     CHECK(packed.size() < 3 * 5 * count);
-    CHECK(packed.size() > 3 * 3 * count); // 24 bits of a float are noise
+    CHECK(packed.size() > 3 * 3 * count); // the 24 bits of a float are noise
     CHECK(unpack(packed, 64, elements.size()) == elements);
 }
 
-TEST_CASE("anything else is not taken for a packed block") {
+TEST_CASE("unpacking refuses what is not a packed block") {
     const PackedBytes planes = four_kinds(256), sums = bytes_of(noisy_pixels(64, 4));
     for (const auto& [elements, stride] : {std::pair(&planes, std::size_t(4)), {&sums, 64}}) {
         const PackedBytes packed = pack_block(*elements, stride);
@@ -124,7 +124,7 @@ TEST_CASE("anything else is not taken for a packed block") {
         CHECK(!unpack_block(changed, stride, into));
         CHECK(!unpack_block(packed, stride, std::span(into).first(into.size() - stride)));
         test::Random random(5);
-        for (int i = 0; i < 5000; ++i) { // without a crash, and within its memory
+        for (int i = 0; i < 5000; ++i) { // reads only its memory and does not crash
             PackedBytes damaged = packed;
             damaged[random.below(static_cast<uint32_t>(damaged.size()))] ^= std::byte(1 + random.below(255));
             static_cast<void>(unpack_block(damaged, stride, into));

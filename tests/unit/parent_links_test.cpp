@@ -1,5 +1,5 @@
-// Parent links lead from every node to the root and hold the axis along which the children are
-// farthest apart, and which of them is lower.
+// Parent links lead from every node to the root. They store the axis along which the children are farthest apart, and
+// which child is lower.
 
 #include "accel/bvh/parent_links.h"
 
@@ -17,7 +17,8 @@ TEST_CASE("parent links lead from every node to the root") {
     for (const StressMesh& c : stress_meshes()) {
         CAPTURE(std::string(c.name));
         Bvh bvh = build_bvh(c.triangles);
-        for (const BvhNode& node : bvh.nodes) CHECK((node.parent == 0 && node.split == 0)); // the form in the cache
+        for (const BvhNode& node : bvh.nodes)
+            CHECK((node.parent == 0 && node.split == 0)); // the tree as the cache stores it
         add_parent_links(bvh);
         if (!(bvh.root & kLeafBit)) CHECK(bvh.nodes[bvh.root].parent == kNoLink);
         uint64_t wrong = 0;

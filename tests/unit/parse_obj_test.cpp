@@ -14,7 +14,7 @@ namespace {
 
 struct Parsed {
     ObjData data;
-    std::string messages; // warnings, or the error
+    std::string messages; // the warnings, or the error
 };
 
 Parsed parse_in_pieces(const std::string& text, std::size_t piece_bytes) {
@@ -35,7 +35,7 @@ Parsed parse_in_pieces(const std::string& text, std::size_t piece_bytes) {
 }
 
 bool same(const ObjData& a, const ObjData& b) {
-    const auto same_bytes = [](const auto& x, const auto& y) { // NaN is itself
+    const auto same_bytes = [](const auto& x, const auto& y) { // NaN equals NaN here
         return std::ranges::equal(std::as_bytes(std::span(x)), std::as_bytes(std::span(y)));
     };
     const auto same_corners = [](const ObjCorner& x, const ObjCorner& y) {
@@ -56,7 +56,7 @@ bool same(const ObjData& a, const ObjData& b) {
 } // namespace
 
 TEST_CASE("a text read in pieces by several threads gives the same result and messages") {
-    // ; ends a line. Every construct whose meaning lies in what stands before it, and each kind of fault.
+    // Here ; ends a line. The text has every construct whose meaning depends on earlier lines, and each kind of fault.
     const std::string corners = "v 0 0 0;v 1 0 0 1 0.5 0;v 0 1 \\;0;v 1 1 0;vt 0 0;vt 1 0;vn 0 0 1;";
     const std::string faces = "f 1 2 3;o box # one;usemtl red one # note;f -4/-2/-1 -3//-1 -2/-1;# C:\\;f 2 3 4;usemtl "
                               "blue;g left side;f 1 2 \\;4 3;";

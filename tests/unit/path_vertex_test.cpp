@@ -68,7 +68,7 @@ public:
     EmitterPoint point_;
 };
 
-/// A white floor that glows, in a bright sky.
+/// A white, emissive floor under a bright sky.
 struct LitFloor {
     Scene scene = glowing_floor();
     Messages messages;
@@ -118,7 +118,7 @@ TEST_CASE("path vertex: a listener gets a vertex's events in order and does not 
     bool wants_alone = false, wants_heard = false;
     Listeners<> nobody(place.job);
     Listeners<Witness> witness(place.job);
-    while (!wants_alone && heard.sample < 100) { // until the sky is drawn, not the floor itself
+    while (!wants_alone && heard.sample < 100) { // until the light sample is the sky and not the floor itself
         ++heard.sample;
         alone = heard;
         REQUIRE(

@@ -20,7 +20,7 @@ struct GridOfPoints {
     std::vector<uint32_t> starts;
     PhotonGridView view;
 
-    std::vector<Float4> powers; // kept photons have the power of all
+    std::vector<Float4> powers; // the kept photons have the power of all photons
 
     GridOfPoints(const std::vector<Vec3>& from, float radius, float largest, uint32_t max_kept = 0xffffffffu,
                  uint32_t pass = 0) {
@@ -57,7 +57,8 @@ struct GridOfPoints {
 
 TEST_CASE("a hash grid matches brute force over all photons, with ties by number") {
     for (const test::StressPoints& set : test::stress_points(600)) {
-        if (set.extent < 1e-30f) continue; // squares of such distances are 0: all is near all, but not in a grid
+        if (set.extent < 1e-30f)
+            continue; // the squares of such distances are 0, so every photon is near every other, but not in a grid
         CAPTURE(set.name);
         for (const float share : {1e-6f, 0.1f, 0.25f, 1.0f}) {
             const float radius = share * set.extent;

@@ -1,4 +1,4 @@
-// Parts of photon mapping against their contracts, and pictures against closed forms.
+// The parts of photon mapping, and pictures against closed forms.
 
 #include <doctest/doctest.h>
 
@@ -55,7 +55,7 @@ TEST_CASE("photons are aimed with the reported density, wherever the target sphe
             const float x = random.unit();
             return Vec2{x, random.unit()};
         };
-        // Integral of f over the cones, from samples inside and from samples everywhere.
+        // Estimates the integral of f over the cones from samples inside and from samples everywhere.
         const auto f = [](Vec3 w) { return static_cast<double>(1 + w.x + 0.5f * w.y); };
         double aimed = 0, everywhere = 0;
         for (int i = 0; i < kDraws; ++i) {
@@ -66,14 +66,14 @@ TEST_CASE("photons are aimed with the reported density, wherever the target sphe
         }
         CHECK(aimed == doctest::Approx(everywhere).epsilon(0.02));
 
-        // The area of all discs across a direction.
+        // Estimates the area of all discs perpendicular to a direction.
         const Vec3 along = normalize(Vec3{0.3f, -1, 0.2f});
         const WorldSphere world = {{0, 0, 0}, 4};
         const Frame frame = make_frame(along);
         double by_aim = 0, by_chance = 0;
         for (int i = 0; i < kDraws; ++i) {
             const aim::Start start = aim::draw_start(targets, world, along, draw());
-            CHECK(std::abs(dot(start.from, along) + 4) < 1e-4f); // outside of the world
+            CHECK(std::abs(dot(start.from, along) + 4) < 1e-4f); // the ray starts outside the world
             by_aim += 1 / static_cast<double>(start.pdf) / kDraws;
             const Vec2 u = draw();
             const Vec3 through = frame.to_world({8 * u.x - 4, 8 * u.y - 4, 0});
@@ -89,11 +89,11 @@ TEST_CASE("photons are aimed with the reported density, wherever the target sphe
 
 namespace {
 
-/// A scene, a camera and photon mapping of it, with what becomes of the photons of one pass.
+/// One pass of photon mapping of a scene, with the energy of its photons.
 struct PhotonRun {
     PhotonEnergy energy{};
     PhotonCounts counts{};
-    FixedSum stored{}; // the powers of all photons in the maps, the three colours together
+    FixedSum stored{}; // the sum of the powers of all photons in the maps, over all three channels
     uint32_t left_out = 0;
 
     PhotonRun(const Scene& scene, uint32_t max_depth, uint32_t photons, bool in_loop = true,
@@ -143,7 +143,7 @@ Scene under_two_faces_of_glass() {
     Scene scene = test::floor_under_spot();
     const Material glass = {{.kind = MaterialKind::Dielectric, .base_color = {1, 1, 1}, .ior = 1.5f}, "glass"};
     test::add(scene, test::floor_at(0.6f, 2), glass);
-    test::add(scene, test::sheet({0, 0.4f, 0}, {2, 0, 0}, {0, 0, 2}), glass); // its front down
+    test::add(scene, test::sheet({0, 0.4f, 0}, {2, 0, 0}, {0, 0, 2}), glass); // faces down
     scene.materials.back().roughness = scene.materials[1].roughness = 0;
     return scene;
 }
@@ -159,7 +159,7 @@ Scene sphere_that_glows(float albedo) {
     return scene;
 }
 
-/// Mean radiance around the origin, seen straight down from just above the floor.
+/// Returns the mean radiance around the origin, seen straight down from just above the floor.
 double mean_seen(const Scene& scene, const RenderSettings& from, Vec3 camera = {0, 0.1f, 0},
                  IntegratorKind integrator = IntegratorKind::PhotonMap) {
     RenderSettings settings = from;
@@ -182,16 +182,16 @@ TEST_CASE("the energy of emitted photons is the sum of what is stored, absorbed 
         const PhotonRun run(scene, 6, 3000);
         const FixedSum emitted = run.energy.emitted, escaped = run.energy.escaped;
         CHECK(joules(emitted) > 0);
-        // Nothing is lost on the way, to the last bit; and what arrives lies in the maps themselves, but where none is
-        // to be left.
+        // No energy is lost on the way, to the last bit. What arrives is in the maps, except where no photon is
+        // stored.
         CHECK(emitted + run.energy.went_on == run.energy.arrived + escaped);
-        if (&scene != scenes + 1) { // who comes in at that glass's open sides is taken to be in other stuff
+        if (&scene != scenes + 1) { // photons that enter at the open sides of this glass count as outside of it
             CHECK(run.stored + run.energy.left_none == run.energy.arrived);
         }
         CHECK(run.left_out == 0);
         CHECK(run.counts.stored > 100);
         CHECK(joules(run.stored) > 0);
-        // The other body moves the very same photons, and other maps hold them too.
+        // The wavefront traces the same photons, and so do other kinds of maps.
         for (const PhotonRun& again :
              {PhotonRun(scene, 6, 3000, false), PhotonRun(scene, 6, 3000, true, PhotonGather::Direct)}) {
             CHECK(again.energy.emitted == emitted);
@@ -204,7 +204,8 @@ TEST_CASE("the energy of emitted photons is the sum of what is stored, absorbed 
     }
 }
 
-TEST_CASE("some crowded photons are dropped and their power goes to the others, but none if the nearest count") {
+TEST_CASE("photons in dense cells are dropped and their power goes to the others, but not if estimates use the nearest "
+          "photons") {
     const Scene scene = test::room_with_ball(test::white(0.6f), test::white(0.6f), false);
     const PhotonRun all(scene, 6, 12000), some(scene, 6, 12000, true, PhotonGather::Direct, 2),
         nearest(scene, 6, 12000, true, PhotonGather::Direct, 2, 20);
@@ -217,12 +218,13 @@ TEST_CASE("some crowded photons are dropped and their power goes to the others, 
 }
 
 TEST_CASE("photons carry the emitted power, and a closed room keeps the expected part") {
-    // A sphere of radius 2 whose inside and outside send pi W/m2 each: photons of the outside escape. Three colours.
-    const double area = 4 * 3.14159265 * 4 * 0.99, inside = 3 * 3.14159265 * area; // 0.99: it has flat sides
+    // Both faces of a sphere of radius 2 emit pi W/m2 in three channels. Photons of the outer face escape.
+    const double area = 4 * 3.14159265 * 4 * 0.99,
+                 inside = 3 * 3.14159265 * area; // 0.99 because the sphere has flat sides
     const PhotonRun run(sphere_that_glows(0.5f), 5, 20000);
     CHECK(joules(run.energy.emitted) == doctest::Approx(2 * inside).epsilon(0.01));
     CHECK(joules(run.energy.escaped) == doctest::Approx(inside).epsilon(0.01));
-    // Arrivals after 1 to 4 scatterings are kept: 1/2 + 1/4 + 1/8 + 1/16 of what is sent.
+    // Arrivals after 1 to 4 scatterings are stored: 1/2 + 1/4 + 1/8 + 1/16 of what is emitted.
     CHECK(joules(run.stored) == doctest::Approx(inside * 15 / 16).epsilon(0.02));
     CHECK(joules(run.energy.arrived) == doctest::Approx(inside * 31 / 16).epsilon(0.02));
     CHECK(run.counts.caustic == 0);
@@ -235,21 +237,22 @@ TEST_CASE("a floor under an emitter behind glass has the radiance of the closed 
     settings.photon_map.edit().photons = 20'000;
     settings.photon_map.edit().caustic_radius = 0.03f;
     constexpr double kFloor = 0.5 * 8 / 3.14159265; // albedo I / pi, at 1 m; 1 % less towards the view's corners
-    CHECK(mean_seen(test::floor_under_spot(), settings) == doctest::Approx(kFloor).epsilon(0.02)); // shadow rays alone
-    // All mirrored ways between the two faces together let 2 n / (n^2 + 1) through; the light seems 0.2 (1 - 1 / n) m
-    // nearer.
+    CHECK(mean_seen(test::floor_under_spot(), settings) ==
+          doctest::Approx(kFloor).epsilon(0.02)); // only shadow rays contribute
+    // With all reflections between the two faces, 2 n / (n^2 + 1) of the light passes. The light appears 0.2 (1 - 1 /
+    // n) m nearer.
     const double nearer = 1 - 0.2 * (1 - 1 / 1.5), behind = kFloor * 2 * 1.5 / (1.5 * 1.5 + 1) / (nearer * nearer);
     const Scene scene = under_two_faces_of_glass();
     CHECK(mean_seen(scene, settings) == doctest::Approx(behind).epsilon(0.03));
     settings.photon_map.edit().nearest = 60;
     CHECK(mean_seen(scene, settings) == doctest::Approx(behind).epsilon(0.03));
-    settings.path.max_depth = 2; // apart from the floor only one face may scatter
+    settings.path.max_depth = 2; // besides the floor only one face can scatter
     CHECK(mean_seen(scene, settings) == 0);
 }
 
-TEST_CASE("a caustic seen in a mirror is found, which neither end finds alone") {
+TEST_CASE("a caustic in a mirror is found, which paths from neither end find") {
     Scene scene = under_two_faces_of_glass();
-    test::add(scene, test::sheet({0.5f, 0.2f, 0}, {0, 0, 0.1f}, {0, 0.1f, 0}), test::mirror()); // its front to -x
+    test::add(scene, test::sheet({0.5f, 0.2f, 0}, {0, 0, 0.1f}, {0, 0.1f, 0}), test::mirror()); // faces -x
     RenderSettings settings;
     settings.path.max_depth = 8;
     settings.samples = 4;
@@ -330,9 +333,10 @@ TEST_CASE("the ray counts of photon mapping, including gathering, equal those co
                 const RayCounts rays = test::render(queue, room, test::camera_down({0, 0.1f, 0}, 0.2f), settings).rays;
                 CAPTURE(static_cast<int>(gather));
                 CAPTURE(depth);
-                // A photon's ray from the light and one from each surface but the last. Nothing mirrors: one map.
+                // A photon has a ray from the light and one from each surface except the last. Without specular
+                // surfaces there is one map.
                 const uint64_t of_photons = depth < 2 ? 0 : kPasses * kPhotons * depth;
-                // A sample traces one ray, and from its hit one to the light.
+                // A sample traces one camera ray, and one shadow ray from its hit.
                 const bool gathers = gather == PhotonGather::Final && depth > 0;
                 CHECK(rays.camera == kSamples);
                 CHECK(rays.bounce == of_photons + (gathers ? kSamples : 0));
@@ -348,7 +352,7 @@ TEST_CASE("where subpaths end a ray searches for nearby area lights, but not if 
         settings.width = settings.height = 16;
         settings.samples = 8;
         settings.integrator = IntegratorKind::PhotonMap;
-        settings.path.max_depth = 1; // no photons
+        settings.path.max_depth = 1; // there are no photons
         settings.photon_map.edit().gather = gather;
         Queue queue = test::requested_queue();
         const auto rays_of = [&](const Scene& scene) {
@@ -356,7 +360,8 @@ TEST_CASE("where subpaths end a ray searches for nearby area lights, but not if 
         };
         const RayCounts near = rays_of(sphere_that_glows(0.5f)), points = rays_of(test::floor_under_spot());
         CHECK(near.camera == 16 * 16 * 8);
-        CHECK(near.bounce == doctest::Approx(static_cast<double>(near.camera)).epsilon(0.02)); // one way or the other
+        CHECK(near.bounce ==
+              doctest::Approx(static_cast<double>(near.camera)).epsilon(0.02)); // finds the light in either case
         CHECK(points.bounce == (gather == PhotonGather::Final ? points.camera : 0));
     }
 }
@@ -403,8 +408,8 @@ TEST_CASE("targets are one sphere around a ball and several around separate mirr
         CHECK(spheres.size() >= (are_apart ? 2u : 1u));
         double area = 0;
         for (const Float4& sphere : spheres) area += static_cast<double>(sphere.w) * static_cast<double>(sphere.w);
-        CHECK(area < 4);                      // one sphere round both would have 3.5^2
-        for (const float x : {-3.0f, 3.0f}) { // all of it lies in one of them
+        CHECK(area < 4);                      // one sphere around both would have 3.5^2
+        for (const float x : {-3.0f, 3.0f}) { // each ball lies in one of the spheres
             if (x < 0 && !are_apart) continue;
             for (const Vec3 at : test::make_sphere(2, Vec3{x, 0, 0} - prepared.centre, 0.5f).positions) {
                 CHECK(std::ranges::any_of(spheres, [&](const Float4& sphere) {
@@ -426,7 +431,7 @@ TEST_CASE("scenes without lights, and too many photons, are refused") {
     scene.lights.push_back(test::point_light({0, 2, 0}, {1, 1, 1}));
     CHECK(message() == "no error");
     scene.lights.clear();
-    settings.path.max_depth = 0; // only emission
+    settings.path.max_depth = 0; // shows only emission
     CHECK(message() == "no error");
 
     settings.path.max_depth = 64;

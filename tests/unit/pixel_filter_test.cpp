@@ -1,5 +1,5 @@
-// Samples of each pixel filter against its formula, written here again in double: cells of equal width, whose expected
-// counts are integrals of the formula.
+// Samples of each pixel filter against its formula, which is repeated here in double precision. The expected counts of
+// cells of equal width are integrals of the formula.
 
 #include <cmath>
 #include <functional>
@@ -16,7 +16,7 @@ using namespace pertev;
 
 namespace {
 
-/// Filter value at x in [-1, 1], in radii; not normalised.
+/// Returns the filter's value at x in [-1, 1], in radii. It is not normalised.
 double formula(PixelFilter filter, double x) {
     switch (filter) {
     case PixelFilter::Box:
@@ -24,7 +24,7 @@ double formula(PixelFilter filter, double x) {
     case PixelFilter::Tent:
         return 1 - std::abs(x);
     case PixelFilter::Gaussian:
-        return std::exp(-x * x / (2.0 / 9)); // standard deviation: a third of the radius
+        return std::exp(-x * x / (2.0 / 9)); // the standard deviation is a third of the radius
     case PixelFilter::BlackmanHarris: {
         const double phase = 3.14159265358979323846 * (x + 1);
         return 0.35875 - 0.48829 * std::cos(phase) + 0.14128 * std::cos(2 * phase) - 0.01168 * std::cos(3 * phase);
@@ -33,7 +33,7 @@ double formula(PixelFilter filter, double x) {
     return 0;
 }
 
-/// Integral of `f` over [a, b], by the midpoint rule.
+/// Returns the integral of `f` over [a, b] by the midpoint rule.
 double integral(const std::function<double(double)>& f, double a, double b, int steps = 2000) {
     double sum = 0;
     for (int i = 0; i < steps; ++i) sum += f(a + (i + 0.5) / steps * (b - a));
@@ -80,7 +80,7 @@ TEST_CASE("a pixel filter's mean is the pixel's centre, and its variance is that
         CAPTURE(static_cast<int>(kind));
         const float radius = default_filter_radius(kind);
         const Filter filter(kind, radius);
-        constexpr int count = 1 << 16; // every part of [0, 1] alike: a quadrature, no noise
+        constexpr int count = 1 << 16; // the samples divide [0, 1] evenly, so the mean has no noise
         double sum = 0, square_sum = 0;
         for (int i = 0; i < count; ++i) {
             const auto x = static_cast<double>(
@@ -113,7 +113,7 @@ TEST_CASE("a pixel filter's samples grow with u, are symmetric and stay inside t
     }
 }
 
-TEST_CASE("the two axes of a pixel filter use one number each") {
+TEST_CASE("each axis of a pixel filter uses one random number") {
     for (const PixelFilter kind : kFilters) {
         const Filter filter(kind, 1.5f);
         const Vec2 offset = sample_filter(filter.view, {0.2f, 0.9f});

@@ -15,8 +15,8 @@ using namespace pertev;
 
 namespace {
 
-/// A mesh of `triangles` triangles, all the same, used once straight and then by each of `squeezed` instances whose
-/// space is too skewed for a tree.
+/// A mesh of `triangles` equal triangles. One instance has an ordinary transform, and `squeezed` instances have
+/// transforms too skewed for a tree.
 Scene scene_of(uint32_t triangles, uint32_t squeezed) {
     Scene scene;
     Mesh& mesh = scene.meshes.emplace_back();

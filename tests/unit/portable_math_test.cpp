@@ -1,6 +1,6 @@
 // The elementary functions keep their stated error bounds against libm's double precision, which is good to about
-// 2^-29 of a float's ulp, and give the very bits recorded here: a compiler that rounds otherwise shows at once.
-// The long setting (--long) goes through all 2^32 floats.
+// 2^-29 of a float's ulp, and have the bits recorded here, which detects a compiler that rounds differently. With
+// --long all 2^32 floats are tested.
 
 #include <algorithm>
 #include <bit>
@@ -54,7 +54,7 @@ double reference(int function, float x_float, float y_float, uint32_t input) {
     case 9:
         return std::log2(x);
     case 12:
-    case 13: { // libm's argument 2 pi u would be rounded: take the quarters off first
+    case 13: { // libm's argument 2 pi u would be rounded, so whole quarters are removed first
         const double q = std::rint(4 * turn), angle = 2 * 3.14159265358979323846 * (turn - q / 4);
         const int k = static_cast<int>(q) + (function == 13 ? 1 : 0);
         const double value = (k & 1) != 0 ? std::cos(angle) : std::sin(angle);
@@ -77,7 +77,7 @@ double error_in_ulp(float ours, double exact) {
     if (std::isnan(exact)) return std::isnan(ours) ? 0 : infinite;
     if (std::isnan(ours)) return infinite;
     const bool overflow = std::fabs(exact) >= 0x1.ffffffp127;
-    if (overflow || std::isinf(ours)) { // within the bound of overflow either is right
+    if (overflow || std::isinf(ours)) { // near the overflow threshold either result is right
         if (overflow && std::isinf(ours)) return std::signbit(exact) == std::signbit(ours) ? 0 : infinite;
         const double finite_ours =
             std::isinf(ours) ? std::copysign(0x1p128, static_cast<double>(ours)) : static_cast<double>(ours);
@@ -104,15 +104,14 @@ struct Worst {
 
 void add_error(Worst& worst, int function, uint32_t input) {
     const uint32_t bits = test::portable_math_value(function, input);
-    const bool of_both =
-        function == 10 || function == 11; // sin_cos, which is sin and cos: these are measured themselves
+    const bool of_both = function == 10 || function == 11; // sin_cos returns sin and cos, which are measured themselves
     if (of_both && bits == test::portable_math_value(function - 10, input)) return;
     const float x = float_of(input), y = test::portable_second_argument(input);
     const double error = error_in_ulp(float_of(bits), reference(function, x, y, input));
     if (error > worst.error) worst = {error, input};
 }
 
-/// Greatest error over every `step`th of the 2^32 inputs from `offset` on.
+/// Returns the largest error over every `step`th of the 2^32 inputs from `offset` on.
 Worst worst_error(int function, uint64_t step, uint64_t offset) {
     constexpr uint32_t kChunks = 256;
     Worst worst[kChunks];
@@ -146,7 +145,8 @@ TEST_CASE("elementary functions are correct at structured inputs") {
             for (const uint32_t sign : {0u, 1u}) inputs.push_back(sign << 31 | exponent << 23 | mantissa);
         }
     }
-    for (int k = 1; k < 200'000; k += 1 + k / 1000) { // next to multiples of pi/4, to halves and to logarithms of 2
+    for (int k = 1; k < 200'000;
+         k += 1 + k / 1000) { // inputs next to multiples of pi/4, to halves and to logarithms of 2
         for (const double x : {k * 0.78539816339744831, k * 0.5, k * 0.34657359027997264}) {
             const uint32_t bits = bits_of(static_cast<float>(x));
             for (uint32_t step = 0; step < 5; step++) inputs.push_back(bits + step - 2);
@@ -188,7 +188,7 @@ TEST_CASE("pow keeps its error bound where the result neither overflows nor vani
         double& worst_atan2 = atan2_errors[chunk];
         for (uint32_t i = 0; i < chunk_size; i++) {
             const Hash4 random = hash_words(i, static_cast<uint32_t>(chunk), 2, 3);
-            // A base from anywhere, or next to 1; an exponent that takes it somewhere into [2^-150, 2^128].
+            // The base is any float, or one next to 1. The exponent takes it into [2^-150, 2^128].
             const float x =
                 (random.x & 1) != 0 ? float_of(random.y >> 1) : 1 + (unit_interval(random.y) - 0.5f) * 0x1p-6f;
             if (x == 1 || x == 0 || !is_finite(x)) continue;

@@ -29,7 +29,7 @@ Mesh triangle() {
     return mesh;
 }
 
-/// The first mesh, as it is, by a skin whose one joint is node 0.
+/// Gives the first mesh a skin whose only joint is node 0.
 void hang_on_first_node(Scene& scene) {
     const Mesh& mesh = scene.meshes[0];
     scene.skins.push_back({.joints = {0}, .joint_from_mesh = {}});
@@ -54,7 +54,7 @@ AnimationChannel channel(uint32_t target, AnimatedPart part, std::vector<float> 
     return channel;
 }
 
-/// Node 0 holds node 1 holds an instance; a second instance stands still. Node 0 goes along x by 1 m/s for 4 s.
+/// Node 1, a child of node 0, has an instance. A second instance is still. Node 0 moves along x at 1 m/s for 4 s.
 Scene scene_to_pose() {
     Scene scene;
     scene.materials.resize(1);
@@ -80,7 +80,7 @@ using Numbers = std::vector<uint32_t>;
 
 } // namespace
 
-TEST_CASE("contents of a node move with it, and only these are reported as moved") {
+TEST_CASE("the contents of a node move with it, and only they are reported as moved") {
     PosedScene posed = pose(scene_to_pose());
     const SceneUpdate update = posed.set_time(1.5);
     CHECK(posed.scene().instances[1].world_from_local.translation == Vec3{1.5f, 0, 0});
@@ -89,7 +89,7 @@ TEST_CASE("contents of a node move with it, and only these are reported as moved
     CHECK(update.deformed_meshes.empty());
     CHECK(posed.set_time(1.5).is_empty());
     CHECK(posed.set_time(4).moved_instances == Numbers{1});
-    CHECK(posed.set_time(1e6).is_empty()); // the last value holds
+    CHECK(posed.set_time(1e6).is_empty()); // the last value is kept
     posed.set_time(-3);
     CHECK(posed.scene().instances[1].world_from_local.translation == Vec3{0, 0, 0});
 }
@@ -111,7 +111,7 @@ TEST_CASE("a position within a node is kept as the node moves") {
     CHECK(posed.scene().instances[1].world_from_local.translation == Vec3{2, 5, 0});
 }
 
-TEST_CASE("the later of two animations of one property applies") {
+TEST_CASE("the later of two animations of the same property applies") {
     Scene scene = scene_to_pose();
     scene.animations.push_back(
         {.name = "", .origin = "", .channels = {channel(0, AnimatedPart::Translation, {0, 2}, {0, 0, 0, 0, 0, 6})}});
@@ -187,7 +187,7 @@ TEST_CASE("cameras and lights move with their nodes; a singular camera keeps its
     scene.lights.push_back({.name = "lamp", .kind = LightKind::Spot, .direction = {0, 0, -1}, .node = 1});
     scene.animations[0].channels.push_back(channel(0, AnimatedPart::CameraFov, {0, 4}, {0.5f, 1.5f}));
     scene.animations[0].channels.push_back(
-        channel(0, AnimatedPart::LightIntensity, {0, 4}, {1, 1, 1, /*later negative*/ 5, 3, -7}));
+        channel(0, AnimatedPart::LightIntensity, {0, 4}, {1, 1, 1, /*later it is negative*/ 5, 3, -7}));
     PosedScene posed = pose(std::move(scene));
     CHECK(posed.set_time(2).lights_changed);
     CHECK(posed.scene().cameras[0].world_from_camera == make_translation({2, 0, 0}));
@@ -218,7 +218,7 @@ TEST_CASE("a light's range and cone and an orthographic view change over time wi
     CHECK(light.cos_outer == doctest::Approx(std::cos(1.0)));
     posed.set_time(4);
     CHECK(light.range > 0);
-    CHECK(light.cos_outer < light.cos_inner); // though the angles lie the other way round
+    CHECK(light.cos_outer < light.cos_inner); // although the angles are in the other order
     Messages messages;
     Scene now = posed.scene();
     CHECK_NOTHROW(validate(now, "posed", messages));
@@ -231,7 +231,7 @@ TEST_CASE("a skin's vertices follow its joints, with normals and tangents") {
     hang_on_first_node(scene);
     scene.skins[0].joint_from_mesh = {make_translation({-1, 0, 0})};
     MeshShape& shape = scene.shapes[0];
-    shape.weights = {1, 0.5f, 0}; // arbitrary sum; the third vertex stays
+    shape.weights = {1, 0.5f, 0}; // the weights have an arbitrary sum; the third vertex is still
     const float root = 0.70710678f;
     scene.animations[0].channels = {channel(0, AnimatedPart::Rotation, {0, 1}, {0, 0, 0, 1, 0, root, 0, root})};
     shape_mesh(shape, {},
@@ -270,13 +270,13 @@ TEST_CASE("where a joint squeezes or mirrors, normals stay perpendicular and tan
     posed.set_time(2);
     CHECK(close(now.normals[0], normalize(Vec3{-1, 2, 0})));
     CHECK(close({now.tangents[0].x, now.tangents[0].y, 0}, normalize(Vec3{-2, -1, 0})));
-    // The bitangent lay along -z, where it stays: cross(normal, tangent) points the other way now.
+    // The bitangent stays along -z, but cross(normal, tangent) now points the other way.
     CHECK(now.tangents[0].w == -1);
     posed.set_time(0);
     CHECK(now.tangents[0].w == 1);
 }
 
-TEST_CASE("joints that mirror reverse the winding, so that fronts stay fronts") {
+TEST_CASE("joints that mirror reverse the winding, so that front faces stay front faces") {
     Scene scene = scene_to_pose();
     hang_on_first_node(scene);
     scene.animations[0].channels = {channel(0, AnimatedPart::Scale, {0, 1, 2}, {1, 1, 1, 0, 0, 0, -1, 1, 1})};
@@ -286,7 +286,7 @@ TEST_CASE("joints that mirror reverse the winding, so that fronts stay fronts") 
     CHECK(update.deformed_meshes.empty());
     CHECK(posed.scene().meshes[0].indices == Numbers{0, 2, 1});
     CHECK(posed.scene().meshes[0].positions[1] == Vec3{-1, 0, 0});
-    CHECK(posed.set_time(1).replaced_meshes == Numbers{0}); // all joints are points: no triangle has an area
+    CHECK(posed.set_time(1).replaced_meshes == Numbers{0}); // all joints have the scale 0, so no triangle has an area
     for (const Vec3 normal : posed.scene().meshes[0].normals) CHECK(is_finite(normal));
     posed.set_time(0);
     CHECK(posed.scene().meshes[0].indices == Numbers{0, 1, 2});
@@ -324,13 +324,13 @@ TEST_CASE("Khronos: the skin of SimpleSkin bends its upper half to both sides") 
     const Mesh& mesh = posed.scene().meshes[0];
     posed.set_time(0);
     for (std::size_t i = 0; i < at_rest.size(); ++i) CHECK(close(mesh.positions[i], at_rest[i]));
-    // At 1 s joint 1, whose node stands at height 1, has turned by a quarter about z; vertices 8 and 9, at height 2,
-    // are its own: (-0.5, 2) goes to (-1, 0.5), (0.5, 2) to (-1, 1.5).
+    // At 1 s joint 1, whose node is at height 1, has turned by a quarter about z. Vertices 8 and 9 at height 2 follow
+    // it: (-0.5, 2) moves to (-1, 0.5), and (0.5, 2) to (-1, 1.5).
     CHECK(posed.set_time(1).deformed_meshes == Numbers{0});
     CHECK(close(mesh.positions[0], at_rest[0]));
     CHECK(close(mesh.positions[8], {-1, 0.5f, 0}));
     CHECK(close(mesh.positions[9], {-1, 1.5f, 0}));
-    posed.set_time(4); // and the other way
+    posed.set_time(4); // it has turned the other way
     CHECK(mesh.positions[8].x > 0.9f);
 }
 
@@ -342,7 +342,7 @@ TEST_CASE("Khronos: the cubes of InterpolationTest follow their interpolations")
     validate(rest, "InterpolationTest", messages);
     PosedScene posed(std::move(rest));
     const Scene& scene = posed.scene();
-    // At each key's time every channel has the key's value, whatever the interpolation; steps hold it.
+    // At each key's time every channel has the key's value, whatever its interpolation. Steps keep it.
     int keys = 0;
     for (const Animation& animation : scene.animations) {
         for (const AnimationChannel& c : animation.channels) {

@@ -10,7 +10,7 @@ using namespace pertev;
 
 namespace {
 
-/// Changes each colour to factor x + offset.
+/// Changes each colour x to factor x + offset.
 struct LinearStep final : Denoiser {
     LinearStep(float by, float with) : factor(by), offset(with) {}
     void begin(const NoisyFrame&, const CameraView&) override {}
@@ -26,7 +26,7 @@ struct LinearStep final : Denoiser {
 
 } // namespace
 
-TEST_CASE("each post step works on the result of the step before") {
+TEST_CASE("each post step gets the result of the previous step") {
     const Image picture{1, 1, 3, {1, 2, 4}};
     std::vector<std::unique_ptr<Denoiser>> steps;
     CHECK(apply_steps(steps, picture).pixels == picture.pixels);

@@ -24,8 +24,8 @@ Mesh make_triangle() {
     return mesh;
 }
 
-/// Predicted bytes of the scene, which must equal the actual ones; and with its trees, which take none if the device
-/// is the host.
+/// Returns the predicted bytes of the scene, which must equal the actual ones, and those with its trees, which take no
+/// memory if the device is the host.
 std::size_t bytes_of(const Scene& scene) {
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -58,7 +58,7 @@ TEST_CASE("each light of a scene counts in its predicted memory") {
 
     Scene with_emitters = scene;
     with_emitters.lights.resize(kCount);
-    // At least: the table that draws the lights grows too, by a start and a slot (4 bytes each) for each.
+    // This is a lower bound, because the table that selects lights also grows by a start and a slot of 4 bytes each.
     CHECK(bytes_of(with_emitters) >= dark + kCount * (sizeof(PunctualLight) + 8));
 
     Scene glowing = scene;
@@ -91,7 +91,7 @@ TEST_CASE("queues of paths use nearly all of their memory limit, whatever else a
             CHECK(bytes(1 << 16, 1 << 16, 1u << 31) >= kMaxBytes - 100'000);
             CHECK(bytes(3840, 2160, RenderSettings{}.batch) <= kMaxBytes);
             CHECK(bytes(3840, 2160, RenderSettings{}.batch) >= kMaxBytes - 3'000'000);
-            CHECK(bytes(64, 1, 1000) == bytes(1000, 1, 64)); // the fewer of the two
+            CHECK(bytes(64, 1, 1000) == bytes(1000, 1, 64)); // the smaller of both counts
             CHECK(bytes(64, 1, 1000) < 64 * 400);
         }
     }

@@ -20,7 +20,7 @@ std::size_t warnings_for_glass(float ior, float roughness) {
     return messages.all().size();
 }
 
-/// Somewhere in the file, by its vertices or by its transform.
+/// An object far from the origin, by its vertices or by its transform.
 Scene torus_at(Vec3 at, bool by_vertices = true) {
     const test::TriangleMesh torus = test::make_torus(128, 80); // 3 m wide, enough triangles for the cache
     Scene scene;
@@ -42,7 +42,7 @@ TEST_CASE("rough glass whose index is out of range causes a warning") {
     CHECK(warnings_for_glass(4, 0.3f) == 1);
     CHECK(warnings_for_glass(1.5f, 0.3f) == 0);
     CHECK(warnings_for_glass(1, 0.3f) == 0);
-    CHECK(warnings_for_glass(1.05f, 0) == 0); // smooth glass takes any
+    CHECK(warnings_for_glass(1.05f, 0) == 0); // smooth glass supports any index
 }
 
 TEST_CASE("the world's centre is the middle of the scene on a grid of the scene's size, and 0 for a scene around 0") {
@@ -52,12 +52,12 @@ TEST_CASE("the world's centre is the middle of the scene on a grid of the scene'
         CHECK(world_centre(torus_at({1.9f, -1.9f, 0}, by_vertices)) == Vec3{0, 0, 0});
         CHECK(world_centre(torus_at({2.1f, -2.1f, 101}, by_vertices)) == Vec3{4, -4, 100});
     }
-    Scene two = torus_at({1000, 0, 0}); // and a second one, 1.5 km away: the box is what counts
+    Scene two = torus_at({1000, 0, 0}); // adds a second object 1.5 km away, because the box of all objects counts
     two.meshes.push_back(torus_at({-500, 0, 0}).meshes[0]);
     two.instances.push_back({"second", 1, 0, {}});
     CHECK(world_centre(two) == Vec3{0, 0, 0});
     for (Instance& instance : two.instances) instance.world_from_local = make_translation({2900, 0, 0});
-    CHECK(world_centre(two) == Vec3{4096, 0, 0}); // the middle is at 3150 m, the grid 2048 m
+    CHECK(world_centre(two) == Vec3{4096, 0, 0}); // the centre is at 3150 m, and the grid is 2048 m
 }
 
 TEST_CASE("trees and lights are in the translated world, or in the file's if rays use its coordinates") {

@@ -46,16 +46,16 @@ TEST_CASE("a dry run counts the bytes of a device and allocates none") {
         CHECK(dry.peak_bytes() == cpu.peak_bytes());
         const Buffer<std::byte> huge(dry, std::size_t(1) << 50, "more than any machine has");
         CHECK(dry.allocated_bytes() == std::size_t(1) << 50);
-        launch(dry, "nothing", 1u << 31, BeginRounds{nullptr, 1}); // no stage runs
+        launch(dry, "nothing", 1u << 31, BeginRounds{nullptr, 1}); // a dry run runs no stage
     }
 }
 
 TEST_CASE("streams run after the work before the fork, and work after the join runs after all streams") {
     Queue queue = test::requested_queue();
     constexpr int kStreams = Queue::kMaxStreams;
-    constexpr std::size_t kMany = 1 << 22; // a fill that takes longer than it takes to give the next
+    constexpr std::size_t kMany = 1 << 22; // this fill takes longer than launching the next
     Buffer<unsigned char> sum(queue, kMany * kStreams, "bytes");
-    sum.fill(7); // the stream's writes win, so they came later
+    sum.fill(7); // the stream's values remain, so it wrote later
     {
         const Queue::Fork fork(queue, kStreams);
         CHECK(queue.streams() == kStreams);
@@ -86,7 +86,7 @@ TEST_CASE("an exception on a stream leaves the queue with a single stream") {
     CHECK_THROWS_AS(fail_on_a_stream(), std::runtime_error);
     CHECK(queue.streams() == 1);
     CHECK(queue.stream_index() == 0);
-    CHECK(bytes.download()[99] == 3); // after the stream's earlier work
+    CHECK(bytes.download()[99] == 3); // runs after the stream's earlier work
 }
 
 TEST_CASE("a number is read back as it was when requested, independent of later work") {

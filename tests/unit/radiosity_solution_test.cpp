@@ -88,7 +88,7 @@ TEST_CASE("patches cover their triangles with edges within the requested length,
 TEST_CASE("displayed light has no gap where a patch meets smaller ones") {
     Scene scene;
     test::add(scene, test::floor_at(0, 1), test::white(0.5f));
-    test::PatchedScene patched(std::move(scene), 1.5f); // four patches a triangle
+    test::PatchedScene patched(std::move(scene), 1.5f); // there are four patches per triangle
     for (const uint32_t i : {0u, 0u, 3u}) patched.tree.split(patched.solved.view(), i);
     std::vector<Rgb> irradiance;
     for (const Patch& patch : patched.tree.patches) {
@@ -98,7 +98,7 @@ TEST_CASE("displayed light has no gap where a patch meets smaller ones") {
     const SceneView& view = patched.solved.view();
     const std::vector<PatchLight> lights = light_corners(view, patched.tree, irradiance);
     const RadiosityView shown = {patched.tree.view(), lights.data(), {}};
-    // Across each edge of each patch, from both sides.
+    // Compares the light on both sides of each edge of each patch.
     int compared = 0;
     for (const Patch& patch : patched.tree.patches) {
         if (patch.side() != 0) continue;
@@ -147,11 +147,11 @@ TEST_CASE("a solution is read back from its file, and another scene's or a damag
         CHECK(refuses_solution(path, scene));
     }
     test::Random random(5);
-    for (int i = 0; i < 300; ++i) { // a bit somewhere
+    for (int i = 0; i < 300; ++i) { // flips a random bit
         std::vector<std::byte> damaged = whole;
         const auto most = static_cast<uint32_t>(whole.size());
         const std::size_t at = i < 136 ? static_cast<std::size_t>(i) : random.below(most);
-        if (at >= 92 && at < 96) continue; // no part of it
+        if (at >= 92 && at < 96) continue; // the reason mentions no part
         damaged[at] ^= std::byte(1u << random.below(8));
         write_bytes(path, damaged);
         CAPTURE(at);
@@ -164,7 +164,7 @@ TEST_CASE("a solution is read back from its file, and another scene's or a damag
 
 namespace {
 
-/// A scene with every kind of light and surface, those that a solution supports and the others.
+/// A scene with every kind of light and surface, whether a solution supports it or not.
 Scene scene_of_all_light() {
     Scene scene = lit_box();
     test::add(scene, test::sheet({0.4f, -0.5f, 0}, {0.2f, 0, 0}, {0, 0, 0.2f}), test::mirror());
@@ -191,7 +191,7 @@ TEST_CASE("a solution is rendered only with the light it was solved for") {
         change(changed);
         CHECK(refuses_solution(path, changed, says));
     };
-    const char* const surfaces = "`two_sided_lights`"; // a setting that may have changed them
+    const char* const surfaces = "`two_sided_lights`"; // names a setting that may have changed them
     check_refused(surfaces, [](Scene& s) { s.materials[6].emission = grey(6); });
     check_refused(surfaces, [](Scene& s) { s.materials[6].two_sided_emission ^= true; });
     check_refused(surfaces, [](Scene& s) { s.materials[0].base_color.g += 0x1p-20f; });
@@ -202,7 +202,7 @@ TEST_CASE("a solution is rendered only with the light it was solved for") {
     check_refused(surfaces, [](Scene& s) { s.meshes.back().uv[0][1].x = 0; });
     check_refused(surfaces, [](Scene& s) { s.meshes[0].colors.assign(s.meshes[0].positions.size(), {1, 0, 1, 1}); });
     check_refused(surfaces, [](Scene& s) {
-        s.materials[0].kind = MaterialKind::MetallicRoughness; // which may be diffuse in part
+        s.materials[0].kind = MaterialKind::MetallicRoughness; // the material may be partly diffuse
         s.materials[0].metallic = 0.5f;
     });
     const char* const lights = "`environment`";
@@ -224,7 +224,7 @@ TEST_CASE("a solution is rendered only with the light it was solved for") {
     seen.materials[0].normal_scale = 2;
     seen.materials[7].roughness = 0.7f; // the mirror
     seen.materials[7].eta = {1, 1, 1};
-    seen.materials.push_back(test::white(0.9f)); // nobody's
+    seen.materials.push_back(test::white(0.9f)); // no instance has it
     seen.lights[0].direction = {1, 0, 0};        // direction of a point light
     CHECK_FALSE(refuses_solution(path, seen));
 }
@@ -236,7 +236,8 @@ TEST_CASE("a solution's file of the previous version is read with a warning that
     write_solution(path, solution);
     std::vector<std::byte> bytes = read_file(path);
     bytes[15] = std::byte('1');
-    bytes.erase(bytes.begin() + 96, bytes.begin() + 136); // had no hashes of light, nor how far it was solved
+    bytes.erase(bytes.begin() + 96,
+                bytes.begin() + 136); // that version stored neither hashes of light nor the state of the solution
     write_bytes(path, bytes);
     scene.materials[6].emission = grey(50);
     Messages messages;
@@ -257,7 +258,7 @@ TEST_CASE("a solution's file of the previous version is read with a warning that
 TEST_CASE("an interrupted solution records its state and is rendered with a warning") {
     const std::filesystem::path path = test::scratch_folder() / "ended";
     Messages messages;
-    /// Ended at progress report number `heard` of the step `during`.
+    /// Stops at the report number `heard` of the step `during`.
     const auto ended = [&](RadiositySolver solver, const std::string& during, int heard, float reflectance = 0.5f) {
         const Scene scene = lit_box(reflectance);
         const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -285,7 +286,7 @@ TEST_CASE("an interrupted solution records its state and is rendered with a warn
     CHECK(direct.extent == SolvedExtent{SolvedPart::DirectLight, 1});
     const RadiositySolution darker = ended(RadiositySolver::Hierarchical, "links, pass 1", 1, 0.25f);
     const auto same_light = [](const PatchLight& a, const PatchLight& b) { return a.mean == b.mean; };
-    CHECK(std::ranges::equal(direct.patches, darker.patches, same_light)); // nothing of what walls pass on
+    CHECK(std::ranges::equal(direct.patches, darker.patches, same_light)); // walls reflect nothing
     const RadiositySolution linked = ended(RadiositySolver::Hierarchical, "links, pass 2", 1);
     CHECK(linked.extent.part == SolvedPart::SomeBounces);
     CHECK(linked.extent.left < 1);
@@ -303,17 +304,17 @@ TEST_CASE("an interrupted solution records its state and is rendered with a warn
     RadiositySolution whole = solution_of(scene);
     CHECK(whole.extent == SolvedExtent{});
     const Hash128 hash = whole.hash();
-    for (const SolvedPart part : {SolvedPart::DirectLight, SolvedPart::SomeDivided}) { // by what else they differ
+    for (const SolvedPart part : {SolvedPart::DirectLight, SolvedPart::SomeDivided}) { // the other differences
         whole.extent.part = part;
         CHECK(whole.hash() != hash);
         CHECK_FALSE(describe(whole.extent).empty());
     }
-    whole.extent.left = 2; // no share
+    whole.extent.left = 2; // the share is unknown
     write_solution(path, whole);
     CHECK(refuses_solution(path, scene));
 }
 
-TEST_CASE("if links are interrupted while patches are divided, the parts keep the light of the whole") {
+TEST_CASE("if refinement is interrupted, subdivided patches keep the light of their parent") {
     const Scene scene = lit_box(0.02f);
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -329,14 +330,14 @@ TEST_CASE("if links are interrupted while patches are divided, the parts keep th
     const SolvedRadiosity solved = solve_radiosity(prepared, settings, sink);
     CHECK(solved.stats.was_interrupted);
     CHECK(solved.solution.extent.part == SolvedPart::SomeBounces);
-    CHECK(solved.solution.patches.size() > 24);                    // some were divided
-    const auto dim_share = [](const RadiositySolution& solution) { // fraction of points where light from other
+    CHECK(solved.solution.patches.size() > 24);                    // some patches were subdivided
+    const auto dim_share = [](const RadiositySolution& solution) { // the fraction of points where light from other
                                                                    // surfaces is below a hundredth
         const auto dim = std::ranges::count_if(solution.patches,
                                                [](const PatchLight& patch) { return luminance(patch.mean) < 0.02f; });
         return static_cast<double>(dim) / static_cast<double>(solution.patches.size());
     };
-    CHECK(dim_share(solved.solution) < 0.5); // 0.82 for black parts
+    CHECK(dim_share(solved.solution) < 0.5); // it is 0.82 if the new patches are black
 }
 
 TEST_CASE("a solution's bytes depend on its settings and not on threads") {
@@ -380,7 +381,7 @@ TEST_CASE("a scene that cannot be solved is refused") {
     const auto error = test::thrown_error([&] { solve_radiosity(prepared, quick_settings(), stop); });
     CHECK(error.has_value());
     CHECK(error->code() == ErrorCode::Interrupted);
-    test::StopAfter asked(0); // stops without progress
+    test::StopAfter asked(0); // the scene stops the solver without progress
     const auto again = test::thrown_error([&] { solve_radiosity(prepared, quick_settings(), asked); });
     CHECK(again->code() == ErrorCode::Interrupted);
 }
@@ -393,7 +394,7 @@ TEST_CASE("solving stops promptly on request, however long a row takes") {
         double requested = -1;
         int heard = 0;
         ProgressSink end_in([&](const Progress& now) {
-            if (now.doing != during || ++heard == 1) return true; // it begins
+            if (now.doing != during || ++heard == 1) return true; // the step begins
             if (requested < 0) requested = test::cpu_seconds();
             return false;
         });
@@ -407,13 +408,14 @@ TEST_CASE("solving stops promptly on request, however long a row takes") {
     };
     RadiositySettings few_long_rows;
     few_long_rows.patch_size = 10;
-    few_long_rows.rays = kMaxPatchRays; // seconds of each
+    few_long_rows.rays = kMaxPatchRays; // each row takes seconds
     CHECK(seconds_to_end(few_long_rows, "form factors") < test::allowed_seconds(0.5));
     few_long_rows.rays = 64;
     few_long_rows.hemicube = kMaxHemicube;
     few_long_rows.form_factors = FormFactors::Hemicube;
     few_long_rows.subdivisions = 0;
-    CHECK(seconds_to_end(few_long_rows, "form factors") < test::allowed_seconds(1.5)); // 16 million pixels
+    CHECK(seconds_to_end(few_long_rows, "form factors") <
+          test::allowed_seconds(1.5)); // a hemicube has 16 million pixels
     RadiositySettings many_rows = quick_settings();
     many_rows.subdivisions = 6;
     many_rows.contrast = 1e-4f;
@@ -443,7 +445,7 @@ TEST_CASE("memory of a solution equals its prediction, and a limit one byte belo
             CHECK(error->code() == ErrorCode::OutOfMemory);
         }
     }
-    // Each of these takes more.
+    // Each of these settings takes more memory.
     const RadiositySettings settings = quick_settings();
     const std::size_t least = predict_memory(prepared, settings, 2).bytes;
     RadiositySettings more = settings;

@@ -26,7 +26,7 @@ RadiositySystem room_of(std::size_t count, float reflectance, float exitance) {
         all += static_cast<double>(area);
     }
     for (std::size_t i = 0; i < count; ++i) {
-        std::vector<FormFactor> row; // like inside a sphere: the fraction of its area
+        std::vector<FormFactor> row; // inside a sphere the form factor is the patch's share of the area
         for (uint32_t j = 0; j < count; ++j) {
             row.push_back({j, static_cast<float>(static_cast<double>(system.patches[j].area) / all)});
         }
@@ -54,7 +54,7 @@ TEST_CASE("all solvers converge to the known light inside a sphere") {
     const SolvedSystem matrix = solve_by_matrix(system);
     CHECK(difference(southwell, matrix) < 1e-5);
     CHECK(difference(gauss_seidel, matrix) < 1e-5);
-    // Every patch gathers the same: mean of E + r direct, over 1 - mean r, by area.
+    // Every patch gathers the same light: the area-weighted mean of E + r direct, divided by 1 - mean r.
     double area = 0, sent = 0, reflected = 0;
     for (std::size_t i = 0; i < system.patches.size(); ++i) {
         const SystemPatch& patch = system.patches[i];
@@ -75,7 +75,7 @@ TEST_CASE("an interrupted elimination leaves the direct light of emitters and of
     for (const SystemPatch& patch : system.patches) {
         sent += static_cast<double>(patch.area * patch.exitance.g), area += static_cast<double>(patch.area);
     }
-    for (const int most : {1, 40, 100}) { // in the first channel, at its end, in the last
+    for (const int most : {1, 40, 100}) { // in the first channel, at its end, and in the last channel
         int requested = 0;
         const SolvedSystem ended = solve_by_matrix(system, [&](double) { return ++requested < most; });
         CHECK(requested == most);
@@ -91,7 +91,7 @@ TEST_CASE("an interrupted elimination leaves the direct light of emitters and of
 
 TEST_CASE("Southwell shoots from the patch with the most unshot light, the first of several") {
     RadiositySystem system;
-    // Four patches in a row; each sends only to the next one. Without reflection each sends its emission.
+    // Each of four patches in a row sends light only to the next. Without reflection each sends its emission.
     for (const float exitance : {1.0f, 3.0f, 3.0f, 2.0f}) system.patches.push_back({1, {}, grey(exitance)});
     system.patches[2].area = 1;
     system.direct.assign(4, {});
@@ -101,15 +101,15 @@ TEST_CASE("Southwell shoots from the patch with the most unshot light, the first
         for (const Rgb irradiance : solve_by_southwell(system, 0, steps).irradiance) light.push_back(irradiance.r);
         return light;
     };
-    CHECK(received(1) == std::vector<float>{0, 0, 3, 0}); // patch 1, though 2 has as much
+    CHECK(received(1) == std::vector<float>{0, 0, 3, 0}); // patch 1 shoots first, although patch 2 has as much light
     CHECK(received(2) == std::vector<float>{0, 0, 3, 3});
-    CHECK(received(3) == std::vector<float>{0, 0, 3, 3}); // 3, which no patch sees
+    CHECK(received(3) == std::vector<float>{0, 0, 3, 3}); // patch 3, from which no patch receives light
     CHECK(received(4) == std::vector<float>{0, 1, 3, 3});
-    system.patches[0].area = 4; // more than the whole
+    system.patches[0].area = 4; // the sum is more than all light
     CHECK(received(1) == std::vector<float>{0, 1, 0, 0});
 }
 
-TEST_CASE("unshot light is displayed as ambient light, so that all light is present from the start") {
+TEST_CASE("unshot light is displayed as ambient light, so the picture has all light from the start") {
     const RadiositySystem system = room_of(40, 0.8f, 2);
     const SolvedSystem whole = solve_by_matrix(system);
     double before = 1e30;
@@ -172,7 +172,7 @@ TEST_CASE("only light that nothing absorbs is refused") {
         return test::bad_input_message([&] { check_light_ends(system); });
     };
     const RadiositySystem white = room_of(30, 1, 2);
-    CHECK(why(white).find(" of 30 ") != std::string::npos); // red is reflected by a third of them alone
+    CHECK(why(white).find(" of 30 ") != std::string::npos); // only a third of the patches reflects red
     RadiositySystem system = white;
     for (SystemPatch& patch : system.patches) patch.reflectance = grey(1);
     CHECK(why(system).find("30 of 30") != std::string::npos);
@@ -180,13 +180,13 @@ TEST_CASE("only light that nothing absorbs is refused") {
     for (SystemPatch& patch : dark.patches) patch.exitance = {};
     for (Rgb& direct : dark.direct) direct = {};
     CHECK(why(dark) == "no error");
-    RadiositySystem absorbing = system; // one is enough
+    RadiositySystem absorbing = system; // one absorbing patch is enough
     absorbing.patches[3].reflectance = grey(0.99f);
     CHECK(why(absorbing) == "no error");
-    RadiositySystem open = system; // a window before one
+    RadiositySystem open = system; // a window covers one patch
     for (FormFactor& factor : open.rows[7]) factor.factor *= 0.99f;
     CHECK(why(open) == "no error");
-    // Two rooms, of which the one without an end has no light.
+    // There are two rooms, and the one that absorbs nothing has no light.
     RadiositySystem rooms;
     rooms.patches = {{1, grey(1), {}}, {1, grey(1), {}}, {1, grey(0.5f), grey(1)}, {1, grey(1), {}}};
     rooms.direct.assign(4, {});
@@ -196,7 +196,7 @@ TEST_CASE("only light that nothing absorbs is refused") {
     CHECK(why(rooms).find("2 of 4") != std::string::npos);
 }
 
-TEST_CASE("ambient light is that of patches that see others, and patches that face nothing do not count") {
+TEST_CASE("ambient light is averaged over patches that receive light from others") {
     const RadiositySystem inside = room_of(40, 0.8f, 2);
     RadiositySystem with_outside = inside;
     for (int i = 0; i < 40; ++i) {

@@ -55,8 +55,8 @@ std::vector<int> times_drawn(const Mesh& mesh, const Pinhole& camera, SamplePosi
     return times;
 }
 
-/// n x n cells between (-size, -size) and (size, size) in the plane z = 0, vertices moved at random, cells cut by
-/// either diagonal and wound either way; without holes or folds.
+/// A mesh without holes or folds in the plane z = 0: n x n cells between (-size, -size) and (size, size), with
+/// displaced vertices, either diagonal and either winding.
 Mesh crooked_grid(uint32_t n, float size, uint32_t seed) {
     test::Random random(seed);
     Mesh mesh;
@@ -98,9 +98,10 @@ Vec3 pixel_of(const Image& image, uint32_t x, uint32_t y) {
 } // namespace
 
 TEST_CASE("triangles with shared edges cover each sample once") {
-    for (const uint32_t n : {3u, 40u, 300u}) { // cells of many pixels, and of less than one
+    for (const uint32_t n : {3u, 40u, 300u}) { // cells cover many pixels, or less than one
         const Mesh grid = crooked_grid(n, 2, n);
-        // Straight on; askew; through the picture's edges, the eye's plane and behind it.
+        // The views are perpendicular, oblique, and one in which the mesh crosses the picture's edges and the camera's
+        // plane.
         for (const Camera& camera : {camera_at({0, 0, 3}, {0, 0, 0}), camera_at({0.3f, 0.2f, 0.4f}, {0.5f, 0.7f, 0}),
                                      camera_at({0.1f, 0.2f, 0.05f}, {0.1f, 1, 0}, {0, 0, 1})}) {
             const Pinhole seen = pinhole(camera, 211, 173);
@@ -117,12 +118,12 @@ TEST_CASE("a sample on an edge belongs to the triangle to its right or below it"
     const Camera flat = [] {
         Camera camera;
         camera.projection = Projection::Orthographic;
-        camera.ortho_height = 4; // four pixels of one metre
+        camera.ortho_height = 4; // four pixels, each one metre wide
         camera.world_from_camera = look_at({0, 0, 1}, {0, 0, 0}, {0, 1, 0});
         return camera;
     }();
     const Pinhole seen = pinhole(flat, 4, 4);
-    // Its edges go through samples. It covers those on its upper and left edge, not those on the others.
+    // Samples lie on its edges. The triangle covers those on its upper and left edge only.
     const std::vector<int> times =
         times_drawn(test::sheet({0, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}), seen, {kSubpixels / 2, kSubpixels / 2});
     std::vector<int> expected(16);
@@ -152,10 +153,10 @@ TEST_CASE("coverage and depth equal those of rays through a million pixels") {
         if (!same || path.ids[i].instance == kNoHit) continue;
         const double off = double(std::abs(depths[i] - path_depths[i])) / double(path_depths[i]);
         ++compared;
-        elsewhere += off > 1e-3 ? 1 : 0; // another triangle of the same instance
+        elsewhere += off > 1e-3 ? 1 : 0; // the other triangle belongs to the same instance
         if (raster.ids[i].primitive == path.ids[i].primitive) worst = std::max(worst, off);
     }
-    // Corners are rounded to 1/256 of a pixel: a sample so near to an outline may go either way.
+    // Corners are rounded to 1/256 of a pixel, so a sample that near to an outline may be in or out.
     CHECK(others < 1000);
     CHECK(compared > 400000);
     CHECK(elsewhere < 100);
@@ -176,7 +177,8 @@ TEST_CASE("light is evaluated per pixel, corner or triangle and matches the form
         settings.display.edit().shading = shading;
         return pixel_of(test::render(queue, scene, camera, settings).picture, 32, 32);
     };
-    // albedo / pi I cos / d^2 + albedo ambient: at the middle, at the corners (d^2 = 3) and at a triangle's middle.
+    // The formula is albedo / pi I cos / d^2 + albedo ambient, at the centre, at corners (d^2 = 3) and at a triangle's
+    // centre.
     const auto expected = [](double square) {
         const double lit = 0.5 / 3.14159265 / (square * std::sqrt(square));
         return Vec3{static_cast<float>(3 * lit + 0.125), static_cast<float>(2 * lit), static_cast<float>(lit)};
@@ -209,17 +211,18 @@ TEST_CASE("without shadows raster shades as cast does, with all lobes, textures 
     const Image cast = test::render(queue, scene, camera, settings).picture;
     uint32_t alike = 0, lit = 0;
     for (std::size_t i = 0; i < cast.pixels.size(); ++i) {
-        if (!(cast.pixels[i] > 0)) continue; // in its own shadow
+        if (!(cast.pixels[i] > 0)) continue; // it shadows itself
         ++lit;
         alike += std::abs(raster.pixels[i] - cast.pixels[i]) <= 1e-3f * cast.pixels[i] ? 1 : 0;
     }
     CHECK(lit > 1000);
-    CHECK(alike >= lit - lit / 50); // except samples at edges, which have another triangle
+    CHECK(alike >= lit - lit / 50); // samples at edges may show another triangle
 }
 
 TEST_CASE("edges are Bresenham's lines, and the nearer one is visible") {
     Scene scene;
-    Mesh triangle; // from (2, 2) to (12, 2) to (2, 6), pixels of a picture 16 wide, and one behind it
+    Mesh triangle; // a triangle with the pixels (2, 2), (12, 2) and (2, 6) of a picture 16 pixels wide, and one behind
+                   // it
     triangle.positions = {{-5.5f, 5.5f, 0}, {4.5f, 5.5f, 0}, {-5.5f, 1.5f, 0}};
     triangle.indices = {0, 1, 2};
     test::add(scene, triangle, {{.base_color = {1, 0, 0}}, "red"});
@@ -236,7 +239,7 @@ TEST_CASE("edges are Bresenham's lines, and the nearer one is visible") {
     std::vector<bool> expected(256);
     for (uint32_t x = 2; x <= 12; ++x) expected[2 * 16 + x] = true;
     for (uint32_t y = 2; y <= 6; ++y) expected[y * 16 + 2] = true;
-    for (uint32_t x = 2; x <= 12; ++x) { // slanted: in each column the row that is nearest to the line
+    for (uint32_t x = 2; x <= 12; ++x) { // on the slanted edge, each column has the row nearest to the line
         expected[static_cast<uint32_t>(std::lround(6 - 0.4 * (x - 2.0))) * 16 + x] = true;
     }
     for (uint32_t i = 0; i < 256; ++i) {
@@ -247,8 +250,7 @@ TEST_CASE("edges are Bresenham's lines, and the nearer one is visible") {
     }
 }
 
-TEST_CASE(
-    "samples of a pixel are spread evenly over its filter, the first in the middle, and a picture is their mean") {
+TEST_CASE("a pixel's samples cover its filter evenly, the first is at the centre, and the picture is their mean") {
     Scene scene;
     test::add(scene, test::sheet({-1, 0, 0}, {1, 0, 0}, {0, 9, 0}), {{.emission = {1, 1, 1}}, "lamp"});
     Queue queue = test::requested_queue();

@@ -13,8 +13,8 @@ namespace {
 
 using Limits = std::numeric_limits<float>;
 
-/// Signed distance of `p` from the plane through `on` with normal `normal`, exact enough: the products of two floats
-/// are exact in double.
+/// Returns the signed distance of `p` from the plane through `on`. Products of two floats are exact in double
+/// precision.
 double side(Vec3 p, Vec3 on, Vec3 normal) {
     const auto term = [](float a, float b, float n) {
         return (static_cast<double>(a) - static_cast<double>(b)) * static_cast<double>(n);
@@ -53,26 +53,26 @@ TEST_CASE("an offset origin is never on the wrong side, wherever the true point 
         const Vec3 direction = random.direction();
         const float scale = i % 3 == 0 ? 0x1p-23f : 0x1p-20f;
         const Vec3 error = scale * abs(point);
-        // The plane may pass through any corner of the box of error.
+        // The plane can pass through any corner of the error box.
         const auto sign = [&] { return random.unit() < 0.5f ? -1.0f : 1.0f; };
         const float sx = sign(), sy = sign(), sz = sign();
         const Vec3 on_plane = {point.x + sx * error.x, point.y + sy * error.y, point.z + sz * error.z};
         const Vec3 moved = offset_ray_origin(point, error, normal, direction);
         const double wanted = dot(direction, normal) < 0 ? -1 : 1;
-        // The corner's own sum is rounded: half a unit of each component, times the normal.
+        // The corner itself is rounded by half a unit in each component, times the normal.
         double slack = 0;
         for (int k = 0; k < 3; ++k) {
             slack += 0x1p-24 * static_cast<double>(abs(component(on_plane, k)) * abs(component(normal, k)));
         }
         const double away = wanted * side(moved, on_plane, normal);
         least = std::min(least, away + slack);
-        // No farther than twice the error, a neighbouring float a component, and the roundings.
+        // The offset is at most twice the error plus one float step per component and the rounding.
         const double bound = static_cast<double>(dot(abs(normal), error));
         farthest = std::max(farthest, (away - slack) / (2 * bound + 4 * 0x1p-23 * static_cast<double>(size)));
     }
     CHECK(least >= 0);
     CHECK(farthest <= 1);
-    CHECK(farthest > 0.2); // so the bound says something
+    CHECK(farthest > 0.2); // the bound is not trivial
 }
 
 TEST_CASE("an exact point on an axis-aligned plane is still offset, and only along the normal") {
@@ -81,10 +81,10 @@ TEST_CASE("an exact point on an axis-aligned plane is still offset, and only alo
     CHECK(up.y > 2);
     CHECK(up.z == -3);
     CHECK(offset_ray_origin({5, 2, -3}, {0, 1e-6f, 0}, {0, 1, 0}, {0.6f, -0.8f, 0}).y < 2);
-    CHECK(offset_ray_origin({5, 2, -3}, {0, 1e-6f, 0}, {0, -1, 0}, {0.6f, 0.8f, 0}).y > 2); // seen from behind
-    // An error far below a unit in the last place moves to the neighbour at least.
+    CHECK(offset_ray_origin({5, 2, -3}, {0, 1e-6f, 0}, {0, -1, 0}, {0.6f, 0.8f, 0}).y > 2); // the ray leaves the back
+    // Even for an error far below a unit in the last place the origin moves to the next float.
     CHECK(offset_ray_origin({0, 1024, 0}, {0, 1e-12f, 0}, {0, 1, 0}, {0, 1, 0}).y == std::nextafter(1024.0f, 2e3f));
-    CHECK(offset_ray_origin({1, 2, 3}, {0, 0, 0}, {0, 1, 0}, {0, 1, 0}) == Vec3{1, 2, 3}); // known exactly
+    CHECK(offset_ray_origin({1, 2, 3}, {0, 0, 0}, {0, 1, 0}, {0, 1, 0}) == Vec3{1, 2, 3}); // the point is known exactly
 }
 
 TEST_CASE("a point near an edge is moved inwards, and any other is kept to the bit") {
@@ -103,5 +103,5 @@ TEST_CASE("a point near an edge is moved inwards, and any other is kept to the b
         if (u >= least && v >= least && 1 - u - v >= least) CHECK((place.u == u && place.v == v));
     }
     CHECK(inset_barycentrics(0.0f, 0.0f, 0.25f).u ==
-          doctest::Approx(1.0 / 6)); // from a corner: 1/4, 1/4 and 1, over 3/2
+          doctest::Approx(1.0 / 6)); // at a corner the weights are 1/4, 1/4 and 1, divided by 3/2
 }

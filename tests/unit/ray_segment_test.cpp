@@ -46,7 +46,7 @@ bool enters_compressed_box(const RaySegment& segment, Vec3 origin, const Bounds3
     return (enters_slots(origin, segment, node, entries) >> 5 & 1) != 0;
 }
 
-/// The smallest box that holds the point exactly.
+/// Returns the smallest box that contains the point.
 Bounds3 box_around(const double (&p)[3]) {
     const auto below = [](double x) {
         const float f = static_cast<float>(x);
@@ -118,7 +118,7 @@ TEST_CASE("boxes before a segment's start or beyond its end are not entered") {
     CHECK(boxes.segment.end == 5);
     CHECK(!enters(6, 7));
     CHECK(enters(4, 4.5f));
-    boxes.segment.shorten(8); // not longer again
+    boxes.segment.shorten(8); // the segment does not get longer again
     CHECK(boxes.segment.end == 5);
 }
 

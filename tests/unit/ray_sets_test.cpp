@@ -26,7 +26,7 @@ using namespace pertev::test;
 
 namespace {
 
-/// A scene with all that tracing takes.
+/// A scene with everything that tracing needs.
 struct Traced {
     Scene scene;
     Messages messages;
@@ -65,7 +65,7 @@ Camera looking(Vec3 eye, Vec3 target, float fov_y) {
     return camera;
 }
 
-/// A sphere of radius 1 in an open box; about half of what leaves it is lost.
+/// A sphere of radius 1 in an open box. About half of the rays that leave the sphere escape.
 Scene allocate() {
     const TriangleMesh ball = make_sphere(5, {0, 1, 0}, 1);
     Mesh mesh;
@@ -88,13 +88,13 @@ bool same_bits(const std::vector<RaySet>& a, const std::vector<RaySet>& b) {
     });
 }
 
-/// The distribution of sqrt(u1) about the normal, without the sets' own code.
+/// Draws the same distribution about the normal without the code of the ray sets.
 double cosine_to(Vec3 direction, Vec3 normal) { return static_cast<double>(dot(direction, normal)); }
 
 } // namespace
 
-TEST_CASE("samples hit the two zeros found on record and no third one") {
-    // Among 8,294,400 rays of seed 22 only number 4,807,597 draws 0 first: the ray whose direction is its normal.
+TEST_CASE("the two zeros that the record found are the only ones") {
+    // Among 8,294,400 rays with seed 22, only number 4,807,597 draws 0 first. Its direction is the normal.
     uint32_t zeros = 0, at = 0;
     for (uint32_t o = 0; o < kRecordRays; ++o) {
         uint32_t state = secondary_state(o, 22);
@@ -141,7 +141,7 @@ TEST_CASE("the frame of the record matches its count, and smaller ones are whole
     }
 }
 
-TEST_CASE("primary rays are ordered by frame and tile, each inside its pixel") {
+TEST_CASE("primary rays are ordered by frame and tile, and each is inside its pixel") {
     Traced traced(allocate());
     const uint32_t width = 64, height = 36, pixels = width * height;
     const std::vector<Ray> rays = make_record_ray_sets(traced.job(width, height), 4 * pixels)[0].rays;
@@ -161,14 +161,14 @@ TEST_CASE("primary rays are ordered by frame and tile, each inside its pixel") {
         wrong += rays[i].t_min != 0 || rays[i].t_max != 1e30f || rays[i].origin != camera.world_from_camera.translation;
         wrong += std::abs(length(rays[i].direction) - 1) > 1e-6f ? 1 : 0;
         places.insert({d.x, d.y});
-        // The jitter itself: two draws in this order from the state of (place in the frame, frame).
+        // The jitter is two draws in this order from the state of (index in the frame, frame).
         uint32_t state = hash_word(9781u * p + 6271u * (i / pixels) + 1u);
         const float across = draw(state), down = draw(state);
         wrong += std::abs(px - x - static_cast<double>(across)) > 1e-3 ? 1 : 0;
         wrong += std::abs(py - y - static_cast<double>(down)) > 1e-3 ? 1 : 0;
     }
     CHECK(wrong == 0);
-    CHECK(places.size() > rays.size() - 8); // four frames are four different ones
+    CHECK(places.size() > rays.size() - 8); // the four frames differ
 }
 
 TEST_CASE("a count below a whole frame is the start of one") {
@@ -179,7 +179,7 @@ TEST_CASE("a count below a whole frame is the start of one") {
     CHECK(std::memcmp(part[0].rays.data(), whole[0].rays.data(), 1001 * sizeof(Ray)) == 0);
 }
 
-TEST_CASE("secondary rays start at the previous hits in order, in the directions of their numbers") {
+TEST_CASE("secondary rays start at the previous hits in order, with the directions of their indices") {
     Traced traced(allocate());
     const uint32_t count = 4 * 64 * 36;
     const auto sets = make_record_ray_sets(traced.job(64, 36), count);
@@ -228,7 +228,7 @@ TEST_CASE("secondary rays start at the previous hits in order, in the directions
     }
     CHECK(wrong == 0);
     CHECK(checked > 2 * count);
-    CHECK(refilled == 2); // diffuse2 and diffuse3: the box is open, so they need second parents
+    CHECK(refilled == 2); // diffuse2 and diffuse3 reuse parents, because rays escape from the open box
 }
 
 TEST_CASE("a second use of parents continues a set with other numbers") {
@@ -241,7 +241,7 @@ TEST_CASE("a second use of parents continues a set with other numbers") {
     const std::vector<Ray>& rays = sets[3].rays;
     uint64_t same_start = 0;
     for (std::size_t o = made; o < count; ++o) same_start += rays[o].origin == rays[o - made].origin ? 1 : 0;
-    CHECK(same_start < count / 100); // same parents, other directions: other hits
+    CHECK(same_start < count / 100); // with other directions these parents have other hits
     std::set<std::array<uint32_t, 3>> directions;
     for (const Ray& ray : rays)
         directions.insert({bits_of(ray.direction.x), bits_of(ray.direction.y), bits_of(ray.direction.z)});
@@ -331,7 +331,7 @@ TEST_CASE("rays start on the outside of instances at any position") {
         wrong += dot(off, parent.direction) > 0 || dot(off, ray.direction) < -1e-6f * length(off) ? 1 : 0;
     }
     CHECK(met.size() > 1);
-    CHECK(wrong <= hits.size() / 1000); // directions along the surface: one rounding either way
+    CHECK(wrong <= hits.size() / 1000); // directions along the surface may be rounded either way
 }
 
 TEST_CASE("the first shadow targets in Sponza match the record") {

@@ -1,4 +1,4 @@
-// Files of many cameras: our own JSON, NeRF's transforms.json, COLMAP's text and binary files, whole and broken.
+// Files of many cameras, valid and invalid: Pertev's JSON, NeRF's transforms.json, and COLMAP's text and binary files.
 
 #include <cmath>
 #include <cstring>
@@ -47,7 +47,7 @@ struct Colmap {
         test::write_text(folder / (std::string("cameras") + ending), cameras);
         test::write_text(folder / (std::string("images") + ending), images);
     }
-    /// The file and line of the error.
+    /// Returns the file and line of the error.
     std::pair<std::string, uint64_t> fault() const {
         const auto error = test::thrown_error([&] { read_cameras(folder); });
         if (!error || !error->location()) return {"no error", 0};
@@ -69,7 +69,7 @@ constexpr const char* kColmapCameras =
 
 } // namespace
 
-TEST_CASE("our own file states settings for each camera and for all") {
+TEST_CASE("Pertev's file states settings for each camera and for all cameras") {
     const auto cameras =
         cameras_in(R"({"cameras":[{"name":"a","eye":[0,1,2.5],"fov":40},{"camera_pose":[[1,0,0,4],[0,1,0,5],
         [0,0,1,6]],"lens":"opencv"}],"lens":"fisheye","intrinsics_size":"64x48"})");
@@ -85,14 +85,14 @@ TEST_CASE("our own file states settings for each camera and for all") {
     CHECK(cameras[1].location.pointer == "/cameras/1");
 }
 
-TEST_CASE("transforms.json gives poses, focal lengths of all or of a frame, and lenses") {
+TEST_CASE("transforms.json has poses, focal lengths for all frames or one, and lenses") {
     const std::string matrix = R"("transform_matrix":[[1,0,0,2],[0,1,0,3],[0,0,1,4],[0,0,0,1]])";
     const auto angle =
         cameras_in(R"({"camera_angle_x":0.8,"frames":[{"file_path":"./train/r_0.png",)" + matrix + "}]}", 400, 300);
     REQUIRE(angle.size() == 1);
     CHECK(angle[0].name == "train_r_0");
     CHECK(stated(angle[0], "camera_pose") == "1,0,0,2,0,1,0,3,0,0,1,4,0,0,0,1");
-    CHECK(stated(angle[0], "convention") == "none"); // opengl, or the given convention
+    CHECK(stated(angle[0], "convention") == "none"); // opengl or the stated convention
     CHECK(stated(angle[0], "intrinsics_size") == "400x300");
     CHECK(numbers_in_text(stated(angle[0], "intrinsics"))[0] == doctest::Approx(200 / std::tan(0.4)).epsilon(1e-6));
     CHECK(numbers_in_text(stated(angle[0], "intrinsics"))[3] == 150);
@@ -111,7 +111,7 @@ TEST_CASE("transforms.json gives poses, focal lengths of all or of a frame, and 
     CHECK(stated(calibrated[2], "distortion") == "0.1,0,0,4");
 }
 
-TEST_CASE("a broken file of cameras in JSON is refused with the place of its fault") {
+TEST_CASE("an invalid JSON file of cameras is refused with the location of its fault") {
     const std::string matrix = R"("transform_matrix":[[1,0,0,2],[0,1,0,3],[0,0,1,4],[0,0,0,1]])";
     CHECK(pointer_of_fault(R"({"w":8,"h":8,"frames":[{"file_path":"a",)" + matrix + "}]}") == "/frames/0");
     CHECK(pointer_of_fault(R"({"camera_angle_x":1,"frames":[{)" + matrix + "}]}") == "/frames/0"); // no size
@@ -128,7 +128,7 @@ TEST_CASE("a broken file of cameras in JSON is refused with the place of its fau
     CHECK(test::thrown_error([] { cameras_in("{}"); }));
 }
 
-TEST_CASE("COLMAP's text gives the inverse of its rotations and places, in the order of names") {
+TEST_CASE("COLMAP's text files give the inverses of their poses, in the order of names") {
     // A quarter turn about y, and a camera whose picture has no points and whose name has a space.
     const double half = std::sqrt(0.5);
     const Colmap files(kColmapCameras,
@@ -155,7 +155,7 @@ TEST_CASE("COLMAP's text gives the inverse of its rotations and places, in the o
     CHECK(read_cameras(files.folder / "images.txt").size() == 3);
 }
 
-TEST_CASE("COLMAP's binary files give what its text does") {
+TEST_CASE("COLMAP's binary files give the same cameras as its text files") {
     const std::string cameras = packed(uint64_t{1}, uint32_t{1}, uint32_t{4}, uint64_t{640}, uint64_t{480}, 500.0,
                                        550.0, 320.5, 241.0, -0.1, 0.02, 0.001, -0.002);
     const std::string image = packed(uint64_t{1}, uint32_t{5}, 1.0, 0.0, 0.0, 0.0, 1.0, 2.0, 3.0, uint32_t{1});
@@ -174,7 +174,7 @@ TEST_CASE("COLMAP's binary files give what its text does") {
     CHECK(Colmap(cameras, many, ".bin").fault().first == "images.bin");
 }
 
-TEST_CASE("broken files of COLMAP's are refused with file and line") {
+TEST_CASE("invalid COLMAP files are refused with file and line") {
     const std::string image = "1 1 0 0 0 0 0 0 1 a.jpg\n\n";
     using Place = std::pair<std::string, uint64_t>;
     CHECK(Colmap("1 PINHOLE 640 480 500 500 320\n", image).fault() == Place{"cameras.txt", 1});
@@ -187,6 +187,6 @@ TEST_CASE("broken files of COLMAP's are refused with file and line") {
     CHECK(Colmap(kColmapCameras, image + "2 1 0 0 0 0 0 0 1\n").fault() == Place{"images.txt", 3});
     CHECK(Colmap(kColmapCameras, image + "2 0 0 0 0 0 0 0 1 b.jpg\n").fault() == Place{"images.txt", 3});
     CHECK(Colmap(kColmapCameras, image + "2 1 0 0 inf 0 0 0 1 b.jpg\n").fault() == Place{"images.txt", 3});
-    CHECK(Colmap(kColmapCameras, image + image).fault() == Place{"images.txt", 3}); // one name twice
+    CHECK(Colmap(kColmapCameras, image + image).fault() == Place{"images.txt", 3}); // two cameras have the same name
     CHECK(test::thrown_error([] { read_cameras(test::scratch_folder()); }));
 }

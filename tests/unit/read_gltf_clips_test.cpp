@@ -11,11 +11,11 @@
 using namespace pertev;
 using test::GltfBuilder;
 
-namespace read_gltf_clips_test { // tests are compiled several files at once
+namespace read_gltf_clips_test { // test files are compiled together
 
 /// Accessors: 0 positions, 1 times 0 2, 2 times 0 5, 3 two VEC3, 4 two scalars, 5 times that fall. Nodes 0 and 1 show
-/// the mesh, which has a morph target, node 2 is a lamp. Clips: "walk" moves node 0, "bend" reshapes node 1, "dim" is
-/// the lamp's, "broken" has a channel that means nothing.
+/// the mesh, which has a morph target, node 2 is a lamp. Clips: "walk" moves node 0, "bend" reshapes node 1, "dim"
+/// changes the light, "broken" has an invalid channel.
 GltfBuilder key_numbers() {
     GltfBuilder builder;
     builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
@@ -85,7 +85,7 @@ TEST_CASE("an instance that only an unchosen animation moves stays still and may
     CHECK(moving({.animation = "dim"}) == std::vector<bool>{false, false});
     CHECK(moving({.animation = "all"}) == std::vector<bool>{true, true});
 
-    // Nodes share their mesh but where an animation that plays reshapes one of them.
+    // Nodes share their mesh unless the selected animation deforms one of them.
     const Scene still = read(), bent = read({.animation = "bend"});
     CHECK(still.instances.at(0).mesh == still.instances.at(1).mesh);
     CHECK(bent.instances.at(0).mesh != bent.instances.at(1).mesh);

@@ -15,7 +15,7 @@ namespace {
 
 std::string document(const std::string& members) { return R"({"asset":{"version":"2.0"},)" + members + "}"; }
 
-/// A primitive over accessor 0, which has these members, in a buffer of 36 bytes; index accessor 1.
+/// A primitive over accessor 0, which has these members, in a buffer of 36 bytes, with index accessor 1.
 std::string with_accessor(const std::string& members, const std::string& attributes = R"("POSITION":0)") {
     return document(
         R"("buffers":[{"byteLength":36,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],)"
@@ -187,7 +187,7 @@ TEST_CASE("elements that use a missing, short, badly encoded or outside buffer a
     CHECK(read(R"("byteLength":36,"uri":"data:;base64,AAAA")").starts_with("model.gltf: /bufferViews/0: "));
     CHECK(read(R"("byteLength":36,"uri":"data:;base64,A*AA")").starts_with("model.gltf: /buffers/0/uri: "));
     CHECK(read(R"("byteLength":36,"uri":"none.bin")").starts_with("model.gltf: /buffers/0/uri: "));
-    std::string up; // to the root, however deep the model lies
+    std::string up; // leads to the root from any depth
     for (int i = 0; i < 30; ++i) up += "../";
     CHECK(read(R"("byteLength":36,"uri":")" + up + "etc/passwd\"").find("`allow_path=") != std::string::npos);
     CHECK(read(R"("byteLength":36,"uri":"http://example.org/a.bin")").starts_with("model.gltf: /buffers/0/uri: "));
@@ -231,13 +231,13 @@ TEST_CASE("base64 and percent encoding are decoded, even in file names") {
     CHECK(decoded("Zg==") == "f");
     CHECK(decoded("Zm8=") == "fo");
     CHECK(decoded("Zm9v") == "foo");
-    CHECK(decoded("Zm9vYg") == "foob"); // padding left out
+    CHECK(decoded("Zm9vYg") == "foob"); // without padding
     CHECK(decoded("Zm9vY") == "refused");
     CHECK(decoded("Zm=v") == "refused");
     CHECK(decoded("Zm=vYg") == "refused");
     CHECK(decoded("Zg===") == "refused");
     CHECK(decoded("Zm9v*") == "refused");
-    CHECK(decoded("Zm\r\n9v Yg=\n=\n") == "foob"); // lines broken
+    CHECK(decoded("Zm\r\n9v Yg=\n=\n") == "foob"); // with line breaks
     CHECK(decoded("Zm9vYg%3D%3D%0A") == "foob");
     CHECK(decoded("Zm9v%2") == "refused");
     CHECK(decoded("%89PNG%00 a+b", "data:image/png,") == std::string("\x89PNG\0 a+b", 9));

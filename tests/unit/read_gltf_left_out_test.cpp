@@ -1,5 +1,5 @@
-// Files that other viewers show are shown: null members, unbounded numbers, containers with other padding, names from
-// another machine. Unsupported parts are left out with a warning.
+// Files with null members, unbounded numbers, unusual padding or names from another machine are read, as other viewers
+// do. Unsupported parts are left out with a warning.
 
 #include <cstring>
 #include <filesystem>
@@ -19,7 +19,7 @@
 using namespace pertev;
 using test::GltfBuilder;
 
-namespace read_gltf_left_out_test { // tests are compiled several files at once
+namespace read_gltf_left_out_test { // test files are compiled together
 
 GltfBuilder triangle() {
     GltfBuilder builder;
@@ -38,7 +38,7 @@ Light emitter(const std::string& members) {
     return scene.lights.at(0);
 }
 
-/// Messages of reading and validating; the Error's text comes last.
+/// Returns the messages of reading and validation. The text of an Error comes last.
 std::vector<std::string> left_out_of(const std::string& json) {
     Messages messages;
     std::vector<std::string> texts;
@@ -265,7 +265,7 @@ TEST_CASE("a GLB's JSON may be padded with zero bytes, and its header may give a
         CHECK(read_glb(wrong, messages).instances.size() == 1);
         CHECK(messages.left_out().empty());
     }
-    for (const int off : {-4, -1, 1, 4, 8, 1 << 24}) { // error of the JSON's length; its contents determine the end
+    for (const int off : {-4, -1, 1, 4, 8, 1 << 24}) { // the error of the JSON's length; the contents determine its end
         CAPTURE(off);
         std::vector<std::byte> wrong = good;
         set_u32(wrong, 12, u32_at(good, 12) + static_cast<uint32_t>(off));

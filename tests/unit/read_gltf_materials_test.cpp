@@ -128,7 +128,7 @@ TEST_CASE("images come from data URIs, buffer views and files, each read once an
     GltfBuilder builder;
     builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
     builder.add("VEC2", std::vector<float>{0, 0, 1, 0, 0, 1});
-    const auto png = [] { // the bytes of kRedPng, by the file that a reader would write
+    const auto png = [] { // kRedPng in base64
         std::vector<uint8_t> bytes;
         uint32_t bits = 0;
         int held = 0;
@@ -238,9 +238,9 @@ TEST_CASE("an image outside the allowed folders is left out with its pointer") {
         return test::gltf_fault(with_material(R"({"normalTexture":{"index":0}})",
                                               R"(,"textures":[{"source":0}],"images":[{"uri":")" + uri + "\"}]"));
     };
-    std::string up; // to the root, however deep the model lies
+    std::string up; // leads to the root from any depth
     for (int i = 0; i < 30; ++i) up += "../";
-    const std::string outside = error(up + "etc/passwd"); // a file that is there
+    const std::string outside = error(up + "etc/passwd"); // an existing file
     CHECK(outside.starts_with("model.gltf: /images/0/uri: "));
     CHECK(outside.find("`allow_path=") != std::string::npos);
     CHECK(error("").starts_with("model.gltf: /images/0/uri: "));

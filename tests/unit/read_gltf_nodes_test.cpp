@@ -11,7 +11,7 @@ using test::GltfBuilder;
 
 namespace {
 
-/// A triangle as mesh 0, and these further members.
+/// A document with a triangle as mesh 0 and these additional members.
 std::string with_triangle(const std::string& members) {
     GltfBuilder builder;
     builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
@@ -80,7 +80,7 @@ TEST_CASE("the scene property chooses the nodes, and without scenes all are used
     REQUIRE(second.instances.size() == 2);
     CHECK(second.instances[0].name == "c");
     CHECK(second.file_scene == 1);
-    CHECK(messages.all().empty()); // whoever opens the scene says which it is
+    CHECK(messages.all().empty()); // open_scene reports which scene it is
 }
 
 TEST_CASE("children that make a cycle or have a second parent are left out with a warning that names the node") {
@@ -139,7 +139,8 @@ TEST_CASE("cameras keep their angle, height and aspect, and lose their node's sc
     CHECK(perspective.fov_y == 0.75f);
     CHECK(perspective.aspect == 1.5f);
     CHECK(perspective.world_from_camera.translation == Vec3{1, 2, 3});
-    CHECK(same_place(column(perspective.world_from_camera, 1), {1, 0, 0})); // +y turned to -x, mirrored by the scale
+    CHECK(same_place(column(perspective.world_from_camera, 1),
+                     {1, 0, 0})); // the rotation takes +y to -x, and the scale mirrors
     CHECK(same_place(column(perspective.world_from_camera, 2), {0, 0, 1}));
     CHECK(determinant(perspective.world_from_camera) == doctest::Approx(1));
     CHECK(orthographic.name == "o");
@@ -197,7 +198,7 @@ TEST_CASE("a spot with equal cone angles has a sharp edge and a warning; invalid
         CHECK(light.cos_outer < light.cos_inner); // required by validate()
         CHECK(light.cos_outer >= light.cos_inner - 2e-7f);
     }
-    // So narrow that both cosines are 1.
+    // The cone is so narrow that both cosines are 1.
     const Light narrow = test::read_gltf_text(spot(R"("outerConeAngle":1e-5)")).lights.at(0);
     CHECK(narrow.cos_outer < narrow.cos_inner);
 
@@ -215,7 +216,7 @@ TEST_CASE("a spot with equal cone angles has a sharp edge and a warning; invalid
         Messages messages;
         const Light light = test::read_gltf_text(spot(cone), messages).lights.at(0);
         CHECK(test::has_warning(messages, {place}));
-        CHECK(messages.left_out().empty()); // the lamp is there
+        CHECK(messages.left_out().empty()); // the light is in the scene
         CHECK(light.cos_inner == doctest::Approx(std::cos(inner)).epsilon(1e-6));
         CHECK(std::abs(static_cast<double>(light.cos_outer) - std::cos(outer)) < 1e-6);
         CHECK(light.cos_outer < light.cos_inner);
@@ -251,12 +252,13 @@ TEST_CASE("an error for a file without meshes lists its content") {
     const auto reason_of = [](const std::string& text) { return test::read_gltf_text(text).no_instances; };
     CHECK(reason_of(with_triangle(R"("nodes":[{"mesh":0}])")).empty());
     CHECK(reason_of(with_triangle(R"("nodes":[{},{}])")) ==
-          "/nodes: the scene has 2 nodes, and none uses a mesh (of 1); expected a \"mesh\" in one of them");
+          "/nodes: the scene has 2 nodes, and none of them uses a mesh (the file has 1); expected a \"mesh\" in one of "
+          "them");
     CHECK(reason_of(with_triangle(R"("scenes":[{"nodes":[1]}],"nodes":[{"mesh":0},{}])"))
               .starts_with("/nodes: the scene has 1 node,"));
-    CHECK(reason_of(only_nodes(R"("nodes":[{}])")).starts_with("/meshes: there are none"));
+    CHECK(reason_of(only_nodes(R"("nodes":[{}])")).starts_with("/meshes: the file has no meshes"));
     CHECK(reason_of(only_nodes(R"("meshes":[{"primitives":[{"attributes":{}}]}],"nodes":[{"mesh":0}])"))
-              .starts_with("/meshes: none that a node of the scene uses has a triangle"));
+              .starts_with("/meshes: no mesh that a node of the scene uses has a triangle"));
 }
 
 TEST_CASE("a skinned mesh follows its joints and not its own node") {

@@ -12,7 +12,7 @@
 namespace fs = std::filesystem;
 using namespace pertev;
 
-namespace read_obj_groups_test { // tests are compiled several files at once
+namespace read_obj_groups_test { // test files are compiled together
 
 Scene load(const std::string& obj, const std::string& mtl, Messages& messages) {
     const fs::path folder = test::scratch_folder();
@@ -50,7 +50,7 @@ TEST_CASE("obj: objects and groups are instances with their names, one per mater
         CHECK(scene.materials[scene.instances[i].material].name == material);
         CHECK(scene.meshes[scene.instances[i].mesh].triangle_count() == triangles);
     };
-    check(0, "table", "wood", 2); // it is named twice
+    check(0, "table", "wood", 2); // the group is named twice
     check(1, "table", "iron", 1);
     check(2, "chair", "iron", 1);
     check(3, "chair", "wood", 1);

@@ -160,7 +160,7 @@ TEST_CASE("a face with a missing vertex is left out with its line, and the other
     CHECK(none.scene.no_instances.find("a.obj:4: ") != std::string::npos);
 }
 
-TEST_CASE("an index may refer to a later vertex, and that of a texture coordinate to none") {
+TEST_CASE("an index may refer to a later vertex, and a texture index to a missing coordinate") {
     const Loaded l = load_text("f 1/7 2/7 3/7\n" + kTriangle);
     CHECK(l.scene.meshes[0].triangle_count() == 1);
     CHECK(l.scene.meshes[0].uv[0].empty());
@@ -332,7 +332,7 @@ TEST_CASE("mtl: a texture on faces without texture coordinates causes a warning"
     const Loaded good = load(test::write_text(folder / "a.obj", start + textured + plain));
     CHECK(good.messages.all().empty());
     CHECK(good.material("m").base_color_texture.has_image());
-    CHECK(good.material("m").base_color == grey(1)); // no Kd: the map alone
+    CHECK(good.material("m").base_color == grey(1)); // without Kd only the map counts
     const Loaded bad = load(test::write_text(folder / "b.obj", start + textured + bare + plain));
     CHECK(bad.reports("b.obj: 1 material"));
 }
@@ -365,7 +365,7 @@ TEST_CASE("mtl: textures may have options, spaces, backslashes and alpha") {
 
     const Material& leaf = l.material("leaf");
     CHECK(leaf.alpha_mode == AlphaMode::Mask);
-    CHECK(!leaf.alpha_texture.has_image()); // it is the base colour's own
+    CHECK(!leaf.alpha_texture.has_image()); // the image is already the base colour's
     CHECK(leaf.base_color_texture.is_srgb);
     CHECK(leaf.base_color_texture.m00 == 2);
     CHECK(leaf.base_color_texture.m11 == 3);
@@ -423,7 +423,7 @@ TEST_CASE("mtl: messages of several files come after those of the geometry, in a
     test::write_text(folder / "bad.mtl", "newmtl c\nKd 1 2\n");
     const std::string faces =
         "vt 0 0\nusemtl a\nf 1/1 2/1 3/1\nusemtl b\nf 1/1 2/1 3/1\nusemtl twice\nf 1 2 3\nl 1 2\n";
-    const std::string far(std::size_t(3) << 20, '\n'); // longer than the part that is searched for them
+    const std::string far(std::size_t(3) << 20, '\n'); // longer than the part that is searched for names
     const auto load_with = [&](const std::string& text) { return load(test::write_text(folder / "many.obj", text)); };
     for (const std::string& before : {std::string(), far}) {
         const Loaded l = load_with(before + "mtllib gone.mtl\nmtllib a.mtl\n" + kTriangle + faces + "mtllib b.mtl\n");
@@ -461,7 +461,7 @@ TEST_CASE("mtl: a texture or material file outside the scene's folder is left ou
     const Loaded without = load(path);
     CHECK(without.reports("`allow_path="));
     CHECK(without.reports("a.obj:1: "));
-    CHECK(without.messages.left_out().size() == 2); // the file, and the material
+    CHECK(without.messages.left_out().size() == 2); // one message each for the file and the material
     CHECK(load(path, {.allowed_paths = {folder}}).scene.materials[0].base_color == Rgb{1, 0, 0});
 
     test::write_text(folder / "in" / "b.mtl", "newmtl x\nmap_Kd /etc/passwd\n");

@@ -25,7 +25,7 @@ Scene load(const std::string& bytes) {
     return load(bytes, messages);
 }
 
-/// Body of a binary file, in one of the two byte orders.
+/// The body of a binary file, in either byte order.
 struct Bytes {
     bool big_endian;
     std::string text;
@@ -40,7 +40,7 @@ struct Bytes {
     }
 };
 
-/// Odd on purpose: an unknown element first, faces before vertices, lists where none is expected, mixed types.
+/// An unusual file: an unknown element first, faces before vertices, unexpected lists, and mixed types.
 const std::string kOddElements =
     "comment made by a test\nobj_info nothing\n"
     "element extra 2\nproperty list ushort double junk\nproperty char c\n"
@@ -112,12 +112,12 @@ TEST_CASE("ply: a header with CRLF line ends and float colours, which are sRGB a
     CHECK(load(text).meshes[0].colors[0] == Vec4{1, srgb_decode(0.5f), 0, 0.25f});
 }
 
-TEST_CASE("ply: triangle strips reverse every other triangle and restart after -1") {
+TEST_CASE("ply: every other triangle of a strip is reversed, and -1 restarts the strip") {
     const Scene scene = load(ascii(kVertices + "element tristrips 1\n" + kFaces, kSquare + "8 0 1 3 2 -1 2 3 1\n"));
     CHECK(scene.meshes[0].indices == std::vector<uint32_t>{0, 1, 3, 3, 1, 2, 2, 3, 1});
 }
 
-TEST_CASE("ply: every cut of a file is an error, never a crash") {
+TEST_CASE("ply: a file truncated anywhere is an error, never a crash") {
     const std::string whole = odd_binary(false);
     for (std::size_t size = 0; size < whole.size(); ++size) {
         CAPTURE(size);
@@ -127,7 +127,7 @@ TEST_CASE("ply: every cut of a file is an error, never a crash") {
     }
 }
 
-TEST_CASE("ply: errors have their location") {
+TEST_CASE("ply: errors have a location") {
     const auto error_of = [](const std::string& text) { return test::thrown_error([&] { load(text); }); };
     CHECK(test::says(error_of(""), "a.ply:1:"));
     CHECK(test::says(error_of("ply\nformat words 1.0\n"), "a.ply:2:"));
@@ -184,7 +184,7 @@ TEST_CASE("ply: only elements with an unreadable value are left out of a text fi
         load(ascii(kVertices + "element face 2\n" + kFaces, "0 0 0\n1 1,5 0\n1 1 0\n0 1 0\n" + faces), messages);
     validate(scene, "a.ply", messages);
     CHECK(scene.meshes.at(0).indices == std::vector<uint32_t>{0, 2, 3});
-    CHECK(messages.left_out().size() == 2); // the value, and the triangle that has it
+    CHECK(messages.left_out().size() == 2); // one message for the value, one for its triangle
     CHECK(messages.left_out()[0].find("a.ply:11: vertex 1") != std::string::npos);
 }
 

@@ -9,7 +9,7 @@
 namespace fs = std::filesystem;
 using namespace pertev;
 
-namespace read_ply_textures_test { // tests are compiled several files at once
+namespace read_ply_textures_test { // test files are compiled together
 
 struct Loaded {
     Scene scene;
@@ -21,7 +21,7 @@ struct Loaded {
         }
         return false;
     }
-    /// The texture's first texel of the instance; black without a texture.
+    /// Returns the first texel of the instance's texture; black without a texture.
     std::array<int, 3> texel(std::size_t instance) const {
         const TextureRef& ref = scene.materials.at(scene.instances.at(instance).material).base_color_texture;
         if (!ref.has_image()) return {0, 0, 0};
@@ -76,7 +76,7 @@ TEST_CASE("ply: the name of a texture may be quoted or a file: URI") {
 }
 
 TEST_CASE("ply: texture coordinates of faces split only the vertices that have several") {
-    // The vertices 0 and 2 have one place in the texture for both triangles, 1 and 3 are of one triangle each.
+    // The vertices 0 and 2 have the same coordinates in both triangles; 1 and 3 belong to one triangle each.
     const Loaded joined = load(kStart + kRed + kVertices + "element face 2\n" + kList + kFaceUv + "end_header\n" +
                                kSquare + "3 0 1 2 6 0 0 1 0 1 1\n3 0 2 3 6 0 0 1 1 0 1\n");
     CHECK(joined.mesh(0).positions.size() == 4);
@@ -113,7 +113,7 @@ TEST_CASE("ply: texnumber selects one of several textures for a face, and -1 non
     CHECK(l.mesh(0).triangle_count() == 1);
     CHECK(l.mesh(1).triangle_count() == 2);
     CHECK(l.mesh(2).triangle_count() == 1);
-    CHECK(l.mesh(0).colors.empty()); // the texture decides
+    CHECK(l.mesh(0).colors.empty()); // the texture is used
     CHECK(l.mesh(2).colors.size() == 3);
     CHECK(l.mesh(2).positions.size() == 3);
     CHECK(l.reports("vertex colours are left out"));
@@ -163,7 +163,7 @@ TEST_CASE("ply: the line of Blender 2.4 and old Assimp without the word comment 
     CHECK(l.reports("a.ply:3: an unknown header line"));
     const std::string binary = "ply\nformat binary_little_endian 1.0\n" + kVertices + "Created by nobody\n";
     CHECK_THROWS_AS(load(binary + "element face 1\n" + kList + "end_header\n" + std::string(65, '\0')),
-                    Error); // a property?
+                    Error); // may look like a property
 }
 
 } // namespace read_ply_textures_test

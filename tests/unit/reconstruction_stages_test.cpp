@@ -26,7 +26,7 @@ CameraView stage_camera(uint32_t side) {
     return make_camera_view(camera, side, side);
 }
 
-/// A wall that faces the camera at 5 m, all of one object. Its right half can be made another in one way at a time.
+/// A wall of one object that faces the camera at 5 m. Its right half can differ in one property at a time.
 const Float4 kWallGuide = pack({{0, 0, 1}, 1, 5, 7});
 struct Wall {
     std::vector<Float4> guide = std::vector<Float4>(kStagePixels, kWallGuide);
@@ -40,7 +40,7 @@ struct Wall {
 
 const Vec3 kTurned = normalize(Vec3{1, 0, 0.5f});
 
-/// A value on the left and another one on the right, with one variance.
+/// One value on the left and another on the right, with the same variance.
 std::vector<Float4> halves(float left, float right, float variance) {
     std::vector<Float4> values;
     for (uint32_t i = 0; i < kStagePixels; ++i)
@@ -79,7 +79,7 @@ TEST_CASE("a filter pass mixes light of one surface, but not across edges of obj
     };
     const Filtered plain = mixed(one, kNoisy);
     CHECK(plain.diffuse[kLeftOfBorder].x ==
-          doctest::Approx(1.5).epsilon(0.01)); // a quarter of a tent's weight lies beyond
+          doctest::Approx(1.5).epsilon(0.01)); // a quarter of the tent filter's weight is beyond the edge
     CHECK(plain.gloss[kLeftOfBorder].x > 1.3f);
     CHECK(plain.diffuse[kLeftOfBorder - 2].x == doctest::Approx(1));
     const Filtered exact = mixed(one, kExact);
@@ -114,7 +114,7 @@ TEST_CASE("a filter pass mixes gloss of similar widths only, and sharp gloss onl
     CHECK(mixed_from(0.001f, 4, kNoisy) > 1.04f); // noise is averaged
 }
 
-TEST_CASE("bumps separate reliable light, but not noise") {
+TEST_CASE("normals separate reliable light, but not noise") {
     Wall wall;
     const float tilt = 0.4f; // 1 - cosine 0.08
     wall.set_right({normalize(Vec3{tilt, 0, 1}), 1, 5, 7});
@@ -131,8 +131,8 @@ TEST_CASE("variances are filtered by squared weights, and the filter uses their 
     Wall wall;
     const Filtered even = filter_once(wall, halves(1, 1, 2), halves(1, 1, 2), 2);
     CHECK(even.diffuse[kLeftOfBorder].w ==
-          doctest::Approx(2 * 2.25 / 16)); // weights 1, four of a half, four of a quarter; of 4
-    // A pixel that believes itself to be exact, among others that are not.
+          doctest::Approx(2 * 2.25 / 16)); // the weights are 1, four times 1/2 and four times 1/4, divided by 4
+    // A pixel with variance 0 among others with noise.
     std::vector<Float4> light = halves(1, 3, kNoisy);
     light[kLeftOfBorder].w = kExact;
     CHECK(filter_once(wall, light, light, 1).diffuse[kLeftOfBorder].x > 1.3f);
@@ -162,7 +162,7 @@ Filtered first_means(uint32_t pixel, float brightest, bool limits) {
 } // namespace
 
 TEST_CASE("firefly clamping limits a sample to 64 times its brightest neighbour") {
-    for (const uint32_t pixel : {kLeftOfBorder, 0u, kStagePixels - 1}) { // in the middle, and in corners
+    for (const uint32_t pixel : {kLeftOfBorder, 0u, kStagePixels - 1}) { // at the centre and in corners
         CAPTURE(pixel);
         const Filtered limited = first_means(pixel, 1000, true);
         CHECK(limited.diffuse[pixel].x == doctest::Approx(64));
@@ -179,8 +179,8 @@ struct Held {
     Float4 diffuse, gloss, diffuse_out, gloss_out; // values of the tested pixel
 };
 
-/// Long means of 3 at one pixel over `frames`, where recent means are `left` and `right`; single frames stray by
-/// `deviation`.
+/// A long-term mean of 3 at one pixel over `frames`, with the recent means `left` and `right`. Single frames have the
+/// standard deviation `deviation`.
 Held hold(Wall& wall, float left, float right, float deviation, float frames, bool limits) {
     std::vector<Float4> diffuse(kStagePixels, Float4{1, 1, 1, frames}), gloss = diffuse,
                                                                         recent = halves(left, right, 0);
@@ -209,10 +209,10 @@ TEST_CASE("history clamping limits long means to the range of recent ones of the
     CHECK(held.gloss.x == doctest::Approx(1));
     CHECK(held.diffuse_out.x == held.diffuse.x);
     CHECK(hold(wall, 1, 1, 0, 32, false).diffuse.x == 3);
-    CHECK(hold(wall, 1, 1, 0, 3, true).diffuse.x == 3); // too few frames to be held
+    CHECK(hold(wall, 1, 1, 0, 3, true).diffuse.x == 3); // the history is too short to be limited
     CHECK(hold(wall, 1, 1, 2, 32, true).diffuse.x == doctest::Approx(2).epsilon(0.01));
     CHECK(hold(wall, 1, 1, 2, 32, true).gloss.x == doctest::Approx(2).epsilon(0.01));
-    CHECK(hold(wall, 1, 9, 0, 32, true).diffuse.x == 3); // neighbours differ by more
+    CHECK(hold(wall, 1, 9, 0, 32, true).diffuse.x == 3); // neighbours differ by more than that
     for (const Guide& other : {Guide{{0, 0, 1}, 1, 5, 8}, Guide{kTurned, 1, 5, 7}}) {
         Wall apart;
         apart.set_right(other);
@@ -224,7 +224,8 @@ TEST_CASE("variance is temporal, or spatial where the history is short") {
     Wall wall;
     CHECK(hold(wall, 3, 3, 2, 32, false).diffuse_out.w == doctest::Approx(4 * 4.0 / 32));
     CHECK(hold(wall, 3, 3, 2, 32, false).gloss_out.w == doctest::Approx(4 * 4.0 / 32));
-    // Five of thirteen neighbours in a chessboard are to the right of the border: 4 (1 + 1) of 0, 5 of 2.
+    // Five of thirteen neighbours in a chessboard pattern are to the right of the border: 8 have the value 0, 5 the
+    // value 2.
     const float spread = hold(wall, 0, 2, 0, 1, false).diffuse_out.w;
     CHECK(spread > 4 * 0.8f);
     CHECK(spread < 4 * 1.01f);
@@ -236,8 +237,8 @@ TEST_CASE("variance is temporal, or spatial where the history is short") {
 
 namespace {
 
-/// The pixel asked about, of a picture whose middle is `own` among `around`, and a history of `old` that lies to the
-/// left of column kStageHalf + 2.
+/// Returns the tested pixel of a picture with `own` at the centre of `around`, and a history of `old` to the left of
+/// column kStageHalf + 2.
 float shown_after(float own, float around, float old, bool is_near_moving) {
     std::vector<Float4> picture(kStagePixels, Float4{around, 0, 0, 5}), before(kStagePixels, Float4{0, 0, 0, 0}),
         shown(kStagePixels);
@@ -247,7 +248,7 @@ float shown_after(float own, float around, float old, bool is_near_moving) {
         if (i % kStageSide < kStageHalf + 2) before[i].x = old;
     }
     picture[kLeftOfBorder].x = own;
-    if (is_near_moving) { // the pixel to the right is before it, and was further to the right
+    if (is_near_moving) { // the pixel to the right is nearer and came from farther right
         picture[kLeftOfBorder + 1].w = 2;
         was_at[kLeftOfBorder + 1].x += 6;
     }
@@ -260,19 +261,19 @@ float shown_after(float own, float around, float old, bool is_near_moving) {
 
 TEST_CASE(
     "displayed colours are temporal means clamped to their neighbourhood, and edges move with the nearest surface") {
-    // Around .5 with one of .9: mean .5444, deviation .1257.
+    // Eight values of .5 and one of .9 have the mean .5444 and the deviation .1257.
     CHECK(shown_after(0.9f, 0.5f, 0.5f, false) == doctest::Approx(0.5 + 0.1 * 0.4));
     CHECK(shown_after(0.9f, 0.5f, 0.1f, false) == doctest::Approx(0.4187 + 0.1 * (0.9 - 0.4187)).epsilon(0.001));
     CHECK(shown_after(0.5f, 0.5f, 0.9f, false) == doctest::Approx(0.5));
-    // Where the nearest pixel came from there is no history but black. It has moved by six pixels: old colours are held
-    // within half of a deviation, and the present ones count for four tenths.
+    // The history where the nearest pixel came from is black. It has moved by six pixels, so old colours are clamped
+    // to half a deviation, and current ones have a weight of 0.4.
     CHECK(shown_after(0.9f, 0.5f, 0.5f, true) == doctest::Approx(0.4816 + 0.4 * (0.9 - 0.4816)).epsilon(0.001));
 }
 
 namespace {
 
-/// Light on the fine picture's pixel asked about, of a coarse one of half its sides whose left is 1 and whose right 3.
-/// `right`: what the coarse picture shows there. The fine pixel lies just left of the border.
+/// Returns the light of the tested pixel after upsampling by two. The coarse picture has 1 on the left and 3 on the
+/// right, and shows `right` there. The fine pixel is just left of the border.
 float enlarged(const Guide& right, uint32_t fine_object = 7) {
     constexpr uint32_t kCoarse = kStageSide / 2;
     std::vector<Float4> guide, diffuse;
@@ -306,11 +307,11 @@ float enlarged(const Guide& right, uint32_t fine_object = 7) {
 } // namespace
 
 TEST_CASE("upsampling takes light from coarse pixels of the same object, normal and plane") {
-    CHECK(enlarged({{0, 0, 1}, 1, 5, 7}) > 1.2f); // all is one surface
+    CHECK(enlarged({{0, 0, 1}, 1, 5, 7}) > 1.2f); // both halves are one surface
     CHECK(enlarged({{0, 0, 1}, 1, 5, 8}) == doctest::Approx(1));
     CHECK(enlarged({kTurned, 1, 5, 7}) < 1.01f);
     CHECK(enlarged({{0, 0, 1}, 1, 9, 7}) < 1.05f);
-    CHECK(enlarged({{0, 0, 1}, 1, 5, 8}, 9) > 1.2f); // none shows it: all are the best guess
+    CHECK(enlarged({{0, 0, 1}, 1, 5, 8}, 9) > 1.2f); // no coarse pixel shows the surface, so all are used
 }
 
 TEST_CASE("temporal gradients exist where both pictures show the same surface and spread over that surface only") {

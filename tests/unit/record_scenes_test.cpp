@@ -1,4 +1,4 @@
-// The scenes of rays on the record: as many triangles as stated, in files of the folder that PERTEV_SCENES names.
+// The scenes of the ray record, in files of the folder PERTEV_SCENES, have the stated number of triangles.
 
 #include "lab/record_scenes.h"
 
@@ -11,7 +11,7 @@
 using namespace pertev;
 using namespace pertev::test;
 
-TEST_CASE("Sponza of the record has the stated number of triangles") { // record_scenes_test.py has the others
+TEST_CASE("Sponza of the record has the stated number of triangles") { // record_scenes_test.py tests the others
     const RecordScene& record = *find_named(the_record().scenes, "sponza");
     const auto file = test_scene(record.file);
     if (!file) return;

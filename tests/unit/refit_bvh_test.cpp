@@ -21,7 +21,7 @@ using namespace pertev::test;
 
 namespace {
 
-/// One instance's primitives from 0 up, as scenes have them.
+/// Numbers the primitives of one instance from 0, as in scenes.
 std::vector<BvhTriangle> numbered(std::vector<BvhTriangle> triangles) {
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         triangles[i].primitive = static_cast<uint32_t>(i), triangles[i].instance = 0;
@@ -29,7 +29,7 @@ std::vector<BvhTriangle> numbered(std::vector<BvhTriangle> triangles) {
     return triangles;
 }
 
-/// Turned about z, squeezed along it, and sheared.
+/// Rotates about z, scales along z, and shears.
 std::vector<BvhTriangle> deformed(std::vector<BvhTriangle> triangles) {
     for (BvhTriangle& t : triangles) {
         for (Vec3* p : {&t.a, &t.b, &t.c}) *p = {p->y + 0.25f * p->z, -p->x, 0.5f * p->z};
@@ -89,7 +89,7 @@ TEST_CASE("an update shares unchanged trees, refits deformed ones and rebuilds t
     SceneTriangles before;
     before.baked = torus;
     before.meshes = {torus, torus, torus};
-    const auto soup = [&] { // the triangles in random positions
+    const auto soup = [&] { // moves the triangles to random positions
         std::vector<BvhTriangle> moved = torus;
         for (BvhTriangle& t : moved) {
             const Vec3 by = {static_cast<float>(t.primitive * 7919u % 101u), static_cast<float>(t.primitive % 97u), 0};
@@ -116,7 +116,7 @@ TEST_CASE("an update shares unchanged trees, refits deformed ones and rebuilds t
         if (cuts_triangles(builder)) {
             CHECK(updated.builders[1] == kRefittedBuilder);
             const BinaryTrees again = update_binary_trees(updated, builder, changes, after);
-            CHECK(same_links(*again.parts[1], *updated.parts[1])); // refitted from now on
+            CHECK(same_links(*again.parts[1], *updated.parts[1])); // the tree is refitted from now on
         } else {
             CHECK(same_links(*updated.parts[1], *built.parts[1]));
             CHECK(updated.builders[1] == builder);

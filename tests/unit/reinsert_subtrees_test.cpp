@@ -1,4 +1,4 @@
-// The form of trees after reinsertion; bvh_builders_test.cpp tests their quality.
+// The structure of trees after reinsertion. bvh_builders_test.cpp tests their quality.
 
 #include "accel/builders/reinsert_subtrees.h"
 
@@ -25,7 +25,7 @@ TEST_CASE("boxes above a reinserted subtree grow even if its sibling's box does 
                    u = add_leaf({11, 1, 0}, {12, 2, 0}), t = add_leaf({0.5f, 0, 0}, {10, 9, 0}),
                    w = add_leaf({9, 0, 0}, {10.9f, 10, 0});
     const uint32_t near = join(join(join(x, s), u), join(t, w));
-    std::vector<uint32_t> far; // a row that is as good as it can be; it makes the tree large
+    std::vector<uint32_t> far; // an optimal row, which makes the tree large
     for (int i = 0; i < 256; ++i) {
         const float at = 1000 + static_cast<float>(i);
         far.push_back(add_leaf({at, 0, 0}, {at + 0.01f, 0.01f, 0}));

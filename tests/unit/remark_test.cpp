@@ -1,4 +1,4 @@
-// Remarks and errors: their parts, the text that is made of them, and how front ends phrase the settings in it.
+// Remarks and errors: their parts, their text, and how front ends phrase the settings in it.
 
 #include <doctest/doctest.h>
 
@@ -19,7 +19,7 @@ std::string in_brackets(const std::string& text) {
 
 } // namespace
 
-TEST_CASE("an error keeps its parts and makes its text of them") {
+TEST_CASE("an error keeps its parts, and its text contains them") {
     const auto of_setting = test::thrown_error(
         [] { throw Error(ErrorCode::OverLimit, "max_depth", "20", "with `integrator=cast` at most 12"); });
     REQUIRE(test::is_about(of_setting, ErrorCode::OverLimit, "max_depth", "20"));

@@ -10,7 +10,7 @@ TEST_CASE("a picture without a size is 720 pixels high with the aspect of the sc
     set_default_size(settings, nullptr);
     CHECK(settings.width == 1280);
     CHECK(settings.height == 720);
-    Camera camera; // asks for no shape
+    Camera camera; // the camera has no aspect
     settings.width = 1;
     set_default_size(settings, &camera);
     CHECK(settings.width == 1280);

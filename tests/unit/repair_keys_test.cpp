@@ -1,4 +1,4 @@
-// Key times as files have them: equal, unsorted, negative, not finite.
+// Key times that files can have: equal, unsorted, negative, not finite.
 
 #include <limits>
 
@@ -13,7 +13,7 @@
 
 using namespace pertev;
 
-namespace mend_keys_test { // tests are compiled several files at once
+namespace mend_keys_test { // test files are compiled together
 
 /// A channel with three numbers per key, of which the first is `x`.
 AnimationChannel channel_of(std::vector<float> times, const std::vector<float>& x,
@@ -45,7 +45,7 @@ TEST_CASE("keys in order are unchanged") {
     CHECK(good.values.size() == 9);
 }
 
-TEST_CASE("two keys at one time are a jump") {
+TEST_CASE("two keys at the same time are a jump") {
     const AnimationChannel jump = mended(channel_of({0, 1, 1, 2}, {-1, -0.5f, 0.5f, 1}), false);
     CHECK(at(jump, 0.5) == -0.75f);
     CHECK(at(jump, 0.999) == doctest::Approx(-0.5).epsilon(0.01));

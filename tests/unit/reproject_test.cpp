@@ -30,7 +30,7 @@ TEST_CASE("reprojecting a pixel's point returns the pixel") {
     }
 }
 
-TEST_CASE("a virtual point at distance 0 behind the surface moves as the surface does") {
+TEST_CASE("a virtual point at distance 0 behind the surface moves with the surface") {
     const FrameCameras cameras = {make_camera_view(camera_at({1, 2, 3}), 640, 360),
                                   make_camera_view(camera_at({1.1f, 2, 3}), 640, 360), 640, 360};
     const Vec2 pixel = {200.5f, 90.5f};
@@ -40,7 +40,7 @@ TEST_CASE("a virtual point at distance 0 behind the surface moves as the surface
     CHECK(same.pixel.x == doctest::Approx(then.pixel.x).epsilon(1e-4));
     CHECK(same.pixel.y == doctest::Approx(then.pixel.y).epsilon(1e-4));
     CHECK(same.depth == doctest::Approx(then.depth).epsilon(1e-4));
-    // Farther behind the mirror it moves less.
+    // A point farther behind the mirror moves less.
     const Reprojection far = reproject_virtual(cameras, pixel, 5, 1000);
     CHECK(abs(far.pixel.x - pixel.x) < 0.02f * abs(same.pixel.x - pixel.x) + 0.01f);
 }
@@ -63,7 +63,7 @@ TEST_CASE("reprojection follows moved objects") {
     camera.world_from_camera = look_at({0, 0, 5}, {0, 0, 0}, {0, 1, 0});
     const CameraView view = make_camera_view(camera, 640, 360);
     const FrameCameras cameras = {view, view, 640, 360};
-    const Float4 place = {float_of(0), float_of(0), 0.25f, 0.5f}; // the middle of the triangle's middle
+    const Float4 place = {float_of(0), float_of(0), 0.25f, 0.5f}; // the centre of the triangle
     const Vec2 centre = project_point(view, point_at(&now, &mesh, place)).pixel;
     const Reprojection moved = reproject_surface(cameras, scene, {&before, &mesh}, centre, place);
     const float pixels = 0.5f / (5 * view.half_width) * 0.5f * 640; // half a metre at 5 m
@@ -92,7 +92,8 @@ TEST_CASE("displayed colours convert back to light within rounding") {
     for (const Rgb light :
          {Rgb{0, 0, 0}, Rgb{1e-4f, 2e-4f, 0}, Rgb{1, 0.5f, 0.25f}, Rgb{0, 0, 300}, Rgb{4e4f, 3e4f, 1e4f}}) {
         const Rgb back = light_of_shown(shown_color(light));
-        const float error = (1e-6f + 1e-6f * luminance(light)) * luminance(light); // 1 - Y cancels where Y is near 1
+        const float error =
+            (1e-6f + 1e-6f * luminance(light)) * luminance(light); // 1 - Y loses digits where Y is near 1
         CHECK(abs(back.r - light.r) <= 2 * error);
         CHECK(abs(back.g - light.g) <= 2 * error);
         CHECK(abs(back.b - light.b) <= 12 * error);
@@ -114,13 +115,13 @@ TEST_CASE("taps accept only the same object at a similar depth and normal") {
     const Taps all = taps_at({2, 1.5f}); // between pixels 1 and 2 of row 1
     CHECK(all.sum == doctest::Approx(1));
     CHECK(mean_of_taps(all, cameras, values.data()).x == doctest::Approx(5.5f));
-    CHECK(taps_at({2, 1.5f}, 2.2f).sum == 0);            // elsewhere
-    CHECK(taps_at({2, 1.5f}, 2, {1, 0, 0}).sum == 0);    // turned away
-    CHECK(taps_at({2, 1.5f}, 2, {0, 0, 1}, 8).sum == 0); // something else
+    CHECK(taps_at({2, 1.5f}, 2.2f).sum == 0);            // the pixel is outside the picture
+    CHECK(taps_at({2, 1.5f}, 2, {1, 0, 0}).sum == 0);    // the normal faces away
+    CHECK(taps_at({2, 1.5f}, 2, {0, 0, 1}, 8).sum == 0); // another object
     const Vec3 bent = normalize(Vec3{0.03f, 0, 1});      // a curved mirror
     CHECK(taps_at({2, 1.5f}, 0, bent).sum == doctest::Approx(1));
     CHECK(find_taps(before, cameras, {2, 1.5f}, 0, bent, 0.9999f, 7).sum == 0);
-    CHECK(taps_at({-3, 1.5f}).sum == 0); // out of the picture
+    CHECK(taps_at({-3, 1.5f}).sum == 0); // all taps are outside the picture
     CHECK(taps_at({1e30f, kInfinity}).sum == 0);
     CHECK(taps_at({-0.25f, 1.5f}).sum == doctest::Approx(0.25f)); // partly
     guide[5] = pack({{0, 0, 1}, 1, 2, 9});
@@ -128,7 +129,7 @@ TEST_CASE("taps accept only the same object at a similar depth and normal") {
     CHECK(one.sum == doctest::Approx(0.5f));
     CHECK(mean_of_taps(one, cameras, values.data()).x == doctest::Approx(6));
     guide[6] = guide[5];
-    const Taps beside = taps_at({1.75f, 1.5f}); // nearest is 5, of whose neighbours 4 comes first after 6
+    const Taps beside = taps_at({1.75f, 1.5f}); // the nearest pixel is 5; of its neighbours 4 is the first after 6
     CHECK(beside.sum == 1);
     CHECK(mean_of_taps(beside, cameras, values.data()).x == doctest::Approx(4));
 }

@@ -48,7 +48,7 @@ Camera without_perspective(Camera camera, float height) {
     return camera;
 }
 
-/// Heights of all material 0, of random texels.
+/// Displaces material 0 by random texels.
 std::shared_ptr<const HeightMaps> random_heights(float scale, uint32_t materials = 1) {
     test::Random random(5);
     HeightMaps maps;
@@ -60,8 +60,7 @@ std::shared_ptr<const HeightMaps> random_heights(float scale, uint32_t materials
     return std::make_shared<const HeightMaps>(maps);
 }
 
-/// A sphere of radius 1, whose vertices are shared by their triangles, with normals and coordinates of texture that go
-/// on over all of it.
+/// A sphere of radius 1 with shared vertices, normals and continuous texture coordinates.
 Mesh seamless_sphere() {
     const test::TriangleMesh sphere = test::make_sphere(2, {0, 0, 0}, 1);
     Mesh mesh;
@@ -80,7 +79,7 @@ Scene scene_of(Mesh mesh) {
     return scene;
 }
 
-/// One mesh as stages see it, where it is.
+/// One untransformed mesh in the form that stages use.
 struct HostMesh {
     Mesh mesh;
     MeshView mesh_view{};
@@ -115,7 +114,7 @@ struct Diced {
     double longest = 0; // pixels
 };
 
-/// All micropolygons of a mesh that are in the picture.
+/// Returns all micropolygons of a mesh that are in the picture.
 Diced dice(const HostMesh& host, const Camera& camera, uint32_t width, uint32_t height, double rate) {
     ReyesPass pass = {};
     pass.camera = make_pinhole(make_camera_rays(camera, {PixelFilter::Box, 0.5f, nullptr}, width, height, {0, 0, 0}));
@@ -159,7 +158,7 @@ TEST_CASE("no edge of a micropolygon exceeds the shading rate, displaced or not,
             const HostMesh sphere(seamless_sphere(), map);
             const Diced far = dice(sphere, looking({1, 2, 5}, {0, 0, 0}), 60, 50, rate);
             CHECK(far.count > 500 / (rate * rate));
-            CHECK(far.ways.size() == far.count); // a name of its own
+            CHECK(far.ways.size() == far.count); // gives the subcase its own name
             CHECK(far.longest <= rate);
             CHECK(far.longest > 0.9 * rate);
             const Diced inside = dice(sphere, looking({0.3f, 0.1f, 0.2f}, {1, 1, 0}), 30, 20, rate);
@@ -218,8 +217,8 @@ TEST_CASE("micropolygons have the coverage and depth of rays through the same sa
         ++compared;
         sum += double(std::abs(depths[i] - path_depths[i])) / double(path_depths[i]);
     }
-    // Places are rounded to 1/256 of a pixel: a sample so near to an outline may go either way. A blended surface
-    // tosses the same coin, with the alpha of the micropolygon's middle.
+    // Positions are rounded to 1/256 of a pixel, so a sample that near to an outline may be in or out. A blended
+    // surface makes the same random decision, with the alpha of the micropolygon's centre.
     CHECK(others < 1000);
     CHECK(compared > 100000);
     CHECK(sum / compared < 1e-5);
@@ -227,10 +226,10 @@ TEST_CASE("micropolygons have the coverage and depth of rays through the same sa
 
 TEST_CASE("a plane displaced by a ramp is the tilted plane, in depth and normal") {
     Mesh mesh = test::sheet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}); // faces +z
-    mesh.normals.assign(4, {0, 0, 2});                        // any length
+    mesh.normals.assign(4, {0, 0, 2});                        // the normal may have any length
     mesh.uv[0] = {{0.25f, 0}, {0.75f, 0}, {0.75f, 1}, {0.25f, 1}};
     const Scene scene = scene_of(mesh);
-    // Between the middles of two texels: height 0 at x = -1, 1 at x = 1.
+    // Between the centres of two texels the height rises from 0 at x = -1 to 1 at x = 1.
     const float scale = 0.8f;
     const HeightMap ramp = {0, {.width = 2, .height = 1, .channels = 1, .pixels = {0, 1}}, scale, 0.25f};
     Queue queue = test::requested_queue();
@@ -265,7 +264,7 @@ TEST_CASE("each pixel has its own sample positions within its filter, and a pict
     settings.ambient = Rgb{0, 0, 0};
     settings.filter = PixelFilter::Box;
     settings.filter_radius = 0.5f;
-    const Camera camera = without_perspective(looking({0.2f, 0, 2}, {0.2f, 0, 0}), 9); // 0.3 of column 4
+    const Camera camera = without_perspective(looking({0.2f, 0, 2}, {0.2f, 0, 0}), 9); // covers 0.3 of column 4
     const auto column = [&] {
         std::set<float> values;
         double sum = 0;
@@ -277,7 +276,7 @@ TEST_CASE("each pixel has its own sample positions within its filter, and a pict
     };
     settings.samples = 8;
     settings.path.sampler = SamplerKind::Independent;
-    CHECK(column().first > 2); // pixels differ
+    CHECK(column().first > 2); // the positions of pixels differ
     settings.samples = 256;
     settings.path.sampler = SamplerKind::Sobol;
     CHECK(column().second == doctest::Approx(0.3).epsilon(0.01));
@@ -307,7 +306,7 @@ TEST_CASE("micropolygons are lit as raster lights pixels, each with one colour")
         alike += std::abs(raster.pixels[i] - reyes.pixels[i]) <= 0.03f * raster.pixels[i] ? 1 : 0;
     }
     CHECK(lit > 1000);
-    CHECK(alike >= lit - lit / 50); // but at outlines, and where light is steep within a micropolygon
+    CHECK(alike >= lit - lit / 50); // except at outlines, and where light varies within a micropolygon
     const std::set<float> fine_colors(reyes.pixels.begin(), reyes.pixels.end());
     const std::set<float> coarse_colors(coarse.pixels.begin(), coarse.pixels.end());
     CHECK(fine_colors.size() > 2 * coarse_colors.size());
@@ -320,7 +319,7 @@ TEST_CASE("pictures of micropolygons do not depend on threads or passes, and lay
     settings.aovs = kAovAlbedo | kAovNormal | kAovIds | kAovPosition;
     for (const auto& heights :
          {std::shared_ptr<const HeightMaps>(),
-          random_heights(0.05f, static_cast<uint32_t>(scene.materials.size()) - 1)}) { // the last one has none
+          random_heights(0.05f, static_cast<uint32_t>(scene.materials.size()) - 1)}) { // the last picture has no layers
         settings.heights = heights;
         settings.pass_samples = 0;
         Queue queue = Queue::make_cpu();
@@ -340,7 +339,7 @@ TEST_CASE("pictures of micropolygons do not depend on threads or passes, and lay
     }
 }
 
-TEST_CASE("many samples are rendered as a few first and then as many as fit") {
+TEST_CASE("the first pass has few samples, and later ones have as many as fit") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
@@ -355,12 +354,12 @@ TEST_CASE("many samples are rendered as a few first and then as many as fit") {
     const uint32_t added = session.render(8388607, keep);
     REQUIRE(reported.size() >= 2);
     CHECK(added == reported.back());
-    const std::size_t first = reported.front() == 0 ? 1 : 0; // it was asked within the pass
+    const std::size_t first = reported.front() == 0 ? 1 : 0; // the pass checked the sink
     CHECK(reported.at(first) == 16);
     CHECK(reported.at(first + 1) >= 32);
 }
 
-TEST_CASE("heights that fold surfaces without bound are refused, and no sample is left incomplete") {
+TEST_CASE("heights that fold surfaces without bound are refused, and no sample is incomplete") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();

@@ -12,7 +12,7 @@ using namespace pertev;
 
 namespace {
 
-/// Returns how often each item of `weights` is selected, of `draws` evenly spread numbers.
+/// Returns how often each item of `weights` is selected by `draws` evenly spaced numbers.
 std::vector<double> shares_selected(const std::vector<float>& weights, uint32_t draws) {
     std::vector<double> shares(weights.size());
     for (uint32_t k = 0; k < draws; ++k) {
@@ -51,7 +51,7 @@ TEST_CASE("items whose weight is 0 or NaN are never selected") {
 }
 
 TEST_CASE("resampled draws estimate an integral without bias") {
-    // f = x^2 over (0, 1) is 1/3, by uniform candidates resampled for the target x.
+    // The integral of x^2 over (0, 1) is 1/3. Uniform candidates are resampled for the target x.
     constexpr uint32_t kDraws = 1u << 16, kCandidates = 4;
     double mean = 0;
     for (uint32_t draw = 0; draw < kDraws; ++draw) {

@@ -34,14 +34,14 @@ struct SmallRun {
         settings.integrators = {"path"};
         settings.picture.width = settings.picture.height = 16;
         settings.picture.path.max_depth = 4;
-        settings.seconds = 1000; // max_samples ends it
+        settings.seconds = 1000; // max_samples ends the measurement
         settings.max_samples = 64;
         settings.reference_samples = 1024;
     }
     TransportScene run(Sink&& sink = Sink()) { return run_transport(queue, scene, camera, settings, sink); }
 };
 
-/// Progress that a call for one sample reported of the precomputation.
+/// The progress of precomputation that a call for one sample reported.
 struct Making {
     int times_requested = 0;
     double last_request_s = 0, made_s = 0, end_s = 0;
@@ -50,7 +50,7 @@ struct Making {
 Making render_one(Session& session) {
     Making making;
     session.render(1, ProgressSink([&](const Progress& now) {
-                       const bool is_made = now.seconds > now.made_seconds; // samples have taken time
+                       const bool is_made = now.seconds > now.made_seconds; // rendering samples took time
                        if (!is_made) ++making.times_requested, making.last_request_s = now.seconds;
                        making.made_s = now.made_seconds, making.end_s = now.seconds;
                        return true;
@@ -81,7 +81,7 @@ TEST_CASE("path tracing's error falls as one over its samples, and the reference
     REQUIRE(points.size() == 7);
     CHECK(points.back().samples == 64);
     CHECK(points.back().repetitions == 4);
-    // Low-discrepancy samples do somewhat better than 1 / 64.
+    // Low-discrepancy samples converge slightly faster than 1 / 64.
     const double fall = points.front().rel_mse.mean / points.back().rel_mse.mean;
     CHECK(fall > 40);
     CHECK(fall < 300);
@@ -89,16 +89,16 @@ TEST_CASE("path tracing's error falls as one over its samples, and the reference
         CHECK(points[i].seconds.mean > points[i - 1].seconds.mean);
         CHECK(points[i].flip.mean < 1.1 * points[i - 1].flip.mean);
     }
-    // 16 times the samples of the last picture: a sixteenth of its noise or less.
+    // With 16 times the samples of the last picture, the noise is at most a sixteenth.
     REQUIRE(scene.reference.rel_mse);
     CHECK(scene.reference.samples == 1024);
     const double ratio = points.back().rel_mse.mean / *scene.reference.rel_mse;
     CHECK(ratio > 8);
     CHECK(ratio < 80);
-    // Equal samples found in another way, and one that lamps alone do not light.
+    // A different integrator with equal samples, and one that finds more than emitted light.
     CHECK(row_named(scene, "hybrid").repetitions.back().back().rel_mse ==
           row_named(scene, "path").repetitions.back().back().rel_mse);
-    CHECK(row_named(scene, "path").bytes > 16 * 16 * 3 * 16); // a film at least
+    CHECK(row_named(scene, "path").bytes > 16 * 16 * 3 * 16); // at least a film is allocated
     CHECK(row_named(scene, "cast").repetitions.empty());
     CHECK_FALSE(row_named(scene, "cast").refused.empty());
     CHECK(scene.pictures.size() == 3);
@@ -127,10 +127,10 @@ TEST_CASE("radiosity takes part with solutions of growing detail, whose time inc
             if (i == 0) continue;
             CHECK(repetition[i].patches > 2 * repetition[i - 1].patches);
         }
-        // Detail pays, down to the edges of pixels.
+        // More detail reduces the error down to the size of pixels.
         CHECK(repetition.back().rel_mse < repetition.front().rel_mse);
     }
-    // Other seeds, other form factors.
+    // Other seeds give other form factors.
     CHECK(row.repetitions[0][0].rel_mse != row.repetitions[1][0].rel_mse);
     CHECK(std::ranges::any_of(scene.notes, [](const std::string& note) { return note.starts_with("radiosity: "); }));
     CHECK(scene.pictures.size() == 3);
@@ -149,7 +149,7 @@ TEST_CASE("the table has the host memory of irradiance caching beside the device
     RecordStore store(dry);
     store.allocate(16 * 16);
     CHECK(cache.host_bytes == store.host_bytes());
-    CHECK(cache.host_bytes > 1000); // records have places
+    CHECK(cache.host_bytes > 1000); // records have positions
     CHECK(row_named(scene, "path").host_bytes == 0);
 }
 
@@ -180,7 +180,7 @@ TEST_CASE("irradiance caching makes its records once within the reported time an
     int reported = 0;
     warm_up(session, [&] { ++reported; });
     CHECK(session.history().samples == 0);
-    CHECK(reported == 2); // at its start, and a moment later
+    CHECK(reported == 2); // at its start, and shortly later
     // No record has been made yet. The number of calls depends on the clock, but is at least two per round.
     const Making first = render_one(session);
     CHECK(first.times_requested >= 2 * static_cast<int>(kOvertureRounds));
@@ -194,7 +194,7 @@ TEST_CASE("irradiance caching makes its records once within the reported time an
     session.set_settings(picture);
     int samples = 0;
     warm_up(session, [&] { ++samples; });
-    CHECK(samples == 1); // there is nothing to make
+    CHECK(samples == 1); // nothing is precomputed
     CHECK(session.history().samples == 0);
 }
 
@@ -233,7 +233,7 @@ TEST_CASE("a scene without diffuse surfaces is refused in radiosity's row") {
         material.base_color = {};
         if (!material.is_emissive()) material.kind = MaterialKind::Conductor;
     }
-    const TransportScene emitters = small.run(); // the lamp's own surface is diffuse, and black
+    const TransportScene emitters = small.run(); // the emitter's surface is diffuse and black
     CHECK(row_named(emitters, "radiosity").refused.find("diffuse") != std::string::npos);
     CHECK_FALSE(row_named(emitters, "path").repetitions.empty());
 }
@@ -254,13 +254,13 @@ TEST_CASE("an interrupt keeps the previous repetitions, or the finished part of 
     SmallRun small;
     small.settings.reference_samples = 2;
     small.settings.max_samples = 8;
-    int seen = 0; // calls of the third turn: as below, so that it has figures when it is dropped
+    int seen = 0; // stops in the third repetition, after it has figures
     const TransportScene second =
         small.run(ProgressSink([&](const Progress& now) { return now.doing != "path, 3 of 4" || ++seen < 5; }));
     CHECK(second.interrupted);
     REQUIRE(second.rows[0].repetitions.size() == 2);
     CHECK(second.rows[0].repetitions[1].size() == 4);
-    int calls = 0; // one before the session is made, one after the sample that is not timed, then one a pass
+    int calls = 0; // the sink is checked before the session is made, after the untimed sample, and after each pass
     const TransportScene first =
         small.run(ProgressSink([&](const Progress& now) { return now.doing != "path, 1 of 4" || ++calls < 5; }));
     CHECK(first.interrupted);
@@ -275,7 +275,7 @@ TEST_CASE("an interrupt keeps the previous repetitions, or the finished part of 
 TEST_CASE("the budget ends a repetition before the samples that would not fit") {
     SmallRun small;
     small.settings.reference_samples = 2;
-    small.settings.seconds = 1e-9; // which one sample takes longer than
+    small.settings.seconds = 1e-9; // one sample takes longer than this
     const TransportScene scene = small.run();
     REQUIRE(scene.rows[0].repetitions.size() == 4);
     for (const Repetition& repetition : scene.rows[0].repetitions) CHECK(repetition.size() == 1);

@@ -72,7 +72,7 @@ TEST_CASE("linear interpolation goes from key to key") {
 }
 
 TEST_CASE("cubic splines pass through their keys with their tangents, which are per second") {
-    // Value 0 with tangent 1 a second, then, 4 s later, value 2 with tangent 0: by Hermite's basis at the middle
+    // The value 0 with tangent 1 per second and, 4 s later, the value 2 with tangent 0 give by Hermite's basis halfway
     // 0.5 * 0 + 4 * 0.125 * 1 + 0.5 * 2 - 4 * 0.125 * 0 = 1.5; at a quarter 4 * 0.140625 + 0.15625 * 2 = 0.875.
     const auto spline =
         channel(AnimatedPart::CameraFov, Interpolation::CubicSpline, {2, 6}, {99, 0, 1, /*second key*/ 0, 2, 99});
@@ -82,9 +82,9 @@ TEST_CASE("cubic splines pass through their keys with their tangents, which are 
     CHECK(at<1>(spline, 3)[0] == 0.875f);
     CHECK(at<1>(spline, 6)[0] == 2);
     CHECK(at<1>(spline, 7)[0] == 2);
-    // The slope beside a key is that key's tangent.
+    // The slope at a key is that key's tangent.
     CHECK(at<1>(spline, 2.001)[0] == doctest::Approx(0.001).epsilon(0.01));
-    // Several numbers a value: three values of all of them a key.
+    // Values have several numbers, and each key has three such values.
     const auto weights = channel(AnimatedPart::Weights, Interpolation::CubicSpline, {0, 1},
                                  {0, 0, /**/ 1, 2, /**/ 0, 0, /*second key*/ 0, 0, /**/ 3, 6, /**/ 0, 0});
     CHECK(at<2>(weights, 0.5) == std::array<float, 2>{2, 4});
@@ -96,7 +96,7 @@ TEST_CASE("rotations take the shorter way at constant speed") {
     CHECK(close(slerp(about_z(0), about_z(kQuarter), 1), about_z(kQuarter)));
     const Vec4 other_sign = -1.0f * about_z(kQuarter); // an equal rotation
     CHECK(close(slerp(about_z(0), other_sign, 0.5f), about_z(kQuarter / 2)));
-    // Small angles keep their digits, none is no rotation, half a turn has some way to go.
+    // Small angles keep their digits, equal keys have no rotation, and half a turn takes some path.
     CHECK(close(slerp(about_z(0), about_z(1e-3), 0.25f), about_z(0.25e-3)));
     CHECK(slerp(about_z(1), about_z(1), 0.3f) == slerp(about_z(1), about_z(1), 0));
     const Vec4 half = slerp({0, 0, 0, 1}, {0, 0, 1, 0}, 0.5f);

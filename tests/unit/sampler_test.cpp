@@ -17,7 +17,7 @@ constexpr uint32_t kPixels[] = {0, 1, 2, 1919, 1920, 2'073'599, 0xffffffffu};
 constexpr uint32_t kGroups[] = {0, 1, 2, 3, 17, 255, 4096};
 constexpr SamplerKind kKinds[] = {SamplerKind::Sobol, SamplerKind::Independent};
 
-/// True where each box 2^-a x 2^-(k-a), 0 <= a <= k, holds one of the 2^k points.
+/// Returns whether each box 2^-a x 2^-(k-a), 0 <= a <= k, contains one of the 2^k points.
 bool is_net(const std::vector<Vec2>& points, int k) {
     for (int a = 0; a <= k; a++) {
         std::vector<bool> taken(points.size());
@@ -40,7 +40,8 @@ std::vector<Vec2> points_of(uint32_t pixel, uint32_t group, Pair pair, uint32_t 
     return points;
 }
 
-/// True where each box with sides 4^-a, 4^-b, 4^-c, 4^-d, a + b + c + d = k, holds one of the 4^k points of a group.
+/// Returns whether each box with sides 4^-a, 4^-b, 4^-c, 4^-d, a + b + c + d = k, contains one of the 4^k points of a
+/// group.
 bool is_four_dimensional_net(uint32_t pixel, uint32_t group, uint32_t first, int k) {
     const uint32_t count = 1u << (2 * k);
     std::vector<std::array<float, 4>> points;
@@ -98,7 +99,7 @@ TEST_CASE("the first 4^k samples of a pixel have one point in each box of four d
     }
 }
 
-TEST_CASE("digits are multiplied as in the field of four elements") {
+TEST_CASE("digits are multiplied in the field of four elements") {
     const uint32_t all = 0x9c3fu << 3 ^ 0xa5071b6du;
     const auto times_w = [](uint32_t x) { return multiply_digits(FieldElement::W, x); };
     CHECK(times_w(times_w(all)) == multiply_digits(FieldElement::WSquared, all));
@@ -145,7 +146,7 @@ TEST_CASE("the scrambling of a digit depends only on earlier digits and is a per
             const uint32_t x = hash_word(i), a = owen_scramble_reversed(x, key);
             for (uint32_t k = 0; k < 32; k++) {
                 const uint32_t difference = a ^ owen_scramble_reversed(x ^ (1u << k), key);
-                wrong += (difference & ((2u << k) - 1)) != 1u << k; // bit k changes, the lower ones do not
+                wrong += (difference & ((2u << k) - 1)) != 1u << k; // bit k changes, and the lower bits do not
             }
         }
     }

@@ -13,7 +13,7 @@ using namespace pertev;
 
 namespace {
 
-/// The six sides of a box as one instance; `sides`: which of -x +x -y +y -z +z are there.
+/// The sides of a box as one instance. `sides` selects from -x, +x, -y, +y, -z and +z.
 void add_box(Scene& scene, Vec3 lo, Vec3 hi, std::array<bool, 6> sides, bool faces_inwards) {
     Mesh mesh;
     for (int side = 0; side < 6; ++side) {
@@ -54,7 +54,7 @@ bool is_within(const Bounds3& box, Vec3 p) {
     return p.x > box.lo.x && p.y > box.lo.y && p.z > box.lo.z && p.x < box.hi.x && p.y < box.hi.y && p.z < box.hi.z;
 }
 
-/// Every corner of the scene's box lies in the picture.
+/// Tests that every corner of the scene's box is in the picture.
 void check_shows_all(const Scene& scene, const Camera& camera, float aspect) {
     const Bounds3 box = bounds_of(scene);
     const Transform view = inverse(camera.world_from_camera);
@@ -89,9 +89,9 @@ TEST_CASE("rays find the nearest triangle and its side, even through a mirrored 
     CHECK(!cast_rays(scene, {&away, 1})[0].is_hit());
 }
 
-TEST_CASE("rays see the front of a sheet with two sides at one distance, whichever triangle comes first") {
+TEST_CASE("rays see the front of a sheet with two coincident sides, whichever triangle is first") {
     for (const bool is_front_first : {true, false}) {
-        for (const std::size_t between : {std::size_t{0}, std::size_t{20'000}}) { // the second: on another thread
+        for (const std::size_t between : {std::size_t{0}, std::size_t{20'000}}) { // the second runs on another thread
             Scene scene;
             Mesh mesh;
             mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}, {50, 50, 50}, {51, 50, 50}, {50, 51, 50}};
@@ -148,13 +148,13 @@ TEST_CASE("a square with a hidden back is seen from its front, wherever that poi
         CHECK(dot(normalize(eye_of(camera)), front) > 0.25f); // not at a grazing angle
         const SurveyRay ray = {eye_of(camera), forward_of(camera)};
         CHECK(cast_rays(scene, {&ray, 1}, Backs::Shown)[0].is_hit());
-        scene.materials[0].double_sided = true; // now the front of glTF's models counts
+        scene.materials[0].double_sided = true; // the front of glTF models is preferred
         CHECK(forward_of(make_default_camera(scene, 1, messages)).z < -0.6f);
     }
 }
 
-TEST_CASE("glass walls make no room, nor does a hollow object that is solid from outside") {
-    Scene vase; // outside and inside of a hollow block, as modelled with a thickness
+TEST_CASE("glass walls and hollow objects that are closed outside are not rooms") {
+    Scene vase; // the outer and inner surface of a hollow block
     add_box(vase, {-1, 0, -1}, {1, 3, 1}, kAll, false);
     add_box(vase, {-0.9f, 0.1f, -0.9f}, {0.9f, 2.9f, 0.9f}, kAll, true);
     vase.materials[0].kind = MaterialKind::Dielectric;
@@ -182,7 +182,7 @@ TEST_CASE("a closed room and a long court open at the top are seen from inside a
     }
 }
 
-TEST_CASE("a panel of two sheets that face each other is no room") {
+TEST_CASE("a panel of two sheets that face each other is not a room") {
     Scene scene;
     add_box(scene, {-1, -1, 0}, {1, 1, 0.07f}, kAll, true);
     Messages messages;
@@ -201,7 +201,7 @@ TEST_CASE("a box that is open in front is seen through its open side") {
     check_shows_all(scene, camera, 1);
 }
 
-TEST_CASE("a scene without light gets a sky with a notice, one with any light gets nothing") {
+TEST_CASE("a scene without light gets a sky with a notice, and a scene with light does not") {
     Scene scene;
     add_box(scene, {}, {1, 1, 1}, kAll, false);
     Messages messages;
@@ -244,11 +244,11 @@ TEST_CASE("unlit materials and lights of intensity 0 give no light, and a comple
         change(scene);
         Messages messages;
         add_default_light(scene, SceneUse::Picture, messages);
-        CHECK(messages.all().size() == (scene.environment ? 1 : 0)); // said where it is done
+        CHECK(messages.all().size() == (scene.environment ? 1 : 0)); // the notice comes from the caller
         return scene.environment.has_value();
     };
     CHECK(gets_sky([](Scene&) {}));
-    CHECK(gets_sky([](Scene& scene) { scene.materials[1].emission = grey(1); })); // unlit: it does not glow
+    CHECK(gets_sky([](Scene& scene) { scene.materials[1].emission = grey(1); })); // an unlit material does not emit
     CHECK(gets_sky([](Scene& scene) { scene.lights.emplace_back().intensity = grey(0); }));
     CHECK(!gets_sky([](Scene& scene) { scene.instances[0].material = 1; }));
     CHECK(!gets_sky([](Scene& scene) { scene.lights.emplace_back().intensity = {0, 0, 0.1f}; }));

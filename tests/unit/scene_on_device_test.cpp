@@ -19,7 +19,7 @@ struct Inner {
     const float* values;
 };
 
-/// Hash of a picture, traced in the trees of `prepared`.
+/// Returns the hash of a picture that is traced in the trees of `prepared`.
 Hash128 hash_of(Queue& queue, const SceneOnDevice& scene, const PreparedScene& prepared) {
     Film film(queue, 40, 30, kAovAlbedo | kAovPosition);
     SceneTracer tracer(queue, *prepared.structures, default_tracers(queue.is_cuda()));
@@ -125,7 +125,7 @@ TEST_CASE("a scene updated in parts gives the picture of a fresh upload and allo
     const auto changes = [&](const char* part, const PreparedScene* trees = nullptr) {
         CAPTURE(part);
         const Hash128 now = hash_of(queue, scene, trees == nullptr ? old_scene : *trees);
-        CHECK(now != last); // each update brings a change of its own
+        CHECK(now != last); // each update makes another change
         last = now;
     };
     scene.update(queue, new_scene, kPartTextures);

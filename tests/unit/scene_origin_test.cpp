@@ -26,7 +26,7 @@
 
 using namespace pertev;
 
-namespace scene_origin_test { // tests are compiled several files at once
+namespace scene_origin_test { // test files are compiled together
 
 constexpr double kEast = 448262.257, kNorth = 5411933.125; // metres of UTM
 
@@ -35,7 +35,7 @@ Scene load(const std::string& name, const std::string& bytes) {
     return read_scene(test::write_text(test::scratch_folder() / name, bytes), {}, messages);
 }
 
-/// A square of 1 m with its lower left corner there.
+/// A square of 1 m with its lower left corner at that point.
 std::string square_obj(double x, double y, const std::string& before = "") {
     return before +
            fmt::format("v {:.4f} {:.4f} 0\nv {:.4f} {:.4f} 0\nv {:.4f} {:.4f} 0\nv {:.4f} {:.4f} 0\n", x, y, x + 1, y,
@@ -43,7 +43,7 @@ std::string square_obj(double x, double y, const std::string& before = "") {
            "f -4 -3 -2 -1\n";
 }
 
-/// Returns how far place `p` of the scene is from (x, y, z) in the coordinates of its file, metres.
+/// Returns the distance of the scene's point `p` from (x, y, z) in the file's coordinates, metres.
 double off(const Scene& scene, Vec3 p, DoubleVec3 wanted) {
     const DoubleVec3 d = in_file(scene, p) - wanted;
     return std::sqrt(dot(d, d));
@@ -71,18 +71,18 @@ std::string binary_square(const char* type, double x, double y) {
     return bytes;
 }
 
-/// A triangle of 1 m at its mesh's origin, and these nodes and further members.
+/// A triangle of 1 m at its mesh's origin, with these nodes and additional members.
 std::string far_gltf(const std::string& nodes, const std::string& more = "") {
     test::GltfBuilder builder;
     builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
-    builder.add("VEC3", std::vector<float>{0, 0, 0, 0.5f, 0, 0}); // translations: of instances, of keys
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 0.5f, 0, 0}); // translations of instances and of keys
     builder.add("SCALAR", std::vector<float>{0, 1});
     return builder.json(R"("scenes":[{"nodes":[0]}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
                         R"("nodes":[)" +
                         nodes + "]" + more);
 }
 
-/// The camera that the flags of this camera's metadata make.
+/// Returns the camera made from the flags in this camera's metadata.
 Camera reopened(const CameraSource& source, const Scene& scene) {
     CameraChoice choice;
     for (const auto& [key, value] : camera_metadata(source)) {
@@ -99,11 +99,12 @@ Camera reopened(const CameraSource& source, const Scene& scene) {
     return choose_camera(choice, scene, 1, messages);
 }
 
-TEST_CASE("the origin is 0 for a scene around the file's origin, or else the middle of its box on a grid of its size") {
+TEST_CASE(
+    "the origin is 0 for a scene around the file's origin, otherwise the centre of its box on a grid of its size") {
     CHECK(origin_for({}) == DoubleVec3{0, 0, 0});
     CHECK(origin_for({{-1, -1, -1}, {2, 2, 2}}) == DoubleVec3{0, 0, 0});
     CHECK(origin_for({{1e6 + 3.25, -7, 0}, {1e6 + 6.25, -5, 1}}) == DoubleVec3{1e6 + 4, -8, 0});
-    CHECK(origin_for({{0x1p41, 0, 0}, {0x1p41, 1, 0}}) == DoubleVec3{0, 0, 0}); // refused where it is
+    CHECK(origin_for({{0x1p41, 0, 0}, {0x1p41, 1, 0}}) == DoubleVec3{0, 0, 0}); // refused in the file's coordinates
     Scene scene;
     set_origin({{4097, 0, 0}, {4098, 1, 1}}, scene);
     CHECK(scene.is_far);
@@ -112,19 +113,19 @@ TEST_CASE("the origin is 0 for a scene around the file's origin, or else the mid
     CHECK(!scene.is_far);
 }
 
-TEST_CASE("a sample of a scene's points proves only for unchanged boxes that they are unchanged") {
+TEST_CASE("sampled points prove that an origin is unchanged only if their box is unchanged") {
     CHECK(surely_stays({{-1, 0, 0}, {1, 2, 0}}));
     CHECK(surely_stays({{61, 0, 0}, {62, 1, 0}}));
     CHECK(!surely_stays({{62, 0, 0}, {63, 1, 0}}));
     CHECK(!surely_stays({}));
-    for (float side = 1; side < 8; side += 0.37f) { // the box of the sample and of others
+    for (float side = 1; side < 8; side += 0.37f) { // the box contains the sample and other points
         const Bounds3 box = {{62 - side, -side, 0}, {62, 1, 0}};
         if (surely_stays({{61, 0, 0}, {62, 1, 0}})) CHECK(origin_for(double_box_of(box)) == DoubleVec3{0, 0, 0});
     }
 }
 
 TEST_CASE("an OBJ file far from the origin keeps its digits, and a near one is unchanged") {
-    const Scene far = load("far.obj", square_obj(kEast, kNorth, "v 0 0 0\n")); // a vertex without a face says nothing
+    const Scene far = load("far.obj", square_obj(kEast, kNorth, "v 0 0 0\n")); // a vertex without a face does not count
     CHECK(far.is_far);
     CHECK(off(far, placed(far, 0, 0), {kEast, kNorth, 0}) < 1e-7);
     CHECK(off(far, placed(far, 0, 2), {kEast + 1, kNorth + 1, 0}) < 1e-7);
@@ -194,7 +195,7 @@ TEST_CASE("a chain of far, rotated and returning glTF nodes is composed in doubl
     CHECK(off(far, placed(far, 0, 0), {kEast + 0.125, kNorth + 0.25, 10.0625}) < 1e-6);
     CHECK(off(far, placed(far, 0, 1), {kEast + 2.125, kNorth + 0.25, 10.0625}) < 1e-6);
 
-    // z upwards, as surveys have it: turned by a quarter about x, so (x, y, z) comes to (x, z, -y).
+    // z points up, as in survey data. A quarter turn about x takes (x, y, z) to (x, z, -y).
     const Scene turned =
         test::read_gltf_text(far_gltf(R"({"rotation":[-0.7071067811865475,0,0,0.7071067811865476],"children":[1]},)"
                                       R"({"mesh":0,"translation":[448262.257,5411933.125,10]})"));
@@ -292,7 +293,7 @@ TEST_CASE("the metadata of a camera far from the origin reproduces it to the bit
     CHECK(again.world_from_camera.translation == made_up.world_from_camera.translation);
     CHECK(length(column(again.world_from_camera, 2) - column(made_up.world_from_camera, 2)) < 1e-6f);
 
-    const Camera aimed = choose_camera({.eye = eye}, scene, 1, messages); // at the middle, as the notice says it
+    const Camera aimed = choose_camera({.eye = eye}, scene, 1, messages); // at the centre, as in the notice
     CHECK(off(scene, aimed.world_from_camera.translation - column(aimed.world_from_camera, 2) * 5.0f,
               {kEast + 0.5, kNorth + 0.5, 0}) < 0.1);
     CHECK(messages.all().back().text.find("`eye=448262.757,5411933.5625,5` `target=448262.757") != std::string::npos);

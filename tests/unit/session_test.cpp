@@ -1,4 +1,4 @@
-// A session keeps what a change does not touch, remakes the rest, and reports it. tests/consistency/session_test.cpp
+// A session keeps what a change does not affect, remakes the rest, and reports it. tests/consistency/session_test.cpp
 // compares its pictures with those of new sessions.
 
 #include <unistd.h>
@@ -45,11 +45,11 @@ Camera camera_at(float x) {
 RenderSettings queued_settings() {
     RenderSettings settings;
     settings.width = 24, settings.height = 16;
-    settings.body = PathBody::Wavefront; // which has queues, on the CPU too
+    settings.body = PathBody::Wavefront; // the wavefront has queues on the CPU, too
     return settings;
 }
 
-/// Memory of this process.
+/// Returns the memory of this process.
 std::size_t resident_bytes() {
     std::ifstream file("/proc/self/statm");
     std::size_t pages = 0, resident = 0;
@@ -82,7 +82,7 @@ TEST_CASE("a new camera and most settings allocate no memory and upload nothing"
     session.render(3);
     CHECK(queue.allocation_count() == allocations);
     CHECK(queue.uploaded_bytes() == uploaded);
-    settings.filter = PixelFilter::Gaussian; // has a table of its own, for which there is room
+    settings.filter = PixelFilter::Gaussian; // this filter has its own table, for which memory is reserved
     session.set_settings(settings);
     session.render(1);
     CHECK(queue.allocation_count() == allocations);
@@ -133,11 +133,11 @@ TEST_CASE("memory does not grow over 1000 changes of camera, size, settings and 
             session.render(1);
             session.set_scene(x > 0 ? b.prepared : a.prepared);
             session.render(1);
-            settings.batch = x > 0 ? 1000 : 5000; // other queues
+            settings.batch = x > 0 ? 1000 : 5000; // uses other queues
             session.set_settings(settings);
             session.render(1);
         }
-        const bool meters = cycle % 5 == 0; // which takes longer than all changes of a cycle
+        const bool meters = cycle % 5 == 0; // this takes longer than all changes of a cycle
         if (meters) session.meter(ToneMap::Agx);
         session.result();
         std::size_t& bytes = meters ? bytes_metered : bytes_unmetered;
@@ -145,9 +145,9 @@ TEST_CASE("memory does not grow over 1000 changes of camera, size, settings and 
         CHECK(queue.allocated_bytes() == bytes);
         if (cycle == kWarm) resident = resident_bytes();
     }
-#if !defined(__SANITIZE_ADDRESS__) // which keeps freed memory
+#if !defined(__SANITIZE_ADDRESS__) // this allocator keeps freed memory
     CHECK(resident > 0);
-    CHECK(resident_bytes() < resident + (4u << 20)); // a film of each change would be ten times that
+    CHECK(resident_bytes() < resident + (4u << 20)); // a film per change would take ten times that
 #endif
 }
 
@@ -161,8 +161,8 @@ TEST_CASE("1000 frames with moving instances of a large mesh and an emitter uplo
     large.indices = sphere.indices;
     scenes[0].environment->image = {512, 256, 3, std::vector<float>(std::size_t(512) * 256 * 3, 0.5f)};
     scenes[0].environment->image.pixels[1000] = 40;
-    constexpr int kPlaces = 8, kFrames = 1000;              // a loop of places, each scene made of the one before
-    const SceneUpdate update = {.moved_instances = {1, 5}}; // 5: the lamp
+    constexpr int kPlaces = 8, kFrames = 1000; // a cycle of positions; each scene is made from the previous one
+    const SceneUpdate update = {.moved_instances = {1, 5}}; // instance 5 is the emitter
     scenes.reserve(kPlaces);
     std::vector<PreparedScene> prepared = {prepare_scene(scenes[0], prepare_options({}, queue.is_cuda()), messages)};
     while (scenes.size() < kPlaces) {
@@ -173,7 +173,7 @@ TEST_CASE("1000 frames with moving instances of a large mesh and an emitter uplo
     }
     RenderSettings settings = queued_settings();
     settings.width = 12, settings.height = 8;
-    std::vector<Hash128> fresh; // on the CPU, of scenes that are prepared afresh
+    std::vector<Hash128> fresh; // renders newly prepared scenes on the CPU
     for (const Scene& scene : scenes) {
         Queue cpu = Queue::make_cpu();
         const PreparedScene afresh = prepare_scene(scene, {.centre = prepared[0].centre}, messages);
@@ -200,7 +200,8 @@ TEST_CASE("1000 frames with moving instances of a large mesh and an emitter uplo
 TEST_CASE("a session without a tracer refuses and never accesses one") {
     Queue queue = test::requested_queue();
     Scene scene = test::make_mixed_scene();
-    const test::TriangleMesh sphere = test::make_sphere(7, {0, 0, 0}, 1.0f); // too many for brute force
+    const test::TriangleMesh sphere =
+        test::make_sphere(7, {0, 0, 0}, 1.0f); // the scene has too many triangles for brute force
     scene.meshes[0].positions = scene.meshes[0].normals = sphere.positions;
     scene.meshes[0].indices = sphere.indices;
     const Prepared many(std::move(scene));
@@ -261,7 +262,7 @@ TEST_CASE("only changes of the picture restart the film") {
     settings.time_limit_s = 50;
     settings.pass_samples = 1;
     settings.batch = 77;
-    settings.filter_radius = default_filter_radius(settings.filter); // said, where it was the default before
+    settings.filter_radius = default_filter_radius(settings.filter); // is set explicitly to its default
     session.set_settings(settings);
     session.set_camera(camera_at(0));
     CHECK(session.history().samples == 2);
@@ -272,7 +273,7 @@ TEST_CASE("only changes of the picture restart the film") {
         change(settings);
         session.set_settings(settings);
         CHECK(session.history().samples == 0);
-        for (const float value : session.picture().pixels) CHECK(value == 0); // without samples
+        for (const float value : session.picture().pixels) CHECK(value == 0); // the film has no samples
     };
     restarts([](RenderSettings& s) { s.width = 25; });
     restarts([](RenderSettings& s) { s.height = 5; });
@@ -293,12 +294,12 @@ TEST_CASE("the history keeps the camera of the last samples until a cut") {
     const Prepared furnace(test::make_furnace_scene(0.5f));
     Session session(queue, furnace.prepared, camera_at(0), queued_settings());
     CHECK(!session.history().previous_camera);
-    session.set_camera(camera_at(1)); // nothing was seen by the one before
+    session.set_camera(camera_at(1)); // no sample used the previous camera
     CHECK(!session.history().previous_camera);
     session.render(1);
     session.set_camera(camera_at(2));
     CHECK(session.history().previous_camera == camera_at(1));
-    session.set_camera(camera_at(3)); // no samples by camera 2
+    session.set_camera(camera_at(3)); // camera 2 has no samples
     CHECK(session.history().previous_camera == camera_at(1));
     session.render(1);
     session.render(1);
@@ -345,14 +346,14 @@ TEST_CASE("the meter uses the scene on the device, uploads nothing and does not 
     CHECK(picture_hash(session.picture()) == before);
     CHECK(session.history().samples == 3);
     CHECK(session.stats().rays.camera == uint64_t(24) * 16 * 3);
-    const uint64_t uploaded_for_stats = queue.uploaded_bytes(); // a look at hidden backs
+    const uint64_t uploaded_for_stats = queue.uploaded_bytes(); // the test for hidden backs
     const uint64_t allocations = queue.allocation_count();
     CHECK(session.meter(ToneMap::Agx) == stops);
     CHECK(queue.allocation_count() == allocations); // its film and queues stay
     session.render(2);
     CHECK(queue.uploaded_bytes() == uploaded_for_stats);
     Session whole(queue, mixed.prepared, camera_at(0), settings);
-    CHECK(whole.meter(ToneMap::Agx) == stops); // before anything is rendered
+    CHECK(whole.meter(ToneMap::Agx) == stops); // before any sample
     whole.render(5);
     CHECK(picture_hash(session.picture()) == picture_hash(whole.picture()));
 }
@@ -436,7 +437,7 @@ TEST_CASE("a separately rendered picture equals a new session's and does not cha
     CHECK(seen.layers.size() == 1);
     CHECK(session.history().samples == 3);
     CHECK(picture_hash(session.picture()) == hash);
-    session.render(2); // and samples go on as if nothing had been
+    session.render(2); // samples continue as if nothing had happened
     Session whole(queue, mixed.prepared, camera_at(0), queued_settings());
     whole.render(5);
     CHECK(picture_hash(session.picture()) == picture_hash(whole.picture()));
@@ -452,17 +453,17 @@ TEST_CASE("camera rays' nodes and triangles are counted for each pixel") {
 }
 
 TEST_CASE("a render that a sink stops adds nothing unfinished, and the next picture equals a fresh session's") {
-    Queue queue = Queue::make_cpu(); // a GPU's samples are not broken off
+    Queue queue = Queue::make_cpu(); // samples on a GPU are not interrupted
     const Prepared mixed(test::make_mixed_scene());
     RenderSettings settings = queued_settings();
     settings.body = PathBody::Loop;
     Session session(queue, mixed.prepared, camera_at(0), settings);
-    CHECK(session.render(3, test::StopAfter(1)) == 0); // while the first pass is under way
+    CHECK(session.render(3, test::StopAfter(1)) == 0); // during the first pass
     CHECK(session.history().samples == 0);
     CHECK(session.render(1) == 1);
     settings.pass_samples = 1;
     session.set_settings(settings);
-    CHECK(session.render(3, test::StopAfter(0)) == 1); // a pass is finished once there is a sample to lose
+    CHECK(session.render(3, test::StopAfter(0)) == 1); // once a sample is complete, a pass is finished
     session.interrupt_passes(true);
     CHECK(session.render(3, test::StopAfter(1)) == 0);
     CHECK(session.history().samples == 2);
@@ -472,13 +473,13 @@ TEST_CASE("a render that a sink stops adds nothing unfinished, and the next pict
     session.cut();
     struct InSecondPass final : Sink {
         void progress(const Progress&) override { is_second = true; }
-        bool should_stop() override { return is_second && ++asked > 1; } // the first time the pass has not begun
+        bool should_stop() override { return is_second && ++asked > 1; } // at the first check the pass has not begun
         std::atomic<bool> is_second = false;
         std::atomic<int> asked = 0;
     };
-    CHECK(session.render(9, InSecondPass()) == 0); // samples of the call are not kept
+    CHECK(session.render(9, InSecondPass()) == 0); // samples of this call are not kept
     settings.denoise = Denoise::Svgf;
     session.set_settings(settings);
-    CHECK(session.render(2, test::StopAfter(3)) == 0); // while surfaces are passed to the denoiser
+    CHECK(session.render(2, test::StopAfter(3)) == 0); // while the denoiser gets the surfaces
     CHECK(session.history().samples == 0);
 }

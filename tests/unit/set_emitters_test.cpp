@@ -1,4 +1,4 @@
-// Lamps set to watts, lumens, candela, lux and nits: their emission against sums over all directions.
+// Emitters set to watts, lumens, candela, lux and nits: their emission against sums over all directions.
 
 #include <doctest/doctest.h>
 
@@ -47,7 +47,7 @@ Scene emitter_scene() {
 
 double luminance_in(Rgb c) { return static_cast<double>(luminance(c)); }
 
-/// Lumens that a light sends out, by 100000 rings of equal solid angle.
+/// Returns the lumens that a light emits, summed over 100000 rings of equal solid angle.
 double flux_of(const Light& light, double efficacy) {
     const PunctualLight view = {light.kind, {}, light.direction, light.intensity, light.cos_inner, light.cos_outer, 0};
     constexpr int kRings = 100'000;
@@ -111,7 +111,7 @@ TEST_CASE("each surface gets the full amount, whatever its size, and a shared ma
     CHECK(emission(1) == doctest::Approx(300 / kLumensPerWatt));
     scene.materials[scene.instances[0].material].two_sided_emission = true;
     set_emitter(scene, "small=100lm", 1);
-    CHECK(emission(0) == doctest::Approx(50 / kEmitterPi)); // half of it from each face
+    CHECK(emission(0) == doctest::Approx(50 / kEmitterPi)); // each face emits half of it
     scene.environment = Environment{};
     set_emitter(scene, "environment=2000nits", 1);
     CHECK(luminance_in(scene.environment->scale) == doctest::Approx(2000));
@@ -126,14 +126,14 @@ TEST_CASE("invalid settings of an emitter are refused") {
     }
     Scene fine = scene;
     set_emitter(fine, "small=8cd");
-    scene.meshes[0].positions[0].y = 1; // bent
+    scene.meshes[0].positions[0].y = 1; // the surface is not flat
     CHECK(refuses_emitter(scene, "small=8cd"));
     fine = scene;
     set_emitter(fine, "small=8lm");
     scene.materials[0].alpha_mode = AlphaMode::Mask;
     CHECK(refuses_emitter(scene, "small=8lm"));
     const Rgb before = scene.materials[0].emission;
-    scene.instances[0].is_hidden = scene.instances[1].is_hidden = true; // nothing there to have a size
+    scene.instances[0].is_hidden = scene.instances[1].is_hidden = true; // an environment has no area
     set_emitter(scene, "glow=8lm");
     CHECK(scene.materials[0].emission == before);
     scene.instances[0].is_hidden = scene.instances[1].is_hidden = false;
@@ -145,7 +145,7 @@ TEST_CASE("invalid settings of an emitter are refused") {
 }
 
 TEST_CASE("the flux of a textured emitter equals the path tracer's") {
-    // A chessboard of red and grey with a blue cell, askew, repeated and blurred.
+    // A chessboard of red and grey with a blue cell, rotated, repeated and filtered.
     Scene scene = emitter_scene();
     scene.images.resize(1);
     Rgba8Image& image = scene.images[0].rgba8;
@@ -189,7 +189,7 @@ TEST_CASE("the flux of a textured emitter equals the path tracer's") {
         area += size;
     }
     CHECK(kEmitterPi * sum == doctest::Approx(500).epsilon(5e-3));
-    CHECK(luminance_in(lit.emission) > 1.3 * 500 / (kEmitterPi * area)); // the texture takes a part of it
+    CHECK(luminance_in(lit.emission) > 1.3 * 500 / (kEmitterPi * area)); // the texture absorbs a part of the light
 }
 
 TEST_CASE("a camera's exposure follows the standard") {
@@ -197,7 +197,7 @@ TEST_CASE("a camera's exposure follows the standard") {
     CHECK(exposure_value(sunny) == doctest::Approx(14.6439).epsilon(1e-5)); // log2 25600
     CHECK(exposure_value({.iso = 400, .f_number = 16, .shutter_s = 0.01}) == doctest::Approx(12.6439).epsilon(1e-5));
     CHECK(exposure_value({.iso = 100, .f_number = 1, .shutter_s = 1}) == doctest::Approx(0));
-    // 1.2 times 2^EV cd/m2 is the film's white.
+    // The film's white is at 1.2 times 2^EV cd/m2.
     const double white = 1.2 * 25600;
     for (const double efficacy : {1.0, kLumensPerWatt}) {
         const double stops = static_cast<double>(exposure_stops(sunny, efficacy));

@@ -16,7 +16,7 @@ TEST_CASE("flags override options, and a switch that is turned off counts as not
     flags.add(app, kRender, options);
     app.parse("--spp 3 --aov normal,depth --aov ids --transparent=false --false-color luminance --no-anti-alias=false");
     Messages messages;
-    flags.read(options, messages); // false colours would not go with alpha
+    flags.read(options, messages); // false colours exclude alpha
     CHECK(options.render.samples == 3);
     CHECK(options.aovs == std::vector<std::string>{"normal", "depth", "ids"});
     CHECK(!options.render.transparent);
@@ -25,7 +25,7 @@ TEST_CASE("flags override options, and a switch that is turned off counts as not
     CHECK(!options.is_given("seed"));
 }
 
-TEST_CASE("a renamed flag is also taken by its old name, which help and completion hide") {
+TEST_CASE("a renamed flag is accepted under its old name, which help and completion hide") {
     for (const char* line : {"--frames 0-1 --real-time --traversal shadow=wide8 --no-history-clamping",
                              "--frames 0-1 --real-time --walk shadow=wide8 --no-history-limit"}) {
         PictureOptions options;

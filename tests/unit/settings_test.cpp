@@ -46,26 +46,26 @@ TEST_CASE("each setting has a unique name, a sentence, and rules that name setti
         CHECK(setting.verbs != 0);
         PictureOptions options;
         options.given[setting.name] = SettingOrigin::Caller;
-        CHECK_NOTHROW(find_conflict(options, ~0u)); // its rules name settings that there are
+        CHECK_NOTHROW(find_conflict(options, ~0u)); // its rules name existing settings
     }
     CHECK(find_setting("max-depth") == nullptr);
 }
 
-TEST_CASE("an error about a value names the setting, the value and what would be right") {
+TEST_CASE("an error about a value names the setting, the value and what is expected") {
     const auto thrown = [](const char* name, const std::string& text) {
         PictureOptions options;
         const Error error = test::thrown_error([&] { set(options, name, {text}); }).value();
         CHECK(!options.is_given(name));
         CHECK(error.setting() == name);
         CHECK(error.value() == text);
-        CHECK(!error.reason().starts_with(text)); // front ends say it once
+        CHECK(!error.reason().starts_with(text)); // front ends state the setting once
         return error;
     };
     for (const auto& [name, text] : std::initializer_list<std::pair<const char*, const char*>>{
              {"spp", "0"}, {"integrator", "pathh"}, {"fov", "wide"}, {"size", "12by9"}, {"eye", "1,2"}}) {
         CHECK(thrown(name, text).code() == ErrorCode::BadInput);
     }
-    CHECK(thrown("integrator", "pathh").reason().find("path, ") != std::string::npos); // the names that there are
+    CHECK(thrown("integrator", "pathh").reason().find("path, ") != std::string::npos); // the existing names
     CHECK(thrown("size", "12by9").reason().find("WIDTHxHEIGHT") != std::string::npos);
     CHECK(thrown("eye", "1e30,0,0").code() == ErrorCode::OverLimit);
 }
@@ -157,7 +157,7 @@ TEST_CASE("conflicting settings are found") {
     REQUIRE(conflict);
     CHECK(conflict->setting->name == std::string("fps"));
     CHECK(conflict->kind == SettingConflict::Kind::Needs);
-    CHECK(!find_conflict(options, kView)); // which has no frames to ask for
+    CHECK(!find_conflict(options, kView)); // this integrator has no real-time frames
     set(options, "frames", {"1-2"});
     CHECK(!find_conflict(options, kRender));
     set(options, "time", {"1"});
@@ -180,14 +180,14 @@ TEST_CASE("a conflict is an error about the setting, whose reason names the othe
     set(options, "integrator", {"path"});
     set(options, "denoise", {"svgf"});
     CHECK(!refusal(options));
-    set(options, "max_depth", {"0"}); // excludes one value of `denoise` alone
+    set(options, "max_depth", {"0"}); // excludes only one value of `denoise`
     error = refusal(options);
     REQUIRE(test::is_about(error, ErrorCode::BadInput, "denoise", "svgf"));
     CHECK(error->reason().find("`max_depth=0`") != std::string::npos);
     set(options, "shutter", {"0.1"});
     set(options, "time", {"1"});
     set(options, "max_depth", {"1"});
-    error = refusal(options); // excludes every denoiser, and names the one that was given
+    error = refusal(options); // excludes every denoiser, and names the one that was set
     REQUIRE(test::is_about(error, ErrorCode::BadInput, "shutter"));
     CHECK(error->reason().find("`denoise=svgf`") != std::string::npos);
     set(options, "denoise", {"none"});
@@ -198,7 +198,7 @@ TEST_CASE("a conflict is an error about the setting, whose reason names the othe
     CHECK(error->reason() == "needs `frames`");
 }
 
-TEST_CASE("settings of a file are dropped if given ones conflict with them") {
+TEST_CASE("a file's settings are dropped if they conflict with given ones") {
     const std::filesystem::path file = std::filesystem::temp_directory_path() / "pertev-settings-to-combine.json";
     test::write_text(file, R"({"version":1,"settings":{"integrator":"photon_map","photons":5,"spp":3,"time":1}})");
     const auto combine = [&](const SetOthers& others) {
@@ -216,7 +216,7 @@ TEST_CASE("settings of a file are dropped if given ones conflict with them") {
     CHECK(!options.is_given("time"));
     CHECK(options.frames == "0-1");
     const auto error = test::thrown_error([&] { combine([](PictureOptions& all) { set(all, "accuracy", {"0.5"}); }); });
-    CHECK(test::is_about(error, ErrorCode::BadInput, "accuracy")); // which no file set
+    CHECK(test::is_about(error, ErrorCode::BadInput, "accuracy")); // no file sets this
 }
 
 TEST_CASE("settings survive writing to JSON and reading back") {
@@ -233,7 +233,7 @@ TEST_CASE("settings survive writing to JSON and reading back") {
     set(options, "lpe", {"a=LD+E", "b=L<'la\"mp'>.*E"});
     set(options, "device", {"cpu"});
     const std::string json = settings_json(options, scene_hash("cornell-box"));
-    CHECK(json.find("\"device\"") == std::string::npos); // the picture does not depend on it
+    CHECK(json.find("\"device\"") == std::string::npos); // the picture does not depend on this setting
     CHECK(json.find("\"eye\":[0.1,2,3.5]") != std::string::npos);
     CHECK(json.find("\"intrinsics\":[500.125,500,10,20]") != std::string::npos);
     test::write_text(file, json);
@@ -245,7 +245,7 @@ TEST_CASE("settings survive writing to JSON and reading back") {
     CHECK(settings_json(read, scene_hash("cornell-box")) == json);
     CHECK(read.given.at("spp") == SettingOrigin::File);
 
-    SUBCASE("names of earlier versions are read, and written by their present names") {
+    SUBCASE("names of earlier versions are read, and written as current names") {
         test::write_text(file, R"({"version":1,"settings":{"no_history_limit":true,"no_follow_light":true}})");
         PictureOptions old;
         const std::vector<std::string> overruled = {"no_temporal_gradients"};
@@ -315,8 +315,8 @@ TEST_CASE("a scene file's suggestions hold unless a given setting excludes them"
     CHECK(options.given.at("photons") == SettingOrigin::Scene);
     CHECK(options.render.path.seed == 3);
     CHECK(options.given.at("seed") == SettingOrigin::Caller);
-    CHECK_FALSE(options.is_given("ambient")); // photon mapping has none
-    REQUIRE(messages.left_out().size() == 3); // no such sampler, no such setting, and one that comes too late
+    CHECK_FALSE(options.is_given("ambient")); // photon mapping lacks this setting
+    REQUIRE(messages.left_out().size() == 3); // an unknown sampler, an unknown setting, and one that comes too late
     CHECK(messages.all()[0].remark.setting == "sampler");
     CHECK(messages.all()[0].remark.value == "none such");
     CHECK_FALSE(options.render.transparent);

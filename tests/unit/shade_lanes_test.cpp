@@ -1,5 +1,5 @@
-// Vertices that are shaded in eight or sixteen lanes have the bits of shade_vertex for each path alone: what is
-// emitted, the shadow ray with the direct light, and the scattered path.
+// Vertices shaded in eight or sixteen lanes have the bits of shade_vertex for each single path: emission, the shadow
+// ray with its direct light, and the scattered path.
 
 #include <vector>
 
@@ -18,7 +18,7 @@ namespace {
 
 constexpr uint32_t kTriangles = 8, kMaxDepth = 4;
 
-/// Triangles in random places, thin ones too. Their vertex normals, if any, are apart, opposite or zero.
+/// Triangles at random positions, including thin ones. Their vertex normals, if any, differ, are opposite or zero.
 Mesh scattered_triangles(test::Random& random, bool has_normals) {
     Mesh mesh;
     for (uint32_t i = 0; i < 3 * kTriangles; ++i) {
@@ -33,8 +33,8 @@ Mesh scattered_triangles(test::Random& random, bool has_normals) {
     return mesh;
 }
 
-/// Smooth and flat triangles, baked and instanced, mirrored or not, of each material: white, black, grey, and
-/// emitters of one and of two faces.
+/// Smooth and flat triangles, baked and instanced, mirrored or not, with each material: white, black, grey, and one-
+/// and two-sided emitters.
 Scene scattered_scene(test::Random& random, const std::optional<Environment>& environment) {
     Scene scene;
     scene.materials = {test::white(1), test::white(0), test::white(0.4f), test::white(0.3f), test::white(0)};
@@ -49,7 +49,7 @@ Scene scattered_scene(test::Random& random, const std::optional<Environment>& en
     for (uint32_t material = 0; material < scene.materials.size(); ++material) {
         for (const uint32_t mesh : {0u, 1u}) place(mesh, material, mesh == 0 ? -1.5f : 2.0f);
     }
-    scene.meshes.push_back(scattered_triangles(random, true)); // used once: baked
+    scene.meshes.push_back(scattered_triangles(random, true)); // a mesh that is used once is baked
     place(2, 2, -1.0f);
     scene.lights = {test::point_light({0, 4, 0}, {9, 3, 5}), test::point_light({2, 1, 1}, {5, 5, 5})};
     scene.lights[1].kind = LightKind::Spot, scene.lights[1].cos_outer = 0.1f;
@@ -72,7 +72,8 @@ struct PreparedJob {
     }
 };
 
-/// Draws a path and what it hits: inside triangles, on edges and at corners; straight, grazing and along the plane.
+/// Draws a path and its hit: inside triangles, on edges and at corners, with perpendicular, grazing and tangential
+/// rays.
 void draw_vertex_of(test::Random& random, const SceneView& scene, PathState& path, Hit& hit) {
     hit = {.t = random.within(0.1f, 5), .instance = random.below(scene.instance_count), .primitive = {}};
     hit.primitive = random.below(kTriangles);
@@ -99,13 +100,13 @@ void draw_vertex_of(test::Random& random, const SceneView& scene, PathState& pat
     path.pixel = random.below(1u << 20), path.sample = random.below(1u << random.below(20));
 }
 
-/// Returns whether both have the same bits, or are NaN, whose bits say nothing.
+/// Returns whether both have the same bits or are NaN, whose bits may differ.
 bool is_same(float a, float b) { return bits_of(a) == bits_of(b) || (a != a && b != b); }
 bool is_same(Vec3 a, Vec3 b) { return is_same(a.x, b.x) && is_same(a.y, b.y) && is_same(a.z, b.z); }
 bool is_same(Rgb a, Rgb b) { return is_same(Vec3{a.r, a.g, a.b}, Vec3{b.r, b.g, b.b}); }
 bool is_same(TriangleId a, TriangleId b) { return a.instance == b.instance && a.primitive == b.primitive; }
 
-/// Counts what vertices did, because all of it is to occur.
+/// Counts the events at vertices, because all kinds must occur.
 struct Counts {
     uint32_t went_on = 0, ended_early = 0, shadows = 0, to_triangles = 0, without_end = 0, emitted = 0;
 };
@@ -199,10 +200,10 @@ void check_all_vertices(const VertexShading& shading) {
 
 } // namespace
 
-TEST_CASE("shade lanes: eight vertices have the bits of each alone") { check_all_vertices(kShadingOf8); }
+TEST_CASE("shade lanes: eight vertices have the bits of single ones") { check_all_vertices(kShadingOf8); }
 
 #if defined(PERTEV_HAS_16_LANES)
-TEST_CASE("shade lanes: sixteen vertices have the bits of each alone") {
+TEST_CASE("shade lanes: sixteen vertices have the bits of single ones") {
     if (has_sixteen_lanes()) check_all_vertices(kShadingOf16);
 }
 #endif

@@ -35,9 +35,9 @@ TEST_CASE("shading frame: on an upright wall x of a normal map points right and 
     CHECK(mapped_normal(frame, {0.8f, 0.5f, 0.8f}, 1).x > 0.5f);
     CHECK(mapped_normal(frame, {0.5f, 0.8f, 0.8f}, 1).y > 0.5f);
     CHECK(is_near(mapped_normal(frame, {1, 0.5f, 1}, 0.5f), normalize(Vec3{0.5f, 0, 1})));
-    CHECK(is_near(mapped_normal(frame, {1, 0, 0.5f}, 0), front)); // no direction at all: unbent
+    CHECK(is_near(mapped_normal(frame, {1, 0, 0.5f}, 0), front)); // a normal without direction changes nothing
 
-    // With the same image mirrored left to right u runs left, and y is still up.
+    // With the image mirrored horizontally u grows to the left, and y is still up.
     const Frame mirrored = frame_with_tangent(front, {-1, 0, 0, -1});
     CHECK(is_near(mirrored.tangent, {-1, 0, 0}));
     CHECK(is_near(mirrored.bitangent, {0, 1, 0}));
@@ -48,14 +48,14 @@ TEST_CASE("shading frame: a map at transformed coordinates has the frame of a me
     const Vec3 front = {0, 0, 1};
     const float any = 0.3f;
     CHECK(frame_of_transformed_map(frame_with_tangent(front, {any, any, 0, -1}), {2, 0}, {0, 0.5f}).tangent ==
-          frame_with_tangent(front, {any, any, 0, -1}).tangent); // a scale: to the bit
+          frame_with_tangent(front, {any, any, 0, -1}).tangent); // a scale is exact
     for (int i = 0; i < 500; ++i) {
         const Vec2 u_by = {random.within(-1, 1), random.within(-1, 1)},
                    v_by = {random.within(-1, 1), random.within(-1, 1)};
         const float det = u_by.x * v_by.y - u_by.y * v_by.x;
         if (std::abs(det) < 0.05f) continue;
         for (const float w : {1.0f, -1.0f}) {
-            // u grows by x, v by -w y: at w = 1 the image stands upright on the wall.
+            // u grows with x, and v with -w y. At w = 1 the image is upright on the wall.
             const Frame frame = frame_of_transformed_map(frame_with_tangent(front, {1, 0, 0, w}), u_by, v_by);
             check_orthonormal(frame);
             CHECK(frame.normal == front);
@@ -65,10 +65,10 @@ TEST_CASE("shading frame: a map at transformed coordinates has the frame of a me
             };
             CHECK(coordinates(frame.tangent).x > 0);
             CHECK(std::abs(coordinates(frame.tangent).y) < 1e-5f);
-            CHECK(coordinates(frame.bitangent).y < 0); // y is against growing v
+            CHECK(coordinates(frame.bitangent).y < 0); // y is opposite to growing v
         }
     }
-    for (const Vec2 v_by : {Vec2{2, 4}, {0, 0}}) { // no inverse: as it was
+    for (const Vec2 v_by : {Vec2{2, 4}, {0, 0}}) { // without an inverse the frame is unchanged
         check_orthonormal(frame_of_transformed_map(frame_with_tangent(front, {1, 0, 0, 1}), {1, 2}, v_by));
     }
 }
@@ -83,7 +83,7 @@ TEST_CASE("shading frame: tangents and normals without direction fall back to a 
     const Transform identity;
     CHECK(world_normal(identity, {0, 0, 0}, normal) == normal);
     CHECK(world_normal(identity, {nan, 0, 0}, normal) == normal);
-    CHECK(world_normal(identity, {0, -1, 0}, normal) == normal); // behind its own face
+    CHECK(world_normal(identity, {0, -1, 0}, normal) == normal); // the normal is behind its face
     CHECK(is_near(world_normal(identity, {0, 2, 2}, normal), normalize(Vec3{0, 1, 1})));
 }
 

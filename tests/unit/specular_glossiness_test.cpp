@@ -11,7 +11,7 @@
 using namespace pertev;
 using gltf::SpecularGlossiness;
 
-namespace specular_glossiness_test { // tests are compiled several files at once
+namespace specular_glossiness_test { // test files are compiled together
 
 Material material_of(const std::string& members, Messages& messages, Scene* scene = nullptr) {
     test::GltfBuilder builder;

@@ -1,4 +1,4 @@
-// Runs are compared with stored figures if device, scene and job are the figure's, and only then.
+// Runs are compared with a stored figure only if device, scene and job are the same.
 
 #include "lab/stored_figures.h"
 
@@ -18,7 +18,7 @@ constexpr std::array kOtherDevices = {"CPU", "NVIDIA H200 NVL", "NVIDIA H200 MIG
 const RecordScene& scene_named(const char* name) { return *find_named(the_record().scenes, name); }
 const RecordJob& job_named(const char* name) { return *find_named(the_record().jobs, name); }
 
-/// A set of rays as the record has it, but for what is given.
+/// A ray set of the record, except for the given members.
 bool are_rays_known(const char* name, double more_hits = 0, const char* device = kH200, uint64_t more_rays = 0) {
     const RecordScene& scene = scene_named(name);
     return is_on_record(device, &scene, scene.triangles, 2, kRecordRays + more_rays,
@@ -54,7 +54,7 @@ TEST_CASE("stored figures do not apply to other rays, settings or pictures") {
     CHECK(are_rays_known("sponza", 0.0009));
     CHECK(!are_rays_known("sponza", 0.002));
     CHECK(!are_rays_known("sponza", -0.002));
-    CHECK(are_rays_known("forest", -0.039)); // the value in docs/ray_sets.md
+    CHECK(are_rays_known("forest", -0.039)); // the value is in docs/ray_sets.md
     CHECK(!are_rays_known("forest", -0.06));
     CHECK(!is_job_known("S5", 1, kH200, 1));
     CHECK(is_job_known("S5", 1.0019));

@@ -1,5 +1,5 @@
-// A structure's copy on a device follows changes of the scene: what did not change is neither copied nor allocated
-// again. The copy is made on the CPU too, where pictures do without it.
+// A structure's copy on a device is updated after changes of the scene. Unchanged parts are neither copied nor
+// allocated again. The test makes the copy on the CPU, too, where pictures do not need it.
 
 #include "tracer/structure_on_device.h"
 

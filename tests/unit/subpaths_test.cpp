@@ -1,4 +1,4 @@
-// Parts of light tracing against their inverses, and pictures of light and bidirectional against closed forms.
+// The parts of light tracing against their inverses, and pictures by light and bidirectional against closed forms.
 
 #include <doctest/doctest.h>
 
@@ -62,7 +62,8 @@ TEST_CASE("a vertex projects to the pixel whose camera ray reaches it") {
                 CHECK(seen.raster.y == doctest::Approx(y).epsilon(1e-4));
                 CHECK(length(seen.from - ray.origin) < 1e-4f);
                 CHECK(length(seen.direction - ray.direction) < 1e-4f);
-                CHECK_FALSE(connect_to_camera(rays, ray.origin - distance * ray.direction, lens, seen)); // behind it
+                CHECK_FALSE(connect_to_camera(rays, ray.origin - distance * ray.direction, lens,
+                                              seen)); // lies behind the camera
             }
         }
     }
@@ -70,7 +71,7 @@ TEST_CASE("a vertex projects to the pixel whose camera ray reaches it") {
 
 namespace {
 
-/// Mean radiance of what lies about the origin, looked at straight down from just above the floor.
+/// Returns the mean radiance around the origin, seen straight down from just above the floor.
 double seen_below(const Scene& scene, IntegratorKind integrator, uint32_t samples, float camera = 0.1f) {
     RenderSettings settings;
     settings.width = settings.height = 8;
@@ -98,10 +99,10 @@ TEST_CASE("a point light behind glass lights the floor in all but path tracing")
     Scene scene = test::floor_under_spot();
     const Material glass = {{.kind = MaterialKind::Dielectric, .base_color = {1, 1, 1}, .ior = 1.5f}, "glass"};
     test::add(scene, test::floor_at(0.6f, 2), glass);
-    test::add(scene, test::sheet({0, 0.4f, 0}, {2, 0, 0}, {0, 0, 2}), glass); // its front down
+    test::add(scene, test::sheet({0, 0.4f, 0}, {2, 0, 0}, {0, 0, 2}), glass); // faces down
     scene.materials.back().roughness = scene.materials[1].roughness = 0;
-    // All mirrored ways between the two faces together let 2 n / (n^2 + 1) through; the light seems 0.2 (1 - 1 / n) m
-    // nearer.
+    // With all reflections between the two faces, 2 n / (n^2 + 1) of the light passes. The light appears 0.2 (1 - 1 /
+    // n) m nearer.
     const double nearer = 1 - 0.2 * (1 - 1 / 1.5), expected = kFloor * 2 * 1.5 / (1.5 * 1.5 + 1) / (nearer * nearer);
     CHECK(seen_below(scene, IntegratorKind::Path, 64) == 0);
     CHECK(seen_below(scene, IntegratorKind::Light, 4096) == doctest::Approx(expected).epsilon(0.03));

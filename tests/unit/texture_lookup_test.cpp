@@ -48,7 +48,7 @@ Vec4 look_up(const TextureImage& image, const TextureRef& ref, Vec2 uv) {
     return lookup_texture(&view, ref, uv, kLinearFromSrgb.data());
 }
 
-/// Index that a wrap mode maps texel i to, by its definition: the image laid side by side for ever.
+/// Returns the index that a wrap mode maps texel i to, by the definition of an infinitely repeated image.
 int64_t wrapped_index(int64_t i, Wrap wrap, int64_t size) {
     const int64_t period = wrap == Wrap::MirroredRepeat ? 2 * size : size;
     if (wrap == Wrap::ClampToEdge) return std::min(std::max(i, int64_t(0)), size - 1);

@@ -62,7 +62,7 @@ RenderSettings small_picture(uint32_t width, uint32_t height, uint32_t samples) 
     return settings;
 }
 
-/// Every picture there is, small.
+/// Every picture, at a small size.
 std::vector<ThesisPicture> all_pictures(Queue& queue, PathBody body) {
     RenderSettings settings = small_picture(64, 48, 2);
     settings.body = body;
@@ -73,7 +73,7 @@ std::vector<ThesisPicture> all_pictures(Queue& queue, PathBody body) {
     return made;
 }
 
-/// The pictures that the CPU's loop makes, computed once.
+/// The pictures of the CPU's loop, computed once.
 const std::vector<ThesisPicture>& pictures_in_loop() {
     static const std::vector<ThesisPicture> made = [] {
         Queue cpu = Queue::make_cpu();
@@ -95,7 +95,7 @@ double mean_green(const Rgba8Image& image, double x0 = 0, double y0 = 0, double 
     return sum / count;
 }
 
-/// Mean of the difference of the channels, in steps of 255.
+/// Returns the mean difference of the channels, in steps of 255.
 double distance_of(const Rgba8Image& a, const Rgba8Image& b) {
     REQUIRE(a.pixels.size() == b.pixels.size());
     double sum = 0;
@@ -120,7 +120,7 @@ TEST_CASE("pictures of the thesis differ, none is black, and each has a descript
         CHECK_FALSE(picture.interrupted);
         places.insert(picture.place);
         if (!picture.svg.empty()) continue;
-        CHECK((picture.image.width == 64 || picture.image.width == 32)); // panels have half of it
+        CHECK((picture.image.width == 64 || picture.image.width == 32)); // panels have half of this size
         const auto lit = std::ranges::count_if(picture.image.pixels, [](uint8_t c) { return c > 60 && c < 255; });
         CHECK(lit > picture.image.width * picture.image.height / 8);
         CHECK(seen.insert(picture.image.pixels).second);
@@ -142,12 +142,12 @@ TEST_CASE("pictures of the thesis have the same bytes in the wavefront and on a 
     }
 }
 
-TEST_CASE("patches cover as many pixels in small pictures as in full ones, where they have 8 cm") {
+TEST_CASE("patches cover as many pixels in small pictures as in full ones, where their side is 8 cm") {
     const auto is = [](uint32_t panel_height, float patch_size, uint32_t steps, uint32_t photons) {
         const ThesisDetail detail = thesis_detail(panel_height);
         return detail.patch_size == patch_size && detail.early_steps == steps && detail.photons == photons;
     };
-    CHECK(is(384, 0.08f, 200, 65536)); // for 1024x768
+    CHECK(is(384, 0.08f, 200, 65536)); // the size for 1024x768
     CHECK(is(1080, 0.08f, 200, 65536));
     CHECK(is(192, 0.16f, 50, 16384));
     for (const uint32_t height : {96u, 6u, 1u}) CHECK(is(height, 0.32f, 12, 4096));
@@ -171,7 +171,7 @@ TEST_CASE("the panels of figure 3.7 converge to the smooth solution") {
     const auto panel = [&](const char* name) { return pictures.make(name).image; };
     const Rgba8Image dark = panel("figure-3.7a"), ambient = panel("figure-3.7b"), flat = panel("figure-3.7c"),
                      smooth = panel("figure-3.7d");
-    // Light is added, everywhere but where lamps and the background are seen.
+    // Light is added everywhere except on emitters and the background.
     std::size_t brighter = 0, darker = 0;
     for (std::size_t i = 0; i < dark.pixels.size(); ++i) {
         brighter += ambient.pixels[i] > dark.pixels[i] ? 1 : 0;
@@ -189,13 +189,13 @@ TEST_CASE("the photons of figure 3.9 lie on surfaces, and the map blurs what fin
     ThesisPictures pictures(queue, small_picture(256, 192, 8));
     const ThesisPicture dots = pictures.make("figure-3.9a"), map = pictures.make("figure-3.9b"),
                         gathered = pictures.make("figure-3.9c");
-    // Nothing is next to the square box.
+    // There is no surface next to the square box.
     CHECK(mean_green(dots.image, 0, 0, 0.1, 1) == 0);
     std::size_t lit = 0;
     for (std::size_t i = 1; i < dots.image.pixels.size(); i += 4) lit += dots.image.pixels[i] > 20 ? 1 : 0;
     CHECK(lit > dots.image.pixels.size() / 4 / 20);
-    CHECK(lit < dots.image.pixels.size() / 4 / 2); // dots, and not a picture: the box is three quarters
-    // Equal light in total.
+    CHECK(lit < dots.image.pixels.size() / 4 / 2); // the photons are dots; the box is three quarters of the picture
+    // Both have equal light in total.
     CHECK(mean_green(map.image) == doctest::Approx(mean_green(gathered.image)).epsilon(0.05));
     CHECK(map.image.pixels != gathered.image.pixels);
 }
@@ -206,7 +206,7 @@ TEST_CASE("the caustic of figure 3.10 is more than three times as bright as its 
     const ThesisPicture dots = pictures.make("figure-3.10a"), shown = pictures.make("figure-3.10b");
     CHECK(shown.stats.samples == 16);
     CHECK(dots.stats.samples == 1);
-    // Brightness of light that is shown so, by the curve that shows it.
+    // Returns the light that is displayed with this value, by the display curve.
     const auto light_of_byte = [](double byte) {
         float light = 1e-4f;
         while (light < 100 && 255 * tone_map(grey(light), ToneMap::Agx).g < static_cast<float>(byte)) light *= 1.01f;
@@ -219,7 +219,7 @@ TEST_CASE("the caustic of figure 3.10 is more than three times as bright as its 
     for (const double shade : {light_in(0.33, 0.68, 0.37, 0.72), light_in(0.40, 0.72, 0.46, 0.75)}) {
         CHECK(spot > 3 * shade);
     }
-    // Photons lie close together in the caustic.
+    // Photons are dense in the caustic.
     CHECK(mean_green(dots.image, 0.42, 0.64, 0.49, 0.70) > 2 * mean_green(dots.image, 0.05, 0.75, 0.35, 0.95));
 }
 
@@ -227,7 +227,7 @@ TEST_CASE("shadows are hard under a point light and soft under an area light, an
     Queue queue = test::requested_queue();
     const RenderSettings settings = small_picture(96, 72, 64);
     ThesisPictures pictures(queue, settings);
-    // Shares of neighbours in a row of which one is at least 1.5 times as bright as the other, and of white.
+    // The shares of neighbours in a row whose brightness differs by a factor of at least 1.5, and of white pixels.
     const auto look_at_picture = [&](const char* number) {
         const ThesisPicture picture = pictures.make(number);
         const auto& pixels = picture.image.pixels;

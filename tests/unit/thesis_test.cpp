@@ -10,7 +10,7 @@ using namespace pertev::test;
 
 namespace {
 
-/// Both scenes, three depths, everything measured.
+/// A report of both scenes and three depths in which everything was measured.
 ThesisReport full_thesis(const std::string& device) {
     ThesisReport thesis;
     for (const char* scene : {"cornell-box", "sibenik <hall>"}) {
@@ -145,10 +145,10 @@ TEST_CASE("an interrupted chapter is marked and lists its missing parts") {
     report.interrupted = true;
     variant(report, "SWW-R", false).runs.pop_back();
     CombinationFigures& late = variant(report, "A", false);
-    late.runs.clear(), late.refused = "interrupted before its turn";
+    late.runs.clear(), late.refused = "interrupted before it was measured";
     const std::string text = text_of(thesis);
     CHECK(has(text, "cornell-box: interrupted;"));
-    CHECK(has(text, "cornell-box: Not run: interrupted before its turn: " + name_of(late.combination)));
+    CHECK(has(text, "cornell-box: Not run: interrupted before it was measured: " + name_of(late.combination)));
     CHECK(measurement_of(thesis).table("frames").rows.size() == 2 + 3 * 3);
     CHECK(has(text_of(ThesisReport{}), "Nothing was measured."));
     CHECK(measurement_of(ThesisReport{}).table("frames").rows.empty());

@@ -1,5 +1,5 @@
-// Instances against the same triangles moved into world space by the test, in double: what transform_ray does to the
-// ray must not be seen in t. (tests/consistency compares traversals bit for bit, but all of them move the ray alike.)
+// Instances against the same triangles, which the test moves into world space in double precision. transform_ray must
+// not change t. (tests/consistency compares traversals bit for bit, but all of them transform the ray alike.)
 
 #include <vector>
 
@@ -16,7 +16,7 @@ using namespace pertev;
 
 namespace {
 
-/// A transform's image of a point, in double.
+/// Returns the transformed point, in double precision.
 struct Point {
     double x, y, z;
 };
@@ -61,7 +61,7 @@ TEST_CASE("a hit on an instance has the t, u and v of the transformed triangles"
             trace_closest(scene, ray, AcceptAll{}, hit);
             test::trace_by_brute_force(baked, ray, kNoHit, AcceptAll{}, wanted);
             hits += wanted.instance != kNoHit;
-            // A neighbour may be hit at an edge; t is the same all the same.
+            // At an edge a neighbour may be hit, with the same t.
             const bool same = hit.instance == wanted.instance &&
                               (hit.instance == kNoHit || pertev::abs(hit.t - wanted.t) <= 1e-3f * wanted.t);
             differ += !same;
@@ -73,6 +73,6 @@ TEST_CASE("a hit on an instance has the t, u and v of the transformed triangles"
             CHECK(trace_any(scene, shorter, AcceptAll{}));
         }
         CHECK(hits > 1000);
-        CHECK(differ <= 10); // grazing: an edge that one of the two just misses
+        CHECK(differ <= 10); // at grazing angles one of the two may miss an edge
     }
 }

@@ -17,7 +17,7 @@ using namespace pertev;
 
 namespace {
 
-/// relMSE c / n after n = 1, 2, 4, 8 samples of `each_s` seconds, HDR-FLIP half of that.
+/// The relMSE is c / n after n = 1, 2, 4, 8 samples of `each_s` seconds, and HDR-FLIP is half of that.
 Repetition falling(double c, double each_s) {
     Repetition repetition;
     for (uint32_t n = 1; n <= 8; n *= 2) repetition.push_back({n, n * each_s, c / n, c / n / 2});
@@ -28,7 +28,7 @@ TransportRow transport_row(const char* name, std::vector<Repetition> repetitions
     return {.name = name, .light = "all", .finds_all = true, .bytes = 3 << 20, .repetitions = std::move(repetitions)};
 }
 
-/// path, another of half its error that takes thrice as long, and one refused.
+/// A report of path, of an integrator with half its error that takes three times as long, and of a refused one.
 TransportScene small_transport_scene() {
     TransportScene scene = {.name = "a <b>"};
     scene.reference = {.integrator = "path", .samples = 64, .seconds = 2, .rel_mse = 0.001, .flip = 0.01};
@@ -62,14 +62,15 @@ TEST_CASE("Student's t matches tables and approaches the normal distribution") {
 TEST_CASE("equal-time figures interpolate each repetition logarithmically") {
     const TransportScene scene = small_transport_scene();
     CHECK(equal_seconds(scene) == doctest::Approx(0.8));
-    // c / n is straight there: 0.8 s are 8 / 3 samples of the second, whose errors are 0.5 and 1.5 over that.
+    // c / n is linear in the logarithm. 0.8 s are 8 / 3 samples of the second integrator, whose errors are 0.5 and 1.5
+    // divided by that.
     const auto point = at_time(scene.rows[1], 0.8);
     REQUIRE(point);
     CHECK(point->rel_mse.mean == doctest::Approx(1 / (8.0 / 3)).epsilon(1e-5));
     CHECK(point->flip.mean == doctest::Approx(0.5 / (8.0 / 3)).epsilon(1e-5));
     CHECK(point->samples == doctest::Approx(8.0 / 3));
     CHECK(*point->rel_mse.half_width == doctest::Approx(12.7062 * 0.5 / (8.0 / 3)).epsilon(1e-4));
-    CHECK_FALSE(at_time(scene.rows[1], 0.29)); // before its first sample
+    CHECK_FALSE(at_time(scene.rows[1], 0.29)); // the time is before its first sample
     CHECK_FALSE(at_time(scene.rows[1], 2.5));
     CHECK_FALSE(at_time(scene.rows[2], 0.8));
     const auto first = at_time(scene.rows[0], 0.1);
@@ -85,7 +86,8 @@ TEST_CASE("samples at equal time exclude a picture's preparation") {
 }
 
 TEST_CASE("preparation time counts once") {
-    // 10 s of records, then 0.1 s a sample, whose error is 1 / n: straight in the logarithm of what samples took.
+    // Records take 10 s and each sample 0.1 s. The error is 1 / n, which is linear in the logarithm of the samples'
+    // time.
     Repetition repetition;
     for (uint32_t n = 1; n <= 64; n *= 8) repetition.push_back({n, 10 + 0.1 * n, 1.0 / n, 0.5 / n, 0, 10});
     const auto point = at_time(transport_row("irradiance_cache", {repetition}), 10 + 0.1 * 24);
@@ -99,8 +101,9 @@ TEST_CASE("the next samples fit into the remaining time, without preparing recor
     const TransportFigures begun = {.samples = 1, .seconds = 3, .made_seconds = 2.9};
     CHECK(next_samples(begun, 5, 1u << 16) == 2);
     CHECK(next_samples({.samples = 8, .seconds = 3.7, .made_seconds = 2.9}, 5, 1u << 16) == 16);
-    CHECK(next_samples({.samples = 16, .seconds = 4.5, .made_seconds = 2.9}, 5, 1u << 16) == 21); // 0.1 s each
-    CHECK(next_samples({.samples = 20, .seconds = 4.9, .made_seconds = 2.9}, 5, 1u << 16) == 0);  // one more
+    CHECK(next_samples({.samples = 16, .seconds = 4.5, .made_seconds = 2.9}, 5, 1u << 16) ==
+          21); // each sample takes 0.1 s
+    CHECK(next_samples({.samples = 20, .seconds = 4.9, .made_seconds = 2.9}, 5, 1u << 16) == 0); // one more sample fits
     CHECK(next_samples(begun, 3, 1u << 16) == 0);
     CHECK(next_samples(begun, 1e-9, 1u << 16) == 0);
     CHECK(next_samples({.samples = 1, .seconds = 1}, 5, 1u << 16) == 2);
@@ -126,7 +129,7 @@ TEST_CASE("at equal time the last finished solution counts, and at equal samples
                                                       {{16, 0.4, 0.3, 0.05, 100}, {16, 6, 0.03, 0.02, 400}}});
     solved.is_solved = true, solved.host_bytes = 2 << 20;
     scene.rows.push_back(solved);
-    CHECK(equal_seconds(scene) == doctest::Approx(0.8)); // path's, as without it
+    CHECK(equal_seconds(scene) == doctest::Approx(0.8)); // the figures of path are the same as without the solution
     const auto point = at_time(scene.rows.back(), 0.8);
     REQUIRE(point);
     CHECK(point->rel_mse.mean == doctest::Approx(0.2));
@@ -134,7 +137,7 @@ TEST_CASE("at equal time the last finished solution counts, and at equal samples
     CHECK(point->samples == 16);
     CHECK(point->patches == doctest::Approx(100));
     CHECK(at_time(scene.rows.back(), 100)->rel_mse.mean == doctest::Approx(0.02));
-    CHECK_FALSE(at_time(scene.rows.back(), 0.3)); // the second's first takes longer
+    CHECK_FALSE(at_time(scene.rows.back(), 0.3)); // the first solution of the second repetition takes longer
     const ResultTable by_time = equal_time_table(scene);
     CHECK(by_time.at(0, "integrator") == "radiosity");
     CHECK(by_time.at(0, "samples") == 16.0);
@@ -142,7 +145,7 @@ TEST_CASE("at equal time the last finished solution counts, and at equal samples
     CHECK(by_time.at(0, "device_mebibytes") == 3.0);
     CHECK(by_time.at(0, "host_mebibytes") == 2.0);
     CHECK(!by_time.at(1, "host_mebibytes").is_there());
-    TransportScene quick = scene; // which does not hold up the others
+    TransportScene quick = scene; // the others do not wait for it
     quick.rows.back().repetitions = {{{4, 0.1, 0.1, 0.05, 100}}, {{4, 0.1, 0.1, 0.05, 100}}};
     CHECK(equal_seconds(quick) == doctest::Approx(0.8));
     CHECK(at_time(quick.rows.back(), 0.8));
@@ -151,7 +154,7 @@ TEST_CASE("at equal time the last finished solution counts, and at equal samples
     CHECK(equal_time_table(late).at(2, "first_seconds") == 5.5);
     CHECK(!equal_time_table(late).at(2, "rel_mse").is_there());
     scene.rows.erase(scene.rows.begin(), scene.rows.end() - 1);
-    CHECK(equal_seconds(scene) == doctest::Approx(5)); // there is nothing else
+    CHECK(equal_seconds(scene) == doctest::Approx(5)); // there is no other integrator
     TransportReport report = {.device = "CPU"};
     report.scenes.push_back(scene);
     CHECK(test::has(csv_of(measurement_of(report), "repetitions"), ",400,0\n"));
@@ -168,9 +171,9 @@ TEST_CASE("efficiency is one over error times time, and its ratio to path's stan
     CHECK(*efficiency(*path) == doctest::Approx(1 / (0.25 * 0.8)));
     const ResultTable by_time = equal_time_table(scene);
     REQUIRE(by_time.rows.size() == 2);
-    CHECK(by_time.at(0, "integrator") == "path"); // the least error first
+    CHECK(by_time.at(0, "integrator") == "path"); // the smallest error is first
     CHECK(by_time.at(0, "of_path") == 1.0);
-    CHECK(by_time.at(1, "of_path").text("{:.3g}") == "0.667"); // half the error in thrice the time
+    CHECK(by_time.at(1, "of_path").text("{:.3g}") == "0.667"); // half the error in three times the time
 }
 
 TEST_CASE("an interrupted repetition counts up to its last figure") {
@@ -228,7 +231,7 @@ TEST_CASE("the light transport report lists results and reasons for missing ones
     const ResultTable& points = m.table("points");
     REQUIRE(points.rows.size() == 8);
     CHECK(points.at(3, "samples") == 8.0);
-    CHECK(points.at(3, "efficiency").text("{:.3g}") == "5"); // for path
+    CHECK(points.at(3, "efficiency").text("{:.3g}") == "5"); // the figures of path
     CHECK(points.at(3, "rel_mse").text("{:.3g}") == "0.25");
     CHECK(points.at(3, "rel_mse_high").text("{:.4f}") == "1.8383"); // 0.25 + 12.7062 * 0.125
     CHECK(m.table("repetitions").at(16, "refused") == "lamps alone, and \"more\"");

@@ -1,5 +1,5 @@
-// The skipping rule itself: a node is left out only if its box is missed or its entry is greater than the limit. Equal
-// is entered, in the binary traversal, in the wide one, and when a node comes back from the stack.
+// The skipping rule: a node is skipped only if the ray misses its box or enters it beyond the limit. Equal is entered,
+// in binary and wide traversals and when a node is popped from the stack.
 
 #include "trace/binary/traverse_tree.h"
 
@@ -65,7 +65,7 @@ TEST_CASE("a node on the stack is visited if its entry equals the limit and drop
 }
 
 TEST_CASE("an inner node without a box on the ray continues with the stack, including equal entries") {
-    // One node far from the ray, and a leaf that waits.
+    // One node far from the ray, and a leaf on the stack.
     BvhNode node = {};
     set_child(node, 0, {{100, 100, 100}, {101, 101, 101}}, kLeafBit | 1u);
     set_child(node, 1, {{200, 200, 200}, {201, 201, 201}}, kLeafBit | 2u);

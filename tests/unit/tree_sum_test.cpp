@@ -1,4 +1,4 @@
-// Sums in a fixed tree: their rounding error, and the tree.
+// The rounding error of sums in a fixed tree, and the tree itself.
 
 #include <doctest/doctest.h>
 
@@ -13,7 +13,7 @@ using namespace pertev;
 
 namespace {
 
-/// A sum that says how it was made.
+/// A sum that records its additions.
 struct Text {
     std::string text;
 };
@@ -51,7 +51,7 @@ TEST_CASE("the tree of a sum depends only on the count") {
     CHECK(tree_of(8) == eight);
     CHECK(tree_of(11) == "(" + eight + " ((8 9) 10))");
     CHECK(tree_of(13) == "(" + eight + " (((8 9) (10 11)) 12))");
-    for (const uint64_t count : {17u, 64u, 1000u}) { // the first of more are the sum of fewer
+    for (const uint64_t count : {17u, 64u, 1000u}) { // the sum of the first terms is a subtree
         CHECK(tree_of(count).find(tree_of(16)) != std::string::npos);
     }
 }

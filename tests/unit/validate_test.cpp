@@ -133,7 +133,7 @@ TEST_CASE("an instance hidden by a scale of 0 is left out with a warning; if all
     });
 }
 
-TEST_CASE("an instance that is out of bounds or squeezed flat is left out if others remain") {
+TEST_CASE("an instance that is out of bounds or has a singular transform is left out if others remain") {
     const auto add = [](Scene& scene, const Transform& place) {
         scene.instances.push_back({.name = "odd", .mesh = 0, .material = 0, .world_from_local = place});
     };

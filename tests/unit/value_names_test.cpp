@@ -33,8 +33,8 @@ TEST_CASE("every value has a name") {
     CHECK(integrator_names() == std::vector<std::string>{"path", "direct", "indirect", "hybrid", "cast", "whitted",
                                                          "distributed", "raster", "reyes", "light", "bidirectional",
                                                          "photon_map", "irradiance_cache", "radiosity"});
-    CHECK(aov_names() == std::vector<std::string>{"albedo", "normal", "depth", "position", "ids", "motion",
-                                                  "distance"});
+    CHECK(aov_names() ==
+          std::vector<std::string>{"albedo", "normal", "depth", "position", "ids", "motion", "distance"});
 }
 
 TEST_CASE("names of layers have distinct bits in their order") {

@@ -10,7 +10,7 @@
 namespace fs = std::filesystem;
 using namespace pertev;
 
-namespace vertex_colors_test { // tests are compiled several files at once
+namespace vertex_colors_test { // test files are compiled together
 
 struct Loaded {
     Scene scene;
@@ -60,8 +60,9 @@ TEST_CASE("obj: colours are read as 0 to 255 if any in the file is 2 or more, wi
     REQUIRE(bright.messages.all().size() == 1);
     CHECK_FALSE(bright.messages.all()[0].is_warning);
     check_color(load_obj("20 10 1"), {0.00699541f, 0.00303527f, 0.000303527f, 1});
-    check_color(load_obj("1 0 1", "0 0 0", "0 2 0"), {0.000303527f, 0, 0.000303527f, 1}); // another vertex tells
-    check_color(load_obj("1 0.5 0", "1.5 1 1"), {1, srgb_decode(0.5f), 0, 1});            // a highlight, no byte
+    check_color(load_obj("1 0 1", "0 0 0", "0 2 0"),
+                {0.000303527f, 0, 0.000303527f, 1}); // another vertex has a value of 2 or more
+    check_color(load_obj("1 0.5 0", "1.5 1 1"), {1, srgb_decode(0.5f), 0, 1}); // a highlight, not a byte
     check_color(load_obj("1.0000001 0.5 0"), {srgb_decode(1.0000001f), srgb_decode(0.5f), 0, 1});
 }
 
@@ -80,7 +81,7 @@ TEST_CASE("ply: colours mean the same in bytes, floats and OBJ") {
     check_color(load_ply("double", "1 0.50196078 0 1"), right);
     check_color(load_ply("ushort", "65535 32896 0 65535"), right);
     check_color(load_ply("float", "255 128 0 255"), right);
-    check_color(load_ply("float", "255 128 0 1"), right); // alpha by itself
+    check_color(load_ply("float", "255 128 0 1"), right); // only alpha is present
     check_color(load_ply("float", "0.5 0.5 0.5 0.25"), {0.2140411f, 0.2140411f, 0.2140411f, 0.25f});
     check_color(load_ply("uchar", "128 128 128 51"), {0.215861f, 0.215861f, 0.215861f, 0.2f});
 }
@@ -97,7 +98,7 @@ TEST_CASE("vertex colours with a texture are left out with a warning, but used i
     CHECK(scene.meshes[0].colors.empty());
     CHECK(scene.meshes[1].colors.size() == 3);
     CHECK(scene.meshes[2].colors.size() == 3);
-    CHECK(messages.all().size() == 2); // about the colours, and about the file that is no picture
+    CHECK(messages.all().size() == 2); // one message about the colours, and one about the unreadable picture
 }
 
 } // namespace vertex_colors_test

@@ -1,4 +1,4 @@
-// Random numbers drawn for eight paths at once equal those of each path alone, to the bit.
+// Random numbers drawn for eight paths at once have the bits of those drawn for single paths.
 
 #include <cstdint>
 #include <vector>
@@ -19,7 +19,7 @@ constexpr uint32_t kWidth = 1920;
 
 PathSettings settings_of(SamplerKind kind, uint32_t seed) { return {.sampler = kind, .seed = seed}; }
 
-/// Eight paths that share nothing: every lane another pixel, sample and depth.
+/// Eight unrelated paths: the lanes differ in pixel, sample and depth.
 PathState path_of(uint32_t lane, uint32_t round) {
     PathState path;
     path.pixel = hash_word(8 * round + lane) % (kWidth * 1080);
@@ -30,7 +30,7 @@ PathState path_of(uint32_t lane, uint32_t round) {
 
 } // namespace
 
-TEST_CASE("vertex numbers: bits of eight words are reversed as those of one") {
+TEST_CASE("vertex numbers: bits of eight words are reversed like those of one") {
     for (uint32_t round = 0; round < 100; ++round) {
         Words8 words;
         for (uint32_t i = 0; i < kWords; ++i) words[i] = hash_word(8 * round + i);
@@ -121,7 +121,7 @@ TEST_CASE("vertex numbers: eight paths begun at once equal those begun one by on
                 camera.is_open = is_open;
                 camera.motion = is_open ? MotionTrack{keys, {0, 0, 0}, 1} : MotionTrack{};
                 LaneSamples<Floats8> samples(camera, settings);
-                for (const uint32_t count : {8u, 3u, 0u, 1u}) { // lanes without a sample change no other
+                for (const uint32_t count : {8u, 3u, 0u, 1u}) { // lanes without a sample do not change others
                     for (uint32_t i = 0; i < count; ++i) samples.add(path_of(i, count).pixel, path_of(i, count).sample);
                     CHECK(samples.is_full() == (count == kWords));
                     uint32_t i = 0;

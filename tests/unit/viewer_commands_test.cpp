@@ -10,7 +10,7 @@
 
 using namespace pertev;
 
-namespace viewer_commands_test { // tests are compiled several files at once
+namespace viewer_commands_test { // test files are compiled together
 
 Steer setting(const char* name, const std::variant<double, std::string>& value) {
     Steer steer;
@@ -24,7 +24,7 @@ struct Flagged {
     std::atomic<bool> abandon{false}, hurry{false};
     Inbox inbox;
     Flagged() { inbox.raise(abandon, hurry); }
-    /// "" or "hurry" or "hurry abandon": what the command raises.
+    /// Returns the flags that the command sets: "", "hurry" or "hurry abandon".
     std::string put(const Command& command) {
         inbox.put(command);
         std::string raised = hurry ? "hurry" : "";
@@ -34,7 +34,7 @@ struct Flagged {
     }
 };
 
-/// All texts that wait for this client, one after the other.
+/// Returns all texts that wait for this client, joined.
 std::string texts_for(Audience& audience, uint32_t client) {
     std::string all;
     while (const auto job = audience.next_job(std::chrono::milliseconds(0), [] { return 0.0; })) {
@@ -79,10 +79,10 @@ TEST_CASE("a refused or unchanged setting restarts nothing") {
     CHECK(flagged.put(setting("integrator", "no such one")) == "");
     CHECK(flagged.put(setting("max_depth", -1.0)) == "");
     CHECK(flagged.put(setting("nothing", 1.0)) == "");
-    CHECK(flagged.put(setting("integrator", "path")) == ""); // which it is
+    CHECK(flagged.put(setting("integrator", "path")) == ""); // has this value already
     CHECK(flagged.put(setting("spp", 128.0)) == "");
     CHECK(flagged.put(setting("integrator", "direct")) == "hurry abandon");
-    CHECK(flagged.put(setting("integrator", "direct")) == ""); // the one before waits still
+    CHECK(flagged.put(setting("integrator", "direct")) == ""); // the previous command is still waiting
     CHECK(flagged.put(setting("integrator", "path")) == "hurry abandon");
     CHECK(flagged.put(setting("exposure", 1.0)) == "hurry"); // shows the same samples
     CHECK(flagged.put(setting("tone_map", "aces")) == "hurry");
@@ -92,7 +92,7 @@ TEST_CASE("a refused or unchanged setting restarts nothing") {
     CHECK(flagged.put(shape) == "");
     shape.message.height = 200;
     CHECK(flagged.put(shape) == "hurry abandon");
-    // The renderer's state counts, with the commands that wait since then.
+    // The state is the renderer's, with the commands that have waited since.
     flagged.inbox.expect(view);
     CHECK(flagged.put(shape) == "");
     CHECK(flagged.inbox.take(std::chrono::milliseconds(0)).size() == 14);
@@ -119,27 +119,27 @@ TEST_CASE("clients that do not steer are informed, and the steering one sees the
     }
     CHECK(notices.find("viewer 1 steers") != std::string::npos);
     CHECK(notices.find("viewer 1 steers", notices.find("viewer 1 steers") + 1) ==
-          std::string::npos); // once for the drag
+          std::string::npos); // one request for the whole drag
     CHECK(seen.find(R"("id":2,"asks":false,"request":"turn the view")") != std::string::npos);
     CHECK(audience.received(2, R"({"type":"set","n":1,"name":"exposure","value":2})", 2) ==
-          ""); // another request, at once
+          ""); // another request follows immediately
     CHECK(texts_for(audience, 1).find(R"("request":"set \"Stops\" to 2")") != std::string::npos);
-    audience.tick(40); // it is an old request now
+    audience.tick(40); // the request has expired
     CHECK(texts_for(audience, 1).find(R"("request":"")") != std::string::npos);
-    // A pick that only shows, the rate and the shape need no steering, so they record no request.
+    // Picks that only show information, rates and shapes do not steer, so they record no request.
     CHECK(audience.received(2, R"({"type":"pick","n":1,"x":0,"y":0,"use":"show"})", 41) == "");
     CHECK(audience.received(2, R"({"type":"rate","hz":60})", 41) == "");
     CHECK(audience.received(2, R"({"type":"shape","width":64,"height":48})", 41) == "");
     CHECK(texts_for(audience, 2) == "");
     CHECK(inbox.take(std::chrono::milliseconds(0)).size() == 1);
-    // Messages in transit when the wheel was handed over are no requests.
+    // Messages in transit when control was handed over are not requests.
     CHECK(audience.received(1, R"({"type":"hand","to":2})", 50) == "");
     texts_for(audience, 1);
     CHECK(audience.received(1, kOrbit, 50.3) == "");
     CHECK(texts_for(audience, 1) == "");
     CHECK(audience.received(1, kOrbit, 52) == "");
     CHECK(texts_for(audience, 1).find("viewer 2 steers") != std::string::npos);
-    // Where the wheel waits for somebody who left, that is what is said.
+    // If control is reserved for a viewer that left, the message states that.
     audience.close(2, 60);
     CHECK(audience.received(1, kOrbit, 61) == "");
     CHECK(texts_for(audience, 1).find("has left") != std::string::npos);

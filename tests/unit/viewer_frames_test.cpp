@@ -1,4 +1,4 @@
-// Pictures of the viewer (session_frames.h) beside those of a session alone, and the tones that they are exposed by.
+// Pictures of the viewer (session_frames.h) against those of a plain session, and their exposure.
 
 #include <algorithm>
 #include <vector>
@@ -65,7 +65,7 @@ TEST_CASE("frames in motion share light at the set resolution, and the picture a
             alone.frame().display(request.view.display.tone_map, 0);
             REQUIRE(shown.has_value());
             CHECK(shown->image.pixels == alone.frame().displayed().pixels);
-            CHECK(shown->samples == k + 1); // seen by one camera
+            CHECK(shown->samples == k + 1); // both have one camera
         }
         request.is_moving = false;
         request.budget_s = 100;
@@ -117,7 +117,7 @@ TEST_CASE("a change of ReSTIR or of the light's resolution restarts accumulation
     request.view.options.reconstruction.settings.resolution_scale = 0.5f;
     CHECK(gathered() == 1);
     CHECK(gathered() == 2);
-    request.view.options.reconstruction.none = true; // the samples themselves, which still share light
+    request.view.options.reconstruction.none = true; // unfiltered samples, which still share light
     CHECK(gathered() == 1);
 }
 
@@ -152,12 +152,12 @@ TEST_CASE(
         request.is_moving = false;
         request.budget_s = 1e-9;
         CHECK_FALSE(
-            frames.next(request).has_value()); // the reconstruction goes on being shown: one sample is no better
+            frames.next(request).has_value()); // the reconstruction is still shown, because one sample is not better
         request.budget_s = 100;
         std::optional<ShownFrame> rests;
         while (!rests || !rests->is_final) rests = frames.next(request);
         CHECK(rests->hash == picture_hash(plain.picture()).hex());
-        check_frame(3); // with what those before the rest have seen
+        check_frame(3); // with the history from before the rest
     }
 }
 
@@ -207,16 +207,16 @@ TEST_CASE("single pictures have the depth in motion, and the metered exposure at
     request.camera.world_from_camera.translation = request.camera.world_from_camera.translation + Vec3{0, 0.5f, 0};
     alone.set_camera(request.camera);
     request.is_moving = true;
-    CHECK(frames.next(request).value().found_stops == first.found_stops); // while it moves, that of before
+    CHECK(frames.next(request).value().found_stops == first.found_stops); // in motion the previous exposure is kept
     request.is_moving = false;
     CHECK(check_metered().found_stops != first.found_stops);
-    request.view.is_real_time = false; // and the picture at rest has its own
+    request.view.is_real_time = false; // the picture at rest has its own exposure
     alone.set_settings(request.view.options.render);
     request.budget_s = 100;
     check_metered();
 }
 
-TEST_CASE("on a GPU the size keeps the screen's rate within limits, and on a CPU its own rate") {
+TEST_CASE("on a GPU the size keeps the screen's frame rate within limits, on a CPU its own") {
     Watched watched;
     FrameRequest& request = watched.request;
     request.view.moving_scale = 0;
@@ -238,7 +238,7 @@ TEST_CASE("on a GPU the size keeps the screen's rate within limits, and on a CPU
 TEST_CASE("the exposure is metered on the displayed frame, whatever the light's resolution") {
     Watched watched;
     RenderSettings& picture = watched.request.view.options.render;
-    for (const uint32_t width : {24u, 100u}) { // blocks of a pixel, and of two
+    for (const uint32_t width : {24u, 100u}) { // blocks of one pixel and of two
         picture.width = width;
         picture.height = width * 2 / 3;
         for (const float scale : {1.0f, 0.5f, 0.3f}) {
@@ -298,7 +298,7 @@ TEST_CASE("timing each kind of ray and shading does not change the picture") {
         CHECK(rays.total() < timed.render_s);
         CHECK(plain.kind_seconds.total() == 0);
     }
-    request.view.options.render.integrator = IntegratorKind::Raster; // has no rays
+    request.view.options.render.integrator = IntegratorKind::Raster; // this kind has no rays
     request.view.options.render.time_kinds = true;
     CHECK(stages_of(frames.next(request).value()).starts_with("render "));
 }

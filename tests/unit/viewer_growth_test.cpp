@@ -12,9 +12,9 @@
 
 using namespace pertev;
 
-namespace viewer_growth_test { // tests are compiled several files at once
+namespace viewer_growth_test { // test files are compiled together
 
-/// The scales that a picture goes through on a machine whose samples take `full_s`.
+/// The scales of a growing picture on a machine whose samples take `full_s`.
 std::vector<float> scales(double full_s, float shown, bool has_whole) {
     RestGrowth growth;
     growth.begin(shown, full_s);
@@ -37,7 +37,7 @@ struct WatchedGrowth {
         request.camera = test::mixed_scene_camera();
         RenderSettings& picture = request.view.options.render;
         picture.width = 48, picture.height = 32;
-        picture.samples = 12; // too few for a frame of full size before them
+        picture.samples = 12; // too few samples to precede them with a full-size frame
         picture.path.max_depth = 3;
         request.view.lens = request.camera;
     }
@@ -53,7 +53,7 @@ TEST_CASE("a picture at rest grows through middle sizes on a slow machine, and a
     CHECK(scales(0.4, 0, true).empty());
     CHECK(scales(14, 0, false) == std::vector<float>{0.125f, 0.25f, 0.5f});
     CHECK(scales(14, 0, true) == std::vector<float>{0.125f, 0.25f, 0.5f, 1});
-    CHECK(scales(14, 0.0625f, false) == std::vector<float>{0.125f, 0.25f, 0.5f}); // after frames of the movement
+    CHECK(scales(14, 0.0625f, false) == std::vector<float>{0.125f, 0.25f, 0.5f}); // follows frames in motion
     CHECK(scales(14, 0.1875f, false) == std::vector<float>{0.25f, 0.5f});
     CHECK(scales(80, 0, false) == std::vector<float>{0.03125f, 0.0625f, 0.125f, 0.25f, 0.5f});
     CHECK(scales(1.5, 0, false) == std::vector<float>{0.25f, 0.5f});
@@ -65,7 +65,7 @@ TEST_CASE("a picture at rest grows through middle sizes on a slow machine, and a
             before_samples += static_cast<double>(scale * scale) * full_s;
         CHECK(before_samples < full_s / 3);
         const float first = scales(full_s, 0, false).front();
-        CHECK(static_cast<double>(first * first) * full_s <= 0.25); // a new setting is seen within a second
+        CHECK(static_cast<double>(first * first) * full_s <= 0.25); // a new setting is shown within a second
     }
 }
 
@@ -75,7 +75,7 @@ TEST_CASE("a picture has the window's aspect and at most the requested pixels an
     CHECK(size_for_window(800, 600, 1280 * 720) == PictureSize{800, 600});
     CHECK(size_for_window(801, 601, 1280 * 720) == PictureSize{800, 600});
     CHECK(size_for_window(1, 1, 1280 * 720) == PictureSize{16, 16});
-    CHECK(size_for_window(65535, 100, 1280 * 720) == PictureSize{400, 100}); // a strip
+    CHECK(size_for_window(65535, 100, 1280 * 720) == PictureSize{400, 100}); // the window is a strip
     for (const auto& [width, height] : {std::pair{390u, 844u}, {1366u, 657u}, {2560u, 1303u}, {1170u, 2532u}}) {
         CAPTURE(width);
         const PictureSize size = size_for_window(width, height, 1280 * 720);
@@ -86,7 +86,7 @@ TEST_CASE("a picture has the window's aspect and at most the requested pixels an
         CHECK(across <= 1);
     }
     ViewState view;
-    CHECK_FALSE(resize_to_window(view, 64, 48)); // its size was asked for
+    CHECK_FALSE(resize_to_window(view, 64, 48)); // its size was requested
     CHECK(view.options.render.width == 1280);
     view.window_pixels = 1280 * 720;
     CHECK(resize_to_window(view, 640, 480));
@@ -124,14 +124,14 @@ TEST_CASE("growing pictures precede the samples of a new view and do not affect 
         const auto [sizes, hash] = gather();
         CHECK(sizes >= 2);
         CHECK((hash == at_rest) == (integrator == IntegratorKind::Path));
-        CHECK(gather().first == 1); // it is there
+        CHECK(gather().first == 1); // the picture is complete
         request.view.options.render.path.max_depth = 2;
-        CHECK(gather().first >= 2); // a new setting is seen as a small picture first
+        CHECK(gather().first >= 2); // a new setting is first shown as a small picture
         request.view.options.render.path.max_depth = 3;
         CHECK(gather().second == hash);
-        request.view.options.render.samples = 15; // more samples of the same picture need none
+        request.view.options.render.samples = 15; // more samples of the same picture need no small picture
         CHECK(gather().first == 1);
-        request.view.options.render.samples = 12; // too few for a frame of full size before them
+        request.view.options.render.samples = 12; // too few samples to precede them with a full-size frame
     }
 }
 
@@ -149,7 +149,7 @@ TEST_CASE("a change of exposure waits for no sample and loses no complete sample
     while (session.history().samples < 3 || session.settings().width < 48) frames.next(request);
     const uint32_t before = session.history().samples;
     frames.hurry() = true;
-    CHECK_FALSE(frames.next(request).has_value()); // broken off, and the samples stay
+    CHECK_FALSE(frames.next(request).has_value()); // is interrupted, and the samples are kept
     CHECK(session.history().samples == before);
     frames.hurry() = false;
     request.view.display.exposure_stops = 2;
@@ -161,7 +161,7 @@ TEST_CASE("a change of exposure waits for no sample and loses no complete sample
     std::optional<ShownFrame> rests;
     while (!rests || !rests->is_final) rests = frames.next(request);
     CHECK(rests->hash == at_rest);
-    // Frames that are broken off begin again.
+    // Interrupted frames begin again.
     request.view.options.render.path.max_depth = 2;
     frames.hurry() = true;
     CHECK_FALSE(frames.next(request).has_value());

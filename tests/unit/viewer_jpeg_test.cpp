@@ -1,5 +1,5 @@
-// The viewer's JPEG encoders (jpeg_encoder.h): a stand-in for nvJPEG (tests/stand_in/nvjpeg.cpp), which records its
-// calls and fails on request; then libjpeg-turbo.
+// The viewer's JPEG encoders (jpeg_encoder.h): a substitute for nvJPEG (tests/stand_in/nvjpeg.cpp) that records its
+// calls and fails on request, and libjpeg-turbo.
 
 #include <dlfcn.h>
 
@@ -29,7 +29,7 @@ std::string text_of(const std::vector<std::byte>& file) {
     return {reinterpret_cast<const char*>(file.data()), file.size()};
 }
 
-/// The stand-in, and its own controls.
+/// The substitute and its controls.
 struct StandIn {
     const char* const path = PERTEV_NVJPEG_STAND_IN;
     void* library = ::dlopen(path, RTLD_NOW);
@@ -72,7 +72,7 @@ TEST_CASE("if nvJPEG is missing or any call fails, libjpeg-turbo encodes, and no
     const std::vector<std::byte> expected = encode_jpeg_strips(picture, 80, true);
     Queue queue = Queue::make_cpu();
     CHECK(JpegEncoder(nullptr).encode(picture, 80, true) == expected);
-    const char* const nowhere[] = {"libno-such-thing.so.1", "libz.so.1"}; // the second one has no such functions
+    const char* const nowhere[] = {"libno-such-thing.so.1", "libz.so.1"}; // the second library lacks the functions
     JpegEncoder without(&queue, nowhere);
     CHECK(std::string(without.name()) == "libjpeg-turbo");
     CHECK(without.encode(picture, 80, true) == expected);
@@ -89,6 +89,6 @@ TEST_CASE("if nvJPEG is missing or any call fails, libjpeg-turbo encodes, and no
         CHECK(stand_in.objects() == 0);
         CHECK(queue.allocated_bytes() == 0);
         stand_in.fail("");
-        CHECK(encoder.encode(picture, 80, true) == expected); // it is not asked again
+        CHECK(encoder.encode(picture, 80, true) == expected); // the library is not tried again
     }
 }

@@ -75,9 +75,9 @@ TEST_CASE("malformed messages are refused") {
              "null",
              R"("hello")",
              R"({"type":"hello"})",                     // a key is missing
-             R"({"type":"hello","key":"a","key":"b"})", // one stands twice
+             R"({"type":"hello","key":"a","key":"b"})", // a key occurs twice
              R"({"type":"ask","type":"ask"})",
-             R"({"type":"hello","key":"a","more":1})", // one too many
+             R"({"type":"hello","key":"a","more":1})", // there is an additional key
              R"({"type":"hello","key":7})",
              R"({"type":"hello","key":"\u0000"})",
              R"({"type":"Hello","key":"a"})",
@@ -142,5 +142,5 @@ TEST_CASE("damaged messages and random bytes are read or refused, and accepted v
         REQUIRE(message->key.size() <= 64);
         REQUIRE(message->hertz <= 1000);
     }
-    CHECK(read > rounds / 8); // the unspoiled ones at least
+    CHECK(read > rounds / 8); // at least the undamaged messages are accepted
 }

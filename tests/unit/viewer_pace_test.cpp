@@ -1,5 +1,4 @@
-// Timely pictures: sizes while moving (frame_pace.h), links (link_pace.h), who steers (wheel.h), and what each client
-// gets (audience.h).
+// Sizes in motion (frame_pace.h), links (link_pace.h), who steers (wheel.h), and what each client gets (audience.h).
 
 #include <algorithm>
 #include <deque>
@@ -15,7 +14,7 @@ using namespace pertev;
 
 namespace {
 
-/// The time that a frame of this scale takes on a machine that needs `full_s` for a full one.
+/// Returns the time of a frame of this scale on a machine that needs `full_s` for a full-size frame.
 double frame_time(double full_s, float scale) {
     return full_s * static_cast<double>(scale) * static_cast<double>(scale);
 }
@@ -25,7 +24,7 @@ SendJob next(Audience& audience) {
     return job.value_or(SendJob{});
 }
 
-/// Takes and forgets texts; gives the first picture, or nothing.
+/// Discards texts and returns the first picture, if any.
 SendJob next_picture(Audience& audience) {
     for (int i = 0; i < 100; ++i) {
         const SendJob job = next(audience);
@@ -53,9 +52,9 @@ TEST_CASE("the size in motion is the largest that keeps the frame rate") {
         CAPTURE(full_s);
         const double time = frame_time(full_s, pace.scale());
         CHECK(time <= 0.12);
-        if (pace.scale() < 1) CHECK(time > 0.12 / 3.5); // one step larger would not keep it with room
+        if (pace.scale() < 1) CHECK(time > 0.12 / 3.5); // one step larger would not keep the rate with a margin
         const float settled = pace.scale();
-        for (int i = 0; i < 20; ++i) { // and it does not swing
+        for (int i = 0; i < 20; ++i) { // the size does not oscillate
             pace.took(pace.scale(), frame_time(full_s, pace.scale()));
             CHECK(pace.scale() == settled);
         }
@@ -87,7 +86,7 @@ TEST_CASE("a slowly moving scene leaves less time for the picture, and an unreac
     CHECK_FALSE(settled(600, 0).keeps_rate()); // at a 32nd of each side
     const FramePace moves_slowly = settled(0.5, 0.3);
     CHECK_FALSE(moves_slowly.keeps_rate());
-    CHECK(moves_slowly.scale() > 0.15f); // a speck would be no faster
+    CHECK(moves_slowly.scale() > 0.15f); // a smaller picture would not be faster
 }
 
 TEST_CASE("a changed frame rate changes the size in both directions") {
@@ -115,7 +114,8 @@ TEST_CASE("an expensive view makes pictures smaller within a few frames") {
 }
 
 TEST_CASE("a picture at rest replaces a reconstruction once its error is smaller") {
-    // Grey pictures about a truth of 100; `blur` is what the reconstruction is off by, `noise` a half's deviation.
+    // Grey pictures with a true value of 100. `blur` is the reconstruction's error, `noise` the standard deviation of a
+    // half.
     const auto picture = [](uint32_t size, auto value) {
         Rgba8Image made = {size, size, std::vector<uint8_t>(std::size_t(4) * size * size, 255)};
         for (std::size_t i = 0; i < std::size_t(size) * size; ++i) {
@@ -128,15 +128,15 @@ TEST_CASE("a picture at rest replaces a reconstruction once its error is smaller
     const auto better = [&](double noise, double blur) {
         std::vector<double> a(64 * 64), b(64 * 64);
         for (std::size_t i = 0; i < a.size(); ++i) {
-            a[i] = noise * 1.732 * (random.below(2001) / 1000.0 - 1); // even, of this deviation
+            a[i] = noise * 1.732 * (random.below(2001) / 1000.0 - 1); // uniform noise with this standard deviation
             b[i] = noise * 1.732 * (random.below(2001) / 1000.0 - 1);
         }
         const Rgba8Image half = picture(64, [&](std::size_t i) { return a[i]; });
         const Rgba8Image whole = picture(64, [&](std::size_t i) { return 0.5 * (a[i] + b[i]); });
         return reference_is_better(whole, half, picture(16, [&](std::size_t i) { return i % 2 == 0 ? blur : -blur; }));
     };
-    CHECK_FALSE(better(20, 0));  // nothing beats the truth
-    CHECK_FALSE(better(20, 10)); // 14 against what is left of 10 when it is stretched
+    CHECK_FALSE(better(20, 0));  // no picture is better than the truth
+    CHECK_FALSE(better(20, 10)); // 14 against the rest of 10 after stretching
     CHECK(better(20, 40));
     CHECK(better(4, 10));
 }
@@ -155,8 +155,8 @@ TEST_CASE("at most two pictures are in flight to a client, and acknowledging one
 
 namespace {
 
-/// A client that decodes `at_once` pictures beside each other, each in `decode_s`, a new picture every 8 ms, 2 ms of
-/// way: the median seconds from sending to drawing, and the pictures drawn a second.
+/// Simulates a client that decodes `at_once` pictures in parallel, each in `decode_s`, with a new picture every 8 ms
+/// and a latency of 2 ms. Returns the median seconds from sending to drawing, and the pictures drawn per second.
 struct Shown {
     double wait_s, rate;
 };
@@ -195,7 +195,7 @@ Shown pictures_shown(double decode_s, std::size_t at_once) {
 
 TEST_CASE("pictures do not queue for a client slower than the renderer, and a faster one gets all") {
     const Shown slow = pictures_shown(0.02, 1);
-    CHECK(slow.wait_s < 0.029); // 22 ms are its own; at once sent, the second would wait for up to 20
+    CHECK(slow.wait_s < 0.029); // 22 ms are the client's; a second picture sent at once would wait for up to 20 ms
     CHECK(slow.rate > 40);      // out of 50
     const Shown parallel = pictures_shown(0.012, 2);
     CHECK(parallel.wait_s < 0.016);
@@ -209,7 +209,7 @@ TEST_CASE("a slow link gets smaller pictures and a fast one good ones") {
     LinkPace slow, fast;
     double slow_now = 0, fast_now = 0;
     for (uint32_t i = 1; i < 200; ++i) {
-        // 100 kB/s and a way of 20 ms; what a picture takes goes by its quality and its size.
+        // The link has 100 kB/s and a latency of 20 ms. The size of a picture depends on its quality and resolution.
         const auto bytes_of = [](const LinkPace& pace) {
             return static_cast<std::size_t>(4000.0 * pace.quality() * static_cast<double>(pace.scale() * pace.scale()));
         };
@@ -232,7 +232,7 @@ TEST_CASE("a slow link gets smaller pictures and a fast one good ones") {
 TEST_CASE("a link with high latency is not treated as slow") {
     LinkPace pace;
     double now = 0;
-    for (uint32_t i = 1; i < 300; ++i) { // 0.25 s of way, 10 MB/s
+    for (uint32_t i = 1; i < 300; ++i) { // a latency of 0.25 s and 10 MB/s
         const auto bytes =
             static_cast<std::size_t>(1000.0 * pace.quality() * static_cast<double>(pace.scale() * pace.scale()));
         pace.sent(i, bytes, now);
@@ -242,7 +242,7 @@ TEST_CASE("a link with high latency is not treated as slow") {
     CHECK(pace.scale() == 1);
 }
 
-TEST_CASE("the first client steers, can hand over, and keeps the wheel after a reconnect") {
+TEST_CASE("the first client steers, can hand over, and keeps control after a reconnect") {
     Wheel wheel;
     wheel.join(1, "a", 0);
     wheel.join(2, "b", 0);
@@ -255,7 +255,7 @@ TEST_CASE("the first client steers, can hand over, and keeps the wheel after a r
     CHECK(wheel.steers(2));
     CHECK_FALSE(wheel.seats()[1].wants_wheel);
     wheel.leave(2, 10);
-    CHECK(wheel.holder() == 0); // it waits
+    CHECK(wheel.holder() == 0); // the client waits
     wheel.join(3, "b", 12);
     CHECK(wheel.steers(3));
     wheel.leave(3, 20);
@@ -269,7 +269,7 @@ TEST_CASE("the first client steers, can hand over, and keeps the wheel after a r
     CHECK(wheel.steers(4));
 }
 
-TEST_CASE("a page that reconnects before its timeout gets back the wheel, and no other page does") {
+TEST_CASE("a page that reconnects before its timeout regains control, and no other page does") {
     Wheel wheel;
     wheel.join(1, "a", 0);
     wheel.join(2, "b", 0);
@@ -299,7 +299,7 @@ TEST_CASE("pieces of a still picture do not affect the estimate for moving ones"
     CHECK(pace.quality() == quality);
 }
 
-TEST_CASE("a free wheel goes to the first client that requests it") {
+TEST_CASE("free control goes to the first client that requests it") {
     Wheel wheel;
     wheel.join(1, "a", 0);
     wheel.join(2, "b", 0);
@@ -318,18 +318,18 @@ TEST_CASE("a client gets nothing before its hello, then the welcome, then pictur
     CHECK(audience.received(1, kHello, 0).empty());
     CHECK(audience.is_anyone_there());
     CHECK(next(audience).text == "welcome");
-    const SendJob picture = next(audience); // no second text before the first has gone
+    const SendJob picture = next(audience); // no second text is sent before the first
     REQUIRE(picture.picture != nullptr);
     const uint32_t first = audience.picture_leaves(picture, 100, 100, 0);
     CHECK(next(audience).client == 0);
     audience.publish(small_frame(), 0);
     audience.picture_leaves(next(audience), 100, 100, 0);
     for (int i = 0; i < 5; ++i) audience.publish(small_frame(), 0);
-    CHECK(next(audience).client == 0); // two are under way
+    CHECK(next(audience).client == 0); // two pictures are in transit
     CHECK_FALSE(audience.is_behind(0.2));
     CHECK(audience.received(1, R"({"type":"ack","frame":)" + std::to_string(first) + R"(,"ms":1})", 0.1).empty());
     CHECK(audience.is_behind(0.2));
-    CHECK(next(audience).picture->number == 7); // the newest, none of those before
+    CHECK(next(audience).picture->number == 7); // the newest picture is sent and the earlier ones are not
 }
 
 TEST_CASE("the last picture is sent losslessly in pieces until a newer one exists") {
@@ -354,7 +354,7 @@ TEST_CASE("the last picture is sent losslessly in pieces until a newer one exist
     audience.publish(small_frame(false), 0);
     acknowledge(audience.picture_leaves(job, 200, 1000, 0));
     job = next_picture(audience);
-    CHECK_FALSE(job.is_piece); // the rest is given up
+    CHECK_FALSE(job.is_piece); // the rest is dropped
     acknowledge(audience.picture_leaves(job, 100, 100, 0));
     CHECK(next_picture(audience).client == 0);
 }
@@ -364,7 +364,7 @@ TEST_CASE("only the steering client's messages reach the renderer, and floods an
     Audience audience(inbox, "welcome");
     audience.open(1, 0);
     audience.open(2, 0);
-    CHECK_FALSE(audience.received(2, R"({"type":"home","n":1})", 0).empty()); // no hello
+    CHECK_FALSE(audience.received(2, R"({"type":"home","n":1})", 0).empty()); // the client sent no hello
     audience.received(1, kHello, 0);
     audience.received(2, R"({"type":"hello","key":"b"})", 0);
     CHECK_FALSE(audience.received(2, kHello, 0).empty());
@@ -416,7 +416,7 @@ TEST_CASE("the queue of a client that does not read stays small") {
     Audience audience(inbox, "welcome");
     audience.open(1, 0);
     audience.received(1, kHello, 0);
-    CHECK(next(audience).text == "welcome"); // never acknowledged as sent
+    CHECK(next(audience).text == "welcome"); // the text was never reported as sent
     for (int i = 0; i < 1000; ++i) {
         audience.notify(0, "note " + std::to_string(i));
         audience.report_state("state");

@@ -18,7 +18,7 @@ namespace {
 
 const ServerIdentity kServer = {"render1.lan", "0123456789abcdef", "pertev-1a2b", "fedcba9876543210"};
 
-/// A request that is let in; tests spoil one part of it each.
+/// An accepted request. Each test invalidates one part of it.
 RequestText good_request() {
     return {.method = "GET", .target = "/main.js", .host = "localhost:8080", .cookie = "pertev-1a2b=fedcba9876543210"};
 }
@@ -113,7 +113,7 @@ TEST_CASE("a request with the cookie is answered, and one with the token gets th
     CHECK(check_request(first, kServer).gives_cookie);
     first.target = "/?token=0123456789abcdee";
     CHECK(check_request(first, kServer).status == 403);
-    first.target = "/main.js?token=0123456789abcdef"; // the page alone takes it
+    first.target = "/main.js?token=0123456789abcdef"; // only the page accepts the token
     CHECK(check_request(first, kServer).status == 403);
     first.target = "/?token=";
     CHECK(check_request(first, kServer).status == 403);
@@ -134,7 +134,7 @@ TEST_CASE("each invalid part of a request refuses it") {
     CHECK(status_with([](RequestText& r) { r.host = ""; }) == 403);
     CHECK(status_with([](RequestText& r) { r.origin = "http://evil.com"; }) == 403);
     CHECK(status_with([](RequestText& r) { r.origin = "http://localhost:8080"; }) == 200);
-    CHECK(status_with([](RequestText& r) { r.is_upgrade = true; }) == 403); // shows no origin
+    CHECK(status_with([](RequestText& r) { r.is_upgrade = true; }) == 403); // has no origin
     CHECK(status_with([](RequestText& r) { r.method = "POST"; }) == 405);
     CHECK(status_with([](RequestText& r) { r.is_single = false; }) == 400);
     CHECK(status_with([](RequestText& r) { r.target = "main.js"; }) == 400);
@@ -160,6 +160,6 @@ TEST_CASE("no random request crashes the checks or is accepted") {
         if (i % 3 == 0) request.target = target;
         if (i % 5 == 0) request.host = host;
         if (i % 7 == 0) request.origin = origin;
-        REQUIRE(check_request(request, kServer).status != 200); // the secret is in none of the pieces
+        REQUIRE(check_request(request, kServer).status != 200); // none of the pieces contains the secret
     }
 }

@@ -95,7 +95,7 @@ TEST_CASE("frames in motion have a smaller depth until a depth is chosen for bot
     CHECK(set_view_setting(state, "moving_depth", 2.0) == "");
     CHECK(state.moving_depth == 2);
     CHECK(state.options.render.path.max_depth ==
-          ViewState{}.options.render.path.max_depth); // the picture at rest stays
+          ViewState{}.options.render.path.max_depth); // the picture at rest is unchanged
     CHECK(set_view_setting(state, "max_depth", 9.0) == "");
     CHECK(state.moving_depth == 9);
     CHECK(state.options.render.path.max_depth == 9);
@@ -139,7 +139,7 @@ TEST_CASE("messages to the page are JSON") {
         simdjson::dom::parser parser;
         std::string_view type;
         CHECK_MESSAGE(parser.parse(text)["type"].get_string().get(type) == simdjson::SUCCESS, text);
-        CHECK_MESSAGE(text.find("a user") == std::string::npos, text); // nobody is told where the file lies
+        CHECK_MESSAGE(text.find("a user") == std::string::npos, text); // no message contains the file's folder
     }
 }
 
@@ -158,10 +158,11 @@ TEST_CASE("the flags of a picture are its settings that differ from the defaults
         set_value(options, *find_setting(name), {&value, 1});
     }
     const std::string flags = picture_flags(options, "--eye 0,1,2 --size 32x32");
-    CHECK(flags.ends_with(" --eye 0,1,2 --size 32x32")); // the view's own are not repeated
+    CHECK(flags.ends_with(" --eye 0,1,2 --size 32x32")); // the flags of the view are not repeated
     for (const char* shown : {"--environment 'a b.hdr' ", "--exposure 1.5 ", "--transparent --", "--max-depth 3 "})
         CHECK_MESSAGE(flags.find(shown) != std::string::npos, flags);
-    for (const char* hidden : {"3,4,5", "64x48", "--threads", "--integrator"}) // a default, and what is not kept
+    for (const char* hidden :
+         {"3,4,5", "64x48", "--threads", "--integrator"}) // a default value, and a setting that is not kept
         CHECK_MESSAGE(flags.find(hidden) == std::string::npos, flags);
 }
 
@@ -182,7 +183,7 @@ TEST_CASE("clients get file names, never paths") {
     const std::string scene = folder + "/scene/d.gltf";
     CHECK(without_folders(scene + ": /nodes/0: " + folder + "/scene/textures/e.png", scene) ==
           "d.gltf: /nodes/0: textures/e.png");
-    CHECK(without_folders("\"" + folder + "/other/e.png\"", scene) == "\"other/e.png\""); // there is no such folder
+    CHECK(without_folders("\"" + folder + "/other/e.png\"", scene) == "\"other/e.png\""); // the folder does not exist
     CHECK(without_folders("`allow_path=" + folder + "/scene`", scene) == "`allow_path=scene`");
     CHECK(without_folders(folder + "/scene: (" + folder + "/e.png," + folder + ")", scene).find(outer.string()) ==
           std::string::npos);
@@ -194,7 +195,7 @@ TEST_CASE("layers are displayed in their described colours") {
     CHECK(show_normal(normal).pixels == std::vector<uint8_t>{128, 128, 255, 255, 0, 0, 0, 255});
     const Image depth = {3, 1, 1, {1, 10, 0}};
     const Rgba8Image far = show_depth(depth);
-    CHECK(far.pixels[0] > far.pixels[4]); // near is bright
+    CHECK(far.pixels[0] > far.pixels[4]); // near surfaces are bright
     CHECK(far.pixels[8] == 0);
     float full = 0;
     const Rgba8Image motion = show_motion({2, 1, 2, {0, 0, -8, 4}}, full);

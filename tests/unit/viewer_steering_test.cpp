@@ -1,5 +1,4 @@
-// Steps of the camera (apps/viewer/steering.h): each does what its key says, and flags of the command line place the
-// very same camera.
+// Camera movements (apps/viewer/steering.h): each follows its key, and flags of the command line reproduce the camera.
 
 #include <cmath>
 
@@ -34,10 +33,10 @@ TEST_CASE("orbiting keeps the distance, and dragging right brings the left into 
     const Pose turned = orbit(kStart, 0.25f, 0);
     CHECK(length(turned.eye - turned.centre) == doctest::Approx(5));
     CHECK(near(turned.centre, kStart.centre, 1e-6f));
-    CHECK(turned.eye.x < -1);                // the eye goes left, so things go right
-    CHECK(orbit(kStart, 0, 0.1f).eye.y > 1); // dragged down: seen from above
+    CHECK(turned.eye.x < -1);                // the eye moves left, so the scene moves right
+    CHECK(orbit(kStart, 0, 0.1f).eye.y > 1); // dragging down shows the scene from above
     Pose aside = kStart;
-    aside.centre = {1, 1, 1}; // off the view's axis: the view turns as one, without a jump
+    aside.centre = {1, 1, 1}; // about a point off the view's axis the view turns without a jump
     const Pose moved = orbit(aside, 0.1f, 0.05f);
     CHECK(length(moved.eye - moved.centre) == doctest::Approx(length(aside.eye - aside.centre)));
     CHECK(length(moved.target - moved.eye) == doctest::Approx(5));
@@ -66,7 +65,8 @@ TEST_CASE("no drag passes the poles") {
 TEST_CASE("panning keeps points at the centre's distance under the pointer, and zooming never reaches the centre") {
     Camera camera;
     camera.fov_y = 1;
-    const Pose panned = pan(kStart, 0.5f, 0, view_height_at(camera, 5)); // half a picture's height to the right
+    const Pose panned =
+        pan(kStart, 0.5f, 0, view_height_at(camera, 5)); // drags to the right by half a picture's height
     CHECK(panned.eye.x == doctest::Approx(-5 * std::tan(0.5)));
     CHECK(near(ahead(panned), ahead(kStart)));
     camera.projection = Projection::Orthographic, camera.ortho_height = 3;
@@ -108,7 +108,7 @@ TEST_CASE("angles become degrees for the command line that reproduce them to the
         const float degrees = random.within(1, 170), radians = degrees * (kPi / 180.0f);
         exact += degrees_for(radians) * (kPi / 180.0f) == radians ? 1 : 0;
     }
-    CHECK(exact == kRounds); // each of these came from degrees
+    CHECK(exact == kRounds); // each of these angles is a number of degrees
 }
 
 TEST_CASE("flags contain eye, target and lens") {

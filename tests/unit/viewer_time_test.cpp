@@ -1,4 +1,4 @@
-// Time in the viewer: its clock (scene_clock.h), and what moves the camera meanwhile (view_camera.h).
+// Time in the viewer: its clock (scene_clock.h), and the camera's motion (view_camera.h).
 
 #include <doctest/doctest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 ClientMessage step_forward() { return {.kind = MessageKind::Move, .forward = 1, .seconds = 0.1f}; }
 
-/// A scene with one camera, which an animation may move (where it stands at a time is the test's to say).
+/// A scene with one camera that an animation may move. The test sets its position at a time.
 Scene scene_with_camera() {
     Scene scene;
     Camera camera;
@@ -39,7 +39,7 @@ StartCamera start_at(const Scene& scene) {
 TEST_CASE("time starts at 0, runs at its speed, loops or stops at its end and continues from there") {
     SceneClock clock = {.end_s = 4};
     clock.advance(1);
-    CHECK_FALSE(clock.time_s.has_value()); // it stands
+    CHECK_FALSE(clock.time_s.has_value()); // the clock is stopped
     clock.play(true);
     clock.advance(1);
     CHECK(clock.time_s == 0);
@@ -70,7 +70,7 @@ TEST_CASE("time moves a scene's camera until a user moves it, and again after th
     view.seek(1.0, lens);
     CHECK(view.camera(lens).world_from_camera == scene.cameras[0].world_from_camera);
     CHECK(lens.fov_y == 0.5f);
-    lens.fov_y = 0.6f; // set by hand: it stays
+    lens.fov_y = 0.6f; // the user moved the camera, so it stays
     scene.cameras[0].fov_y = 0.4f;
     view.seek(1.5, lens);
     CHECK(lens.fov_y == 0.6f);
@@ -90,7 +90,7 @@ TEST_CASE("time moves a scene's camera until a user moves it, and again after th
 TEST_CASE("flags state a camera's position to the bit, or the name of the scene's camera if they cannot") {
     Scene scene = scene_with_camera();
     Transform turned = look_at({0, 1, 5}, {0.3f, 1.1f, 0}, {0, 1, 0});
-    turned.row0.x = std::nextafter(turned.row0.x, 0.0f); // no look_at gives this value
+    turned.row0.x = std::nextafter(turned.row0.x, 0.0f); // no look_at has this value
     scene.cameras[0].world_from_camera = turned;
     const StartCamera start = start_at(scene);
     ViewCamera view(start, scene);
@@ -109,7 +109,7 @@ TEST_CASE("recorded keys are ordered by time, and the camera passes through them
     const StartCamera start = start_at(scene);
     ViewCamera view(start, scene);
     Camera lens = start.camera;
-    CHECK_FALSE(view.follow_path(0.0, lens)); // there is none
+    CHECK_FALSE(view.follow_path(0.0, lens)); // there is no key
     view.step(step_forward(), lens, 1);
     const Camera second = view.camera(lens);
     CHECK(view.add_key(2, lens));
@@ -126,13 +126,13 @@ TEST_CASE("recorded keys are ordered by time, and the camera passes through them
     view.seek(2.0, lens);
     CHECK(view.camera(lens).world_from_camera == second.world_from_camera);
     CHECK(view.is_given_by_pose());
-    CHECK(view.add_key(2, lens)); // in place of the one there
+    CHECK(view.add_key(2, lens)); // replaces the key at that time
     CHECK(view.path().keys.size() == 2);
     view.remove_key(7);
     view.remove_key(0);
     view.remove_key(0);
     CHECK(view.path().keys.empty());
-    CHECK(view.camera(lens).world_from_camera == second.world_from_camera); // it stays where it is
+    CHECK(view.camera(lens).world_from_camera == second.world_from_camera); // the camera stays at its position
     view.return_to_start(2.0, lens);
     CHECK(view.camera(lens).world_from_camera == start.camera.world_from_camera);
     for (std::size_t i = 0; i < ViewCamera::kMaxKeys; ++i) CHECK(view.add_key(static_cast<float>(i), lens));
@@ -150,12 +150,12 @@ TEST_CASE("a path given at the start moves the camera, and home returns to that 
     ViewCamera view(start, scene);
     Camera lens = start.camera;
     CHECK(view.moves_with_time());
-    CHECK(view.path().keys[0].fov_deg > 0); // so that keys can join it
+    CHECK(view.path().keys[0].fov_deg > 0); // so that keys can be added to it
     view.seek(1.0, lens);
     CHECK(view.camera(lens).world_from_camera.translation == Vec3{0, 0, 1});
     CHECK(view.camera(lens).fov_y == start.camera.fov_y);
     const Camera before = view.camera(lens);
-    view.seek(1.5, lens); // through what it looks at: no view
+    view.seek(1.5, lens); // the eye passes through its target, so there is no view
     CHECK(is_finite(view.camera(lens).world_from_camera.row0));
     view.seek(1.0, lens);
     CHECK(view.camera(lens) == before);
@@ -170,7 +170,8 @@ TEST_CASE("a default view adapts to the window's aspect until a user moves") {
     start.framed = [](float aspect) {
         CameraSource source;
         source.target = {0, 0, 0};
-        source.camera.world_from_camera = look_at({0, 0, 4 / aspect}, {0, 0, 0}, {0, 1, 0}); // narrow: further away
+        source.camera.world_from_camera =
+            look_at({0, 0, 4 / aspect}, {0, 0, 0}, {0, 1, 0}); // the window is narrow, so the camera is farther away
         return source;
     };
     start.camera = start.framed(2).camera;
@@ -183,7 +184,7 @@ TEST_CASE("a default view adapts to the window's aspect until a user moves") {
     camera.fit(0.5f, lens);
     CHECK(away() == 8);
     CHECK(camera.is_given_by_pose()); // the flags give the same picture
-    camera.seek(0.5, lens);           // time leaves it alone
+    camera.seek(0.5, lens);           // time does not move it
     CHECK(away() == 8);
     ClientMessage zoom;
     zoom.kind = MessageKind::Zoom;

@@ -1,4 +1,4 @@
-// Detection of emitters that are too weak to see by, and the default light for these.
+// Detection of emitters that are too weak to light the scene, and the default light for such scenes.
 
 #include <doctest/doctest.h>
 
@@ -13,9 +13,9 @@
 
 using namespace pertev;
 
-namespace weak_light_test { // tests are compiled several files at once
+namespace weak_light_test { // test files are compiled together
 
-/// A quad of half size `half` about `middle`, whose front points along the unit `front`.
+/// A quad with half the side `half` about `middle`. Its front has the unit normal `front`.
 void add_quad(Scene& scene, Vec3 middle, Vec3 front, float half, uint32_t material) {
     const Vec3 u = half * Vec3{front.y, front.z, front.x}, v = cross(front, u);
     Mesh mesh;
@@ -28,7 +28,7 @@ void add_quad(Scene& scene, Vec3 middle, Vec3 front, float half, uint32_t materi
                                .world_from_local = {}});
 }
 
-/// A cube of 1 m, and a lamp of 2 cm on its top that shines upwards.
+/// A cube of 1 m with an emitter of 2 cm on its top that faces up.
 Scene make_body_with_emitter() {
     Scene scene;
     scene.materials.push_back({{}, "body"});
@@ -41,7 +41,7 @@ Scene make_body_with_emitter() {
     return scene;
 }
 
-/// A floor beneath a lamp of 1 m.
+/// A floor below an emitter of 1 m.
 Scene make_lit_floor() {
     Scene scene;
     scene.materials.push_back({{}, "floor"});
@@ -54,7 +54,7 @@ Scene make_lit_floor() {
 DefaultLight light_added(Scene scene, SceneUse use) {
     Messages messages;
     const DefaultLight added = add_default_light(scene, use, messages);
-    CHECK(messages.all().size() == (added == DefaultLight::None ? 0 : 1)); // said where it is done
+    CHECK(messages.all().size() == (added == DefaultLight::None ? 0 : 1)); // the notice comes from the caller
     CHECK(scene.environment.has_value() == (added == DefaultLight::Sky));
     return added;
 }
@@ -96,7 +96,7 @@ TEST_CASE("a light that an animation brightens counts as a light of the file") {
     scene.animations[0].channels[0].values[4] = 1;
     CHECK(light_added(scene, SceneUse::Measurement) == DefaultLight::None);
     CHECK(light_added(scene, SceneUse::Benchmark) == DefaultLight::None);
-    CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky); // at time 0 it shows nothing
+    CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky); // at time 0 it emits nothing
 }
 
 TEST_CASE("an emitter with a black texture emits nothing, so the scene gets a sky") {
@@ -113,7 +113,7 @@ TEST_CASE("point lights get an additional sky only if they reach nothing visible
     scene.lights.push_back({.name = "lamp", .position = {0, 2, 0}, .intensity = grey(100)});
     Light& light = scene.lights.front();
     CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::None);
-    light.range = 1.5f; // ends above the floor
+    light.range = 1.5f; // its range ends above the floor
     CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky);
     CHECK(light_added(scene, SceneUse::Measurement) == DefaultLight::None);
     CHECK(light_added(scene, SceneUse::Benchmark) == DefaultLight::None);
@@ -145,11 +145,11 @@ TEST_CASE("the first camera of the file decides, and the emitter's brightness do
 TEST_CASE("an animation counts by its state at time 0") {
     Scene scene = make_lit_floor();
     scene.nodes.resize(1);
-    scene.instances[1].node = 0; // the lamp
+    scene.instances[1].node = 0; // the emitter
     AnimationChannel grows = {.target = 0, .part = AnimatedPart::Scale, .times = {0, 1}, .values = {1, 1, 1, 0, 0, 0}};
     scene.animations.push_back({.name = "", .origin = "", .channels = {grows}});
     CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::None);
-    scene.animations[0].channels[0].values = {0, 0, 0, 1, 1, 1}; // it is not there at first
+    scene.animations[0].channels[0].values = {0, 0, 0, 1, 1, 1}; // it is hidden at first
     CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky);
 }
 
@@ -180,7 +180,7 @@ TEST_CASE("benchmarks keep the sky of their stored figures") {
     Messages messages;
     add_default_light(studio, SceneUse::Picture, messages);
     add_default_light(clear, SceneUse::Benchmark, messages);
-    // White surfaces that face up send about as much under either.
+    // White surfaces that face up reflect about the same light under either.
     for (const Scene* scene : {&studio, &clear}) {
         const Image& sky = scene->environment->image;
         double irradiance = 0;
@@ -197,7 +197,7 @@ TEST_CASE("benchmarks keep the sky of their stored figures") {
     }
     const auto largest = [](const Scene& scene) { return *std::ranges::max_element(scene.environment->image.pixels); };
     CHECK(largest(clear) > 30);
-    CHECK(largest(studio) < 9); // so it is found with less noise
+    CHECK(largest(studio) < 9); // so it has less noise
 }
 
 } // namespace weak_light_test

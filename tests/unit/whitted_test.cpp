@@ -1,4 +1,4 @@
-// Whitted's ray trees against a count by hand, and their light against closed forms.
+// Whitted's ray trees against counts by hand, and their light against closed forms.
 
 #include <doctest/doctest.h>
 
@@ -12,7 +12,7 @@ using namespace pertev;
 
 namespace {
 
-/// A single ray, straight down from `eye`.
+/// Traces a single ray straight down from `eye`.
 RenderResult one_ray(const Scene& scene, Vec3 eye, uint32_t depth, IntegratorKind integrator = IntegratorKind::Whitted,
                      PathBody body = PathBody::Loop) {
     RenderSettings settings;
@@ -37,7 +37,7 @@ Scene slab_scene() {
     const Material glass = {{.kind = MaterialKind::Dielectric, .base_color = {1, 1, 1}, .roughness = 0, .ior = 3},
                             "glass"};
     test::add(scene, test::floor_at(1, 50), glass);
-    test::add(scene, test::sheet({0, 0, 0}, {50, 0, 0}, {0, 0, 50}), glass); // its front down
+    test::add(scene, test::sheet({0, 0, 0}, {50, 0, 0}, {0, 0, 50}), glass); // faces down
     scene.environment = Environment{};
     return scene;
 }
@@ -46,8 +46,8 @@ Scene slab_scene() {
 
 TEST_CASE("a glass slab has the ray count computed by hand at each depth") {
     const Scene scene = slab_scene();
-    // Each scattering of the ray within sends a ray out, and one to the other side. What has come out by depth d:
-    // 1/4, then 3/4 3/4, and a quarter of the last one more each time.
+    // Each scattering inside the slab sends one ray out and one to the other face. Depth 1 adds 1/4, depth 2 adds 3/4
+    // 3/4, and each further depth a quarter of the previous term.
     const float out[] = {0, 0.25f, 0.8125f, 0.953125f, 0.98828125f};
     for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
         for (uint32_t depth = 0; depth <= 4; ++depth) {
@@ -63,8 +63,8 @@ TEST_CASE("a glass slab has the ray count computed by hand at each depth") {
 }
 
 TEST_CASE("rays that contribute less than a thousandth are not followed") {
-    // Within go 3/4 4^-k, out of that 3/4 more: the ray within of k = 5 is the first one under 2^-10, and of those out
-    // that of k = 5. One is reflected at once, five go on within, five come out.
+    // Rays inside have the weight 3/4 4^-k, and rays that leave 3/4 of that. For both, k = 5 is the first below 2^-10.
+    // One ray is reflected at once, five continue inside, and five leave.
     const RenderResult result = one_ray(slab_scene(), {0.2f, 3, 0.3f}, 16);
     CHECK(result.rays.bounce == 11);
     CHECK(radiance_of(result) > 0.998f);
@@ -79,7 +79,7 @@ TEST_CASE("between two mirrors a ray is reflected up to the depth limit") {
     for (const uint32_t depth : {1u, 7u, 200u}) {
         const RenderResult result = one_ray(scene, {0, 1, 0}, depth);
         CHECK(result.rays.bounce == depth);
-        CHECK(result.rays.shadow == 0); // mirrors ask for no light
+        CHECK(result.rays.shadow == 0); // mirrors need no shadow rays
         CHECK(radiance_of(result) == 0);
     }
 }
@@ -87,7 +87,8 @@ TEST_CASE("between two mirrors a ray is reflected up to the depth limit") {
 TEST_CASE("a diffuse surface seen in a mirror samples each light once, however many there are") {
     Scene scene;
     test::add(scene, test::floor_at(0, 50), test::mirror());
-    test::add(scene, test::sheet({0, 4, 0}, {50, 0, 0}, {0, 0, 50}), test::white(0.5f)); // a ceiling, seen in the floor
+    test::add(scene, test::sheet({0, 4, 0}, {50, 0, 0}, {0, 0, 50}),
+              test::white(0.5f)); // the floor reflects the ceiling
     const Vec3 eye = {0.5f, 1, -0.3f};
     double expected = 0;
     for (int i = 0; i < 9; ++i) {
@@ -102,7 +103,7 @@ TEST_CASE("a diffuse surface seen in a mirror samples each light once, however m
         CHECK(result.rays.shadow == 9);
         CHECK(static_cast<double>(radiance_of(result)) == doctest::Approx(expected).epsilon(1e-4));
     }
-    CHECK(one_ray(scene, eye, 1).rays.shadow == 0); // seen at a depth that is not lit any more
+    CHECK(one_ray(scene, eye, 1).rays.shadow == 0); // seen at a depth without direct light
     const RenderResult cast = one_ray(scene, eye, 4, IntegratorKind::Cast);
     CHECK(cast.rays.bounce == 0);
     CHECK(radiance_of(cast) == 0);
@@ -116,7 +117,7 @@ TEST_CASE("distributed equals whitted if there is only one light to choose") {
     scene.lights.push_back(test::point_light({1, 4, 0}, {30, 20, 10}));
     const RenderResult whitted = one_ray(scene, {0, 3, 0}, 2);
     const RenderResult distributed = one_ray(scene, {0, 3, 0}, 2, IntegratorKind::Distributed);
-    CHECK(radiance_of(whitted) > 0.01f); // the ceiling, by reflection
+    CHECK(radiance_of(whitted) > 0.01f); // the ceiling in the reflection
     CHECK(static_cast<double>(radiance_of(distributed)) ==
           doctest::Approx(static_cast<double>(radiance_of(whitted))).epsilon(1e-5));
     CHECK(distributed.rays.bounce == whitted.rays.bounce);

@@ -17,8 +17,8 @@ using namespace pertev::test;
 
 namespace {
 
-/// All ways to collapse a small tree, one after another: each inner node is a wide node, taken in by the node above it,
-/// or a leaf.
+/// Enumerates all ways to collapse a small tree: each inner node becomes a wide node, is merged into its parent, or
+/// becomes a leaf.
 class EveryCollapse {
 public:
     EveryCollapse(const Bvh& bvh, const CollapseSettings& settings, int width)
@@ -102,13 +102,13 @@ TEST_CASE("the chosen collapse of a small tree has minimal cost") {
     for (const uint32_t count : {3u, 7u, 11u, 17u}) {
         std::vector<BvhTriangle> triangles = make_soup(4 * count, 0);
         triangles.resize(count);
-        // Few enough nodes to try all, of leaves of one, or of up to two triangles.
+        // The trees are small enough to try all ways, with leaves of one or of up to two triangles.
         const Bvh bvh =
             build_bvh(triangles, {.max_leaf = count <= 11 ? 1 : 2, .leaf_cost = count <= 11 ? 1.0f : 0.01f});
         CAPTURE(count);
         REQUIRE(bvh.nodes.size() <= 12);
         for (const CollapseSettings& settings : kSettings) {
-            if (settings.max_leaf < 2 && count > 11) continue; // its leaves would be cut
+            if (settings.max_leaf < 2 && count > 11) continue; // its leaves would be split
             check_least_cost<4>(bvh, settings);
             check_least_cost<8>(bvh, settings);
         }
@@ -127,7 +127,7 @@ TEST_CASE("wide trees of all stress meshes are valid and lose no triangle") {
                 CHECK(find_fault(wide4).value_or("none") == "none");
                 CHECK(find_fault(wide8).value_or("none") == "none");
                 CHECK(wide4.triangles.size() == mesh.triangles.size());
-                CHECK(wide8.depth <= std::max(bvh.depth, 1) + 4); // long leaves are cut in halves
+                CHECK(wide8.depth <= std::max(bvh.depth, 1) + 4); // large leaves are split in half
                 CHECK(wide8.sah_cost <= wide4.sah_cost * 1.00001f);
                 for (const auto& node : wide8.nodes) {
                     for (const uint32_t count : node.count) REQUIRE(count <= static_cast<uint32_t>(settings.max_leaf));

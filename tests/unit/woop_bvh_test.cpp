@@ -61,8 +61,9 @@ TEST_CASE("rays inside a triangle hit it as in the exact test, and rays outside 
         TriangleHit exact, woop;
         const bool hits = intersect_triangle(ray.origin, shear, ray.t_min, ray.t_max, a, b, c, exact);
         const bool hits_woop = WoopTests::intersect(ray, make_woop_triangle(a, b, c, true), woop);
-        if (hits && (exact.u < 1e-3f || exact.v < 1e-3f || exact.u + exact.v > 0.999f)) continue; // at an edge
-        if (!hits && hits_woop) {                                                                 // equal
+        if (hits && (exact.u < 1e-3f || exact.v < 1e-3f || exact.u + exact.v > 0.999f))
+            continue;             // the ray is at an edge
+        if (!hits && hits_woop) { // equal
             CHECK((woop.u < 1e-3f || woop.v < 1e-3f || woop.u + woop.v > 0.999f));
             continue;
         }
@@ -100,7 +101,7 @@ TEST_CASE("triangles without area, and those too small or too large, are never h
 
 TEST_CASE("unit-triangle traversals match brute force except for a few rays at edges") {
     for (const StressMesh& c : stress_meshes()) {
-        if (std::string(c.name).find("soup") != 0 || c.extent != 1) continue; // no ties
+        if (std::string(c.name).find("soup") != 0 || c.extent != 1) continue; // there are no ties
         CAPTURE(std::string(c.name));
         const WoopBvh bvh = make_woop_bvh(build_bvh(c.triangles));
         REQUIRE(bvh.transforms.size() == bvh.triangles.size());

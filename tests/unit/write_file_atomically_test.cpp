@@ -83,7 +83,7 @@ TEST_CASE("writing to a missing folder, a folder, a FIFO or a full disk is a Fil
     CHECK(files_in(folder) == 2);
 }
 
-TEST_CASE("a new generation keeps the one before, and an error keeps both") {
+TEST_CASE("a new generation keeps the previous one, and an error keeps both") {
     const fs::path folder = test::scratch_folder(), file = folder / "a", before = folder / "a.previous";
     const auto write = [&](const std::string& text) { write_generation(file, before, std::as_bytes(std::span(text))); };
     write("1");

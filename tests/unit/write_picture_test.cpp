@@ -70,7 +70,7 @@ TEST_CASE("an EXR holds the picture, its layers and its settings") {
     CHECK(text_of(file.metadata, "pertev.seed") == "4000000000");
     CHECK(text_of(file.metadata, "pertev.hash") == written.hash);
     CHECK(text_of(file.metadata, "pertev.environment") == "none");
-    CHECK(text_of(file.metadata, "pertev.tone_map") == "(none)"); // it is shown nowhere
+    CHECK(text_of(file.metadata, "pertev.tone_map") == "(none)"); // no output shows it
 }
 
 TEST_CASE("a denoised picture's hash equals that of its file's channels") {
@@ -120,9 +120,9 @@ TEST_CASE("a file that cannot be written is named and does not prevent others fr
 TEST_CASE("a camera's metadata reproduces the camera") {
     CameraSource source;
     source.camera = test::mixed_scene_camera();
-    source.target = to_double(Vec3{0, 0.9f, 0}); // that it was made with
+    source.target = to_double(Vec3{0, 0.9f, 0}); // the camera's original values
     const ExrMetadata plain = camera_metadata(source);
-    CHECK(text_of(plain, "pertev.up") == "0,1,0"); // found, as nobody has said it
+    CHECK(text_of(plain, "pertev.up") == "0,1,0"); // found automatically, because it was not set
     CHECK(text_of(plain, "pertev.projection") == "perspective");
     source.up = Vec3{0, 2, 0};
     source.target = DoubleVec3{1, 2, 3};

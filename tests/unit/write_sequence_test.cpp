@@ -29,7 +29,7 @@ PictureOptions small_turntable() {
     return options;
 }
 
-/// A program that ends a sequence after some frames.
+/// A sink that ends a sequence after some frames.
 struct Caller final : Messages {
     uint32_t most = 100;
     std::vector<FrameReport> frames;
@@ -109,14 +109,14 @@ TEST_CASE("the settings of a frame reproduce it without its sequence") {
     CHECK(has(json, R"("frames":"4-4")"));
     CHECK(has(json, R"("fps":7)"));
     json = settings_of({{"turntable", "9"}}, 4);
-    CHECK(!has(json, "frames")); // its time is at rest, which no frame has
+    CHECK(!has(json, "frames")); // the time is that of the scene at rest, which no frame has
     json = settings_of({{"time", "2"}}, 0);
     CHECK(has(json, R"("time":2)"));
 
-    record.display = Display{.exposure_stops = 1.25f}; // metered at the first frame
+    record.display = Display{.exposure_stops = 1.25f}; // the exposure is metered at the first frame
     CHECK(has(settings_of({{"frames", "3-9"}}, 4), R"("exposure":"1.25")"));
     CHECK(!has(settings_of({{"time", "2"}}, 0), "exposure"));
     record.frame = ReconstructedFrame{.number = 4, .cut = 3};
     json = settings_of({{"frames", "3-9"}, {"real_time", "true"}}, 4);
-    CHECK(has(json, R"("frames":"3-4")")); // it is made of those before it
+    CHECK(has(json, R"("frames":"3-4")")); // it depends on earlier frames
 }

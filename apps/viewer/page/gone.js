@@ -1,4 +1,4 @@
-// The page says this when there is no connection: what is known, what somebody can do, and no promise.
+// The page shows this without a connection: what is known, and what the user can do.
 
 import { element } from "./panel.js";
 
@@ -27,7 +27,7 @@ export function showGone(now, reason, scene) {
   if (now === "lost") void lookForAnother(start);
 }
 
-/** Another viewer may listen at this address by now. It lets nobody in by the old one's cookie.
+/** Another viewer may listen at this address by now. It does not accept the old viewer's cookie.
  * @param {string} start */
 async function lookForAnother(start) {
   try {
@@ -35,6 +35,6 @@ async function lookForAnother(start) {
     if (answer.status === 403) {
       element("gone-text").textContent = `The viewer of this page has ended, and another one is at its address: open what that one printed. Or ${start}`;
     }
-  } catch { // nobody is there
+  } catch { // no viewer answers
   }
 }

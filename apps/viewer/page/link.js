@@ -4,7 +4,7 @@
 /** @typedef {{kind: number, isFinal: boolean, frame: number, input: number, samples: number, width: number,
  *   height: number, fullWidth: number, fullHeight: number, offset: number, total: number}} Header */
 
-/** "open"; "trying": the connection is gone and is tried again; "lost": no more, until somebody asks for it; "ended": the
+/** "open"; "trying": the connection is gone and is tried again; "lost": only the user can reconnect; "ended": the
  * viewer said that it ends; "refused": the viewer said why it takes this page no more.
  * @typedef {"open" | "trying" | "lost" | "ended" | "refused"} LinkState */
 
@@ -79,7 +79,7 @@ export class Link {
     setTimeout(() => this.open(), Math.min(3000, 200 * 1.6 ** this.tries));
   }
 
-  /** Somebody asks for it. */
+  /** The user requests it. */
   tryAgain() {
     if (this.socket) return;
     this.tries = kSilentTries;

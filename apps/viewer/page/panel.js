@@ -59,7 +59,7 @@ export function showRows(place, rows, groupFor) {
   });
 }
 
-const kMarked = /** @type {Record<string, string>} */ ({ "film hash": "value hash", "flags that make it": "value hash long" });
+const kMarked = /** @type {Record<string, string>} */ ({ "film hash": "value hash", "flags for this picture": "value hash long" });
 
 /** An input that was sent: older states that are still on their way do not count. */
 export class PendingInput {
@@ -76,7 +76,7 @@ export class PendingInput {
 
   /** @param {{input: number, steerer: number}} state @param {number} you this page's own number */
   isKnownTo(state, you) {
-    if (performance.now() - this.at > kPatience) return true; // it was not heard: somebody else steers
+    if (performance.now() - this.at > kPatience) return true; // the viewer ignored it, because another client steers
     return state.steerer === you && state.input >= this.input;
   }
 }

@@ -58,7 +58,7 @@ export class People {
     }
   }
 
-  /** Whoever steers sees there the requests of others; the others see that somebody else steers. */
+  /** The steering client sees the requests of others there. The others see that another client steers. */
   showBar() {
     const requester = this.all.find((person) => person.id !== this.you && (person.request || person.asks));
     const own = this.all.find((person) => person.id === this.you);

@@ -77,7 +77,7 @@ void OidnFilter::check(void* device) {
     if (fault == 0 && device != nullptr) return;
     throw Error(fault == OidnLibrary::kOutOfMemory ? ErrorCode::OutOfMemory : ErrorCode::DeviceFault,
                 fmt::format("Open Image Denoise {}: {}", library_->version(),
-                            message != nullptr ? message : "it failed and does not say why"));
+                            message != nullptr ? message : "it failed without a reason"));
 }
 
 } // namespace pertev

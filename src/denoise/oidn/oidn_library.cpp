@@ -119,17 +119,17 @@ std::string OidnLibrary::load(const std::string& file) {
     find_one("oidnReleaseFilter", release_filter);
     std::string why;
     if (missing != nullptr) {
-        why = fmt::format("{} has no {}", file, missing);
+        why = fmt::format("{} lacks the function {}", file, missing);
     } else if (void* const device = new_device(kCpu)) {
         version_ = device_int(device, "version");
         release_device(device);
         if (version_ < kOldest || version_ >= kTooNew) {
-            why = fmt::format("{} is of version {}, and 2.3 or a later 2 is needed", file, version());
+            why = fmt::format("{} has version {}; expected version 2.3 or a later version 2", file, version());
         }
     } else {
         const char* message = nullptr;
         device_error(nullptr, &message);
-        why = fmt::format("{}: {}", file, message != nullptr ? message : "it has no device for this CPU");
+        why = fmt::format("{}: {}", file, message != nullptr ? message : "the library supports no device of this CPU");
     }
     ::dlclose(library);
     return why;
@@ -157,10 +157,10 @@ std::shared_ptr<const OidnLibrary> OidnLibrary::find(const char* setting) {
         if (why.empty() || file != kFile) why = fault;
     }
     throw Error(ErrorCode::BadInput, setting, "oidn",
-                given.empty() ? fmt::format("Open Image Denoise is not there: `pip install pyoidn` installs it, and "
-                                            "PERTEV_OIDN may name another copy ({})",
+                given.empty() ? fmt::format("Open Image Denoise was not found: `pip install pyoidn` installs it, and "
+                                            "PERTEV_OIDN can name another copy ({})",
                                             why)
-                              : fmt::format("PERTEV_OIDN={}: {}; `pip install pyoidn` installs a library that fits, "
+                              : fmt::format("PERTEV_OIDN={}: {}; `pip install pyoidn` installs a supported library, "
                                             "which is found without PERTEV_OIDN",
                                             given, why));
 }

@@ -259,13 +259,13 @@ std::string why_no_cuda(int index) {
         return fmt::format("there is no CUDA device {}; this machine has {}", index, count);
     }
     cudaDeviceProp properties{};
-    if (cudaGetDeviceProperties(&properties, index) != cudaSuccess) return "the device does not answer";
+    if (cudaGetDeviceProperties(&properties, index) != cudaSuccess) return "the device does not respond";
     // The current device belongs to a thread. Another thread queries it, so that the caller's does not change, and no
     // context is created on the device to which it would be restored.
     bool has_code = false;
     std::thread([&] { has_code = cudaSetDevice(index) == cudaSuccess && has_code_for_current_device(); }).join();
     if (!has_code) {
-        return fmt::format("{} is of architecture {}.{}, which this binary holds no code for; configure with "
+        return fmt::format("{} has compute capability {}.{}, for which this binary contains no code; configure with "
                            "CMAKE_CUDA_ARCHITECTURES={}{}",
                            properties.name, properties.major, properties.minor, properties.major, properties.minor);
     }

@@ -46,7 +46,7 @@ private:
 /// States focal lengths, principal point and size.
 void state_view(const Frame& from, const JsonValue& frame, uint32_t width, uint32_t height, CameraOfFile& camera) {
     const uint32_t w = from.side("w", width), h = from.side("h", height);
-    if (w == 0 || h == 0) throw frame.error("the picture has no size (\"w\" and \"h\"); `size` gives one");
+    if (w == 0 || h == 0) throw frame.error("the picture's size (\"w\" and \"h\") is missing; set `size`");
     const auto focal = [&](const char* key, const char* angle_key, uint32_t side) -> std::optional<double> {
         if (const auto own = from.number(key)) return own;
         const auto angle = from.number(angle_key);
@@ -54,7 +54,7 @@ void state_view(const Frame& from, const JsonValue& frame, uint32_t width, uint3
                      : std::nullopt;
     };
     std::optional<double> x = focal("fl_x", "camera_angle_x", w), y = focal("fl_y", "camera_angle_y", h);
-    if (!x && !y) throw frame.error("it has neither \"fl_x\" nor \"camera_angle_x\"");
+    if (!x && !y) throw frame.error("both \"fl_x\" and \"camera_angle_x\" are missing");
     if (!x) x = y;
     if (!y) y = x;
     const double intrinsics[] = {*x, *y, from.number_or("cx", 0.5 * w), from.number_or("cy", 0.5 * h)};
@@ -71,7 +71,7 @@ void state_lens(const Frame& from, const JsonValue& frame, CameraOfFile& camera)
     if (model != "OPENCV" && !is_fisheye) throw model_of->error(fmt::format("{} is not supported", model));
     const double k1 = from.number_or("k1", 0), k2 = from.number_or("k2", 0), k3 = from.number_or("k3", 0),
                  k4 = from.number_or("k4", 0), p1 = from.number_or("p1", 0), p2 = from.number_or("p2", 0);
-    if (!is_fisheye && k4 != 0) throw frame.error("\"k4\" has no meaning without a fisheye (\"OPENCV_FISHEYE\")");
+    if (!is_fisheye && k4 != 0) throw frame.error("\"k4\" applies only to a fisheye (\"OPENCV_FISHEYE\")");
     if (!is_fisheye && k1 == 0 && k2 == 0 && k3 == 0 && p1 == 0 && p2 == 0) return;
     state(camera, "lens", std::string(is_fisheye ? "fisheye" : "opencv"));
     state(camera, "distortion",
@@ -121,9 +121,10 @@ void check_names(const std::vector<CameraOfFile>& cameras) {
     for (const CameraOfFile& camera : cameras) {
         const bool is_word = !camera.name.empty() && camera.name.find_first_of("/\\") == std::string::npos;
         if (is_word && names.insert(camera.name).second) continue;
-        throw Error(ErrorCode::BadInput, Remark(camera.location, fmt::format("the name \"{}\" {}", camera.name,
-                                                                             is_word ? "is that of another camera"
-                                                                                     : "cannot be that of a file")));
+        throw Error(ErrorCode::BadInput,
+                    Remark(camera.location, fmt::format("the name \"{}\" {}", camera.name,
+                                                        is_word ? "is also the name of another camera"
+                                                                : "cannot be the name of a file")));
     }
 }
 
@@ -146,7 +147,8 @@ std::vector<CameraOfFile> read_cameras(const std::filesystem::path& path, uint32
         const JsonValue& root = file.root();
         cameras = root.find("frames") ? read_transforms(root, width, height) : read_own(root);
     }
-    if (cameras.empty()) throw Error(ErrorCode::BadInput, Remark(FileLocation{path.string()}, "it has no cameras"));
+    if (cameras.empty())
+        throw Error(ErrorCode::BadInput, Remark(FileLocation{path.string()}, "the file has no cameras"));
     check_names(cameras);
     return cameras;
 }

@@ -68,7 +68,7 @@ void state_calibration(const Calibration& from, CameraOfFile& camera) {
 CameraOfFile camera_of(const std::array<double, 7>& pose, const std::string& picture, uint64_t id,
                        const Calibrations& calibrations, const FileLocation& where) {
     const double length = std::sqrt(pose[0] * pose[0] + pose[1] * pose[1] + pose[2] * pose[2] + pose[3] * pose[3]);
-    if (!(length > 0)) throw fault(where, "its rotation is 0");
+    if (!(length > 0)) throw fault(where, "the rotation is 0; expected a unit quaternion");
     const double w = pose[0] / length, x = pose[1] / length, y = pose[2] / length, z = pose[3] / length;
     const double to_camera[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
                                     {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
@@ -90,7 +90,8 @@ CameraOfFile camera_of(const std::array<double, 7>& pose, const std::string& pic
 
 const Model& checked(const Model& model, const FileLocation& where) {
     if (model.parameters.empty())
-        throw fault(where, fmt::format("the camera model {} is not supported; undistort by COLMAP", model.name));
+        throw fault(where,
+                    fmt::format("the camera model {} is not supported; undistort the images with COLMAP", model.name));
     return model;
 }
 
@@ -173,7 +174,7 @@ std::vector<CameraOfFile> read_text_images(const fs::path& path, const Calibrati
         if (is_blank(line)) continue;
         lines.whole(line, "an image's number");
         std::array<double, 7> pose;
-        for (double& number : pose) number = lines.number(line, "a rotation and a place");
+        for (double& number : pose) number = lines.number(line, "a rotation and a translation");
         const uint64_t id = lines.whole(line, "a camera's number");
         line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size())); // names may have spaces
         if (line.empty()) throw fault(lines.where(), "expected the name of a picture");
@@ -197,7 +198,7 @@ public:
     }
     /// Skips bytes and returns where they are.
     const std::byte* skip(uint64_t count) {
-        if (count > bytes_.size() - at_) throw fault(where_, "it ends too early");
+        if (count > bytes_.size() - at_) throw fault(where_, "the file ends too early");
         const std::byte* const first = bytes_.data() + at_;
         at_ += count;
         return first;

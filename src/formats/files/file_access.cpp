@@ -18,7 +18,7 @@ fs::path canonical_folder(const fs::path& folder, const char* setting) {
     const fs::path canonical = fs::canonical(folder.empty() ? fs::path(".") : folder, ec);
     if (ec) throw Error(ErrorCode::BadInput, setting, folder.string(), "the folder cannot be opened: " + ec.message());
     if (!fs::is_directory(canonical, ec))
-        throw Error(ErrorCode::BadInput, setting, folder.string(), "it is not a folder");
+        throw Error(ErrorCode::BadInput, setting, folder.string(), "the path is not a folder");
     return canonical;
 }
 

@@ -82,7 +82,7 @@ std::size_t choose(const Kind& kind, const std::string& file, std::span<const st
     Remark why(kind.setting, choice, fmt::format("no such {}; the file has no {}s", kind.name, kind.name));
     if (same > 1) {
         why.reason =
-            fmt::format("{} {}s are called so; choose one by its number:{}", same, kind.name, text_of(kind, names));
+            fmt::format("{} {}s have this name; choose one by its number:{}", same, kind.name, text_of(kind, names));
     } else if (!names.empty()) {
         why.reason = fmt::format("no such {}; the file has:{}", kind.name, text_of(kind, names));
     }

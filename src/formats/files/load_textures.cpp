@@ -182,7 +182,7 @@ void TextureLoader::decode_within(uint64_t limit) {
 
 void TextureLoader::load_into(Scene& scene, uint64_t scene_bytes) {
     if (missing_ > kMissingNamed) {
-        sink_->leave_out(fmt::format("not there: {}", counted(missing_ - kMissingNamed, "further texture")));
+        sink_->leave_out(fmt::format("missing: {}", counted(missing_ - kMissingNamed, "further texture")));
     }
     const uint64_t limit = budget(scene_bytes);
     decode_within(limit);

@@ -25,9 +25,10 @@ void read_cone(const JsonValue& spot, Light& light, Sink& sink) {
     const float outer = requested_outer > 0 ? min(requested_outer, widest) : kNarrowestCone;
     const float inner = clamp(requested_inner, 0.0f, outer);
     if (requested_inner == requested_outer && inner == requested_inner && outer == requested_outer) {
-        sink.warn({spot.location(),
-                   fmt::format("inner and outer cone angle are both {}; expected inner < outer; the edge becomes sharp",
-                               inner)});
+        sink.warn(
+            {spot.location(),
+             fmt::format("inner and outer cone angle are both {}; expected inner < outer; the cone gets a sharp edge",
+                         inner)});
     } else if (inner != requested_inner || outer != requested_outer) {
         sink.warn({spot.location(),
                    fmt::format("cone angles {} and {}; expected 0 <= inner < outer <= pi / 2; {} and {} are used",

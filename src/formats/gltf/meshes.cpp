@@ -82,8 +82,9 @@ void Meshes::check_texture_coordinates(const Part& part) {
         if (!mesh.uv[texture->uv_set].empty()) continue;
         sink_.warn(
             {FileLocation{document_.file()},
-             fmt::format("{}: a texture uses TEXCOORD_{}, which a mesh with this material lacks; its corner is shown",
-                         material.origin, texture->uv_set)});
+             fmt::format(
+                 "{}: a texture uses TEXCOORD_{}, which a mesh with this material lacks; the texel at (0, 0) is used",
+                 material.origin, texture->uv_set)});
     }
 }
 

@@ -59,13 +59,15 @@ bool is_near(const Transform& world_from_local) {
 // Explains why a scene has no instances: what there is, and what would be right.
 std::string describe_nothing(const Document& document, const NodeGraph& nodes) {
     const std::size_t meshes = document.table("meshes").size(), shown = nodes.scene_nodes().size();
-    if (meshes == 0) return "/meshes: there are none; expected one that a node of the scene uses";
+    if (meshes == 0) return "/meshes: the file has no meshes; expected one that a node of the scene uses";
     const bool is_shown = std::any_of(nodes.scene_nodes().begin(), nodes.scene_nodes().end(), [&](uint32_t node) {
         return document.table("nodes")[node].find("mesh").has_value();
     });
-    if (is_shown) return "/meshes: none that a node of the scene uses has a triangle; expected at least one";
-    return fmt::format("/nodes: the scene has {}, and none uses a mesh (of {}); expected a \"mesh\" in one of them",
-                       counted(shown, "node"), meshes);
+    if (is_shown)
+        return "/meshes: no mesh that a node of the scene uses has a triangle; expected at least one triangle";
+    return fmt::format(
+        "/nodes: the scene has {}, and none of them uses a mesh (the file has {}); expected a \"mesh\" in one of them",
+        counted(shown, "node"), meshes);
 }
 
 } // namespace

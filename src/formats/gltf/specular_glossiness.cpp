@@ -152,7 +152,7 @@ void convert_textures(const std::vector<PendingConversion>& pending, uint64_t li
         };
         if (!diffuse.has_image() && !specular.has_image()) continue; // the loader has reported why
         if (diffuse.has_image() && specular.has_image() && !use_same_coordinates(diffuse, specular)) {
-            use_factors("its two textures use different coordinates");
+            use_factors("the two textures use different texture coordinates");
             continue;
         }
         const Rgb d = factors.diffuse, s = factors.specular;
@@ -162,7 +162,7 @@ void convert_textures(const std::vector<PendingConversion>& pending, uint64_t li
             const Texels a(scene, diffuse), b(scene, specular);
             bytes += uint64_t(8) * max(a.width(), b.width()) * max(a.height(), b.height());
             if (bytes > limit) {
-                use_factors("its converted textures would take too much memory");
+                use_factors("the converted textures would take too much memory");
                 continue;
             }
             ConvertedImages images = convert_images(scene, material, factors);

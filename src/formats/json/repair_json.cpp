@@ -158,7 +158,7 @@ std::string repair_json(std::string_view text, RepairJson repair, std::vector<st
         if (repairer.had_infinity())
             repairs->emplace_back("NaN is not valid JSON and read as null, and Infinity as the largest number");
         if (repairer.had_odd_string() || valid != text) {
-            repairs->emplace_back("a text is not valid Unicode; invalid bytes are read as U+FFFD");
+            repairs->emplace_back("a string is not valid Unicode; invalid bytes are read as U+FFFD");
         }
     }
     return mended;

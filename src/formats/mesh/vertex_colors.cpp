@@ -17,7 +17,8 @@ void decode_vertex_colors(std::vector<Vec4>& colors, const std::string& file, Si
     }
     const bool are_bytes = greatest >= kMinByte, is_alpha_byte = greatest_alpha >= kMinByte;
     if (are_bytes) {
-        sink.note({FileLocation{file}, fmt::format("vertex colours up to {} are read as 0 to 255", greatest)});
+        sink.note({FileLocation{file},
+                   fmt::format("vertex colours have values up to {}; they are read as 0 to 255", greatest)});
     }
     const auto decode = [&](float value) { return srgb_decode(are_bytes ? value / 255 : value); };
     parallel_for(colors.size(), 1 << 14, [&](uint64_t i) {

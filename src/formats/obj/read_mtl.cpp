@@ -180,7 +180,7 @@ std::map<std::string, MtlMaterial> read_mtl(std::span<const std::byte> bytes, co
         if (statements.name.empty() || materials.contains(statements.name)) continue;
         materials.emplace(statements.name, converter.convert(statements));
     }
-    if (materials.empty()) sink.warn({FileLocation{path.string()}, "it has no material (newmtl)"});
+    if (materials.empty()) sink.warn({FileLocation{path.string()}, "the file defines no material (newmtl)"});
     return materials;
 }
 

@@ -46,8 +46,9 @@ void warn_of_textures_without_coordinates(const Scene& scene, const ObjData& dat
     if (materials.empty()) return;
     sink.warn(
         {FileLocation{file},
-         fmt::format("{} with a texture on faces without texture coordinates ({} is the first); its corner is shown",
-                     counted(materials.size(), "material"), shortened(first))});
+         fmt::format(
+             "{} with a texture on faces without texture coordinates ({} is the first); the texel at (0, 0) is used",
+             counted(materials.size(), "material"), shortened(first))});
 }
 
 /// Removes vertex colours from meshes with a colour texture, because scanners write the same colours to the vertices as

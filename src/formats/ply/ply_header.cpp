@@ -160,13 +160,13 @@ private:
         }
         element.name = words[1];
         for (const PlyElement& other : header_.elements) {
-            if (other.name == element.name) throw fault(fmt::format("a second element \"{}\"", element.name));
+            if (other.name == element.name) throw fault(fmt::format("there is a second element \"{}\"", element.name));
         }
         header_.elements.push_back(std::move(element));
     }
 
     void property(const std::vector<std::string_view>& words) {
-        if (header_.elements.empty()) throw fault("a property before the first element");
+        if (header_.elements.empty()) throw fault("there is a property before the first element");
         PlyProperty property;
         if (words.size() == 5 && words[1] == "list") {
             property.is_list = true;

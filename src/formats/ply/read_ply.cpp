@@ -58,7 +58,7 @@ public:
     Mesh run() {
         if (std::none_of(header_.elements.begin(), header_.elements.end(), is_surface)) {
             throw Error(ErrorCode::BadInput, FileLocation{file_},
-                        "it has no faces; a surface has an element face with a list vertex_indices");
+                        "the file has no faces; expected an element face with a list vertex_indices");
         }
         for (const PlyElement& element : header_.elements) {
             body_.set_location(element.name, 0);

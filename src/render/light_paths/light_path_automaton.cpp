@@ -38,7 +38,7 @@ public:
                                        {moved(state.empty[0], states), moved(state.empty[1], states)}});
             }
             if (nfa_.states.size() > kMaxLightPathParts) {
-                refuse(fmt::format("too many letters in {} in total", counted(expressions.size(), "expression")));
+                refuse(fmt::format("{} have too many letters in total", counted(expressions.size(), "expression")));
             }
             for (const LightPathLetter& letter : expression.letters) {
                 letters_.push_back(&letter);

@@ -22,14 +22,14 @@ std::string_view why_no_atom(char letter) {
     case '+':
     case '?':
     case '{':
-        return "there is nothing before it to repeat";
+        return "nothing stands before it that it could repeat";
     case '<':
-        return "names come once, after a single letter, also in brackets: D<R 'a'>, [D<'a'>G<'a'>]";
+        return "names follow a single letter, once; in brackets each letter has its own: D<R 'a'>, [D<'a'>G<'a'>]";
     case '\'':
     case '"':
         return "names are enclosed in < and >: L<'lamp'>";
     case ',':
-        return "each expression needs its own `lpe` NAME=EXPRESSION";
+        return "expected one expression; give each its own `lpe` NAME=EXPRESSION";
     case 'C':
         return "expressions go from the light to the eye: LD*E is CD*L elsewhere";
     case 'l':
@@ -50,7 +50,7 @@ public:
     void parse() {
         if (text_.find_first_not_of(kBlanks) == std::string_view::npos) fail(0, "expected an expression, such as LD*E");
         expression_.root = parse_choice(0);
-        if (peek() == ')') fail(at_, "there is no ( before it");
+        if (peek() == ')') fail(at_, "no ( stands before it");
         if (at_ < text_.size()) fail(at_, why_no_atom(text_[at_]));
     }
 
@@ -150,7 +150,7 @@ private:
         }
         case 'E':
             ++at_;
-            if (peek() == '<') fail(at_, "the eye has no name");
+            if (peek() == '<') fail(at_, "the eye E takes no name");
             return add(LightPathLetter{.kind = LightPathLetter::Kind::Eye});
         default:
             break;
@@ -193,7 +193,7 @@ private:
         if (next == 'L' || next == 'E') fail(at_, "a set can hold only scatterings: D, G, S or .");
         if (next == 0) fail(open, "this [ is not closed");
         if (next != ']') fail(at_, "unknown letter of a set; expected D, G, S or .");
-        if (set.terms.empty()) fail(at_, "a set needs at least one letter: [DS]");
+        if (set.terms.empty()) fail(at_, "a set is empty; expected at least one letter, as in [DS]");
         ++at_;
         return add(std::move(set));
     }
@@ -273,7 +273,7 @@ LightPathExpression parse_light_path(std::string_view text) {
     expression.text = text.substr(equals + 1);
     if (expression.text.size() > kMaxLightPathText) {
         throw Error(ErrorCode::OverLimit, "lpe", expression.name,
-                    fmt::format("an expression of more than {} characters", kMaxLightPathText));
+                    fmt::format("an expression has more than {} characters", kMaxLightPathText));
     }
     Parser(expression).parse();
     check_matches_something(expression);

@@ -100,7 +100,7 @@ void check_layers(std::span<const LightPathExpression> expressions) {
         const auto [first, is_new] = named.try_emplace(expression.name, &expression);
         if (is_new) continue;
         throw Error(ErrorCode::BadInput, "lpe", expression.name,
-                    fmt::format("two expressions have this name\n  {0}={1}\n  {0}={2}", expression.name,
+                    fmt::format("two expressions have the same name\n  {0}={1}\n  {0}={2}", expression.name,
                                 first->second->text, expression.text));
     }
 }

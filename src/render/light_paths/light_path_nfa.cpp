@@ -31,7 +31,8 @@ private:
     uint32_t add_state(State state = {}) {
         if (nfa_.states.size() >= 4 * kMaxLightPathLetters) {
             throw Error(ErrorCode::OverLimit, "lpe", expression_.name,
-                        fmt::format("with its {{n}} expanded it has more than {} letters", kMaxLightPathLetters));
+                        fmt::format("the expression has more than {} letters once its {{n}} are expanded",
+                                    kMaxLightPathLetters));
         }
         nfa_.states.push_back(state);
         return static_cast<uint32_t>(nfa_.states.size() - 1);

@@ -75,7 +75,7 @@ bool CameraRaster::make_lists(const Pinhole& camera, uint32_t shift) {
     const TileCounts first = counts_.download().front();
     if (first.triangles > triangles_.size()) {
         throw Error(ErrorCode::OverLimit, "integrator", "hybrid",
-                    fmt::format("{} triangles are in view; the limit is {} (`integrator=path` has none)",
+                    fmt::format("{} triangles are in view; the limit is {} (`integrator=path` has no limit)",
                                 first.triangles, triangles_.size()));
     }
     if (first.entries > codes_.size() || first.rows > rows_.size()) return false;

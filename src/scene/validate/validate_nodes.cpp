@@ -50,7 +50,7 @@ std::string fault_of(const AnimationChannel& channel, const Scene& scene) {
     if (places_node(channel.part) && std::holds_alternative<DoubleTransform>(scene.nodes[channel.target].pose)) {
         return "its node has a matrix; expected translation, rotation and scale";
     }
-    if (times.empty()) return "it has no key times; expected at least one";
+    if (times.empty()) return "it has no key times; expected at least one key";
     for (std::size_t i = 0; i < times.size(); ++i) {
         if (!is_finite(times[i]) || (i > 0 && times[i] < times[i - 1])) {
             return fmt::format("key time {} is {}; expected finite seconds in order", i, times[i]);
@@ -103,8 +103,7 @@ void validate_nodes(const Scene& scene, const std::string& file) {
         }
     }
     if (const std::size_t placed = parents_first(scene.nodes).size(); placed != count) {
-        throw bad(fmt::format("{} of {} nodes are their own ancestors or descendants of such; expected trees",
-                              count - placed, count));
+        throw bad(fmt::format("{} of {} nodes lie in or below a cycle; expected trees", count - placed, count));
     }
     for (std::size_t i = 0; i < scene.skins.size(); ++i) {
         const Skin& skin = scene.skins[i];

@@ -21,7 +21,7 @@ void validate_nodes(const Scene& scene, const std::string& file);
 
 /// Number of components of a channel's value; its target is in range.
 std::size_t numbers_in_value(const AnimationChannel& channel, const Scene& scene);
-/// Describes what is wrong with a channel whose target is in range, for messages; empty if nothing is.
+/// Describes the fault of a channel whose target is in range, for messages; empty without a fault.
 std::string fault_of(const AnimationChannel& channel, const Scene& scene);
 
 } // namespace pertev

@@ -38,21 +38,21 @@ void Checkpoint::check_header(const std::string& file, const FilmHeader& header)
         throw Error(ErrorCode::BadInput, std::move(remark));
     };
     if (const auto different = film_difference(header, picture_)) {
-        refuse(fmt::format("it is of another picture: {} is \"{}\" there, not \"{}\"", different->name,
+        refuse(fmt::format("the checkpoint belongs to another picture: {} is \"{}\" there, not \"{}\"", different->name,
                            different->before, different->after));
     }
     if (header.part.is_empty()) return;
     const SampleRange there = header.part.samples;
     if (header.part.first_row != picture_.part.first_row || header.part.end_row != picture_.part.end_row) {
-        refuse(fmt::format("it has the rows {} to {}, not {} to {} (`rows`)", header.part.first_row,
+        refuse(fmt::format("the checkpoint has the rows {} to {}, not {} to {} (`rows`)", header.part.first_row,
                            header.part.end_row - 1, picture_.part.first_row, picture_.part.end_row - 1));
     }
     if (there.first != picture_.part.samples.first) {
-        refuse(fmt::format("its samples begin with number {}, not {} (`part`, `samples`)", there.first,
+        refuse(fmt::format("the checkpoint's samples begin with number {}, not {} (`part`, `samples`)", there.first,
                            picture_.part.samples.first));
     }
     if (there.end > picture_.part.samples.end) {
-        refuse(fmt::format("it has the samples up to {}, more than the {} of this picture (`spp`)", there.end,
+        refuse(fmt::format("the checkpoint has {} samples, more than the {} of this picture (`spp`)", there.end,
                            picture_.part.samples.end));
     }
 }
@@ -75,7 +75,7 @@ std::optional<Error> Checkpoint::take(const std::string& file, FilmRender& film,
         if (error.code() != ErrorCode::BadInput) throw;
         return error;
     }
-    sink.note(fmt::format("goes on from {} of {} samples in {}", header.part.samples.count(),
+    sink.note(fmt::format("resumes from {} of {} samples in {}", header.part.samples.count(),
                           picture_.part.samples.count(), file));
     return std::nullopt;
 }
@@ -83,8 +83,8 @@ std::optional<Error> Checkpoint::take(const std::string& file, FilmRender& film,
 void Checkpoint::restore(FilmRender& film, Sink& sink) {
     if (!is_there(file_)) {
         if (is_there(previous_)) {
-            sink.warn({FileLocation{previous_}, "the render does not go on from it, as there is no checkpoint beside "
-                                                "it; rename it to one to go on"});
+            sink.warn({FileLocation{previous_}, "the render does not resume from it, because its checkpoint is "
+                                                "missing; rename it to the checkpoint to resume"});
         }
         return;
     }
@@ -93,7 +93,7 @@ void Checkpoint::restore(FilmRender& film, Sink& sink) {
     const Error refusal(damage->code(), damage->remark().and_then("; delete it to begin anew"));
     if (!is_there(previous_)) throw refusal;
     is_damaged_ = true;
-    sink.warn(damage->remark().and_then(fmt::format("; the generation before it, {}, is used", previous_)));
+    sink.warn(damage->remark().and_then(fmt::format("; the previous generation, {}, is used", previous_)));
     if (take(previous_, film, sink)) throw refusal;
 }
 
@@ -109,8 +109,8 @@ void Checkpoint::check_space(const Film& film) const {
     const uint64_t needed = 3 * most_bytes(film);
     if (free >= needed) return;
     throw Error(ErrorCode::FileWrite, FileLocation{file_},
-                fmt::format("two generations of this checkpoint and the next, while it is written, may take {:.1f} "
-                            "MiB, and the disk has {:.1f} MiB",
+                fmt::format("two generations of this checkpoint and a third while it is written may take {:.1f} MiB; "
+                            "the disk has {:.1f} MiB free",
                             mebibytes(needed), mebibytes(free)));
 }
 

@@ -30,13 +30,14 @@ uint64_t fewest_bytes(const FilmHeader& header) {
 FilmFileReader::FilmFileReader(const std::filesystem::path& path)
     : name_(path.string()), file_(open_file(path)), size_(std::filesystem::file_size(path)) {
     std::string magic(kFilmFileMagic.size(), '\0');
-    if (size_ < magic.size()) throw error("it is no film file");
+    if (size_ < magic.size()) throw error("this is not a film file");
     read(std::as_writable_bytes(std::span(magic)));
-    if (magic != kFilmFileMagic) throw error("it is no film file");
+    if (magic != kFilmFileMagic) throw error("this is not a film file");
     if (const auto version = read_value<uint32_t>(); version != kFilmFileVersion)
-        throw error(fmt::format("its format has version {}; this program reads {}", version, kFilmFileVersion));
+        throw error(fmt::format("the file has version {} of the format; this program reads version {}", version,
+                                kFilmFileVersion));
     const auto size = read_value<uint32_t>();
-    if (size > kMaxFilmHeaderBytes || size > size_) throw error("its header is damaged");
+    if (size > kMaxFilmHeaderBytes || size > size_) throw error("the header is damaged");
     std::string json(size, '\0');
     read(std::as_writable_bytes(std::span(json)));
     Hasher hasher;
@@ -48,7 +49,8 @@ FilmFileReader::FilmFileReader(const std::filesystem::path& path)
     const JsonFile parsed(name_, json);
     header_ = read_film_header(parsed.root());
     if (const uint64_t bytes = at_ + fewest_bytes(header_) + kHashBytes; bytes > size_)
-        throw error(fmt::format("it is cut off: it has {} bytes, and such a film takes {} or more", size_, bytes));
+        throw error(
+            fmt::format("the file is truncated: it has {} bytes, and its film takes at least {}", size_, bytes));
 }
 
 void FilmFileReader::add_to(Film& film) {
@@ -60,18 +62,18 @@ void FilmFileReader::add_to(Film& film) {
             read_block(packed);
             block.resize(std::min(most, target->byte_count() - first));
             if (!unpack_block(packed, stride, block))
-                throw error(fmt::format("the block at byte {} is not packed as it should be", begin));
+                throw error(fmt::format("the block at byte {} has invalid contents", begin));
             target->add_bytes(first, block);
         }
     }
     check_hash(hashes_, "whole file");
-    if (at_ != size_) throw error(fmt::format("{} bytes follow its end", size_ - at_));
+    if (at_ != size_) throw error(fmt::format("{} bytes follow the end of the film", size_ - at_));
 }
 
 void FilmFileReader::read_block(std::vector<std::byte>& packed) {
     const uint64_t begin = at_;
     const auto size = read_value<uint32_t>();
-    if (size > size_ - at_) throw error(fmt::format("the block at byte {} is cut off or damaged", begin));
+    if (size > size_ - at_) throw error(fmt::format("the block at byte {} is truncated or damaged", begin));
     packed.resize(size);
     read(packed);
     Hasher hasher;
@@ -81,7 +83,7 @@ void FilmFileReader::read_block(std::vector<std::byte>& packed) {
 }
 
 void FilmFileReader::read(std::span<std::byte> to) {
-    if (to.size() > size_ - at_) throw error(fmt::format("it is cut off after {} bytes", size_));
+    if (to.size() > size_ - at_) throw error(fmt::format("the file is truncated after {} bytes", size_));
     if (std::fread(to.data(), 1, to.size(), file_.get()) != to.size())
         throw error(fmt::format("cannot read: the file ended early or the disk failed"));
     at_ += to.size();
@@ -98,7 +100,8 @@ T FilmFileReader::read_value() {
 Hash128 FilmFileReader::check_hash(const Hasher& hasher, const std::string& what) {
     const Hash128 hash = hasher.result();
     const auto low = read_value<uint64_t>(), high = read_value<uint64_t>();
-    if (hash != Hash128{high, low}) throw error(fmt::format("it is damaged: the {} does not have its checksum", what));
+    if (hash != Hash128{high, low})
+        throw error(fmt::format("the file is damaged: the checksum of the {} is wrong", what));
     hashes_.add_value(low), hashes_.add_value(high);
     return hash;
 }

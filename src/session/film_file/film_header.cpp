@@ -100,7 +100,7 @@ std::pair<uint32_t, uint32_t> read_range(const JsonValue& value, uint32_t most) 
     const std::vector<JsonValue> ends = value.elements();
     if (ends.size() != 2) throw value.error("expected two numbers");
     const uint32_t first = read_number(ends[0], 0, most), end = read_number(ends[1], 0, most);
-    if (first > end) throw value.error("expected the lower number first");
+    if (first > end) throw value.error("expected the smaller number first");
     return {first, end};
 }
 
@@ -190,7 +190,7 @@ FilmHeader read_film_header(const JsonValue& root) {
         header.light_layers.emplace_back(layer.to_string());
     header.layers_at = read_name<LayersAt>(root.at("layers_at"));
     if (json_of_targets(header) != root.at("targets").to_json())
-        throw root.at("targets").error("they are not those of these layers and this size");
+        throw root.at("targets").error("the targets do not fit these layers and this size");
     header.facts = {.settings = read_metadata(root.at("metadata")),
                     .shown = read_metadata(root.at("display_metadata")),
                     .origin = read_metadata(root.at("origin")),

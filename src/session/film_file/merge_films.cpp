@@ -80,7 +80,7 @@ void FilmMerge::take_header(const std::string& file, const FilmHeader& header) {
     }
     if (const auto different = film_difference(header_, header)) {
         throw Error(ErrorCode::BadInput, FileLocation{file},
-                    fmt::format("it is no part of the same picture as {}: {} is \"{}\" here, and \"{}\" there",
+                    fmt::format("this is not a part of the same picture as {}: {} is \"{}\" here and \"{}\" there",
                                 parts_.front().file, different->name, different->after, different->before));
     }
     const RayCounts rays = header_.rays + header.rays;
@@ -101,7 +101,7 @@ void FilmMerge::refuse_overlaps() const {
             if (!overlap(parts_[i].of, parts_[k].of)) continue;
             const FilmPart &a = parts_[i].of, &b = parts_[k].of;
             throw Error(ErrorCode::BadInput, FileLocation{parts_[i].file},
-                        fmt::format("its samples {} to {} of rows {} to {} are also in {}",
+                        fmt::format("the samples {} to {} of rows {} to {} are also in {}",
                                     std::max(a.samples.first, b.samples.first),
                                     std::min(a.samples.end, b.samples.end) - 1, std::max(a.first_row, b.first_row),
                                     std::min(a.end_row, b.end_row) - 1, parts_[k].file));
@@ -115,7 +115,7 @@ void FilmMerge::check_rows(bool is_partial) {
     const std::vector<Band> bands = bands_of(parts, header_.height);
     const FileLocation place = {parts_.front().file};
     if (std::ranges::all_of(parts, &FilmPart::is_empty))
-        throw Error(ErrorCode::BadInput, place, "none of the files holds a sample");
+        throw Error(ErrorCode::BadInput, place, "none of the files contains a sample");
     const uint32_t count = bands.front().count();
     uint32_t first = UINT32_MAX;
     for (const Band& band : bands) {
@@ -123,8 +123,9 @@ void FilmMerge::check_rows(bool is_partial) {
         if (missing.count() > 0 && !is_partial) {
             throw Error(
                 ErrorCode::BadInput, place,
-                fmt::format("samples {} to {} of rows {} to {} are in none of the files; `partial` does without",
-                            missing.first, missing.end - 1, band.first_row, band.end_row - 1));
+                fmt::format(
+                    "samples {} to {} of rows {} to {} are in none of the files; set `partial` to merge without them",
+                    missing.first, missing.end - 1, band.first_row, band.end_row - 1));
         }
         if (band.count() != count) {
             throw Error(ErrorCode::BadInput, place,
@@ -144,7 +145,7 @@ Film FilmMerge::film(Queue& queue, Sink& sink) const {
         Film::predicted_bytes(header_.width, header_.height, header_.aovs, header_.light_layers, header_.layers_at);
     if (bytes > machine_memory_bytes()) {
         throw Error(ErrorCode::OutOfMemory, FileLocation{parts_.front().file},
-                    fmt::format("the film takes {:.1f} MiB, and this machine has {:.1f} MiB", mebibytes(bytes),
+                    fmt::format("the film takes {:.1f} MiB; this machine has {:.1f} MiB", mebibytes(bytes),
                                 mebibytes(machine_memory_bytes())));
     }
     Film film = header_.make_film(queue);
@@ -153,7 +154,7 @@ Film FilmMerge::film(Queue& queue, Sink& sink) const {
         sink.check();
         FilmFileReader reader(part.file);
         if (reader.header_hash() != part.header)
-            throw Error(ErrorCode::BadInput, FileLocation{part.file}, "it has changed since its header was read");
+            throw Error(ErrorCode::BadInput, FileLocation{part.file}, "the file has changed since its header was read");
         reader.add_to(film);
         sink.progress({.doing = "merging", .share = static_cast<double>(++done) / static_cast<double>(parts_.size())});
     }

@@ -57,7 +57,7 @@ Transform placed_by_pose(const CameraChoice& choice, const Scene& scene) {
     const std::vector<double>& m = choice.pose;
     const auto refuse = [&](const char* why) { throw Error(ErrorCode::BadInput, "camera_pose", text_of(m), why); };
     if (m.size() == 16 && !(m[12] == 0 && m[13] == 0 && m[14] == 0 && m[15] == 1)) {
-        refuse("the last row of a pose is 0,0,0,1");
+        refuse("expected 0,0,0,1 as the last row of a pose");
     }
     std::array<DoubleVec3, 4> columns; // axes, then the place
     for (std::size_t k = 0; k < 4; ++k) columns[k] = {m[k], m[4 + k], m[8 + k]};
@@ -69,8 +69,9 @@ Transform placed_by_pose(const CameraChoice& choice, const Scene& scene) {
         for (DoubleVec3& column : columns) column = {column.x, column.z, -column.y};
     }
     const double off = distance_from_rigid({columns[0], columns[1], columns[2]});
-    if (!(off <= kRigid)) refuse("its axes, the columns, must have the length 1 and right angles between them");
-    if (!(dot(columns[0], cross(columns[1], columns[2])) > 0)) refuse("it mirrors; the third axis has the wrong sign");
+    if (!(off <= kRigid)) refuse("the columns of a pose are its axes; expected unit length and right angles");
+    if (!(dot(columns[0], cross(columns[1], columns[2])) > 0))
+        refuse("the pose mirrors, because its third axis has the wrong sign");
     const Vec3 x = to_float(columns[0]), y = to_float(columns[1]), z = to_float(columns[2]);
     if (max_component(abs(to_float(columns[3]))) > kMaxCoordinate) {
         throw Error(ErrorCode::OverLimit, "camera_pose", text_of(m),
@@ -106,10 +107,10 @@ void set_lens(const CameraChoice& choice, Camera& camera) {
     }
     if (camera.lens == LensModel::Fisheye && !camera.distortion.empty() && camera.distortion.size() != 4) {
         throw Error(ErrorCode::BadInput, "distortion", text_of(camera.distortion),
-                    "a lens `lens=fisheye` has four coefficients");
+                    "expected four coefficients with `lens=fisheye`");
     }
     if (camera.lens == LensModel::Fisheye && camera.aperture_radius > 0) {
-        throw Error(ErrorCode::BadInput, "lens", "fisheye", "it has no depth of field; `aperture=0` removes that");
+        throw Error(ErrorCode::BadInput, "lens", "fisheye", "a fisheye has no depth of field; set `aperture=0`");
     }
 }
 
@@ -138,7 +139,7 @@ void apply_camera_from(PictureOptions& options) {
     const std::optional<std::string> columns = entry_of(file, "world_from_camera");
     if (!columns) {
         throw Error(ErrorCode::BadInput, "camera_from", choice.camera_from,
-                    "its metadata have no camera (`pertev.world_from_camera`)");
+                    "the metadata of the file have no camera (`pertev.world_from_camera`)");
     }
     if (!is_given("camera_pose") && !choice.eye && !choice.target && !choice.up) {
         std::string text = *columns; // "x,y,z x,y,z x,y,z x,y,z", by columns

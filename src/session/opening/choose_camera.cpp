@@ -43,7 +43,7 @@ void place_camera(const CameraChoice& choice, const Scene& scene, Camera& camera
     if (!is_finite(placed.row0) && !choice.up) placed = look_at(eye, target, {0, 0, -1}); // straight down or up
     if (!is_finite(placed.row0) || !is_finite(placed.row1) || !is_finite(placed.row2)) {
         throw Error(ErrorCode::BadInput, "target", text_of(in_file(scene, target)),
-                    fmt::format("it must differ from `eye={}`{}", text_of(in_file(scene, eye)),
+                    fmt::format("the target must differ from `eye={}`{}", text_of(in_file(scene, eye)),
                                 choice.up ? fmt::format(" and its direction from `up={}`", text_of(up)) : ""));
     }
     camera.world_from_camera = placed;
@@ -56,7 +56,7 @@ Camera make_camera(const CameraChoice& choice, const Scene& scene, float aspect,
     PartMessages unsaid(sink); // discards messages about a view that is not used
     const Camera camera = make_default_camera(scene, aspect, unsaid);
     const Vec3 eye = camera.world_from_camera.translation;
-    sink.make_up(fmt::format("the scene has no camera: a default eye looks at the target (`eye={}` `target={}`)",
+    sink.make_up(fmt::format("the scene has no camera: a default eye position is used (`eye={}` `target={}`)",
                              position_text(scene, eye, 4), text_of(*choice.target)));
     return camera;
 }
@@ -83,9 +83,9 @@ void focus_in_the_middle(const CameraChoice& choice, const Scene& scene, Camera&
     camera.focus_distance = rounded(distance, 4);
     sink.make_up(
         {"aperture", "",
-         fmt::format("without `focus` the lens focuses at {:.4g} m, {} (`focus={:.4g}`)", distance,
-                     seen ? "the distance of the surface in the middle of the picture"
-                          : "the distance of the scene's middle, because the middle of the picture shows nothing",
+         fmt::format("`focus` is not set: the lens focuses at {:.4g} m, {} (`focus={:.4g}`)", distance,
+                     seen ? "the distance of the surface at the picture's centre"
+                          : "the distance of the scene's centre, because the picture's centre shows no surface",
                      distance)});
 }
 
@@ -93,13 +93,14 @@ void focus_in_the_middle(const CameraChoice& choice, const Scene& scene, Camera&
 void warn_of_useless_parts(const CameraChoice& choice, const Camera& camera, bool flattened, Sink& sink) {
     const bool is_perspective = view_angle(camera) > 0;
     if (choice.view_height && is_perspective) {
-        sink.warn({"view_height", "", "the camera is perspective; it applies with `projection=orthographic`"});
+        sink.warn(
+            {"view_height", "", "the camera is perspective; the setting applies only with `projection=orthographic`"});
     }
     if (choice.fov_deg && !is_perspective && (!flattened || choice.view_height)) {
         sink.warn({"fov", "", "the camera is orthographic; set `view_height` instead"});
     }
     if (choice.focus && camera.aperture_radius == 0) {
-        sink.warn({"focus", "", "the lens has no aperture, so that everything is in focus; set `aperture`"});
+        sink.warn({"focus", "", "the lens has no aperture, so everything is in focus; set `aperture`"});
     }
 }
 
@@ -127,8 +128,8 @@ void aim_camera(CameraChoice& choice, const Scene& scene, Sink& sink) {
     choice.target = stated_position(scene, target.position, 6);
     choice.is_aimed = true;
     sink.make_up({"eye", "",
-                  fmt::format("without `target` the camera looks {} (`eye={}` `target={}`)",
-                              target.is_middle ? "at the middle of the scene" : "along the scene from its middle",
+                  fmt::format("`target` is not set: the camera looks {} (`eye={}` `target={}`)",
+                              target.is_middle ? "at the scene's centre" : "along the scene from its centre",
                               text_of(*choice.eye), position_text(scene, target.position, 6))});
 }
 

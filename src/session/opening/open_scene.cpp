@@ -176,7 +176,7 @@ Scene open_scene(const SceneOptions& options, Sink& sink, SceneUse use, Ground g
     const DefaultLight light = is_turned_off ? DefaultLight::None : add_default_light(scene, use, sink, &around);
     if (wants_ground(ground, scene, light, around)) {
         add_ground(scene);
-        sink.make_up("a default ground receives the shadow; `ground=off` leaves it out");
+        sink.make_up("a default ground receives the shadow; set `ground=off` to leave it out");
     }
     turn_and_scale(options, scene, sink);
     set_emitters(scene, others, efficacy);

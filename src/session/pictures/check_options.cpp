@@ -21,12 +21,12 @@ namespace {
 void check_real_time(const PictureOptions& options) {
     if (!options.real_time || options.render.samples == 1) return;
     throw Error(ErrorCode::BadInput, "spp", fmt::format("{}", options.render.samples),
-                "a frame of `real_time` has one sample per pixel");
+                "a frame with `real_time` has one sample per pixel");
 }
 
 void check_solution(const std::string& file) {
     if (std::error_code fault; file.empty() || std::filesystem::exists(file, fault)) return;
-    throw Error(ErrorCode::BadInput, "solution", file, "there is no such file");
+    throw Error(ErrorCode::BadInput, "solution", file, "the file does not exist");
 }
 
 /// Refuses several devices for what one device does alone.

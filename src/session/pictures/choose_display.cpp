@@ -55,8 +55,9 @@ std::optional<FalseColors> false_colors(const PictureOptions& options) {
 std::optional<float> requested_exposure(const PictureOptions& options) {
     if (options.exposure.empty() || options.exposure == "auto") return std::nullopt;
     if (const auto stops = number_in(options.exposure)) return stops;
-    throw Error(ErrorCode::BadInput, "exposure", options.exposure,
-                fmt::format("expected auto, or stops: a number of size {} at most", std::numeric_limits<float>::max()));
+    throw Error(
+        ErrorCode::BadInput, "exposure", options.exposure,
+        fmt::format("expected auto, or a number of stops between -{0} and {0}", std::numeric_limits<float>::max()));
 }
 
 bool is_metered(const PictureOptions& options) {

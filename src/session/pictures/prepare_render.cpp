@@ -60,7 +60,7 @@ void check(PictureOptions& options, uint32_t verbs) {
 RenderSettings take_settings(const RenderSetup& ready, PictureOptions& options, uint32_t verbs, const Scene& scene,
                              Sink& sink) {
     apply_suggestions(scene, verbs, options, sink);
-    if (options.strict) refuse_what_is_left_out(sink.messages(), "nothing is rendered");
+    if (options.strict) refuse_what_is_left_out(sink.messages(), "nothing was rendered");
     RenderSettings settings = render_settings(options, scene);
     settings.tracers = ready.settings.tracers;
     return settings;
@@ -145,7 +145,7 @@ bool adapt_setup(RenderSetup& ready, const PictureOptions& before, PictureOption
         has_same_camera = false;
     }
     check(options, verbs);
-    if (options.strict) refuse_what_is_left_out(sink.messages(), "nothing is rendered");
+    if (options.strict) refuse_what_is_left_out(sink.messages(), "nothing was rendered");
     PictureOptions taken = options;
     apply_camera_from(taken);
     Messages messages;
@@ -282,11 +282,11 @@ void report_motion(const PictureOptions& options, const MovingScene& moving, Sin
     const bool has_time = options.time_s || !options.frames.empty();
     if (moving.is_animated() && !has_time) {
         sink.note({FileLocation{options.scene.scene},
-                   fmt::format("shown at rest; `time` shows it at a time of its {} (0 to {:.4g} s)",
+                   fmt::format("the scene is shown at rest; `time` shows it at a time of its {} (0 to {:.4g} s)",
                                counted(moving.scene().animations.size(), "animation"), moving.end_s())});
     }
     if (std::ranges::count(options.aovs, "motion") > 0 && options.frames.empty()) {
-        sink.note({"aov", "motion", "0 without `frames`, as there is no frame before"});
+        sink.note({"aov", "motion", "there is no motion without `frames`, because there is no earlier frame"});
     }
     const bool camera_moves = !options.camera_path.empty() || options.turntable > 0;
     if (!moving.is_animated() && has_time && !camera_moves && !options.real_time) { // which gather light at rest

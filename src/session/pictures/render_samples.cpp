@@ -7,17 +7,17 @@
 namespace pertev {
 
 void refuse_without_samples(const RenderSettings& settings, Sink& sink) {
-    if (sink.should_stop()) throw Error(ErrorCode::Interrupted, "interrupted before there was anything to keep");
+    if (sink.should_stop()) throw Error(ErrorCode::Interrupted, "interrupted before the first sample was complete");
     throw Error(ErrorCode::Interrupted, "time_limit", fmt::format("{:g}", settings.time_limit_s),
-                fmt::format("no sample was finished in this time, so nothing is written; `integrator={}` prepares "
-                            "more than samples first",
+                fmt::format("no sample was complete in this time, so nothing is written; `integrator={}` has "
+                            "precomputation before its first sample",
                             integrator_name(settings)));
 }
 
 void note_hidden_backs(const RenderStats& stats, Sink& sink) {
     if (stats.hidden_back_share > 0.01) {
-        sink.note(fmt::format("the camera looks through the backs of surfaces at {:.0f} % of the picture, "
-                              "as they are not double sided (`show_back_faces` shows them)",
+        sink.note(fmt::format("{:.0f} % of the picture shows what is behind the back faces of single-sided surfaces "
+                              "(`show_back_faces` shows them)",
                               100 * stats.hidden_back_share));
     }
 }

@@ -85,7 +85,7 @@ RenderResult RenderWithCheckpoint::render(Sink& sink) {
         const double seconds = watch.seconds();
         const bool is_over = settings_.time_limit_s > 0 && seconds >= settings_.time_limit_s;
         if (is_over && before > known_) break;
-        if (before > known_ && !write()) sink.warn(written_.failure + "; the render goes on without this checkpoint");
+        if (before > known_ && !write()) sink.warn(written_.failure + "; the render continues without this checkpoint");
         render_slice(seconds, sink);
         if (film_.samples().count() == before) break;
     }

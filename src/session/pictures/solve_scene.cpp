@@ -47,8 +47,8 @@ RadiosityDisplay radiosity_display(const PreparedScene& prepared, const Radiosit
     } else {
         SolvedRadiosity solved = solve_scene(prepared, options, seed, sink, report);
         if (solved.stats.was_interrupted) { // a picture of it could not be made again
-            throw Error(ErrorCode::Interrupted, "interrupted while radiosity was solved, so that there is nothing to "
-                                                "show (solving by itself keeps what has been solved by then)");
+            throw Error(ErrorCode::Interrupted, "interrupted while radiosity was being solved, so there is nothing "
+                                                "to show (solving without a render keeps an unfinished solution)");
         }
         solution = std::move(solved.solution);
     }

@@ -91,20 +91,20 @@ DefaultLight add_default_light(Scene& scene, SceneUse use, Sink& sink, Surroundi
         may_be_weak && (own == OwnLight::Glowing ? is_light_too_weak(scene, sink) : lights_nothing_seen(scene, sink));
     if (own != OwnLight::None && !is_weak) return DefaultLight::None;
     const char* why = !is_weak                    ? "the scene has no light"
-                      : own == OwnLight::Punctual ? "the lights of the scene reach nothing visible"
-                                                  : "the emitters of the scene light too little of it";
+                      : own == OwnLight::Punctual ? "no light of the scene reaches a visible surface"
+                                                  : "the emitters light too little of the scene";
     sink.check();
     const Surroundings around = survey_surroundings(scene);
     if (seen != nullptr) *seen = around;
     if (around.is_dark) {
         add_emitters(scene, around);
-        sink.make_up(fmt::format("{}, a closed room: it gets a row of emitters", why));
+        sink.make_up(fmt::format("{}, which is a closed room: a row of emitters is added", why));
         return DefaultLight::Emitters;
     }
     // Through the openings of a room, the clear sky's narrow sun shows more than soft boxes do.
     const bool is_thing = around.kind == SurroundingsKind::Object && use != SceneUse::Benchmark;
     scene.environment = is_thing ? make_studio() : make_clear_sky();
-    sink.make_up(fmt::format("{}: it gets a sky{}", why, is_weak ? " (`environment=0,0,0`: none)" : ""));
+    sink.make_up(fmt::format("{}: a sky is added{}", why, is_weak ? " (`environment=0,0,0`: none)" : ""));
     return DefaultLight::Sky;
 }
 

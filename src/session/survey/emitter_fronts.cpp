@@ -72,10 +72,9 @@ void warn_of_turned_emitters(const Scene& scene, const std::vector<const Instanc
         }
         if (2 * turned <= hits.size() / 2) continue; // most of the tested triangles
         const std::string distance_text = behind < kInfinity ? fmt::format("{:.3g} m", behind) : "most of the scene";
-        sink.warn(
-            {FileLocation{file}, fmt::format("the emitter {} shines at a surface {:.3g} m before its front and has {} "
-                                             "behind it: flip its faces, or use `two_sided_lights`",
-                                             shortened(emitters[i]->name), before, distance_text)});
+        sink.warn({FileLocation{file}, fmt::format("the front of the emitter {} faces a surface at {:.3g} m, and {} is "
+                                                   "behind it: flip its faces, or set `two_sided_lights`",
+                                                   shortened(emitters[i]->name), before, distance_text)});
     }
 }
 
@@ -91,10 +90,10 @@ void report_emitter_fronts(const Scene& scene, const std::string& file, Sink& si
     }
     if (emitters.empty()) return;
     if (emitters.size() > kMaxNames) names += fmt::format(" and {} more", emitters.size() - kMaxNames);
-    sink.note({FileLocation{file},
-               fmt::format("{} with light on the front only: {}; the front is where normals point or, without any, "
-                           "from where corners run counter-clockwise (`two_sided_lights`: both faces)",
-                           counted(emitters.size(), "emitter"), names)});
+    sink.note(
+        {FileLocation{file}, fmt::format("{} only from the front face: {}; normals point to the front, or corners run "
+                                         "counter-clockwise there (`two_sided_lights`: both faces)",
+                                         counted(emitters.size(), "emitter"), names)});
     warn_of_turned_emitters(scene, emitters, file, sink);
 }
 

@@ -56,7 +56,7 @@ void refuse_checkpoint_twins(std::span<const std::string> outputs, const std::st
     for (const std::string& output : outputs) {
         const std::filesystem::path file = canonical_path(output);
         if (file == canonical_path(checkpoint) || file == canonical_path(checkpoint + ".previous"))
-            refuse("output", output, fmt::format("`checkpoint={}` writes this file", checkpoint));
+            refuse("output", output, fmt::format("`checkpoint={}` names the same file", checkpoint));
     }
 }
 
@@ -88,12 +88,12 @@ void refuse_unshown(const PictureOptions& options, uint32_t written) {
 void check_film_file(const PictureOptions& options, const std::string& setting, const std::string& output,
                      bool has_frames) {
     if (has_frames) {
-        refuse(setting, output,
-               "a film file holds one picture, not the frames of a sequence, which `continue` resumes");
+        refuse(setting, output, "a film file holds one picture; `continue` resumes a sequence");
     }
     if (options.render.denoise != Denoise::None)
-        refuse("denoise", std::string(name_of(options.render.denoise)), "film files do not hold what it needs");
-    if (std::ranges::count(options.aovs, "motion") > 0) refuse("aov", "motion", "film files have no such layer");
+        refuse("denoise", std::string(name_of(options.render.denoise)),
+               "film files do not store what this setting needs");
+    if (std::ranges::count(options.aovs, "motion") > 0) refuse("aov", "motion", "film files do not store this layer");
     check_writable(output);
 }
 
@@ -112,7 +112,7 @@ bool writes_tone_mapped(std::span<const std::string> outputs) {
 void note_number_signs(const std::string& output, Sink& sink) {
     if (!names_frames(output)) return;
     sink.note({"output", output,
-               "# stands for a frame's number only with `frames` or `turntable`; here it is a part of the file's "
+               "# is replaced by a frame's number only with `frames` or `turntable`; here it stays in the file's "
                "name"});
 }
 
@@ -151,7 +151,8 @@ void check_outputs(const PictureOptions& options, std::span<const std::string> o
         sink.warn(std::move(why));
     }
     if (!options.false_color.empty() && options.false_color_range.empty() && frames && writes_tone_mapped(outputs))
-        refuse("false_color", options.false_color, "the frames of a sequence need one scale; set `false_color_range`");
+        refuse("false_color", options.false_color,
+               "the frames of a sequence need the same scale; set `false_color_range`");
 }
 
 } // namespace pertev

@@ -40,7 +40,7 @@ bool SequenceRecord::load() {
     for (const auto& [name, value] : settings.members()) before.emplace_back(name, value.to_string());
     if (const auto different = first_difference(before, settings_)) {
         Remark why(settings.location(), fmt::format("the existing frames were made with {} \"{}\", not \"{}\"; "
-                                                    "render them again without `continue`, or elsewhere",
+                                                    "render them again without `continue`, or to other files",
                                                     different->name, different->before, different->after));
         why.setting = "continue";
         throw Error(ErrorCode::BadInput, std::move(why));
@@ -69,8 +69,8 @@ void SequenceRecord::check_picture(uint32_t frame, const std::string& picture) c
     const auto known = pictures_.find(frame);
     if (known == pictures_.end() || known->second == picture) return;
     throw Error(ErrorCode::BadInput, FileLocation{path_.string()},
-                fmt::format("frame {} is now a different picture ({}) from the one written ({}), so that later frames "
-                            "would not fit; render them again without `continue`, or elsewhere",
+                fmt::format("frame {} is now a different picture ({}) from the one written ({}), so later frames "
+                            "would not fit; render them again without `continue`, or to other files",
                             frame, picture, known->second));
 }
 
