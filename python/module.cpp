@@ -76,7 +76,7 @@ std::vector<nb::dict> settings_of_parts() {
     return rows;
 }
 
-/// Returns the settings of any picture, or those of frames: `frames`, `turntable` and what needs these, but for
+/// Returns the settings of any picture, or those of frames: `frames`, `turntable` and what needs these, except
 /// `continue`, which is about files.
 std::vector<nb::dict> settings_of(bool frames) {
     std::vector<nb::dict> rows;

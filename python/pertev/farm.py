@@ -26,7 +26,7 @@ def _render_part(scene, part, count, values):
 
 
 def _source_of(scene, parts, values):
-    """Checks what is wrong on any machine before work is handed out. Returns what workers render."""
+    """Checks what no machine could render, before work is distributed. Returns what workers render."""
     check_process()
     if not isinstance(parts, int) or parts < 1:
         raise ValueError(f"parts: expected a number of parts, not {parts!r}")

@@ -25,7 +25,7 @@ namespace {
 
 constexpr uint32_t kSharedSamples = 12;
 
-/// A scene that is prepared once, with a lamp too bright for a film, so that there are invalid samples.
+/// A scene that is prepared once, with an emitter too bright for a film, so that there are invalid samples.
 struct SharedWorld {
     Scene scene = test::make_mixed_scene();
     PreparedScene prepared;

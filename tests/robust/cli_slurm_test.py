@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """examples/slurm_parts.sh: its parts make the picture of one run, and an ended task goes on. A stand-in of Slurm sets what an array's task
-sees and records what `scontrol` is asked; Slurm itself runs nothing here."""
+sees and records the arguments of `scontrol`; Slurm itself runs nothing here."""
 
 import os
 import pathlib

@@ -80,7 +80,7 @@ bool SharedRun::wait_for_work(std::size_t device) {
     const auto ends = [&] { return is_dropped_ || is_lost_[device] || is_finished(); };
     ++waiting_;
     changed_.notify_all();
-    const auto is_stuck = [&] { // nobody is at work, so nothing would ever change
+    const auto is_stuck = [&] { // no device is at work, so nothing would ever change
         return !ends() && slices_.is_empty() && is_idle() && busy_.empty();
     };
     changed_.wait(lock, [&] { return ends() || !slices_.is_empty() || is_stuck(); });
