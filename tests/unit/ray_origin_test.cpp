@@ -62,7 +62,8 @@ TEST_CASE("an offset origin is never on the wrong side, wherever the true point 
         // The corner itself is rounded by half a unit in each component, times the normal.
         double slack = 0;
         for (int k = 0; k < 3; ++k) {
-            slack += 0x1p-24 * static_cast<double>(abs(component(on_plane, k)) * abs(component(normal, k)));
+            slack +=
+                0x1p-24 * static_cast<double>(pertev::abs(component(on_plane, k)) * pertev::abs(component(normal, k)));
         }
         const double away = wanted * side(moved, on_plane, normal);
         least = std::min(least, away + slack);
@@ -98,8 +99,8 @@ TEST_CASE("a point near an edge is moved inwards, and any other is kept to the b
         const PointOnTriangle place = inset_barycentrics(u, v, least);
         const float w = 1 - place.u - place.v;
         CHECK(min(w, min(place.u, place.v)) >= least / 1.5f - 0x1p-22f);
-        CHECK(abs(place.u - u) <= 2 * least + 0x1p-22f);
-        CHECK(abs(place.v - v) <= 2 * least + 0x1p-22f);
+        CHECK(pertev::abs(place.u - u) <= 2 * least + 0x1p-22f);
+        CHECK(pertev::abs(place.v - v) <= 2 * least + 0x1p-22f);
         if (u >= least && v >= least && 1 - u - v >= least) CHECK((place.u == u && place.v == v));
     }
     CHECK(inset_barycentrics(0.0f, 0.0f, 0.25f).u ==
