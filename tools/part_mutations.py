@@ -58,4 +58,8 @@ MUTATIONS = [
      ("src/session/film_file/film_file_reader.cpp", "if (hash != Hash128{high, low})", "if (high == low)")),
     ("packed sums lose their sign", "unit/packed_block consistency/film_files",
      ("src/session/film_file/packed_sums.cpp", "sums[i].high >> 63 != 0 ? kSign : 0", "sums[i].high >> 63 != 0 ? 0 : 0")),
+    ("parts are merged before they have arrived", "robust/simulate_farm",
+     ("tools/simulate_farm.py", "max(now, arrival) + merge_s", "now + merge_s + 0 * arrival")),
+    ("an ended task of Slurm is not queued again", "robust/cli_slurm",
+     ("examples/slurm_parts.sh", "if ((status == 75)); then", "if ((status == 74)); then")),
 ]

@@ -39,7 +39,7 @@ void add_report_flags(CLI::App& verb, ReportFlags& flags) {
 }
 
 void add_progress_flag(CLI::App& verb, ReportFlags& flags) {
-    verb.add_option("--progress", flags.progress, "json: the progress as one JSON object per line on stderr, for farms")
+    verb.add_option("--progress", flags.progress, "progress as one JSON object per line on stderr")
         ->type_name("FORM")
         ->check(CLI::IsMember({"json"}));
 }

@@ -7,6 +7,7 @@
     picture.depth   # numpy float32 (480, 640), metres
 """
 
+import importlib
 import os
 
 from ._cameras import BatchResult, Cameras, DeviceArray, chunk_size, read_cameras, render_batch
@@ -22,6 +23,12 @@ from .errors import DeviceError, Error, InputError, InterruptedRender, LimitErro
 __all__ = ["BatchResult", "Cameras", "DeviceArray", "DeviceError", "Error", "InputError", "InterruptedRender", "LimitError",
            "MemoryLimitError", "Params", "Result", "Scene", "Session", "Viewer", "WriteError", "builtin_scenes", "compare",
            "load", "merge", "read", "read_cameras", "render", "render_chunks", "scene", "tone_map", "view", "write"]
+
+
+def __getattr__(name):
+    if name == "farm":  # which few need
+        return importlib.import_module(".farm", __name__)
+    raise AttributeError(f"module 'pertev' has no attribute '{name}'")
 
 
 def render(scene, *, cameras=None, seeds=None, color=True, layers=(), output=(), settings=None, out=None, on_device=False,

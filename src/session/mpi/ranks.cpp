@@ -3,11 +3,13 @@
 #include <charconv>
 #include <cstdlib>
 #include <exception>
+#include <initializer_list>
 #include <string_view>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "device/backend.h"
 #include "settings/setting_table.h"
 
 #if defined(PERTEV_MPI)
@@ -18,18 +20,25 @@
 namespace pertev {
 namespace {
 
-/// Returns how many processes mpirun has started with this one; 1 without mpirun.
-uint32_t processes_of_mpirun() {
-    uint32_t count = 1;
-    for (const char* name :
-         {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}) { // Open MPI sets the first; MPICH and Slurm set the second
-        const char* const text = std::getenv(name);
+/// Returns the number in the first of these variables that is set, or `otherwise`. Open MPI sets those that begin with
+/// OMPI; MPICH and Slurm set the others.
+uint32_t number_in(std::initializer_list<const char*> variables, uint32_t otherwise) {
+    for (const char* variable : variables) {
+        const char* const text = std::getenv(variable);
         if (text == nullptr) continue;
         const std::string_view digits(text);
-        std::from_chars(digits.data(), digits.data() + digits.size(), count);
+        std::from_chars(digits.data(), digits.data() + digits.size(), otherwise);
         break;
     }
-    return count;
+    return otherwise;
+}
+
+/// Returns how many processes mpirun has started with this one; 1 without mpirun.
+uint32_t processes_of_mpirun() { return number_in({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}, 1); }
+
+/// Returns the number of this process among those on its machine.
+uint32_t number_on_machine() {
+    return number_in({"OMPI_COMM_WORLD_LOCAL_RANK", "MPI_LOCALRANKID", "SLURM_LOCALID"}, 0);
 }
 
 void set_option(PictureOptions& options, const char* name, const std::string& text) {
@@ -43,6 +52,9 @@ void Ranks::divide(const std::string& output, PictureOptions& options) const {
         throw Error(ErrorCode::BadInput, "checkpoint", options.checkpoint,
                     "each process of mpirun keeps its part in a file of its own beside the first output");
     }
+    const auto gpus = static_cast<uint32_t>(cuda_device_count());
+    if (!options.is_given("device") && gpus > 1)
+        options.machine.device = fmt::format("cuda:{}", number_on_machine() % gpus);
     set_option(options, "part", fmt::format("{}/{}", rank_ + 1, count_));
     set_option(options, "checkpoint", fmt::format("{}.part-{}-of-{}.pvf", output, rank_ + 1, count_));
 }

@@ -28,8 +28,8 @@ public:
     uint32_t rank() const { return rank_; } // from 0
     uint32_t count() const { return count_; }
 
-    /// Sets the part and the checkpoint of this rank, a film file beside `output`. Throws Error(BadInput) if a
-    /// checkpoint was given.
+    /// Sets the part and the checkpoint of this rank, a film file beside `output`, and, if several GPUs are there and
+    /// no device was given, a GPU for each rank of this machine. Throws Error(BadInput) if a checkpoint was given.
     void divide(const std::string& output, PictureOptions& options) const;
     /// Returns whether all ranks call it with true. Each rank calls it, and waits for the others.
     bool all(bool here) const;
