@@ -3,6 +3,7 @@
 
 Skipped where there is no mpirun, or where the program was built without MPI (PERTEV_MPI)."""
 
+import json
 import os
 import re
 import shutil
@@ -20,6 +21,14 @@ SMALL = ["--size", "24x18", "--device", "cpu", "--threads", "1", *UNMETERED]
 def has_mpi():
     linked = subprocess.run(["ldd", PROGRAM], stdout=subprocess.PIPE, text=True, check=False).stdout
     return bool(shutil.which("mpirun")) and "libmpi" in linked
+
+
+def can_divide_the_network():
+    return os.geteuid() == 0 and bool(shutil.which("ip")) and subprocess.run(["ip", "netns", "list"], capture_output=True, check=False).returncode == 0
+
+
+def ip(*words):
+    return subprocess.run(["ip", *words], check=True, stdout=subprocess.PIPE, text=True).stdout
 
 
 class Ranks(CliTest):
@@ -87,6 +96,33 @@ class Ranks(CliTest):
         self.assertGreaterEqual(len(kept), 1)
         self.ranks(3, "--spp", spp)
         self.assertEqual(self.info("x.exr")["pertev.hash"], self.whole("--spp", spp)["hash"])
+
+    @unittest.skipUnless(has_mpi() and can_divide_the_network(), "no mpirun, a build without MPI, or no network namespaces")
+    def test_ranks_with_two_addresses_sum_their_films_over_the_network(self):
+        names = [f"pertev-{side}-{os.getpid()}" for side in "ab"]
+        try:
+            for name in names:
+                ip("netns", "add", name)
+                self.addCleanup(ip, "netns", "del", name)
+                ip("-n", name, "link", "set", "lo", "up")
+            ip("link", "add", "va", "netns", names[0], "type", "veth", "peer", "name", "vb", "netns", names[1])
+            for name, device, host in zip(names, ("va", "vb"), (1, 2)):
+                ip("-n", name, "addr", "add", f"10.77.0.{host}/24", "dev", device)
+                ip("-n", name, "link", "set", device, "up")
+        except subprocess.CalledProcessError as error:
+            self.skipTest(f"network namespaces cannot be made: {error}")
+        with open(self.path("agent"), "w", encoding="utf-8") as agent:  # in place of ssh: HOST COMMAND
+            agent.write(f'#!/bin/sh\nhost=$1\nshift\ncase $host in *.1) n={names[0]} ;; *) n={names[1]} ;; esac\nexec ip netns exec $n sh -c "$*"\n')
+        os.chmod(self.path("agent"), 0o755)
+        whole = self.whole("--spp", 6)
+        network = [word for layer in ("btl_tcp_if_include", "oob_tcp_if_include") for word in ("--mca", layer, "10.77.0.0/24")]
+        done = subprocess.run(["ip", "netns", "exec", names[0], *MPIRUN, "--mca", "plm_rsh_agent", self.path("agent"), "--mca", "btl", "self,tcp",
+                               *network, "-H", "10.77.0.1,10.77.0.2", *self.command(2, "--spp", 6)[len(MPIRUN):]],
+                              cwd=self.folder, env=self.environment, stdin=subprocess.DEVNULL, timeout=PATIENCE_S, capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.info("x.exr")["pertev.hash"], whole["hash"])
+        sent = json.loads(ip("-n", names[1], "-s", "-j", "link", "show", "vb"))[0]["stats64"]["tx"]["bytes"]
+        self.assertGreater(sent, 24 * 18 * 4 * 16)
 
     @unittest.skipUnless(has_mpi(), "no mpirun, or a build without MPI")
     def test_what_ranks_cannot_do_is_refused(self):
