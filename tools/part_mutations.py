@@ -62,4 +62,8 @@ MUTATIONS = [
      ("tools/simulate_farm.py", "max(now, arrival) + merge_s", "now + merge_s + 0 * arrival")),
     ("an ended task of Slurm is not queued again", "robust/cli_slurm",
      ("examples/slurm_parts.sh", "if ((status == 75)); then", "if ((status == 74)); then")),
+    ("rows without a sample are merged with others", "consistency/film_files robust/cli_merge",
+     ("src/session/film_file/merge_films.cpp", "for (const Band& band : bands) count = std::max(count, band.count());", "count = bands.front().count();")),
+    ("files of processes that live are removed beside a checkpoint", "robust/cli_checkpoint",
+     ("src/base/remove_leftovers.cpp", "::kill(*process, 0) != 0 && errno == ESRCH", "*process > 0")),
 ]

@@ -221,6 +221,8 @@ TEST_CASE("overlaps and gaps of rows are refused by name") {
     CHECK(merge_refusal({top, bottom, over}).find("samples 4 to 4 of rows 8 to 8") != std::string::npos);
     CHECK(merge_refusal({top}).find("samples 0 to 4 of rows 9 to 19") != std::string::npos);
     CHECK(merge_refusal({top, late}).find("samples 0 to 2 of rows 9 to 19") != std::string::npos);
+    CHECK(merge_refusal({bottom}, true).find("rows 0 to 8 have 0 samples") != std::string::npos);
+    CHECK(merge_refusal({top}, true).find("rows 9 to 19 have 0 samples") != std::string::npos);
     CHECK(merge_refusal({top, late}, true) != "no error"); // a picture has as many samples everywhere
 }
 

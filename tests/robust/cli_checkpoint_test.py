@@ -10,7 +10,7 @@ import subprocess
 import threading
 import unittest
 
-from cli_run import PATIENCE_S, PROGRAM, SANITIZED, UNMETERED, CliTest, main
+from cli_run import PATIENCE_S, PROGRAM, SANITIZED, UNMETERED, CliTest, main, write
 
 KILLS = 1000 if os.environ.get("PERTEV_LONG_TESTS") else 20
 PAIRS = ["--size", "20x16", "--device", "cpu", *UNMETERED]
@@ -81,9 +81,13 @@ class Checkpoints(CliTest):
             else:
                 self.assertEqual(least, 0)
         self.assertGreater(kept, 0)
-        self.assertLessEqual(len([name for name in self.files() if name.startswith(".")]), 1)  # killed between two renamings
+        left = [name for name in self.files() if name.startswith(".")]
+        self.assertLessEqual(len(left), 1)  # the last one was killed between two names
+        write(self.path(".c.pvf.4194305.0"), "no process has this number")
+        write(self.path(f".c.pvf.{os.getpid()}.0"), "this one lives")
         events = self.go_on("--spp", kept + 7)
         self.assertIn(f"resumes from {kept} of {kept + 7} samples in c.pvf", [event.get("text") for event in events])
+        self.assertEqual([name for name in self.files() if name.startswith(".")], [f".c.pvf.{os.getpid()}.0"])
         self.assertEqual(events[-1]["samples"], kept + 7)
         self.assertEqual(events[-1]["hash"], self.whole("--spp", kept + 7)["hash"])
         self.assertEqual(self.metadata("x.exr"), self.metadata("whole.exr"))

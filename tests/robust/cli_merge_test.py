@@ -131,6 +131,7 @@ class Merge(CliTest):
         self.assertEqual(self.info("all.pvf")["rows"], "0:16")
         self.refuse(2, "merge", "a.pvf", "b.pvf", "-o", "x.exr", says=["samples 2 to 3 of rows 5 to 15"])
         self.refuse(2, "merge", "a.pvf", "b.pvf", "--partial", "-o", "x.exr", says=["rows 5 to 15"])
+        self.refuse(2, "merge", "b.pvf", "c.pvf", "--partial", "-o", "x.exr", says=["rows 0 to 4"])
 
     def test_a_part_of_rows_goes_on_from_its_checkpoint(self):
         flags = ["--rows", "3:9", "--checkpoint", "c.pvf"]

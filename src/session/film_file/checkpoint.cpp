@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/machine_memory.h"
+#include "base/remove_leftovers.h"
 #include "base/write_file_atomically.h"
 #include "session/film_file/film_file.h"
 
@@ -81,6 +82,7 @@ std::optional<Error> Checkpoint::take(const std::string& file, FilmRender& film,
 }
 
 void Checkpoint::restore(FilmRender& film, Sink& sink) {
+    remove_leftovers(file_);
     if (!is_there(file_)) {
         if (is_there(previous_)) {
             sink.warn({FileLocation{previous_}, "the render does not resume from it, because its checkpoint is "

@@ -17,9 +17,9 @@ public:
     /// Makes an object without reading anything. `picture` is the header of the finished film.
     Checkpoint(std::string file, FilmHeader picture);
 
-    /// Takes the samples of the file, if it is there, into `film`, and notes how many. If the file is damaged, it warns
-    /// and takes those of the generation before. Throws Error(BadInput) if the file is of another picture, naming the
-    /// first difference, or if no generation is whole.
+    /// Takes the samples of the file, if it is there, into `film`, and notes how many. Removes what killed processes
+    /// left beside it. If the file is damaged, it warns and takes those of the generation before. Throws
+    /// Error(BadInput) if the file is of another picture, naming the first difference, or if no generation is whole.
     void restore(FilmRender& film, Sink& sink);
     /// Throws Error(FileWrite) if two generations of such a film, and the next while it is written, may not fit on
     /// the disk.

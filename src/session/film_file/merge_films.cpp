@@ -116,7 +116,8 @@ void FilmMerge::check_rows(bool is_partial) {
     const FileLocation place = {parts_.front().file};
     if (std::ranges::all_of(parts, &FilmPart::is_empty))
         throw Error(ErrorCode::BadInput, place, "none of the files contains a sample");
-    const uint32_t count = bands.front().count();
+    uint32_t count = 0;
+    for (const Band& band : bands) count = std::max(count, band.count());
     uint32_t first = UINT32_MAX;
     for (const Band& band : bands) {
         const SampleRange missing = band.first_missing(header_.spp);
@@ -132,7 +133,8 @@ void FilmMerge::check_rows(bool is_partial) {
                         fmt::format("rows {} to {} have {} samples, and others {}", band.first_row, band.end_row - 1,
                                     band.count(), count));
         }
-        const uint32_t begin = band.ranges.front().first; // there is one, because all bands have as many samples
+        const uint32_t begin =
+            band.ranges.front().first; // there is one: all bands have as many samples, and some have any
         if (first == UINT32_MAX) first = begin;
         has_gaps_ = has_gaps_ || begin != first || band.ranges.back().end - begin != count;
     }

@@ -22,7 +22,7 @@ namespace {
 
 /// Returns the number in the first of these variables that is set, or `otherwise`. Open MPI sets those that begin with
 /// OMPI; MPICH and Slurm set the others.
-uint32_t number_in(std::initializer_list<const char*> variables, uint32_t otherwise) {
+uint32_t number_of_variable(std::initializer_list<const char*> variables, uint32_t otherwise) {
     for (const char* variable : variables) {
         const char* const text = std::getenv(variable);
         if (text == nullptr) continue;
@@ -34,11 +34,11 @@ uint32_t number_in(std::initializer_list<const char*> variables, uint32_t otherw
 }
 
 /// Returns how many processes mpirun has started with this one; 1 without mpirun.
-uint32_t processes_of_mpirun() { return number_in({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}, 1); }
+uint32_t processes_of_mpirun() { return number_of_variable({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}, 1); }
 
 /// Returns the number of this process among those on its machine.
 uint32_t number_on_machine() {
-    return number_in({"OMPI_COMM_WORLD_LOCAL_RANK", "MPI_LOCALRANKID", "SLURM_LOCALID"}, 0);
+    return number_of_variable({"OMPI_COMM_WORLD_LOCAL_RANK", "MPI_LOCALRANKID", "SLURM_LOCALID"}, 0);
 }
 
 void set_option(PictureOptions& options, const char* name, const std::string& text) {
