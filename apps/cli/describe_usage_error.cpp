@@ -157,7 +157,7 @@ std::string describe_repetition(const CLI::App& verb) {
     for (const CLI::Option* flag : verb.get_options()) {
         const int most = std::max(flag->get_items_expected_max(), 1);
         if (flag->get_multi_option_policy() == CLI::MultiOptionPolicy::Throw && int(flag->count()) > most) {
-            return fmt::format("{} is given {} times, but only one is accepted", flag->get_name(), flag->count());
+            return fmt::format("{}: given {} times; it is accepted once", flag->get_name(), flag->count());
         }
     }
     return "";

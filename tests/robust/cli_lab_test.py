@@ -72,7 +72,7 @@ class WhatIsRefused(LabTest):
                              ("--structures binned --traversals if-if --rta nodes", "compressed traversal"),
                              ("--structures binned --traversals skip-links --order off", "no order of children")]:
             with self.subTest(line=line):
-                self.refuse_unmeasured(2, "box.obj", *INSIDE, *line.split(), "-o", "out", says=["none", reason])
+                self.refuse_unmeasured(2, "box.obj", *INSIDE, *line.split(), "-o", "out", says=["--traversal: ", reason])
 
     def test_more_rays_than_memory_holds_are_refused_with_the_flag_for_fewer(self):
         if SANITIZED:

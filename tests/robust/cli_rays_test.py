@@ -101,7 +101,7 @@ class RaysOnTheRecord(CliTest):
                             "--eye", "0,1,0.01", "--target", "0,9,0", "--check").stdout
         self.assertRegex(text, r"(?m)^floor +primary +1000 +[\d.]+ ")
         for name in ["shadow", "diffuse1", "diffuse2", "diffuse3"]:
-            self.assertRegex(text, rf"(?m)^floor +{name} +0 .* empty: no ray ")
+            self.assertRegex(text, rf"(?m)^floor +{name} +0 .* empty, because ")
 
     def test_camera_errors_name_only_flags_that_bench_rays_has(self):
         outcome = self.refuse(2, "bench", "rays", "--scene", "cornell-box", "--eye", "1,2,3", "--target", "1,2,3",

@@ -155,7 +155,7 @@ class RealTime(CliTest):
     def test_settings_that_real_time_frames_do_not_support_are_refused(self):
         motion = "--frames 0-1 --real-time"
         for line, says in [("--real-time", "--frames or --turntable"), ("--real-time --time 1", "--frames"),
-                           (f"{motion} --spp 4", "--spp 4: a frame of --real-time has one sample"),
+                           (f"{motion} --spp 4", "--spp 4: a frame with --real-time has one sample"),
                            (f"{motion} --spp 64", "--spp 64"), (f"{motion} --denoise svgf", "--denoise svgf"),
                            (f"{motion} --transparent", "--transparent"), (f"{motion} --lpe d=LDE", "--lpe"),
                            (f"{motion} --aov motion", "--aov motion"),

@@ -35,7 +35,7 @@ class WhatIsRefused(CliTest):
 
     def test_errors_of_the_command_line_point_to_the_help_of_their_verb(self):
         for verb in ["render", "info", "bench", "bench rays", "bench render", "compare"]:
-            self.refuse(2, *verb.split(), "--foo", says=[f"(pertev {verb} --help"])
+            self.refuse(2, *verb.split(), "--foo", says=[f"pertev {verb} --help)"])
 
     def test_an_invalid_exposure_is_refused(self):
         for exposure in ["AUTO", "bright"]:
@@ -119,7 +119,7 @@ class WhatIsRefused(CliTest):
                               "white=nothere.png,1", "--json").events("error")[0]
         self.assertEqual(nowhere["place"], {"file": "nothere.png"})
         self.refuse(2, "render", "cornell-box", "-o", "x.png", *"--integrator radiosity --lamp light=0W --environment 0,0,0".split())
-        self.refuse(2, "bench", "frames", "cornell-box", "--integrator", "distributed", "--restir", "di", says=["are for path"])
+        self.refuse(2, "bench", "frames", "cornell-box", "--integrator", "distributed", "--restir", "di", says=["apply to path"])
 
     def test_the_error_for_too_little_memory_names_the_limit_and_the_settings_to_reduce(self):
         with open("/proc/meminfo", encoding="ascii") as file:

@@ -116,9 +116,9 @@ class Transport(CliTest):
             self.render(size="12x12", output=shown)
         wanted = {"--integrators path,foo": "bidirectional", "--preset kitchen": "many-lights", "--seconds 0": "above 0",
                   "--repetitions 0": "whole number from 1", "--reference nowhere.exr": "nowhere.exr",
-                  "cornell-box --reference small.exr": "it is 10x10, the pictures 12x12",
+                  "cornell-box --reference small.exr": "10x10 pixels, the pictures 12x12",
                   "cornell-box --preset door": "SCENE", "--preset door --eye 0,0,0": "camera",
-                  "cornell-box --reference shown.png": "shown.png: a picture for displays",
+                  "cornell-box --reference shown.png": "shown.png: the picture is tone-mapped",
                   "cornell-box --reference shown.jpg": "EXR or HDR",
                   "--preset all --reference small.exr": "one preset", "--integrators cast": "none of the integrators",
                   "--reference-integrator cast": "path", "--structures binned": "--transport",

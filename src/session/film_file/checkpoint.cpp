@@ -53,7 +53,7 @@ void Checkpoint::check_header(const std::string& file, const FilmHeader& header)
                            picture_.part.samples.first));
     }
     if (there.end > picture_.part.samples.end) {
-        refuse(fmt::format("the checkpoint has {} samples, more than the {} of this picture (`spp`)", there.end,
+        refuse(fmt::format("the checkpoint has samples up to {}, more than the {} of this picture (`spp`)", there.end,
                            picture_.part.samples.end));
     }
 }

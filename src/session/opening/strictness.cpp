@@ -13,8 +13,7 @@ void refuse_what_is_left_out(const Messages& messages, const char* outcome) {
     const std::size_t others = left_out.size() - 1;
     throw Error(ErrorCode::BadInput, "strict", "",
                 fmt::format("{}{}; {}", left_out.front(),
-                            others > 0 ? fmt::format(" (and {} more of this kind)", counted(others, "warning")) : "",
-                            outcome));
+                            others > 0 ? fmt::format(" (and {} like it)", counted(others, "warning")) : "", outcome));
 }
 
 void refuse_invalid_samples(uint64_t count) {

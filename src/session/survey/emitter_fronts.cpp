@@ -90,10 +90,10 @@ void report_emitter_fronts(const Scene& scene, const std::string& file, Sink& si
     }
     if (emitters.empty()) return;
     if (emitters.size() > kMaxNames) names += fmt::format(" and {} more", emitters.size() - kMaxNames);
-    sink.note(
-        {FileLocation{file}, fmt::format("{} only from the front face: {}; normals point to the front, or corners run "
-                                         "counter-clockwise there (`two_sided_lights`: both faces)",
-                                         counted(emitters.size(), "emitter"), names)});
+    sink.note({FileLocation{file},
+               fmt::format("{} with light only from the front face: {}; normals point to the front, or corners run "
+                           "counter-clockwise there (`two_sided_lights`: both faces)",
+                           counted(emitters.size(), "emitter"), names)});
     warn_of_turned_emitters(scene, emitters, file, sink);
 }
 
