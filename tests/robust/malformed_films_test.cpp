@@ -169,7 +169,7 @@ TEST_CASE("a header with valid checksums is read strictly") {
         large = replaced(large, fmt::format(R"("bytes":{},"stride":{})", 15 * stride, stride),
                          fmt::format(R"("bytes":{},"stride":{})", (uint64_t(1) << 30) * stride, stride));
     }
-    CHECK(test::says(error_of(path, with_header(film, large)), "cut off"));
+    CHECK(test::says(error_of(path, with_header(film, large)), "truncated"));
     CHECK(test::says(error_of(path, replaced(film, "\x1a\n\x02", "\x1a\n\x03")), "version 3"));
 }
 

@@ -160,7 +160,7 @@ TEST_CASE("chromaticities that are degenerate or of another type are left out wi
         CHECK(read_image(bytes, "t.exr", messages).pixels == kPicture.pixels);
         REQUIRE(messages.all().size() == 1);
         CHECK(messages.all()[0].is_warning);
-        CHECK(messages.all()[0].text.find("t.exr: its chromaticities") == 0);
+        CHECK(messages.all()[0].text.find("t.exr: the chromaticities") == 0);
     }
 }
 
