@@ -39,7 +39,7 @@ MUTATIONS = [
     ("several devices are taken for frames in real time", "robust/cli_devices unit/check_options",
      ("src/session/pictures/check_options.cpp", "if (options.real_time) refuse_several_devices", "if (false) refuse_several_devices")),
     ("only the first device knows that the scene has moved", "robust/cli_devices",
-     ("src/session/devices/device_worker.cpp", "    changed_parts_ |= parts;\n", "")),
+     ("src/session/devices/device_worker.cpp", "changed_parts_ |= parts;", "changed_parts_ |= 0 * parts;")),
     ("a chunk of a device that fails is not rendered again", "consistency/batch_on_devices",
      ("src/session/devices/batch_on_devices.cpp", "if (chunk) lost_.push_back(*chunk);", "if (chunk) done_ += chunk_;")),
     ("chunks of all devices go to the first pictures", "consistency/batch_on_devices",

@@ -137,11 +137,13 @@ TEST_CASE("chunks of a device that fails are rendered by the others, with a warn
                 has_failed = true;
                 throw Error(ErrorCode::OutOfMemory, "a test leaves this device no memory");
             };
-            hooks.after_slice = [&](std::size_t device, SampleRange) {
+            std::atomic<uint32_t> taken = 0;
+            hooks.after_slice = [&](std::size_t device, SampleRange chunk) {
                 if (device == lost) {
                     has_failed = true;
                     throw Error(ErrorCode::DeviceFault, "a test ends this device");
                 }
+                taken += chunk.count();
                 const Stopwatch watch;
                 while (!has_failed && watch.seconds() < 20) std::this_thread::yield();
             };
@@ -149,6 +151,7 @@ TEST_CASE("chunks of a device that fails are rendered by the others, with a warn
             Messages messages;
             views.render(messages);
             CHECK(has_failed);
+            CHECK(taken == kPictures);
             CHECK(ViewValues(views.arrays) == expected);
             REQUIRE(messages.all().size() == 1);
             CHECK(messages.all().front().is_warning);

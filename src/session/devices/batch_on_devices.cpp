@@ -119,9 +119,9 @@ SharedBatch render_batch(RenderOnDevices& together, PictureRenderer& pictures, c
                 of_device.go_to(*taken);
                 if (!of_device.next(part, run)) break;
                 worker.queue().wait();
-                copy_chunk(landing, arrays, worker.queue(), part, std::size_t(settings.width) * settings.height);
                 if (together.hooks().after_slice)
                     together.hooks().after_slice(worker.number(), {part.first, part.first + part.pictures});
+                copy_chunk(landing, arrays, worker.queue(), part, std::size_t(settings.width) * settings.height);
                 run.add_done(part.pictures);
             }
             const std::lock_guard lock(result_mutex);
