@@ -119,22 +119,27 @@ PythonResult PythonScene::render(const CallSettings& settings, const std::vector
     const bool has_checkpoint = !options_.checkpoint.empty();
     const bool is_read =
         !out.empty() && outputs.empty() && !has_checkpoint && FilmReader::reads(out, session.settings());
-    PictureRecord shown = *record_;
-    if (writes_tone_mapped(outputs) || has_checkpoint || std::ranges::any_of(outputs, is_film_name))
-        shown.display = choose_display(options_, session, sink);
-    if (writes_tone_mapped(outputs)) record_ = std::make_shared<const PictureRecord>(shown);
+    std::shared_ptr<const PictureRecord> shown = record_;
+    if (writes_tone_mapped(outputs) || has_checkpoint || std::ranges::any_of(outputs, is_film_name)) {
+        PictureRecord with_display = *record_;
+        with_display.display = choose_display(options_, session, sink);
+        shown = std::make_shared<const PictureRecord>(std::move(with_display));
+    }
+    if (writes_tone_mapped(outputs)) record_ = shown;
     // Only a checkpoint keeps an interrupted picture; its files stay as they were.
     std::optional<RenderWithCheckpoint> kept;
-    if (has_checkpoint) kept.emplace(session, options_, shown, sink);
+    if (has_checkpoint) kept.emplace(session, options_, *shown, sink);
     PythonResult made = is_read ? render_into(session, out, sink)
                                 : PythonResult(kept ? kept->render(sink) : render_samples(session, sink), record_);
     sink.check();
     WrittenPicture written;
     if (!outputs.empty()) {
         RenderResult result = made.result; // files take the layers out of it
-        const Film& film = kept ? kept->film() : session.film();
-        const FilmHeader header = film_header(options_, shown, facts_of(shown, result.ids), result, film);
-        written.files = write_film_files(outputs, header, film);
+        if (std::ranges::any_of(outputs, is_film_name)) {
+            const Film& film = kept ? kept->film() : session.film();
+            const FilmHeader header = film_header(options_, *shown, facts_of(*shown, result.ids), result, film);
+            written.files = write_film_files(outputs, header, film);
+        }
         WrittenPicture pictures = write_picture(outputs, *record_, result);
         written.files.insert(written.files.end(), pictures.files.begin(), pictures.files.end());
     }

@@ -16,7 +16,7 @@ from ._images import compare, read, tone_map, write
 from ._process import check_process
 from ._parts import merge, names_of
 from ._scene import Params, Scene, Session, load, scene
-from ._settings import OF_PARTS, OF_PICTURES, texts_of, with_layers
+from ._settings import OF_PARTS, OF_STILLS, texts_of, with_layers
 from ._viewer import Viewer, view
 from .errors import DeviceError, Error, InputError, InterruptedRender, LimitError, MemoryLimitError, WriteError
 
@@ -64,7 +64,7 @@ def render(scene, *, cameras=None, seeds=None, color=True, layers=(), output=(),
         return render_batch(used, cameras, seeds, color, os.fspath(settings or ""), with_layers(values, layers), out)
     if seeds is not None or not color:
         raise TypeError("seeds and color are for many `cameras`, or for `on_device`")
-    return used._render(os.fspath(settings or ""), texts_of(with_layers(values, layers), {**OF_PICTURES, **OF_PARTS}),
+    return used._render(os.fspath(settings or ""), texts_of(with_layers(values, layers), OF_STILLS),
                         names_of(output), out)
 
 

@@ -8,6 +8,7 @@ from . import _core
 OF_PICTURES = {row["name"]: row for row in _core.settings()}
 OF_FRAMES = {**OF_PICTURES, **{row["name"]: row for row in _core.frame_settings()}}
 OF_PARTS = {row["name"]: row for row in _core.part_settings()}
+OF_STILLS = {**OF_PICTURES, **OF_PARTS}
 SEPARATORS = {"A:B": ":", "I/N": "/"}  # by the form of a value
 
 
