@@ -59,8 +59,8 @@ def ray(scene, *, parts, output=(), retries=3, options=None, **values):
 
     Ray is started if it is not. Raises as render(); the other parts are then cancelled.
     """
-    import ray as engine  # pylint: disable=import-outside-toplevel
     scene = _source_of(scene, parts, values)
+    import ray as engine  # pylint: disable=import-outside-toplevel
     if not engine.is_initialized():
         engine.init()
     task = engine.remote(max_retries=retries, **(options or {}))(_render_part)
@@ -86,8 +86,8 @@ def dask(client, scene, *, parts, output=(), **values):
     The others are those of ray(). A part whose worker is lost is rendered again as often as Dask's setting
     distributed.scheduler.allowed-failures says. Raises as render(); the other parts are then cancelled.
     """
-    from distributed import as_completed  # pylint: disable=import-outside-toplevel
     scene = _source_of(scene, parts, values)
+    from distributed import as_completed  # pylint: disable=import-outside-toplevel
     waiting = client.map(lambda part: _render_part(scene, part, parts, values), range(1, parts + 1), pure=False)
     try:
         return _merged((future.result() for future in as_completed(waiting)), output)

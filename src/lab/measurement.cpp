@@ -193,7 +193,9 @@ Measurement start_measurement(const Queue& queue, std::string title) {
     m.threads = static_cast<uint32_t>(thread_count());
     if (!queue.is_cuda()) return m;
     m.device = queue.device_name();
-    m.driver = value_after(system_text("/proc/driver/nvidia/version"), "Kernel Module", " \n");
+    const std::string driver = system_text("/proc/driver/nvidia/version");
+    m.driver = value_after(driver, "Kernel Module for x86_64", " \n"); // as the open driver has it
+    if (m.driver.empty()) m.driver = value_after(driver, "Kernel Module", " \n");
     return m;
 }
 

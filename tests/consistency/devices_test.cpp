@@ -235,7 +235,9 @@ TEST_CASE("a device that fails in the middle costs a warning, and the others ren
             CHECK(failing.lost.count() == 1);
             check_shared(picture, alone);
             REQUIRE(picture.warnings() == 1);
-            CHECK(picture.messages.all().front().remark.setting == "device");
+            CHECK(std::ranges::any_of(picture.messages.all(), [](const auto& one) { // a notice of the copies between GPUs may precede it
+                return one.is_warning && one.remark.setting == "device";
+            }));
         }
     }
 }

@@ -76,7 +76,7 @@ class SlurmParts(CliTest):
         self.assertEqual(program.returncode, 75, said)
         with open(self.path("asked"), encoding="utf-8") as asked:
             self.assertEqual(asked.read().split(), ["requeue", "7_2"])
-        self.assertIn("goes on from", self.run_task(1, 2, 2, "--spp", spp))
+        self.assertIn("resumes from", self.run_task(1, 2, 2, "--spp", spp))
         self.assertEqual(self.merged(), self.whole(spp))
 
     def test_a_task_that_cannot_succeed_is_not_queued_again(self):

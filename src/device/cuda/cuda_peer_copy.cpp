@@ -1,5 +1,9 @@
 #include "device/peer_copy.h"
 
+#include <mutex>
+#include <set>
+#include <utility>
+
 #include <cuda_runtime.h>
 
 #include "device/cuda/check_cuda.h"
@@ -20,9 +24,14 @@ CopyPath cuda_copy_path(int from, int to) {
 }
 
 void allow_copies_between_gpus(Queue& to, int from) {
+    // Access belongs to the process, and to allow it twice is an error of the driver.
+    static std::mutex mutex;
+    static std::set<std::pair<int, int>> allowed;
+    const std::scoped_lock lock(mutex);
+    if (!allowed.emplace(to.device_index(), from).second) return;
     const Queue::Scope scope(to, "copy between devices");
     if (cudaDeviceEnablePeerAccess(from, 0) != cudaSuccess) {
-        cudaGetLastError(); // it is allowed already, or the driver takes the path through the host
+        cudaGetLastError(); // the driver takes the path through the host
     }
 }
 
