@@ -194,7 +194,7 @@ Measurement start_measurement(const Queue& queue, std::string title) {
     if (!queue.is_cuda()) return m;
     m.device = queue.device_name();
     const std::string driver = system_text("/proc/driver/nvidia/version");
-    m.driver = value_after(driver, "Kernel Module for x86_64", " \n"); // as the open driver has it
+    m.driver = value_after(driver, "Kernel Module for x86_64", " \n");
     if (m.driver.empty()) m.driver = value_after(driver, "Kernel Module", " \n");
     return m;
 }
