@@ -24,23 +24,17 @@ std::string value_in(const char* file, const std::string& key) {
     return {};
 }
 
-std::string driver_version() {
-    std::ifstream file("/sys/module/nvidia/version");
-    std::string version;
-    std::getline(file, version);
-    return version.empty() ? "" : fmt::format(", driver {}", version);
-}
-
 } // namespace
 
 std::string list_devices() {
     std::string list;
     int index = 0;
+    const std::string version = driver_version(), driver = version.empty() ? "" : ", driver " + version;
     const std::vector<DeviceIdentity> identities = device_identities();
     for (const CudaDevice& device : cuda_devices()) {
         const std::string why_not = why_no_cuda(index);
         list += fmt::format("cuda:{:<3} {}, {:.0f} MiB, compute capability {}.{}{}, {}{}\n", index, device.name,
-                            mebibytes(device.bytes), device.major, device.minor, driver_version(),
+                            mebibytes(device.bytes), device.major, device.minor, driver,
                             identities.at(static_cast<std::size_t>(index)).uuid,
                             why_not.empty() ? "" : fmt::format("; it cannot be used: {}", why_not));
         ++index;

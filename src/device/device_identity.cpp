@@ -7,6 +7,13 @@
 
 namespace pertev {
 
+std::string driver_version() {
+    std::ifstream file("/sys/module/nvidia/version");
+    std::string version;
+    std::getline(file, version);
+    return version;
+}
+
 std::string processors_near(const std::string& bus) {
     std::ifstream file("/sys/bus/pci/devices/" + bus + "/local_cpulist");
     std::string list;

@@ -1,6 +1,6 @@
 #pragma once
 
-// A GPU's identity: its UUID, and the place where it is connected. Backends need neither.
+// A GPU's identity: its UUID, its driver, and the place where it is connected. Backends need none of them.
 
 #include <string>
 #include <vector>
@@ -14,6 +14,9 @@ struct DeviceIdentity {
 
 /// Returns the identities of all CUDA devices, in the order of their indices. That starts the driver.
 std::vector<DeviceIdentity> device_identities();
+
+/// Returns the version of the driver of NVIDIA's GPUs; empty without one.
+std::string driver_version();
 
 /// Returns the processors of the socket to which the device at `bus` is connected, as the kernel lists them
 /// ("0-15,64"); empty if that is unknown.

@@ -14,6 +14,7 @@
 #include "base/parallel_for.h"
 #include "base/shell_word.h"
 #include "base/version.h"
+#include "device/device_identity.h"
 #include "image/write_png.h"
 
 namespace pertev {
@@ -99,11 +100,11 @@ std::string system_text(const char* path) {
 }
 
 /// Returns the rest of the line after `key` and blanks.
-std::string value_after(const std::string& text, std::string_view key, std::string_view end = "\n") {
+std::string value_after(const std::string& text, std::string_view key) {
     const std::size_t at = text.find(key);
     if (at == std::string::npos) return {};
     const std::size_t begin = text.find_first_not_of("\t :", at + key.size());
-    return begin == std::string::npos ? "" : text.substr(begin, text.find_first_of(end, begin) - begin);
+    return begin == std::string::npos ? "" : text.substr(begin, text.find('\n', begin) - begin);
 }
 
 /// Returns the command line of this process, quoted where a shell would split it.
@@ -193,9 +194,7 @@ Measurement start_measurement(const Queue& queue, std::string title) {
     m.threads = static_cast<uint32_t>(thread_count());
     if (!queue.is_cuda()) return m;
     m.device = queue.device_name();
-    const std::string driver = system_text("/proc/driver/nvidia/version");
-    m.driver = value_after(driver, "Kernel Module for x86_64", " \n");
-    if (m.driver.empty()) m.driver = value_after(driver, "Kernel Module", " \n");
+    m.driver = driver_version();
     return m;
 }
 
