@@ -1,61 +1,38 @@
 #!/usr/bin/env python3
 """The test of the tests: breaks the renderer in one known way at a time and sees which tests notice.
 
-The ways are those of tools/mutations.py. Works on a copy of the tree under build-mutations/, which holds only the test
-files that they name, with a build folder of its own (with ccache it takes minutes). Each mutation replaces text that
-must be there exactly once, so a patch that no longer applies is found; then the tests named for it run, and each of
-them must fail. Without a mutation all of them must pass, and that is tried first.
+The ways are those of tools/mutations.py. Each mutation replaces text that must be there exactly once, so a patch that no
+longer applies is found; then the tests named for it run, and each of them must fail. Without a mutation all of them must
+pass, which is tried as well. The tree is built once, without a mutation and with the named test files alone; mutations are
+built in copies of it (tools/mutation_trees.py), N at once. Those that take long begin first.
 
-`tools/test_the_tests.py [NAME ...]` runs the mutations of these names only, `--list` names them all, `--check` tells in
-a moment whether all of them still apply, and whether tools/check_gpu.sh names tests that exist. Prints a table, and exits 1 when a mutation went unnoticed by a test named for
-it, did not apply or did not build.
+`tools/test_the_tests.py [NAME ...]` runs the mutations of these names only, `--list` names them all, `--check` tells in a
+moment whether all of them still apply, and whether tools/check_gpu.sh names tests that exist. Prints a row for each as it
+ends, and exits 1 unless every mutation was noticed by all tests named for it.
 """
 
 import argparse
 import collections
+import concurrent.futures
 import fnmatch
+import itertools
+import json
 import os
 import pathlib
+import queue
 import re
 import shutil
-import subprocess
 import sys
+import threading
 import time
-import xml.etree.ElementTree as ElementTree
 
 import mutations
+from mutation_trees import ROOT, Base, Copy, OutOfTime, Runner, apply
 
 Mutation = collections.namedtuple("Mutation", "name tests edits")
 MUTATIONS = [Mutation(name, tests.split(), edits) for name, tests, *edits in mutations.MUTATIONS]
-ROOT = pathlib.Path(__file__).resolve().parent.parent
-WORK = ROOT / "build-mutations"
-TREE, BUILD = WORK / "tree", WORK / "tree/build"  # paths like in a checkout, so that ccache finds earlier results
-TIMEOUT_S = 300  # for one test; a mutation may make it hang, which counts as noticed
-
-
-def tracked_files():
-    listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=ROOT,
-                            check=True, capture_output=True).stdout.decode().split("\0")
-    return [name for name in listed if name and (ROOT / name).is_file()]
-
-
-def test_names(chosen):
-    return sorted({test for mutation in chosen for test in mutation.tests})
-
-
-def wanted(name, tests):
-    """All but the test files that no mutation names."""
-    return not name.endswith("_test.cpp") or name[len("tests/"):-len("_test.cpp")] in tests
-
-
-def apply(edits, contents):
-    """Makes the edits in `contents`, bytes by name. Returns what does not apply."""
-    for file, old, new in edits:
-        count = contents.get(file, b"").count(old.encode())
-        if count != 1:
-            return f"{file} has {count} times: {old}"
-        contents[file] = contents[file].replace(old.encode(), new.encode())
-    return None
+LIMIT_S = 300  # for one test; a mutation may make it hang, which counts as noticed
+TEST_S = 15  # about what a test and its linking take, beside the time of compilers
 
 
 def check_that_all_apply():
@@ -84,67 +61,143 @@ def check_gpu_list():
         sys.exit("tools/check_gpu.sh: no test has this name: " + ", ".join(absent))
 
 
-def write_tree(edits, tests):
-    """Brings the copy to the tree's content with `edits` made; files that are right already keep their times. Returns
-    what does not apply."""
-    contents = {name: (ROOT / name).read_bytes() for name in tracked_files() if wanted(name, tests)}
-    problem = apply(edits, contents)
+class Report:
+    """Rows as they come, on the screen and in a file."""
+
+    def __init__(self, chosen, path):
+        self.chosen, self.path, self.begin, self.lock = chosen, path, time.monotonic(), threading.Lock()
+        self.passes = {}  # tests without a mutation: whether they pass
+        self.rows = {mutation.name: {"tests": mutation.tests, "state": "not run"} for mutation in chosen}
+        self.unprinted = []
+        self.width = max(len(mutation.name) for mutation in chosen)
+
+    def add(self, mutation, row):
+        with self.lock:
+            self.rows[mutation.name].update(row)
+            self.unprinted.append(mutation)
+            self.settle()
+
+    def add_unmutated(self, test, passes, output):
+        with self.lock:
+            self.passes[test] = passes
+            if not passes:
+                print(f"       without a mutation fails or does not run: {test}\n{output}", flush=True)
+            self.settle()
+
+    def settle(self):
+        """Prints rows whose tests have all run without a mutation."""
+        for mutation in [m for m in self.unprinted if all(test in self.passes for test in m.tests)]:
+            self.unprinted.remove(mutation)
+            row = self.rows[mutation.name]
+            bad = [test for test in mutation.tests if not self.passes[test]]
+            if bad and row["state"] in ("noticed", "unnoticed"):
+                row |= {"state": "cannot be tried", "reason": "without a mutation fails or does not run: " + ", ".join(bad)}
+            self.print_row(mutation.name, row)
+        self.write()
+
+    def print_row(self, name, row):
+        text = row["state"]
+        if row.get("noticed_by"):
+            text = "noticed by " + ", ".join(row["noticed_by"])
+        if row.get("unnoticed_by"):
+            text += "; NOT by " + ", ".join(row["unnoticed_by"])
+        if row.get("reason"):
+            text += ": " + row["reason"]
+        print(f"{'ok    ' if row['state'] == 'noticed' else 'FAILED'} {name:{self.width}}  {text}  [{row.get('seconds', 0):.0f} s]", flush=True)
+
+    def write(self):
+        if self.path:
+            counts = collections.Counter(row["state"] for row in self.rows.values())
+            text = json.dumps({"seconds": round(time.monotonic() - self.begin), "counts": counts,
+                               "fail_without_a_mutation": [test for test, passes in self.passes.items() if not passes],
+                               "rows": self.rows}, indent=1)
+            temporary = self.path.with_name(self.path.name + ".new")
+            temporary.write_text(text + "\n")
+            temporary.replace(self.path)
+
+    def finish(self):
+        """Returns whether all is well."""
+        for mutation in self.unprinted:  # whether their tests pass without it is not known
+            row = self.rows[mutation.name]
+            row["reason"] = "its tests were not run without a mutation; with it: " + row["state"]
+            row["state"] = "not run"
+            self.print_row(mutation.name, row)
+        untried = [name for name, row in self.rows.items() if row["state"] == "not run" and "reason" not in row]
+        for name in untried:
+            print(f"NOT RUN {name}", flush=True)
+        self.write()
+        print(f"{dict(collections.Counter(row['state'] for row in self.rows.values()))} in {time.monotonic() - self.begin:.0f} s")
+        return all(row["state"] == "noticed" for row in self.rows.values())
+
+
+def try_mutation(copy, mutation, limits):
+    """The row of its report."""
+    begin = time.monotonic()
+    copy.bring()
+    problem = copy.mutate(mutation.edits)
     if problem:
-        return problem
-    for path in list(TREE.rglob("*")):
-        if path.is_file() and BUILD not in path.parents and str(path.relative_to(TREE)) not in contents:
-            path.unlink()
-    for name, content in contents.items():
-        path = TREE / name
-        if not path.is_file() or path.read_bytes() != content:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(content)
-            shutil.copymode(ROOT / name, path)
-    return None
-
-
-def build(jobs, tests):
-    """Error text, or nothing."""
-    environment = {**os.environ, "CCACHE_BASEDIR": str(TREE), "CCACHE_NOHASHDIR": "1"}
-    launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
-    steps = [["cmake", "-G", "Ninja", "-S", TREE, "-B", BUILD, "-DPERTEV_CUDA=OFF", *launcher]]
-    if any(not test.startswith("sources/") for test in tests):
-        program = ["pertev"] if any((ROOT / f"tests/{test}_test.py").is_file() for test in tests) else []
-        steps.append(["cmake", "--build", BUILD, "-j", str(jobs), "--target", "pertev_tests", *program])
-    for step in steps:
-        done = subprocess.run(step, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
-        if done.returncode != 0:
-            return done.stdout.decode(errors="replace")[-2000:]
-    return None
-
-
-def failed_tests(tests):
-    """Runs `tests` and returns the ones that fail."""
-    report = WORK / "report.xml"
-    report.unlink(missing_ok=True)
-    environment = {name: value for name, value in os.environ.items() if not name.startswith("PERTEV_")}
-    pattern = "^(" + "|".join(map(re.escape, tests)) + ")$"
-    subprocess.run(["ctest", "--test-dir", BUILD, "-R", pattern, "--timeout", str(TIMEOUT_S), "--output-junit", report],
-                   env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
-    status = {case.get("name"): case.get("status") for case in ElementTree.parse(report).getroot().iter("testcase")}
-    missing = [test for test in tests if test not in status]
-    if missing:
-        sys.exit(f"CTest has no test named {', '.join(missing)}")
-    return [test for test in tests if status[test] != "run"]
-
-
-def try_mutation(mutation, all_tests, jobs):
-    """(whether all is well, what to say)"""
-    problem = write_tree(mutation.edits, all_tests)
+        return {"state": "does not apply", "reason": problem}
+    problem = copy.make(mutation)
+    built = time.monotonic()
     if problem:
-        return False, "does not apply: " + problem
-    problem = build(jobs, mutation.tests)
-    if problem:
-        return False, "does not build:\n" + problem
-    failed = failed_tests(mutation.tests)
-    blind = [test for test in mutation.tests if test not in failed]
-    text = ("noticed by " + ", ".join(failed)) if failed else "noticed by none"
-    return not blind, text + ("; NOT by " + ", ".join(blind) if blind else "")
+        return {"state": "does not build", "reason": problem[-2000:]}
+    found = copy.run_tests(mutation.tests, limits)
+    passed = [test for test in mutation.tests if found.get(test, ("",))[0] == "run"]
+    failed = [test for test in mutation.tests if found.get(test, ("",))[0] in ("fail", "timeout")]
+    return {"state": "noticed" if len(failed) == len(mutation.tests) else "unnoticed", "noticed_by": failed, "unnoticed_by": passed,
+            "timeouts": [test for test in failed if found[test][0] == "timeout"], "seconds": round(time.monotonic() - begin, 1),
+            "build_seconds": round(built - begin, 1), "output": {test: found[test][2] for test in failed}}
+
+
+def try_all(chosen, base, report, parallel):
+    """Tries the mutations and, among them, the tests without one; what takes long first, and nothing for which no time is left."""
+    seconds = {mutation.name: base.compile_seconds(mutation) for mutation in chosen}
+    jobs = sorted(chosen, key=lambda mutation: seconds[mutation.name])
+    left = base.runner.left() * parallel - TEST_S * sum(len(mutation.tests) for mutation in chosen)
+    while sum(seconds[mutation.name] for mutation in jobs) > left and jobs:
+        mutation = jobs.pop()
+        report.rows[mutation.name]["compile_seconds"] = round(seconds[mutation.name])
+        left += TEST_S * len(mutation.tests)
+    longest = jobs[::-1]
+    unmutated = [Mutation("", [test], []) for test in sorted({test for mutation in jobs for test in mutation.tests})]
+    cut = sum(seconds[mutation.name] > 60 for mutation in longest)
+    waiting = queue.SimpleQueue()
+    for job in longest[:cut] + unmutated + longest[cut:]:
+        waiting.put(job)
+    durations = {}
+
+    def limits(test):  # many run at once
+        return min(LIMIT_S, round(60 + 10 * durations[test])) if test in durations else LIMIT_S
+
+    def work(number):
+        mine = set(itertools.islice(itertools.cycle(cores), 2 * number, 2 * number + 2))
+        copy = Copy(base.path.with_name(f"tree{number + 1:03}"), base, mine)
+        try:
+            while not waiting.empty():
+                job = waiting.get_nowait()
+                row = try_mutation(copy, job, limits)
+                if not job.name and row.get("noticed_by"):  # perhaps because much else runs
+                    row = try_mutation(copy, job, limits)
+                if job.name:
+                    report.add(job, row | {"compile_seconds": round(seconds[job.name])})
+                else:
+                    durations[job.tests[0]] = row.get("seconds", 0)
+                    report.add_unmutated(job.tests[0], row.get("unnoticed_by") == job.tests, row.get("reason") or str(row.get("output", "skipped")))
+        except (OutOfTime, queue.Empty):
+            pass
+        finally:
+            shutil.rmtree(copy.path, ignore_errors=True)
+
+    cores = sorted(os.sched_getaffinity(0))
+    with concurrent.futures.ThreadPoolExecutor(parallel) as pool:
+        for done in [pool.submit(work, number) for number in range(min(parallel, waiting.qsize()))]:
+            done.result()
+
+
+def find_objects(base, tests, parallel):
+    with concurrent.futures.ThreadPoolExecutor(parallel) as pool:
+        for done in [pool.submit(base.find_objects, test) for test in tests]:
+            done.result()
 
 
 def main():
@@ -152,7 +205,11 @@ def main():
     parser.add_argument("names", nargs="*", help="mutations to try; all where none is named")
     parser.add_argument("--list", action="store_true", help="name the mutations and the tests that must notice")
     parser.add_argument("--check", action="store_true", help="only see whether all mutations still apply, and the tests that run on a GPU exist")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="compilers at once")
+    parser.add_argument("--parallel", type=int, default=os.cpu_count(), help="mutations, and compilers, at once")
+    parser.add_argument("--time-limit", type=float, default=500000, help="seconds for all of it, after which the rest is listed as not run")
+    parser.add_argument("--json", type=pathlib.Path, help="write the rows to this file too, as they come")
+    parser.add_argument("--work", type=pathlib.Path, default=ROOT / "build-mutations", help="folder for the trees, e.g. one in /dev/shm")
+    parser.add_argument("--setting", action="append", default=[], help="another setting for CMake, e.g. CMAKE_CXX_FLAGS_RELEASE=-O1")
     arguments = parser.parse_args()
     if arguments.check:
         check_gpu_list()
@@ -166,25 +223,27 @@ def main():
             print(f"{mutation.name}: {', '.join(mutation.tests)}")
         return
 
-    all_tests, tests = test_names(MUTATIONS), test_names(chosen)
-    write_tree([], all_tests)
-    problem = build(arguments.jobs, tests)
-    if problem:
-        sys.exit("the tree does not build without a mutation:\n" + problem)
-    failed = failed_tests(tests)
-    if failed:
-        sys.exit("these tests fail without a mutation: " + ", ".join(failed))
-
-    good = True
-    width = max(len(mutation.name) for mutation in chosen)
-    for mutation in chosen:
-        start = time.monotonic()
-        ok, text = try_mutation(mutation, all_tests, arguments.jobs)
-        good &= ok
-        print(f"{'ok    ' if ok else 'FAILED'} {mutation.name:{width}}  {text}  [{time.monotonic() - start:.0f} s]",
-              flush=True)
-    write_tree([], all_tests)
-    sys.exit(0 if good else 1)
+    deadline = time.monotonic() + arguments.time_limit
+    work = arguments.work.resolve()
+    work.mkdir(parents=True, exist_ok=True)
+    runner = Runner(work, arguments.parallel, deadline)
+    report = Report(chosen, arguments.json)
+    tests = sorted({test for mutation in chosen for test in mutation.tests})
+    base = Base(work / "tree000", runner, tests)
+    try:
+        problem = base.make([f"-D{setting}" for setting in arguments.setting])
+        if problem:
+            sys.exit("the tree does not build without a mutation:\n" + problem[-4000:])
+        base.read_build()
+        find_objects(base, [test for test in tests if not test.startswith("sources/")], arguments.parallel)
+        base.list_files()
+        print(f"built without a mutation in {time.monotonic() - report.begin:.0f} s", flush=True)
+        try_all(chosen, base, report, arguments.parallel)
+    except OutOfTime:
+        print("no time was left to build without a mutation")
+    finally:
+        runner.close()
+    sys.exit(0 if report.finish() else 1)
 
 
 if __name__ == "__main__":
