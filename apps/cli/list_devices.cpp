@@ -1,30 +1,16 @@
 // pertev --list-devices
 
-#include <fstream>
-
 #include <fmt/format.h>
 
 #include "apps/cli/commands.h"
 #include "base/machine_memory.h"
 #include "base/parallel_for.h"
 #include "base/processor.h"
+#include "base/processor_name.h"
 #include "device/backend.h"
 #include "device/device_identity.h"
 
 namespace pertev {
-namespace {
-
-/// Returns the rest of the first line that begins with `key`, behind its colon; empty if there is none.
-std::string value_in(const char* file, const std::string& key) {
-    std::ifstream lines(file);
-    for (std::string line; std::getline(lines, line);) {
-        const std::size_t colon = line.find(": ");
-        if (line.starts_with(key) && colon != std::string::npos) return line.substr(colon + 2);
-    }
-    return {};
-}
-
-} // namespace
 
 std::string list_devices() {
     std::string list;
@@ -40,7 +26,7 @@ std::string list_devices() {
         ++index;
     }
     if (index == 0) list += fmt::format("no CUDA device: {}\n", why_no_cuda(0));
-    const std::string name = value_in("/proc/cpuinfo", "model name");
+    const std::string name = processor_name();
     return list + fmt::format("cpu      {}, {:.0f} MiB, {} threads, {} lanes\n", name.empty() ? "CPU" : name,
                               mebibytes(machine_memory_bytes()), thread_count(),
                               has_sixteen_lanes() ? kMaxLanes : kMaxLanes / 2);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <fstream>
-#include <iterator>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -12,6 +11,7 @@
 #include "base/error.h"
 #include "base/json_text.h"
 #include "base/parallel_for.h"
+#include "base/processor_name.h"
 #include "base/shell_word.h"
 #include "base/version.h"
 #include "device/device_identity.h"
@@ -93,31 +93,11 @@ std::string json_of(const ResultTable& table) {
                        json_string(table.title), json_list(table.columns, column), json_list(table.rows, row));
 }
 
-/// Returns the text of a file of /proc, whose size is not known beforehand; empty if there is none.
-std::string system_text(const char* path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
-/// Returns the rest of the line after `key` and blanks.
-std::string value_after(const std::string& text, std::string_view key) {
-    const std::size_t at = text.find(key);
-    if (at == std::string::npos) return {};
-    const std::size_t begin = text.find_first_not_of("\t :", at + key.size());
-    return begin == std::string::npos ? "" : text.substr(begin, text.find('\n', begin) - begin);
-}
-
 /// Returns the command line of this process, quoted where a shell would split it.
 std::string command_line() {
-    std::string line, word;
-    for (const char c : system_text("/proc/self/cmdline")) {
-        if (c != '\0') {
-            word += c;
-            continue;
-        }
-        line += (line.empty() ? "" : " ") + shell_word(word);
-        word.clear();
-    }
+    std::ifstream words("/proc/self/cmdline");
+    std::string line;
+    for (std::string word; std::getline(words, word, '\0');) line += (line.empty() ? "" : " ") + shell_word(word);
     return line;
 }
 
@@ -190,7 +170,7 @@ Measurement start_measurement(const Queue& queue, std::string title) {
     const auto now = std::chrono::time_point_cast<std::chrono::seconds>(std::chrono::system_clock::now());
     m.date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(now)));
     m.command = command_line();
-    m.processor = value_after(system_text("/proc/cpuinfo"), "model name");
+    m.processor = processor_name();
     m.threads = static_cast<uint32_t>(thread_count());
     if (!queue.is_cuda()) return m;
     m.device = queue.device_name();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <optional>
+#include <ranges>
 #include <utility>
 
 #include <fmt/format.h>
@@ -20,15 +21,10 @@ constexpr std::size_t kLeastOfUuid = 8; // letters of GPU-8c4d
 }
 
 std::vector<std::string> names_in(const std::string& text) {
-    std::vector<std::string> parts(1);
-    for (const char letter : text) {
-        if (letter == ',') {
-            parts.emplace_back();
-        } else {
-            parts.back() += letter;
-        }
-    }
-    return parts;
+    std::vector<std::string> names;
+    for (const auto name : std::views::split(text, ',')) names.emplace_back(name.begin(), name.end());
+    if (names.empty()) names.emplace_back(); // an empty text has no part
+    return names;
 }
 
 std::optional<int> number_of_name(std::string_view text) {

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "device/peer_copy.h"
+#include "session/devices/one_device.h"
 
 namespace pertev {
 namespace {
@@ -111,8 +112,7 @@ SharedBatch render_batch(RenderOnDevices& together, PictureRenderer& pictures, c
             const UseThreads use(worker.queue().threads());
             PictureRenderer& own = worker.pictures_of(pictures, settings);
             if (together.hooks().before_samples) together.hooks().before_samples(worker.number());
-            Queue landing = first_queue.is_cuda() ? Queue::make_cuda(first_queue.device_index(), first_queue.threads())
-                                                  : Queue::make_cpu(first_queue.threads());
+            Queue landing = another_queue(first_queue);
             BatchRender of_device(own, batch, settings, chunk);
             BatchArrays part;
             while ((taken = run.take())) {
@@ -128,8 +128,7 @@ SharedBatch render_batch(RenderOnDevices& together, PictureRenderer& pictures, c
             result.rays = result.rays + of_device.rays();
             result.invalid_samples += of_device.invalid_samples();
         } catch (const Error& error) {
-            const bool is_its_own = error.code() == ErrorCode::DeviceFault || error.code() == ErrorCode::OutOfMemory;
-            if (is_its_own) {
+            if (is_its_own(error)) {
                 run.lose(taken, worker.number(), error);
             } else {
                 run.fail(std::current_exception());

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "device/device_identity.h"
+#include "session/devices/one_device.h"
 
 namespace pertev {
 namespace {
@@ -84,10 +85,7 @@ PictureRenderer& DeviceWorker::pictures_of(PictureRenderer& of_caller, const Ren
 
 /// Makes the films that fit the picture, or clears those that do.
 void DeviceWorker::make_films(const SharedPicture& picture, const Film& into) {
-    if (!film_queue_) {
-        film_queue_.emplace(queue_.is_cuda() ? Queue::make_cuda(queue_.device_index(), queue_.threads())
-                                             : Queue::make_cpu(queue_.threads()));
-    }
+    if (!film_queue_) film_queue_.emplace(another_queue(queue_));
     for (std::optional<Film>& film : films_) {
         const bool is_first = &film == &films_[0];
         if (film && !film_is_like(*film, into)) film.reset();
@@ -147,8 +145,7 @@ void DeviceWorker::render(SharedRun& run, const SharedPicture& picture, uint32_t
         if (integrator.prepare(goes_on)) take_slices(run, picture, pictures, integrator, hooks);
         integrator.stop_with(nullptr);
     } catch (const Error& error) {
-        const bool is_its_own = error.code() == ErrorCode::DeviceFault || error.code() == ErrorCode::OutOfMemory;
-        if (is_its_own) {
+        if (is_its_own(error)) {
             run.lose(held_, error);
         } else {
             run.fail(std::current_exception());

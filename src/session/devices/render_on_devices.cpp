@@ -121,9 +121,10 @@ void RenderOnDevices::drive(SharedRun& run, const SharedPicture& picture, Sample
 void RenderOnDevices::fold(SharedRun& run, const FilledFilm& film, Film& into) {
     const auto& targets = film.film->targets();
     try {
-        for (std::size_t i = 0; i < landing_.size(); ++i) {
-            if (into_is_empty_) into.targets()[i]->copy(*targets[i]); // which saves a pass over the first film
-            if (!into_is_empty_) targets[i]->read(0, landing_[i]);
+        if (into_is_empty_) { // which saves a pass over the first film
+            for (std::size_t i = 0; i < targets.size(); ++i) into.targets()[i]->copy(*targets[i]);
+        } else {
+            for (std::size_t i = 0; i < targets.size(); ++i) targets[i]->read(0, landing_[i]);
         }
     } catch (const Error& error) {
         if (error.code() != ErrorCode::DeviceFault) throw;
@@ -131,8 +132,9 @@ void RenderOnDevices::fold(SharedRun& run, const FilledFilm& film, Film& into) {
         run.lose(film, error);
         return run.release(film);
     }
-    for (std::size_t i = 0; i < landing_.size() && !into_is_empty_; ++i) into.targets()[i]->add_bytes(0, landing_[i]);
-    into_is_empty_ = false;
+    if (!std::exchange(into_is_empty_, false)) {
+        for (std::size_t i = 0; i < targets.size(); ++i) into.targets()[i]->add_bytes(0, landing_[i]);
+    }
     run.add_to_sum(film);
     release(run, film);
 }
