@@ -35,6 +35,18 @@ NoisyFrame& fit_frame(const DeviceScene& scene, std::optional<NoisyFrame>& frame
 
 Queue& PictureRenderer::film_queue() { return sharing_ != nullptr ? sharing_->film_queue() : queue(); }
 
+void PictureRenderer::set_scene(const PreparedScene& scene, const RenderSettings& settings) {
+    const UseThreads use(queue().threads());
+    scene_.set(scene, settings);
+    if (sharing_ != nullptr) sharing_->change_scene(scene, kAllParts);
+}
+
+void PictureRenderer::update_scene(const PreparedScene& scene, uint32_t parts, const RenderSettings& settings) {
+    const UseThreads use(queue().threads());
+    scene_.update(scene, parts, settings);
+    if (sharing_ != nullptr) sharing_->change_scene(scene, parts);
+}
+
 PictureView PictureRenderer::view_of(const Camera& camera, const RenderSettings& settings) {
     const SceneView& scene = scene_.view();
     PictureView picture = {scene,

@@ -37,6 +37,10 @@ public:
     DeviceScene& scene() { return scene_; }
     Queue& queue() { return scene_.queue(); }
     PictureView view_of(const Camera& camera, const RenderSettings& settings);
+    /// Uploads a scene, or changed parts of it, by DeviceScene::set and update. Devices that share the pictures take it
+    /// at their next render.
+    void set_scene(const PreparedScene& scene, const RenderSettings& settings);
+    void update_scene(const PreparedScene& scene, uint32_t parts, const RenderSettings& settings);
 
     /// Lets films that are made from now on be rendered by other devices too; `sharing` outlives them.
     void share(SharedRender& sharing) { sharing_ = &sharing; }

@@ -1,30 +1,24 @@
 #include "session/session.h"
 
 #include "session/check_integrator.h"
-#include "session/shared_render.h"
 
 namespace pertev {
 
 Session::Session(Queue& queue, const PreparedScene& scene, const Camera& camera, const RenderSettings& settings)
     : scene_(queue), pictures_(scene_), film_(pictures_, camera, settings), frames_(pictures_), meter_(pictures_) {
-    const UseThreads use(queue.threads());
-    scene_.set(scene, settings);
+    pictures_.set_scene(scene, settings);
 }
 
 void Session::set_scene(const PreparedScene& scene) {
     cut();
     film_.restart_for_scene();
-    const UseThreads use(scene_.queue().threads());
-    scene_.set(scene, settings());
-    if (pictures_.sharing() != nullptr) pictures_.sharing()->change_scene(scene, kAllParts);
+    pictures_.set_scene(scene, settings());
 }
 
 void Session::update_scene(const PreparedScene& scene, uint32_t parts) {
     film_.restart_for_scene();
     frames_.scene_changes();
-    const UseThreads use(scene_.queue().threads());
-    scene_.update(scene, parts, settings());
-    if (pictures_.sharing() != nullptr) pictures_.sharing()->change_scene(scene, parts);
+    pictures_.update_scene(scene, parts, settings());
 }
 
 void Session::set_camera(const Camera& camera) {
