@@ -115,6 +115,17 @@ def threads_on(cores):
         os.sched_setaffinity(0, before)
 
 
+def list_files(top):
+    """{path below `top`: (time, size)} of all files."""
+    found, length = {}, len(str(top)) + 1
+    for folder, _, names in os.walk(top):
+        for name in names:
+            path = os.path.join(folder, name)
+            status = os.lstat(path)
+            found[path[length:]] = (status.st_mtime_ns, status.st_size)
+    return found
+
+
 def has_script(test):
     """Whether the test is a script that runs the program."""
     return (ROOT / f"tests/{test}_test.py").is_file()
@@ -261,21 +272,13 @@ class Base(Tree):
         return sum(self.seconds_of.get(word, 0) for word in read)
 
     def list_files(self):
-        """Remembers what the copies are to hold, and which files name the tree's path."""
-        self.files, self.naming = {}, set()
-        for folder, _, names in os.walk(self.path):
-            for name in names:
-                path = pathlib.Path(folder, name)
-                relative = str(path.relative_to(self.path))
-                if relative in ("build/bin/pertev_tests", "report.xml") or relative.startswith("build/Testing/"):
-                    continue
-                status = path.lstat()
-                self.files[relative] = (status.st_mtime_ns, status.st_size)
-                if path.is_symlink():
-                    if str(self.path) in os.readlink(path):
-                        self.naming.add(relative)
-                elif path.suffix not in BINARY and "build/bin/" not in relative and str(self.path).encode() in path.read_bytes():
-                    self.naming.add(relative)
+        """Remembers what the copies hold, and which files name the tree's path."""
+        self.files = {file: status for file, status in list_files(self.path).items()
+                      if file not in ("build/bin/pertev_tests", "report.xml") and not file.startswith("build/Testing/")}
+        own = str(self.path)
+        self.naming = {file for file in self.files
+                       if (own in os.readlink(self.path / file) if (self.path / file).is_symlink() else
+                           pathlib.Path(file).suffix not in BINARY and "build/bin/" not in file and own.encode() in (self.path / file).read_bytes())}
 
 
 class Copy(Tree):
@@ -288,23 +291,23 @@ class Copy(Tree):
 
     def bring(self):
         """Makes the copy equal to the base again, times included. Nothing is linked: a compiler may write into a file."""
-        there = {}
-        for folder, _, names in os.walk(self.path):
-            for name in names:
-                path = pathlib.Path(folder, name)
-                status = path.lstat()
-                there[str(path.relative_to(self.path))] = (status.st_mtime_ns, status.st_size)
-        for relative in there.keys() - self.base.files.keys():
-            (self.path / relative).unlink()
-        for relative, status in self.base.files.items():
-            if there.get(relative) != status:
-                self.bring_file(relative)
+        if not self.path.exists():
+            status, text = self.runner.run(["cp", "-a", "--reflink=auto", self.base.path, self.path])
+            assert status == 0, text
+            there = list_files(self.path) | dict.fromkeys(self.base.naming)
+        else:
+            there = list_files(self.path)
+        for file in there.keys() - self.base.files.keys():
+            (self.path / file).unlink()
+        for file, status in self.base.files.items():
+            if there.get(file) != status:
+                self.bring_file(file)
 
-    def bring_file(self, relative):
-        old, new = self.base.path / relative, self.path / relative
+    def bring_file(self, file):
+        old, new = self.base.path / file, self.path / file
         new.parent.mkdir(parents=True, exist_ok=True)
         new.unlink(missing_ok=True)
-        if relative not in self.base.naming:
+        if file not in self.base.naming:
             shutil.copy2(old, new, follow_symlinks=False)
             return
         status = old.lstat()
@@ -312,7 +315,7 @@ class Copy(Tree):
             new.symlink_to(os.readlink(old).replace(str(self.base.path), str(self.path)))
         else:
             content = old.read_bytes().replace(str(self.base.path).encode(), str(self.path).encode())
-            if relative == "build/CMakeFiles/rules.ninja": # ninja compares no command of such a rule with its log, where paths differ
+            if file == "build/CMakeFiles/rules.ninja": # ninja compares no command of such a rule with its log, where paths differ
                 content = re.sub(rb"(?m)^(rule .*)$", rb"\1\n  generator = 1", content)
             new.write_bytes(content)
             shutil.copymode(old, new)
