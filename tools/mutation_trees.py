@@ -175,7 +175,7 @@ class Base(Tree):
         super().__init__(path, runner)
         self.tests = tests
         self.contents = {name: (ROOT / name).read_bytes() for name in tracked_files() if self.is_wanted(name)}
-        self.programs = ["pertev_tests"] if any(not test.startswith("sources/") for test in tests) else []
+        self.programs = ["pertev_tests"] if any(not test.startswith("sources/") and not has_script(test) for test in tests) else []
         if any(has_script(test) for test in tests):
             self.programs.append("pertev")
         self.has_python = any(test.startswith("python/") for test in tests) and importlib.util.find_spec("nanobind") is not None

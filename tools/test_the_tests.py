@@ -159,8 +159,8 @@ def try_all(chosen, base, report, parallel):
         report.rows[mutation.name]["compile_seconds"] = round(seconds[mutation.name])
         left += TEST_S * len(mutation.tests)
     longest = jobs[::-1]
-    unmutated = [Mutation("", [test], []) for test in sorted({test for mutation in jobs for test in mutation.tests})]
-    cut = sum(seconds[mutation.name] > 60 for mutation in longest)
+    unmutated = [Mutation("", [test], []) for test in sorted({test for mutation in jobs for test in mutation.tests} - report.passes.keys())]
+    cut = min(sum(seconds[mutation.name] > 60 for mutation in longest), parallel // 2)  # half of the workers, which compile for long
     waiting = queue.SimpleQueue()
     for job in longest[:cut] + unmutated + longest[cut:]:
         waiting.put(job)
@@ -208,6 +208,7 @@ def main():
     parser.add_argument("--parallel", type=int, default=os.cpu_count(), help="mutations, and compilers, at once")
     parser.add_argument("--time-limit", type=float, default=500000, help="seconds for all of it, after which the rest is listed as not run")
     parser.add_argument("--json", type=pathlib.Path, help="write the rows to this file too, as they come")
+    parser.add_argument("--assume-passing", action="store_true", help="do not run the tests without a mutation: they are known to pass")
     parser.add_argument("--work", type=pathlib.Path, default=ROOT / "build-mutations", help="folder for the trees, e.g. one in /dev/shm")
     parser.add_argument("--setting", action="append", default=[], help="another setting for CMake, e.g. CMAKE_CXX_FLAGS_RELEASE=-O1")
     arguments = parser.parse_args()
@@ -229,6 +230,8 @@ def main():
     runner = Runner(work, arguments.parallel, deadline)
     report = Report(chosen, arguments.json)
     tests = sorted({test for mutation in chosen for test in mutation.tests})
+    if arguments.assume_passing:
+        report.passes = dict.fromkeys(tests, True)
     base = Base(work / "tree000", runner, tests)
     try:
         problem = base.make([f"-D{setting}" for setting in arguments.setting])
