@@ -6,6 +6,7 @@
 
 #include "accel/kd_tree/point_kd_tree.h"
 #include "accel/octree/point_octree.h"
+#include "base/sink.h"
 #include "math/bounds3.h"
 #include "math/portable_math.h"
 #include "math/random.h"
