@@ -87,14 +87,15 @@ pertev_launches(render/raster/tile_lists.cu
 # Stages of denoise.
 pertev_launches(denoise/frame_stages.cu
   denoise/compare_light.h denoise/keep_layers.h denoise/motion_vectors.h denoise/sum_blocks.h denoise/upsample_picture.h
+  render/row_band.h
   STAGES CentreRays
     MotionOfHits
     CompareLight
     SpreadLight
-    UpsamplePicture
+    "FromPixel<UpsamplePicture>"
     SumBlockRows
     MeanOfBlockRows
-    KeepLayers)
+    "FromPixel<KeepLayers>")
 pertev_launches(denoise/oidn/oidn_stages.cu
   denoise/oidn/oidn_stages.h
   STAGES MeanOidnGuides
@@ -111,33 +112,33 @@ pertev_launches(denoise/picture_denoiser_stages.cu
 pertev_launches(denoise/reconstruction_stages.cu
   denoise/accumulate_signals.h denoise/anti_alias.h denoise/clamp_history.h denoise/compose_picture.h
   denoise/split_signals.h denoise/wavelet_pass.h
-  STAGES SplitSignals
+  STAGES "FromPixel<SplitSignals>"
     "AccumulateSignals<false>"
     "AccumulateSignals<true>"
     ClampHistory
     WaveletPass
-    ComposePicture
+    "FromPixel<ComposePicture>"
     AntiAlias
     ShowPicture)
 
 # Stages of restir.
 pertev_launches(restir/restir_stages.cu
   restir/add_direct_light.h restir/add_indirect_light.h restir/find_neighbours.h restir/initial_candidates.h
-  restir/initial_gi_reservoirs.h restir/reuse_reservoirs.h
-  STAGES SampleInitialCandidates
-    MakeInitialGiReservoirs
-    FindBefore
-    FindNeighbours
-    "ReuseReservoirs<LightReservoir>"
-    "QueueVisibilityRays<LightReservoir>"
+  restir/initial_gi_reservoirs.h restir/reuse_reservoirs.h render/row_band.h
+  STAGES "FromPixel<SampleInitialCandidates>"
+    "FromPixel<MakeInitialGiReservoirs>"
+    "FromPixel<FindBefore>"
+    "FromPixel<FindNeighbours>"
+    "FromPixel<ReuseReservoirs<LightReservoir>>"
+    "FromPixel<QueueVisibilityRays<LightReservoir>>"
     "CountVisible<LightReservoir>"
-    "FinishReuse<LightReservoir>"
-    AddDirectLight
-    "ReuseReservoirs<BounceReservoir>"
-    "QueueVisibilityRays<BounceReservoir>"
+    "FromPixel<FinishReuse<LightReservoir>>"
+    "FromPixel<AddDirectLight>"
+    "FromPixel<ReuseReservoirs<BounceReservoir>>"
+    "FromPixel<QueueVisibilityRays<BounceReservoir>>"
     "CountVisible<BounceReservoir>"
-    "FinishReuse<BounceReservoir>"
-    AddIndirectLight)
+    "FromPixel<FinishReuse<BounceReservoir>>"
+    "FromPixel<AddIndirectLight>")
 
 # Stages of integrators.
 pertev_launches(integrators/bidirectional/camera_subpath_stages.cu

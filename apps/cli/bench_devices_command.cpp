@@ -1,5 +1,5 @@
-// pertev bench devices: times one picture of the record, and a batch of pictures, by one device, two, and so on to all
-// that are named, and expects from these times what more would take.
+// pertev bench devices: times one picture of the record, a batch of pictures, and frames in real time, by one device,
+// two, and so on to all that are named, and expects from the picture's times what more would take.
 
 #include <memory>
 #include <optional>
@@ -17,8 +17,10 @@
 #include "image/picture_hash.h"
 #include "lab/record_scenes.h"
 #include "lab/stored_figures.h"
+#include "math/portable_math.h"
 #include "session/device_names.h"
 #include "session/devices/batch_on_devices.h"
+#include "session/devices/frames_on_devices.h"
 #include "session/machine.h"
 #include "settings/tracer_options.h"
 
@@ -27,12 +29,15 @@ namespace {
 
 constexpr uint32_t kLongSamples = 8192; // half a minute on one GPU for the default job
 constexpr uint32_t kShortSamples = 256;
+constexpr uint32_t kFramesBefore = 4; // frames that take memory, warm up, and find the bands
+constexpr uint32_t kDepthOfFrames = 4;
 
 struct DevicesFlags {
     PictureFlags picture;
     std::string job = "S8";
     uint32_t runs = 5;
     uint32_t pictures = 0; // 0: by the device
+    uint32_t frames = 60;
 };
 
 /// Times of some devices for a picture.
@@ -164,6 +169,66 @@ void report_batches(const DevicesFlags& flags, std::span<const std::shared_ptr<Q
     }
 }
 
+/// Times frames of a moving camera by some devices, each from its camera to the shown picture on the host.
+TimesTaken time_frames(std::span<const std::shared_ptr<Queue>> queues, const PictureJob& job, uint32_t frames,
+                       float scene_size, double& reconstruction_s, double& copy_s) {
+    std::optional<FramesOnDevices> together;
+    if (queues.size() > 1) together.emplace(queues, job.prepared, job.settings);
+    Session session(*queues.front(), job.prepared, job.camera, job.settings);
+    if (together) session.pictures().share_frames(*together);
+    std::vector<double> seconds, reconstructions, copies;
+    for (uint32_t frame = 0; frame < frames + kFramesBefore; ++frame) {
+        throw_if_interrupted();
+        const float k = static_cast<float>(frame);
+        const Stopwatch watch;
+        session.set_camera(moved(job.camera, 0.35f * sin(k * 0.05f), {0, 0, -0.001f * scene_size * k}));
+        session.render_frame(frame, {});
+        session.frame().display(ToneMap::Agx, 0);
+        if (frame < kFramesBefore) continue;
+        seconds.push_back(watch.seconds());
+        reconstructions.push_back(session.frame().seconds());
+        copies.push_back(session.frame().copy_seconds());
+    }
+    reconstruction_s = summarize_runs(reconstructions).median;
+    copy_s = summarize_runs(copies).median;
+    TimesTaken taken;
+    taken.times = summarize_runs(seconds);
+    taken.hash = picture_hash(session.frame().picture()).hex();
+    return taken;
+}
+
+/// Reports the times of frames in real time by each number of devices.
+void report_frames(const DevicesFlags& flags, std::span<const std::shared_ptr<Queue>> queues, const PictureJob& job,
+                   const std::string& name, float scene_size, BenchReport& report) {
+    RenderSettings settings = job.settings;
+    const bool on_cuda = queues.front()->is_cuda();
+    settings.width = on_cuda ? 3840 : 192, settings.height = on_cuda ? 2160 : 108;
+    settings.samples = 1;
+    settings.path.max_depth = kDepthOfFrames;
+    TimesTaken alone;
+    for (std::size_t count = 1; count <= queues.size(); ++count) {
+        const auto some = queues.first(count);
+        double reconstruction_s = 0, copy_s = 0;
+        const TimesTaken taken =
+            time_frames(some, {job.prepared, job.camera, settings}, flags.frames, scene_size, reconstruction_s, copy_s);
+        if (count == 1) alone = taken;
+        check_hash(taken, alone, names_of_some(some));
+        Fields fields = {{"job", "job", name},
+                         {"devices", "devices", count},
+                         {"device", "device", names_of_some(some)},
+                         {"width", "width", settings.width},
+                         {"height", "height", settings.height},
+                         {"max_depth", "max depth", settings.path.max_depth}};
+        fields = fields + time_fields(taken.times);
+        fields.push_back({"frames_per_second", "frames/s", 1 / taken.times.median, "", "{:.1f}"});
+        fields.push_back({"reconstruction_seconds", "reconstruction by the first", reconstruction_s, "s", "{:.6f}"});
+        fields.push_back({"copy_seconds", "copy to the host", copy_s, "s", "{:.6f}"});
+        fields.push_back({"ratio_to_one", "times one", alone.times.median / taken.times.median, "", "{:.3f}"});
+        fields.push_back({"hash", "last frame", taken.hash});
+        report.add("devices_frames", fields);
+    }
+}
+
 int bench_devices(DevicesFlags& flags) {
     Reporter reporter(flags.picture.report);
     flags.picture.settings.read(flags.picture, reporter);
@@ -225,7 +290,10 @@ int bench_devices(DevicesFlags& flags) {
         }
     }
     reporter.set_work("measuring batches of cameras");
-    report_batches(flags, queues, {prepared, camera, settings}, record.name, length(bounds_of(scene).size()), report);
+    const float size = length(bounds_of(scene).size());
+    report_batches(flags, queues, {prepared, camera, settings}, record.name, size, report);
+    reporter.set_work("measuring frames in real time");
+    report_frames(flags, queues, {prepared, camera, settings}, record.name, size, report);
     report.write();
     return 0;
 }
@@ -250,6 +318,8 @@ void add_bench_devices_command(CLI::App& bench, int& status) {
     add_whole(verb, "--runs", flags->runs, "timed runs of each number of devices", 1, 1000)->capture_default_str();
     add_whole(verb, "--pictures", flags->pictures, "pictures of 128x128 in a batch (4096 in CUDA, 32 on the CPU)", 1,
               10000000);
+    add_whole(verb, "--frames", flags->frames, "frames in real time (3840x2160 in CUDA, 192x108 on the CPU)", 1, 100000)
+        ->capture_default_str();
     add_picture_flags(verb, kBenchDevices, flags->picture, "the job's", "8192, and 256");
 }
 

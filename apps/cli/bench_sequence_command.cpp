@@ -16,6 +16,7 @@
 #include "image/metrics.h"
 #include "image/picture_hash.h"
 #include "image/tone_map_image.h"
+#include "session/devices/frames_on_devices.h"
 #include "session/opening/strictness.h"
 #include "session/pictures/prepare_render.h"
 #include "settings/parse_values.h"
@@ -148,7 +149,10 @@ int bench_sequence(SequenceFlags& flags) {
     listen_for_interrupt();
     BenchReport report(reporter, flags.render.report, *ready->queue, "Frames of a moving picture");
     PictureRecord record = picture_record(flags.render, *ready, reporter.messages());
+    std::optional<FramesOnDevices> together;
+    if (ready->queues.size() > 1) together.emplace(ready->queues, ready->prepared(), ready->settings);
     Session session(*ready->queue, ready->prepared(), record.camera.camera, ready->settings);
+    if (together) session.pictures().share_frames(*together);
     const ToneMap tone_map = ToneMap::Agx;
     const float exposure = session.meter(tone_map);
     session.cut();
@@ -158,7 +162,7 @@ int bench_sequence(SequenceFlags& flags) {
     const auto score = [](const Score& of) { return ResultCell::raw(json_of("", fields_of(of))); };
     report.add_alone("sequence_errors",
                      {{"scene", "scene", flags.render.scene.scene},
-                      {"device", "device", ready->queue->device_name()},
+                      {"device", "device", ready->device_name()},
                       {"width", "width", ready->settings.width},
                       {"height", "height", ready->settings.height},
                       {"frames", "frames", ready->sequence.count()},

@@ -19,6 +19,7 @@
 #include "base/machine_memory.h"
 #include "base/message_text.h"
 #include "base/stopwatch.h"
+#include "session/devices/frames_on_devices.h"
 #include "session/devices/render_on_devices.h"
 #include "session/film_file/film_file.h"
 #include "session/mpi/ranks.h"
@@ -201,9 +202,13 @@ int render(RenderFlags& flags) {
     report_camera(record.camera, reporter);
     reporter.set_work("uploading the scene");
     std::optional<RenderOnDevices> together;
-    if (ready->queues.size() > 1) together.emplace(ready->queues, ready->prepared(), settings);
+    std::optional<FramesOnDevices> frames_together;
+    const bool are_several = ready->queues.size() > 1;
+    if (are_several && !flags.real_time) together.emplace(ready->queues, ready->prepared(), settings);
+    if (are_several && flags.real_time) frames_together.emplace(ready->queues, ready->prepared(), settings);
     std::optional<Session> session(std::in_place, queue, ready->prepared(), record.camera.camera, settings);
     if (together) session->pictures().share(*together);
+    if (frames_together) session->pictures().share_frames(*frames_together);
     const bool has_film = !flags.checkpoint.empty() || std::ranges::any_of(flags.outputs, is_film_name);
     if (writes_tone_mapped(flags.outputs) || has_film) {
         record.display = choose_display(flags, *session, reporter);

@@ -22,7 +22,7 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "image/write_jpeg.h"
-#include "session/machine.h"
+#include "session/devices/frames_on_devices.h"
 #include "session/pictures/choose_display.h"
 #include "session/pictures/prepare_render.h"
 #include "settings/value_names.h"
@@ -88,11 +88,10 @@ void report_address(const ViewFlags& flags, const std::string& address, Reporter
 }
 
 /// Queue of the GPU that renders; null if the CPU encodes pictures.
-std::unique_ptr<Queue> queue_for_jpeg(const ViewFlags& flags) {
-    if (flags.jpeg == "cpu") return nullptr;
+std::unique_ptr<Queue> queue_for_jpeg(const ViewFlags& flags, const Queue& renders) {
+    if (flags.jpeg == "cpu" || !renders.is_cuda()) return nullptr;
     try {
-        std::unique_ptr<Queue> queue = open_queue(flags.render.machine, nobody());
-        return queue->is_cuda() ? std::move(queue) : nullptr;
+        return std::make_unique<Queue>(Queue::make_cuda(renders.device_index(), renders.threads()));
     } catch (const Error&) { // it has no room for two
         return nullptr;
     }
@@ -126,7 +125,10 @@ int view(ViewFlags& flags) {
     listen_for_interrupt();
     reporter.set_work("uploading the scene");
     const PictureRecord record = picture_record(flags.render, *ready, reporter.messages());
+    std::optional<FramesOnDevices> together; // the picture at rest is the first one's alone
+    if (ready->queues.size() > 1) together.emplace(ready->queues, ready->prepared(), ready->settings);
     Session session(*ready->queue, ready->prepared(), record.camera.camera, ready->settings);
+    if (together) session.pictures().share_frames(*together);
     const bool on_cuda = ready->queue->is_cuda();
     SessionFrames source(session, *ready->moving, on_cuda ? kFrameOnGpu : kFrameOnCpu);
     const Display display = choose_display(flags.render, session, reporter);
@@ -138,7 +140,7 @@ int view(ViewFlags& flags) {
                                    start.why_still)});
         reporter.report_messages();
     }
-    const std::unique_ptr<Queue> jpeg_queue = on_cuda ? queue_for_jpeg(flags) : nullptr;
+    const std::unique_ptr<Queue> jpeg_queue = queue_for_jpeg(flags, *ready->queue);
     reporter.set_work(""); // messages printed so far are not repeated
     end_soon();
     run_viewer(

@@ -7,7 +7,7 @@
 
 #include "denoise/reproject.h"
 #include "denoise/temporal_gradients_view.h"
-#include "render/tiled_pixel.h"
+#include "render/row_band.h"
 
 namespace pertev {
 
@@ -25,12 +25,14 @@ struct AccumulateSignals {
     Vec2* was_at;                 // pixel of the previous frame that showed the same; not written at a cut
     uint32_t longest;             // maximum number of frames of a mean
     bool clamp_fireflies;
-    bool has_gloss;                     // false: that signal is black everywhere and neither read nor written
-    bool has_history;                   // false at a cut
-    static constexpr float kRecent = 4; // frames of the recent mean
+    bool has_gloss;                       // false: that signal is black everywhere and neither read nor written
+    bool has_history;                     // false at a cut
+    RowBand band = {};                    // the rows to be made
+    static constexpr float kRecent = 4;   // frames of the recent mean
+    static constexpr uint32_t kReach = 1; // rows beside a pixel's whose samples it reads
 
     HD void operator()(uint32_t i) const {
-        const PixelPosition at = tiled_position(i, cameras.width, cameras.height);
+        const PixelPosition at = tiled_in_band(i, cameras.width, band);
         const uint32_t pixel = at.y * cameras.width + at.x;
         const Float4 guide = now.guide[pixel];
         const uint32_t object = object_of(guide);

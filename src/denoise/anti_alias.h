@@ -8,7 +8,7 @@
 
 #include "denoise/shown_color.h"
 #include "image/tone_map.h"
-#include "render/tiled_pixel.h"
+#include "render/row_band.h"
 
 namespace pertev {
 
@@ -19,6 +19,8 @@ struct AntiAlias {
     Float4* shown;
     uint32_t width, height;
     bool has_history;
+    RowBand band = {};                    // the rows to be made
+    static constexpr uint32_t kReach = 1; // rows beside a pixel's that it reads
     // Weight of the current frame, and the number of standard deviations of the surrounding colours by which history
     // may differ from their mean: without motion, the increment per pixel of motion, and the limit. Each frame with
     // motion samples the previous one between its pixels, which blurs, and highlights do not move as surfaces do.
@@ -26,7 +28,7 @@ struct AntiAlias {
     static constexpr float kDeviations = 1, kDeviationsPerPixel = -0.25f, kDeviationsAtLeast = 0.5f;
 
     HD void operator()(uint32_t i) const {
-        const PixelPosition at = tiled_position(i, width, height);
+        const PixelPosition at = tiled_in_band(i, width, band);
         const uint32_t pixel = at.y * width + at.x;
         const Rgb own = rgb_of(picture[pixel]);
         shown[pixel] = with_w(has_history ? with_history(at, own) : own, 0);

@@ -6,7 +6,7 @@
 // Sources: Schied et al. 2017, section 4.2; NVIDIA GDC 2020 as in accumulate_signals.h.
 
 #include "denoise/reconstruction_view.h"
-#include "render/tiled_pixel.h"
+#include "render/row_band.h"
 
 namespace pertev {
 
@@ -15,15 +15,17 @@ struct ClampHistory {
     SignalsView out; // means with their variance
     uint32_t width, height;
     bool limits;
-    bool has_gloss; // see AccumulateSignals
+    bool has_gloss;    // see AccumulateSignals
+    RowBand band = {}; // the rows to be made
     static constexpr float kFewFrames = 4;
+    static constexpr uint32_t kReach = 2; // rows beside a pixel's that it reads
     /// Factor on deviations. If few samples contribute most of the light, most pixels do not have enough of them to
     /// know their variance.
     static constexpr float kTails = 4;
     static constexpr float kUnknown = 1e6f; // lets the filter average as much as guides allow
 
     HD void operator()(uint32_t i) const {
-        const PixelPosition at = tiled_position(i, width, height);
+        const PixelPosition at = tiled_in_band(i, width, band);
         const uint32_t pixel = at.y * width + at.x;
         const Float4 guide = now.guide[pixel];
         if (object_of(guide) == kNoHit) {

@@ -77,8 +77,17 @@ Image PictureDenoiser::apply(Image picture) {
     launch(*queue_, "estimate_variance", pixels, EstimateVariance{smooth, sums_, from, width_, height_, has_gloss_});
     for (int pass = 0; pass < kPicturePasses; ++pass) {
         launch(*queue_, "wavelet_pass", pixels,
-               WaveletPass{packed_, from, to, camera_, width_, height_, 1 << pass, kPictureTolerance, kPictureMinTrust,
-                           has_gloss_});
+               WaveletPass{packed_,
+                           from,
+                           to,
+                           camera_,
+                           width_,
+                           height_,
+                           1 << pass,
+                           kPictureTolerance,
+                           kPictureMinTrust,
+                           has_gloss_,
+                           {0, height_}});
         std::swap(from, to);
     }
     launch(*queue_, "compose_samples", pixels,

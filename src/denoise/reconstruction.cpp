@@ -59,12 +59,17 @@ HistoryView Reconstruction::history(uint32_t frame) const {
         wide, wide + pixels, wide + 2 * pixels, narrow_.data() + which * pixels, wide + 3 * pixels, wide + 4 * pixels};
 }
 
-/// Computes the filtered light of the frame; `memory` is a free array of the picture's size.
+/// Computes the filtered light of some rows of the frame; `memory` is a free array of the picture's size.
 SignalsView Reconstruction::filter(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,
                                    const PreviousScene& scene_before, const TemporalGradientsView& change,
-                                   const ReconstructionSettings& settings, Float4*& memory) {
+                                   const ReconstructionSettings& settings, RowBand rows, Float4*& memory) {
     PERTEV_CHECK(frame.width() == width_ && frame.height() == height_);
     const uint32_t pixels = width_ * height_;
+    // Each stage makes the rows that the next ones read.
+    const uint32_t reach = (1u << settings.passes) - 1; // rows that all passes together read beside a pixel's
+    const RowBand of_clamped = rows.grown(reach, height_), of_means = of_clamped.grown(ClampHistory::kReach, height_),
+                  of_samples = of_means.grown(AccumulateSignals<false>::kReach, height_);
+    if (others_ != nullptr) others_->take(frame.rows(), of_samples);
     const HistoryView now = history(frames_ + 1), before = history(frames_);
     const NoisyFrameView& noisy = frame.view();
     const bool has_history = frames_ > 0, has_gloss = frame.splits_light();
@@ -74,27 +79,32 @@ SignalsView Reconstruction::filter(const NoisyFrame& frame, const CameraView& ca
                 b = {signals + 2 * std::size_t(pixels), signals + 3 * std::size_t(pixels)};
 
     instead_ = nullptr;
-    launch(*queue_, "split_signals", pixels, SplitSignals{noisy, a, now});
+    has_gloss_ = has_gloss;
+    launch_in_band(*queue_, "split_signals", of_samples, width_, SplitSignals{noisy, a, now});
     const auto accumulate = [&]<bool kFollows>() {
-        launch(*queue_, "accumulate_signals", pixels,
+        launch(*queue_, "accumulate_signals", of_means.count() * width_,
                AccumulateSignals<kFollows>{noisy, a, scene, scene_before, cameras, now, before, change,
                                            positions_before(), settings.history, settings.clamp_fireflies, has_gloss,
-                                           has_history});
+                                           has_history, of_means});
     };
     if (change.guide != nullptr) {
         accumulate.operator()<true>();
     } else {
         accumulate.operator()<false>();
     }
-    launch(*queue_, "clamp_history", pixels, ClampHistory{now, b, width_, height_, settings.clamp_history, has_gloss});
+    launch(*queue_, "clamp_history", of_clamped.count() * width_,
+           ClampHistory{now, b, width_, height_, settings.clamp_history, has_gloss, of_clamped});
+    keeps_layers_ = settings.keep_layers;
     if (settings.keep_layers) {
         if (layers_.size() != pixels) layers_ = {*queue_, pixels, "layers of the reconstruction"};
-        launch(*queue_, "keep_layers", pixels,
-               KeepLayers{positions_before(), b, width_, has_history, has_gloss, layers_.data()});
+        launch_in_band(*queue_, "keep_layers", rows, width_,
+                       KeepLayers{positions_before(), b, width_, has_history, has_gloss, layers_.data()});
     }
     for (uint32_t pass = 0; pass < settings.passes; ++pass) {
-        launch(*queue_, "wavelet_pass", pixels,
-               WaveletPass{now.guide, b, a, camera, width_, height_, 1 << pass, kTolerance, kMinTrust, has_gloss});
+        const RowBand of_pass = rows.grown(reach + 1 - (2u << pass), height_);
+        launch(*queue_, "wavelet_pass", of_pass.count() * width_,
+               WaveletPass{now.guide, b, a, camera, width_, height_, 1 << pass, kTolerance, kMinTrust, has_gloss,
+                           of_pass});
         std::swap(a, b);
     }
     memory = a.diffuse;
@@ -106,16 +116,18 @@ void Reconstruction::add(const NoisyFrame& frame, const CameraView& camera, cons
                          const ReconstructionSettings& settings) {
     if (upsampled_) cut();
     upsampled_.reset();
-    const uint32_t pixels = width_ * height_;
+    const RowBand own = own_rows(others_, height_);
+    const RowBand of_picture = own.grown(settings.anti_alias ? AntiAlias::kReach : 0, height_);
     const HistoryView now = history(frames_ + 1);
     timer_.start();
     Float4* memory = nullptr;
-    const SignalsView light = filter(frame, camera, scene, scene_before, change, settings, memory);
+    const SignalsView light = filter(frame, camera, scene, scene_before, change, settings, of_picture, memory);
     Float4* const picture = settings.anti_alias ? memory : now.shown;
-    launch(*queue_, "compose_picture", pixels, ComposePicture{frame.view(), light, picture});
+    launch_in_band(*queue_, "compose_picture", of_picture, width_, ComposePicture{frame.view(), light, picture});
     if (settings.anti_alias) {
-        launch(*queue_, "anti_alias", pixels,
-               AntiAlias{picture, positions_before(), history(frames_).shown, now.shown, width_, height_, frames_ > 0});
+        launch(*queue_, "anti_alias", own.count() * width_,
+               AntiAlias{picture, positions_before(), history(frames_).shown, now.shown, width_, height_, frames_ > 0,
+                         own});
     }
     timer_.stop();
     last_camera_ = camera;
@@ -133,12 +145,33 @@ void Reconstruction::add_upsampled(const NoisyFrame& frame, const CameraView& li
     const HistoryView now = history(frames_ + 1);
     timer_.start();
     Float4* memory = nullptr;
-    const SignalsView light = filter(frame, light_camera, scene, scene_before, change, settings, memory);
+    const SignalsView light = filter(frame, light_camera, scene, scene_before, change, settings,
+                                     upsampled_->rows_of_light(others_, height_), memory);
     upsampled_->add(features, camera, {light, now.guide, light_camera, width_, height_, frame.splits_light()}, scene,
-                    scene_before, settings, frames_ > 0);
+                    scene_before, settings, frames_ > 0, others_);
     timer_.stop();
     last_camera_ = light_camera;
     ++frames_;
+}
+
+std::vector<RowArray> Reconstruction::rows_of_history() const {
+    if (frames_ == 0) return {};
+    const HistoryView last = history(frames_);
+    const std::size_t wide = width_ * sizeof(Float4);
+    std::vector<RowArray> arrays = {{last.guide, wide, height_},
+                                    {last.diffuse, wide, height_},
+                                    {last.squares, width_ * sizeof(Vec2), height_},
+                                    {last.recent, wide, height_}};
+    if (has_gloss_) arrays.push_back({last.gloss, wide, height_});
+    arrays.push_back(rows_of_result().front());
+    return arrays;
+}
+
+std::vector<RowArray> Reconstruction::rows_of_result() const {
+    Float4* const picture = upsampled_ ? upsampled_->shown() : history(frames_).shown;
+    std::vector<RowArray> arrays = {{picture, shown_width() * sizeof(Float4), shown_height()}};
+    if (keeps_layers_) arrays.push_back({layers_.data(), width_ * sizeof(Float4), height_});
+    return arrays;
 }
 
 const Float4* Reconstruction::shown() const {

@@ -19,6 +19,7 @@
 #include "image/image.h"
 #include "image/tone_map.h"
 #include "render/noisy_frame.h"
+#include "render/row_exchange.h"
 
 namespace pertev {
 
@@ -36,6 +37,13 @@ public:
 
     /// Discards the history, because the next frame is unrelated to it.
     void cut() { frames_ = 0; }
+    /// Lets the next frames make this device's rows alone, and take others' from `others`; null: make all rows. Rows
+    /// of the last frame that others made are to be in rows_of_history() before the next one.
+    void share(RowExchange* others) { others_ = others; }
+    /// Arrays of the last frame that the next one needs; none after a cut.
+    std::vector<RowArray> rows_of_history() const;
+    /// Arrays of the last frame that the functions below show.
+    std::vector<RowArray> rows_of_result() const;
     /// Makes the picture of `frame`, which has this size, seen by `camera` in `scene`. `before` has the positions in
     /// the previous frame, and is used only if there is one. `change` is the change of light since then.
     void add(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene, const PreviousScene& before,
@@ -89,11 +97,13 @@ private:
     std::vector<Float4> kept_layers() const;
     SignalsView filter(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,
                        const PreviousScene& before, const TemporalGradientsView& change,
-                       const ReconstructionSettings& settings, Float4*& memory);
+                       const ReconstructionSettings& settings, RowBand rows, Float4*& memory);
     Vec2* positions_before() const { return narrow_.data() + 2 * std::size_t(width_) * height_; }
     Image image_of(const Float4* picture) const;
 
     Queue* queue_;
+    RowExchange* others_ = nullptr;
+    bool has_gloss_ = false, keeps_layers_ = false; // in the last frame
     uint32_t width_, height_, frames_ = 0;
     CameraView last_camera_ = {};
     DeviceTimer timer_, copy_timer_;

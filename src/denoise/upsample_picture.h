@@ -29,9 +29,10 @@ struct UpsamplePicture {
     SceneView scene;
     PreviousScene scene_before;
     CameraView camera_before;
-    Vec2* was_at;     // see AccumulateSignals, for the picture's pixels
-    Float4* picture;  // see ComposePicture
-    bool has_history; // false at a cut
+    Vec2* was_at;                         // see AccumulateSignals, for the picture's pixels
+    Float4* picture;                      // see ComposePicture
+    bool has_history;                     // false at a cut
+    static constexpr uint32_t kReach = 3; // rows of the light beside those where a pixel lies
 
     HD void operator()(uint32_t pixel) const {
         const Float4 light = features.light[pixel], normal = features.normal[pixel];

@@ -18,12 +18,15 @@ public:
     /// Makes the next picture from `light`. `features` is a frame of the picture's size, seen by `camera`, whose paths
     /// end at the first surface.
     void add(const NoisyFrame& features, const CameraView& camera, const CoarseLight& light, const SceneView& scene,
-             const PreviousScene& before, const ReconstructionSettings& settings, bool has_history);
+             const PreviousScene& before, const ReconstructionSettings& settings, bool has_history,
+             RowExchange* others = nullptr);
+    /// Rows of the light, `height` in all, that this device's rows of the picture read.
+    RowBand rows_of_light(const RowExchange* others, uint32_t height) const;
 
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
     /// The last picture as shown_color; w is unused.
-    const Float4* shown() const { return shown(frames_); }
+    Float4* shown() const { return shown(frames_); }
     /// [pixels * 4]: memory for the bytes of a display.
     uint8_t* byte_memory() const { return reinterpret_cast<uint8_t*>(picture_); }
     /// Memory for Reconstruction::tones().

@@ -7,7 +7,7 @@
 // Schied et al. 2017, section 4.4 (variance in the weight of light, and filtered along).
 
 #include "denoise/reconstruction_view.h"
-#include "render/tiled_pixel.h"
+#include "render/row_band.h"
 
 namespace pertev {
 
@@ -16,13 +16,14 @@ struct WaveletPass {
     SignalsView from, to;
     CameraView camera;
     uint32_t width, height;
-    int step;        // pixels between taps
-    float tolerance; // deviations of diffuse light; taps that differ by four times as much do not count
-    float min_trust; // trust in guides where light is noisy, (0, 1]; 1: as anywhere else
-    bool has_gloss;  // see AccumulateSignals
+    int step;          // pixels between taps
+    float tolerance;   // deviations of diffuse light; taps that differ by four times as much do not count
+    float min_trust;   // trust in guides where light is noisy, (0, 1]; 1: as anywhere else
+    bool has_gloss;    // see AccumulateSignals
+    RowBand band = {}; // the rows to be made
 
     HD void operator()(uint32_t i) const {
-        const PixelPosition at = tiled_position(i, width, height);
+        const PixelPosition at = tiled_in_band(i, width, band);
         const uint32_t pixel = at.y * width + at.x;
         const Float4 own = guide[pixel], diffuse = from.diffuse[pixel],
                      gloss = has_gloss ? from.gloss[pixel] : Float4{0, 0, 0, 0};

@@ -34,7 +34,7 @@ void allow_copies(Queue& to, const Queue& from) {
 #endif
 }
 
-void copy_between(Queue& to, void* into, Queue& from, const void* source, std::size_t bytes) {
+void start_copy_between(Queue& to, void* into, Queue& from, const void* source, std::size_t bytes) {
     if (bytes == 0) return;
     if (!from.is_cuda()) {
         to.copy_to_device(into, source, bytes);
@@ -45,6 +45,11 @@ void copy_between(Queue& to, void* into, Queue& from, const void* source, std::s
         copy_between_gpus(to, into, from.device_index(), source, bytes);
 #endif
     }
+}
+
+void copy_between(Queue& to, void* into, Queue& from, const void* source, std::size_t bytes) {
+    if (bytes == 0) return;
+    start_copy_between(to, into, from, source, bytes);
     to.wait();
 }
 

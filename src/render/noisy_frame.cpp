@@ -42,6 +42,20 @@ FilmView NoisyFrame::film_view() const {
     return view;
 }
 
+FilmView NoisyFrame::film_view(RowBand rows) const {
+    FilmView view = film_view();
+    if (rows != RowBand{0, height_}) view.window = {width_, 0, rows.first, width_, rows.count()};
+    return view;
+}
+
+std::vector<RowArray> NoisyFrame::rows() const {
+    std::vector<RowArray> all;
+    for (std::size_t i = 0; i < arrays(splits_light()); ++i) {
+        all.push_back({view_.light + i * width_ * height_, width_ * sizeof(Float4), height_});
+    }
+    return all;
+}
+
 void NoisyFrame::clear() {
     queue_->fill(view_.light, 0xff, count() * sizeof(Float4)); // AddFrames::kNoSample
     invalid_.zero();

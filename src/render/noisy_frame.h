@@ -6,6 +6,7 @@
 
 #include "device/buffer.h"
 #include "render/film_target.h"
+#include "render/row_exchange.h"
 
 namespace pertev {
 
@@ -34,6 +35,10 @@ public:
 
     /// The film view to which an integrator adds samples.
     FilmView film_view() const;
+    /// The film view of some rows, at least one.
+    FilmView film_view(RowBand rows) const;
+    /// Its arrays, for other devices.
+    std::vector<RowArray> rows() const;
     const NoisyFrameView& view() const { return view_; }
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }

@@ -49,6 +49,9 @@ struct FindBefore {
 
 /// Spatial neighbours: pixels of the same frame.
 struct FindNeighbours {
+    /// Returns how many rows away the neighbours may be.
+    static uint32_t reach(float radius) { return static_cast<uint32_t>(radius) + 2; }
+
     PixelSurfaces here;
     uint32_t neighbours;
     float radius;

@@ -38,6 +38,17 @@ FirstBounceView Restir::first_bounce() const {
     return {met_.data(), numbers, numbers + pixels, numbers + 2 * pixels, numbers + 3 * pixels};
 }
 
+std::vector<RowArray> Restir::rows_of_history() const {
+    if (!has_history_) return {};
+    std::vector<RowArray> arrays = {{reservoirs_.data() + pixels_, width_ * sizeof(LightReservoir), height_},
+                                    {seen_before_.data(), width_ * sizeof(Float4), height_},
+                                    {seen_before_.data() + pixels_, width_ * sizeof(Float4), height_}};
+    if (light_ == RestirLight::Indirect) {
+        arrays.push_back({bounces_.data() + pixels_, width_ * sizeof(BounceReservoir), height_});
+    }
+    return arrays;
+}
+
 uint64_t Restir::rays() const {
     uint64_t sum = 0;
     for (const uint32_t count : ray_counts_.download()) sum += count;
@@ -57,35 +68,46 @@ void Restir::add(const NoisyFrame& frame, const PictureView& picture, const Samp
     LightReservoir *const fresh = reservoirs_.data(), *const kept = fresh + pixels_;
     ray_counts_.zero();
     traced_ = 0;
+    rows_ = own_rows(others_, height_);
 
     BounceReservoir *const fresh_bounces = bounces_.data(), *const kept_bounces = fresh_bounces + pixels_;
     const bool has_bounces = light_ == RestirLight::Indirect;
     if (has_bounces)
-        launch(*queue_, "initial_gi_reservoirs", pixels_, MakeInitialGiReservoirs{scene, here, film, fresh_bounces});
-    launch(*queue_, "initial_candidates", pixels_,
-           SampleInitialCandidates{scene, here, met_.data(), fresh, settings.candidates});
+        launch_in_band(*queue_, "initial_gi_reservoirs", rows_, width_,
+                       MakeInitialGiReservoirs{scene, here, film, fresh_bounces});
+    launch_in_band(*queue_, "initial_candidates", rows_, width_,
+                   SampleInitialCandidates{scene, here, met_.data(), fresh, settings.candidates});
     test_visibility(scene, here, fresh, tracer, 0);
     if (has_history_ && settings.history > 0) {
         const FrameCameras cameras = {picture.camera.view, camera_before_.view, width_, height_};
-        launch(*queue_, "find_before", pixels_, FindBefore{scene, before, cameras, noisy, last, neighbours_.data()});
+        launch_in_band(*queue_, "find_before", rows_, width_,
+                       FindBefore{scene, before, cameras, noisy, last, neighbours_.data()});
         const auto most = static_cast<float>(settings.history);
         reuse(scene, here, there, fresh, kept, fresh, most, 2, tracer, kGroupReuse);
         if (has_bounces) {
             reuse(scene, here, there, fresh_bounces, kept_bounces, fresh_bounces, most, 2, tracer, kGroupReuse + 1);
         }
     }
-    launch(*queue_, "find_beside", pixels_,
-           FindNeighbours{here, settings.neighbours, settings.radius, neighbours_.data()});
+    if (others_ != nullptr) {
+        std::vector<RowArray> arrays = {{fresh, width_ * sizeof(LightReservoir), height_},
+                                        {noisy.hit, width_ * sizeof(Float4), height_},
+                                        {noisy.normal, width_ * sizeof(Float4), height_}};
+        if (has_bounces) arrays.push_back({fresh_bounces, width_ * sizeof(BounceReservoir), height_});
+        others_->take(arrays, rows_.grown(FindNeighbours::reach(settings.radius), height_));
+    }
+    launch_in_band(*queue_, "find_beside", rows_, width_,
+                   FindNeighbours{here, settings.neighbours, settings.radius, neighbours_.data()});
     reuse(scene, here, here, fresh, fresh, kept, kInfinity, kMaxEntries, tracer, kGroupReuse + 2);
-    launch(*queue_, "add_direct_light", pixels_, AddDirectLight{scene, here, kept, film});
+    launch_in_band(*queue_, "add_direct_light", rows_, width_, AddDirectLight{scene, here, kept, film});
     if (has_bounces) {
         reuse(scene, here, here, fresh_bounces, fresh_bounces, kept_bounces, kInfinity, kMaxEntries, tracer,
               kGroupReuse + 3);
-        launch(*queue_, "add_indirect_light", pixels_, AddIndirectLight{scene, here, kept_bounces, film});
+        launch_in_band(*queue_, "add_indirect_light", rows_, width_, AddIndirectLight{scene, here, kept_bounces, film});
     }
 
-    queue_->copy_on_device(last.hit, noisy.hit, pixels_ * sizeof(Float4));
-    queue_->copy_on_device(last.normal, noisy.normal, pixels_ * sizeof(Float4));
+    const std::size_t first = std::size_t(rows_.first) * width_, bytes = rows_.count() * width_ * sizeof(Float4);
+    queue_->copy_on_device(last.hit + first, noisy.hit + first, bytes);
+    queue_->copy_on_device(last.normal + first, noisy.normal + first, bytes);
     camera_before_ = picture.camera;
     numbers_before_ = numbers;
     has_history_ = true;
@@ -97,13 +119,13 @@ template <class Reservoir>
 void Restir::reuse(const SceneView& scene, const PixelSurfaces& here, const PixelSurfaces& there, const Reservoir* own,
                    const Reservoir* others, Reservoir* to, float max_count, uint32_t entries, SceneTracer& tracer,
                    uint32_t group) {
-    launch(*queue_, "reuse_reservoirs", pixels_,
-           ReuseReservoirs<Reservoir>{scene, here, there, own, others, neighbours_.data(), to, shares_.data(),
-                                      max_count, group});
+    launch_in_band(*queue_, "reuse_reservoirs", rows_, width_,
+                   ReuseReservoirs<Reservoir>{scene, here, there, own, others, neighbours_.data(), to, shares_.data(),
+                                              max_count, group});
     for (uint32_t entry = 0; entry < entries; ++entry) {
         test_visibility(scene, entry == 0 ? here : there, to, tracer, entry);
     }
-    launch(*queue_, "finish_reuse", pixels_, FinishReuse<Reservoir>{to});
+    launch_in_band(*queue_, "finish_reuse", rows_, width_, FinishReuse<Reservoir>{to});
 }
 
 /// Finds whether the pixel of entry `entry` sees the points of `reservoirs`.
@@ -111,14 +133,15 @@ template <class Reservoir>
 void Restir::test_visibility(const SceneView& scene, const PixelSurfaces& surfaces, Reservoir* reservoirs,
                              SceneTracer& tracer, uint32_t entry) {
     PERTEV_CHECK(traced_ < kMaxTraces);
+    if (rows_.is_empty()) return;
     uint32_t* const count = ray_counts_.data() + traced_++;
     const VisibilityRaysView rays = {
         rays_.data(), ray_ends_.data(), ray_ends_.data() + pixels_, ray_words_.data(), ray_words_.data() + pixels_,
         count};
-    launch(
-        *queue_, "queue_visibility_rays", pixels_,
+    launch_in_band(
+        *queue_, "queue_visibility_rays", rows_, width_,
         QueueVisibilityRays<Reservoir>{scene, surfaces, neighbours_.data(), shares_.data(), reservoirs, rays, entry});
-    const WorkCount visibility_rays = {pixels_, count};
+    const WorkCount visibility_rays = {rows_.count() * width_, count};
     tracer.find_occlusions(rays.query(), visibility_rays, {nullptr, rays.keys});
     launch(*queue_, "count_visible", visibility_rays, CountVisible<Reservoir>{rays, shares_.data(), reservoirs, entry});
 }

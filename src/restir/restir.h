@@ -10,10 +10,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "render/noisy_frame.h"
 #include "render/picture_view.h"
 #include "render/reproject.h"
+#include "render/row_exchange.h"
 #include "restir/bounce_reservoir.h"
 #include "restir/restir_settings.h"
 #include "restir/reuse_reservoirs.h"
@@ -34,6 +36,11 @@ public:
 
     /// Discards the history, because the next frame is unrelated to it.
     void cut() { has_history_ = false; }
+    bool has_history() const { return has_history_; }
+    /// Lets the next frames make this device's rows alone, as Reconstruction::share.
+    void share(RowExchange* others) { others_ = others; }
+    /// Arrays of the last frame that the next one needs; none after a cut.
+    std::vector<RowArray> rows_of_history() const;
     /// Arrays in which the samples of a frame leave their first bounce.
     FirstBounceView first_bounce() const;
 
@@ -61,6 +68,8 @@ private:
     Queue* queue_;
     uint32_t width_, height_, pixels_;
     RestirLight light_;
+    RowExchange* others_ = nullptr;
+    RowBand rows_; // the rows of this frame that this device makes
     bool has_history_ = false;
     CameraRays camera_before_ = {};
     SampleNumbers numbers_before_ = {};

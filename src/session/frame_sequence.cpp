@@ -1,5 +1,7 @@
 #include "session/frame_sequence.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "base/error.h"
@@ -48,20 +50,49 @@ bool FrameSequence::render(uint32_t number, const Camera& camera, const RenderSe
                            const ReconstructionSettings& requested, const RestirSettings& restir, Sink& sink) {
     // It takes the noise of pixels to be independent, which a history's is not.
     const bool by_oidn = requested.denoiser == FrameDenoiser::Oidn;
-    const ReconstructionSettings reconstruction = by_oidn ? of_samples_alone(requested) : requested;
-    DeviceScene& scene = pictures_.scene();
-    if (!makes_frames(settings.integrator)) {
-        throw Error(ErrorCode::BadInput, "integrator", std::string(integrator_name(settings)),
+    const FrameTask task = {number, camera, settings, by_oidn ? of_samples_alone(requested) : requested, restir};
+    check(task);
+    if (camera_before_) { // belongs to another sequence
+        camera_before_.reset();
+        has_moved_ = false;
+    }
+    SharedFrames* const shared = pictures_.sharing_frames();
+    if (!(shared != nullptr ? shared->render(*this, task, sink) : render_rows(task, nullptr, sink))) return false;
+    if (by_oidn) {
+        if (shared != nullptr) shared->collect(*this, &FrameSequence::rows_of_guides);
+        denoise();
+    } else {
+        oidn_.reset();
+    }
+    return true;
+}
+
+void FrameSequence::check(const FrameTask& task) {
+    if (!makes_frames(task.settings.integrator)) {
+        throw Error(ErrorCode::BadInput, "integrator", std::string(integrator_name(task.settings)),
                     "only path tracing's samples can be reconstructed");
     }
-    if (!camera.motion.empty() || scene.view().motions.is_there()) {
+    if (!task.camera.motion.empty() || pictures_.scene().view().motions.is_there()) {
         throw Error(ErrorCode::BadInput, "shutter", "", "reconstructed frames do not support an open shutter");
     }
+    check_reconstruction(task.camera);
+}
+
+void FrameSequence::follow(const FrameSequence& leader) {
+    if (reconstruction_ && !leader.has_history()) reconstruction_->cut();
+    if (restir_ && !(leader.restir_ && leader.restir_->has_history())) restir_->cut();
+    has_moved_ = leader.has_moved_;
+    scene_has_changed_ = leader.scene_has_changed_;
+}
+
+bool FrameSequence::render_rows(const FrameTask& task, RowExchange* others, Sink& sink) {
+    const auto& [number, camera, settings, reconstruction, restir] = task;
+    DeviceScene& scene = pictures_.scene();
+    others_ = others;
     RenderSettings of_light = settings_of_frames(settings);
     of_light.width = scaled_side(settings.width, reconstruction);
     of_light.height = scaled_side(settings.height, reconstruction);
     number_ = number;
-    check_reconstruction(camera);
     NoisyFrame& frame = fit_frame(scene, sample_, of_light.width, of_light.height);
     if (!reconstruction_ || !temporal_gradients_ ||
         !temporal_gradients_->fits(frame)) { // another size, or other signals
@@ -71,18 +102,23 @@ bool FrameSequence::render(uint32_t number, const Camera& camera, const RenderSe
         temporal_gradients_.emplace(pictures_.queue(), of_light.width, of_light.height, frame.splits_light(),
                                     reconstruction_->gradients_memory());
     }
-    if (camera_before_) { // belongs to another sequence
-        camera_before_.reset();
-        has_moved_ = false;
-    }
     Restir* const shared = restir_for(restir, of_light);
+    reconstruction_->share(others);
+    if (shared != nullptr) shared->share(others);
+    if (others != nullptr) {
+        std::vector<RowArray> last = reconstruction_->rows_of_history();
+        if (shared != nullptr) std::ranges::copy(shared->rows_of_history(), std::back_inserter(last));
+        others->begin_taking_last(last);
+    }
     rays_ = {};
     kind_seconds_ = {};
     const TemporalGradientsView change = measure_gradients(of_light, reconstruction);
     frame.leave(shared != nullptr ? shared->first_bounce() : FirstBounceView{});
     Sink* const stops = pictures_.queue().is_cuda() ? nullptr : &sink; // a GPU's samples are short
     render_sample(number, camera, of_light, frame, stops);
-    if (stops != nullptr && sink.should_stop()) { // parts of the sample may be missing
+    if (others != nullptr) others->finish_taking_last();
+    const bool stop = stops != nullptr && sink.should_stop();
+    if (others != nullptr ? others->any(stop) : stop) { // parts of the sample may be missing
         cut();
         return false;
     }
@@ -109,18 +145,14 @@ bool FrameSequence::render(uint32_t number, const Camera& camera, const RenderSe
         reconstruction_->add(frame, light.camera.view, light.scene, before, change, reconstruction);
     }
     has_moved_ = false; // the frame is complete, whatever follows
-    if (by_oidn) {
-        denoise(features_ ? *features_ : frame);
-    } else {
-        oidn_.reset();
-    }
     const bool has_changed = std::exchange(scene_has_changed_, false);
     store_light(number, camera, of_light, reconstruction.follow_light && has_changed);
     return true;
 }
 
-/// Denoises the last frame, whose hits are in `frame`, for displays.
-void FrameSequence::denoise(const NoisyFrame& frame) {
+/// Denoises the last frame for displays.
+void FrameSequence::denoise() {
+    const NoisyFrame& frame = guides();
     if (!oidn_ || !oidn_->fits(frame)) {
         oidn_.reset(); // freed before the new one, so that two need not fit
         oidn_.emplace(pictures_.queue(), frame.width(), frame.height());
@@ -128,7 +160,8 @@ void FrameSequence::denoise(const NoisyFrame& frame) {
     reconstruction_->show_instead(oidn_->apply(reconstruction_->shown(), frame));
 }
 
-/// Renders sample `number` of each pixel of `frame`, at its size. Once `sink` stops, pixels are left out.
+/// Renders sample `number` of each pixel of this device's rows of `frame`, at its size. Once `sink` stops, pixels are
+/// left out.
 void FrameSequence::render_sample(uint32_t number, const Camera& camera, RenderSettings settings, NoisyFrame& frame,
                                   Sink* sink) {
     settings.width = frame.width();
@@ -136,12 +169,21 @@ void FrameSequence::render_sample(uint32_t number, const Camera& camera, RenderS
     Integrator& integrator = pictures_.begin(camera, settings, 1);
     integrator.stop_with(sink);
     frame.begin();
-    integrator.render(number, 1, frame.film_view());
+    if (const RowBand rows = own_rows(others_, frame.height()); !rows.is_empty()) {
+        integrator.render(number, 1, frame.film_view(rows));
+    }
     rays_ = rays_ + integrator.rays();
     const SceneTracer::Seconds& seconds = pictures_.scene().tracer().seconds();
     kind_seconds_.camera += seconds.camera;
     kind_seconds_.bounce += seconds.bounce;
     kind_seconds_.shadow += seconds.shadow;
+}
+
+/// Renders a small picture of all rows.
+void FrameSequence::render_small(uint32_t number, const Camera& camera, const RenderSettings& of_light,
+                                 NoisyFrame& frame) {
+    render_sample(number, camera, of_light, frame);
+    if (others_ != nullptr) others_->take(frame.rows(), {0, frame.height()});
 }
 
 /// Returns the change of light since the previous frame, if that has left a small picture of its scene.
@@ -152,7 +194,7 @@ TemporalGradientsView FrameSequence::measure_gradients(const RenderSettings& of_
     const bool is_known = settings.follow_light && scene_has_changed_ && before && reconstruction_->frames() > 0 &&
                           before->path == of_light.path;
     if (!is_known) return {};
-    render_sample(before->number, before->camera, of_light, temporal_gradients_->after());
+    render_small(before->number, before->camera, of_light, temporal_gradients_->after());
     return temporal_gradients_->compare();
 }
 
@@ -161,7 +203,7 @@ TemporalGradientsView FrameSequence::measure_gradients(const RenderSettings& of_
 void FrameSequence::store_light(uint32_t number, const Camera& camera, const RenderSettings& of_light, bool goes_on) {
     light_before_.reset();
     if (!goes_on) return;
-    render_sample(number, camera, of_light, temporal_gradients_->before());
+    render_small(number, camera, of_light, temporal_gradients_->before());
     light_before_ = {camera, number, of_light.path};
 }
 
@@ -169,7 +211,7 @@ RenderResult FrameSequence::result(const Camera& camera, const RenderSettings& s
     RenderResult result;
     result.samples = 1;
     result.rays = rays();
-    result.invalid_samples = sample_.value().invalid_samples();
+    result.invalid_samples = counts().invalid_samples;
     result.picture = reconstruction().picture();
     result.denoised = reconstruction().shown_instead();
     if (oidn_) result.denoiser = oidn_->name();
@@ -187,9 +229,27 @@ RenderResult FrameSequence::result(const Camera& camera, const RenderSettings& s
     return result;
 }
 
-FrameTones FrameSequence::tones() const {
-    return reconstruction_.value().tones(features_ ? *features_ : sample_.value());
+FrameTones FrameSequence::tones() {
+    if (SharedFrames* const shared = pictures_.sharing_frames()) shared->collect(*this, &FrameSequence::rows_of_tones);
+    return reconstruction_.value().tones(guides());
 }
+
+std::vector<RowArray> FrameSequence::rows_of_tones() const {
+    const NoisyFrame& frame = guides();
+    const std::size_t bytes = frame.width() * sizeof(Float4);
+    return {{frame.view().emission, bytes, frame.height()}, {frame.view().hit, bytes, frame.height()}};
+}
+
+FrameCounts FrameSequence::counts() const {
+    FrameCounts counts = {rays_, sample_ ? sample_->invalid_samples() : 0};
+    if (restir_) counts.rays.shadow += restir_->rays();
+    SharedFrames* const shared = pictures_.sharing_frames();
+    if (shared == nullptr) return counts;
+    const FrameCounts others = shared->counts_of_others();
+    return {counts.rays + others.rays, counts.invalid_samples + others.invalid_samples};
+}
+
+RayCounts FrameSequence::rays() const { return counts().rays; }
 
 void FrameSequence::store_previous(const Camera& camera) {
     if (reconstruction_) reconstruction_->cut();

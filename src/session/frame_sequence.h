@@ -12,7 +12,7 @@
 #include "denoise/temporal_gradients.h"
 #include "device/device_timer.h"
 #include "restir/restir.h"
-#include "session/picture_renderer.h"
+#include "session/shared_frames.h"
 
 namespace pertev {
 
@@ -34,17 +34,37 @@ public:
     bool render(uint32_t number, const Camera& camera, const RenderSettings& settings,
                 const ReconstructionSettings& reconstruction, const RestirSettings& restir, Sink& sink = nobody());
 
-    // The following functions refer to the last frame. All but rays() and the seconds throw as render().
+    // For the sequences of devices that make frames together (SharedFrames).
+
+    /// Makes this device's rows of a frame, and takes what they need of other rows from `others`; all rows if that is
+    /// null. Returns as render().
+    bool render_rows(const FrameTask& task, RowExchange* others, Sink& sink);
+    /// Takes over what the caller's sequence knows of cuts and of changes of the scene.
+    void follow(const FrameSequence& leader);
+    /// Returns whether the next frame depends on earlier ones.
+    bool has_history() const { return reconstruction_ && reconstruction_->frames() > 0; }
+    /// Returns whether the scene has to be kept as it is before it changes, because the next frame shows its motion.
+    bool has_moved() const { return has_moved_; }
+    bool scene_has_changed() const { return scene_has_changed_; }
+    /// Discards the history, but not that the scene has changed.
+    void begin_again(bool scene_has_changed) { cut(), scene_has_changed_ = scene_has_changed; }
+    // Arrays of the last frame: the result; what tones() reads; all of the frame of the picture's size.
+    std::vector<RowArray> rows_of_result() const { return reconstruction_.value().rows_of_result(); }
+    std::vector<RowArray> rows_of_tones() const;
+    std::vector<RowArray> rows_of_guides() const { return guides().rows(); }
+    FrameCounts counts() const;
+
+    // The following functions refer to the last frame. All but the seconds throw as render().
 
     Reconstruction& reconstruction() { return reconstruction_.value(); }
     /// Tones of the frame for the exposure (session/adaptive_exposure.h).
-    FrameTones tones() const;
+    FrameTones tones();
     /// Returns the frame as a picture of one sample, with the requested layers of that sample, without motion; ids
     /// are of sample 0, as in any picture. It has no times and shares.
     RenderResult result(const Camera& camera, const RenderSettings& settings);
-    RayCounts rays() const { return restir_ ? rays_ + RayCounts{0, 0, restir_->rays()} : rays_; }
+    RayCounts rays() const;
     /// Seconds of the frame's rays by kind, without those of ReSTIR; all 0 unless the settings request them
-    /// (time_kinds).
+    /// (time_kinds). Like all seconds they are those of the caller's device.
     const SceneTracer::Seconds& kind_seconds() const { return kind_seconds_; }
     /// Seconds that ReSTIR took; 0 without it.
     double sharing_seconds() const { return restir_ ? sharing_timer_.seconds() : 0; }
@@ -59,12 +79,16 @@ public:
 private:
     void render_sample(uint32_t number, const Camera& camera, RenderSettings settings, NoisyFrame& frame,
                        Sink* sink = nullptr);
-    void denoise(const NoisyFrame& frame);
+    void render_small(uint32_t number, const Camera& camera, const RenderSettings& of_light, NoisyFrame& frame);
+    void check(const FrameTask& task);
+    void denoise();
+    const NoisyFrame& guides() const { return features_ ? *features_ : sample_.value(); }
     TemporalGradientsView measure_gradients(const RenderSettings& of_light, const ReconstructionSettings& settings);
     void store_light(uint32_t number, const Camera& camera, const RenderSettings& of_light, bool goes_on);
     Restir* restir_for(const RestirSettings& settings, const RenderSettings& of_light);
 
     PictureRenderer& pictures_;
+    RowExchange* others_ = nullptr; // while a frame is made together with them
     std::optional<NoisyFrame> sample_;
     std::optional<NoisyFrame> features_; // if light is found at a lower resolution
     std::optional<Reconstruction> reconstruction_;

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "render/camera_work.h"
 #include "session/check_integrator.h"
+#include "session/shared_frames.h"
 #include "session/shared_render.h"
 
 namespace pertev {
@@ -38,13 +39,18 @@ Queue& PictureRenderer::film_queue() { return sharing_ != nullptr ? sharing_->fi
 void PictureRenderer::set_scene(const PreparedScene& scene, const RenderSettings& settings) {
     const UseThreads use(queue().threads());
     scene_.set(scene, settings);
-    if (sharing_ != nullptr) sharing_->change_scene(scene, kAllParts);
+    tell_others(scene, kAllParts);
 }
 
 void PictureRenderer::update_scene(const PreparedScene& scene, uint32_t parts, const RenderSettings& settings) {
     const UseThreads use(queue().threads());
     scene_.update(scene, parts, settings);
+    tell_others(scene, parts);
+}
+
+void PictureRenderer::tell_others(const PreparedScene& scene, uint32_t parts) {
     if (sharing_ != nullptr) sharing_->change_scene(scene, parts);
+    if (sharing_frames_ != nullptr) sharing_frames_->change_scene(scene, parts);
 }
 
 PictureView PictureRenderer::view_of(const Camera& camera, const RenderSettings& settings) {

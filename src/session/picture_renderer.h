@@ -17,6 +17,7 @@
 namespace pertev {
 
 class SharedRender; // session/shared_render.h
+class SharedFrames; // session/shared_frames.h
 
 /// Adds targets to a new film, by Film::hold.
 using AddTargets = std::function<void(Film&)>;
@@ -45,6 +46,9 @@ public:
     /// Lets films that are made from now on be rendered by other devices too; `sharing` outlives them.
     void share(SharedRender& sharing) { sharing_ = &sharing; }
     SharedRender* sharing() const { return sharing_; } // null: this device renders alone
+    /// Does that for real-time frames, before the first one.
+    void share_frames(SharedFrames& sharing) { sharing_frames_ = &sharing; }
+    SharedFrames* sharing_frames() const { return sharing_frames_; }
     Queue& film_queue();
 
     /// Returns an integrator that is ready to add `samples` samples of this picture, and that nothing stops. Its
@@ -69,10 +73,13 @@ public:
     std::vector<RayWork> count_camera_work(const Camera& camera, const RenderSettings& settings);
 
 private:
+    /// Lets other devices that render with this one take the change.
+    void tell_others(const PreparedScene& scene, uint32_t parts);
     MotionTrack motion_of(const Camera& camera, Vec3 centre);
 
     DeviceScene& scene_;
     SharedRender* sharing_ = nullptr;
+    SharedFrames* sharing_frames_ = nullptr;
     FilterTable filter_;
     CentreLayers centres_;
     Buffer<MotionKey> camera_motion_; // used while the shutter is open

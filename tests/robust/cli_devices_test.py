@@ -83,13 +83,33 @@ class Devices(CliTest):
                 self.assertEqual(together, alone)
                 self.assertEqual(len(set(together)), count)
 
-    def test_what_one_device_does_alone_is_refused_by_name(self):
-        for flags, name in [(["--frames", "0-1", "--real-time"], "--real-time"), (["--denoise", "svgf"], "--denoise")]:
+    def test_frames_in_real_time_have_the_bytes_of_one_device(self):
+        write(self.path("moving.gltf"), moving_gltf())
+        for flags in [["moving.gltf", "--fps", "2"], ["cornell-box", "--turntable", "9", "--restir", "gi", "--aov", "depth"],
+                      ["cornell-box", "--turntable", "9", "--resolution-scale", "0.5"]]:
             with self.subTest(flags=flags):
-                self.refuse(2, "render", "nowhere.obj", "-o", "x-#.exr", *flags, *TWO, says=["--device cpu,cpu", name])
+                line = ["render", *flags, "--frames", "0-3", "--real-time", "-o", "f-####.exr", "--size", "40x36", "--json"]
+                alone, together = [[event["hash"] for event in self.succeed(*line, *devices).events("frame")] for devices in (ONE, THREE)]
+                self.assertEqual(together, alone)
+                self.assertGreater(len(set(together)), 2)
+        line = ["bench", "sequence", "cornell-box", "--frames", "0-2", "--size", "40x36", "--json"]
+        alone, together = [self.succeed(*line, *devices).events("sequence_errors")[0] for devices in (ONE, TWO)]
+        self.assertEqual((together["last_frame"], together["device"]), (alone["last_frame"], "2 x CPU"))
+
+    def test_the_viewer_starts_with_several_devices(self):
+        program = subprocess.Popen([PROGRAM, "view", "cornell-box", *SIZE, "--port", "0", "--no-browser", *TWO, "--json"], cwd=self.folder,
+                                   env=self.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE)
+        self.addCleanup(program.kill)
+        self.addCleanup(program.stdout.close)
+        self.assertTrue(any(json.loads(line)["event"] == "listening" for line in program.stdout))
+        program.send_signal(signal.SIGINT)
+        self.assertEqual(program.wait(timeout=PATIENCE_S), 0)
+
+    def test_what_one_device_does_alone_is_refused_by_name(self):
+        self.refuse(2, "render", "nowhere.obj", "-o", "x.exr", "--denoise", "svgf", *TWO, says=["--device cpu,cpu", "--denoise"])
         for line in [["measure", "cornell-box", "--at", "0,0,0", "--normal", "0,1,0"], ["lab", "cornell-box", "-o", "report"], ["bench", "--scene", "cornell-box"],
                      ["bench", "render", "--scene", "cornell-box"], ["bench", "noise", "cornell-box"], ["bench", "rays", "--scene", "cornell-box"],
-                     ["bench", "sequence", "cornell-box", "--frames", "0-1"], ["view", "cornell-box"]]:
+                     ["bench", "frames", "cornell-box"]]:
             with self.subTest(line=line):
                 self.refuse(2, *line, *TWO, says=["--device cpu,cpu"])
 

@@ -29,14 +29,6 @@ bool film_is_like(const Film& film, const Film& other) {
                               [](const auto& a, const auto& b) { return a->is_like(*b); });
 }
 
-/// Lets the calling thread run near its GPU, if it has one.
-void stay_near(const Queue& queue) {
-    if (!queue.is_cuda()) return;
-    const std::vector<DeviceIdentity> identities = device_identities();
-    const auto index = static_cast<std::size_t>(queue.device_index());
-    if (index < identities.size()) stay_on_processors(processors_near(identities[index].bus));
-}
-
 /// Copies a little to the host, because the first large copy of a queue pins memory, for which a GPU may pause.
 void copy_once(const Film& film) {
     const FilmTarget& target = *film.targets().front();
@@ -47,40 +39,34 @@ void copy_once(const Film& film) {
 
 } // namespace
 
+void stay_near(const Queue& queue) {
+    if (!queue.is_cuda()) return;
+    const std::vector<DeviceIdentity> identities = device_identities();
+    const auto index = static_cast<std::size_t>(queue.device_index());
+    if (index < identities.size()) stay_on_processors(processors_near(identities[index].bus));
+}
+
+std::string name_of_device(const Queue& queue) {
+    return queue.is_cuda() ? fmt::format("cuda:{}", queue.device_index()) : "cpu";
+}
+
 DeviceWorker::DeviceWorker(std::size_t number, Queue& queue, const PreparedScene& scene, const RenderSettings& settings)
     : number_(number), queue_(queue) {
-    own_scene_.emplace(queue);
-    own_pictures_.emplace(*own_scene_);
-    uploaded_ = std::async(std::launch::async, [this, &scene, settings] {
-        const UseThreads use(queue_.threads());
-        own_scene_->set(scene, settings);
-    });
+    own_scene_.emplace(queue, scene, settings);
 }
 
-std::string DeviceWorker::name() const {
-    return queue_.is_cuda() ? fmt::format("cuda:{}", queue_.device_index()) : "cpu";
-}
+std::string DeviceWorker::name() const { return name_of_device(queue_); }
 
 void DeviceWorker::wait_for_scene() {
-    if (uploaded_.valid()) uploaded_.get();
+    if (own_scene_) own_scene_->wait();
 }
 
 void DeviceWorker::change_scene(const PreparedScene& scene, uint32_t parts) {
-    changed_scene_ = &scene;
-    changed_parts_ |= parts;
+    if (own_scene_) own_scene_->change(scene, parts);
 }
 
 PictureRenderer& DeviceWorker::pictures_of(PictureRenderer& of_caller, const RenderSettings& settings) {
-    wait_for_scene();
-    const uint32_t parts = std::exchange(changed_parts_, 0);
-    if (!own_scene_) return of_caller;
-    if (parts == kAllParts) {
-        own_scene_->set(*changed_scene_, settings);
-    } else if (parts != 0) {
-        own_scene_->update(*changed_scene_, parts, settings);
-    }
-    own_scene_->set_tracer(settings);
-    return *own_pictures_;
+    return own_scene_ ? own_scene_->update(settings) : of_caller;
 }
 
 /// Makes the films that fit the picture, or clears those that do.

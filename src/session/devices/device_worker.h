@@ -4,11 +4,11 @@
 // films, so that a film is copied to the host while the next one is being rendered.
 
 #include <functional>
-#include <future>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "session/devices/scene_copy.h"
 #include "session/devices/shared_run.h"
 #include "session/shared_render.h"
 
@@ -17,6 +17,10 @@ namespace pertev {
 /// Seconds after which a device hands its film over, and thus what a failing device costs at most. A film is added
 /// beside the rendering and delays none of it.
 inline constexpr double kFoldSeconds = 5;
+
+/// Lets the calling thread run near its GPU, if it has one.
+void stay_near(const Queue& queue);
+std::string name_of_device(const Queue& queue); // cuda:1, for people
 
 /// Called by the device's thread, for tests, which throw there what a device would.
 struct DeviceHooks {
@@ -68,11 +72,7 @@ private:
 
     std::size_t number_;
     Queue& queue_;
-    std::optional<DeviceScene> own_scene_;
-    std::optional<PictureRenderer> own_pictures_;
-    std::future<void> uploaded_;
-    const PreparedScene* changed_scene_ = nullptr; // with the parts that are to be uploaded
-    uint32_t changed_parts_ = 0;
+    std::optional<SceneCopy> own_scene_;
     std::optional<Queue> film_queue_;
     std::optional<Film> films_[2]; // one is filled while the other is added to the sum; one alone if memory is short
     std::optional<Film> landing_;  // a film of another device, before it is added; on the caller's device alone

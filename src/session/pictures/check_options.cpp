@@ -33,8 +33,7 @@ void check_solution(const std::string& file) {
 void check_devices(const PictureOptions& options, uint32_t verbs) {
     const std::string& device = options.machine.device;
     if (!names_several_devices(device)) return;
-    if ((verbs & kRender) == 0) refuse_several_devices(device, "this");
-    if (options.real_time) refuse_several_devices(device, "`real_time`");
+    if ((verbs & (kRender | kView | kBenchSequence)) == 0) refuse_several_devices(device, "this");
     if (options.render.denoise != Denoise::None) refuse_several_devices(device, "`denoise`");
 }
 

@@ -1,0 +1,57 @@
+#pragma once
+
+// Makes real-time frames by several devices together. Each has the scene and makes a band of rows: their samples and
+// their reconstruction. It takes the rows beside them that filters read from the devices that made them, and before
+// the next frame, while samples are taken, all rows of the history. The frame has the bytes of one device's.
+//
+// A device that fails in the middle of a frame takes the history of its rows along. That frame is an error, and the
+// next one, made by the others, begins a new sequence; without a history the frame is made again.
+
+#include <atomic>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "session/devices/device_thread.h"
+#include "session/devices/row_team.h"
+#include "session/devices/scene_copy.h"
+#include "session/frame_sequence.h"
+
+namespace pertev {
+
+/// Called by the device's thread, for tests, which throw there what a device would.
+struct FrameHooks {
+    std::function<void(std::size_t device)> before_frame;
+};
+
+class FramesOnDevices final : public SharedFrames {
+public:
+    /// Starts to upload the scene to all devices but the first, which is that of the caller's PictureRenderer. The
+    /// queues outlive this, and the scene must not change before the first frame, nor without change_scene().
+    FramesOnDevices(std::span<const std::shared_ptr<Queue>> queues, const PreparedScene& scene,
+                    const RenderSettings& settings, FrameHooks hooks = {});
+    ~FramesOnDevices() override;
+
+    void change_scene(const PreparedScene& scene, uint32_t parts) override;
+    bool render(FrameSequence& leader, const FrameTask& task, Sink& sink) override;
+    void collect(FrameSequence& leader, std::vector<RowArray> (FrameSequence::*arrays)() const) override;
+    FrameCounts counts_of_others() override;
+
+    /// Number of devices that have not failed.
+    std::size_t devices() const { return followers_.size() + 1; }
+
+private:
+    struct Follower;
+    struct Part;
+
+    void form_team(Sink& sink);
+    bool render_together(FrameSequence& leader, const FrameTask& task, Sink& sink, std::vector<Part>& parts);
+    void leave_out_failed(const std::vector<Part>& parts, Sink& sink);
+
+    Queue& queue_; // the leader's
+    FrameHooks hooks_;
+    std::vector<std::unique_ptr<Follower>> followers_; // without those that were lost
+    std::unique_ptr<RowTeam> team_;                    // null until the first frame, and after a loss
+};
+
+} // namespace pertev
