@@ -56,7 +56,7 @@ MUTATIONS = [
     ("other devices do not hear of a cut", "consistency/frames_on_devices",
      ("src/session/frame_sequence.cpp", "if (reconstruction_ && !leader.has_history()) reconstruction_->cut();", "")),
     ("a frame that a device failed to make is made again with half of the history", "consistency/frames_on_devices",
-     ("src/session/devices/frames_on_devices.cpp", "if (has_history) {", "if (false) {")),
+     ("src/session/devices/frames_on_devices.cpp", "if (has_history && after_loss_ == AfterLoss::Throw) {", "if (false) {")),
     ("tones of a frame are those of the first device's rows", "consistency/frames_on_devices",
      ("src/session/frame_sequence.cpp", "shared->collect(*this, &FrameSequence::rows_of_tones);", "static_cast<void>(shared);")),
     ("bands do not follow the devices' speeds", "consistency/frames_on_devices",

@@ -86,9 +86,9 @@ Queue queue_of_band(std::size_t i) {
 class Bands {
 public:
     Bands(std::size_t devices, const PreparedScene& prepared, const Camera& camera, const RenderSettings& settings,
-          const FrameHooks& hooks = {}) {
+          const FrameHooks& hooks = {}, AfterLoss after_loss = AfterLoss::Throw) {
         for (std::size_t i = 0; i < devices; ++i) queues.push_back(std::make_shared<Queue>(queue_of_band(i)));
-        if (devices > 1) together.emplace(queues, prepared, settings, hooks);
+        if (devices > 1) together.emplace(queues, prepared, settings, after_loss, hooks);
         session.emplace(*queues.front(), prepared, camera, settings);
         if (together) session->pictures().share_frames(*together);
     }
@@ -290,6 +290,22 @@ TEST_CASE("a frame in whose middle a device fails is an error, and the next one 
         }
         CHECK(bands.warnings() == 1);
     }
+}
+
+TEST_CASE("where a history may be cut, the others make the frame again as the first one of a sequence") {
+    const BandsWorld world;
+    const Camera camera = test::mixed_scene_camera();
+    FailingFrame failing(2, 2, ErrorCode::DeviceFault);
+    Bands bands(3, world.prepared, camera, settings_of_bands(), failing.hooks, AfterLoss::Cut);
+    Bands alone(1, world.prepared, camera, settings_of_bands());
+    for (uint32_t k = 0; k < 5; ++k) {
+        REQUIRE(bands.render(k, {}, {.light = RestirLight::Indirect}));
+        if (k < 2) continue;
+        REQUIRE(alone.render(k, {}, {.light = RestirLight::Indirect}));
+        check_frame(bands, alone);
+    }
+    CHECK(bands.warnings() == 1);
+    CHECK(bands.together->devices() == 2);
 }
 
 TEST_CASE("a device that fails in the first frame of a sequence costs a warning, and the last one left goes on alone") {

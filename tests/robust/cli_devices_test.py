@@ -119,7 +119,7 @@ class Devices(CliTest):
                 self.refuse(2, "render", "cornell-box", "-o", "x.png", "--device", name, says=[f"--device {name}: "])
 
     def test_bench_devices_compares_each_number_of_devices_with_one(self):
-        line = ["bench", "devices", "--scene", "cornell-box", "--job", "cornell-box-8", "--size", "16x16", "--runs", "2", "--pictures", "5"]
+        line = ["bench", "devices", "--scene", "cornell-box", "--job", "cornell-box-8", "--size", "16x16", "--runs", "2", "--pictures", "5", "--frames", "3"]
         outcome = self.succeed(*line, *THREE, "--spp", "300", "--report", "devices.json", "--json")
         made = outcome.events("devices")
         self.assertEqual([(row["samples"], row["devices"]) for row in made], [(spp, n) for spp in (300, 256) for n in (1, 2, 3)])
@@ -147,6 +147,11 @@ class Devices(CliTest):
                          [(n, 5, 128, batches[0]["hash"]) for n in (1, 2, 3)])
         for row in batches:
             self.assertAlmostEqual(row["ratio_to_one"], batches[0]["median_seconds"] / row["median_seconds"], 4)
+        frames = outcome.events("devices_frames")
+        self.assertEqual([(row["devices"], row["runs"], row["hash"]) for row in frames], [(n, 3, frames[0]["hash"]) for n in (1, 2, 3)])
+        for row in frames:
+            self.assertAlmostEqual(row["ratio_to_one"], frames[0]["median_seconds"] / row["median_seconds"], 4)
+            self.assertLess(row["reconstruction_seconds"], row["greatest_seconds"])
         single = self.succeed(*line, *ONE, "--spp", "2", "--json")
         self.assertEqual((len(single.events("devices")), single.events("devices_expected")), (1, []))
         self.assertRegex(self.succeed(*line, *TWO, "--spp", "2").stdout, r"(?s)^job +devices .*\ncornell-box-8 +1 .*\ncornell-box-8 +2 ")

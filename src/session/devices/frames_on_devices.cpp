@@ -50,8 +50,8 @@ struct FramesOnDevices::Part {
 };
 
 FramesOnDevices::FramesOnDevices(std::span<const std::shared_ptr<Queue>> queues, const PreparedScene& scene,
-                                 const RenderSettings& settings, FrameHooks hooks)
-    : queue_(*queues.front()), hooks_(std::move(hooks)) {
+                                 const RenderSettings& settings, AfterLoss after_loss, FrameHooks hooks)
+    : queue_(*queues.front()), after_loss_(after_loss), hooks_(std::move(hooks)) {
     for (std::size_t i = 1; i < queues.size(); ++i) {
         followers_.push_back(std::make_unique<Follower>(i, *queues[i], scene, settings));
     }
@@ -100,7 +100,7 @@ bool FramesOnDevices::render(FrameSequence& leader, const FrameTask& task, Sink&
         leader.begin_again(scene_has_changed);
         if (parts.front().failure) throw *parts.front().failure;
         leave_out_failed(parts, sink);
-        if (has_history) {
+        if (has_history && after_loss_ == AfterLoss::Throw) {
             throw Error(ErrorCode::DeviceFault, "device", "",
                         "a device failed in the middle of a frame; the next one begins a sequence without it");
         }

@@ -5,7 +5,8 @@
 // the next frame, while samples are taken, all rows of the history. The frame has the bytes of one device's.
 //
 // A device that fails in the middle of a frame takes the history of its rows along. That frame is an error, and the
-// next one, made by the others, begins a new sequence; without a history the frame is made again.
+// next one, made by the others, begins a new sequence. Without a history, and where that may be cut, the others make
+// the frame again.
 
 #include <atomic>
 #include <memory>
@@ -24,12 +25,18 @@ struct FrameHooks {
     std::function<void(std::size_t device)> before_frame;
 };
 
+/// The choice of what happens when a device fails in a frame that has a history.
+enum class AfterLoss {
+    Throw, // the frame is an error
+    Cut,   // the frame begins a new sequence
+};
+
 class FramesOnDevices final : public SharedFrames {
 public:
     /// Starts to upload the scene to all devices but the first, which is that of the caller's PictureRenderer. The
     /// queues outlive this, and the scene must not change before the first frame, nor without change_scene().
     FramesOnDevices(std::span<const std::shared_ptr<Queue>> queues, const PreparedScene& scene,
-                    const RenderSettings& settings, FrameHooks hooks = {});
+                    const RenderSettings& settings, AfterLoss after_loss = AfterLoss::Throw, FrameHooks hooks = {});
     ~FramesOnDevices() override;
 
     void change_scene(const PreparedScene& scene, uint32_t parts) override;
@@ -49,6 +56,7 @@ private:
     void leave_out_failed(const std::vector<Part>& parts, Sink& sink);
 
     Queue& queue_; // the leader's
+    AfterLoss after_loss_;
     FrameHooks hooks_;
     std::vector<std::unique_ptr<Follower>> followers_; // without those that were lost
     std::unique_ptr<RowTeam> team_;                    // null until the first frame, and after a loss
