@@ -61,7 +61,8 @@ pertev_launches(tracer/deforming_stages.cu
 # Stages of render.
 pertev_launches(render/add_frame_to_film.cu
   render/add_frame_to_film.h
-  STAGES AddFrameToFilm)
+  STAGES AddFrameToFilm
+    InWindow<AddFrameToFilm>)
 pertev_launches(render/centre_layers.cu
   render/centre_layers.h
   STAGES MakeCentreRays
@@ -99,13 +100,16 @@ pertev_launches(denoise/frame_stages.cu
 pertev_launches(denoise/oidn/oidn_stages.cu
   denoise/oidn/oidn_stages.h
   STAGES MeanOidnGuides
+    InWindow<MeanOidnGuides>
     ReadShownFrame
     ShowColor)
 pertev_launches(denoise/picture_denoiser_stages.cu
   denoise/compose_samples.h denoise/estimate_variance.h denoise/gather_samples.h
   STAGES BeginSums
     GatherFeatures
+    InWindow<GatherFeatures>
     GatherLight
+    InWindow<GatherLight>
     SmoothGuide
     EstimateVariance
     ComposeSamples)

@@ -85,6 +85,13 @@ MUTATIONS = [
      ("examples/slurm_parts.sh", "if ((status == 75)); then", "if ((status == 74)); then")),
     ("rows without a sample are merged with others", "consistency/film_files robust/cli_merge",
      ("src/session/film_file/merge_films.cpp", "for (const Band& band : bands) count = std::max(count, band.count());", "count = bands.front().count();")),
+    ("samples of several parts are denoised", "consistency/film_files",
+     ("src/session/film_file/merge_films.cpp", "if (part->of.is_empty() || part->of.samples == first->of.samples) continue;",
+      "if (part->of.is_empty() || first != parts_.end()) continue;")),
+    ("what a denoiser has gathered of some rows lies at the top", "consistency/film_files robust/cli_merge",
+     ("src/denoise/picture_denoiser.cpp", "pixels, std::size_t(window_.y) * width_, window_.count()", "pixels, 0 * width_, window_.count()")),
+    ("a resumed picture is denoised without its first samples", "consistency/checkpoint robust/cli_checkpoint",
+     ("src/session/film_render.cpp", "steps_->restore(target->take());", "static_cast<void>(target->take());")),
     ("files of processes that live are removed beside a checkpoint", "robust/cli_checkpoint",
      ("src/base/remove_leftovers.cpp", "::kill(*process, 0) != 0 && errno == ESRCH", "*process > 0")),
 ]

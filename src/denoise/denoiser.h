@@ -8,11 +8,14 @@
 #include <string>
 #include <utility>
 
+#include "denoise/denoiser_state.h"
+#include "device/launch.h"
 #include "device_scene/scene_view.h"
 #include "image/image.h"
 #include "math/float4.h"
 #include "render/camera_view.h"
 #include "render/noisy_frame.h"
+#include "render/pixel_window.h"
 
 namespace pertev {
 
@@ -21,8 +24,8 @@ public:
     virtual ~Denoiser() = default;
 
     /// Begins a picture. `centres` has its size, and contains the hits of rays through the pixels' centres; `camera`
-    /// is their camera.
-    virtual void begin(const NoisyFrame& centres, const CameraView& camera) = 0;
+    /// is their camera. Samples will have the pixels of `window` alone, which are whole rows.
+    virtual void begin(const NoisyFrame& centres, const CameraView& camera, const PixelWindow& window) = 0;
     /// Number of samples per pixel whose surfaces must be passed to add_features() between begin() and the first
     /// add().
     virtual uint32_t feature_samples() const = 0;
@@ -30,12 +33,24 @@ public:
     virtual void add_features(const NoisyFrame& frame, const SceneView& scene) = 0;
     /// Adds the next sample of each pixel, with light.
     virtual void add(const NoisyFrame& frame, const SceneView& scene) = 0;
+    /// Returns what it has gathered of the window's pixels; those of others are missing.
+    virtual DenoiserState state() const = 0;
+    /// Replaces that, of all pixels, by the state of denoisers of the same picture and kind, whose windows may have
+    /// been others. Throws Error(BadInput) for words that are no such state.
+    virtual void restore(const DenoiserState& state) = 0;
     /// Returns `picture`, linear RGB or RGBA, after this step; alpha stays. It is that of the samples since begin(), of
     /// which there is at least one, after the steps before this one.
     virtual Image apply(Image picture) = 0;
     /// Names the library and device that make the picture, if it is outside the one-picture law; else empty.
     virtual std::string name() const { return {}; }
 };
+
+/// Launches a stage for each pixel of a window.
+template <class Stage>
+void launch_in(Queue& queue, const char* name, const PixelWindow& window, const Stage& stage) {
+    if (window.picture_width == 0) return launch(queue, name, window.count(), stage);
+    launch(queue, name, window.count(), InWindow<Stage>{stage, window});
+}
 
 /// Returns `image` with these colours of its pixels; alpha stays.
 inline Image with_colors(Image image, std::span<const Float4> colors) {

@@ -43,10 +43,11 @@ PictureDenoiser::PictureDenoiser(Queue& queue, uint32_t width, uint32_t height)
     guide_.object = objects_.data();
 }
 
-void PictureDenoiser::begin(const NoisyFrame& centres, const CameraView& camera) {
+void PictureDenoiser::begin(const NoisyFrame& centres, const CameraView& camera, const PixelWindow& window) {
     PERTEV_CHECK(centres.width() == width_ && centres.height() == height_);
     launch(*queue_, "begin_sums", width_ * height_, BeginSums{centres.view(), guide_, sums_});
     camera_ = camera;
+    window_ = window;
     has_gloss_ = centres.splits_light();
     samples_ = features_ = 0;
 }
@@ -57,15 +58,60 @@ SampledSurfaces PictureDenoiser::surfaces_of(const NoisyFrame& frame, const Scen
 }
 
 void PictureDenoiser::add_features(const NoisyFrame& frame, const SceneView& scene) {
-    launch(*queue_, "gather_features", width_ * height_, GatherFeatures{surfaces_of(frame, scene)});
+    launch_in(*queue_, "gather_features", window_, GatherFeatures{surfaces_of(frame, scene)});
     ++features_;
 }
 
 void PictureDenoiser::add(const NoisyFrame& frame, const SceneView& scene) {
     PERTEV_CHECK(features_ >= kFeatures);
     if (samples_ >= features_) add_features(frame, scene);
-    launch(*queue_, "gather_light", width_ * height_, GatherLight{surfaces_of(frame, scene)});
+    launch_in(*queue_, "gather_light", window_, GatherLight{surfaces_of(frame, scene)});
     ++samples_;
+}
+
+/// The arrays that hold what samples have left.
+std::vector<PixelWords> PictureDenoiser::gathered() const {
+    std::vector<PixelWords> arrays;
+    for (Float4* const array :
+         {guide_.normal, guide_.albedo, sums_.diffuse, sums_.gloss, sums_.diffuse_share, sums_.gloss_share,
+          sums_.neighbour, sums_.loose, sums_.normal, sums_.met, sums_.diffuse_color, sums_.gloss_color}) {
+        arrays.push_back({array, 4});
+    }
+    for (int slot = 0; slot < kNeighbourSurfaces; ++slot) {
+        arrays.push_back({sums_.neighbour_diffuse[slot], 4});
+        arrays.push_back({sums_.neighbour_gloss[slot], 4});
+    }
+    arrays.push_back({sums_.squares, 2});
+    arrays.push_back({guide_.object, 1});
+    return arrays;
+}
+
+DenoiserState PictureDenoiser::state() const {
+    const std::size_t pixels = std::size_t(width_) * height_;
+    DenoiserState words(state_words(pixels), kMissingWord);
+    DenoiserHead{samples_, features_, has_gloss_, camera_}.write(words);
+    save_pixels(*queue_, gathered(), pixels, std::size_t(window_.y) * width_, window_.count(),
+                std::span(words).subspan(DenoiserHead::kWords));
+    return words;
+}
+
+void PictureDenoiser::restore(const DenoiserState& state) {
+    const std::size_t pixels = std::size_t(width_) * height_;
+    const DenoiserHead head = DenoiserHead::read(state);
+    bool is_sound = state.size() == state_words(pixels) && head.features >= kFeatures;
+    for (std::size_t slot = 0; is_sound && slot < kNeighbourSurfaces; ++slot) { // pixels that are looked up
+        const std::size_t array = DenoiserHead::kWords + pixels * 4 * (12 + 2 * slot);
+        for (std::size_t i = 0; i < pixels; ++i) {
+            const uint32_t neighbour = state[array + 4 * i + 3];
+            is_sound = is_sound && (neighbour == kNoHit || neighbour < pixels);
+        }
+    }
+    if (!is_sound) throw Error(ErrorCode::BadInput, "what the denoiser has gathered is damaged");
+    restore_pixels(*queue_, gathered(), pixels, std::span(state).subspan(DenoiserHead::kWords));
+    samples_ = head.samples, features_ = head.features, has_gloss_ = head.has_gloss;
+    const LensView lens = camera_.lens; // is not in the head
+    camera_ = head.camera;
+    camera_.lens = lens;
 }
 
 Image PictureDenoiser::apply(Image picture) {

@@ -21,22 +21,29 @@ public:
 
     PictureDenoiser(Queue& queue, uint32_t width, uint32_t height);
 
-    void begin(const NoisyFrame& centres, const CameraView& camera) override;
+    void begin(const NoisyFrame& centres, const CameraView& camera, const PixelWindow& window) override;
     /// Returns kFeatures: samples 0 to kFeatures - 1 are required before any light, so that edges and textures are
     /// smooth even with few samples.
     uint32_t feature_samples() const override { return kFeatures; }
     void add_features(const NoisyFrame& frame, const SceneView& scene) override;
     void add(const NoisyFrame& frame, const SceneView& scene) override;
+    DenoiserState state() const override;
+    void restore(const DenoiserState& state) override;
+    static constexpr std::size_t state_words(std::size_t pixels) { return DenoiserHead::kWords + pixels * kPixelWords; }
     /// Replaces the colours by those of the samples that it got, so it can only be the first step.
     Image apply(Image picture) override;
 
 private:
+    static constexpr std::size_t kPixelWords = 4 * (12 + 2 * kNeighbourSurfaces) + 3;
+
+    std::vector<PixelWords> gathered() const;
     SampledSurfaces surfaces_of(const NoisyFrame& frame, const SceneView& scene) const;
 
     Queue* queue_;
     uint32_t width_, height_, samples_ = 0, features_ = 0;
     bool has_gloss_ = false;
     CameraView camera_ = {};
+    PixelWindow window_;
     Buffer<Float4> wide_;
     Buffer<Vec2> squares_;
     Buffer<uint32_t> objects_;

@@ -36,7 +36,8 @@ uint32_t next_pass(const RenderSettings& settings, uint32_t left, uint32_t done,
 } // namespace
 
 FilmRender::FilmRender(PictureRenderer& pictures, const Camera& camera, const RenderSettings& settings)
-    : pictures_(pictures), camera_(camera), settings_(settings), steps_(pictures), number_(pictures.new_number()) {
+    : pictures_(pictures), camera_(camera), settings_(settings), steps_(std::make_shared<PostSteps>(pictures)),
+      number_(pictures.new_number()) {
     check_integrator(settings);
     check_camera(settings, camera);
 }
@@ -50,6 +51,7 @@ bool FilmRender::set_camera(const Camera& camera) {
 
 bool FilmRender::set_settings(const RenderSettings& settings) {
     const bool same = same_picture(settings_, settings);
+    if (settings.denoise != settings_.denoise) film_.reset(); // it has another target
     if (settings.width != settings_.width || settings.height != settings_.height) hidden_back_share_.reset();
     settings_ = settings;
     if (film_ && !is_film_of(*film_, settings_)) film_.reset();
@@ -85,9 +87,19 @@ Film& FilmRender::film() {
     return fit_part(film_);
 }
 
+/// Returns what adds the targets of new films: those that set_targets() requests, and what a post step gathers.
+AddTargets FilmRender::targets_of_films() {
+    if (settings_.denoise == Denoise::None) return add_targets_;
+    const std::size_t words = denoiser_state_words(settings_.denoise, settings_.width, settings_.height);
+    return [add = add_targets_, words, steps = steps_](Film& film) {
+        if (add) add(film);
+        film.hold(std::make_unique<DenoiserTarget>(words, [steps] { return steps->state(); }));
+    };
+}
+
 /// Returns `film`, made if it does not fit the settings, for their rows.
 Film& FilmRender::fit_part(std::optional<Film>& film) {
-    Film& fit = fit_film(pictures_.film_queue(), film, settings_, add_targets_);
+    Film& fit = fit_film(pictures_.film_queue(), film, settings_, targets_of_films());
     fit.set_rows(settings_.part().first_row, settings_.part().end_row);
     return fit;
 }
@@ -98,6 +110,12 @@ void FilmRender::restore(SampleRange samples, const std::function<void(Film&)>& 
     Film& into = film();
     try {
         add(into);
+        if (settings_.denoise != Denoise::None) {
+            auto* const target = dynamic_cast<DenoiserTarget*>(into.targets().back().get());
+            PERTEV_CHECK(target != nullptr);
+            steps_->begin(camera_, settings_, nullptr);
+            steps_->restore(target->take());
+        }
     } catch (...) {
         forget_samples();
         throw;
@@ -116,7 +134,7 @@ uint32_t FilmRender::render(SampleRange range, Sink& sink) {
     Film& into_film = film();
     const bool has_steps = settings_.denoise != Denoise::None;
     const bool on_cpu = !pictures_.queue().is_cuda(); // a GPU's passes are short
-    if (has_steps && before == 0 && !steps_.begin(camera_, settings_, on_cpu ? &sink : nullptr)) return 0;
+    if (has_steps && before == 0 && !steps_->begin(camera_, settings_, on_cpu ? &sink : nullptr)) return 0;
     Integrator& integrator = pictures_.begin(camera_, settings_, has_steps ? 1 : count, number_);
     if (before == 0) pictures_.find_centres(camera_, settings_, into_film);
     const RayCounts rays_before = stats_.rays;
@@ -145,7 +163,7 @@ uint32_t FilmRender::render(SampleRange range, Sink& sink) {
         uint32_t added = pass;
         try {
             if (has_steps) {
-                steps_.add(integrator, first + done, pass, into_film, stops);
+                steps_->add(integrator, first + done, pass, into_film, stops);
             } else {
                 if (is_apart) into.clear();
                 added = integrator.render_while(first + done, pass, into.view(), [&] { return sink.goes_on(now()); });
@@ -206,7 +224,7 @@ void FilmRender::find_hidden_backs() {
 
 std::optional<Image> FilmRender::denoised() {
     if (settings_.denoise == Denoise::None || samples().count() == 0) return std::nullopt;
-    return steps_.apply(picture());
+    return steps_->apply(picture());
 }
 
 RenderStats FilmRender::stats() {

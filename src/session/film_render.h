@@ -44,7 +44,8 @@ public:
     void interrupt_passes(bool leaves) { interrupts_passes_ = leaves; }
 
     /// Takes samples that another render of this picture has taken, with its rays and seconds: `add` adds them to an
-    /// empty film. Throws what `add` throws; the film is then empty.
+    /// empty film. Throws what `add` throws, and Error(BadInput) without what the settings' post step has gathered; the
+    /// film is then empty.
     void restore(SampleRange samples, const std::function<void(Film&)>& add, const RayCounts& rays, double seconds);
 
     /// Returns the film of the current picture. It is all zero before the first sample.
@@ -61,7 +62,7 @@ public:
     /// Returns the picture after the post steps; none if the settings request no step, or without samples.
     std::optional<Image> denoised();
     /// The name of what denoised it (Denoiser::name).
-    std::string denoiser() const { return settings_.denoise == Denoise::None ? "" : steps_.names(); }
+    std::string denoiser() const { return settings_.denoise == Denoise::None ? "" : steps_->names(); }
     std::vector<FilmLayer> layers() { return film().layers(); }
     /// Returns statistics, for which it reads two numbers from the device. The share of hidden backs is computed once
     /// per scene, camera and size.
@@ -76,12 +77,13 @@ private:
     uint32_t render_shared(SharedRender& sharing, SampleRange range, Sink& sink);
     void find_hidden_backs();
     void forget_samples();
+    AddTargets targets_of_films();
     Film& fit_part(std::optional<Film>& film);
 
     PictureRenderer& pictures_;
     Camera camera_;
     RenderSettings settings_;
-    PostSteps steps_;
+    std::shared_ptr<PostSteps> steps_; // which the film may read
     AddTargets add_targets_;
     std::optional<Film> film_;
     std::optional<Film> pass_film_; // the current pass, if film_ must survive an unfinished one

@@ -23,6 +23,19 @@ std::vector<std::unique_ptr<Denoiser>> make_denoisers(Queue& queue, const Render
     return denoisers;
 }
 
+std::size_t denoiser_state_words(Denoise denoise, uint32_t width, uint32_t height) {
+    const std::size_t pixels = std::size_t(width) * height;
+    switch (denoise) {
+    case Denoise::None:
+        return 0;
+    case Denoise::Svgf:
+        return PictureDenoiser::state_words(pixels);
+    case Denoise::Oidn:
+        return OidnDenoiser::state_words(pixels);
+    }
+    return 0;
+}
+
 std::string PostSteps::names() const {
     std::string names;
     for (const auto& denoiser : denoisers_) names += denoiser->name();
@@ -48,13 +61,19 @@ bool PostSteps::begin(const Camera& camera, const RenderSettings& settings, Sink
     of_pinhole.stop_with(sink);
     of_pinhole.render(0, 1, frame.film_view());
     const CameraView centres = pictures_.view_of(pinhole, of_centres).camera.view;
-    for (const auto& denoiser : denoisers_) denoiser->begin(frame, centres);
+    const FilmPart part = settings.part();
+    const uint32_t rows = part.end_row - part.first_row;
+    window_ = {.width = settings.width, .height = rows};
+    if (rows < settings.height) window_.picture_width = settings.width, window_.y = part.first_row;
+    for (const auto& denoiser : denoisers_) denoiser->begin(frame, centres, window_);
     Integrator& integrator = pictures_.begin(camera, of_features, 1);
     integrator.stop_with(sink);
+    FilmView rows_of_frame = frame.film_view();
+    rows_of_frame.window = window_;
     const SceneView& scene = pictures_.scene().view();
     for (const auto& denoiser : denoisers_) {
         for (uint32_t sample = 0; sample < denoiser->feature_samples(); ++sample) {
-            integrator.render(sample, 1, frame.film_view());
+            integrator.render(sample, 1, rows_of_frame);
             if (sink != nullptr && sink->should_stop()) return false;
             denoiser->add_features(frame, scene);
         }
@@ -63,15 +82,16 @@ bool PostSteps::begin(const Camera& camera, const RenderSettings& settings, Sink
 }
 
 void PostSteps::add(Integrator& integrator, uint32_t first, uint32_t count, const Film& film, Sink* sink) {
-    PERTEV_CHECK(film.view().window.picture_width == 0);
+    PERTEV_CHECK(film.view().window == window_);
     const SceneView& scene = pictures_.scene().view();
     FilmView into = sample_.value().film_view();
     into.invalid = film.view().invalid;
+    into.window = window_;
     for (uint32_t sample = first; sample < first + count; ++sample) {
         integrator.render(sample, 1, into);
         if (sink != nullptr && sink->should_stop()) return;
-        launch(pictures_.queue(), "add_frame_to_film", film.width() * film.height(),
-               AddFrameToFilm{sample_->view(), film.view(), scene, sample == 0});
+        launch_in(pictures_.queue(), "add_frame_to_film", window_,
+                  AddFrameToFilm{sample_->view(), film.view(), scene, sample == 0});
         for (const auto& denoiser : denoisers_) denoiser->add(*sample_, scene);
     }
     pictures_.queue().wait();

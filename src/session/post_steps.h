@@ -14,27 +14,34 @@ namespace pertev {
 
 /// Makes the steps that `settings` request. Throws Error(BadInput, OutOfMemory, DeviceFault).
 std::vector<std::unique_ptr<Denoiser>> make_denoisers(Queue& queue, const RenderSettings& settings);
+/// Returns the number of words of their Denoiser::state; 0 without any.
+std::size_t denoiser_state_words(Denoise denoise, uint32_t width, uint32_t height);
 
 class PostSteps {
 public:
     /// Makes an object without steps; `pictures` outlives it.
     explicit PostSteps(PictureRenderer& pictures) : pictures_(pictures) {}
 
-    /// Begins a picture: creates the steps that `settings` request, and passes them the visible surfaces. Returns false
-    /// once `sink` stops; null: never. Throws Error(OutOfMemory, DeviceFault).
+    /// Begins a picture, or the part of its rows: creates the steps that `settings` request, and passes them the
+    /// visible surfaces. Returns false once `sink` stops; null: never. Throws Error(OutOfMemory, DeviceFault).
     bool begin(const Camera& camera, const RenderSettings& settings, Sink* sink);
     /// Renders samples [first, first + count) into `film` and into each step. Stops in the middle once `sink` stops;
-    /// film and steps must then be discarded. Null: never. Throws std::logic_error for a film of a window, because
-    /// steps filter whole pictures.
+    /// film and steps must then be discarded. Null: never. Throws std::logic_error for a film of other rows than
+    /// those of begin(), or of a part of them.
     void add(Integrator& integrator, uint32_t first, uint32_t count, const Film& film, Sink* sink);
     /// Returns `picture`, that of the film, after all steps. Throws Error(DeviceFault).
     Image apply(Image picture) { return apply_steps(denoisers_, std::move(picture)); }
+    /// Returns what the step has gathered (Denoiser::state); nothing before begin().
+    DenoiserState state() const { return denoisers_.empty() ? DenoiserState() : denoisers_.front()->state(); }
+    /// Replaces what the step has gathered since begin(), as Denoiser::restore.
+    void restore(const DenoiserState& state) { denoisers_.front()->restore(state); }
     /// The steps' Denoiser::name.
     std::string names() const;
 
 private:
     PictureRenderer& pictures_;
     std::optional<NoisyFrame> sample_;
+    PixelWindow window_; // the rows that are rendered
     std::vector<std::unique_ptr<Denoiser>> denoisers_;
     std::tuple<Denoise, uint32_t, uint32_t> made_for_ = {}; // kind of steps, and the size of their picture
 };

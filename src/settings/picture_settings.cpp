@@ -108,8 +108,8 @@ std::vector<Setting> picture_settings() {
             "The rows of pixels from number A, where the top one is 0, to before B. light and bidirectional light "
             "pixels "
             "of all rows.",
-            Excludes{"integrator=light integrator=bidirectional denoise!=none time_limit frames turntable cameras"},
-            Mark::NotKept, Changes::Picture),
+            Excludes{"integrator=light integrator=bidirectional time_limit frames turntable cameras"}, Mark::NotKept,
+            Changes::Picture),
         row("samples", "Parts", "A:B", FIELD(samples),
             "The samples of each pixel from number A, where the first is 0, to before B.",
             Excludes{"spp part time_limit frames turntable cameras"}, Mark::NotKept, Changes::Picture),

@@ -23,7 +23,7 @@ public:
         on_device_.set(prepared_, settings_);
         header.settings = {{"version", "1.0.0 abc"}, {"seed", "0"}};
         header.width = settings_.width, header.height = settings_.height;
-        header.aovs = settings_.aovs, header.layers_at = settings_.layers_at;
+        header.aovs = settings_.aovs, header.layers_at = settings_.layers_at, header.denoise = settings_.denoise;
         header.part = {0, settings_.height, settings_.range()}, header.spp = settings_.samples;
     }
     FilmRender film() { return {pictures_, test::mixed_scene_camera(), settings_}; }
@@ -79,6 +79,7 @@ void check_resumed(const RenderSettings& settings) {
         CHECK(bytes_of_film(next.film()) == bytes_of_film(whole.film()));
         CHECK(next.film().part() == whole.film().part());
         CHECK(next.rays().total() == whole.rays().total());
+        if (settings.denoise != Denoise::None) CHECK(next.denoised().value().pixels == whole.denoised().value().pixels);
     }
 }
 
@@ -92,6 +93,9 @@ TEST_CASE("a film that resumes from checkpoints has the bytes of one run") {
     check_resumed(settings);
     settings = {};
     settings.integrator = IntegratorKind::PhotonMap;
+    check_resumed(settings);
+    settings = {};
+    settings.denoise = Denoise::Svgf;
     check_resumed(settings);
 }
 

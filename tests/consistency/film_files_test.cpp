@@ -106,8 +106,8 @@ void check_parts(Renders& renders, std::size_t targets) {
     CHECK(bytes_of(merged({renders.file({0, 5})})) == bytes);
     const FilmMerge merge(parts, false);
     static Queue cpu = Queue::make_cpu();
-    const Film film = merge.film(cpu, nobody());
-    const RenderResult result = result_of(merge.header(), film);
+    Film film = merge.film(cpu, nobody());
+    const RenderResult result = result_of(merge.header(), film, cpu);
     CHECK(picture_hash(result.picture) == picture_hash(whole->picture()));
     CHECK(result.samples == 5);
     CHECK(result.invalid_samples == whole->film().invalid_samples());
@@ -191,6 +191,32 @@ TEST_CASE("merged parts by rows, or by rows and samples, have the bytes of one r
         if (kind == IntegratorKind::PhotonMap) renders.scene.materials[5].emission = grey(0x1p127f); // invalid photons
         check_rows(renders, kBandsOfSamples);
     }
+}
+
+TEST_CASE("merged parts by rows are denoised to the bytes of one run, and parts of samples are refused") {
+    Renders renders;
+    renders.settings.denoise = Denoise::Svgf;
+    renders.settings.aovs = kAovAlbedo | kAovPosition | kAovIds;
+    check_rows(renders, kBands);
+    const Image expected = renders.film({0, 5})->denoised().value();
+    Files files;
+    for (const FilmPart& part : kBands) {
+        renders.settings.first_row = part.first_row, renders.settings.end_row = part.end_row;
+        files.push_back(renders.file(part.samples));
+    }
+    Queue cpu = Queue::make_cpu();
+    const FilmMerge merge(files, false);
+    Film film = merge.film(cpu, nobody());
+    const RenderResult result = result_of(merge.header(), film, cpu);
+    REQUIRE(result.denoised.has_value());
+    CHECK(result.denoised->pixels == expected.pixels);
+    CHECK(result.picture.pixels != expected.pixels);
+    renders.settings.first_row = renders.settings.end_row = 0;
+    CHECK(merge_refusal({renders.file({0, 2}), renders.file({2, 5})}).find("`rows`") != std::string::npos);
+    FilmHeader without = merge.header();
+    Film empty = without.make_film(cpu);
+    empty.set_part(without.part);
+    CHECK(!test::bad_input_message([&] { result_of(without, empty, cpu); }).empty());
 }
 
 TEST_CASE("a part of rows restarts a film of others, and its picture is black elsewhere") {

@@ -12,6 +12,7 @@
 #include "denoise/oidn/oidn_filter.h"
 #include "formats/read_scene.h"
 #include "image/picture_hash.h"
+#include "session/film_file/merge_films.h"
 #include "session/session_bytes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
@@ -137,6 +138,39 @@ TEST_CASE("a library that is missing, lacks a function, has no device or is of a
                    ErrorCode::BadInput, "frame_denoiser", "oidn"));
 }
 
+TEST_CASE("parts by rows have the guides of one run") {
+    const StandIn stand_in;
+    if (!stand_in.is_there()) return;
+    Queue queue = requested_queue();
+    Messages messages;
+    const Scene scene = make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RenderSettings settings = small_settings(Denoise::Oidn);
+    settings.samples = 19; // more than those that are always gathered
+    DeviceScene on_device(queue);
+    on_device.set(prepared, settings);
+    PictureRenderer pictures(on_device);
+    FilmRender whole(pictures, mixed_scene_camera(), settings);
+    REQUIRE(whole.render({0, 19}) == 19);
+    FilmHeader header;
+    header.width = settings.width, header.height = settings.height, header.denoise = settings.denoise;
+    header.part = {0, settings.height, {0, 19}};
+    Film all = header.make_film(queue);
+    for (const auto& [first, end] : {std::pair(0u, 5u), {5u, 32u}}) {
+        settings.first_row = first, settings.end_row = end;
+        FilmRender part(pictures, mixed_scene_camera(), settings);
+        REQUIRE(part.render({0, 19}) == 19);
+        for (std::size_t i = 0; i < all.targets().size(); ++i)
+            all.targets()[i]->add_bytes(0, part.film().targets()[i]->bytes());
+    }
+    all.set_part(header.part);
+    for (std::size_t i = 0; i < all.targets().size(); ++i)
+        CHECK(all.targets()[i]->bytes() == whole.film().targets()[i]->bytes());
+    const RenderResult result = result_of(header, all, queue);
+    CHECK(result.denoised.value().pixels == whole.denoised().value().pixels);
+    CHECK(result.denoiser == whole.denoiser());
+}
+
 TEST_CASE("a call that fails is an error of its kind, and nothing leaks") {
     StandIn stand_in;
     if (!stand_in.is_there()) return;
@@ -192,7 +226,7 @@ TEST_CASE("Open Image Denoise gets means of guides and does not change film and 
         for (std::size_t c = 0; c < 3; ++c) { // the layer's normals are means over the samples that hit something
             const float mean_normal = before[3] * normal.pixels[3 * pixel + c];
             const float expected = 0.5f * before[c] + 0.25f * albedo.pixels[3 * pixel + c] + 0.125f * mean_normal;
-            largest = max(largest, abs(made[c] - expected));
+            largest = max(largest, pertev::abs(made[c] - expected));
         }
         if (made[3] != before[3]) FAIL("alpha of pixel ", pixel);
     }

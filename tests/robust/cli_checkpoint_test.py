@@ -126,13 +126,13 @@ class Checkpoints(CliTest):
                                      "irradiance_cache", "radiosity"]]
         kinds += [[kind, "--ambient", "0.5"] for kind in ["cast", "whitted", "raster", "reyes"]]
         kinds += [["path", "--aov", "albedo,normal,ids", "--lpe", "diffuse=LD+E", "--transparent"],
-                  ["path", "--aov", "normal,ids", "--layers-at", "centre"]]
+                  ["path", "--aov", "normal,ids", "--layers-at", "centre"], ["path", "--denoise", "svgf"]]
         for kind in kinds:
             with self.subTest(kind=kind):
                 flags = ["--integrator", *kind]
                 self.done("--spp", "2", *flags)
                 got, whole = self.done("--spp", "5", *flags), self.whole("--spp", "5", *flags)
-                for key in ["hash", "layers_hash", "invalid_samples", "samples"]:
+                for key in ["hash", "layers_hash", "denoised_hash", "invalid_samples", "samples"]:
                     self.assertEqual(got[key], whole[key], key)
                 got, whole = self.metadata("x.exr"), self.metadata("whole.exr")
                 if kind[0] in ("irradiance_cache", "radiosity"):  # each run makes its records first, and their rays count
@@ -200,7 +200,7 @@ class Checkpoints(CliTest):
         self.refuse(6, "render", "nowhere.obj", "-o", "y.exr", *SMALL, "--checkpoint", "nowhere/c.pvf", says=["nowhere/c.pvf"])
 
     def test_settings_that_a_checkpoint_does_not_support_are_refused(self):
-        for flags in ["--denoise svgf", "--aov motion", "--turntable 4", "--frames 0-3", "--checkpoint-every 0"]:
+        for flags in ["--aov motion", "--turntable 4", "--frames 0-3", "--checkpoint-every 0"]:
             with self.subTest(flags=flags):
                 self.refuse(2, "render", "cornell-box", "-o", "y-#.exr", *SMALL, *FILE, *flags.split(),
                             says=["--continue" if "frames" in flags or "turn" in flags else flags.split()[0]])

@@ -13,10 +13,12 @@ namespace {
 /// Changes each colour x to factor x + offset.
 struct LinearStep final : Denoiser {
     LinearStep(float by, float with) : factor(by), offset(with) {}
-    void begin(const NoisyFrame&, const CameraView&) override {}
+    void begin(const NoisyFrame&, const CameraView&, const PixelWindow&) override {}
     uint32_t feature_samples() const override { return 0; }
     void add_features(const NoisyFrame&, const SceneView&) override {}
     void add(const NoisyFrame&, const SceneView&) override {}
+    DenoiserState state() const override { return {}; }
+    void restore(const DenoiserState&) override {}
     Image apply(Image picture) override {
         for (float& value : picture.pixels) value = factor * value + offset;
         return picture;

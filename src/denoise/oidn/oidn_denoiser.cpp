@@ -8,12 +8,29 @@ namespace pertev {
 
 void OidnDenoiser::add_features(const NoisyFrame& frame, const SceneView&) {
     PERTEV_CHECK(frame.width() * frame.height() == pixels_);
-    launch(queue_, "mean_oidn_guides", pixels_,
-           MeanOidnGuides{frame.view(), filter_.albedo(), filter_.normal(), 1.0f / static_cast<float>(++features_)});
+    launch_in(queue_, "mean_oidn_guides", window_,
+              MeanOidnGuides{frame.view(), filter_.albedo(), filter_.normal(), 1.0f / static_cast<float>(++features_)});
 }
 
 void OidnDenoiser::add(const NoisyFrame& frame, const SceneView& scene) {
     if (samples_++ >= features_) add_features(frame, scene);
+}
+
+DenoiserState OidnDenoiser::state() const {
+    DenoiserState words(state_words(pixels_), kMissingWord);
+    DenoiserHead{samples_, features_, false, {}}.write(words);
+    const std::size_t width = window_.picture_width == 0 ? window_.width : window_.picture_width;
+    save_pixels(queue_, guides(), pixels_, window_.y * width, window_.count(),
+                std::span(words).subspan(DenoiserHead::kWords));
+    return words;
+}
+
+void OidnDenoiser::restore(const DenoiserState& state) {
+    const DenoiserHead head = DenoiserHead::read(state);
+    if (state.size() != state_words(pixels_))
+        throw Error(ErrorCode::BadInput, "what the denoiser has gathered is damaged");
+    restore_pixels(queue_, guides(), pixels_, std::span(state).subspan(DenoiserHead::kWords));
+    samples_ = head.samples, features_ = head.features;
 }
 
 Image OidnDenoiser::apply(Image picture) {

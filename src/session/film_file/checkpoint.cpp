@@ -20,10 +20,13 @@ bool is_there(const std::string& file) {
     return fs::exists(file, fault) && !fault;
 }
 
-/// Returns how many bytes a film file may take: a sum of many samples has about five that differ.
+/// Returns how many bytes a film file may take: an exact sum of many samples has about five that differ.
 uint64_t most_bytes(const Film& film) {
     uint64_t bytes = 0;
-    for (const auto& target : film.targets()) bytes += target->byte_count() / 16 * 5 + target->byte_count() % 16;
+    for (const auto& target : film.targets()) {
+        const std::size_t size = target->byte_count();
+        bytes += target->stride() % sizeof(FixedSum) == 0 ? size / sizeof(FixedSum) * 5 : size;
+    }
     return bytes;
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/json_text.h"
 #include "base/limits.h"
+#include "session/post_steps.h"
 #include "settings/value_names.h"
 
 namespace pertev {
@@ -118,6 +119,13 @@ std::string json_of_targets(const FilmHeader& header) {
 
 } // namespace
 
+Film FilmHeader::make_film(Queue& queue) const {
+    Film film(queue, width, height, aovs, light_layers, layers_at);
+    if (denoise != Denoise::None)
+        film.hold(std::make_unique<DenoiserTarget>(denoiser_state_words(denoise, width, height)));
+    return film;
+}
+
 FilmHeader film_header(const PictureOptions& options, const PictureRecord& record, const PictureFacts& facts,
                        const RenderStats& stats, const Film& film) {
     FilmHeader header = {.settings = deciding_settings(options, record),
@@ -126,6 +134,7 @@ FilmHeader film_header(const PictureOptions& options, const PictureRecord& recor
                          .aovs = film.aovs(),
                          .light_layers = film.light_layers(),
                          .layers_at = film.layers_at(),
+                         .denoise = record.settings.denoise,
                          .part = film.part(),
                          .spp = options.render.samples,
                          .facts = facts,
@@ -143,8 +152,8 @@ FilmHeader film_header(const PictureOptions& options, const PictureRecord& recor
 std::optional<SettingDifference> film_difference(const FilmHeader& before, const FilmHeader& after) {
     if (auto different = first_difference(before.settings, after.settings)) return different;
     const auto shape = [](const FilmHeader& of) {
-        return fmt::format("{}x{}, {}, {}, {}", of.width, of.height, of.aovs, json_strings(of.light_layers),
-                           static_cast<int>(of.layers_at));
+        return fmt::format("{}x{}, {}, {}, {}, {}", of.width, of.height, of.aovs, json_strings(of.light_layers),
+                           static_cast<int>(of.layers_at), name_of(of.denoise));
     };
     if (shape(before) == shape(after)) return std::nullopt;
     return SettingDifference{"the film", shape(before), shape(after)};
@@ -158,14 +167,15 @@ std::string json_of(const FilmHeader& header) {
         if ((header.aovs & group.bit) != 0) layers.emplace_back(group.name);
     const PictureFacts& facts = header.facts;
     return fmt::format(
-        R"({{"settings":{{{}}},"size":[{},{}],"rows":[{},{}],"samples":[{},{}],"spp":{},"layers":{},"light_layers":{},"layers_at":"{}","targets":{},)"
+        R"({{"settings":{{{}}},"size":[{},{}],"rows":[{},{}],"samples":[{},{}],"spp":{},"layers":{},"light_layers":{},"layers_at":"{}"{},"targets":{},)"
         R"("metadata":{},"display_metadata":{},"origin":{},"display":{},"transparent":{},"rays":{{"camera":{},"bounce":{},"shadow":{}}},"seconds":{}}})",
         fmt::join(settings, ","), header.width, header.height, header.part.first_row, header.part.end_row,
         header.part.samples.first, header.part.samples.end, header.spp, json_strings(layers),
-        json_strings(header.light_layers), name_of(header.layers_at), json_of_targets(header),
-        json_of_metadata(facts.settings), json_of_metadata(facts.shown), json_of_metadata(facts.origin),
-        facts.display ? json_of_display(*facts.display) : "null", facts.transparent, header.rays.camera,
-        header.rays.bounce, header.rays.shadow, exact_number(header.render_seconds));
+        json_strings(header.light_layers), name_of(header.layers_at),
+        header.denoise == Denoise::None ? "" : fmt::format(R"(,"denoise":"{}")", name_of(header.denoise)),
+        json_of_targets(header), json_of_metadata(facts.settings), json_of_metadata(facts.shown),
+        json_of_metadata(facts.origin), facts.display ? json_of_display(*facts.display) : "null", facts.transparent,
+        header.rays.camera, header.rays.bounce, header.rays.shadow, exact_number(header.render_seconds));
 }
 
 FilmHeader read_film_header(const JsonValue& root) {
@@ -189,6 +199,7 @@ FilmHeader read_film_header(const JsonValue& root) {
     for (const JsonValue& layer : root.at("light_layers").elements())
         header.light_layers.emplace_back(layer.to_string());
     header.layers_at = read_name<LayersAt>(root.at("layers_at"));
+    if (const auto denoise = root.find("denoise")) header.denoise = read_name<Denoise>(*denoise);
     if (json_of_targets(header) != root.at("targets").to_json())
         throw root.at("targets").error("the targets do not fit these layers and this size");
     header.facts = {.settings = read_metadata(root.at("metadata")),

@@ -25,13 +25,15 @@ struct FilmHeader {
     uint32_t aovs = 0; // AovBits
     std::vector<std::string> light_layers;
     LayersAt layers_at = LayersAt::Samples;
+    Denoise denoise = Denoise::None;
     FilmPart part;    // may be empty
     uint32_t spp = 0; // samples of the whole picture
     PictureFacts facts;
     RayCounts rays;            // the rays that the part took
     double render_seconds = 0; // time that the part took
 
-    Film make_film(Queue& queue) const { return {queue, width, height, aovs, light_layers, layers_at}; }
+    /// Makes an empty film with all targets of the file.
+    Film make_film(Queue& queue) const;
 };
 
 /// Makes the header of a film that was rendered by these options.

@@ -8,7 +8,9 @@
 
 #include "base/machine_memory.h"
 #include "session/film_file/unite_id_names.h"
+#include "session/post_steps.h"
 #include "settings/settings_file.h"
+#include "settings/value_names.h"
 
 namespace pertev {
 namespace {
@@ -66,6 +68,7 @@ FilmMerge::FilmMerge(std::span<const std::string> files, bool is_partial) {
         parts_.push_back({file, reader.header().part, reader.header_hash()});
     }
     refuse_overlaps();
+    refuse_other_samples();
     check_rows(is_partial);
     for (auto& [name, value] : header_.facts.origin) {
         auto* const text = std::get_if<std::string>(&value);
@@ -93,6 +96,20 @@ void FilmMerge::take_header(const std::string& file, const FilmHeader& header) {
     if (comes_first) header_ = header;
     header_.facts.origin = std::move(origin);
     header_.rays = rays, header_.render_seconds = seconds, header_.spp = spp;
+}
+
+/// Refuses parts of samples of a picture that is denoised: only the same samples of other rows add up.
+void FilmMerge::refuse_other_samples() const {
+    if (header_.denoise == Denoise::None) return;
+    const auto first = std::ranges::find_if(parts_, [](const Part& part) { return !part.of.is_empty(); });
+    for (auto part = first; part != parts_.end(); ++part) {
+        if (part->of.is_empty() || part->of.samples == first->of.samples) continue;
+        throw Error(
+            ErrorCode::BadInput, FileLocation{part->file},
+            fmt::format("`denoise={}` needs all samples of a pixel in one file: those here are not those of {}; "
+                        "render parts by `rows`",
+                        name_of(header_.denoise), first->file));
+    }
 }
 
 void FilmMerge::refuse_overlaps() const {
@@ -144,7 +161,8 @@ void FilmMerge::check_rows(bool is_partial) {
 
 Film FilmMerge::film(Queue& queue, Sink& sink) const {
     const std::size_t bytes =
-        Film::predicted_bytes(header_.width, header_.height, header_.aovs, header_.light_layers, header_.layers_at);
+        Film::predicted_bytes(header_.width, header_.height, header_.aovs, header_.light_layers, header_.layers_at) +
+        denoiser_state_words(header_.denoise, header_.width, header_.height) * sizeof(uint32_t);
     if (bytes > machine_memory_bytes()) {
         throw Error(ErrorCode::OutOfMemory, FileLocation{parts_.front().file},
                     fmt::format("the film takes {:.1f} MiB; this machine has {:.1f} MiB", mebibytes(bytes),
@@ -164,7 +182,23 @@ Film FilmMerge::film(Queue& queue, Sink& sink) const {
     return film;
 }
 
-RenderResult result_of(const FilmHeader& header, const Film& film) {
+namespace {
+
+void denoise(const FilmHeader& header, Film& film, Queue& queue, RenderResult& result) {
+    RenderSettings settings;
+    settings.width = header.width, settings.height = header.height, settings.denoise = header.denoise;
+    const auto steps = make_denoisers(queue, settings);
+    for (const auto& target : film.targets()) {
+        if (auto* const gathered = dynamic_cast<DenoiserTarget*>(target.get()))
+            steps.front()->restore(gathered->take());
+    }
+    result.denoised = apply_steps(steps, result.picture);
+    result.denoiser = steps.front()->name();
+}
+
+} // namespace
+
+RenderResult result_of(const FilmHeader& header, Film& film, Queue& queue) {
     RenderResult result;
     result.samples = film.part().samples.count();
     result.rays = header.rays;
@@ -173,6 +207,7 @@ RenderResult result_of(const FilmHeader& header, const Film& film) {
     result.picture = film.picture(header.facts.transparent);
     result.layers = film.layers();
     result.ids = film.ids();
+    if (header.denoise != Denoise::None) denoise(header, film, queue, result);
     return result;
 }
 

@@ -34,6 +34,7 @@ private:
     };
     void take_header(const std::string& file, const FilmHeader& header);
     void refuse_overlaps() const;
+    void refuse_other_samples() const;
     void check_rows(bool is_partial);
 
     std::vector<Part> parts_;
@@ -41,7 +42,8 @@ private:
     bool has_gaps_ = false;
 };
 
-/// Returns the result of a merged film, as one run has it.
-RenderResult result_of(const FilmHeader& header, const Film& film);
+/// Returns the result of a merged film, as one run has it, denoised on `queue` if its parts were rendered for that.
+/// Throws Error(BadInput) if the film lacks what the denoiser needs, and Error(OutOfMemory, DeviceFault).
+RenderResult result_of(const FilmHeader& header, Film& film, Queue& queue);
 
 } // namespace pertev

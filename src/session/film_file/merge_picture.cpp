@@ -25,9 +25,9 @@ MergedPicture merge_picture(std::span<const std::string> files, bool is_partial,
     MergedPicture picture;
     picture.facts = parts.header().facts;
     if (!writes_tone_mapped(outputs)) picture.facts.shown.clear(); // which only film files have
-    const Film film = parts.film(queue, sink);
-    picture.result = result_of(parts.header(), film);
+    Film film = parts.film(queue, sink);
     picture.films = write_film_files(outputs, parts.header(), film);
+    picture.result = result_of(parts.header(), film, queue);
     return picture; // without the film, because writing takes memory too
 }
 

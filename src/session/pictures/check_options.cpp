@@ -14,6 +14,7 @@
 #include "session/pictures/choose_display.h"
 #include "session/sample_range.h"
 #include "settings/check_settings.h"
+#include "settings/value_names.h"
 
 namespace pertev {
 namespace {
@@ -27,6 +28,15 @@ void check_real_time(const PictureOptions& options) {
 void check_solution(const std::string& file) {
     if (std::error_code fault; file.empty() || std::filesystem::exists(file, fault)) return;
     throw Error(ErrorCode::BadInput, "solution", file, "the file does not exist");
+}
+
+/// Refuses a part without all samples of its pixels to a denoiser, which adds floats up in the samples' order.
+void check_denoised_part(const PictureOptions& options) {
+    if (options.render.denoise == Denoise::None) return;
+    const SampleRange range = sample_range(options);
+    if (range.first == 0 && (range.end == options.render.samples || !options.samples.empty())) return;
+    throw Error(ErrorCode::BadInput, "denoise", std::string(name_of(options.render.denoise)),
+                "it needs all samples of a pixel, in their order; divide this picture by `rows`");
 }
 
 /// Refuses several devices for what one device does alone.
@@ -44,6 +54,7 @@ void check_options(const PictureOptions& options, uint32_t verbs) {
     frame_range(options);
     sample_range(options);
     row_range(options);
+    check_denoised_part(options);
     check_devices(options, verbs);
     check_real_time(options);
     if (options.reconstruction.used().denoiser == FrameDenoiser::Oidn) OidnLibrary::find("frame_denoiser");

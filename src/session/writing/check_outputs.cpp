@@ -90,9 +90,6 @@ void check_film_file(const PictureOptions& options, const std::string& setting, 
     if (has_frames) {
         refuse(setting, output, "a film file holds one picture; `continue` resumes a sequence");
     }
-    if (options.render.denoise != Denoise::None)
-        refuse("denoise", std::string(name_of(options.render.denoise)),
-               "film files do not store what this setting needs");
     if (std::ranges::count(options.aovs, "motion") > 0) refuse("aov", "motion", "film files do not store this layer");
     check_writable(output);
 }
