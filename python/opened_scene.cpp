@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "session/pictures/share_records.h"
 #include "settings/settings_file.h"
 
 namespace pertev {
@@ -100,6 +101,7 @@ PictureRecord OpenedScene::record(const PictureOptions& options, const EditedSce
     setup_->hash = source.edited(own);
     PictureRecord record = picture_record(options, *setup_, known);
     setup_->hash = own;
+    share_records(options, *setup_, record, sink);
     return record;
 }
 

@@ -29,6 +29,7 @@
 #include "session/pictures/prepare_render.h"
 #include "session/pictures/render_samples.h"
 #include "session/pictures/render_with_checkpoint.h"
+#include "session/pictures/share_records.h"
 #include "session/pictures/write_sequence.h"
 #include "session/survey/ground.h"
 #include "session/writing/check_outputs.h"
@@ -200,6 +201,7 @@ int render(RenderFlags& flags) {
     report_start(flags, *ready, reporter);
     PictureRecord record = picture_record(flags, *ready, reporter);
     report_camera(record.camera, reporter);
+    share_records(flags, *ready, record, reporter);
     reporter.set_work("uploading the scene");
     std::optional<RenderOnDevices> together;
     std::optional<FramesOnDevices> frames_together;

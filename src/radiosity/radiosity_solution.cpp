@@ -159,7 +159,7 @@ void check_scene(const std::filesystem::path& path, const RadiositySolution& sol
 
 } // namespace
 
-void write_solution(const std::filesystem::path& path, const RadiositySolution& solution) {
+std::vector<std::byte> bytes_of(const RadiositySolution& solution) {
     Header header = {};
     std::memcpy(header.magic, kMagic, sizeof kMagic);
     header.text = solution.made.size();
@@ -182,7 +182,11 @@ void write_solution(const std::filesystem::path& path, const RadiositySolution& 
     append(std::as_bytes(std::span(solution.roots)));
     append(std::as_bytes(std::span(solution.quads)));
     append(std::as_bytes(std::span(solution.patches)));
-    write_file_atomically(path, bytes);
+    return bytes;
+}
+
+void write_solution(const std::filesystem::path& path, const RadiositySolution& solution) {
+    write_file_atomically(path, bytes_of(solution));
 }
 
 bool is_solution(const std::filesystem::path& path) {
@@ -191,8 +195,9 @@ bool is_solution(const std::filesystem::path& path) {
     return file.read(reinterpret_cast<char*>(&header), sizeof header) && version_of(header) != 0;
 }
 
-RadiositySolution read_any_solution(const std::filesystem::path& path) {
-    const std::vector<std::byte> file = read_file(path);
+namespace {
+
+RadiositySolution any_solution_of(const std::span<const std::byte> file, const std::filesystem::path& path) {
     std::span<const std::byte> bytes = file;
     Header header;
     if (bytes.size() < sizeof header) refuse_file(path, "not a radiosity solution");
@@ -229,6 +234,19 @@ RadiositySolution read_any_solution(const std::filesystem::path& path) {
         !has_light_alone(solution)) {
         refuse_file(path, "a radiosity solution that is damaged: its content is invalid");
     }
+    return solution;
+}
+
+} // namespace
+
+RadiositySolution read_any_solution(const std::filesystem::path& path) {
+    const std::vector<std::byte> file = read_file(path);
+    return any_solution_of(file, path);
+}
+
+RadiositySolution solution_of(std::span<const std::byte> bytes, const std::filesystem::path& path, const Scene& scene) {
+    RadiositySolution solution = any_solution_of(bytes, path);
+    check_scene(path, solution, scene);
     return solution;
 }
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,9 @@ struct RadiositySolution {
 /// Hash of the vertices, triangles, materials' numbers and transform of every instance.
 Hash128 geometry_hash(const Scene& scene);
 
+/// Returns the bytes of a solution's file.
+std::vector<std::byte> bytes_of(const RadiositySolution& solution);
+
 /// Writes a solution atomically. Throws Error(FileWrite).
 void write_solution(const std::filesystem::path& path, const RadiositySolution& solution);
 
@@ -69,6 +73,10 @@ bool is_solution(const std::filesystem::path& path);
 /// Reads a solution of any scene. Throws Error(BadInput) with the reason if the file does not exist, or is no
 /// solution, damaged or truncated. Whatever the file contains, lookups in the result are safe.
 RadiositySolution read_any_solution(const std::filesystem::path& path);
+
+/// Returns the solution of `scene` whose file has these bytes; `path` names it in errors, which are those of
+/// read_solution.
+RadiositySolution solution_of(std::span<const std::byte> bytes, const std::filesystem::path& path, const Scene& scene);
 
 /// Reads a solution of `scene`. Throws Error(BadInput) too if it belongs to another scene, or to this one under other
 /// light. A file that does not state its light gives a warning, and so does an incomplete solution.

@@ -58,6 +58,7 @@ struct MachineOptions {
 struct RadiosityOptions {
     RadiositySettings solving;
     std::string solution; // a file
+    std::string records;  // a file of what is made before the first sample, by irradiance_cache too
     bool flat_patches = false;
     double max_memory = 0; // MiB; applies to pictures by any integrator
 };

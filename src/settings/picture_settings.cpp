@@ -125,6 +125,11 @@ std::vector<Setting> picture_settings() {
             "The time between two writings of the checkpoint.", Above{0}, Unit{"s"}, Needs{"checkpoint"}, Mark::NotKept,
             Changes::Picture),
 
+        row("records", "Parts", "FILE", FIELD(radiosity.records),
+            "A file by which parts share irradiance records or the radiosity solution: read if it is there, else "
+            "written.",
+            Excludes{"solution frames turntable cameras"}, Mark::NotKept, Changes::Picture),
+
         row("build", "Tracing", "WHICH", FIELD(tracer.build),
             "The quality of the acceleration structure: fast builds fastest, best traces fastest. "
             "No setting of this group changes the picture.",

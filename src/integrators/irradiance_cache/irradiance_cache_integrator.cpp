@@ -1,7 +1,10 @@
 #include "integrators/irradiance_cache/irradiance_cache_integrator.h"
 
+#include <algorithm>
+#include <cstring>
 #include <utility>
 
+#include "base/error.h"
 #include "integrators/irradiance_cache/overture_progress.h"
 
 namespace pertev {
@@ -13,6 +16,13 @@ uint32_t cells_of(const IrradianceCacheSettings& cache) { return make_hemisphere
 
 FilmView film_of_cells(const CacheSubpathsView& cache, uint64_t* invalid, uint32_t cells) {
     return {cache.light, nullptr, invalid, 3, 0, {.width = cells, .height = 1}, {}};
+}
+
+/// Returns whether a tree can be built over the record, wherever its bytes come from.
+bool is_sound_record(const IrradianceRecord& record) {
+    const CachePoint& point = record.point;
+    return is_finite(point.position) && is_finite(point.normal) && is_finite(record.light) && record.radius >= 0 &&
+           is_finite(record.radius);
 }
 
 } // namespace
@@ -44,6 +54,28 @@ std::vector<IrradianceRecord> IrradianceCacheIntegrator::records() const {
     std::vector<IrradianceRecord> records(store_.count());
     queue_.copy_to_host(records.data(), store_.records(), records.size() * sizeof(IrradianceRecord));
     return records;
+}
+
+/// Leaves the number of invalid samples of the records' rays, and the records.
+void IrradianceCacheIntegrator::leave_records(std::vector<std::byte>& made) const {
+    made.resize(sizeof(uint64_t) + store_.count() * sizeof(IrradianceRecord));
+    queue_.copy_to_host(made.data(), counts_.data() + kInvalid, sizeof(uint64_t));
+    if (store_.count() > 0)
+        queue_.copy_to_host(made.data() + sizeof(uint64_t), store_.records(), made.size() - sizeof(uint64_t));
+}
+
+void IrradianceCacheIntegrator::take_records(std::span<const std::byte> made) {
+    const std::size_t size = made.size() < sizeof(uint64_t) ? 1 : made.size() - sizeof(uint64_t);
+    std::vector<IrradianceRecord> records(size / sizeof(IrradianceRecord));
+    const uint32_t most = max_records(uint64_t(picture_.camera.width) * picture_.camera.height);
+    bool is_sound = size % sizeof(IrradianceRecord) == 0 && records.size() <= most;
+    if (is_sound && !records.empty()) std::memcpy(records.data(), made.data() + sizeof(uint64_t), size);
+    is_sound = is_sound && std::ranges::all_of(records, is_sound_record);
+    if (!is_sound) throw Error(ErrorCode::BadInput, "records", "", "the file does not hold records of this picture");
+    queue_.copy_to_device(counts_.data() + kInvalid, made.data(), sizeof(uint64_t));
+    if (records.empty()) return;
+    queue_.copy_to_device(store_.records(), records.data(), size);
+    store_.take(static_cast<uint32_t>(records.size()), picture_settings_.cache.accuracy);
 }
 
 uint64_t IrradianceCacheIntegrator::missed_lookups() const {
@@ -95,6 +127,12 @@ bool IrradianceCacheIntegrator::prepare(const std::function<bool(double share)>&
     const UseThreads use(queue_.threads());
     store_.clear();
     queue_.zero(counts_.data() + kInvalid, sizeof(uint64_t));
+    const auto& shared = picture_settings_.cache.shared;
+    if (shared && !shared->empty()) {
+        take_records(*shared);
+        has_records_ = true;
+        return true;
+    }
     // Shadow rays alone find light that is scattered once.
     const uint32_t rounds = picture_settings_.subpaths.max_depth < 2 ? 0 : kOvertureRounds;
     const uint32_t width = picture_.camera.width, height = picture_.camera.height;
@@ -104,6 +142,7 @@ bool IrradianceCacheIntegrator::prepare(const std::function<bool(double share)>&
         if (!make_round(round, progress, goes_on_here)) return false;
     }
     has_records_ = true;
+    if (shared) leave_records(*shared);
     return true;
 }
 

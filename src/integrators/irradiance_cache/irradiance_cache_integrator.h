@@ -8,6 +8,7 @@
 //
 // Source: Ward, Rubinstein, Clear, "A Ray Tracing Solution for Diffuse Interreflection", SIGGRAPH 1988.
 
+#include <span>
 #include <vector>
 
 #include "integrators/irradiance_cache/irradiance_cache_settings.h"
@@ -36,7 +37,8 @@ public:
     void expect_same_picture() override { is_same_picture_ = true; }
     bool has_made() const override { return has_records_ && store_.count() > 0; }
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
-    /// Makes the records. On the CPU the record that each thread is working on is always finished.
+    /// Makes the records, or takes those of the settings; throws Error(BadInput) if they are none of this picture. On
+    /// the CPU the record that each thread is working on is always finished.
     bool prepare(const std::function<bool(double share)>& goes_on) override;
     void render(uint32_t first, uint32_t count, const FilmView& film) override;
 
@@ -47,6 +49,8 @@ public:
     uint64_t missed_lookups() const;
 
 private:
+    void leave_records(std::vector<std::byte>& made) const;
+    void take_records(std::span<const std::byte> made);
     CacheJob make_job(uint32_t seed) const;
     bool make_round(uint32_t round, OvertureProgress& progress, const std::function<bool()>& goes_on);
     bool make_hemispheres(CacheJob job, uint32_t records, const std::function<bool()>& goes_on);

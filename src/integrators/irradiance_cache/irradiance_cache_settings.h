@@ -3,7 +3,10 @@
 // Settings of `integrator=irradiance_cache`, and values that follow from them.
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <vector>
 
 #include "base/host_device.h"
 #include "math/scalar.h"
@@ -14,6 +17,9 @@ struct IrradianceCacheSettings {
     float accuracy = 0.25f;         // a record covers points up to this fraction of its distance to its surroundings
     uint32_t hemisphere_rays = 768; // maximum number of rays per record
     bool show_records = false;      // draws the records into the picture
+    /// Bytes of all records of the picture, which are taken from here; empty: they are made and left here; null: they
+    /// are not shared.
+    std::shared_ptr<std::vector<std::byte>> shared = {};
 
     bool operator==(const IrradianceCacheSettings&) const = default;
 };

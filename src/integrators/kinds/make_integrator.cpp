@@ -195,7 +195,7 @@ constexpr std::array kIntegrators = {
          .name = "irradiance_cache",
          .light = "all, interpolated between records",
          .light_with_caustics = "as path, interpolated between records",
-         .settings = "accuracy hemisphere_rays show_records",
+         .settings = "accuracy hemisphere_rays show_records records",
          .finds_all_light = true,
          .memory = memory_of_records}),
     row<RadiosityIntegrator, radiosity_settings>(
@@ -204,7 +204,7 @@ constexpr std::array kIntegrators = {
          .light = "all, by patches ever smaller",
          .light_if_not_diffuse = "L(D*)S*E, by patches ever smaller",
          .settings = "patch_size subdivisions contrast form_factors patch_rays hemicube solver tolerance steps "
-                     "link_error solution flat_patches",
+                     "link_error solution flat_patches records",
          .needs_any_light = true,
          .is_solved = true,
          .max_depth = kMaxTreeDepth}),

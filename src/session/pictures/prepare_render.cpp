@@ -249,7 +249,8 @@ void record_settings(const PictureOptions& options, const Scene& scene, uint32_t
     const bool is_own = own != nullptr && !choice.places_camera() && options.camera_path.empty();
     auto origins = options.given; // the scene's own camera has no value that a settings file could contain
     // The picture is that of all parts, with or without a checkpoint.
-    for (const char* name : {"rows", "part", "part_base", "checkpoint", "checkpoint_every"}) origins.erase(name);
+    for (const char* name : {"rows", "part", "part_base", "checkpoint", "checkpoint_every", "records"})
+        origins.erase(name);
     if (const auto range = origins.extract("samples")) origins.try_emplace("spp", range.mapped());
     if (is_own) origins.try_emplace("camera", SettingOrigin::Scene);
     if (own != nullptr && own->aspect > 0) origins.try_emplace("size", SettingOrigin::Scene);

@@ -50,14 +50,21 @@ void refuse_twins(std::span<const std::string> outputs, const std::optional<Fram
     }
 }
 
-/// Refuses an output that is a generation of the checkpoint.
-void refuse_checkpoint_twins(std::span<const std::string> outputs, const std::string& checkpoint) {
-    if (checkpoint.empty()) return;
+/// Refuses outputs and records that are a generation of the checkpoint, and outputs that are the records.
+void refuse_twins_of_kept(std::span<const std::string> outputs, const PictureOptions& options) {
+    const std::string &checkpoint = options.checkpoint, &records = options.radiosity.records;
+    const auto check = [&](const std::string& setting, const std::string& name, const std::string& kept_by,
+                           const std::string& kept) {
+        if (name.empty() || kept.empty()) return;
+        const std::filesystem::path file = canonical_path(name);
+        if (file == canonical_path(kept) || (kept_by == "checkpoint" && file == canonical_path(kept + ".previous")))
+            refuse(setting, name, fmt::format("`{}={}` names the same file", kept_by, kept));
+    };
     for (const std::string& output : outputs) {
-        const std::filesystem::path file = canonical_path(output);
-        if (file == canonical_path(checkpoint) || file == canonical_path(checkpoint + ".previous"))
-            refuse("output", output, fmt::format("`checkpoint={}` names the same file", checkpoint));
+        check("output", output, "checkpoint", checkpoint);
+        check("output", output, "records", records);
     }
+    check("records", records, "checkpoint", checkpoint);
 }
 
 /// Refuses a setting that no file shows where the caller has set it. A settings file may be for other outputs.
@@ -137,7 +144,7 @@ void check_outputs(const PictureOptions& options, std::span<const std::string> o
         written = ~0u;
     }
     refuse_twins(outputs, frames);
-    refuse_checkpoint_twins(outputs, options.checkpoint);
+    refuse_twins_of_kept(outputs, options);
     refuse_unshown(options, written);
     for (const std::string& output : outputs) {
         if (is_film_name(output)) continue;
