@@ -135,7 +135,7 @@ PythonResult render(PythonScene& scene, const std::string& settings_file, const 
 PythonResult merge(const std::vector<std::string>& files, bool is_partial, const std::vector<std::string>& outputs) {
     if (files.empty()) throw Error(ErrorCode::BadInput, "files", "", "there is no film file");
     return result_of([&](PythonSink& sink) {
-        MergedPicture picture = merge_picture(files, is_partial, outputs, sink);
+        MergedPicture picture = merge_picture(files, {is_partial, ""}, outputs, sink);
         PythonResult made(std::move(picture.result), std::move(picture.facts));
         if (outputs.empty()) return made;
         RenderResult written_result = made.result; // files take the layers out of it

@@ -17,7 +17,7 @@ namespace {
 
 struct MergeFlags {
     std::vector<std::string> parts, outputs;
-    bool is_partial = false;
+    MergeOptions options;
     ReportFlags report;
 };
 
@@ -26,7 +26,7 @@ int merge(const MergeFlags& flags) {
     const Stopwatch watch;
     for (const std::string& output : flags.outputs) refuse_list(output);
     reporter.set_work("merging");
-    MergedPicture picture = merge_picture(flags.parts, flags.is_partial, flags.outputs, reporter);
+    MergedPicture picture = merge_picture(flags.parts, flags.options, flags.outputs, reporter);
     RenderResult& result = picture.result;
     reporter.end_progress();
     reporter.set_work("writing");
@@ -59,7 +59,11 @@ void add_merge_command(CLI::App& app, int& status) {
         ->allow_extra_args(false)
         ->check(file_name())
         ->required();
-    verb.add_flag("--partial", flags->is_partial, "Makes a picture of the available samples if some are missing.");
+    verb.add_flag("--partial", flags->options.is_partial,
+                  "Makes a picture of the available samples if some are missing.");
+    verb.add_option("--denoise", flags->options.denoise,
+                    "The denoiser, which must be that of the parts, as by default.")
+        ->type_name("NAME");
     add_report_flags(verb, flags->report);
     add_progress_flag(verb, flags->report);
     verb.callback([flags, &status] { status = merge(*flags); });

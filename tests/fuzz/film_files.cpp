@@ -119,6 +119,7 @@ Bytes fuzz_seed(uint32_t number) {
     header.width = 9, header.height = 5 + number % 3;
     header.aovs = number % 2 == 0 ? 0 : kAovNormal | kAovIds;
     header.layers_at = number % 4 == 3 ? LayersAt::Centre : LayersAt::Samples;
+    if (number % 5 == 4) header.denoise = Denoise::Svgf;
     header.part = {0, header.height, {0, 4}}, header.spp = 4;
     header.facts.settings = {{"pertev.version", std::string("1")}, {"pertev.seed", 7}, {"pertev.fov_y", 0.5f}};
     header.facts.origin = {{"pertev.instances", std::string(R"({"0":"a"})")}, {"pertev.load_seconds", 0.25}};

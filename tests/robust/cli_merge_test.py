@@ -146,6 +146,10 @@ class Merge(CliTest):
         self.assertEqual(self.read("all.png"), self.read("whole.png"))
         for name in ("all.pvf", "whole.pvf"):
             self.assertEqual(self.merge(name, "-o", "again.exr")["denoised_hash"], whole["denoised_hash"])
+        self.assertEqual(self.merge("all.pvf", "-o", "again.exr", "--denoise", "svgf")["denoised_hash"], whole["denoised_hash"])
+        self.refuse(2, "merge", "all.pvf", "-o", "x.exr", "--denoise", "oidn", says=["all.pvf", "--denoise svgf"])
+        self.part("alone.pvf", "--spp", "4")
+        self.refuse(2, "merge", "alone.pvf", "-o", "x.exr", "--denoise", "svgf", says=["alone.pvf", "--denoise", "--rows"])
         self.part("plain.pvf", "--spp", "4", "--aov", "normal", "--exposure", "auto", "--rows", "0:5")
         self.refuse(2, "merge", "b.pvf", "c.pvf", "plain.pvf", "-o", "x.exr", says=["--denoise"])
 
