@@ -100,6 +100,8 @@ MUTATIONS = [
     ("shared records lack the last one", "robust/cli_records",
      ("src/integrators/irradiance_cache/irradiance_cache_integrator.cpp", "store_.take(static_cast<uint32_t>(records.size()),",
       "store_.take(static_cast<uint32_t>(records.size()) - 1,")),
+    ("all ranks of a machine take its first GPU", "unit/device_names",
+     ("src/session/mpi/ranks.cpp", "fmt::format(\"cuda:{}\", number % gpus)", "fmt::format(\"cuda:{}\", 0 * number)")),
     ("files of processes that live are removed beside a checkpoint", "robust/cli_checkpoint",
      ("src/base/remove_leftovers.cpp", "::kill(*process, 0) != 0 && errno == ESRCH", "*process > 0")),
 ]

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """`mpirun pertev render`: ranks divide a picture, whose files have the bytes of one run, and a dead rank costs its part alone.
 
-Skipped where there is no mpirun, or where the program was built without MPI (PERTEV_MPI)."""
+CTest runs it for the program, which is built without MPI by default, as robust/cli_mpi, and for one with MPI, if that is there, as
+robust/cli_ranks. Tests of ranks are skipped without mpirun, and for a program without MPI."""
 
 import json
 import os

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include "session/mpi/ranks.h"
 #include "tests/support/thrown_error.h"
 
 using namespace pertev;
@@ -87,4 +88,12 @@ TEST_CASE("texts that may name several devices are known without a list of devic
 TEST_CASE("devices of one kind are counted in a text") {
     CHECK(text_of_devices(std::vector<std::string>{"CPU"}) == "CPU");
     CHECK(text_of_devices(std::vector<std::string>{"A", "B", "A"}) == "2 x A + B");
+}
+
+TEST_CASE("ranks of a machine take its GPUs in turn") {
+    CHECK(gpu_of_rank(0, 2) == "cuda:0");
+    CHECK(gpu_of_rank(1, 2) == "cuda:1");
+    CHECK(gpu_of_rank(4, 3) == "cuda:1"); // more ranks than GPUs
+    CHECK(gpu_of_rank(3, 1).empty());
+    CHECK(gpu_of_rank(0, 0).empty());
 }

@@ -47,14 +47,18 @@ void set_option(PictureOptions& options, const char* name, const std::string& te
 
 } // namespace
 
+std::string gpu_of_rank(uint32_t number, uint32_t gpus) {
+    return gpus > 1 ? fmt::format("cuda:{}", number % gpus) : "";
+}
+
 void Ranks::divide(const std::string& output, PictureOptions& options) const {
     if (options.is_given("checkpoint")) {
         throw Error(ErrorCode::BadInput, "checkpoint", options.checkpoint,
                     "each process of mpirun keeps its part in a file of its own beside the first output");
     }
     const auto gpus = static_cast<uint32_t>(cuda_device_count());
-    if (!options.is_given("device") && gpus > 1)
-        options.machine.device = fmt::format("cuda:{}", number_on_machine() % gpus);
+    const std::string gpu = gpu_of_rank(number_on_machine(), gpus);
+    if (!options.is_given("device") && !gpu.empty()) options.machine.device = gpu;
     set_option(options, "part", fmt::format("{}/{}", rank_ + 1, count_));
     set_option(options, "checkpoint", fmt::format("{}.part-{}-of-{}.pvf", output, rank_ + 1, count_));
 }

@@ -15,6 +15,9 @@
 
 namespace pertev {
 
+/// Returns the GPU of a process, of which `number` others of its machine come before it; empty if there is no choice.
+std::string gpu_of_rank(uint32_t number, uint32_t gpus);
+
 class Ranks {
 public:
     /// Joins the others if mpirun started this process with others; otherwise returns null. Throws Error(BadInput) if
