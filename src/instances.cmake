@@ -98,13 +98,13 @@ pertev_launches(denoise/frame_stages.cu
     MeanOfBlockRows
     "FromPixel<KeepLayers>")
 pertev_launches(denoise/oidn/oidn_stages.cu
-  denoise/oidn/oidn_stages.h
+  denoise/oidn/oidn_stages.h render/pixel_window.h
   STAGES MeanOidnGuides
     InWindow<MeanOidnGuides>
     ReadShownFrame
     ShowColor)
 pertev_launches(denoise/picture_denoiser_stages.cu
-  denoise/compose_samples.h denoise/estimate_variance.h denoise/gather_samples.h
+  denoise/compose_samples.h denoise/estimate_variance.h denoise/gather_samples.h render/pixel_window.h
   STAGES BeginSums
     GatherFeatures
     InWindow<GatherFeatures>
