@@ -17,7 +17,7 @@ fi
 make_one() { # python kind
     local python=$1 kind=$2 raw=$work/raw tree program folder options=(--config-settings=cmake.define.PERTEV_CUDA=OFF) libraries
     if [[ $kind == cuda ]]; then
-        export PERTEV_WHEEL_CUDA=true CUDAFLAGS=--compress-mode=size
+        export PERTEV_WHEEL_CUDA=true CUDAFLAGS="--compress-mode=size ${CUDAFLAGS:-}"
         options=(--config-settings=cmake.define.PERTEV_CUDA=ON --config-settings=cmake.define.PERTEV_WERROR=OFF # ptxas warns of bounds that some GPUs lack
             "--config-settings=cmake.define.CMAKE_CUDA_ARCHITECTURES=${CUDAARCHS:-$(sed -n 's/.*"CMAKE_CUDA_ARCHITECTURES": "\(75.*\)"$/\1/p' CMakePresets.json)}")
     fi
