@@ -119,7 +119,8 @@ of them does. The first axis counts the cameras (a single picture has no such ax
         const char *name, *text;
     };
     for (const Named& named :
-         {Named{"color", "float32 (N, height, width, 3), or 4 with transparent=True: linear Rec. 709"},
+         {Named{"color", "float32 (N, height, width, 3), or 4 with transparent=True: linear Rec. 709, denoised if that "
+                         "was requested"},
           Named{"albedo", "float32 (N, height, width, 3): reflectance of the first surface"},
           Named{"normal", "float32 (N, height, width, 3): its shading normal, world space"},
           Named{"depth", "float32 (N, height, width): its distance along the camera's axis, metres"},

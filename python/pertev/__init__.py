@@ -36,7 +36,8 @@ def render(scene, *, cameras=None, seeds=None, color=True, layers=(), output=(),
     """Renders a picture of a scene and returns it as a Result.
 
     scene     what load() returns, or as its `scene`
-    cameras   Cameras, or an array of poses (N, 4, 4): all pictures are one job, and the call returns a BatchResult
+    cameras   Cameras, or an array of poses (N, 4, 4): all pictures are one job if they are not denoised, and the call returns a
+              BatchResult
     seeds     of these pictures: one for all or (N,); None: that of the setting
     color     False with layers_at="centre" and many cameras or `on_device`: only layers are made
     layers    names of layers to render as well: "albedo", "normal", "depth", "distance", "position", "ids", "motion"

@@ -127,6 +127,11 @@ bool BatchRender::render_in_turn(BatchArrays& arrays, Sink& sink) {
         rays_ = rays_ + in_turn_->rays();
         invalid_samples_ += in_turn_->film().invalid_samples();
         resolve(in_turn_->film(), 1, k, arrays);
+        if (const std::optional<Image> denoised = in_turn_->denoised()) {
+            pictures_.queue().copy_to_device(arrays.color.data() + k * denoised->pixels.size(), denoised->pixels.data(),
+                                             denoised->pixels.size() * sizeof(float));
+            pictures_.queue().wait(); // the image ends here
+        }
     }
     return !sink.should_stop();
 }

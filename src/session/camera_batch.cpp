@@ -21,7 +21,8 @@ void check_batch(const CameraBatch& batch, const RenderSettings& settings) {
     refuse(batch.cameras.empty(), "cameras", "", "a batch needs at least one camera");
     refuse(batch.seeds.size() > 1 && batch.seeds.size() != batch.cameras.size(), "seeds",
            fmt::format("{}", batch.seeds.size()), "expected one seed, or one for each camera");
-    refuse(settings.denoise != Denoise::None, "denoise", "", "batches of pictures are not denoised");
+    refuse(settings.denoise != Denoise::None && settings.samples == 0, "denoise", "",
+           "without samples there is no picture to denoise");
     refuse(settings.light_paths != nullptr, "lpe", "", "batches of pictures have no layers of light paths");
     refuse(settings.irradiance, "false_color", "illuminance", "batches of pictures show radiance");
     refuse((settings.aovs & kAovMotion) != 0, "aov", "motion", "pictures of a batch have no earlier frame");
@@ -35,7 +36,8 @@ void check_batch(const CameraBatch& batch, const RenderSettings& settings) {
 }
 
 bool is_one_job(const RenderSettings& settings) {
-    return settings.samples == 0 || describe(settings.integrator).renders_batches;
+    return settings.samples == 0 ||
+           (settings.denoise == Denoise::None && describe(settings.integrator).renders_batches);
 }
 
 void BatchArrays::fit(Queue& queue, const RenderSettings& settings, uint32_t count) {

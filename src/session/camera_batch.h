@@ -26,11 +26,12 @@ struct CameraBatch {
     }
 };
 
-/// Throws Error(BadInput) for cameras, seeds and settings of which no batch can be made: arrays hold no denoised
-/// pictures, light-path layers, irradiance or motion vectors, and a time limit would end pictures at different samples.
+/// Throws Error(BadInput) for cameras, seeds and settings of which no batch can be made: arrays hold no light-path
+/// layers, irradiance or motion vectors, and a time limit would end pictures at different samples.
 void check_batch(const CameraBatch& batch, const RenderSettings& settings);
 
-/// Returns whether the pictures of a chunk are one job; otherwise they are rendered one after the other.
+/// Returns whether the pictures of a chunk are one job; otherwise, as if they are denoised, they are rendered one after
+/// the other.
 bool is_one_job(const RenderSettings& settings);
 
 /// Consecutive pictures of a batch in memory of the device: [picture][row][column][channel].
@@ -42,7 +43,7 @@ struct BatchArrays {
     };
 
     uint32_t first = 0, pictures = 0;
-    Buffer<float> color; // RGB, or RGBA if the settings are transparent; empty without samples
+    Buffer<float> color; // RGB, or RGBA if the settings are transparent, denoised if they say so; empty without samples
     std::vector<Layer> layers;
     Buffer<PixelIds> ids;
 

@@ -26,6 +26,24 @@ namespace {
 
 bool splits_light(const PreparedScene& scene) { return shading_variant(*scene.scene) == ShadingVariant::General; }
 
+/// Allocations that denoise a picture, besides its film.
+struct DenoisingMemory {
+    DenoisingMemory(Queue& queue, const PreparedScene& scene, const RenderSettings& settings)
+        : steps(make_denoisers(queue, settings)) {
+        if (settings.denoise != Denoise::None)
+            sample.emplace(queue, settings.width, settings.height, splits_light(scene));
+    }
+
+    std::optional<NoisyFrame> sample;
+    std::vector<std::unique_ptr<Denoiser>> steps;
+};
+
+/// Returns the work of a picture: its samples are rendered one at a time if they are denoised.
+WorkSize work_of_picture(const PreparedScene& scene, const RenderSettings& settings) {
+    if (settings.denoise == Denoise::None) return {.samples = settings.samples};
+    return {.samples = 1, .splits_light = splits_light(scene)};
+}
+
 /// Allocations that pictures and frames share: the scene, its trees, and the integrator with its queues.
 class Tracing {
 public:
@@ -88,14 +106,11 @@ private:
 std::size_t predicted_bytes(const PreparedScene& scene, const RenderSettings& settings, bool on_cuda) {
     Queue queue = Queue::make_dry_run(on_cuda);
     const uint32_t width = settings.width, height = settings.height;
-    const bool denoises = settings.denoise != Denoise::None, splits = denoises && splits_light(scene);
-    const Tracing tracing(queue, scene, settings, {.samples = denoises ? 1 : settings.samples, .splits_light = splits});
+    const Tracing tracing(queue, scene, settings, work_of_picture(scene, settings));
     const Film film = make_film(queue, settings);
     CentreLayers centres(queue);
     if (has_centres(settings)) centres.reserve(uint64_t(width) * height, scene.motions != nullptr);
-    std::optional<NoisyFrame> frame;
-    if (denoises) frame.emplace(queue, width, height, splits);
-    const std::vector<std::unique_ptr<Denoiser>> denoisers = make_denoisers(queue, settings);
+    const DenoisingMemory denoising(queue, scene, settings);
     std::optional<MotionVectorMemory> motion;
     Buffer<InstanceView> places_before;
     if ((settings.aovs & kAovMotion) != 0) {
@@ -141,10 +156,12 @@ std::size_t predicted_batch_bytes(const PreparedScene& scene, const CameraBatch&
     const bool together = is_one_job(settings);
     RenderSettings of_job = settings;
     if (together) of_job.height *= at_once;
-    const Tracing tracing(queue, scene, of_job, {.samples = settings.samples});
+    const Tracing tracing(queue, scene, of_job,
+                          together ? WorkSize{.samples = settings.samples} : work_of_picture(scene, settings));
     const BatchMemory memory(queue, batch, settings, at_once);
     std::optional<Film> of_picture;
-    if (!together) of_picture.emplace(make_film(queue, settings));
+    std::optional<DenoisingMemory> denoising;
+    if (!together) of_picture.emplace(make_film(queue, settings)), denoising.emplace(queue, scene, settings);
     CentreLayers centres(queue);
     if (has_centres(settings)) centres.reserve(uint64_t(of_job.width) * of_job.height, scene.motions != nullptr);
     BatchArrays arrays;

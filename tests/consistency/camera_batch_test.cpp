@@ -222,6 +222,33 @@ TEST_CASE("films of samples with layers at centres add up to the film of all sam
     CHECK(hash(last) != hash(all));
 }
 
+TEST_CASE("each denoised picture of a batch has the bytes of a single denoised render") {
+    Messages messages;
+    const Scene scene = test::make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    CameraBatch batch = three_cameras();
+    batch.cameras.front() = batch.cameras.back(); // a moving camera supports no denoising
+    Queue queue = test::requested_queue();
+    for (const bool transparent : {false, true}) {
+        for (const LayersAt layers_at : {LayersAt::Samples, LayersAt::Centre}) {
+            RenderSettings settings = batch_settings(layers_at);
+            settings.transparent = transparent;
+            settings.denoise = Denoise::Svgf;
+            std::vector<Hash128> alone;
+            for (uint32_t k = 0; k < batch.count(); ++k) {
+                settings.path.seed = batch.seed_of(k, settings);
+                RenderResult result = render_picture(queue, prepared, batch.cameras[k], settings);
+                CHECK(result.picture.pixels != result.denoised.value().pixels);
+                result.picture = *result.denoised;
+                alone.push_back(test::render_hash(result));
+            }
+            for (const uint32_t at_once : {1u, 2u}) {
+                CHECK(hashes_of(queue, prepared, batch, settings, at_once) == alone);
+            }
+        }
+    }
+}
+
 TEST_CASE("a batch takes the memory that was predicted, and a limit makes its chunks smaller") {
     const Scene scene = test::make_mixed_scene();
     Messages messages;
@@ -229,16 +256,22 @@ TEST_CASE("a batch takes the memory that was predicted, and a limit makes its ch
     const CameraBatch batch = three_cameras();
     for (const uint32_t samples : {0u, 2u}) {
         for (const LayersAt layers_at : {LayersAt::Centre, LayersAt::Samples}) {
-            for (const IntegratorKind integrator : {IntegratorKind::Path, IntegratorKind::Distributed}) {
-                if (samples == 0 && layers_at == LayersAt::Samples) continue;
+            for (const auto& [integrator, denoise] : {std::pair(IntegratorKind::Path, Denoise::None),
+                                                      {IntegratorKind::Distributed, Denoise::None},
+                                                      {IntegratorKind::Path, Denoise::Svgf}}) {
+                if (samples == 0 && (layers_at == LayersAt::Samples || denoise != Denoise::None)) continue;
                 Queue queue = test::requested_queue();
                 RenderSettings settings = batch_settings(layers_at);
                 settings.width = 64, settings.height = 64;
                 settings.integrator = integrator;
+                settings.denoise = denoise;
                 settings.samples = samples;
-                const std::size_t predicted = predicted_batch_bytes(prepared, batch, settings, 2, queue.is_cuda());
+                CameraBatch few = batch;
+                if (denoise != Denoise::None)
+                    few.cameras.front() = few.cameras.back(); // a moving camera supports no denoising
+                const std::size_t predicted = predicted_batch_bytes(prepared, few, settings, 2, queue.is_cuda());
                 Pictures on(queue, prepared, settings);
-                BatchRender render(on.pictures, batch, settings, 2);
+                BatchRender render(on.pictures, few, settings, 2);
                 BatchArrays arrays;
                 while (render.next(arrays)) {
                 }
@@ -298,6 +331,8 @@ TEST_CASE("a batch refuses what its arrays cannot hold") {
     CHECK(test::is_about(error_of({batch.cameras, {1, 2}}, plain), ErrorCode::BadInput, "seeds", "2"));
     RenderSettings settings = plain;
     settings.denoise = Denoise::Svgf;
+    CHECK(!error_of(batch, settings));
+    settings.samples = 0;
     CHECK(test::is_about(error_of(batch, settings), ErrorCode::BadInput, "denoise"));
     settings = plain;
     settings.aovs = kAovMotion;
