@@ -85,6 +85,7 @@ Material material_of(ArgumentFields& fields, std::vector<TextureImage>& images) 
     material.alpha_mode = static_cast<AlphaMode>(fields.one_of("alpha_mode", "opaque", {"opaque", "mask", "blend"}));
     fields.flag("double_sided", material.double_sided);
     fields.flag("two_sided_emission", material.two_sided_emission);
+    fields.flag("thin_walled", material.thin_walled);
     std::map<std::string_view, std::vector<float*>> numbers;
     std::vector<const char*> names;
     visit_parameters(
@@ -98,7 +99,8 @@ Material material_of(ArgumentFields& fields, std::vector<TextureImage>& images) 
             if (!array) return;
             texture.image = static_cast<int32_t>(images.size());
             const std::string_view slot = name;
-            texture.is_srgb = array->is_uint8() && (slot == "base_color_texture" || slot == "emission_texture");
+            texture.is_srgb = array->is_uint8() && (slot == "base_color_texture" || slot == "emission_texture" ||
+                                                    slot == "specular_color_texture" || slot == "fuzz_color_texture");
             images.push_back(image_of(*array));
             images.back().name = fields.path_of(name);
         });

@@ -148,8 +148,10 @@ pertev_launches(restir/restir_stages.cu
 pertev_launches(integrators/bidirectional/camera_subpath_stages.cu
   integrators/bidirectional/camera_subpath_stages.h
   STAGES "ShadeCameraSubpaths<ShadingVariant::General>"
+    "ShadeCameraSubpaths<ShadingVariant::Unstacked>"
     "ShadeCameraSubpaths<ShadingVariant::PlainDiffuse>"
     "ConnectSubpaths<ShadingVariant::General>"
+    "ConnectSubpaths<ShadingVariant::Unstacked>"
     "ConnectSubpaths<ShadingVariant::PlainDiffuse>")
 pertev_launches(integrators/cast/shade_cast.cu
   integrators/cast/cast.h integrators/ray_tree/tree_stages.h
@@ -168,16 +170,22 @@ pertev_launches(integrators/irradiance_cache/cache_stages.cu
     StoreDistances
     ReadCells
     "ShadeCacheSubpaths<ShadingVariant::General>"
+    "ShadeCacheSubpaths<ShadingVariant::Unstacked>"
     "ShadeCacheSubpaths<ShadingVariant::PlainDiffuse>"
     "BeginHemispheres<ShadingVariant::General>"
+    "BeginHemispheres<ShadingVariant::Unstacked>"
     "BeginHemispheres<ShadingVariant::PlainDiffuse>"
     "FinishRecords<ShadingVariant::General>"
+    "FinishRecords<ShadingVariant::Unstacked>"
     "FinishRecords<ShadingVariant::PlainDiffuse>"
     "LookUpRadiance<ShadingVariant::General>"
+    "LookUpRadiance<ShadingVariant::Unstacked>"
     "LookUpRadiance<ShadingVariant::PlainDiffuse>"
     "FindRecordSites<ShadingVariant::General>"
+    "FindRecordSites<ShadingVariant::Unstacked>"
     "FindRecordSites<ShadingVariant::PlainDiffuse>"
     "DrawRecords<ShadingVariant::General>"
+    "DrawRecords<ShadingVariant::Unstacked>"
     "DrawRecords<ShadingVariant::PlainDiffuse>")
 pertev_launches(integrators/light/shade_seen.cu
   integrators/light/shade_seen.h
@@ -203,34 +211,42 @@ pertev_launches(integrators/path/shade_batches.cu
   integrators/path/path_stages.h
   STAGES "Shade<kPlainDiffuse | kBatched, FilmListeners>"
     "Shade<kDiffuse | kBatched, FilmListeners>"
-    "Shade<kAllMaterials | kBatched, FilmListeners>"
-    "Shade<kAllMaterials | kMoving | kBatched, FilmListeners>")
+    "Shade<kUnstacked | kBatched, FilmListeners>"
+    "Shade<kUnstacked | kMoving | kBatched, FilmListeners>")
 pertev_launches(integrators/path/shade_films.cu
   integrators/path/path_stages.h
   STAGES "Shade<kPlainDiffuse, FilmListeners>"
     "Shade<kDiffuse, FilmListeners>"
-    "Shade<kAllMaterials, FilmListeners>")
+    "Shade<kUnstacked, FilmListeners>")
 pertev_launches(integrators/path/shade_frames.cu
   integrators/path/path_stages.h
   STAGES "Shade<kPlainDiffuse, PlainFrameListeners>"
     "Shade<kDiffuse, PlainFrameListeners>"
-    "Shade<kAllMaterials, FrameListeners>")
+    "Shade<kUnstacked, FrameListeners>")
 pertev_launches(integrators/path/shade_layers.cu
   integrators/path/path_stages.h
-  STAGES "Shade<kAllMaterials, LayerListeners>"
-    "Shade<kAllMaterials | kMoving, LayerListeners>")
+  STAGES "Shade<kUnstacked, LayerListeners>"
+    "Shade<kUnstacked | kMoving, LayerListeners>")
 # For motion while the shutter is open, of the camera or of anything else.
 pertev_launches(integrators/path/shade_moving_films.cu
   integrators/path/path_stages.h
   STAGES "Shade<kPlainDiffuse | kMoving, FilmListeners>"
     "Shade<kDiffuse | kMoving, FilmListeners>"
-    "Shade<kAllMaterials | kMoving, FilmListeners>")
+    "Shade<kUnstacked | kMoving, FilmListeners>")
 # For frames that leave light to ReSTIR.
 pertev_launches(integrators/path/shade_reused_frames.cu
   integrators/path/path_stages.h
   STAGES "Shade<kPlainDiffuse, PlainReuseListeners>"
     "Shade<kDiffuse, PlainReuseListeners>"
-    "Shade<kAllMaterials, ReuseListeners>")
+    "Shade<kUnstacked, ReuseListeners>")
+# For coats, fuzz, thin walls and weighted reflections.
+pertev_launches(integrators/path/shade_stacks.cu
+  integrators/path/path_stages.h
+  STAGES "Shade<kAllMaterials, FilmListeners>"
+    "Shade<kAllMaterials | kMoving | kBatched, FilmListeners>"
+    "Shade<kAllMaterials, FrameListeners>"
+    "Shade<kAllMaterials, ReuseListeners>"
+    "Shade<kAllMaterials | kMoving, LayerListeners>")
 pertev_launches(integrators/photon_map/photon_stages.cu
   integrators/photon_map/gather_stages.h integrators/photon_map/order_photons.h integrators/photon_map/photon_stages.h
   integrators/photon_map/photon_targets.h
@@ -243,8 +259,10 @@ pertev_launches(integrators/photon_map/photon_stages.cu
     KeepPhotons
     BeginGather
     "ShadePhotons<ShadingVariant::General>"
+    "ShadePhotons<ShadingVariant::Unstacked>"
     "ShadePhotons<ShadingVariant::PlainDiffuse>"
     "ShadeGather<ShadingVariant::General>"
+    "ShadeGather<ShadingVariant::Unstacked>"
     "ShadeGather<ShadingVariant::PlainDiffuse>")
 pertev_launches(integrators/radiosity/shade_radiosity.cu
   integrators/radiosity/radiosity.h integrators/ray_tree/tree_stages.h
@@ -281,6 +299,7 @@ pertev_launches(integrators/subpaths/particle_stages.cu
     CountSubpaths
     BeginSubpaths
     "ShadeParticles<ShadingVariant::General>"
+    "ShadeParticles<ShadingVariant::Unstacked>"
     "ShadeParticles<ShadingVariant::PlainDiffuse>")
 pertev_launches(integrators/whitted/shade_whitted.cu
   integrators/ray_tree/tree_stages.h integrators/whitted/whitted.h

@@ -78,6 +78,7 @@ Scene read_lab_scene(const SceneOptions& options, Sink& sink) {
     if (const RecordScene* record = find_named(the_record().scenes, name)) {
         refuse(!options.file_scene.empty(),
                {"file_scene", options.file_scene, fmt::format("{} has fixed scenes", name)});
+        refuse(!options.variant.empty(), {"variant", options.variant, fmt::format("{} has fixed scenes", name)});
         return make_record_scene(*record, public_scenes_folder(), sink);
     }
     if (!is_there(name)) {

@@ -162,6 +162,7 @@ void describe_choices(const Scene& scene, Facts& facts) {
     }
     facts.add("animations", animations);
     if (animations.size() > 1) facts.add("plays", clip_choice(scene.clips));
+    if (!scene.variants.empty()) facts.add("variants", list_material_variants(scene)); // values of --variant
     if (scene.file_scenes.size() < 2) return;
     facts.add("file_scenes", list_file_scenes(scene)); // values of --file-scene
     facts.add("shows", file_scene_choice(scene));
@@ -239,6 +240,8 @@ int info(InfoFlags& flags) {
     facts.add("file", name);
     refuse(!flags.scene.file_scene.empty() && (is_picture_name(name) || !is_scene_name(name)),
            {"file_scene", flags.scene.file_scene, fmt::format("applies to scenes; {} is none", name)});
+    refuse(!flags.scene.variant.empty() && (is_picture_name(name) || !is_scene_name(name)),
+           {"variant", flags.scene.variant, fmt::format("applies to scenes; {} is none", name)});
     if (is_picture_name(name)) {
         describe_image(flags, facts, reporter);
     } else if (is_film_name(name)) {

@@ -48,6 +48,7 @@ void report_choices(const Scene& scene, ViewerStart& start) {
         start.about.emplace_back(label, fmt::format("{} of {} ({})", chosen, fmt::join(all, ", "), flag));
     };
     report("animation", clip_choice(scene.clips), list_clips(scene.clips), "--animation");
+    report("variant of the materials", material_variant_choice(scene), list_material_variants(scene), "--variant");
     report("scene of the file", file_scene_choice(scene), list_file_scenes(scene), "--file-scene");
 }
 

@@ -24,11 +24,73 @@ HD inline Rgb base_color_at(const SceneView& scene, const MaterialParameters& ma
     return {clamp(color.r, 0.0f, 1.0f), clamp(color.g, 0.0f, 1.0f), clamp(color.b, 0.0f, 1.0f)};
 }
 
+/// Returns `factor` times the texture's colour at a point of a triangle.
+HD inline Rgb textured_color(const SceneView& scene, const MeshView& mesh, Rgb factor, const TextureRef& ref,
+                             TriangleIndices i, float u, float v) {
+    if (!ref.has_image()) return factor;
+    const Vec4 texel =
+        lookup_texture(scene.images, ref, texture_coordinate(mesh, ref, i, u, v), scene.linear_from_srgb);
+    return factor * Rgb{texel.x, texel.y, texel.z};
+}
+
+/// Makes the BSDF of a material that is_stacked(). `coat_normal` is unit, in the shading frame.
+HD_CALL inline Bsdf make_stacked_bsdf(const SceneView& scene, const MaterialParameters& material, const MeshView& mesh,
+                                      TriangleIndices i, float u, float v, Rgb base_color, Vec3 coat_normal) {
+    const auto number = [&](float factor, const TextureRef& ref) {
+        return clamp(textured_factor(scene, mesh, factor, ref, i, u, v), 0.0f, 1.0f);
+    };
+    const float roughness = number(material.roughness, material.roughness_texture);
+    Bsdf bsdf;
+    switch (material.kind) {
+    case MaterialKind::Diffuse:
+    case MaterialKind::Unlit:
+        bsdf = make_diffuse(base_color);
+        break;
+    case MaterialKind::Conductor:
+        bsdf = make_conductor(material.eta, material.k, roughness);
+        break;
+    case MaterialKind::Dielectric:
+        bsdf = make_dielectric(material.ior, roughness, base_color);
+        break;
+    case MaterialKind::MetallicRoughness: {
+        const float metallic = number(material.metallic, material.metallic_texture);
+        const float through = number(material.transmission_weight, material.transmission_texture);
+        if (!material.thin_walled && through * (1.0f - metallic) >= 0.5f) { // a solid is glass or opaque
+            bsdf = make_dielectric(material.ior, roughness, base_color);
+            break;
+        }
+        bsdf = make_reflection(
+            {.base_color = base_color,
+             .metallic = metallic,
+             .roughness = roughness,
+             .ior = material.ior,
+             .weight = number(material.specular_weight, material.specular_texture),
+             .color = textured_color(scene, mesh, material.specular_color, material.specular_color_texture, i, u, v),
+             .through = material.thin_walled ? through : 0.0f});
+        break;
+    }
+    }
+    if (material.fuzz_weight > 0) {
+        const Rgb color = textured_color(scene, mesh, material.fuzz_color, material.fuzz_color_texture, i, u, v);
+        const float fuzz_roughness = number(material.fuzz_roughness, material.fuzz_roughness_texture);
+        if (!is_black(color)) bsdf = make_sheen(bsdf, material.fuzz_weight * color, fuzz_roughness);
+    }
+    if (material.coat_weight > 0) {
+        const float weight = number(material.coat_weight, material.coat_texture);
+        const float coat_roughness = number(material.coat_roughness, material.coat_roughness_texture);
+        if (weight > 0) bsdf = make_coated(bsdf, weight, coat_roughness, material.coat_ior, coat_normal);
+    }
+    return bsdf;
+}
+
 template <ShadingVariant kVariant = ShadingVariant::General>
 HD inline Bsdf make_bsdf(const SceneView& scene, const MaterialParameters& material, const MeshView& mesh,
-                         TriangleIndices i, float u, float v, Rgb base_color) {
-    if (kVariant != ShadingVariant::General || material.kind == MaterialKind::Diffuse ||
-        material.kind == MaterialKind::Unlit) {
+                         TriangleIndices i, float u, float v, Rgb base_color,
+                         [[maybe_unused]] Vec3 coat_normal = {0, 0, 1}) {
+    if constexpr (kVariant == ShadingVariant::General) {
+        if (material.is_stacked()) return make_stacked_bsdf(scene, material, mesh, i, u, v, base_color, coat_normal);
+    }
+    if (!has_lobes(kVariant) || material.kind == MaterialKind::Diffuse || material.kind == MaterialKind::Unlit) {
         return make_diffuse(base_color);
     }
     const float roughness =

@@ -250,6 +250,23 @@ HD inline Frame shading_frame(const SceneView& scene, const InstanceView& instan
     return make_frame(side * valid_normal(side * normal, side * geometric_normal, wo));
 }
 
+/// Normal of the coat in the shading frame, z > 0. It is bent by the coat's own map alone, not by the base's.
+HD_CALL inline Vec3 coat_normal(const SceneView& scene, const InstanceView& instance, const MeshView& mesh,
+                                const MaterialParameters& material, const WorldTriangle& triangle, const Hit& hit,
+                                Vec3 geometric_normal, Vec3 wo, const Frame& frame) {
+    const Vec3 local = mesh.normals != nullptr ? interpolate(mesh.normals, triangle.i, hit.u, hit.v) : Vec3{0, 0, 0};
+    Vec3 normal = world_normal(instance.local_from_world, local, geometric_normal);
+    if (const TextureRef& ref = material.coat_normal_texture; ref.has_image()) {
+        const Frame along = tangent_frame(instance, mesh, triangle, hit, normal, ref);
+        const Vec4 texel = lookup_texture(scene.images, ref, texture_coordinate(mesh, ref, triangle.i, hit.u, hit.v),
+                                          scene.linear_from_srgb);
+        normal = mapped_normal(along, {texel.x, texel.y, texel.z}, material.coat_normal_scale);
+    }
+    const float side = dot(wo, geometric_normal) < 0 ? -1.0f : 1.0f;
+    const Vec3 bent = frame.to_local(side * valid_normal(side * normal, side * geometric_normal, wo));
+    return bent.z > 0 ? normalize(bent) : Vec3{0, 0, 1};
+}
+
 /// The surface at `hit` for a ray that arrives along `direction` (unit).
 template <ShadingVariant kVariant = ShadingVariant::General>
 HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 direction) {
@@ -263,6 +280,13 @@ HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 dire
     const Frame frame =
         shading_frame<kVariant>(scene, instance, mesh, material, triangle, hit, geometric_normal, -direction, tilt);
     const Rgb albedo = base_color_at<kVariant>(scene, material, mesh, triangle.i, hit.u, hit.v);
+    Vec3 of_coat = {0, 0, 1};
+    if constexpr (kVariant == ShadingVariant::General) {
+        if (material.coat_weight > 0 &&
+            (material.normal_texture.has_image() || material.coat_normal_texture.has_image())) {
+            of_coat = coat_normal(scene, instance, mesh, material, triangle, hit, geometric_normal, -direction, frame);
+        }
+    }
     const bool is_unlit = material.kind == MaterialKind::Unlit;
     Rgb emission = {};
     if (is_unlit) {
@@ -278,7 +302,7 @@ HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 dire
             .error = triangle.error,
             .geometric_normal = geometric_normal,
             .frame = frame,
-            .bsdf = make_bsdf<kVariant>(scene, material, mesh, triangle.i, hit.u, hit.v, albedo),
+            .bsdf = make_bsdf<kVariant>(scene, material, mesh, triangle.i, hit.u, hit.v, albedo, of_coat),
             .emission = emission,
             .albedo = albedo,
             .triangle = {hit.instance, hit.primitive},

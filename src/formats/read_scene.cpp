@@ -63,6 +63,7 @@ Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, 
     if (scene.file_scenes.empty() && !options.file_scene.empty()) {
         choose_file_scene(path.string(), {}, options.file_scene);
     }
+    if (scene.variants.empty() && !options.variant.empty()) choose_material_variant(path.string(), {}, options.variant);
     if (!defines_space(path)) convert_to_metres(options.space, scene);
     validate(scene, path.string(), sink);
     warn_of_invisible_materials(scene, path.string(), sink);

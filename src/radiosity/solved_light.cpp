@@ -46,6 +46,11 @@ public:
             hasher_.add_value(material.metallic);
             add(material.metallic_texture);
         }
+        if (material.transmits()) {
+            hasher_.add_value(material.transmission_weight);
+            hasher_.add_value(static_cast<uint32_t>(material.thin_walled));
+            add(material.transmission_texture);
+        }
         hasher_.add_value(static_cast<uint32_t>(material.is_emitter()));
         if (material.is_emitter()) {
             add_bytes(hasher_, material.emission);

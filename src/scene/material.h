@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/host_device.h"
 #include "base/limits.h"
 #include "math/rgb.h"
 #include "scene/texture.h"
@@ -51,6 +52,32 @@ struct MaterialParameters {
     TextureRef metallic_texture, roughness_texture, emission_texture;
     TextureRef normal_texture; // tangent space, x right, y up in texture space (OpenGL convention), linear
 
+    // Parameters of OpenPBR Surface 1.1.1, in its names; those of a metal or dielectric are above. Weights and
+    // roughnesses are in [0, 1] and multiplied by their texture's channel.
+    bool thin_walled = true;        // for transmission_weight: otherwise the object is solid
+    float transmission_weight = 0;  // for MetallicRoughness: of what is not metal, goes through instead of into Lambert
+    float specular_weight = 1;      // for MetallicRoughness, of the dielectric's reflection
+    Rgb specular_color = {1, 1, 1}; // factor on that at normal incidence, >= 0; multiplied by the texture
+    float coat_weight = 0, coat_roughness = 0, coat_ior = 1.5f, coat_normal_scale = 1;
+    float fuzz_weight = 0, fuzz_roughness = 0.5f;
+    Rgb fuzz_color = {1, 1, 1}; // [0, 1], multiplied by the texture
+    TextureRef transmission_texture, specular_texture, specular_color_texture;
+    TextureRef coat_texture, coat_roughness_texture, coat_normal_texture; // without the last the coat is not bent
+    TextureRef fuzz_color_texture, fuzz_roughness_texture;
+
+    HD bool has_coat() const { return coat_weight > 0; }
+    HD bool has_fuzz() const { return fuzz_weight > 0 && max_component(fuzz_color) > 0; }
+    HD bool transmits() const { return kind == MaterialKind::MetallicRoughness && transmission_weight > 0; }
+    /// Returns whether the dielectric reflects other than its index says.
+    HD bool has_own_reflection() const {
+        return kind == MaterialKind::MetallicRoughness &&
+               (specular_weight != 1 || !(specular_color == Rgb{1, 1, 1}) || specular_texture.has_image() ||
+                specular_color_texture.has_image());
+    }
+    /// Returns whether its BSDF needs more than one reflection on a base.
+    HD bool is_stacked() const {
+        return kind != MaterialKind::Unlit && (has_coat() || has_fuzz() || transmits() || has_own_reflection());
+    }
     bool is_emissive() const { return max_component(emission) > 0; }
     /// Returns whether it is sampled as an emitter. An unlit one is not: rays from the camera or a surface that hit it
     /// return its colour.
@@ -74,12 +101,30 @@ void visit_parameters(Parameters& m, const Number& number, const Texture& textur
     number(m.roughness, "roughness", 0, 1);
     number(m.ior, "ior", 1, 0x1p10f);
     number(m.normal_scale, "normal_scale", -0x1p10f, 0x1p10f);
+    number(m.transmission_weight, "transmission_weight", 0, 1);
+    number(m.specular_weight, "specular_weight", 0, 1);
+    color(m.specular_color, "specular_color", 0, 0x1p10f);
+    number(m.coat_weight, "coat_weight", 0, 1);
+    number(m.coat_roughness, "coat_roughness", 0, 1);
+    number(m.coat_ior, "coat_ior", 1, 0x1p10f);
+    number(m.coat_normal_scale, "coat_normal_scale", -0x1p10f, 0x1p10f);
+    number(m.fuzz_weight, "fuzz_weight", 0, 1);
+    number(m.fuzz_roughness, "fuzz_roughness", 0, 1);
+    color(m.fuzz_color, "fuzz_color", 0, 1);
     texture(m.base_color_texture, "base_color_texture");
     texture(m.alpha_texture, "alpha_texture");
     texture(m.metallic_texture, "metallic_texture");
     texture(m.roughness_texture, "roughness_texture");
     texture(m.emission_texture, "emission_texture");
     texture(m.normal_texture, "normal_texture");
+    texture(m.transmission_texture, "transmission_texture");
+    texture(m.specular_texture, "specular_texture");
+    texture(m.specular_color_texture, "specular_color_texture");
+    texture(m.coat_texture, "coat_texture");
+    texture(m.coat_roughness_texture, "coat_roughness_texture");
+    texture(m.coat_normal_texture, "coat_normal_texture");
+    texture(m.fuzz_color_texture, "fuzz_color_texture");
+    texture(m.fuzz_roughness_texture, "fuzz_roughness_texture");
 }
 
 /// Calls texture(reference, name) for each texture slot, with or without an image.

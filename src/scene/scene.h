@@ -62,6 +62,8 @@ struct Scene {
     std::vector<Clip> clips;                 // all animations of the file, in its order
     std::vector<std::string> file_scenes;    // names of all scenes of the file, in its order
     uint32_t file_scene = 0;                 // index of this scene in file_scenes
+    std::vector<std::string> variants;       // names of the file's sets of materials
+    std::optional<uint32_t> variant;         // index of the one shown; none: the file's default materials
     DoubleVec3 origin_in_file = {0, 0, 0};   // origin of all coordinates here, in those of the file, metres
     bool is_far = false;                     // the scene is over 2^12 of its own sizes away from the file's origin
     std::vector<SuggestedSetting> suggested; // suggestions of the file: samples, an integrator and its settings, a

@@ -26,7 +26,7 @@ Film& fit_film(Queue& queue, std::optional<Film>& film, const RenderSettings& se
 }
 
 NoisyFrame& fit_frame(const DeviceScene& scene, std::optional<NoisyFrame>& frame, uint32_t width, uint32_t height) {
-    const bool splits_light = scene.view().variant == ShadingVariant::General;
+    const bool splits_light = has_lobes(scene.view().variant);
     if (frame && frame->width() == width && frame->height() == height && frame->splits_light() == splits_light) {
         return *frame;
     }

@@ -24,7 +24,7 @@
 namespace pertev {
 namespace {
 
-bool splits_light(const PreparedScene& scene) { return shading_variant(*scene.scene) == ShadingVariant::General; }
+bool splits_light(const PreparedScene& scene) { return has_lobes(shading_variant(*scene.scene)); }
 
 /// Allocations that denoise a picture, besides its film.
 struct DenoisingMemory {

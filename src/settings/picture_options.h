@@ -24,8 +24,8 @@
 namespace pertev {
 
 struct SceneOptions {
-    std::string scene;                 // a file, or the name of a built-in scene
-    std::string file_scene, animation; // names or numbers
+    std::string scene;                          // a file, or the name of a built-in scene
+    std::string file_scene, variant, animation; // names or numbers
     std::vector<std::filesystem::path> allowed_paths;
     std::string up_axis, unit; // coordinate system of the file
     CameraChoice camera;

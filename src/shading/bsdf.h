@@ -14,6 +14,8 @@
 #include "shading/lobes/diffuse_lobe.h"
 #include "shading/lobes/schlick_lobe.h"
 #include "shading/lobes/sheen_lobe.h"
+#include "shading/lobes/specular_lobe.h"
+#include "shading/lobes/thin_lobe.h"
 
 namespace pertev {
 
@@ -23,6 +25,8 @@ enum class LobeKind : uint8_t {
     Conductor,  // base
     Dielectric, // base
     Schlick,    // layer on a base that is diffuse or None
+    Specular,   // layer on a base that is diffuse or None, and on Thin
+    Thin,       // layer on a base that is diffuse or None
     Coat,       // layer on anything
     Sheen,      // layer on anything
 };
@@ -36,6 +40,8 @@ struct Lobe {
         ConductorLobe conductor;
         DielectricLobe dielectric;
         SchlickLobe schlick;
+        SpecularLobe reflection;
+        ThinLobe thin;
         CoatLobe coat;
         SheenLobe sheen;
     };
@@ -45,6 +51,8 @@ struct Lobe {
     HD Lobe(const ConductorLobe& lobe) : kind(LobeKind::Conductor), beneath(0), conductor(lobe) {}
     HD Lobe(const DielectricLobe& lobe) : kind(LobeKind::Dielectric), beneath(0), dielectric(lobe) {}
     HD Lobe(const SchlickLobe& lobe) : kind(LobeKind::Schlick), beneath(0), schlick(lobe) {}
+    HD Lobe(const SpecularLobe& lobe) : kind(LobeKind::Specular), beneath(0), reflection(lobe) {}
+    HD Lobe(const ThinLobe& lobe) : kind(LobeKind::Thin), beneath(0), thin(lobe) {}
     HD Lobe(const CoatLobe& lobe) : kind(LobeKind::Coat), beneath(0), coat(lobe) {}
     HD Lobe(const SheenLobe& lobe) : kind(LobeKind::Sheen), beneath(0), sheen(lobe) {}
 
@@ -60,6 +68,10 @@ struct Lobe {
             return dielectric.lobe_class();
         case LobeKind::Schlick:
             return schlick.lobe_class();
+        case LobeKind::Specular:
+            return reflection.lobe_class();
+        case LobeKind::Thin:
+            return thin.lobe_class();
         case LobeKind::Coat:
             return coat.lobe_class();
         case LobeKind::Sheen:
@@ -79,6 +91,10 @@ struct Lobe {
             return dielectric.energy();
         case LobeKind::Schlick:
             return schlick.energy();
+        case LobeKind::Specular:
+            return reflection.energy();
+        case LobeKind::Thin:
+            return thin.energy();
         case LobeKind::Coat:
             return coat.energy();
         case LobeKind::Sheen:
@@ -98,6 +114,10 @@ struct Lobe {
             return dielectric.gloss(cos_o);
         case LobeKind::Schlick:
             return schlick.gloss(cos_o);
+        case LobeKind::Specular:
+            return reflection.gloss(cos_o);
+        case LobeKind::Thin:
+            return thin.gloss(cos_o);
         case LobeKind::Coat:
             return coat.gloss(cos_o);
         }
@@ -115,6 +135,10 @@ struct Lobe {
             return dielectric.specular(wo);
         case LobeKind::Schlick:
             return schlick.specular(wo);
+        case LobeKind::Specular:
+            return reflection.specular(wo);
+        case LobeKind::Thin:
+            return thin.specular(wo);
         case LobeKind::Coat:
             return coat.specular(wo);
         }
@@ -133,6 +157,10 @@ struct Lobe {
             return dielectric.evaluate(wo, wi, transmittance);
         case LobeKind::Schlick:
             return schlick.evaluate(wo, wi, beneath, transmittance);
+        case LobeKind::Specular:
+            return reflection.evaluate(wo, wi, beneath, transmittance);
+        case LobeKind::Thin:
+            return thin.evaluate(wo, wi, beneath, transmittance);
         case LobeKind::Coat:
             return coat.evaluate(wo, wi, beneath, transmittance);
         case LobeKind::Sheen:
@@ -152,6 +180,10 @@ struct Lobe {
             return dielectric.draw(wo, u_lobe, u);
         case LobeKind::Schlick:
             return schlick.draw(wo, beneath, u_lobe, u);
+        case LobeKind::Specular:
+            return reflection.draw(wo, beneath, u_lobe, u);
+        case LobeKind::Thin:
+            return thin.draw(wo, beneath, u_lobe, u);
         case LobeKind::Coat:
             return coat.draw(wo, beneath, u_lobe, u);
         case LobeKind::Sheen:
@@ -162,14 +194,15 @@ struct Lobe {
 };
 
 struct Bsdf {
-    static constexpr int kMaxLayers = 3; // reflection, coat, sheen
+    static constexpr int kMaxLayers = 4; // thin wall, reflection, sheen, coat
 
     Lobe base;
     int layer_count = 0;
-    Lobe layers[kMaxLayers]; // the innermost first; a Schlick lobe is the innermost
+    Lobe layers[kMaxLayers]; // the innermost first; a Schlick lobe is the innermost, a Specular one is too or on Thin
     // There are layers that may lie on anything. Their functions are not inlined (HD_CALL), so that a BSDF without
     // them costs neither time nor registers.
     bool is_stacked = false;
+    bool is_thin = false; // there is a thin wall
 
     Bsdf() = default;
     /// Makes a BSDF of one lobe, which is constructed in place, because a copy would wait for its own stores.
@@ -184,6 +217,11 @@ struct Bsdf {
     /// Adds a layer on top. There is room for kMaxLayers; further ones are ignored.
     HD void add(const CoatLobe& lobe) { stack(lobe); }
     HD void add(const SheenLobe& lobe) { stack(lobe); }
+    HD void add(const SpecularLobe& lobe) { stack(lobe); }
+    HD void add(const ThinLobe& lobe) {
+        stack(lobe);
+        is_thin = true;
+    }
 
     /// Value of the lobes of `classes`, and density of all lobes.
     HD BsdfValue evaluate(Vec3 wo, Vec3 wi, LobeClasses classes = kAllLobeClasses) const {
@@ -229,7 +267,7 @@ struct Bsdf {
         return false;
     }
     /// Returns whether light may be transmitted from behind.
-    HD bool lets_through() const { return base.kind == LobeKind::Dielectric; }
+    HD bool lets_through() const { return base.kind == LobeKind::Dielectric || is_thin; }
     HD bool has_delta() const { return has(LobeClass::Specular); }
     /// Returns whether eval() is black for every pair of directions, so that light sampling is useless.
     HD bool has_delta_only() const {
@@ -327,7 +365,7 @@ private:
     HD_CALL static float light_through_stack(Bsdf bsdf, int last, Vec3 wo, Vec3 wi) {
         LayerTransmittance transmittance;
         bsdf.evaluate_layers(last, wo, wi, kAllLobeClasses, transmittance);
-        return transmittance.light;
+        return transmittance.light_of_delta();
     }
     HD_CALL static bool has_delta_layers_only(Bsdf bsdf) {
         for (int i = 0; i < bsdf.layer_count; ++i)
@@ -348,7 +386,7 @@ private:
         if (!sample.is_delta()) return sample;
         LayerTransmittance transmittance;
         bsdf.evaluate_layers(i, wo, sample.wi, kAllLobeClasses, transmittance);
-        sample.weight = (transmittance.light / transmittance.reach) * sample.weight;
+        sample.weight = (transmittance.light_of_delta() / transmittance.reach) * sample.weight;
         sample.pdf = transmittance.reach * sample.pdf;
         return sample;
     }
@@ -383,10 +421,32 @@ HD inline Bsdf make_metallic_roughness(Rgb base_color, float metallic, float rou
     return bsdf;
 }
 
+/// Parameters of metallic-roughness with a weight and a colour of its reflection, and with thin walls.
+struct ReflectionParameters {
+    Rgb base_color;                    // [0, 1]
+    float metallic = 0, roughness = 1; // [0, 1]
+    float ior = 1.5f;                  // >= 1
+    float weight = 1;                  // specularFactor, [0, 1]
+    Rgb color = {1, 1, 1};             // specularColorFactor, >= 0
+    float through = 0;                 // share of the diffuse light that goes through instead, [0, 1]
+};
+HD inline Bsdf make_reflection(const ReflectionParameters& p) {
+    const float metal = clamp(p.metallic, 0.0f, 1.0f), alpha = alpha_from_roughness(p.roughness);
+    const float diffuse = (1.0f - metal) * (1.0f - p.through), through = (1.0f - metal) * p.through;
+    Bsdf bsdf;
+    if (diffuse > 0 && !is_black(p.base_color)) bsdf.base = DiffuseLobe{p.base_color, diffuse};
+    if (through > 0 && !is_black(p.base_color)) bsdf.add(ThinLobe{p.base_color, through, alpha});
+    if (!(p.weight > 0) && !(metal > 0)) return bsdf;
+    const Rgb f0 = f0_from_ior(p.ior) * p.color;
+    bsdf.add(SpecularLobe{p.base_color, metal, alpha, p.weight * Rgb{min(f0.r, 1.0f), min(f0.g, 1.0f), min(f0.b, 1.0f)},
+                          p.weight});
+    return bsdf;
+}
+
 /// Adds a clear coat to `bsdf`, which has at most kMaxLayers - 1 layers: `strength` and `roughness` in [0, 1], `ior`
-/// >= 1 (1.5 in KHR_materials_clearcoat).
-HD inline Bsdf make_coated(Bsdf bsdf, float strength, float roughness, float ior) {
-    bsdf.add(CoatLobe{strength, alpha_from_roughness(roughness), f0_from_ior(ior)});
+/// >= 1 (1.5 in KHR_materials_clearcoat), `normal` unit with z > 0 in the frame of `bsdf`.
+HD inline Bsdf make_coated(Bsdf bsdf, float strength, float roughness, float ior, Vec3 normal = {0, 0, 1}) {
+    bsdf.add(CoatLobe{strength, alpha_from_roughness(roughness), f0_from_ior(ior), normal});
     return bsdf;
 }
 /// Adds sheen (KHR_materials_sheen) to `bsdf`, which has at most kMaxLayers - 1 layers: `color` and `roughness` in

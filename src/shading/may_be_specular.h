@@ -10,6 +10,11 @@ namespace pertev {
 
 /// Returns whether some point of a surface with this material may have a delta lobe.
 HD inline bool may_be_specular(const MaterialParameters& material) {
+    const auto may_be_smooth = [](float roughness, const TextureRef& texture) {
+        return texture.has_image() || !(alpha_from_roughness(roughness) >= kSmoothAlpha);
+    };
+    if (material.kind == MaterialKind::Unlit) return false;
+    if (material.has_coat() && may_be_smooth(material.coat_roughness, material.coat_roughness_texture)) return true;
     switch (material.kind) {
     case MaterialKind::Diffuse:
     case MaterialKind::Unlit:
@@ -17,11 +22,13 @@ HD inline bool may_be_specular(const MaterialParameters& material) {
     case MaterialKind::Dielectric:
         if (material.ior == 1) return true;
         break;
-    case MaterialKind::Conductor:
     case MaterialKind::MetallicRoughness:
+        if (material.transmits() && material.ior == 1) return true;
+        break;
+    case MaterialKind::Conductor:
         break;
     }
-    return material.roughness_texture.has_image() || !(alpha_from_roughness(material.roughness) >= kSmoothAlpha);
+    return may_be_smooth(material.roughness, material.roughness_texture);
 }
 
 } // namespace pertev

@@ -13,20 +13,27 @@ namespace pertev {
 /// Shading variants. A kernel compiled for the simplest variant that covers the scene uses fewer registers.
 enum class ShadingVariant : uint8_t {
     General,
+    Unstacked,    // no material has a coat, fuzz, thin walls or a weighted reflection
     Diffuse,      // all materials are diffuse
     PlainDiffuse, // all are diffuse, opaque and without textures
 };
 
 inline ShadingVariant variant_of(std::span<const MaterialParameters> materials) {
-    bool are_plain = true;
+    bool are_plain = true, are_diffuse = true;
     for (const MaterialParameters& m : materials) {
-        if (m.kind != MaterialKind::Diffuse) return ShadingVariant::General;
+        if (m.is_stacked()) return ShadingVariant::General;
+        are_diffuse = are_diffuse && m.kind == MaterialKind::Diffuse;
         are_plain = are_plain && m.alpha_mode == AlphaMode::Opaque && !m.base_color_texture.has_image() &&
                     !m.normal_texture.has_image() && !m.emission_texture.has_image();
     }
+    if (!are_diffuse) return ShadingVariant::Unstacked;
     return are_plain ? ShadingVariant::PlainDiffuse : ShadingVariant::Diffuse;
 }
 
+/// Returns whether BSDFs may have other lobes than a diffuse one, so that sampling them needs a choice.
+HD constexpr bool has_lobes(ShadingVariant variant) {
+    return variant == ShadingVariant::General || variant == ShadingVariant::Unstacked;
+}
 HD constexpr bool has_textures(ShadingVariant variant) { return variant != ShadingVariant::PlainDiffuse; }
 /// Returns whether a slot of a material has a texture; constant if the variant has none.
 template <ShadingVariant kVariant>

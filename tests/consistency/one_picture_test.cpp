@@ -92,7 +92,13 @@ namespace {
 Scene scene_with(ShadingVariant variant) {
     Scene scene = test::make_mixed_scene();
     for (Material& material : scene.materials) {
-        if (variant != ShadingVariant::General) material.kind = MaterialKind::Diffuse;
+        if (!has_lobes(variant)) material.kind = MaterialKind::Diffuse;
+        if (variant == ShadingVariant::General) {
+            material.coat_weight = 0.7f;
+            material.coat_roughness = 0.3f;
+            material.fuzz_weight = 0.5f;
+            material.specular_color = {1, 0.5f, 0.2f};
+        }
         if (variant != ShadingVariant::PlainDiffuse) continue;
         material.alpha_mode = AlphaMode::Opaque;
         material.base_color_texture = material.normal_texture = material.emission_texture = {};
@@ -143,12 +149,12 @@ TEST_CASE("vertices shaded in lanes give the bytes of vertices shaded one by one
 TEST_CASE("shading variants give the bytes of the general one") {
     Hash128 before = {};
     for (const ShadingVariant variant :
-         {ShadingVariant::General, ShadingVariant::Diffuse, ShadingVariant::PlainDiffuse}) {
+         {ShadingVariant::General, ShadingVariant::Unstacked, ShadingVariant::Diffuse, ShadingVariant::PlainDiffuse}) {
         CAPTURE(static_cast<int>(variant));
         const Scene scene = scene_with(variant);
         CHECK(variant_of(scene) == variant);
         Scene of_any = scene; // the scene needs the general variant because of an unused material
-        of_any.materials.push_back({{.kind = MaterialKind::Conductor}, "unused"});
+        of_any.materials.push_back({{.coat_weight = 1}, "unused"});
         CHECK(variant_of(of_any) == ShadingVariant::General);
         RenderSettings settings = odd_settings();
         settings.samples = 2;
@@ -170,7 +176,7 @@ TEST_CASE("shading variants give the bytes of the general one") {
     }
     Scene unlit = scene_with(ShadingVariant::PlainDiffuse);
     unlit.materials.back().kind = MaterialKind::Unlit;
-    CHECK(variant_of(unlit) == ShadingVariant::General);
+    CHECK(variant_of(unlit) == ShadingVariant::Unstacked);
     Scene blended = scene_with(ShadingVariant::PlainDiffuse);
     blended.materials.back().alpha_mode = AlphaMode::Blend;
     CHECK(variant_of(blended) == ShadingVariant::Diffuse);

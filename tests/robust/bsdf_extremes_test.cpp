@@ -24,6 +24,14 @@ std::vector<BsdfCase> extreme_bsdf_cases() {
             cases.push_back({"plastic" + at, make_metallic_roughness({1, 0, 0.5f}, 0, r, ior)});
             cases.push_back({"half metal" + at, make_metallic_roughness({1, 0, 0.5f}, 0.5f, r, ior)});
         }
+        for (const float through : {0.0f, 0.5f, 1.0f}) {
+            const ReflectionParameters pane = {
+                .base_color = {1, 0, 0.5f}, .roughness = r, .ior = 1, .color = {1e3f, 1, 0}, .through = through};
+            cases.push_back({"pane" + at, make_reflection(pane)});
+            cases.push_back({"varnished pane" + at, make_coated(make_reflection(pane), 1, r, 1.5f)});
+            cases.push_back(
+                {"bent varnish" + at, make_coated(make_reflection(pane), 1, r, 1.5f, normalize(Vec3{2, 0, 1}))});
+        }
         cases.push_back({"black plastic" + at, make_metallic_roughness(grey(0), 0, r, 1)});
         cases.push_back({"black metal" + at, make_metallic_roughness(grey(0), 1, r, 1.5f)});
         cases.push_back({"white metal" + at, make_metallic_roughness(grey(1), 1, r, 1.5f)});

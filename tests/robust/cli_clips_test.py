@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Files with several animations and several scenes: which animation plays, which scene is shown, and how to choose them."""
+"""Files with several animations, scenes or variants of materials: which one is shown, and how to choose them."""
 
 import base64
 import json
@@ -208,6 +208,44 @@ class FileScenes(CliTest):
         self.refuse(2, *frames, "--continue", "--file-scene", "two", says=["--file-scene", '"one"', '"two"'])
         self.succeed(*frames, "--continue", "--file-scene", "0")
         self.assertTrue(os.path.exists(self.path("f-1.png")))
+
+
+class Variants(CliTest):
+    def setUp(self):
+        super().setUp()
+        colors = {"day": (0.9, 0.8, 0.1), "night": (0.1, 0.1, 0.7)}
+        document = json.loads(gltf([]))
+        document["materials"] += [{"name": name, "pbrMetallicRoughness": {"metallicFactor": 0, "baseColorFactor": [*color, 1]}}
+                                  for name, color in colors.items()]
+        primitive = document["meshes"][0]["primitives"][0]
+        for number, name in enumerate(colors, 1):
+            primitive["material"] = number
+            write(self.path(f"{name}.gltf"), json.dumps(document))
+        primitive["material"] = 0
+        document["extensionsUsed"].append("KHR_materials_variants")
+        document["extensions"]["KHR_materials_variants"] = {"variants": [{"name": name} for name in colors]}
+        primitive["extensions"] = {"KHR_materials_variants": {"mappings": [{"material": 1, "variants": [0]}, {"material": 2, "variants": [1]}]}}
+        write(self.path("m.gltf"), json.dumps(document))
+
+    def test_a_variant_of_the_materials_is_chosen_by_name_or_number_and_an_unknown_one_is_refused_with_the_list(self):
+        def hash_of(scene, *arguments):
+            return self.succeed("render", scene, "-o", "one.exr", *TINY[:-2], "--json", *arguments).events("done")[0]["hash"]
+
+        day, night, default = hash_of("day.gltf"), hash_of("night.gltf"), hash_of("m.gltf")
+        self.assertEqual(len({day, night, default}), 3)
+        self.assertNotIn("pertev.variant", self.info("one.exr"))
+        for words, expected, told in [("day", day, "day"), ("1", night, "night")]:
+            self.assertEqual(hash_of("m.gltf", "--variant", words), expected)
+            self.assertEqual(self.info("one.exr")["pertev.variant"], told)
+        self.assertEqual(self.info("m.gltf")["variants"], ["day", "night"])
+        (shown,) = self.remarks("render", "m.gltf", "-o", "x.png", *TINY, about="variant")
+        self.assertRegex(shown["reason"], "day, night")
+        self.refuse(2, "render", "m.gltf", "-o", "y.png", "--variant", "dusk", says=["m.gltf: --variant dusk: ", "day", "night"])
+        self.refuse(2, "render", "cornell-box", "-o", "y.png", "--variant", "day", says=["cornell-box: --variant day: "])
+        frames = ["render", "m.gltf", "-o", "f-#.png", *TINY, "--turntable", "2"]
+        self.succeed(*frames, "--variant", "day")
+        self.refuse(2, *frames, "--continue", "--variant", "night", says=["--variant", '"day"', '"night"'])
+        self.succeed(*frames, "--continue", "--variant", "0")
 
 
 if __name__ == "__main__":

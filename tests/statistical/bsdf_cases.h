@@ -28,6 +28,8 @@ inline float narrowest_alpha(const Bsdf& bsdf) {
     for (int i = 0; i < bsdf.layer_count; ++i) {
         if (bsdf.layers[i].kind == LobeKind::Schlick) add(bsdf.layers[i].schlick.alpha);
         if (bsdf.layers[i].kind == LobeKind::Coat) add(bsdf.layers[i].coat.alpha);
+        if (bsdf.layers[i].kind == LobeKind::Specular) add(bsdf.layers[i].reflection.alpha);
+        if (bsdf.layers[i].kind == LobeKind::Thin) add(bsdf.layers[i].thin.alpha);
     }
     return least;
 }
@@ -42,6 +44,23 @@ inline std::vector<BsdfCase> layered_bsdf_cases() {
             {"varnished glass", make_coated(glass, 1, 0.6f, 1.5f)},
             {"half metal under a mirror of varnish", make_coated(half_metal, 0.8f, 0, 1.5f)},
             {"velvet", make_sheen(make_diffuse({0.8f, 0.2f, 0.3f}), {0.6f, 0.7f, 1.0f}, 0.5f)},
+            {"coloured reflection", make_reflection({.base_color = {0.2f, 0.5f, 0.8f},
+                                                     .metallic = 0.3f,
+                                                     .roughness = 0.4f,
+                                                     .weight = 0.8f,
+                                                     .color = {9, 3, 0.5f}})},
+            {"reflection at grazing angles alone",
+             make_reflection({.base_color = {0.3f, 0.2f, 0.1f}, .roughness = 0.5f, .color = {0, 0, 0}})},
+            {"frosted pane", make_reflection({.base_color = {0.9f, 0.6f, 0.2f}, .roughness = 0.6f, .through = 1})},
+            {"varnished velvet on a half transparent pane",
+             make_coated(make_sheen(make_reflection({.base_color = {0.9f, 0.6f, 0.2f},
+                                                     .metallic = 0.1f,
+                                                     .roughness = 0.7f,
+                                                     .weight = 0.6f,
+                                                     .color = {1, 0.5f, 2},
+                                                     .through = 0.4f}),
+                                    {0.2f, 0.1f, 0.3f}, 0.4f),
+                         0.5f, 0.6f, 1.6f)},
             {"sheen alone", make_sheen(Bsdf{}, {1.0f, 0.7f, 0.4f}, 0.35f)},
             {"dust on varnished half metal",
              make_sheen(make_coated(half_metal, 0.5f, 0.3f, 1.5f), {0.5f, 0.4f, 0.3f}, 0.3f)}};

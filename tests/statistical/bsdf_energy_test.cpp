@@ -99,6 +99,77 @@ TEST_CASE("white glTF materials return all light to 1 %, metals to 0.5 %") {
     }
 }
 
+TEST_CASE("a weighted reflection equals that of the index at weight 1, and white panes return all light to 1 %") {
+    for (const float metallic : {0.0f, 0.5f, 1.0f})
+        for (const float roughness : kRoughnesses) {
+            const Bsdf usual = make_metallic_roughness({0.8f, 0.5f, 0.2f}, metallic, roughness, 1.5f);
+            const Bsdf weighted =
+                make_reflection({.base_color = {0.8f, 0.5f, 0.2f}, .metallic = metallic, .roughness = roughness});
+            for (uint32_t i = 0; i < 100; ++i) {
+                const SamplePoint p = random_point(i, 95), q = random_point(i, 96);
+                const Vec3 wo = direction_at(2.0f * p.u.x - 1.0f, p.u.y), wi = direction_at(2.0f * q.u.x - 1.0f, q.u.y);
+                const BsdfValue a = usual.evaluate(wo, wi), b = weighted.evaluate(wo, wi);
+                CHECK(b.f.r == doctest::Approx(a.f.r).epsilon(1e-4));
+                CHECK(b.f.b == doctest::Approx(a.f.b).epsilon(1e-4));
+                CHECK(b.pdf == doctest::Approx(a.pdf).epsilon(1e-4));
+            }
+        }
+    for (const float through : {0.0f, 0.4f, 1.0f})
+        for (const float side : {1.0f, -1.0f}) {
+            const MeanWeight range = furnace_range(
+                [through](float r) {
+                    return make_reflection({.base_color = grey(1), .roughness = r, .weight = 0.7f, .through = through});
+                },
+                side, furnace_points());
+            INFO("through " << through << ": mean weight from " << range.least() << " to " << range.largest());
+            CHECK(range.r > (through > 0 ? 0.9 : 0.99));
+            CHECK(range.b < 1.01);
+        }
+    // A smooth pane shows what is straight behind it, less the reflection.
+    const Bsdf pane = make_reflection({.base_color = {1, 0.5f, 0.25f}, .roughness = 0, .through = 1});
+    const Vec3 wo = direction_at(-0.4f);
+    const SpecularBranches branches = pane.specular(wo);
+    const float reflected = branches.mirror.r;
+    CHECK(reflected == doctest::Approx(0.04 + 0.96 * std::pow(0.6, 5)).epsilon(1e-4));
+    CHECK(branches.refracted == -wo);
+    CHECK(branches.refraction.r == doctest::Approx(1 - reflected).epsilon(1e-4));
+    CHECK(branches.refraction.b == doctest::Approx(0.25f * (1 - reflected)).epsilon(1e-4));
+    const Bsdf half = make_reflection({.base_color = grey(0), .roughness = 0, .weight = 0.5f, .color = {30, 2, 0}});
+    CHECK(half.specular(wo).mirror.r == doctest::Approx(0.5).epsilon(1e-4)); // f0 is at most 1
+    CHECK(half.specular(wo).mirror.b == doctest::Approx(0.5 * std::pow(0.6, 5)).epsilon(1e-4));
+    CHECK(pane.lets_through());
+    CHECK(pane.has_delta_only());
+}
+
+TEST_CASE("a coat with a bent normal mirrors about it, samples by its pdf and gains no light") {
+    const Vec3 normal = normalize(Vec3{0.3f, -0.2f, 1});
+    const Bsdf smooth = make_coated(Bsdf{}, 1, 0, 1.5f, normal);
+    const Vec3 wo = direction_at(0.8f, 0.3f);
+    const BsdfSample mirrored = smooth.sample(wo, 0.5f, {0.5f, 0.5f});
+    REQUIRE(mirrored.is_delta());
+    CHECK(length(mirrored.wi - reflect(wo, normal)) < 1e-5f);
+    CHECK(mirrored.weight.r == doctest::Approx(fresnel_schlick(dot(wo, normal), grey(0.04f)).r).epsilon(1e-4));
+    for (const float roughness : {0.3f, 0.6f, 1.0f})
+        for (const float z : {0.9f, 0.4f, 0.1f, -0.7f}) {
+            const Bsdf bsdf = make_coated(make_diffuse(grey(1)), 1, roughness, 1.5f, normal);
+            const Vec3 from = direction_at(z, 0.3f);
+            const MeanWeight mean = mean_weight(bsdf, from, 1 << 16);
+            INFO("roughness " << roughness << ", cos(wo) " << z << ": mean weight " << mean.g);
+            CHECK(mean.g < 1.001);
+            CHECK(mean.g > 0.7); // the coat sends some light into the surface
+            double value = 0, density = 0; // integrals over the sphere
+            constexpr uint32_t kPoints = 1 << 18;
+            for (uint32_t i = 0; i < kPoints; ++i) {
+                const SamplePoint p = even_point(i, kPoints);
+                const BsdfValue at = bsdf.evaluate(from, direction_at(2.0f * p.u.x - 1.0f, p.u.y));
+                value += 4 * 3.14159265358979 * static_cast<double>(at.f.g) / kPoints;
+                density += 4 * 3.14159265358979 * static_cast<double>(at.pdf) / kPoints;
+            }
+            CHECK(value == doctest::Approx(mean.g).epsilon(5e-3));
+            CHECK(density < 1.005);
+        }
+}
+
 TEST_CASE("no bsdf returns more than 1 + 1e-3 of the light") {
     const auto count = static_cast<uint32_t>(effort(300, 10'000));
     for (uint32_t i = 0; i < count; i++) {
@@ -114,6 +185,15 @@ TEST_CASE("no bsdf returns more than 1 + 1e-3 of the light") {
                               make_conductor(0.2f * color, grey(4.0f * metallic), roughness),
                               make_metallic_roughness(grey(1), (i & 16) != 0 ? metallic : 0.0f, roughness, ior)};
         Bsdf bsdf = bsdfs[i & 3];
+        if (((i >> 7) & 1) != 0) {
+            bsdf = make_reflection({.base_color = color,
+                                    .metallic = (i & 1) != 0 ? metallic : 0.0f,
+                                    .roughness = roughness,
+                                    .ior = ior,
+                                    .weight = channel(b.y),
+                                    .color = 4.0f * Rgb{color.g, color.b, color.r},
+                                    .through = (i & 2) != 0 ? unit_interval(b.w) : 0.0f});
+        }
         if (((i >> 5) & 1) != 0) bsdf = make_coated(bsdf, channel(b.y), unit_interval(b.w), 1.5f);
         if (((i >> 6) & 1) != 0) bsdf = make_sheen(bsdf, channel(b.z) * color, channel(b.w));
         const Vec3 wo = direction_at((b.w & 1) != 0 ? z : -z);

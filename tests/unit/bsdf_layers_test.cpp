@@ -1,6 +1,6 @@
 // The number of layers on a BSDF. tests/statistical/bsdf_sampling_test.cpp tests their reflection.
 
-#include "shading/bsdf.h"
+#include "shading/may_be_specular.h"
 
 #include <doctest/doctest.h>
 
@@ -20,4 +20,30 @@ TEST_CASE("a layer beyond the capacity is left out") {
     }
     CHECK(full.eval(wo, wi).r !=
           make_coated(Bsdf{DiffuseLobe{{0.5f, 0.4f, 0.3f}, 1}}, 0.5f, 0.3f, 1.5f).eval(wo, wi).r);
+}
+
+TEST_CASE("materials with layers need the general variant, and smooth coats and panes may be mirrors") {
+    MaterialParameters plastic = {.kind = MaterialKind::MetallicRoughness, .roughness = 0.5f};
+    const auto variant = [](const MaterialParameters& material) { return variant_of({&material, 1}); };
+    CHECK(variant(plastic) == ShadingVariant::Unstacked);
+    CHECK(!may_be_specular(plastic));
+    MaterialParameters coated = plastic, pane = plastic, velvet = {.kind = MaterialKind::Diffuse}, unlit = velvet;
+    coated.coat_weight = 0.5f;
+    coated.coat_roughness = 0.5f;
+    CHECK(variant(coated) == ShadingVariant::General);
+    CHECK(!may_be_specular(coated));
+    coated.coat_roughness = 0;
+    CHECK(may_be_specular(coated));
+    pane.transmission_weight = 0.5f;
+    CHECK(variant(pane) == ShadingVariant::General);
+    CHECK(!may_be_specular(pane));
+    pane.ior = 1; // a solid of index 1 is no interface
+    CHECK(may_be_specular(pane));
+    velvet.fuzz_weight = 1;
+    CHECK(variant(velvet) == ShadingVariant::General);
+    CHECK(!may_be_specular(velvet));
+    unlit.kind = MaterialKind::Unlit;
+    unlit.coat_weight = 1;
+    CHECK(variant(unlit) == ShadingVariant::Unstacked);
+    CHECK(!may_be_specular(unlit));
 }

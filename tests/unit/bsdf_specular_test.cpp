@@ -54,6 +54,9 @@ TEST_CASE("both branches of delta lobes equal the means of their samples, even u
     check("plastic", plastic);
     check("rough metal", make_conductor({0.2f, 0.9f, 1.1f}, {3.9f, 2.4f, 2.2f}, 0.5f));
     check("varnish on wood", make_coated(make_diffuse({0.5f, 0.3f, 0.2f}), 0.8f, 0, 1.5f));
+    check("a pane", make_reflection({.base_color = {0.9f, 0.5f, 0.1f}, .roughness = 0, .through = 0.7f}));
+    check("varnish on a pane",
+          make_coated(make_reflection({.base_color = {1, 1, 1}, .roughness = 0, .through = 1}), 1, 0, 1.7f));
     check("varnish on glass", make_coated(glass, 1, 0, 1.7f));
     check("rough varnish on metal", make_coated(metal, 0.7f, 0.4f, 1.5f));
     check("varnish and velvet on plastic", make_sheen(make_coated(plastic, 0.5f, 0, 1.5f), {0.4f, 0.4f, 0.4f}, 0.5f));

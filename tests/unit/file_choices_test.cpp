@@ -97,6 +97,11 @@ TEST_CASE("the animation and scene in use are reported by words that choose them
     scene.file_scene = 1;
     CHECK(file_scene_choice(scene) == "1");
     CHECK(list_file_scenes(scene) == Names{"0 (hall)", "1 (hall)", "all"});
+    scene.variants = {"day", "night"};
+    CHECK(material_variant_choice(scene).empty()); // the file's default materials
+    scene.variant = 1;
+    CHECK(material_variant_choice(scene) == "night");
+    CHECK(list_material_variants(scene) == Names{"day", "night"});
 }
 
 } // namespace file_choices_test

@@ -81,7 +81,7 @@ TEST_CASE("doubleSided makes backs visible and emissive") {
     CHECK(both.two_sided_emission);
 }
 
-TEST_CASE("solid clear glass is a dielectric, and other transmission is left out with a warning") {
+TEST_CASE("solid clear glass is a dielectric, and what is left out of other transmission causes a warning") {
     const auto read = [](const std::string& transmission, const std::string& volume, bool is_glass, bool warns) {
         CAPTURE(transmission);
         CAPTURE(volume);
@@ -99,7 +99,7 @@ TEST_CASE("solid clear glass is a dielectric, and other transmission is left out
     read(R"("transmissionFactor":1)", R"("thicknessFactor":1)", true, false);
     read(R"("transmissionFactor":1)", R"("thicknessFactor":1,"attenuationDistance":2)", true, true);
     read(R"("transmissionFactor":0.5)", R"("thicknessFactor":1)", false, true);
-    read(R"("transmissionFactor":1)", "", false, true);
+    read(R"("transmissionFactor":1)", "", false, false);
     read("", R"("thicknessFactor":1)", false, false);
 }
 

@@ -23,7 +23,8 @@ struct Kind {
     const char* setting; // that chooses one
     bool has_all;        // "all" is no name of one of them
 };
-constexpr Kind kClip = {"animation", "animation", true}, kFileScene = {"scene", "file_scene", false};
+constexpr Kind kClip = {"animation", "animation", true}, kFileScene = {"scene", "file_scene", false},
+               kVariant = {"variant", "variant", false};
 
 bool is_name(const Kind& kind, const std::string& text) { return !text.empty() && !(kind.has_all && text == kAll); }
 
@@ -110,6 +111,11 @@ uint32_t choose_file_scene(const std::string& file, std::span<const std::string>
     return static_cast<uint32_t>(choose(kFileScene, file, names, choice));
 }
 
+uint32_t choose_material_variant(const std::string& file, std::span<const std::string> names,
+                                 const std::string& choice) {
+    return static_cast<uint32_t>(choose(kVariant, file, names, choice));
+}
+
 std::string clip_choice(std::span<const Clip> clips) {
     if (clips.size() < 2) return {};
     if (std::ranges::count(clips, true, &Clip::plays) > 1) return std::string(kAll);
@@ -122,8 +128,14 @@ std::string file_scene_choice(const Scene& scene) {
     return scene.file_scenes.size() < 2 ? "" : choices_of(kFileScene, scene.file_scenes)[scene.file_scene];
 }
 
+std::string material_variant_choice(const Scene& scene) {
+    return scene.variant ? choices_of(kVariant, scene.variants)[*scene.variant] : "";
+}
+
 std::vector<std::string> list_clips(std::span<const Clip> clips) { return list_of(kClip, names_of(clips)); }
 
 std::vector<std::string> list_file_scenes(const Scene& scene) { return list_of(kFileScene, scene.file_scenes); }
+
+std::vector<std::string> list_material_variants(const Scene& scene) { return list_of(kVariant, scene.variants); }
 
 } // namespace pertev

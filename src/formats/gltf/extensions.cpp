@@ -8,18 +8,19 @@
 namespace pertev::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 9> kRead = {
-    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression",         "KHR_animation_pointer",
-    "KHR_lights_punctual",     "KHR_materials_emissive_strength", "KHR_materials_ior",
-    "KHR_materials_unlit",     "KHR_mesh_quantization",           "KHR_texture_transform"};
+constexpr std::array<std::string_view, 13> kRead = {
+    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "KHR_animation_pointer",
+    "KHR_lights_punctual",     "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
+    "KHR_materials_ior",       "KHR_materials_sheen",     "KHR_materials_specular",
+    "KHR_materials_unlit",     "KHR_materials_variants",  "KHR_mesh_quantization",
+    "KHR_texture_transform"};
 
-// materials.cpp reads some cases of these and warns of the others.
-constexpr std::array<std::string_view, 4> kReadInPart = {"KHR_materials_pbrSpecularGlossiness",
-                                                         "KHR_materials_specular", "KHR_materials_transmission",
-                                                         "KHR_materials_volume"};
+// Some cases of these are read, and materials.cpp and material_layers.cpp warn of the others.
+constexpr std::array<std::string_view, 3> kReadInPart = {"KHR_materials_pbrSpecularGlossiness",
+                                                         "KHR_materials_transmission", "KHR_materials_volume"};
 
-// The picture shows the file's default variant and ignores these.
-constexpr std::array<std::string_view, 3> kWithoutEffect = {"KHR_materials_variants", "KHR_xmp", "KHR_xmp_json_ld"};
+// The picture ignores these.
+constexpr std::array<std::string_view, 2> kWithoutEffect = {"KHR_xmp", "KHR_xmp_json_ld"};
 
 struct Conversion {
     std::string_view extension, command;

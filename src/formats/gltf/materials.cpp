@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "formats/gltf/leave_out.h"
-
 namespace pertev::gltf {
 namespace {
 
@@ -23,7 +21,7 @@ Material make_default_material() {
 } // namespace
 
 uint32_t Materials::material_of(const JsonValue& primitive) {
-    const std::optional<JsonValue> reference = primitive.find("material");
+    const std::optional<JsonValue> reference = material_in_variant(primitive);
     if (reference && textures_ != nullptr) {
         const uint32_t index = document_.index_into("materials", *reference);
         if (!by_index_[index]) {
@@ -48,12 +46,6 @@ uint32_t Materials::add(Material material) {
     return static_cast<uint32_t>(scene_.materials.size() - 1);
 }
 
-/// Runs `read`. If a member of `source` cannot be read, only that member is left out.
-template <class Read>
-void Materials::attempt_at(const JsonValue& source, const Read& read) const {
-    read_or_leave_out(fmt::format("this property of {}", source.pointer()), sink_, read);
-}
-
 Material Materials::read(const JsonValue& source) {
     Material material = make_default_material();
     material.origin = source.pointer();
@@ -64,8 +56,10 @@ Material Materials::read(const JsonValue& source) {
     });
     read_alpha(source, material);
     attempt([&] { material.ior = read_ior(source); });
-    attempt([&] { read_specular(source, material); });
     attempt([&] { read_transmission(source, material); });
+    attempt([&] { read_specular(source, material); });
+    attempt([&] { read_coat(source, material); });
+    attempt([&] { read_fuzz(source, material); });
     attempt([&] { read_specular_glossiness(source, material); });
     attempt([&] {
         if (source.extension("KHR_materials_unlit")) material.kind = MaterialKind::Unlit;
@@ -159,38 +153,6 @@ void Materials::read_alpha(const JsonValue& source, Material& material) const {
         }
     });
     attempt_at(source, [&] { material.alpha_cutoff = source.float_or("alphaCutoff", 0.5f); });
-}
-
-void Materials::read_specular(const JsonValue& material, Material& result) const {
-    const std::optional<JsonValue> extension = material.extension("KHR_materials_specular");
-    if (!extension) return;
-    const float weight = extension->float_or("specularFactor", 1);
-    if (weight == 0 && result.metallic == 0) {
-        result.kind = MaterialKind::Diffuse;
-        return;
-    }
-    sink_.leave_out(
-        {extension->location(),
-         "KHR_materials_specular is left out; only a specularFactor of 0 with a metallicFactor of 0 is supported"});
-}
-
-void Materials::read_transmission(const JsonValue& material, Material& result) const {
-    const std::optional<JsonValue> transmission = material.extension("KHR_materials_transmission");
-    const float factor = transmission ? transmission->float_or("transmissionFactor", 0) : 0;
-    if (factor == 0) return;
-    const std::optional<JsonValue> volume = material.extension("KHR_materials_volume");
-    const bool is_solid = volume && volume->float_or("thicknessFactor", 0) > 0;
-    if (factor != 1 || transmission->find("transmissionTexture") || !is_solid || result.metallic != 0) {
-        sink_.leave_out(
-            {transmission->location(),
-             "KHR_materials_transmission is left out and the material opaque; only solid glass is supported: a "
-             "transmissionFactor of 1 without texture, a thicknessFactor above 0 and a metallicFactor of 0"});
-        return;
-    }
-    result.kind = MaterialKind::Dielectric;
-    if (volume->find("attenuationDistance")) {
-        sink_.leave_out({volume->location(), "the attenuation of KHR_materials_volume is not supported and left out"});
-    }
 }
 
 float Materials::read_ior(const JsonValue& material) const {

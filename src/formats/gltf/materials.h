@@ -4,13 +4,14 @@
 // unreadable property is left out, and the rest of the material is read.
 //
 // Source: glTF 2.0 section 3.9; KHR_materials_emissive_strength, KHR_materials_ior, KHR_materials_unlit,
-// KHR_materials_pbrSpecularGlossiness by conversion. KHR_materials_specular: a weight of 0 on a non-metal removes the
-// coat and leaves Lambert's law. KHR_materials_transmission and _volume: solid clear glass. Occlusion textures are
+// KHR_materials_pbrSpecularGlossiness by conversion; KHR_materials_variants. material_layers.cpp reads
+// KHR_materials_clearcoat, _sheen, _specular, _transmission and, without attenuation, _volume. Occlusion textures are
 // not read, because a path tracer computes what they approximate.
 
 #include <optional>
 #include <vector>
 
+#include "formats/gltf/leave_out.h"
 #include "formats/gltf/specular_glossiness.h"
 #include "formats/gltf/textures.h"
 #include "scene/scene.h"
@@ -24,7 +25,8 @@ public:
         : document_(document), textures_(textures), scene_(scene), sink_(sink),
           by_index_(document.table("materials").size()) {}
 
-    /// Index in scene.materials of the material of `primitive`; glTF's default material if it names none.
+    /// Index in scene.materials of the material of `primitive` in the scene's variant; glTF's default material if it
+    /// names none.
     uint32_t material_of(const JsonValue& primitive);
 
     uint32_t default_material();
@@ -34,18 +36,26 @@ public:
     void convert_textures(uint64_t limit);
 
 private:
+    /// Runs `read`. If a member of `source` cannot be read, only that member is left out.
     template <class Read>
-    void attempt_at(const JsonValue& source, const Read& read) const;
+    void attempt_at(const JsonValue& source, const Read& read) const {
+        read_or_leave_out(fmt::format("this property of {}", source.pointer()), sink_, read);
+    }
+    std::optional<JsonValue> material_in_variant(const JsonValue& primitive) const;
     uint32_t add(Material material);
     Material read(const JsonValue& material);
     void read_metallic_roughness(const JsonValue& pbr, Material& material);
     void read_emission(const JsonValue& source, Material& material);
     void read_specular_glossiness(const JsonValue& source, Material& material);
     void read_alpha(const JsonValue& source, Material& material) const;
-    void read_specular(const JsonValue& material, Material& result) const;
-    void read_transmission(const JsonValue& material, Material& result) const;
+    void read_specular(const JsonValue& source, Material& material);
+    void read_transmission(const JsonValue& source, Material& material);
+    void read_coat(const JsonValue& source, Material& material);
+    void read_fuzz(const JsonValue& source, Material& material);
     float read_ior(const JsonValue& material) const;
     TextureRef read_texture(const JsonValue& parent, std::string_view key, bool is_srgb);
+    /// Reads a slot that uses one channel of its image, which is linear.
+    TextureRef read_channel(const JsonValue& parent, std::string_view key, uint8_t channel);
 
     const Document& document_;
     Textures* textures_;

@@ -29,6 +29,17 @@ std::vector<std::string> names_of(const std::vector<JsonValue>& elements, Buffer
     return names;
 }
 
+/// Fills scene.variants and, by the options, scene.variant. Throws as choose.
+void choose_variant(const Document& document, Buffers& buffers, const ReadOptions& options, Scene& scene, Sink& sink) {
+    if (const std::optional<JsonValue> extension = document.root().extension("KHR_materials_variants")) {
+        std::vector<JsonValue> variants;
+        read_or_leave_out(*extension, sink, [&] { variants = extension->elements_of("variants"); });
+        scene.variants = names_of(variants, buffers, sink);
+    }
+    if (options.variant.empty()) return;
+    scene.variant = choose_material_variant(document.file(), scene.variants, options.variant);
+}
+
 /// Fills scene.clips, except for their ends, scene.file_scenes and scene.file_scene, by the options or, without any,
 /// by the file: its first animation plays, and its `scene` or else its first scene is shown. Throws Error(BadInput)
 /// with a list of those that exist.
@@ -64,6 +75,7 @@ Scene read_gltf(const std::filesystem::path& path, std::vector<std::byte> bytes,
     const gltf::Document document(path, std::move(bytes), sink);
     gltf::Buffers buffers(document, access, sink);
     gltf::choose(document, buffers, options, scene, sink);
+    gltf::choose_variant(document, buffers, options, scene, sink);
     gltf::NodeGraph nodes(document, scene.file_scene, sink);
 
     TextureLoader loader(access, sink);

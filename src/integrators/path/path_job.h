@@ -29,11 +29,14 @@ enum Feature : Features {
     kLayered = 4,  // surfaces other than diffuse ones
     kMoving = 8,   // paths have a time
     kBatched = 16, // several pictures (PictureView::batch); code without it renders one
+    kStacked = 32, // coats, fuzz, thin walls and weighted reflections
 };
-inline constexpr Features kPlainDiffuse = 0, kDiffuse = kTextured | kAlpha, kAllMaterials = kDiffuse | kLayered;
+inline constexpr Features kPlainDiffuse = 0, kDiffuse = kTextured | kAlpha, kUnstacked = kDiffuse | kLayered,
+                          kAllMaterials = kUnstacked | kStacked;
 
 HD constexpr ShadingVariant variant_of(Features features) {
-    return (features & kLayered) != 0   ? ShadingVariant::General
+    return (features & kStacked) != 0   ? ShadingVariant::General
+           : (features & kLayered) != 0 ? ShadingVariant::Unstacked
            : (features & kDiffuse) != 0 ? ShadingVariant::Diffuse
                                         : ShadingVariant::PlainDiffuse;
 }
@@ -45,6 +48,8 @@ inline Features features_of(ShadingVariant variant) {
     switch (variant) {
     case ShadingVariant::General:
         break;
+    case ShadingVariant::Unstacked:
+        return kUnstacked;
     case ShadingVariant::Diffuse:
         return kDiffuse;
     case ShadingVariant::PlainDiffuse:
@@ -84,10 +89,11 @@ struct CompiledFor {
         return (((wanted & ~kMasks) == 0 && (with.template operator()<kMasks>(), true)) || ...);
     }
 };
-using FilmFeatures = CompiledFor<kPlainDiffuse, kDiffuse, kAllMaterials, kPlainDiffuse | kMoving, kDiffuse | kMoving,
-                                 kAllMaterials | kMoving, kPlainDiffuse | kBatched, kDiffuse | kBatched,
-                                 kAllMaterials | kBatched, kAllMaterials | kMoving | kBatched>;
-using FrameFeatures = CompiledFor<kPlainDiffuse, kDiffuse, kAllMaterials>;
-using LayerFeatures = CompiledFor<kAllMaterials, kAllMaterials | kMoving>;
+using FilmFeatures =
+    CompiledFor<kPlainDiffuse, kDiffuse, kUnstacked, kAllMaterials, kPlainDiffuse | kMoving, kDiffuse | kMoving,
+                kUnstacked | kMoving, kPlainDiffuse | kBatched, kDiffuse | kBatched, kUnstacked | kBatched,
+                kUnstacked | kMoving | kBatched, kAllMaterials | kMoving | kBatched>;
+using FrameFeatures = CompiledFor<kPlainDiffuse, kDiffuse, kUnstacked, kAllMaterials>;
+using LayerFeatures = CompiledFor<kUnstacked, kUnstacked | kMoving, kAllMaterials | kMoving>;
 
 } // namespace pertev

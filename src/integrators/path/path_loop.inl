@@ -64,7 +64,7 @@ protected:
     VertexWords<Words8> draw_for(const uint32_t* which, uint32_t count) const {
         SampleKeyOf<Words8> keys;
         Words8 depths = {};
-        bool has_choices = job_.picture.scene.variant == ShadingVariant::General; // lobes have choices
+        bool has_choices = has_lobes(job_.picture.scene.variant); // lobes have choices
         for (uint32_t lane = 0; lane < count; ++lane) {
             const PathState& path = paths_[which[lane]];
             set_lane(keys, lane, sample_of(path));

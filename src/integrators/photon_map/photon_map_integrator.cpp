@@ -48,7 +48,7 @@ void PhotonMapIntegrator::begin(const PictureView& picture, SceneTracer& tracer,
 void PhotonMapIntegrator::find_targets() {
     const SceneView& scene = picture_.scene;
     target_count_ = 0;
-    if (scene.variant != ShadingVariant::General || !(world_.radius > 0)) return;
+    if (!has_lobes(scene.variant) || !(world_.radius > 0)) return;
     std::vector<Float4> spheres = {{world_.centre.x, world_.centre.y, world_.centre.z, world_.radius}};
     if (scene.first_triangle != nullptr) {
         Buffer<SpecularBounds> bounds(queue_, 1, "bounds of mirrors and glass");

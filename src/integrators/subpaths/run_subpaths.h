@@ -108,7 +108,8 @@ private:
 template <class Run>
 void with_variant(ShadingVariant variant, const Run& run) {
     if (variant == ShadingVariant::PlainDiffuse) return run.template operator()<ShadingVariant::PlainDiffuse>();
-    run.template operator()<ShadingVariant::General>();
+    if (variant == ShadingVariant::General) return run.template operator()<ShadingVariant::General>();
+    run.template operator()<ShadingVariant::Unstacked>();
 }
 
 /// Traces all particles of the job to their ends and adds those that the camera sees to the film.

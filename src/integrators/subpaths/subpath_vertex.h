@@ -28,7 +28,7 @@ HD_CALL inline BothWays scatter_both_ways_of_any(const Surface& surface, Vec3 wo
 }
 template <ShadingVariant kVariant>
 HD inline BothWays scatter_both_ways(const Surface& surface, Vec3 wo, Vec3 wi) {
-    if constexpr (kVariant == ShadingVariant::General) return scatter_both_ways_of_any(surface, wo, wi);
+    if constexpr (has_lobes(kVariant)) return scatter_both_ways_of_any(surface, wo, wi);
     return {surface.evaluate(wo, wi), evaluate_adjoint(surface, wi, wo)};
 }
 

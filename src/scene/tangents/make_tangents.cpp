@@ -165,7 +165,9 @@ using MeshBySet = std::array<uint32_t, 2>;
 std::vector<MeshBySet> choose_meshes(Scene& scene) {
     std::vector<MeshBySet> chosen(scene.meshes.size(), {kNone, kNone});
     for (Instance& instance : scene.instances) {
-        const TextureRef& map = scene.materials[instance.material].normal_texture;
+        const Material& material = scene.materials[instance.material];
+        const bool is_of_coat = !material.normal_texture.has_image() && material.has_coat();
+        const TextureRef& map = is_of_coat ? material.coat_normal_texture : material.normal_texture;
         const Mesh& mesh = scene.meshes[instance.mesh];
         if (!map.has_image() || !mesh.tangents.empty() || mesh.uv[map.uv_set].empty()) continue;
         MeshBySet& by_set = chosen[instance.mesh];

@@ -108,6 +108,13 @@ void report_file_scene(const Scene& scene, const std::string& file, Sink& sink) 
                            scenes.size(), shortened(scenes[scene.file_scene]), in_a_row(scenes))});
 }
 
+void report_variants(const Scene& scene, const std::string& file, Sink& sink) {
+    if (scene.variants.empty()) return;
+    sink.note({FileLocation{file}, fmt::format("the file shows its default materials; `variant` (NAME or N) shows one "
+                                               "of {}",
+                                               in_a_row(list_material_variants(scene)))});
+}
+
 } // namespace
 
 FileSpace file_space(const std::string& up_axis, const std::string& unit) {
@@ -135,6 +142,7 @@ ReadOptions read_options(const SceneOptions& options) {
     read.space = file_space(options.up_axis, options.unit);
     read.animation = options.animation;
     read.file_scene = options.file_scene;
+    read.variant = options.variant;
     return read;
 }
 
@@ -147,6 +155,7 @@ std::string environment_text(const SceneOptions& options) {
 Scene read_scene_and_emitters(const std::filesystem::path& path, const ReadOptions& options, Sink& sink) {
     Scene scene = read_scene(path, options, sink);
     if (options.file_scene.empty()) report_file_scene(scene, path.string(), sink);
+    if (options.variant.empty()) report_variants(scene, path.string(), sink);
     if (!(options.space == FileSpace()) && defines_space(path)) {
         sink.warn({FileLocation{path.string()},
                    "the file is in metres with y up; `up_axis` and `unit` are for .obj and .ply"});

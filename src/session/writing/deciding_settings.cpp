@@ -50,6 +50,7 @@ DecidingSettings deciding_settings(const PictureOptions& options, const PictureR
     }
     put("animation", record.scene.animation); // even if the file has only one
     put("file_scene", record.scene.file_scene);
+    put("variant", record.scene.variant);
     constexpr std::string_view kPrefix = "pertev.";
     for (const auto& [name, value] : settings_metadata(record))
         put(name.substr(kPrefix.size()), std::visit([](const auto& v) { return fmt::format("{}", v); }, value));

@@ -141,6 +141,7 @@ SceneSource source_of(const SceneOptions& options, const Scene& scene) {
     source.ground = has_ground(scene) ? "on" : "";
     source.animation = clip_choice(scene.clips);
     source.file_scene = file_scene_choice(scene);
+    source.variant = material_variant_choice(scene);
     source.has_environment = scene.environment.has_value();
     if (scene.is_far) source.position_origin = scene.origin_in_file;
     return source;

@@ -19,7 +19,7 @@
 namespace pertev {
 
 /// The options of a scene's opening, as they were used, and facts of the scene. Options that were chosen for the caller
-/// are filled in: the animation, the scene of the file, and `ground`, which is "on" or empty.
+/// are filled in: the animation, the scene of the file, the variant, and `ground`, which is "on" or empty.
 struct SceneSource : SceneOptions {
     bool has_environment = false;   // the scene has one, requested or default
     std::optional<double> time_s;   // time of the picture; none: at rest

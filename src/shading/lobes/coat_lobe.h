@@ -1,19 +1,23 @@
 #pragma once
 
-// A clear coat on anything: a second, colourless dielectric interface with its own roughness. It is a layer; what
-// lies beneath gets at most the light that the coat transmits, from either side (LayerTransmittance::pass).
+// A clear coat on anything: a second, colourless dielectric interface with its own roughness and its own normal. It is
+// a layer; what lies beneath gets at most the light that the coat transmits, from either side
+// (LayerTransmittance::pass).
 //
 // Source: KHR_materials_clearcoat, whose layering by Fresnel's term of the view direction alone is not reciprocal;
-// here the coat's directional albedo for both directions replaces it.
+// here the coat's directional albedo for both directions replaces it. A bent normal acts as a normal map does: value
+// times cosine is that about the coat's normal, and is 0 where that and the surface's own disagree on the side.
 
+#include "math/frame.h"
 #include "shading/lobes/schlick_lobe.h"
 
 namespace pertev {
 
 struct CoatLobe {
-    float strength; // [0, 1]: clearcoatFactor
-    float alpha;    // GGX width = roughness^2, [0, 1]
-    float f0;       // reflectance at normal incidence, [0, 1]: 0.04 in glTF
+    float strength;          // [0, 1]: clearcoatFactor
+    float alpha;             // GGX width = roughness^2, [0, 1]
+    float f0;                // reflectance at normal incidence, [0, 1]: 0.04 in glTF
+    Vec3 normal = {0, 0, 1}; // unit, in the frame of the BSDF, z > 0
 
     HD SchlickLobe interface() const { return {grey(0), 0, alpha, f0}; }
 
@@ -30,13 +34,22 @@ struct CoatLobe {
     }
 
     HD BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, LayerTransmittance& transmittance) const {
-        const Vec3 o = {wo.x, wo.y, abs(wo.z)}, i = {wi.x, wi.y, abs(wi.z)};
+        Vec3 o = {wo.x, wo.y, abs(wo.z)}, i = {wi.x, wi.y, abs(wi.z)};
+        bool reflects = wo.z * wi.z > 0;
+        if (is_bent()) {
+            const Frame frame = make_frame(normal);
+            o = frame.to_local(o);
+            i = frame.to_local(i);
+            reflects = reflects && o.z > 0 && i.z > 0;
+            o.z = min(abs(o.z), 1.0f);
+            i.z = min(abs(i.z), 1.0f);
+        }
         const SchlickLobe lobe = interface();
         const SchlickLobe::Average average = lobe.make_average();
         const SchlickLobe::Albedo at_o = lobe.albedo_at(o.z, average), at_i = lobe.albedo_at(i.z, average);
         const LayerShares shares = make_shares(average, at_o, beneath);
         BsdfValue value;
-        if (!lobe.is_smooth() && wo.z * wi.z > 0) {
+        if (!lobe.is_smooth() && reflects) {
             const GgxReflection once = evaluate_ggx_reflection(o, i, alpha);
             value = {(transmittance.light * strength) * lobe.value_of(once, i.z, average, at_o, at_i),
                      transmittance.reach * lobe.pdf_of(once, i.z, shares.specular, shares.more)};
@@ -46,13 +59,29 @@ struct CoatLobe {
     }
 
     HD LobeDraw draw(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
+        return is_bent() ? draw_bent(wo, beneath, u_lobe, u) : draw_straight(wo, beneath, u_lobe, u);
+    }
+
+private:
+    HD bool is_bent() const { return normal.x != 0 || normal.y != 0; }
+
+    HD LobeDraw draw_straight(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
         const SchlickLobe lobe = interface();
         const SchlickLobe::Average average = lobe.make_average();
         const LayerShares shares = make_shares(average, lobe.albedo_at(abs(wo.z), average), beneath);
         return lobe.draw_by(shares, strength * fresnel_schlick(abs(wo.z), grey(f0)), wo, u_lobe, u);
     }
-
-private:
+    /// Draws in the frame of the coat's normal, mirrored to the upper side together with wo.
+    HD LobeDraw draw_bent(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
+        const Frame frame = make_frame(normal);
+        const Vec3 o = frame.to_local({wo.x, wo.y, abs(wo.z)});
+        LobeDraw draw = draw_straight({o.x, o.y, min(abs(o.z), 1.0f)}, beneath, u_lobe, u);
+        if (draw.is_beneath || !(draw.sample.pdf > 0)) return draw;
+        const Vec3 wi = normalize(frame.to_world(draw.sample.wi));
+        if (!(o.z > 0 && draw.sample.wi.z > 0 && wi.z > 0)) return {};
+        draw.sample.wi = {wi.x, wi.y, copysign(wi.z, wo.z)};
+        return draw;
+    }
     HD LayerShares make_shares(const SchlickLobe::Average& average, const SchlickLobe::Albedo& at_o,
                                float beneath) const {
         const float once = strength * ((1.0f - at_o.lost) * (f0 + (1.0f - f0) * at_o.schlick));

@@ -27,6 +27,10 @@ struct LayerTransmittance {
     // the layer transmits is scattered (Kelemen & Szirmay-Kalos 2001).
     float near = 1, far = 1, average = 1;
 
+    /// Factor on light that lobes beneath both kinds scatter along single directions or into lobes: reciprocal, and at
+    /// most the transmittance from either side.
+    HD float light_of_delta() const { return light * min(near, far); }
+
     /// Passes a layer with albedo `at_o` and `at_i` that sampling passes with probability `p_beneath`. The factor is
     /// reciprocal and at most 1 - at_o, so no light is gained whatever lies beneath (KHR_materials_sheen).
     HD void pass(float at_o, float at_i, float p_beneath) {
