@@ -142,6 +142,28 @@ inline void load_columns(const std::array<const float*, 8>& rows, Floats8 (&colu
     }
 }
 
+/// Loads two rows of four floats, one after the other.
+inline void load_quads(const std::array<const float*, 2>& rows, Floats8& quads) {
+    quads = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(rows[0])), _mm_loadu_ps(rows[1]), 1);
+}
+/// Orders each quad of lanes: lane k of a quad gets the lane that the lowest two bits of order's lane k name.
+inline Floats8 permute_quads(Floats8 a, Words8 order) {
+    return _mm256_permutevar_ps(a.v, reinterpret_cast<__m256i>(order));
+}
+/// Fills each quad of lanes with its lane k.
+template <int k>
+inline Floats8 broadcast_in_quads(Floats8 a) {
+    return _mm256_permute_ps(a.v, k * 0x55);
+}
+/// Transposes quads and drops the last row: quad q of columns[i] has element i of quad q of each of `rows`.
+inline void transpose_quads(const Floats8 (&rows)[4], Floats8 (&columns)[3]) {
+    const __m256 low_01 = _mm256_unpacklo_ps(rows[0].v, rows[1].v), low_23 = _mm256_unpacklo_ps(rows[2].v, rows[3].v);
+    const __m256 high_01 = _mm256_unpackhi_ps(rows[0].v, rows[1].v), high_23 = _mm256_unpackhi_ps(rows[2].v, rows[3].v);
+    columns[0] = _mm256_shuffle_ps(low_01, low_23, 0x44);
+    columns[1] = _mm256_shuffle_ps(low_01, low_23, 0xee);
+    columns[2] = _mm256_shuffle_ps(high_01, high_23, 0x44);
+}
+
 /// Stores the transposed columns: rows[i] gets element i of each column.
 inline void store_columns(const Floats8 (&columns)[8], const std::array<float*, 8>& rows) {
     alignas(32) float all[8][8];

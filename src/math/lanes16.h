@@ -114,6 +114,26 @@ inline void load_columns(const std::array<const float*, 16>& rows, Floats16 (&co
     for (int k = 0; k < 8; ++k) columns[k] = {first[k], second[k]};
 }
 
+inline void load_quads(const std::array<const float*, 4>& rows, Floats16& quads) {
+    const auto row = [&](int k) { return _mm_loadu_ps(rows[k]); };
+    const __m512 two = _mm512_insertf32x4(_mm512_castps128_ps512(row(0)), row(1), 1);
+    quads = _mm512_insertf32x4(_mm512_insertf32x4(two, row(2), 2), row(3), 3);
+}
+inline Floats16 permute_quads(Floats16 a, Words16 order) {
+    return _mm512_permutevar_ps(a.v, reinterpret_cast<__m512i>(order));
+}
+template <int k>
+inline Floats16 broadcast_in_quads(Floats16 a) {
+    return _mm512_permute_ps(a.v, k * 0x55);
+}
+inline void transpose_quads(const Floats16 (&rows)[4], Floats16 (&columns)[3]) {
+    const __m512 low_01 = _mm512_unpacklo_ps(rows[0].v, rows[1].v), low_23 = _mm512_unpacklo_ps(rows[2].v, rows[3].v);
+    const __m512 high_01 = _mm512_unpackhi_ps(rows[0].v, rows[1].v), high_23 = _mm512_unpackhi_ps(rows[2].v, rows[3].v);
+    columns[0] = _mm512_shuffle_ps(low_01, low_23, 0x44);
+    columns[1] = _mm512_shuffle_ps(low_01, low_23, 0xee);
+    columns[2] = _mm512_shuffle_ps(high_01, high_23, 0x44);
+}
+
 inline void store_columns(const Floats16 (&columns)[8], const std::array<float*, 16>& rows) {
     Floats8 first[8], second[8];
     for (int k = 0; k < 8; ++k) {

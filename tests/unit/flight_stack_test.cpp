@@ -111,7 +111,7 @@ std::vector<float> first_seen(bool is_far) {
     scene.baked = view_of(tree);
     const Ray ray = {{0, 0, 0}, 0, {1, 0, 0}, kInfinity};
     std::vector<float> seen(20);
-    traverse_scene_in_flight<TraversalOptions{}>(
+    traverse_scene_in_flight<TraversalOptions{}, Floats8>(
         scene, static_cast<uint32_t>(seen.size()), [&](uint32_t) { return ray; }, [](uint32_t) { return AcceptAll{}; },
         [&](const AcceptAll&, const Ray& r) { return FirstSeen{.accept = {}, .t_max = r.t_max, .is_far = is_far}; },
         [&](uint32_t i, const FirstSeen& visitor) { seen[i] = visitor.seen; });

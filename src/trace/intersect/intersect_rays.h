@@ -13,11 +13,17 @@
 
 namespace pertev {
 
+/// Shears of rays (RayShear) and their origins, each in the order of its own axes.
 template <class F>
-struct RayShearOf {
-    int kx, ky, kz; // common to all rays
+struct RayShearLanes {
     F sx, sy, sz;
-    F ox, oy, oz; // origins, in that order of axes
+    F ox, oy, oz;
+};
+
+/// Shears of rays with common axes.
+template <class F>
+struct RayShearOf : RayShearLanes<F> {
+    int kx, ky, kz;
 };
 
 /// Loads F::kLanes rays: origin, t_min, direction, t_max.
@@ -35,7 +41,7 @@ template <class F>
 [[gnu::always_inline]] inline RayShearOf<F> make_shear_of_rays(const F (&columns)[8], int kz) {
     const int kx = kz == 2 ? 0 : kz + 1, ky = kz == 0 ? 2 : kz - 1;
     const F dz = columns[4 + kz];
-    return {kx, ky, kz, columns[4 + kx] / dz, columns[4 + ky] / dz, 1.0f / dz, columns[kx], columns[ky], columns[kz]};
+    return {{columns[4 + kx] / dz, columns[4 + ky] / dz, 1.0f / dz, columns[kx], columns[ky], columns[kz]}, kx, ky, kz};
 }
 
 /// A triangle as rays see it: its edge functions, the depths of its corners, and what the edges say. Rays that pass
@@ -48,14 +54,15 @@ struct TriangleEdgesOf {
     MaskOf<F> is_inside, is_outside;
 };
 
-template <class F>
-[[gnu::always_inline]] inline TriangleEdgesOf<F> edges_of(const RayShearOf<F>& ray, const BvhTriangle& triangle) {
-    const auto sheared = [&](const Vec3& corner) __attribute__((always_inline)) {
-        const float* const p = &corner.x;
-        const F z = F(p[ray.kz]) - ray.oz;
-        return Vec3Of<F>{fma(-ray.sx, z, F(p[ray.kx]) - ray.ox), fma(-ray.sy, z, F(p[ray.ky]) - ray.oy), z};
+/// Edges of a triangle for each ray. `corner(k)` returns corner k, with its coordinates in the order of the ray's axes.
+template <class F, class CornerOf>
+[[gnu::always_inline]] inline TriangleEdgesOf<F> edges_of_corners(const RayShearLanes<F>& ray, const CornerOf& corner) {
+    const auto sheared = [&](int k) __attribute__((always_inline)) {
+        const Vec3Of<F> p = corner(k);
+        const F z = p.z - ray.oz;
+        return Vec3Of<F>{fma(-ray.sx, z, p.x - ray.ox), fma(-ray.sy, z, p.y - ray.oy), z};
     };
-    const Vec3Of<F> pa = sheared(triangle.a), pb = sheared(triangle.b), pc = sheared(triangle.c);
+    const Vec3Of<F> pa = sheared(0), pb = sheared(1), pc = sheared(2);
     const auto difference = [](F a, F b, F c, F d) __attribute__((always_inline)) {
         const F cd = c * d;
         return fma(a, b, -cd) + fma(-c, d, cd);
@@ -67,13 +74,24 @@ template <class F>
     return {ea, eb, ec, pa.z, pb.z, pc.z, max(below, -above) >= kSureEdge, min(-below, above) >= kSureEdge};
 }
 
+/// Edges of one triangle for rays with common axes.
+template <class F>
+[[gnu::always_inline]] inline TriangleEdgesOf<F> edges_of(const RayShearOf<F>& ray, const BvhTriangle& triangle) {
+    const Vec3* const corners[] = {&triangle.a, &triangle.b, &triangle.c};
+    return edges_of_corners<F>(
+        ray, [&](int k) __attribute__((always_inline)) {
+            const float* const p = &corners[k]->x;
+            return Vec3Of<F>{F(p[ray.kx]), F(p[ray.ky]), F(p[ray.kz])};
+        });
+}
+
 /// Hits of the triangle's plane by rays that pass inside.
 template <class F>
 struct PlaneHitOf {
     F t, u, v;
 };
 template <class F>
-[[gnu::always_inline]] inline PlaneHitOf<F> hit_plane(const RayShearOf<F>& ray, const TriangleEdgesOf<F>& edges) {
+[[gnu::always_inline]] inline PlaneHitOf<F> hit_plane(const RayShearLanes<F>& ray, const TriangleEdgesOf<F>& edges) {
     const F inv = 1.0f / (edges.a + edges.b + edges.c); // the sum is not 0, because all have one sign and none is 0
     const F u = edges.b * inv, v = edges.c * inv;
     return {(edges.a * inv * edges.depth_a + u * edges.depth_b + v * edges.depth_c) * ray.sz, u, v};

@@ -32,10 +32,11 @@ inline constexpr LanesOfMask kLanesOfMask = [] {
     return lanes;
 }();
 
-/// Pending children of one ray, as arrays, so that vectors can be pushed. [0] ends the traversal.
+/// Pending children of one ray, as arrays, so that vectors can be pushed. [0], a leaf without triangles at the first
+/// triangle, ends the traversal.
 class FlightStack {
 public:
-    FlightStack() : size_(1) { entry_[0] = -kInfinity, link_[0] = kNoLink, count_[0] = 0; }
+    FlightStack() : size_(1) { entry_[0] = -kInfinity, link_[0] = kLeafBit, count_[0] = 0; }
 
     /// Pushes the entered children; the last is the nearest, or the builder's first, or the farthest.
     template <TraversalOptions kOptions>

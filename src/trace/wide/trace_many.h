@@ -32,7 +32,7 @@ void traverse_scene_together(const HostTrees& scene, uint32_t count, const RayOf
     std::array<uint32_t, kMaxAlone> alone;
     uint32_t waiting = 0;
     const auto send_alone = [&] {
-        traverse_scene_in_flight<kOptions>(
+        traverse_scene_in_flight<kOptions, F>(
             scene, waiting, [&](uint32_t i) { return ray_of(alone[i]); },
             [&](uint32_t i) { return accept_of(alone[i]); }, make_visitor,
             [&](uint32_t i, const Visitor& visitor) { end_of(alone[i], visitor); });
@@ -82,7 +82,7 @@ void traverse_scene_many(const HostTrees& scene, uint32_t count, RayOrder order,
     } else if (order == RayOrder::Together) {
         traverse_scene_together<kOptions, F>(scene, count, ray_of, accept_of, make_visitor, end_of);
     } else {
-        traverse_scene_in_flight<kOptions>(scene, count, ray_of, accept_of, make_visitor, end_of);
+        traverse_scene_in_flight<kOptions, F>(scene, count, ray_of, accept_of, make_visitor, end_of);
     }
 }
 
