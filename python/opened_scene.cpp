@@ -109,7 +109,7 @@ Session& OpenedScene::session(const PictureRecord& record) {
     const uint32_t parts = std::exchange(setup_->changed_parts, 0);
     if (!session_) {
         together_.reset();
-        if (setup_->queues.size() > 1) together_.emplace(setup_->queues, setup_->prepared(), record.settings);
+        if (setup_->queues.size() > 1) together_.emplace(setup_->queues, setup_->prepared());
         return session_.emplace(*setup_->queue, setup_->prepared(), record.camera.camera, record.settings);
     }
     try {

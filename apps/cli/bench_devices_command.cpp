@@ -59,13 +59,10 @@ struct PictureJob {
 TimesTaken time_devices(std::span<const std::shared_ptr<Queue>> queues, const PictureJob& job, uint32_t samples,
                         uint32_t runs) {
     std::optional<RenderOnDevices> together;
-    if (queues.size() > 1) together.emplace(queues, job.prepared, job.settings);
+    if (queues.size() > 1) together.emplace(queues, job.prepared);
     Session session(*queues.front(), job.prepared, job.camera, job.settings);
     TimesTaken taken;
-    if (together) {
-        taken.upload_s = together->wait_for_scenes();
-        session.pictures().share(*together);
-    }
+    if (together) session.pictures().share(*together);
     std::vector<double> seconds, sums;
     for (uint32_t run = 0; run <= runs; ++run) { // the first one takes memory and warms up
         render_again(session, run == 0 ? std::min(samples, 64u) : samples);
@@ -74,7 +71,8 @@ TimesTaken time_devices(std::span<const std::shared_ptr<Queue>> queues, const Pi
         if (together) sums.push_back(together->sum_seconds());
     }
     taken.times = summarize_runs(seconds);
-    taken.upload_s = std::max(taken.upload_s, session.stats().upload_seconds);
+    taken.upload_s = session.stats().upload_seconds;
+    if (together) taken.upload_s = std::max(taken.upload_s, together->upload_seconds());
     if (together) taken.sum_s = summarize_runs(sums).median;
     taken.hash = picture_hash(session.picture()).hex();
     return taken;
@@ -92,7 +90,7 @@ TimesTaken time_batch(std::span<const std::shared_ptr<Queue>> queues, const Pict
     const RenderSettings& settings = job.settings;
     Queue& queue = *queues.front();
     std::optional<RenderOnDevices> together;
-    if (queues.size() > 1) together.emplace(queues, job.prepared, settings);
+    if (queues.size() > 1) together.emplace(queues, job.prepared);
     Session session(queue, job.prepared, job.camera, settings);
     const std::size_t limit = batch_memory(queue, settings, {}).bytes;
     const uint32_t at_once = pictures_at_once(job.prepared, batch, settings, limit, queue.is_cuda());
@@ -173,7 +171,7 @@ void report_batches(const DevicesFlags& flags, std::span<const std::shared_ptr<Q
 TimesTaken time_frames(std::span<const std::shared_ptr<Queue>> queues, const PictureJob& job, uint32_t frames,
                        float scene_size, double& reconstruction_s, double& copy_s) {
     std::optional<FramesOnDevices> together;
-    if (queues.size() > 1) together.emplace(queues, job.prepared, job.settings);
+    if (queues.size() > 1) together.emplace(queues, job.prepared);
     Session session(*queues.front(), job.prepared, job.camera, job.settings);
     if (together) session.pictures().share_frames(*together);
     std::vector<double> seconds, reconstructions, copies;

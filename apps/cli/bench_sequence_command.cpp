@@ -150,7 +150,7 @@ int bench_sequence(SequenceFlags& flags) {
     BenchReport report(reporter, flags.render.report, *ready->queue, "Frames of a moving picture");
     PictureRecord record = picture_record(flags.render, *ready, reporter.messages());
     std::optional<FramesOnDevices> together;
-    if (ready->queues.size() > 1) together.emplace(ready->queues, ready->prepared(), ready->settings);
+    if (ready->queues.size() > 1) together.emplace(ready->queues, ready->prepared());
     Session session(*ready->queue, ready->prepared(), record.camera.camera, ready->settings);
     if (together) session.pictures().share_frames(*together);
     const ToneMap tone_map = ToneMap::Agx;

@@ -206,8 +206,8 @@ int render(RenderFlags& flags) {
     std::optional<RenderOnDevices> together;
     std::optional<FramesOnDevices> frames_together;
     const bool are_several = ready->queues.size() > 1;
-    if (are_several && !flags.real_time) together.emplace(ready->queues, ready->prepared(), settings);
-    if (are_several && flags.real_time) frames_together.emplace(ready->queues, ready->prepared(), settings);
+    if (are_several && !flags.real_time) together.emplace(ready->queues, ready->prepared());
+    if (are_several && flags.real_time) frames_together.emplace(ready->queues, ready->prepared());
     std::optional<Session> session(std::in_place, queue, ready->prepared(), record.camera.camera, settings);
     if (together) session->pictures().share(*together);
     if (frames_together) session->pictures().share_frames(*frames_together);

@@ -126,7 +126,7 @@ int view(ViewFlags& flags) {
     reporter.set_work("uploading the scene");
     const PictureRecord record = picture_record(flags.render, *ready, reporter.messages());
     std::optional<FramesOnDevices> together; // the picture at rest is the first one's alone
-    if (ready->queues.size() > 1) together.emplace(ready->queues, ready->prepared(), ready->settings, AfterLoss::Cut);
+    if (ready->queues.size() > 1) together.emplace(ready->queues, ready->prepared(), AfterLoss::Cut);
     Session session(*ready->queue, ready->prepared(), record.camera.camera, ready->settings);
     if (together) session.pictures().share_frames(*together);
     const bool on_cuda = ready->queue->is_cuda();

@@ -2,6 +2,8 @@
 
 #include <cstring>
 
+#include "device/shared_uploads.h"
+
 namespace pertev {
 namespace {
 
@@ -36,7 +38,7 @@ void PartArrays::upload(Queue& queue, Buffer<std::byte>& buffer, const std::stri
     std::size_t offset = 0;
     for (const Array& array : arrays_) {
         if (!array.values.empty()) {
-            queue.copy_to_device(buffer.data() + offset, array.values.data(), array.values.size());
+            upload_array(queue, buffer.data() + offset, array.values);
         }
         offset += aligned(array.values.size());
     }

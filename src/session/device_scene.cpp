@@ -1,9 +1,32 @@
 #include "session/device_scene.h"
 
+#include <span>
+
 #include "base/error.h"
 #include "base/stopwatch.h"
 
 namespace pertev {
+namespace {
+
+/// Names the large arrays of some parts of the scene, which stay where they are until these change.
+void name_arrays(const PreparedScene& prepared, uint32_t parts, SharedUploads& uploads) {
+    const Scene& scene = *prepared.scene;
+    const auto add = [&](const auto& array) {
+        if (!array.empty()) uploads.lasts(std::as_bytes(std::span(array)));
+    };
+    if ((parts & kPartGeometry) != 0) {
+        for (const Mesh& mesh : scene.meshes) {
+            add(mesh.positions), add(mesh.normals), add(mesh.tangents), add(mesh.colors), add(mesh.indices);
+            for (const auto& uv : mesh.uv) add(uv);
+        }
+    }
+    if ((parts & kPartTextures) != 0) {
+        for (const auto& image : scene.images) add(image.rgba8.pixels), add(image.rgba_float.pixels);
+    }
+    if ((parts & kPartEnvironment) != 0 && prepared.lights.environment) add(prepared.lights.environment->pixels);
+}
+
+} // namespace
 
 void DeviceScene::set(const PreparedScene& scene, const RenderSettings& settings) {
     tracer_.reset(); // freed with its trees, so that those of two scenes need not fit
@@ -17,6 +40,9 @@ void DeviceScene::update(const PreparedScene& scene, uint32_t parts, const Rende
 /// Uploads `parts` and keeps the others. A part's memory is reused if it is large enough.
 void DeviceScene::upload(const PreparedScene& scene, uint32_t parts, const RenderSettings& settings) {
     const Stopwatch watch;
+    uploads_.clear();
+    name_arrays(scene, parts, uploads_);
+    const SharedUploads::Scope scope(uploads_, has_uploads_);
     if ((parts & kPartTrees) != 0) structures_ = prepared_structures_ = scene.structures;
     try {
         if ((parts & kPartTrees) != 0 && tracer_) tracer_->set_structures(*structures_);
@@ -43,7 +69,8 @@ void DeviceScene::upload(const PreparedScene& scene, uint32_t parts, const Rende
 bool DeviceScene::set_tracer(const RenderSettings& settings) {
     const TracerChoice choice = tracers_of(settings, queue_.is_cuda(), has_poses_);
     if (!scene_ || (tracer_ && tracer_->choice() == choice)) return false;
-    tracer_.reset(); // freed before the new one, so that two need not fit
+    if (tracer_) uploads_.clear(); // parts of it are freed
+    tracer_.reset();               // freed before the new one, so that two need not fit
     tracer_.emplace(queue_, *structures_, choice);
     tracer_->set_surfaces(scene_->view());
     fit_trees();

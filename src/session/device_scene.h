@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "device/shared_uploads.h"
 #include "device_scene/scene_on_device.h"
 #include "render/reproject.h"
 #include "settings/render_settings.h"
@@ -17,7 +18,7 @@ namespace pertev {
 class DeviceScene {
 public:
     /// Makes an object without a scene, which the first set() gives; `queue` outlives it.
-    explicit DeviceScene(Queue& queue) : queue_(queue) {}
+    explicit DeviceScene(Queue& queue) : queue_(queue), uploads_(queue) {}
     DeviceScene(const DeviceScene&) = delete;
     DeviceScene& operator=(const DeviceScene&) = delete;
 
@@ -30,6 +31,10 @@ public:
     /// Makes the tracer that `settings` request. Returns false if it exists already, or if there is no scene. Throws as
     /// set(); if it throws, there is no tracer until the next call.
     bool set_tracer(const RenderSettings& settings);
+
+    /// Lets the next calls copy what `other`, which has the same scene, has just uploaded from its device. It must not
+    /// change until they have returned, nor is it used after it has changed.
+    void take_from(const DeviceScene& other) { has_uploads_ = &other.uploads_; }
 
     /// Stores the present positions of instances and vertices for before(). Throws Error(OutOfMemory).
     void keep_instances();
@@ -49,6 +54,8 @@ private:
     void fit_trees();
 
     Queue& queue_;
+    SharedUploads uploads_; // arrays of the last upload()
+    const SharedUploads* has_uploads_ = nullptr;
     std::shared_ptr<SceneStructures> structures_, prepared_structures_; // the structures that rays traverse, and
                                                                         // those of the prepared scene
     std::vector<PlacedBvh> placed_;                                     // the instances of PreparedScene

@@ -39,6 +39,7 @@ public:
     /// Makes this device's rows of a frame, and takes what they need of other rows from `others`; all rows if that is
     /// null. Returns as render().
     bool render_rows(const FrameTask& task, RowExchange* others, Sink& sink);
+    PictureRenderer& pictures() const { return pictures_; }
     /// Takes over what the caller's sequence knows of cuts and of changes of the scene.
     void follow(const FrameSequence& leader);
     /// Returns whether the next frame depends on earlier ones.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "device/shared_uploads.h"
 
 namespace pertev {
 
@@ -37,7 +38,7 @@ SceneTrees<View> StructureOnDevice::moved_scene(SceneTrees<View> scene, const Bu
             for (View& view : meshes) move(view);
             bytes = std::as_bytes(std::span(meshes));
         }
-        memory_.upload_at(array.offset, bytes);
+        if (!bytes.empty()) upload_array(queue_, memory_.data() + array.offset, bytes, meshes.empty());
     }
     scene.meshes = moved(scene.meshes);
     scene.tlas_nodes = moved(scene.tlas_nodes);

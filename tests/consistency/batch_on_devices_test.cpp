@@ -83,7 +83,7 @@ struct ViewsOnDevices {
             const bool is_gpu = test::cuda_requested() && i < cuda_device_count();
             queues.push_back(std::make_shared<Queue>(is_gpu ? Queue::make_cuda(i) : Queue::make_cpu(Threads(1))));
         }
-        together.emplace(queues, many_views().prepared, settings, hooks);
+        together.emplace(queues, many_views().prepared, hooks);
         session.emplace(*queues.front(), many_views().prepared, test::mixed_scene_camera(), settings);
     }
     SharedBatch render(Sink& sink, uint32_t at_once = 2) {

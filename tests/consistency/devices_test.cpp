@@ -79,7 +79,7 @@ class SharedCopy {
 public:
     SharedCopy(std::size_t devices, const RenderSettings& settings, const DeviceHooks& hooks = {}) {
         for (std::size_t i = 0; i < devices; ++i) queues.push_back(std::make_shared<Queue>(queue_number(i)));
-        if (devices > 1) together.emplace(queues, shared_world().prepared, settings, hooks);
+        if (devices > 1) together.emplace(queues, shared_world().prepared, hooks);
         session.emplace(*queues.front(), shared_world().prepared, test::mixed_scene_camera(), settings);
         if (together) session->pictures().share(*together);
     }
@@ -182,6 +182,17 @@ TEST_CASE("one, two and three devices render the bytes of one, by integrators wi
     }
 }
 
+TEST_CASE("the scene is copied from the caller's device, and not from the host again") {
+    const auto uploaded_by_second = [](bool after_first) {
+        SharedCopy picture(2, shared_settings());
+        if (!after_first) return picture.queues[0]->uploaded_bytes();
+        CHECK(picture.render() == kSharedSamples);
+        return picture.queues[1]->uploaded_bytes();
+    };
+    if (test::cuda_requested() && cuda_device_count() < 2) return; // a CPU cannot copy from a GPU beside its work
+    CHECK(2 * uploaded_by_second(true) < uploaded_by_second(false));
+}
+
 TEST_CASE("layers, layers at centres, ids, light-path layers and invalid samples are those of one device") {
     for (const LayersAt at : {LayersAt::Samples, LayersAt::Centre}) {
         const RenderSettings settings = shared_layers(at);
@@ -235,9 +246,10 @@ TEST_CASE("a device that fails in the middle costs a warning, and the others ren
             CHECK(failing.lost.count() == 1);
             check_shared(picture, alone);
             REQUIRE(picture.warnings() == 1);
-            CHECK(std::ranges::any_of(picture.messages.all(), [](const auto& one) { // a notice of the copies between GPUs may precede it
-                return one.is_warning && one.remark.setting == "device";
-            }));
+            CHECK(std::ranges::any_of(picture.messages.all(),
+                                      [](const auto& one) { // a notice of the copies between GPUs may precede it
+                                          return one.is_warning && one.remark.setting == "device";
+                                      }));
         }
     }
 }

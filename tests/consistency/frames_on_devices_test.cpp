@@ -88,7 +88,7 @@ public:
     Bands(std::size_t devices, const PreparedScene& prepared, const Camera& camera, const RenderSettings& settings,
           const FrameHooks& hooks = {}, AfterLoss after_loss = AfterLoss::Throw) {
         for (std::size_t i = 0; i < devices; ++i) queues.push_back(std::make_shared<Queue>(queue_of_band(i)));
-        if (devices > 1) together.emplace(queues, prepared, settings, after_loss, hooks);
+        if (devices > 1) together.emplace(queues, prepared, after_loss, hooks);
         session.emplace(*queues.front(), prepared, camera, settings);
         if (together) session->pictures().share_frames(*together);
     }

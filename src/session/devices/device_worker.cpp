@@ -50,23 +50,14 @@ std::string name_of_device(const Queue& queue) {
     return queue.is_cuda() ? fmt::format("cuda:{}", queue.device_index()) : "cpu";
 }
 
-DeviceWorker::DeviceWorker(std::size_t number, Queue& queue, const PreparedScene& scene, const RenderSettings& settings)
-    : number_(number), queue_(queue) {
-    own_scene_.emplace(queue, scene, settings);
-}
-
 std::string DeviceWorker::name() const { return name_of_device(queue_); }
-
-void DeviceWorker::wait_for_scene() {
-    if (own_scene_) own_scene_->wait();
-}
 
 void DeviceWorker::change_scene(const PreparedScene& scene, uint32_t parts) {
     if (own_scene_) own_scene_->change(scene, parts);
 }
 
 PictureRenderer& DeviceWorker::pictures_of(PictureRenderer& of_caller, const RenderSettings& settings) {
-    return own_scene_ ? own_scene_->update(settings) : of_caller;
+    return own_scene_ ? own_scene_->update(of_caller.scene(), settings) : of_caller;
 }
 
 /// Makes the films that fit the picture, or clears those that do.

@@ -33,16 +33,15 @@ class DeviceWorker {
 public:
     /// Makes the worker of the caller's device, which has the scene; `queue` outlives it.
     DeviceWorker(std::size_t number, Queue& queue) : number_(number), queue_(queue) {}
-    /// Makes the worker of another device and starts to upload the scene to it, which must not change until
-    /// wait_for_scene() has returned.
-    DeviceWorker(std::size_t number, Queue& queue, const PreparedScene& scene, const RenderSettings& settings);
+    /// Makes the worker of another device, which gets the scene at the first render().
+    DeviceWorker(std::size_t number, Queue& queue, const PreparedScene& scene) : number_(number), queue_(queue) {
+        own_scene_.emplace(queue, scene);
+    }
 
-    /// Waits until the scene is on the device. Throws as DeviceScene::set.
-    void wait_for_scene();
     /// Takes parts of the scene as they are at the next render(). The caller's device has them.
     void change_scene(const PreparedScene& scene, uint32_t parts);
     /// Returns what renders pictures of these settings on the device, once its scene is as it should be; `of_caller` on
-    /// the caller's device. Throws as wait_for_scene().
+    /// the caller's device. Throws as DeviceScene::set.
     PictureRenderer& pictures_of(PictureRenderer& of_caller, const RenderSettings& settings);
     /// Seconds of uploading; 0 on the caller's device.
     double upload_seconds() const { return own_scene_ ? own_scene_->upload_seconds() : 0; }

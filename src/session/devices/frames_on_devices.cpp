@@ -1,6 +1,7 @@
 #include "session/devices/frames_on_devices.h"
 
 #include <algorithm>
+#include <atomic>
 #include <exception>
 #include <optional>
 #include <utility>
@@ -30,9 +31,9 @@ bool is_of_device(const Error& error) {
 
 /// A device that helps the caller's.
 struct FramesOnDevices::Follower {
-    Follower(std::size_t number_of, Queue& its, const PreparedScene& scene, const RenderSettings& settings)
-        : number(number_of), queue(its), copy(its, scene, settings), frames(copy.pictures()),
-          thread([&its] { stay_near(its); }) {}
+    Follower(std::size_t number_of, Queue& its, const PreparedScene& scene)
+        : number(number_of), queue(its), copy(its, scene), frames(copy.pictures()), thread([&its] { stay_near(its); }) {
+    }
 
     std::size_t number; // among all devices that were named
     Queue& queue;
@@ -50,35 +51,22 @@ struct FramesOnDevices::Part {
 };
 
 FramesOnDevices::FramesOnDevices(std::span<const std::shared_ptr<Queue>> queues, const PreparedScene& scene,
-                                 const RenderSettings& settings, AfterLoss after_loss, FrameHooks hooks)
+                                 AfterLoss after_loss, FrameHooks hooks)
     : queue_(*queues.front()), after_loss_(after_loss), hooks_(std::move(hooks)) {
     for (std::size_t i = 1; i < queues.size(); ++i) {
-        followers_.push_back(std::make_unique<Follower>(i, *queues[i], scene, settings));
+        followers_.push_back(std::make_unique<Follower>(i, *queues[i], scene));
     }
 }
 
 FramesOnDevices::~FramesOnDevices() = default;
 
 void FramesOnDevices::change_scene(const PreparedScene& scene, uint32_t parts) {
-    for (const auto& follower : followers_) {
-        follower->copy.wait(); // the upload reads the scene
-        follower->copy.change(scene, parts);
-    }
+    for (const auto& follower : followers_) follower->copy.change(scene, parts);
 }
 
-/// Makes the team of the devices that have the scene. One that has too little memory for it is left out.
-void FramesOnDevices::form_team(Sink& sink) {
+/// Makes the team of the devices that have not failed.
+void FramesOnDevices::form_team() {
     if (team_) return;
-    std::erase_if(followers_, [&](const auto& follower) {
-        try {
-            follower->copy.wait();
-            return false;
-        } catch (const Error& error) {
-            if (!is_of_device(error)) throw;
-            sink.warn({"device", name_of_device(follower->queue), fmt::format("is left out: {}", error.what())});
-            return true;
-        }
-    });
     std::vector<Queue*> queues = {&queue_};
     for (const auto& follower : followers_) queues.push_back(&follower->queue);
     team_ = std::make_unique<RowTeam>(queues);
@@ -87,7 +75,7 @@ void FramesOnDevices::form_team(Sink& sink) {
 bool FramesOnDevices::render(FrameSequence& leader, const FrameTask& task, Sink& sink) {
     const bool has_history = leader.has_history(), scene_has_changed = leader.scene_has_changed();
     for (;;) {
-        form_team(sink);
+        form_team();
         std::vector<Part> parts(devices());
         const bool is_whole = render_together(leader, task, sink, parts);
         for (const Part& part : parts) {
@@ -140,9 +128,9 @@ bool FramesOnDevices::render_together(FrameSequence& leader, const FrameTask& ta
     for (std::size_t i = 0; i < followers_.size(); ++i) {
         Follower& follower = *followers_[i];
         follower.frames.follow(leader);
-        follower.thread.start([&make_part, &parts, &follower, &task, i] {
+        follower.thread.start([&make_part, &parts, &follower, &task, &leader, i] {
             make_part(parts[i + 1], i + 1, follower.number, follower.queue, [&]() -> FrameSequence& {
-                follower.copy.update(task.settings, follower.frames.has_moved());
+                follower.copy.update(leader.pictures().scene(), task.settings, follower.frames.has_moved());
                 return follower.frames;
             });
         });

@@ -8,7 +8,7 @@
 // next one, made by the others, begins a new sequence. Without a history, and where that may be cut, the others make
 // the frame again.
 
-#include <atomic>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -33,10 +33,10 @@ enum class AfterLoss {
 
 class FramesOnDevices final : public SharedFrames {
 public:
-    /// Starts to upload the scene to all devices but the first, which is that of the caller's PictureRenderer. The
-    /// queues outlive this, and the scene must not change before the first frame, nor without change_scene().
+    /// Takes the devices, of which the first is that of the caller's PictureRenderer; the others copy its scene at the
+    /// first frame. The queues and the scene outlive this, and the scene must not change without change_scene().
     FramesOnDevices(std::span<const std::shared_ptr<Queue>> queues, const PreparedScene& scene,
-                    const RenderSettings& settings, AfterLoss after_loss = AfterLoss::Throw, FrameHooks hooks = {});
+                    AfterLoss after_loss = AfterLoss::Throw, FrameHooks hooks = {});
     ~FramesOnDevices() override;
 
     void change_scene(const PreparedScene& scene, uint32_t parts) override;
@@ -51,7 +51,7 @@ private:
     struct Follower;
     struct Part;
 
-    void form_team(Sink& sink);
+    void form_team();
     bool render_together(FrameSequence& leader, const FrameTask& task, Sink& sink, std::vector<Part>& parts);
     void leave_out_failed(const std::vector<Part>& parts, Sink& sink);
 

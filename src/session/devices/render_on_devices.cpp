@@ -18,11 +18,11 @@ constexpr double kProgressSeconds = 0.1; // between two reports
 } // namespace
 
 RenderOnDevices::RenderOnDevices(std::span<const std::shared_ptr<Queue>> queues, const PreparedScene& scene,
-                                 const RenderSettings& settings, DeviceHooks hooks)
+                                 DeviceHooks hooks)
     : film_queue_(Queue::make_cpu()), hooks_(std::move(hooks)) {
     workers_.push_back(std::make_unique<DeviceWorker>(0, *queues.front()));
     for (std::size_t i = 1; i < queues.size(); ++i) {
-        workers_.push_back(std::make_unique<DeviceWorker>(i, *queues[i], scene, settings));
+        workers_.push_back(std::make_unique<DeviceWorker>(i, *queues[i], scene));
     }
 }
 
@@ -36,12 +36,9 @@ std::vector<DeviceWorker*> RenderOnDevices::workers() const {
     return all;
 }
 
-double RenderOnDevices::wait_for_scenes() {
+double RenderOnDevices::upload_seconds() const {
     double seconds = 0;
-    for (const auto& worker : workers_) {
-        worker->wait_for_scene();
-        seconds = std::max(seconds, worker->upload_seconds());
-    }
+    for (const auto& worker : workers_) seconds = std::max(seconds, worker->upload_seconds());
     return seconds;
 }
 
@@ -68,7 +65,7 @@ SharedSamples RenderOnDevices::render(const SharedPicture& picture, SampleRange 
     return {count, state.rays, state.seconds, run.first_seconds()};
 }
 
-/// Opens the paths on which films are copied to the caller's device, and names those of GPUs.
+/// Opens the paths on which films and the scene are copied, and names those of GPUs.
 void RenderOnDevices::say_paths(Sink& sink) {
     if (std::exchange(has_said_paths_, true)) return;
     Queue& to = workers_.front()->queue();
@@ -76,6 +73,7 @@ void RenderOnDevices::say_paths(Sink& sink) {
     for (const auto& worker : workers_) {
         if (worker == workers_.front()) continue;
         allow_copies(to, worker->queue());
+        allow_copies(worker->queue(), to);
         if (!worker->queue().is_cuda()) continue;
         paths += fmt::format("{} {} {}", paths.empty() ? "" : ",", worker->name(),
                              name_of_path(copy_path(worker->queue(), to)));

@@ -18,11 +18,9 @@ namespace pertev {
 
 class RenderOnDevices final : public SharedRender {
 public:
-    /// Starts to upload the scene to all devices but the first, which is that of the caller's PictureRenderer. The
-    /// queues outlive this, and the scene must not change before wait_for_scenes() or a render() has returned, nor
-    /// without change_scene().
-    RenderOnDevices(std::span<const std::shared_ptr<Queue>> queues, const PreparedScene& scene,
-                    const RenderSettings& settings, DeviceHooks hooks = {});
+    /// Takes the devices, of which the first is that of the caller's PictureRenderer; the others copy its scene at the
+    /// first render(). The queues and the scene outlive this, and the scene must not change without change_scene().
+    RenderOnDevices(std::span<const std::shared_ptr<Queue>> queues, const PreparedScene& scene, DeviceHooks hooks = {});
 
     Queue& film_queue() override { return film_queue_; }
     void change_scene(const PreparedScene& scene, uint32_t parts) override;
@@ -32,8 +30,8 @@ public:
     /// The devices that have not failed, of which the first is the caller's unless that has.
     std::vector<DeviceWorker*> workers() const;
     const DeviceHooks& hooks() const { return hooks_; }
-    /// Waits until the scene is on all devices that are not lost. Returns the seconds of the slowest upload.
-    double wait_for_scenes();
+    /// Returns the seconds in which the slowest device took the scene.
+    double upload_seconds() const;
     /// Seconds of the last render() after its last sample, in which the last films were added.
     double sum_seconds() const { return sum_seconds_; }
 

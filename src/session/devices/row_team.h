@@ -4,6 +4,8 @@
 // devices' speeds, a meeting point of their threads, and copies of rows from one device to another.
 
 #include <condition_variable>
+#include <cstdint>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <span>

@@ -4,28 +4,17 @@
 
 namespace pertev {
 
-SceneCopy::SceneCopy(Queue& queue, const PreparedScene& scene, const RenderSettings& settings)
-    : scene_(queue), pictures_(scene_) {
-    uploaded_ = std::async(std::launch::async, [this, &scene, settings] {
-        const UseThreads use(scene_.queue().threads());
-        scene_.set(scene, settings);
-    });
-}
-
-void SceneCopy::wait() {
-    if (uploaded_.valid()) uploaded_.get();
-}
-
 void SceneCopy::change(const PreparedScene& scene, uint32_t parts) {
     changed_scene_ = &scene;
     changed_parts_ |= parts;
 }
 
-PictureRenderer& SceneCopy::update(const RenderSettings& settings, bool keeps_before) {
-    wait();
-    const uint32_t parts = std::exchange(changed_parts_, 0);
-    if (keeps_before) scene_.keep_instances();
+PictureRenderer& SceneCopy::update(const DeviceScene& of_caller, const RenderSettings& settings, bool keeps_before) {
+    const uint32_t parts = scene_.is_there() ? std::exchange(changed_parts_, 0) : kAllParts;
+    if (keeps_before && scene_.is_there()) scene_.keep_instances();
+    scene_.take_from(of_caller);
     if (parts == kAllParts) {
+        changed_parts_ = 0;
         scene_.set(*changed_scene_, settings);
     } else if (parts != 0) {
         scene_.update(*changed_scene_, parts, settings);
