@@ -129,20 +129,26 @@ pertev_launches(denoise/reconstruction_stages.cu
 pertev_launches(restir/restir_stages.cu
   restir/add_direct_light.h restir/add_indirect_light.h restir/find_neighbours.h restir/initial_candidates.h
   restir/initial_gi_reservoirs.h restir/reuse_reservoirs.h render/row_band.h
-  STAGES "FromPixel<SampleInitialCandidates>"
-    "FromPixel<MakeInitialGiReservoirs>"
+  STAGES "FromPixel<SampleInitialCandidates<ShadingVariant::General>>"
+    "FromPixel<SampleInitialCandidates<ShadingVariant::Unstacked>>"
+    "FromPixel<MakeInitialGiReservoirs<ShadingVariant::General>>"
+    "FromPixel<MakeInitialGiReservoirs<ShadingVariant::Unstacked>>"
     "FromPixel<FindBefore>"
     "FromPixel<FindNeighbours>"
-    "FromPixel<ReuseReservoirs<LightReservoir>>"
+    "FromPixel<ReuseReservoirs<LightReservoir, ShadingVariant::General>>"
+    "FromPixel<ReuseReservoirs<LightReservoir, ShadingVariant::Unstacked>>"
     "FromPixel<QueueVisibilityRays<LightReservoir>>"
     "CountVisible<LightReservoir>"
     "FromPixel<FinishReuse<LightReservoir>>"
-    "FromPixel<AddDirectLight>"
-    "FromPixel<ReuseReservoirs<BounceReservoir>>"
+    "FromPixel<AddDirectLight<ShadingVariant::General>>"
+    "FromPixel<AddDirectLight<ShadingVariant::Unstacked>>"
+    "FromPixel<ReuseReservoirs<BounceReservoir, ShadingVariant::General>>"
+    "FromPixel<ReuseReservoirs<BounceReservoir, ShadingVariant::Unstacked>>"
     "FromPixel<QueueVisibilityRays<BounceReservoir>>"
     "CountVisible<BounceReservoir>"
     "FromPixel<FinishReuse<BounceReservoir>>"
-    "FromPixel<AddIndirectLight>")
+    "FromPixel<AddIndirectLight<ShadingVariant::General>>"
+    "FromPixel<AddIndirectLight<ShadingVariant::Unstacked>>")
 
 # Stages of integrators.
 pertev_launches(integrators/bidirectional/camera_subpath_stages.cu
@@ -155,12 +161,16 @@ pertev_launches(integrators/bidirectional/camera_subpath_stages.cu
     "ConnectSubpaths<ShadingVariant::PlainDiffuse>")
 pertev_launches(integrators/cast/shade_cast.cu
   integrators/cast/cast.h integrators/ray_tree/tree_stages.h
-  STAGES "ShadeTrees<Cast, MotionVariant::None>"
-    "ShadeTrees<Cast, MotionVariant::Perhaps>")
+  STAGES "ShadeTrees<Cast, MotionVariant::None, ShadingVariant::General>"
+    "ShadeTrees<Cast, MotionVariant::None, ShadingVariant::Unstacked>"
+    "ShadeTrees<Cast, MotionVariant::Perhaps, ShadingVariant::General>"
+    "ShadeTrees<Cast, MotionVariant::Perhaps, ShadingVariant::Unstacked>")
 pertev_launches(integrators/distributed/shade_distributed.cu
   integrators/distributed/distributed.h integrators/ray_tree/tree_stages.h
-  STAGES "ShadeTrees<Distributed, MotionVariant::None>"
-    "ShadeTrees<Distributed, MotionVariant::Perhaps>")
+  STAGES "ShadeTrees<Distributed, MotionVariant::None, ShadingVariant::General>"
+    "ShadeTrees<Distributed, MotionVariant::None, ShadingVariant::Unstacked>"
+    "ShadeTrees<Distributed, MotionVariant::Perhaps, ShadingVariant::General>"
+    "ShadeTrees<Distributed, MotionVariant::Perhaps, ShadingVariant::Unstacked>")
 pertev_launches(integrators/irradiance_cache/cache_stages.cu
   integrators/irradiance_cache/cache_stages.h integrators/irradiance_cache/hemisphere_stages.h
   integrators/irradiance_cache/lookup_stages.h integrators/irradiance_cache/overture_grid.h
@@ -189,7 +199,8 @@ pertev_launches(integrators/irradiance_cache/cache_stages.cu
     "DrawRecords<ShadingVariant::PlainDiffuse>")
 pertev_launches(integrators/light/shade_seen.cu
   integrators/light/shade_seen.h
-  STAGES ShadeSeen)
+  STAGES "ShadeSeen<ShadingVariant::General>"
+    "ShadeSeen<ShadingVariant::Unstacked>")
 pertev_launches(integrators/path/meter_light.cu
   integrators/path/meter_light.h
   STAGES DrawMeterLights
@@ -266,14 +277,17 @@ pertev_launches(integrators/photon_map/photon_stages.cu
     "ShadeGather<ShadingVariant::PlainDiffuse>")
 pertev_launches(integrators/radiosity/shade_radiosity.cu
   integrators/radiosity/radiosity.h integrators/ray_tree/tree_stages.h
-  STAGES "ShadeTrees<Radiosity, MotionVariant::None>")
+  STAGES "ShadeTrees<Radiosity, MotionVariant::None, ShadingVariant::General>"
+    "ShadeTrees<Radiosity, MotionVariant::None, ShadingVariant::Unstacked>")
 pertev_launches(integrators/raster/scan_triangles.cu
   integrators/raster/scan_triangles.h integrators/raster/shade_pixels.h
   STAGES ScanTriangles
     ScanRows
     DrawEdges
-    ShadePixels
-    "InWindow<ShadePixels>")
+    "ShadePixels<ShadingVariant::General>"
+    "ShadePixels<ShadingVariant::Unstacked>"
+    "InWindow<ShadePixels<ShadingVariant::General>>"
+    "InWindow<ShadePixels<ShadingVariant::Unstacked>>")
 pertev_launches(integrators/ray_tree/tree_stages.cu
   integrators/ray_tree/tree_stages.h
   STAGES BeginTrees
@@ -303,8 +317,10 @@ pertev_launches(integrators/subpaths/particle_stages.cu
     "ShadeParticles<ShadingVariant::PlainDiffuse>")
 pertev_launches(integrators/whitted/shade_whitted.cu
   integrators/ray_tree/tree_stages.h integrators/whitted/whitted.h
-  STAGES "ShadeTrees<Whitted, MotionVariant::None>"
-    "ShadeTrees<Whitted, MotionVariant::Perhaps>")
+  STAGES "ShadeTrees<Whitted, MotionVariant::None, ShadingVariant::General>"
+    "ShadeTrees<Whitted, MotionVariant::None, ShadingVariant::Unstacked>"
+    "ShadeTrees<Whitted, MotionVariant::Perhaps, ShadingVariant::General>"
+    "ShadeTrees<Whitted, MotionVariant::Perhaps, ShadingVariant::Unstacked>")
 
 # Stages of lab.
 pertev_launches(lab/brute_force_rays.cu

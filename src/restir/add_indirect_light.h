@@ -7,6 +7,7 @@
 
 namespace pertev {
 
+template <ShadingVariant kVariant>
 struct AddIndirectLight {
     SceneView scene;
     PixelSurfaces here;
@@ -17,10 +18,10 @@ struct AddIndirectLight {
         const BounceReservoir reservoir = reservoirs[pixel];
         if (!(reservoir.weight > 0)) return;
         const Vec3 direction = here.direction(pixel), wo = -direction;
-        const Surface surface = make_surface(scene, here.hit(pixel), direction);
+        const Surface surface = make_surface<kVariant>(scene, here.hit(pixel), direction);
         const Reconnection seen = reconnect(world_triangle(scene, reservoir), surface.position);
         if (!seen.is_there) return;
-        const Surface there = make_surface(scene, reservoir.hit(), seen.wi);
+        const Surface there = make_surface<kVariant>(scene, reservoir.hit(), seen.wi);
         const float factor = reservoir.weight * diffuse_transmittance(there, -seen.wi);
         const Rgb scattered = factor * light_scattered(scene, surface, wo, reservoir);
         add_to_sample(film, pixel, scattered, scattered);

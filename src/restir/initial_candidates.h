@@ -12,6 +12,7 @@
 
 namespace pertev {
 
+template <ShadingVariant kVariant>
 struct SampleInitialCandidates {
     SceneView scene;
     PixelSurfaces here;
@@ -24,7 +25,7 @@ struct SampleInitialCandidates {
         reservoir = {};
         if (!here.is_there(pixel)) return;
         const Vec3 direction = here.direction(pixel), wo = -direction;
-        const Surface surface = make_surface(scene, here.hit(pixel), direction);
+        const Surface surface = make_surface<kVariant>(scene, here.hit(pixel), direction);
         if (surface.is_unlit || surface.bsdf.has_delta_only()) return;
         reservoir.count = 1;
         const SampleKey key = here.key(pixel);

@@ -10,6 +10,7 @@
 
 namespace pertev {
 
+template <ShadingVariant kVariant>
 struct MakeInitialGiReservoirs {
     SceneView scene;
     PixelSurfaces here;
@@ -26,7 +27,7 @@ struct MakeInitialGiReservoirs {
         const Rgb found = {sent.x, sent.y, sent.z};
         if (bits_of(hit.x) == kNoHit || is_black(found) || film.frame.light[pixel].w == 0) return;
         const Vec3 direction = here.direction(pixel);
-        const Surface surface = make_surface(scene, here.hit(pixel), direction);
+        const Surface surface = make_surface<kVariant>(scene, here.hit(pixel), direction);
         BounceReservoir taken = {};
         taken.instance = bits_of(hit.x);
         taken.primitive = bits_of(hit.y);
@@ -34,7 +35,7 @@ struct MakeInitialGiReservoirs {
         taken.v = hit.w;
         const Reconnection seen = reconnect(world_triangle(scene, taken), surface.position);
         if (!seen.is_there) return; // stays in the sample
-        const Surface there = make_surface(scene, taken.hit(), seen.wi);
+        const Surface there = make_surface<kVariant>(scene, taken.hit(), seen.wi);
         const float transmittance = diffuse_transmittance(there, -seen.wi);
         if (!(transmittance > 0)) return;
         const Rgb share = surface.diffuse_share(-direction, seen.wi);

@@ -6,6 +6,7 @@
 #include "restir/add_indirect_light.h"
 #include "restir/initial_candidates.h"
 #include "restir/initial_gi_reservoirs.h"
+#include "shading/with_stacks.h"
 
 namespace pertev {
 namespace {
@@ -73,10 +74,14 @@ void Restir::add(const NoisyFrame& frame, const PictureView& picture, const Samp
     BounceReservoir *const fresh_bounces = bounces_.data(), *const kept_bounces = fresh_bounces + pixels_;
     const bool has_bounces = light_ == RestirLight::Indirect;
     if (has_bounces)
-        launch_in_band(*queue_, "initial_gi_reservoirs", rows_, width_,
-                       MakeInitialGiReservoirs{scene, here, film, fresh_bounces});
-    launch_in_band(*queue_, "initial_candidates", rows_, width_,
-                   SampleInitialCandidates{scene, here, met_.data(), fresh, settings.candidates});
+        with_stacks(scene.variant, [&]<ShadingVariant kVariant>() {
+            launch_in_band(*queue_, "initial_gi_reservoirs", rows_, width_,
+                           MakeInitialGiReservoirs<kVariant>{scene, here, film, fresh_bounces});
+        });
+    with_stacks(scene.variant, [&]<ShadingVariant kVariant>() {
+        launch_in_band(*queue_, "initial_candidates", rows_, width_,
+                       SampleInitialCandidates<kVariant>{scene, here, met_.data(), fresh, settings.candidates});
+    });
     test_visibility(scene, here, fresh, tracer, 0);
     if (has_history_ && settings.history > 0) {
         const FrameCameras cameras = {picture.camera.view, camera_before_.view, width_, height_};
@@ -98,11 +103,16 @@ void Restir::add(const NoisyFrame& frame, const PictureView& picture, const Samp
     launch_in_band(*queue_, "find_beside", rows_, width_,
                    FindNeighbours{here, settings.neighbours, settings.radius, neighbours_.data()});
     reuse(scene, here, here, fresh, fresh, kept, kInfinity, kMaxEntries, tracer, kGroupReuse + 2);
-    launch_in_band(*queue_, "add_direct_light", rows_, width_, AddDirectLight{scene, here, kept, film});
+    with_stacks(scene.variant, [&]<ShadingVariant kVariant>() {
+        launch_in_band(*queue_, "add_direct_light", rows_, width_, AddDirectLight<kVariant>{scene, here, kept, film});
+    });
     if (has_bounces) {
         reuse(scene, here, here, fresh_bounces, fresh_bounces, kept_bounces, kInfinity, kMaxEntries, tracer,
               kGroupReuse + 3);
-        launch_in_band(*queue_, "add_indirect_light", rows_, width_, AddIndirectLight{scene, here, kept_bounces, film});
+        with_stacks(scene.variant, [&]<ShadingVariant kVariant>() {
+            launch_in_band(*queue_, "add_indirect_light", rows_, width_,
+                           AddIndirectLight<kVariant>{scene, here, kept_bounces, film});
+        });
     }
 
     const std::size_t first = std::size_t(rows_.first) * width_, bytes = rows_.count() * width_ * sizeof(Float4);
@@ -119,9 +129,11 @@ template <class Reservoir>
 void Restir::reuse(const SceneView& scene, const PixelSurfaces& here, const PixelSurfaces& there, const Reservoir* own,
                    const Reservoir* others, Reservoir* to, float max_count, uint32_t entries, SceneTracer& tracer,
                    uint32_t group) {
-    launch_in_band(*queue_, "reuse_reservoirs", rows_, width_,
-                   ReuseReservoirs<Reservoir>{scene, here, there, own, others, neighbours_.data(), to, shares_.data(),
-                                              max_count, group});
+    with_stacks(scene.variant, [&]<ShadingVariant kVariant>() {
+        launch_in_band(*queue_, "reuse_reservoirs", rows_, width_,
+                       ReuseReservoirs<Reservoir, kVariant>{scene, here, there, own, others, neighbours_.data(), to,
+                                                            shares_.data(), max_count, group});
+    });
     for (uint32_t entry = 0; entry < entries; ++entry) {
         test_visibility(scene, entry == 0 ? here : there, to, tracer, entry);
     }

@@ -26,7 +26,7 @@ struct alignas(16) Shares {
     float of[kMaxEntries] = {};
 };
 
-template <class Reservoir>
+template <class Reservoir, ShadingVariant kVariant>
 struct ReuseReservoirs {
     SceneView scene;
     PixelSurfaces here, there; // surfaces of entry 0, and of the others
@@ -65,7 +65,7 @@ private:
             const PixelSurfaces& surfaces = j == 0 ? here : there;
             const uint32_t seen_by = j == 0 ? pixel : neighbours[pixel].pixels[j - 1];
             const Vec3 direction = surfaces.direction(seen_by);
-            const Surface surface = make_surface(scene, surfaces.hit(seen_by), direction);
+            const Surface surface = make_surface<kVariant>(scene, surfaces.hit(seen_by), direction);
             for (uint32_t i = 0; i < count; ++i) {
                 if (!(entries[i].weight > 0)) continue;
                 targets[j][i] = luminance(light_scattered(scene, surface, -direction, entries[i]));

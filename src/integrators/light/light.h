@@ -11,6 +11,7 @@
 
 #include "integrators/light/shade_seen.h"
 #include "integrators/subpaths/run_subpaths.h"
+#include "shading/with_stacks.h"
 
 namespace pertev {
 
@@ -25,7 +26,9 @@ struct ParticlesAlone {
         schedule.run("begin_camera_subpaths", job.count,
                      BeginCameraSubpaths{job.scene, job.subpaths, job.samples, job.first});
         schedule.find_hits(RayKind::Camera, job, job.count, 0);
-        schedule.run("shade_seen", job.count, ShadeSeen{job.scene, job.subpaths, job.film});
+        with_stacks(job.scene.picture.scene.variant, [&]<ShadingVariant kVariant>() {
+            schedule.run("shade_seen", job.count, ShadeSeen<kVariant>{job.scene, job.subpaths, job.film});
+        });
     }
 };
 

@@ -7,6 +7,7 @@
 namespace pertev {
 
 /// The stage that shades the hits of camera rays.
+template <ShadingVariant kVariant>
 struct ShadeSeen {
     SubpathScene scene;
     SubpathsView subpaths;
@@ -17,7 +18,7 @@ struct ShadeSeen {
         const Ray ray = load_ray(subpaths.rays[0] + i);
         const SubpathState state = subpaths.states[i];
         if (hit.instance == kNoHit) return add_seen_background(scene.picture, film, state, ray);
-        add_seen(scene.picture, film, state, ray, hit, make_surface(scene.picture.scene, hit, ray.direction));
+        add_seen(scene.picture, film, state, ray, hit, make_surface<kVariant>(scene.picture.scene, hit, ray.direction));
     }
 };
 

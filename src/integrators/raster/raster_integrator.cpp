@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "device/launch.h"
 #include "integrators/raster/shade_pixels.h"
+#include "shading/with_stacks.h"
 
 namespace pertev {
 namespace {
@@ -49,7 +50,9 @@ void RasterIntegrator::render(uint32_t first, uint32_t count, const FilmView& fi
             launch(queue_, "scan_triangles", triangles, ScanTriangles{pass});
             launch(queue_, "scan_rows", static_cast<uint32_t>(rows_.size()), ScanRows{pass});
         }
-        launch_for_pixels("shade_pixels", ShadePixels{pass, film});
+        with_stacks(picture_.scene.variant, [&]<ShadingVariant kVariant>() {
+            launch_for_pixels("shade_pixels", ShadePixels<kVariant>{pass, film});
+        });
     }
     queue_.wait();
 }

@@ -13,6 +13,7 @@
 
 namespace pertev {
 
+template <ShadingVariant kVariant>
 struct ShadePixels {
     RasterPass pass;
     FilmView film;
@@ -52,7 +53,7 @@ private:
             const Vec3 direction = k == 4 || !pass.camera.is_perspective
                                        ? ray.direction
                                        : normalize_or(position_of(hit) - ray.origin, ray.direction);
-            Surface surface = make_surface(scene, hit, direction);
+            Surface surface = make_surface<kVariant>(scene, hit, direction);
             if (k == 4) {
                 add_first_hit(film, pixel, pass.sample, {ray.origin, ray.direction}, hit, surface, pass.picture);
                 if (pass.settings.display.is_wireframe) return surface.albedo; // lines show their unlit colour

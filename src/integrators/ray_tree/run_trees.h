@@ -8,6 +8,7 @@
 #include "device_scene/find_hits.h"
 #include "integrators/ray_tree/tree_stages.h"
 #include "integrators/two_schedules.h"
+#include "shading/with_stacks.h"
 
 namespace pertev {
 
@@ -89,13 +90,15 @@ private:
     std::unique_ptr<bool[]> met_;
 };
 
-/// Runs ShadeTrees with the least code that the picture needs. The loop has one variant alone.
+/// Runs ShadeTrees with the least code that the picture needs. The loop has one variant of motion alone.
 template <class Algorithm, class Schedule>
 void shade_trees(Schedule& schedule, const TreeJob& job, WorkCount rays, uint32_t round, uint32_t first, bool is_last) {
     const auto shade_as = [&]<MotionVariant kMotion>() {
-        schedule.run(
-            "shade_trees", rays,
-            ShadeTrees<Algorithm, kMotion>{job.picture, job.settings, job.film, job.trees, round, first, is_last});
+        with_stacks(job.picture.scene.variant, [&]<ShadingVariant kVariant>() {
+            schedule.run("shade_trees", rays,
+                         ShadeTrees<Algorithm, kMotion, kVariant>{job.picture, job.settings, job.film, job.trees, round,
+                                                                  first, is_last});
+        });
     };
     if constexpr (Schedule::kIsLoop) {
         shade_as.template operator()<MotionVariant::Perhaps>();

@@ -39,7 +39,7 @@ struct BeginTrees {
 /// kShadowsAtOnce; the stage runs again until all have been. The first run adds emission; the last one (`is_last`)
 /// pushes the continuation rays on the stack, in place of the ray that ended there. `kMotion` is None if no shutter is
 /// open; code for both cases would keep surfaces in memory.
-template <class Algorithm, MotionVariant kMotion>
+template <class Algorithm, MotionVariant kMotion, ShadingVariant kVariant>
 struct ShadeTrees {
     PictureView picture;
     RayTreeSettings settings;
@@ -82,7 +82,7 @@ private:
         const float time = kMayMove ? time_of(picture.camera, settings, state) : kAtRest;
         const bool moves = is_moving<kMotion>(scene);
         const MovedHit moved(scene, hit, time);
-        Surface surface = make_surface(scene, hit, kMayMove ? moved.back(ray.direction) : ray.direction);
+        Surface surface = make_surface<kVariant>(scene, hit, kMayMove ? moved.back(ray.direction) : ray.direction);
         if (kMayMove) moved.move(surface);
         if (first_shadow == 0) {
             if (ray.depth == 0) {
