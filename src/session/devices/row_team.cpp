@@ -4,7 +4,9 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <utility>
 
+#include "base/error.h"
 #include "base/stopwatch.h"
 #include "device/peer_copy.h"
 
