@@ -62,6 +62,11 @@ Estimate transported(const Surface& surface, bool particles, uint32_t count) {
 std::vector<BsdfCase> cases_with_deltas() {
     std::vector<BsdfCase> cases = rough_bsdf_cases();
     cases.push_back({"smooth glass", make_dielectric(1.5f, 0, {1.0f, 0.9f, 0.7f})});
+    const Vec3 bent = normalize(Vec3{0.5f, -0.3f, 1});
+    cases.push_back({"rough varnish with a bent normal", make_coated(Bsdf{}, 1, 0.7f, 3, bent)});
+    cases.push_back({"smooth varnish with a bent normal", make_coated(Bsdf{}, 1, 0, 3, bent)});
+    cases.push_back(
+        {"clear pane", make_reflection({.base_color = {0.9f, 0.6f, 0.2f}, .roughness = 0, .through = 0.6f})});
     cases.push_back({"mirror", make_conductor(kGoldEta, kGoldK, 0)});
     cases.push_back({"rough varnish on a mirror", make_coated(make_conductor(kGoldEta, kGoldK, 0), 1, 0.4f, 1.5f)});
     cases.push_back({"smooth varnish on smooth glass", make_coated(make_dielectric(1.5f, 0, grey(1)), 1, 0, 1.5f)});

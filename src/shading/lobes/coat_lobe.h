@@ -5,8 +5,9 @@
 // (LayerTransmittance::pass).
 //
 // Source: KHR_materials_clearcoat, whose layering by Fresnel's term of the view direction alone is not reciprocal;
-// here the coat's directional albedo for both directions replaces it. A bent normal acts as a normal map does: value
-// times cosine is that about the coat's normal, and is 0 where that and the surface's own disagree on the side.
+// here the coat's directional albedo for both directions replaces it. A bent normal's value is 0 where that and the
+// surface's own disagree on the side. For both directions it is reduced where the coat faces them less than the
+// surface does, so that the value is reciprocal and, times either cosine, no larger than about the coat's normal.
 
 #include "math/frame.h"
 #include "shading/lobes/schlick_lobe.h"
@@ -36,11 +37,13 @@ struct CoatLobe {
     HD BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, LayerTransmittance& transmittance) const {
         Vec3 o = {wo.x, wo.y, abs(wo.z)}, i = {wi.x, wi.y, abs(wi.z)};
         bool reflects = wo.z * wi.z > 0;
+        float facing = 1;
         if (is_bent()) {
             const Frame frame = make_frame(normal);
             o = frame.to_local(o);
             i = frame.to_local(i);
             reflects = reflects && o.z > 0 && i.z > 0;
+            facing = factor_of_bend(abs(wo.z), o.z, abs(wi.z), i.z);
             o.z = min(abs(o.z), 1.0f);
             i.z = min(abs(i.z), 1.0f);
         }
@@ -51,7 +54,7 @@ struct CoatLobe {
         BsdfValue value;
         if (!lobe.is_smooth() && reflects) {
             const GgxReflection once = evaluate_ggx_reflection(o, i, alpha);
-            value = {(transmittance.light * strength) * lobe.value_of(once, i.z, average, at_o, at_i),
+            value = {(transmittance.light * strength * facing) * lobe.value_of(once, i.z, average, at_o, at_i),
                      transmittance.reach * lobe.pdf_of(once, i.z, shares.specular, shares.more)};
         }
         transmittance.pass(strength * at_o.coat, strength * at_i.coat, shares.beneath);
@@ -63,6 +66,11 @@ struct CoatLobe {
     }
 
 private:
+    /// Factor on value times cosine about the coat's normal, for the cosines of both directions there (`coat_o`,
+    /// `coat_i`) and about the surface's normal.
+    HD static float factor_of_bend(float cos_o, float coat_o, float cos_i, float coat_i) {
+        return min(1.0f, coat_o / cos_o) * min(1.0f, cos_i / coat_i);
+    }
     HD bool is_bent() const { return normal.x != 0 || normal.y != 0; }
 
     HD LobeDraw draw_straight(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
@@ -79,6 +87,7 @@ private:
         if (draw.is_beneath || !(draw.sample.pdf > 0)) return draw;
         const Vec3 wi = normalize(frame.to_world(draw.sample.wi));
         if (!(o.z > 0 && draw.sample.wi.z > 0 && wi.z > 0)) return {};
+        draw.sample.weight = factor_of_bend(abs(wo.z), o.z, wi.z, draw.sample.wi.z) * draw.sample.weight;
         draw.sample.wi = {wi.x, wi.y, copysign(wi.z, wo.z)};
         return draw;
     }
