@@ -168,6 +168,8 @@ MUTATIONS = part_mutations.MUTATIONS + [
      ("src/shading/lobes/coat_lobe.h", "return is_bent() ? draw_bent(", "return false && is_bent() ? draw_bent(")),
     ("a bent coat that is brighter one way than the other", "statistical/particle_scatter",
      ("src/shading/lobes/coat_lobe.h", "return min(1.0f, coat_o / cos_o) *", "return 1.0f + 0.0f * min(1.0f, coat_o / cos_o) *")),
+    ("an index of refraction read from a thin wall", "statistical/particle_scatter",
+     ("src/render/particle_scatter.h", "if (surface.bsdf.base.kind != LobeKind::Dielectric) return here;", "")),
     ("light through a pane that its reflection does not reduce", "statistical/bsdf_energy",
      ("src/shading/lobes/thin_lobe.h", "(transmittance.light_of_delta() * share", "(transmittance.light * share")),
     ("a weight of the reflection that leaves it at grazing angles", "statistical/bsdf_energy",

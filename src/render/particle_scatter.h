@@ -35,9 +35,11 @@ HD inline float factor(const Surface& surface, Vec3 wo, Vec3 wi, Vec3 wo_local, 
 
 } // namespace particle
 
-/// Square of the refractive index beyond a surface for a particle from `wi`, where it is `here`. Power is the same on
-/// both sides; radiance over n^2 (bsdf_sample.h) is arriving power divided by that square.
+/// Square of the refractive index beyond a surface for a particle from `wi`, where it is `here`; a thin wall has the
+/// same on both sides. Power is the same on both sides; radiance over n^2 (bsdf_sample.h) is arriving power divided by
+/// that square.
 HD inline float squared_index_beyond(const Surface& surface, Vec3 wi, float here) {
+    if (surface.bsdf.base.kind != LobeKind::Dielectric) return here;
     const float squared = square(surface.bsdf.base.dielectric.ior);
     return surface.frame.to_local(wi).z > 0 ? here * squared : here / squared;
 }

@@ -95,6 +95,18 @@ TEST_CASE("particles carry the power of paths for every BSDF, with geometric and
     }
 }
 
+TEST_CASE("a particle's index changes in glass and not beyond a thin wall") {
+    const Vec3 above = {0, 0, 1}, below = {0, 0, -1};
+    const Surface glass = tilted_surface(make_dielectric(1.5f, 0, grey(1)), 0);
+    CHECK(squared_index_beyond(glass, above, 1) == doctest::Approx(2.25));
+    CHECK(squared_index_beyond(glass, below, 2.25f) == doctest::Approx(1));
+    for (const float through : {0.5f, 1.0f}) {
+        const Surface pane = tilted_surface(make_reflection({.base_color = grey(1), .through = through}), 0);
+        CHECK(squared_index_beyond(pane, above, 2.25f) == 2.25f);
+        CHECK(squared_index_along(pane, above, below, 1) == 1.0f);
+    }
+}
+
 TEST_CASE("the particle test detects missing cosines of both normals") {
     const Surface surface = tilted_surface(make_diffuse(grey(1)), 0.3f);
     const Estimate by_path = transported(surface, false, 100'000);
