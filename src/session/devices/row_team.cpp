@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "device/peer_copy.h"
+#include "session/devices/one_device.h"
 
 namespace pertev {
 namespace {
@@ -16,10 +17,6 @@ namespace {
 constexpr uint32_t kWhole = 1u << 20;
 constexpr uint32_t kRowsOfBand = 8; // bands begin at multiples, so that tiles of pixels stay whole
 constexpr double kLeastShare = 0.1; // a device's rows are at least this part of an equal share
-
-Queue another_queue(const Queue& of) {
-    return of.is_cuda() ? Queue::make_cuda(of.device_index(), of.threads()) : Queue::make_cpu(of.threads());
-}
 
 } // namespace
 
