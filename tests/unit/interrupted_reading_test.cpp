@@ -46,6 +46,7 @@ private:
 };
 
 /// Tests that `work` checks its sink at least `least_checks` times and ends at the first, a middle and the last check.
+/// A run may have a check less than another, even on one thread, so the last of another run may be out of reach.
 template <class Work>
 void check_stops(int64_t least_checks, const Work& work) {
     constexpr int64_t kNever = 1 << 30;
@@ -53,9 +54,13 @@ void check_stops(int64_t least_checks, const Work& work) {
     work(never);
     const int64_t checks = kNever - never.left();
     CHECK(checks >= least_checks);
-    for (const int64_t check : {int64_t(0), checks / 2, checks - 1}) {
+    const auto error_at = [&](int64_t check) {
         StopsAt sink(check);
-        const std::optional<Error> error = test::thrown_error([&] { work(sink); });
+        return test::thrown_error([&] { work(sink); });
+    };
+    for (const int64_t check : {int64_t(0), checks / 2, checks - 1}) {
+        std::optional<Error> error = error_at(check);
+        if (!error && check == checks - 1) error = error_at(check - 1);
         REQUIRE(error);
         CHECK(error->code() == ErrorCode::Interrupted);
     }
