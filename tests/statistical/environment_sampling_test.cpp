@@ -57,7 +57,7 @@ float environment_pdf(const EnvironmentView& view, Vec3 direction) {
 }
 
 /// Returns the direction of a longitude and polar angle by the convention of scene/light.h, in double precision.
-Vec3 direction_at(double longitude, double theta) {
+Vec3 direction_at_angles(double longitude, double theta) {
     return {static_cast<float>(std::sin(theta) * std::sin(longitude)), static_cast<float>(std::cos(theta)),
             static_cast<float>(-std::sin(theta) * std::cos(longitude))};
 }
@@ -68,7 +68,7 @@ double integrate_sphere(int steps, const std::function<double(Vec3)>& f) {
     const double d = std::numbers::pi / steps;
     for (int i = 0; i < steps; ++i) {
         const double theta = (i + 0.5) * d, weight = (std::cos(i * d) - std::cos((i + 1) * d)) * d;
-        for (int j = 0; j < 2 * steps; ++j) sum += weight * f(direction_at((j + 0.5) * d, theta));
+        for (int j = 0; j < 2 * steps; ++j) sum += weight * f(direction_at_angles((j + 0.5) * d, theta));
     }
     return sum;
 }
@@ -160,7 +160,7 @@ TEST_CASE("environment: samples follow the density, even within texels") {
             2 * std::numbers::pi * part / width;
         for (uint32_t x = 0; x < width * parts * steps; ++x) {
             const double longitude = 2 * std::numbers::pi * ((x + 0.5) * part / width - 0.5) - 1.1;
-            const double density = as_double(environment_pdf(view, direction_at(longitude, theta)));
+            const double density = as_double(environment_pdf(view, direction_at_angles(longitude, theta)));
             expected[y / steps * width * parts + x / steps] += samples * around * density;
         }
     }

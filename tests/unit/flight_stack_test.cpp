@@ -35,7 +35,7 @@ std::vector<uint32_t> order_of(unsigned mask, const float (&entries)[kWideChildr
     FlightStack stack;
     stack.push<kOptions>(node, children, far_first);
     std::vector<uint32_t> links;
-    for (WideEntry entry = stack.pop(); entry.link != kNoLink; entry = stack.pop()) {
+    for (WideEntry entry = stack.pop(); entry.link != kLeafBit; entry = stack.pop()) {
         CHECK(entry.link == 100 + entry.count);
         CHECK(entry.entry == entries[entry.count]);
         links.push_back(entry.link);
