@@ -33,9 +33,37 @@ HD inline Rgb textured_color(const SceneView& scene, const MeshView& mesh, Rgb f
     return factor * Rgb{texel.x, texel.y, texel.z};
 }
 
-/// Makes the BSDF of a material that is_stacked(). `coat_normal` is unit, in the shading frame.
-HD_CALL inline Bsdf make_stacked_bsdf(const SceneView& scene, const MaterialParameters& material, const MeshView& mesh,
-                                      TriangleIndices i, float u, float v, Rgb base_color, Vec3 coat_normal) {
+/// Makes the BSDF of a material that is not stacked.
+template <ShadingVariant kVariant>
+HD inline Bsdf make_unstacked_bsdf(const SceneView& scene, const MaterialParameters& material, const MeshView& mesh,
+                                   TriangleIndices i, float u, float v, Rgb base_color) {
+    if (!has_lobes(kVariant) || material.kind == MaterialKind::Diffuse || material.kind == MaterialKind::Unlit) {
+        return make_diffuse(base_color);
+    }
+    const float roughness =
+        clamp(textured_factor(scene, mesh, material.roughness, material.roughness_texture, i, u, v), 0.0f, 1.0f);
+    switch (material.kind) {
+    case MaterialKind::Diffuse:
+    case MaterialKind::Unlit:
+        break; // handled above
+    case MaterialKind::Conductor:
+        return make_conductor(material.eta, material.k, roughness);
+    case MaterialKind::Dielectric:
+        return make_dielectric(material.ior, roughness, base_color);
+    case MaterialKind::MetallicRoughness: {
+        const float metallic =
+            clamp(textured_factor(scene, mesh, material.metallic, material.metallic_texture, i, u, v), 0.0f, 1.0f);
+        return make_metallic_roughness(base_color, metallic, roughness, material.ior);
+    }
+    }
+    return make_diffuse(base_color);
+}
+
+/// Makes the BSDF of any material. `coat_normal` is unit, in the shading frame.
+HD_CALL inline Bsdf make_any_bsdf(const SceneView& scene, const MaterialParameters& material, const MeshView& mesh,
+                                  TriangleIndices i, float u, float v, Rgb base_color, Vec3 coat_normal) {
+    if (!material.is_stacked())
+        return make_unstacked_bsdf<ShadingVariant::Unstacked>(scene, material, mesh, i, u, v, base_color);
     const auto number = [&](float factor, const TextureRef& ref) {
         return clamp(textured_factor(scene, mesh, factor, ref, i, u, v), 0.0f, 1.0f);
     };
@@ -83,33 +111,20 @@ HD_CALL inline Bsdf make_stacked_bsdf(const SceneView& scene, const MaterialPara
     return bsdf;
 }
 
+/// Makes the BSDF of a material; `coat_normal` as above.
 template <ShadingVariant kVariant = ShadingVariant::General>
 HD inline Bsdf make_bsdf(const SceneView& scene, const MaterialParameters& material, const MeshView& mesh,
                          TriangleIndices i, float u, float v, Rgb base_color,
                          [[maybe_unused]] Vec3 coat_normal = {0, 0, 1}) {
-    if constexpr (kVariant == ShadingVariant::General) {
-        if (material.is_stacked()) return make_stacked_bsdf(scene, material, mesh, i, u, v, base_color, coat_normal);
+    if constexpr (kVariant != ShadingVariant::General) {
+        return make_unstacked_bsdf<kVariant>(scene, material, mesh, i, u, v, base_color);
+    } else {
+        const bool is_diffuse = material.kind == MaterialKind::Diffuse && !material.is_stacked();
+        Bsdf bsdf = is_diffuse ? make_diffuse(base_color)
+                               : make_any_bsdf(scene, material, mesh, i, u, v, base_color, coat_normal);
+        bsdf.is_called = true;
+        return bsdf;
     }
-    if (!has_lobes(kVariant) || material.kind == MaterialKind::Diffuse || material.kind == MaterialKind::Unlit) {
-        return make_diffuse(base_color);
-    }
-    const float roughness =
-        clamp(textured_factor(scene, mesh, material.roughness, material.roughness_texture, i, u, v), 0.0f, 1.0f);
-    switch (material.kind) {
-    case MaterialKind::Diffuse:
-    case MaterialKind::Unlit:
-        break; // handled above
-    case MaterialKind::Conductor:
-        return make_conductor(material.eta, material.k, roughness);
-    case MaterialKind::Dielectric:
-        return make_dielectric(material.ior, roughness, base_color);
-    case MaterialKind::MetallicRoughness: {
-        const float metallic =
-            clamp(textured_factor(scene, mesh, material.metallic, material.metallic_texture, i, u, v), 0.0f, 1.0f);
-        return make_metallic_roughness(base_color, metallic, roughness, material.ior);
-    }
-    }
-    return make_diffuse(base_color);
 }
 
 } // namespace pertev

@@ -7,6 +7,7 @@
 // weighted by the balance heuristic (Wyman et al., "A Gentle Introduction to ReSTIR", SIGGRAPH 2023 courses).
 
 #include "render/picture_view.h"
+#include "render/scatter_calls.h"
 #include "restir/light_reservoir.h"
 #include "restir/ris_selection.h"
 
@@ -38,7 +39,7 @@ struct SampleInitialCandidates {
                               sample_bits(here.sampler, candidate, kGroupCandidates), light)) {
                 continue;
             }
-            const BsdfValue value = surface.evaluate(wo, light.wi);
+            const BsdfValue value = evaluate_surface<kVariant>(surface, wo, light.wi);
             const float density = drawn * light.pdf + (light.is_delta ? 0.0f : value.pdf);
             if (selection.takes(luminance(value.f * light.radiance) / density)) {
                 reservoir.point = point_of(light);
@@ -49,7 +50,7 @@ struct SampleInitialCandidates {
         float measure = 1;
         const EmitterPoint point = met[pixel];
         if (find_light(scene.lights, point, surface.light_context(wo), light, measure)) {
-            const BsdfValue value = surface.evaluate(wo, light.wi);
+            const BsdfValue value = evaluate_surface<kVariant>(surface, wo, light.wi);
             if (selection.takes(luminance(value.f * light.radiance) / (drawn * light.pdf + value.pdf))) {
                 reservoir.point = point;
                 reservoir.source = 0;

@@ -199,10 +199,11 @@ struct Bsdf {
     Lobe base;
     int layer_count = 0;
     Lobe layers[kMaxLayers]; // the innermost first; a Schlick lobe is the innermost, a Specular one is too or on Thin
-    // There are layers that may lie on anything. Their functions are not inlined (HD_CALL), so that a BSDF without
-    // them costs neither time nor registers.
-    bool is_stacked = false;
-    bool is_thin = false; // there is a thin wall
+    bool is_stacked = false; // there are layers that may lie on anything
+    bool is_thin = false;    // there is a thin wall
+    // Functions of the lobes are called, not inlined (HD_CALL): those of stacks always are, and kernels for stacks call
+    // those of any BSDF, because inlining both would double their code.
+    bool is_called = false;
 
     Bsdf() = default;
     /// Makes a BSDF of one lobe, which is constructed in place, because a copy would wait for its own stores.
@@ -222,6 +223,9 @@ struct Bsdf {
         stack(lobe);
         is_thin = true;
     }
+
+    /// Returns whether the BSDF is a single diffuse lobe, which most surfaces have and a fast path handles.
+    HD bool is_diffuse() const { return base.kind == LobeKind::Diffuse && layer_count == 0; }
 
     /// Value of the lobes of `classes`, and density of all lobes.
     HD BsdfValue evaluate(Vec3 wo, Vec3 wi, LobeClasses classes = kAllLobeClasses) const {
@@ -271,22 +275,19 @@ struct Bsdf {
     HD bool has_delta() const { return has(LobeClass::Specular); }
     /// Returns whether eval() is black for every pair of directions, so that light sampling is useless.
     HD bool has_delta_only() const {
-        if (is_stacked && !has_delta_layers_only(*this)) return false;
-        if (!is_stacked && layer_count == 1 && !layers[0].schlick.is_smooth()) return false;
+        if (is_called && layer_count > 0 && !has_delta_layers_only(*this)) return false;
+        if (!is_called && layer_count == 1 && !layers[0].schlick.is_smooth()) return false;
         return base.kind == LobeKind::None || base.lobe_class() == LobeClass::Specular;
     }
 
 private:
-    /// Returns whether the BSDF is a single diffuse lobe, which most surfaces have and a fast path handles.
-    HD bool is_diffuse() const { return base.kind == LobeKind::Diffuse && layer_count == 0; }
-
     HD void stack(const Lobe& layer) {
         if (layer_count == kMaxLayers) return;
         float beneath = base.energy();
         for (int i = 0; i < layer_count; ++i) beneath += layers[i].energy();
         layers[layer_count] = layer;
         layers[layer_count++].beneath = min(beneath, 1.0f);
-        is_stacked = true;
+        is_stacked = is_called = true;
     }
     HD_CALL static Rgb diffuse_share_of_lobes(Bsdf bsdf, Vec3 wo, Vec3 wi) {
         const Rgb all = bsdf.eval(wo, wi), f = bsdf.evaluate(wo, wi, only(LobeClass::Diffuse)).f;
@@ -306,7 +307,7 @@ private:
         return base.kind == LobeKind::Diffuse ? base.diffuse.evaluate(wo, wi, transmittance) : BsdfValue{};
     }
     HD BsdfValue evaluate_lobes(Vec3 wo, Vec3 wi, LobeClasses classes) const {
-        if (is_stacked) return evaluate_stack(*this, wo, wi, classes);
+        if (is_called) return evaluate_stack(*this, wo, wi, classes);
         LayerTransmittance transmittance;
         if (layer_count == 0) return masked(base.lobe_class(), base.evaluate(wo, wi, transmittance), classes);
         const BsdfValue layer = layers[0].schlick.evaluate(wo, wi, layers[0].beneath, transmittance);
@@ -315,7 +316,7 @@ private:
                masked(LobeClass::Diffuse, evaluate_diffuse(wo, wi, transmittance), classes);
     }
     HD BsdfSample sample_lobes(Vec3 wo, float u_lobe, Vec2 u) const {
-        if (is_stacked) return sample_stack(*this, wo, u_lobe, u);
+        if (is_called) return sample_stack(*this, wo, u_lobe, u);
         LobeDraw draw = {.u_lobe = u_lobe, .is_beneath = true};
         if (layer_count == 1) draw = layers[0].schlick.draw(wo, layers[0].beneath, u_lobe, u);
         const LobeClass lobe_class = draw.is_beneath ? base.lobe_class() : layers[0].schlick.lobe_class();
@@ -360,7 +361,7 @@ private:
     }
     /// Transmittance of the layers from `last` inwards for light along wi to wo.
     HD static float light_through(const Bsdf& bsdf, int last, Vec3 wo, Vec3 wi) {
-        return bsdf.is_stacked ? light_through_stack(bsdf, last, wo, wi) : 1.0f;
+        return bsdf.is_called ? light_through_stack(bsdf, last, wo, wi) : 1.0f;
     }
     HD_CALL static float light_through_stack(Bsdf bsdf, int last, Vec3 wo, Vec3 wi) {
         LayerTransmittance transmittance;

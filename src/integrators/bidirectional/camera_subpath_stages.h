@@ -110,7 +110,7 @@ private:
         const uint32_t choices = camera_group(state.depth(), kSubpathChoices);
         const ScatterDraw draw =
             draw_scatter(settings, key, surface.bsdf, camera_group(state.depth(), kSubpathScatter), choices);
-        BsdfSample sample = surface.sample(wo, draw.lobe, draw.u);
+        BsdfSample sample = sample_surface<kVariant>(surface, wo, draw.lobe, draw.u);
         if (!(sample.pdf > 0) || !survives(settings, key, choices, state.depth() + 1, sample.weight)) return;
         const Vec3 wi = sample.wi;
         if (sample.is_delta()) {

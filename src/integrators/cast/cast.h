@@ -14,10 +14,10 @@ struct Cast {
 
     /// Number of shadow rays of a vertex: one for each point, spot and directional light.
     HD static uint32_t shadow_rays(const LightSetView& lights) { return lights.punctual_count; }
-    HD static bool sample_direct_light(const TreeVertex& vertex, uint32_t number, TreeShadowRay& shadow) {
+    HD static bool sample_direct_light(const auto& vertex, uint32_t number, TreeShadowRay& shadow) {
         return vertex.make_punctual_shadow_ray(number, shadow);
     }
-    HD static void follow(const TreeVertex& vertex) { vertex.add_ambient(); }
+    HD static void follow(const auto& vertex) { vertex.add_ambient(); }
 
     /// Default ambient light: none.
     static Rgb ambient(const EnvironmentView*) { return {0, 0, 0}; }

@@ -20,10 +20,10 @@ struct Distributed {
     static constexpr MinWeight kMinWeight = {0x1p-4f, WeakRays::ByChance};
 
     HD static uint32_t shadow_rays(const LightSetView&) { return 1; }
-    HD static bool sample_direct_light(const TreeVertex& vertex, uint32_t, TreeShadowRay& shadow) {
+    HD static bool sample_direct_light(const auto& vertex, uint32_t, TreeShadowRay& shadow) {
         return vertex.make_drawn_shadow_ray(shadow);
     }
-    HD static void follow(const TreeVertex& vertex) {
+    HD static void follow(const auto& vertex) {
         vertex.follow_glossy(kMinWeight);
         vertex.follow_specular(kMinWeight);
     }

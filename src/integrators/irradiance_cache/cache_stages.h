@@ -136,7 +136,7 @@ private:
         LightSample light;
         const SampleBits bits = sample_bits(scene.settings.sampler, vertex.key, light_group(state.depth()), Pair::Last);
         if (!sample_light<has_textures(kVariant)>(view.lights, surface.light_context(vertex.wo), bits, light)) return;
-        const BsdfValue scattered = surface.evaluate(vertex.wo, light.wi);
+        const BsdfValue scattered = evaluate_surface<kVariant>(surface, vertex.wo, light.wi);
         if (is_black(scattered.f)) return;
         const uint32_t coin = coin_key(vertex.key, state.depth(), true);
         if (light.instance != kNoLight && view.any_alpha != 0 &&
@@ -161,7 +161,7 @@ private:
         const uint32_t choices = camera_group(state.depth(), kSubpathChoices);
         const ScatterDraw draw =
             draw_scatter(settings, vertex.key, surface.bsdf, camera_group(state.depth(), kSubpathScatter), choices);
-        BsdfSample sample = surface.sample(vertex.wo, draw.lobe, draw.u);
+        BsdfSample sample = sample_surface<kVariant>(surface, vertex.wo, draw.lobe, draw.u);
         if (!(sample.pdf > 0)) return;
         Rgb onwards = sample.weight;
         if (!sample.is_delta() && vertex.is_cached) onwards = others_share(vertex, sample, choices);
@@ -192,7 +192,7 @@ private:
     /// Part of the weight that lobes other than the diffuse base scatter. If it is small, few paths continue for it.
     HD Rgb others_share(const Vertex& vertex, const BsdfSample& sample, uint32_t choices) const {
         if (vertex.surface.bsdf.layer_count == 0) return {0, 0, 0};
-        const Rgb f = vertex.surface.evaluate(vertex.wo, sample.wi, only(LobeClass::Glossy)).f;
+        const Rgb f = evaluate_surface<kVariant>(vertex.surface, vertex.wo, sample.wi, only(LobeClass::Glossy)).f;
         const Rgb weight_sum = (1.0f / sample.pdf) * f;
         const float chance = max_component(weight_sum) / max_component(sample.weight);
         if (!(chance < 1)) return weight_sum;

@@ -9,7 +9,7 @@ namespace pertev {
 
 /// Share of diffuse lobes, [0, 1] per colour, in the light that the surface scatters from wi to wo by non-delta
 /// lobes; glossy lobes have the rest. Returns `if_dark` if it scatters nothing.
-HD inline Rgb exact_diffuse_share(const Surface& surface, Vec3 wo, Vec3 wi, float if_dark) {
+HD_CALL inline Rgb exact_diffuse_share(const Surface& surface, Vec3 wo, Vec3 wi, float if_dark) {
     if (!surface.bsdf.has(LobeClass::Glossy)) return grey(1.0f);
     if (!surface.bsdf.has(LobeClass::Diffuse)) return grey(0.0f);
     const Rgb all = surface.evaluate(wo, wi).f, f = surface.evaluate(wo, wi, only(LobeClass::Diffuse)).f;

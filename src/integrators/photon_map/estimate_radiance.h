@@ -120,7 +120,7 @@ private:
         if (!(dot(unpack_normal(bits_of(way.w)), receiver.normal) > 0.7071f)) return {};
         const Vec3 wi = {way.x, way.y, way.z};
         const float cosine = abs(dot(wi, receiver.surface.geometric_normal));
-        const Rgb f = receiver.surface.evaluate(receiver.wo, wi, only(LobeClass::Diffuse)).f;
+        const Rgb f = evaluate_surface<kVariant>(receiver.surface, receiver.wo, wi, only(LobeClass::Diffuse)).f;
         if (is_black(f) || !(cosine > 0)) return {};
         return (1.0f / cosine) * (f * Rgb{power.x, power.y, power.z});
     }

@@ -138,7 +138,7 @@ private:
         const SampleBits bits = sample_bits(scene.settings.sampler, vertex.key, light_group(state.depth()), Pair::Last);
         if (!sample_light<has_textures(kVariant)>(view.lights, surface.light_context(vertex.wo), bits, light)) return 0;
         const float nearness = nearness_of(light);
-        const BsdfValue all = surface.evaluate(vertex.wo, light.wi);
+        const BsdfValue all = evaluate_surface<kVariant>(surface, vertex.wo, light.wi);
         if (is_black(all.f)) return nearness;
         const uint32_t coin = coin_key(vertex.key, state.depth(), true);
         if (light.instance != kNoLight && view.any_alpha != 0 &&
@@ -175,13 +175,13 @@ private:
         const uint32_t choices = camera_group(state.depth(), kSubpathChoices);
         const ScatterDraw draw =
             draw_scatter(settings, vertex.key, surface.bsdf, camera_group(state.depth(), kSubpathScatter), choices);
-        BsdfSample sample = surface.sample(vertex.wo, draw.lobe, draw.u);
+        BsdfSample sample = sample_surface<kVariant>(surface, vertex.wo, draw.lobe, draw.u);
         if (!(sample.pdf > 0)) return;
         Rgb past_mirrors = sample.weight; // factor for light beyond delta lobes from here on
         if (!sample.is_delta() && vertex.is_diffuse) {
             past_mirrors = {};
             if (vertex.is_glossy) {
-                const Rgb glossy = surface.evaluate(vertex.wo, sample.wi, only(LobeClass::Glossy)).f;
+                const Rgb glossy = evaluate_surface<kVariant>(surface, vertex.wo, sample.wi, only(LobeClass::Glossy)).f;
                 past_mirrors = (1.0f / sample.pdf) * glossy;
             }
             if (vertex.may_search) {

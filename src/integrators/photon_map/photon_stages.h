@@ -134,7 +134,7 @@ private:
         const uint32_t choices = particle_group(state.depth(), kSubpathChoices);
         const ScatterDraw draw =
             draw_scatter(settings, key, surface.bsdf, particle_group(state.depth(), kSubpathScatter), choices);
-        BsdfSample sample = sample_adjoint(surface, wi, draw.lobe, draw.u);
+        BsdfSample sample = sample_particle<kVariant>(surface, wi, draw.lobe, draw.u);
         if (!(sample.pdf > 0) || (is_caustic && !sample.is_delta())) return;
         // Photons of similar power give the smoothest maps, so fewer photons continue where only a part is scattered
         // (Jensen 1996, section 4.1).

@@ -17,8 +17,8 @@ struct Radiosity {
     static constexpr MinWeight kMinWeight = {0x1p-10f, WeakRays::LeftOut};
 
     HD static uint32_t shadow_rays(const LightSetView&) { return 0; }
-    HD static bool sample_direct_light(const TreeVertex&, uint32_t, TreeShadowRay&) { return false; }
-    HD static void follow(const TreeVertex& vertex) {
+    HD static bool sample_direct_light(const auto&, uint32_t, TreeShadowRay&) { return false; }
+    HD static void follow(const auto& vertex) {
         const Rgb albedo = vertex.surface.bsdf.diffuse_albedo();
         if (!is_black(albedo)) {
             const SceneView& scene = vertex.picture.scene;

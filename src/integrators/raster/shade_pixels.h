@@ -62,8 +62,9 @@ private:
                 surface.frame = make_frame(surface.geometric_normal);
                 surface.tilt = 0;
             }
-            sum += (k < 3 ? of_corner[k] : 1.0f) *
-                   local_light(scene.lights, surface, -direction, {pass.settings.ambient, pass.settings.max_depth});
+            sum +=
+                (k < 3 ? of_corner[k] : 1.0f) * local_light<kVariant>(scene.lights, surface, -direction,
+                                                                      {pass.settings.ambient, pass.settings.max_depth});
         }
         return sum;
     }

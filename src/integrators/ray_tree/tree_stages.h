@@ -95,11 +95,12 @@ private:
             }
         }
         if (surface.is_unlit || ray.depth >= settings.max_depth) return;
-        const TreeVertex vertex = {picture, settings, trees, tree, state, ray, surface, time, moves, {hit.u, hit.v}};
+        const TreeVertex<kVariant> vertex = {picture, settings, trees, tree,  state,
+                                             ray,     surface,  time,  moves, {hit.u, hit.v}};
         sample_direct_lights(vertex);
         if (is_last) Algorithm::follow(vertex);
     }
-    HD void sample_direct_lights(const TreeVertex& vertex) const {
+    HD void sample_direct_lights(const TreeVertex<kVariant>& vertex) const {
         const uint32_t all = Algorithm::shadow_rays(picture.scene.lights);
         const uint32_t key = tree_key(vertex.state, settings.seed, vertex.number(), true);
         uint32_t slots[kShadowsAtOnce] = {};

@@ -5,10 +5,10 @@
 
 #include "device_scene/moved_surface.h"
 #include "device_scene/ray_origin.h"
-#include "device_scene/surface.h"
 #include "integrators/ray_tree/ray_tree_settings.h"
 #include "integrators/ray_tree/tree_memory.h"
 #include "render/picture_view.h"
+#include "render/scatter_calls.h"
 #include "shading/power_heuristic.h"
 
 namespace pertev {
@@ -41,6 +41,7 @@ HD inline float time_of(const CameraRays& camera, const RayTreeSettings& setting
     return camera.time(settings.sampler, sample_key(settings, tree.pixel, tree.sample));
 }
 
+template <ShadingVariant kVariant>
 struct TreeVertex {
     const PictureView& picture;
     const RayTreeSettings& settings;
@@ -65,7 +66,7 @@ struct TreeVertex {
         const LightSetView& lights = picture.scene.lights;
         if (surface.bsdf.has_delta_only()) return false;
         if (!sample_punctual_light(lights.punctual[light], 1.0f, surface.position, sample)) return false;
-        const BsdfValue all = scattered(surface, wo(), sample.wi, kAllLobeClasses);
+        const BsdfValue all = evaluate_surface<kVariant>(surface, wo(), sample.wi);
         return make_shadow_ray(sample, all.f * sample.radiance, shadow);
     }
 
@@ -77,11 +78,11 @@ struct TreeVertex {
         LightSample sample;
         const SampleBits u = sample_bits(settings.sampler, key(), of, Pair::Last);
         if (!draw_direct(picture.scene, moves, surface.light_context(wo(), time), u, sample)) return false;
-        const BsdfValue all = scattered(surface, wo(), sample.wi, kAllLobeClasses);
+        const BsdfValue all = evaluate_surface<kVariant>(surface, wo(), sample.wi);
         if (is_black(all.f) || is_hole(sample)) return false;
         Rgb f = all.f;
         if (!sample.is_delta && surface.bsdf.has(LobeClass::Glossy)) {
-            const Rgb glossy = scattered(surface, wo(), sample.wi, only(LobeClass::Glossy)).f;
+            const Rgb glossy = evaluate_surface<kVariant>(surface, wo(), sample.wi, only(LobeClass::Glossy)).f;
             f = f - (1.0f - power_heuristic(sample.pdf, all.pdf)) * glossy;
         }
         return make_shadow_ray(sample, f * ((1.0f / sample.pdf) * sample.radiance), shadow);
@@ -106,18 +107,15 @@ struct TreeVertex {
         if (!surface.bsdf.has(LobeClass::Glossy)) return;
         const float lobe =
             surface.bsdf.draws_lobe() ? sample_1d(settings.sampler, key(), group(kTreeChoices), kTreeNumberLobe) : 0.5f;
-        const BsdfSample drawn = surface.sample(wo(), lobe, sample_2d(settings.sampler, key(), group(kTreeScatter)));
+        const BsdfSample drawn =
+            sample_surface<kVariant>(surface, wo(), lobe, sample_2d(settings.sampler, key(), group(kTreeScatter)));
         if (!(drawn.pdf > 0) || drawn.is_delta()) return; // delta lobes have their own rays
-        const BsdfValue value = scattered(surface, wo(), drawn.wi, only(LobeClass::Glossy));
+        const BsdfValue value = evaluate_surface<kVariant>(surface, wo(), drawn.wi, only(LobeClass::Glossy));
         if (!(value.pdf > 1e-30f)) return;
         follow(drawn.wi, (1.0f / value.pdf) * value.f, value.pdf, Branch::Glossy, least);
     }
 
 private:
-    /// Scattered light. It is not inlined, so that a kernel contains it once.
-    HD_CALL static BsdfValue scattered(const Surface& surface, Vec3 wo, Vec3 wi, LobeClasses classes) {
-        return surface.evaluate(wo, wi, classes);
-    }
     /// Makes the shadow ray to a light sample; `f_times_light` arrives if it is unoccluded.
     HD bool make_shadow_ray(const LightSample& light, Rgb f_times_light, TreeShadowRay& shadow) const {
         if (is_black(f_times_light)) return false;

@@ -79,7 +79,7 @@ struct Micropolygon {
             direction = normalize_or(to_float(world_position(middle) - pass.camera.eye), camera.axis);
         }
         const Surface s = surface(pass.picture.scene, middle, {kThird, kThird}, direction);
-        return local_light(pass.picture.scene.lights, s, -direction, pass.light);
+        return local_light<ShadingVariant::General>(pass.picture.scene.lights, s, -direction, pass.light);
     }
 
 private:

@@ -191,7 +191,7 @@ private:
         const uint32_t choices = particle_group(state.depth(), kSubpathChoices);
         const ScatterDraw draw =
             draw_scatter(settings, key, surface.bsdf, particle_group(state.depth(), kSubpathScatter), choices);
-        BsdfSample sample = sample_adjoint(surface, wi, draw.lobe, draw.u);
+        BsdfSample sample = sample_particle<kVariant>(surface, wi, draw.lobe, draw.u);
         if (!(sample.pdf > 0) || !survives(settings, key, choices, state.depth() + 1, sample.weight)) return;
         const Vec3 wo = sample.wi;
         if (scene.is_connected) {

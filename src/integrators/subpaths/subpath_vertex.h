@@ -5,8 +5,8 @@
 #include "base/host_device.h"
 #include "integrators/subpaths/subpath_memory.h"
 #include "integrators/subpaths/subpath_settings.h"
-#include "render/particle_scatter.h"
 #include "render/picture_view.h"
+#include "render/scatter_calls.h"
 
 namespace pertev {
 
@@ -19,17 +19,13 @@ struct SubpathScene {
 };
 
 /// A surface's scattering between two directions, for a camera subpath (light along wi to wo) and for a particle
-/// (from wi, along wo); each is the other's reverse. Long code is not inlined, so that a kernel contains it once.
+/// (from wi, along wo); each is the other's reverse.
 struct BothWays {
     BsdfValue camera, particle;
 };
-HD_CALL inline BothWays scatter_both_ways_of_any(const Surface& surface, Vec3 wo, Vec3 wi) {
-    return {surface.evaluate(wo, wi), evaluate_adjoint(surface, wi, wo)};
-}
 template <ShadingVariant kVariant>
 HD inline BothWays scatter_both_ways(const Surface& surface, Vec3 wo, Vec3 wi) {
-    if constexpr (has_lobes(kVariant)) return scatter_both_ways_of_any(surface, wo, wi);
-    return {surface.evaluate(wo, wi), evaluate_adjoint(surface, wi, wo)};
+    return {evaluate_surface<kVariant>(surface, wo, wi), evaluate_particle<kVariant>(surface, wi, wo)};
 }
 
 HD inline float cosine_at(const Surface& surface, Vec3 direction) {

@@ -16,10 +16,10 @@ struct Whitted {
     static constexpr MinWeight kMinWeight = {0x1p-10f, WeakRays::LeftOut};
 
     HD static uint32_t shadow_rays(const LightSetView& lights) { return lights.punctual_count; }
-    HD static bool sample_direct_light(const TreeVertex& vertex, uint32_t number, TreeShadowRay& shadow) {
+    HD static bool sample_direct_light(const auto& vertex, uint32_t number, TreeShadowRay& shadow) {
         return vertex.make_punctual_shadow_ray(number, shadow);
     }
-    HD static void follow(const TreeVertex& vertex) {
+    HD static void follow(const auto& vertex) {
         vertex.add_ambient();
         vertex.follow_specular(kMinWeight);
     }

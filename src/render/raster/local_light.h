@@ -3,8 +3,8 @@
 // Local illumination without rays: emission, an ambient light, and light of each point, spot and directional light
 // that the diffuse and glossy lobes of the BSDF scatter. There are no shadows; mirrors and glass are black.
 
-#include "device_scene/surface.h"
 #include "render/picture_view.h"
+#include "render/scatter_calls.h"
 
 namespace pertev {
 
@@ -14,6 +14,7 @@ struct LocalLight {
 };
 
 /// Radiance from `surface` towards `wo` (unit), W/(sr m2).
+template <ShadingVariant kVariant>
 HD inline Rgb local_light(const LightSetView& lights, const Surface& surface, Vec3 wo, const LocalLight& requested) {
     Rgb sum = surface.emission;
     if (surface.is_unlit || requested.max_depth == 0) return sum;
@@ -22,7 +23,7 @@ HD inline Rgb local_light(const LightSetView& lights, const Surface& surface, Ve
     for (uint32_t k = 0; k < lights.punctual_count; ++k) {
         LightSample sample;
         if (!sample_punctual_light(lights.punctual[k], 1.0f, surface.position, sample)) continue;
-        sum += surface.evaluate(wo, sample.wi, kAllLobeClasses).f * sample.radiance;
+        sum += evaluate_surface<kVariant>(surface, wo, sample.wi).f * sample.radiance;
     }
     return sum;
 }

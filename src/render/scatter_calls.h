@@ -1,0 +1,78 @@
+#pragma once
+
+// Scattering at a surface for stages of many integrators: device code calls these functions where materials have lobes,
+// so that a kernel contains each once and compiles in a fraction of the time. Path tracing inlines
+// Surface::evaluate and Surface::sample instead, which is faster.
+
+#include "render/particle_scatter.h"
+
+namespace pertev {
+
+/// Tells the compiler what all BSDFs of a scene's variant have in common, which it cannot see in memory.
+template <ShadingVariant kVariant>
+HD inline void assume_variant([[maybe_unused]] const Bsdf& bsdf) {
+#if defined(__CUDA_ARCH__)
+    if constexpr (has_lobes(kVariant)) {
+        __builtin_assume(bsdf.is_called == (kVariant == ShadingVariant::General));
+    } else {
+        __builtin_assume(bsdf.base.kind == LobeKind::Diffuse);
+        __builtin_assume(bsdf.layer_count == 0);
+    }
+#endif
+}
+
+namespace scatter_call {
+
+template <ShadingVariant kVariant>
+HD_CALL inline BsdfValue evaluate(const Surface& surface, Vec3 wo, Vec3 wi, LobeClasses classes) {
+    assume_variant<kVariant>(surface.bsdf);
+    return surface.evaluate(wo, wi, classes);
+}
+template <ShadingVariant kVariant>
+HD_CALL inline BsdfSample sample(const Surface& surface, Vec3 wo, float u_lobe, Vec2 u) {
+    assume_variant<kVariant>(surface.bsdf);
+    return surface.sample(wo, u_lobe, u);
+}
+template <ShadingVariant kVariant>
+HD_CALL inline BsdfValue evaluate_particle(const Surface& surface, Vec3 wi, Vec3 wo) {
+    assume_variant<kVariant>(surface.bsdf);
+    return evaluate_adjoint(surface, wi, wo);
+}
+template <ShadingVariant kVariant>
+HD_CALL inline BsdfSample sample_particle(const Surface& surface, Vec3 wi, float u_lobe, Vec2 u) {
+    assume_variant<kVariant>(surface.bsdf);
+    return sample_adjoint(surface, wi, u_lobe, u);
+}
+
+} // namespace scatter_call
+
+/// Surface::evaluate.
+template <ShadingVariant kVariant>
+HD inline BsdfValue evaluate_surface(const Surface& surface, Vec3 wo, Vec3 wi, LobeClasses classes = kAllLobeClasses) {
+    if constexpr (has_lobes(kVariant)) return scatter_call::evaluate<kVariant>(surface, wo, wi, classes);
+    assume_variant<kVariant>(surface.bsdf);
+    return surface.evaluate(wo, wi, classes);
+}
+/// Surface::sample.
+template <ShadingVariant kVariant>
+HD inline BsdfSample sample_surface(const Surface& surface, Vec3 wo, float u_lobe, Vec2 u) {
+    if constexpr (has_lobes(kVariant)) return scatter_call::sample<kVariant>(surface, wo, u_lobe, u);
+    assume_variant<kVariant>(surface.bsdf);
+    return surface.sample(wo, u_lobe, u);
+}
+/// evaluate_adjoint().
+template <ShadingVariant kVariant>
+HD inline BsdfValue evaluate_particle(const Surface& surface, Vec3 wi, Vec3 wo) {
+    if constexpr (has_lobes(kVariant)) return scatter_call::evaluate_particle<kVariant>(surface, wi, wo);
+    assume_variant<kVariant>(surface.bsdf);
+    return evaluate_adjoint(surface, wi, wo);
+}
+/// sample_adjoint().
+template <ShadingVariant kVariant>
+HD inline BsdfSample sample_particle(const Surface& surface, Vec3 wi, float u_lobe, Vec2 u) {
+    if constexpr (has_lobes(kVariant)) return scatter_call::sample_particle<kVariant>(surface, wi, u_lobe, u);
+    assume_variant<kVariant>(surface.bsdf);
+    return sample_adjoint(surface, wi, u_lobe, u);
+}
+
+} // namespace pertev
