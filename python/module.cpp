@@ -14,6 +14,7 @@
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
 
+#include "apps/cli/run_program.h"
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "formats/builtin_scenes.h"
@@ -355,6 +356,13 @@ NB_MODULE(_core, module) {
     define_scene(module);
     define_images(module);
     module.def("merge", &merge);
+    module.def("_run_program", [](std::vector<std::string> words) {
+        std::vector<char*> pointers;
+        for (std::string& word : words) pointers.push_back(word.data());
+        pointers.push_back(nullptr);
+        const nb::gil_scoped_release release;
+        return run_program(static_cast<int>(words.size()), pointers.data());
+    });
 }
 
 } // namespace pertev

@@ -15,7 +15,7 @@ if command -v ccache >/dev/null; then # pip builds from the start each time
 fi
 
 make_one() { # python kind
-    local python=$1 kind=$2 raw=$work/raw tree program folder options=(--config-settings=cmake.define.PERTEV_CUDA=OFF) libraries
+    local python=$1 kind=$2 raw=$work/raw tree folder options=(--config-settings=cmake.define.PERTEV_CUDA=OFF) libraries
     if [[ $kind == cuda ]]; then
         export PERTEV_WHEEL_CUDA=true CUDAFLAGS="--compress-mode=size ${CUDAFLAGS:-}"
         options=(--config-settings=cmake.define.PERTEV_CUDA=ON --config-settings=cmake.define.PERTEV_WERROR=OFF # ptxas warns of bounds that some GPUs lack
@@ -26,9 +26,8 @@ make_one() { # python kind
     "$work/env/bin/pip" wheel . --no-deps -w "$raw" --config-settings="build-dir=$work/$kind" "${options[@]}"
     "$work/tools/bin/wheel" unpack -d "$raw" "$raw"/*.whl
     tree=$(compgen -G "$raw/pertev-*/")
-    program=$tree/pertev_program/pertev
     folder=$(compgen -G "$tree/*.dist-info")/licenses
-    mapfile -t libraries < <(libraries_of "$program" "$tree"/pertev/_core*.so)
+    mapfile -t libraries < <(libraries_of "$tree"/pertev/_core*.so)
     copy_licences "$folder" "${libraries[@]}"
     rm "$raw"/*.whl
     "$work/tools/bin/wheel" pack -d "$raw" "$tree"

@@ -2,8 +2,8 @@
 
 import json
 import os
-import shutil
 import subprocess
+import sys
 import threading
 import webbrowser
 
@@ -16,12 +16,9 @@ _OF_VIEWS = {name: row for name, row in OF_PICTURES.items() if row["is_viewed"]}
 
 
 def _program():
-    """Returns the program: that of $PERTEV_PROGRAM, the one installed with this package, or the one on the path."""
-    beside = os.path.join(os.path.dirname(__file__), "..", "pertev_program", "pertev")
-    found = os.environ.get("PERTEV_PROGRAM") or (beside if os.path.exists(beside) else shutil.which("pertev"))
-    if not found:
-        raise Error("there is no program 'pertev'; set PERTEV_PROGRAM to it")
-    return found
+    """Returns the words that start the program: that of $PERTEV_PROGRAM, or the one of this package."""
+    given = os.environ.get("PERTEV_PROGRAM")
+    return [given] if given else [sys.executable, "-m", "pertev_program"]
 
 
 class Viewer:
@@ -36,7 +33,7 @@ class Viewer:
             flag = "--" + name.replace("_", "-")
             is_switch = _OF_VIEWS[name]["type"] == "bool"
             flags += ([flag] if texts == ["true"] else []) if is_switch else [x for text in texts for x in (flag, text)]
-        self._process = subprocess.Popen([_program(), "view", scene, *flags, "--json"], stdout=subprocess.PIPE,
+        self._process = subprocess.Popen([*_program(), "view", scene, *flags, "--json"], stdout=subprocess.PIPE,
                                          stderr=subprocess.DEVNULL, text=True)
         try:
             self.url = self._address()
