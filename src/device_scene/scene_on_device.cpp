@@ -110,14 +110,7 @@ void add_table(PartArrays& arrays, const GuidedCdf& table, GuidedCdfView& view) 
 PartArrays list_lights(const LightSetData& lights, LightSetView& view) {
     PartArrays arrays;
     add_table(arrays, lights.choice, view.choice);
-    arrays.add(lights.emitters, view.emitters);
-    arrays.add(lights.triangle_order, view.triangle_order);
-    arrays.add(lights.triangle_starts, view.triangle_starts);
-    arrays.add(lights.triangle_guides, view.triangle_guides);
-    arrays.add(lights.triangles, view.triangles);
-    arrays.add(lights.punctual, view.punctual);
-    arrays.add(lights.first_light, view.first_light);
-    arrays.add(lights.emissions, view.emissions);
+    visit_arrays(lights, view, [&](const auto& array, auto& pointer) { arrays.add(array, pointer); });
     return arrays;
 }
 

@@ -299,18 +299,11 @@ uint64_t count_emissive_triangles(const Scene& scene) {
 LightSetView view_of(const LightSetData& data, const TextureImageView* images, const float* linear_from_srgb) {
     LightSetView view;
     view.choice = view_of(data.choice);
-    view.emitters = data.emitters.data();
-    view.triangles = data.triangles.data();
-    view.triangle_order = data.triangle_order.data();
-    view.triangle_starts = data.triangle_starts.data();
-    view.triangle_guides = data.triangle_guides.data();
-    view.punctual = data.punctual.data();
+    visit_arrays(data, view, [](const auto& array, auto& pointer) { pointer = array.data(); });
     view.emitter_count = static_cast<uint32_t>(data.emitters.size());
     view.triangle_count = static_cast<uint32_t>(data.triangles.size());
     view.punctual_count = static_cast<uint32_t>(data.punctual.size());
     if (data.environment) view.environment_source = view.emitter_count + view.punctual_count;
-    view.first_light = data.first_light.data();
-    view.emissions = data.emissions.data();
     view.images = images;
     view.linear_from_srgb = linear_from_srgb;
     if (data.environment) view.environment = view_of(*data.environment);

@@ -51,6 +51,20 @@ void share_draws(LightSetData& data, double far_share);
 /// Number of emissive triangles; every instance counts separately.
 uint64_t count_emissive_triangles(const Scene& scene);
 
+/// Calls `visit(array, pointer)` for each array and the pointer to it in a view. The table of sources and the
+/// environment have views of their own.
+template <class Visit>
+void visit_arrays(const LightSetData& data, LightSetView& view, const Visit& visit) {
+    visit(data.emitters, view.emitters);
+    visit(data.triangle_order, view.triangle_order);
+    visit(data.triangle_starts, view.triangle_starts);
+    visit(data.triangle_guides, view.triangle_guides);
+    visit(data.triangles, view.triangles);
+    visit(data.punctual, view.punctual);
+    visit(data.first_light, view.first_light);
+    visit(data.emissions, view.emissions);
+}
+
 /// View of host memory, valid as long as the data, the images and the table.
 LightSetView view_of(const LightSetData& data, const TextureImageView* images, const float* linear_from_srgb);
 

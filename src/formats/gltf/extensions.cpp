@@ -5,15 +5,16 @@
 
 #include <fmt/format.h>
 
+#include "formats/gltf/light.h"
+
 namespace pertev::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 13> kRead = {
-    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "KHR_animation_pointer",
-    "KHR_lights_punctual",     "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
-    "KHR_materials_ior",       "KHR_materials_sheen",     "KHR_materials_specular",
-    "KHR_materials_unlit",     "KHR_materials_variants",  "KHR_mesh_quantization",
-    "KHR_texture_transform"};
+constexpr std::array<std::string_view, 12> kRead = {
+    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression",         "KHR_animation_pointer",
+    "KHR_materials_clearcoat", "KHR_materials_emissive_strength", "KHR_materials_ior",
+    "KHR_materials_sheen",     "KHR_materials_specular",          "KHR_materials_unlit",
+    "KHR_materials_variants",  "KHR_mesh_quantization",           "KHR_texture_transform"};
 
 // Some cases of these are read, and materials.cpp and material_layers.cpp warn of the others.
 constexpr std::array<std::string_view, 3> kReadInPart = {"KHR_materials_pbrSpecularGlossiness",
@@ -46,8 +47,8 @@ const Conversion* conversion_of(std::string_view extension) {
 } // namespace
 
 bool is_known_extension(std::string_view name) {
-    return holds(kRead, name) || holds(kReadInPart, name) || holds(kWithoutEffect, name) ||
-           conversion_of(name) != nullptr;
+    return holds(kRead, name) || holds(light_extensions(), name) || holds(kReadInPart, name) ||
+           holds(kWithoutEffect, name) || conversion_of(name) != nullptr;
 }
 
 std::string conversion_advice(std::string_view extension, const std::filesystem::path& file) {

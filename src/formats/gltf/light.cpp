@@ -46,6 +46,11 @@ float not_negative(const JsonValue& number, Sink& sink) {
 
 } // namespace
 
+std::span<const std::string_view> light_extensions() {
+    static constexpr std::string_view kNames[] = {"KHR_lights_punctual"};
+    return kNames;
+}
+
 Light read_light(const JsonValue& source, Sink& sink) {
     Light light;
     read_member(source, "name", sink, [&](const JsonValue& name) { light.name = name.to_string(); });
