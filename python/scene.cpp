@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "image/picture_hash.h"
-#include "session/device_names.h"
+#include "session/devices/device_names.h"
 #include "session/film_file/film_file.h"
 #include "session/opening/strictness.h"
 #include "session/pictures/choose_display.h"

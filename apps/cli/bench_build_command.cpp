@@ -18,7 +18,7 @@
 #include "device_scene/place_meshes.h"
 #include "lab/record_scenes.h"
 #include "lab/stored_figures.h"
-#include "session/machine.h"
+#include "session/devices/machine.h"
 #include "tracer/hploc/device_builder.h"
 
 namespace pertev {

@@ -15,7 +15,7 @@
 #include "apps/cli/reporter.h"
 #include "base/error.h"
 #include "base/stopwatch.h"
-#include "session/machine.h"
+#include "session/devices/machine.h"
 #include "session/opening/choose_camera.h"
 #include "session/opening/open_scene.h"
 #include "session/session.h"

@@ -18,10 +18,10 @@
 #include "lab/record_scenes.h"
 #include "lab/stored_figures.h"
 #include "math/portable_math.h"
-#include "session/device_names.h"
 #include "session/devices/batch_on_devices.h"
+#include "session/devices/device_names.h"
 #include "session/devices/frames_on_devices.h"
-#include "session/machine.h"
+#include "session/devices/machine.h"
 #include "settings/tracer_options.h"
 
 namespace pertev {

@@ -15,7 +15,7 @@
 #include "lab/report_page.h"
 #include "math/portable_math.h"
 #include "session/check_integrator.h"
-#include "session/machine.h"
+#include "session/devices/machine.h"
 #include "session/opening/calibrated_camera.h"
 #include "session/opening/choose_camera.h"
 #include "session/opening/open_scene.h"

@@ -23,7 +23,7 @@
 #include "lab/record_scenes.h"
 #include "lab/stored_figures.h"
 #include "render/prepare_scene.h"
-#include "session/machine.h"
+#include "session/devices/machine.h"
 #include "session/opening/calibrated_camera.h"
 #include "session/opening/choose_camera.h"
 #include "settings/tracer_options.h"

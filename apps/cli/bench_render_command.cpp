@@ -21,7 +21,7 @@
 #include "lab/isolated_rays.h"
 #include "lab/record_scenes.h"
 #include "lab/stored_figures.h"
-#include "session/machine.h"
+#include "session/devices/machine.h"
 #include "session/writing/check_outputs.h"
 #include "settings/tracer_options.h"
 

@@ -25,7 +25,7 @@
 #include "lab/ray_sets.h"
 #include "lab/record_scenes.h"
 #include "lab/run_lab.h"
-#include "session/machine.h"
+#include "session/devices/machine.h"
 #include "session/opening/calibrated_camera.h"
 #include "session/opening/strictness.h"
 

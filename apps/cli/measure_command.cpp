@@ -12,7 +12,7 @@
 #include "apps/cli/setting_flags.h"
 #include "base/error.h"
 #include "base/stopwatch.h"
-#include "session/machine.h"
+#include "session/devices/machine.h"
 #include "session/measure_irradiance.h"
 #include "session/moving_scene.h"
 #include "session/opening/strictness.h"

@@ -129,7 +129,25 @@ uint32_t FilmRender::render(SampleRange range, Sink& sink) {
     const uint32_t first = range.first, before = samples().count();
     const uint32_t count = std::min(range.count(), kMaxSamplesPerPixel - std::min(first, kMaxSamplesPerPixel));
     if (count == 0) return 0;
-    if (pictures_.sharing() != nullptr) return render_shared(*pictures_.sharing(), {first, first + count}, sink);
+    if (SharedRender* const sharing = pictures_.sharing()) {
+        PERTEV_CHECK(settings_.denoise == Denoise::None);
+        find_hidden_backs(); // while its device is known to work
+        Film& into = film();
+        SharedSamples added;
+        try {
+            const SharedPicture picture = {pictures_, camera_, settings_, add_targets_, number_, first - before};
+            added = sharing->render(picture, {first, first + count}, before, into, sink);
+        } catch (...) {
+            forget_samples();
+            throw;
+        }
+        if (added.count == 0) return 0;
+        into.set_samples({first - before, first + added.count});
+        stats_.rays = stats_.rays + added.rays;
+        stats_.render_seconds += added.seconds;
+        if (before == 0) stats_.first_pixel_seconds = added.first_seconds;
+        return added.count;
+    }
     const Stopwatch since_call;
     Film& into_film = film();
     const bool has_steps = settings_.denoise != Denoise::None;
@@ -193,27 +211,6 @@ uint32_t FilmRender::render(SampleRange range, Sink& sink) {
         if (settings_.time_limit_s > 0 && seconds >= settings_.time_limit_s) break;
     }
     return samples().count() - before;
-}
-
-uint32_t FilmRender::render_shared(SharedRender& sharing, SampleRange range, Sink& sink) {
-    PERTEV_CHECK(settings_.denoise == Denoise::None);
-    const uint32_t before = samples().count();
-    find_hidden_backs(); // while its device is known to work
-    Film& into = film();
-    SharedSamples added;
-    try {
-        const SharedPicture picture = {pictures_, camera_, settings_, add_targets_, number_, range.first - before};
-        added = sharing.render(picture, range, before, into, sink);
-    } catch (...) {
-        forget_samples();
-        throw;
-    }
-    if (added.count == 0) return 0;
-    into.set_samples({range.first - before, range.first + added.count});
-    stats_.rays = stats_.rays + added.rays;
-    stats_.render_seconds += added.seconds;
-    if (before == 0) stats_.first_pixel_seconds = added.first_seconds;
-    return added.count;
 }
 
 void FilmRender::find_hidden_backs() {

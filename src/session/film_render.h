@@ -74,7 +74,6 @@ public:
     const RenderSettings& settings() const { return settings_; }
 
 private:
-    uint32_t render_shared(SharedRender& sharing, SampleRange range, Sink& sink);
     void find_hidden_backs();
     void forget_samples();
     AddTargets targets_of_films();

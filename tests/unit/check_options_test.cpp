@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include "session/devices/machine.h"
 #include "session/writing/check_outputs.h"
 #include "settings/setting_table.h"
 #include "tests/support/options.h"
@@ -23,7 +24,11 @@ PictureOptions options_of(const Values& values) {
 }
 
 std::optional<Error> refusal(const Values& values, uint32_t verb = kRender) {
-    return test::thrown_error([&] { check_options(options_of(values), verb); });
+    return test::thrown_error([&] {
+        const PictureOptions options = options_of(values);
+        check_options(options, verb);
+        check_devices(options, verb);
+    });
 }
 
 std::optional<Error> refusal_of_outputs(const Values& values, const std::vector<std::string>& names) {

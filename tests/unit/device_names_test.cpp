@@ -1,6 +1,6 @@
 // Names of devices: which devices they are, and what is refused.
 
-#include "session/device_names.h"
+#include "session/devices/device_names.h"
 
 #include <doctest/doctest.h>
 

@@ -7,7 +7,6 @@
 #include "base/error.h"
 #include "denoise/oidn/oidn_library.h"
 #include "session/check_integrator.h"
-#include "session/device_names.h"
 #include "session/frame_range.h"
 #include "session/opening/open_scene.h"
 #include "session/opening/picture_settings.h"
@@ -39,14 +38,6 @@ void check_denoised_part(const PictureOptions& options) {
                 "it needs all samples of a pixel, in their order; divide this picture by `rows`");
 }
 
-/// Refuses several devices for what one device does alone.
-void check_devices(const PictureOptions& options, uint32_t verbs) {
-    const std::string& device = options.machine.device;
-    if (!names_several_devices(device)) return;
-    if ((verbs & (kRender | kView | kBenchSequence)) == 0) refuse_several_devices(device, "this");
-    if (options.render.denoise != Denoise::None) refuse_several_devices(device, "`denoise`");
-}
-
 } // namespace
 
 void check_options(const PictureOptions& options, uint32_t verbs) {
@@ -55,7 +46,6 @@ void check_options(const PictureOptions& options, uint32_t verbs) {
     sample_range(options);
     row_range(options);
     check_denoised_part(options);
-    check_devices(options, verbs);
     check_real_time(options);
     if (options.reconstruction.used().denoiser == FrameDenoiser::Oidn) OidnLibrary::find("frame_denoiser");
     requested_exposure(options);

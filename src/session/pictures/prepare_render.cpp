@@ -10,8 +10,8 @@
 #include "base/stopwatch.h"
 #include "formats/read_camera_path.h"
 #include "session/check_integrator.h"
-#include "session/device_names.h"
-#include "session/machine.h"
+#include "session/devices/device_names.h"
+#include "session/devices/machine.h"
 #include "session/opening/calibrated_camera.h"
 #include "session/opening/camera_list.h"
 #include "session/opening/open_scene.h"
@@ -54,6 +54,7 @@ void check(PictureOptions& options, uint32_t verbs) {
     if (options.real_time && !options.is_given("spp")) options.render.samples = 1;
     if (!options.samples.empty()) options.render.samples = sample_range(options).end;
     check_options(options, verbs);
+    check_devices(options, verbs);
 }
 
 /// Returns the picture's settings, after `options` have taken what the scene's file suggests.

@@ -1,4 +1,4 @@
-#include "session/machine.h"
+#include "session/devices/machine.h"
 
 #include <algorithm>
 #include <chrono>
@@ -10,7 +10,8 @@
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "device/device_identity.h"
-#include "session/device_names.h"
+#include "session/devices/device_names.h"
+#include "settings/setting.h"
 
 namespace pertev {
 namespace {
@@ -50,6 +51,13 @@ Queues queues_of(const std::vector<NamedDevice>& devices, const Threads& threads
 }
 
 } // namespace
+
+void check_devices(const PictureOptions& options, uint32_t verbs) {
+    const std::string& device = options.machine.device;
+    if (!names_several_devices(device)) return;
+    if ((verbs & (kRender | kView | kBenchSequence | kBenchFrames)) == 0) refuse_several_devices(device, "this");
+    if (options.render.denoise != Denoise::None) refuse_several_devices(device, "`denoise`");
+}
 
 std::unique_ptr<Queue> open_queue(const MachineOptions& options, Sink& sink) {
     return StartingMachine(options, sink).take();

@@ -1,4 +1,4 @@
-#include "session/device_names.h"
+#include "session/devices/device_names.h"
 
 #include <algorithm>
 #include <charconv>
