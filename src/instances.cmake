@@ -101,6 +101,9 @@ pertev_launches(denoise/oidn/oidn_stages.cu
   denoise/oidn/oidn_stages.h render/pixel_window.h
   STAGES MeanOidnGuides
     InWindow<MeanOidnGuides>
+    AddOidnGuides
+    InWindow<AddOidnGuides>
+    FinishOidnGuides
     ReadShownFrame
     ShowColor)
 pertev_launches(denoise/picture_denoiser_stages.cu

@@ -31,12 +31,13 @@ public:
     virtual uint32_t feature_samples() const = 0;
     /// Adds the hits of a sample's camera rays. `frame` may have no light.
     virtual void add_features(const NoisyFrame& frame, const SceneView& scene) = 0;
-    /// Adds the next sample of each pixel, with light.
-    virtual void add(const NoisyFrame& frame, const SceneView& scene) = 0;
+    /// Adds the next sample of each pixel, with light; `sample` is its number.
+    virtual void add(const NoisyFrame& frame, const SceneView& scene, uint32_t sample) = 0;
     /// Returns what it has gathered of the window's pixels; those of others are missing.
     virtual DenoiserState state() const = 0;
     /// Replaces that, of all pixels, by the state of denoisers of the same picture and kind, whose windows may have
-    /// been others. Throws Error(BadInput) for words that are no such state.
+    /// been others, as may their samples if the state has sums (DenoiserStateSize). Throws Error(BadInput) for words
+    /// that are no such state.
     virtual void restore(const DenoiserState& state) = 0;
     /// Returns `picture`, linear RGB or RGBA, after this step; alpha stays. It is that of the samples since begin(), of
     /// which there is at least one, after the steps before this one.

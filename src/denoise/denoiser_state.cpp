@@ -88,19 +88,39 @@ void DenoiserTarget::read(std::size_t first, std::span<std::byte> to) const {
     if (first == 0) read_ = now_ ? now_() : DenoiserState();
     const DenoiserState& words = now_ ? read_ : words_;
     if (words.empty()) {
-        std::memset(to.data(), 0xff, to.size());
+        std::vector<uint32_t> missing(to.size() / stride());
+        fill_missing(first / stride(), missing);
+        std::memcpy(to.data(), missing.data(), to.size());
     } else {
         std::memcpy(to.data(), reinterpret_cast<const std::byte*>(words.data()) + first, to.size());
     }
     if (first + to.size() == byte_count()) read_ = {};
 }
 
+/// Fills words from number `first` on as no sample would leave them.
+void DenoiserTarget::fill_missing(std::size_t first, std::span<uint32_t> to) const {
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] = first + i < sums_from_ ? kMissingWord : 0;
+}
+
 void DenoiserTarget::add_bytes(std::size_t first, std::span<const std::byte> from) {
     PERTEV_CHECK(first % stride() == 0 && from.size() % stride() == 0 && first + from.size() <= byte_count());
-    if (words_.empty()) words_.assign(count_, kMissingWord);
-    uint32_t* to = words_.data() + first / stride();
-    for (std::size_t at = 0; at < from.size(); at += stride(), ++to) {
-        if (*to == kMissingWord) std::memcpy(to, &from[at], stride());
+    if (words_.empty()) {
+        words_.resize(count_);
+        fill_missing(0, words_);
+    }
+    const std::size_t begin = first / stride(), end = begin + from.size() / stride();
+    const std::size_t sums = std::clamp(sums_from_, begin, end);
+    const auto source = [&](std::size_t word) { return &from[(word - begin) * stride()]; };
+    for (std::size_t word = begin; word < sums; ++word) {
+        if (words_[word] == kMissingWord) std::memcpy(&words_[word], source(word), stride());
+    }
+    PERTEV_CHECK((sums - sums_from_) % 2 == 0 && (end - sums) % 2 == 0); // blocks hold whole sums
+    for (std::size_t word = sums; word < end; word += 2) {
+        uint64_t sum = 0, more = 0;
+        std::memcpy(&sum, &words_[word], sizeof sum);
+        std::memcpy(&more, source(word), sizeof more);
+        sum += more;
+        std::memcpy(&words_[word], &sum, sizeof sum);
     }
 }
 

@@ -22,6 +22,12 @@ namespace pertev {
 using DenoiserState = std::vector<uint32_t>; // empty: nothing was gathered
 inline constexpr uint32_t kMissingWord = 0xffffffffu;
 
+/// The number of words of a denoiser's state. The last ones, `sums`, are sums of samples: whole numbers of 64 bits, the
+/// low half first, which parts with other samples add to. They are 0 where the part has no sample.
+struct DenoiserStateSize {
+    std::size_t words = 0, sums = 0;
+};
+
 /// The words that all parts have in common. They precede those of pixels.
 struct DenoiserHead {
     static constexpr std::size_t kWords = 32;
@@ -51,9 +57,9 @@ void restore_pixels(Queue& queue, std::span<const PixelWords> arrays, std::size_
 /// The target of a denoised film: the state of its denoiser, on the host.
 class DenoiserTarget final : public FilmTarget {
 public:
-    /// Makes a target of so many words. While it is read, `now`, if it is not empty, gives the state.
-    explicit DenoiserTarget(std::size_t count, std::function<DenoiserState()> now = {})
-        : count_(count), now_(std::move(now)) {}
+    /// Makes a target of this size. While it is read, `now`, if it is not empty, gives the state.
+    explicit DenoiserTarget(DenoiserStateSize size, std::function<DenoiserState()> now = {})
+        : count_(size.words), sums_from_(size.words - size.sums), now_(std::move(now)) {}
 
     /// Returns the words that were added, and takes them out of the target.
     DenoiserState take() { return std::exchange(words_, {}); }
@@ -62,7 +68,7 @@ public:
     void clear() override { words_ = {}; }
     void show(FilmView&) const override {}
     bool is_like(const FilmTarget& other) const override;
-    /// Takes the words that are missing here.
+    /// Takes the words that are missing here, and adds the sums.
     void add(const FilmTarget& other) override;
     std::size_t byte_count() const override { return count_ * sizeof(uint32_t); }
     std::size_t stride() const override { return sizeof(uint32_t); }
@@ -70,7 +76,9 @@ public:
     void add_bytes(std::size_t first, std::span<const std::byte> from) override;
 
 private:
-    std::size_t count_;
+    void fill_missing(std::size_t first, std::span<uint32_t> to) const;
+
+    std::size_t count_, sums_from_;
     std::function<DenoiserState()> now_;
     DenoiserState words_;        // empty: all are missing
     mutable DenoiserState read_; // The state while it is read.

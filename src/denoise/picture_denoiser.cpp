@@ -62,7 +62,7 @@ void PictureDenoiser::add_features(const NoisyFrame& frame, const SceneView& sce
     ++features_;
 }
 
-void PictureDenoiser::add(const NoisyFrame& frame, const SceneView& scene) {
+void PictureDenoiser::add(const NoisyFrame& frame, const SceneView& scene, uint32_t) {
     PERTEV_CHECK(features_ >= kFeatures);
     if (samples_ >= features_) add_features(frame, scene);
     launch_in(*queue_, "gather_light", window_, GatherLight{surfaces_of(frame, scene)});

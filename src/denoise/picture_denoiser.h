@@ -26,7 +26,7 @@ public:
     /// smooth even with few samples.
     uint32_t feature_samples() const override { return kFeatures; }
     void add_features(const NoisyFrame& frame, const SceneView& scene) override;
-    void add(const NoisyFrame& frame, const SceneView& scene) override;
+    void add(const NoisyFrame& frame, const SceneView& scene, uint32_t sample) override;
     DenoiserState state() const override;
     void restore(const DenoiserState& state) override;
     static constexpr std::size_t state_words(std::size_t pixels) { return DenoiserHead::kWords + pixels * kPixelWords; }

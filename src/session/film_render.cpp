@@ -90,10 +90,10 @@ Film& FilmRender::film() {
 /// Returns what adds the targets of new films: those that set_targets() requests, and what a post step gathers.
 AddTargets FilmRender::targets_of_films() {
     if (settings_.denoise == Denoise::None) return add_targets_;
-    const std::size_t words = denoiser_state_words(settings_.denoise, settings_.width, settings_.height);
-    return [add = add_targets_, words, steps = steps_](Film& film) {
+    const DenoiserStateSize size = denoiser_state_size(settings_.denoise, settings_.width, settings_.height);
+    return [add = add_targets_, size, steps = steps_](Film& film) {
         if (add) add(film);
-        film.hold(std::make_unique<DenoiserTarget>(words, [steps] { return steps->state(); }));
+        film.hold(std::make_unique<DenoiserTarget>(size, [steps] { return steps->state(); }));
     };
 }
 

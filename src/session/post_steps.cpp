@@ -23,18 +23,20 @@ std::vector<std::unique_ptr<Denoiser>> make_denoisers(Queue& queue, const Render
     return denoisers;
 }
 
-std::size_t denoiser_state_words(Denoise denoise, uint32_t width, uint32_t height) {
+DenoiserStateSize denoiser_state_size(Denoise denoise, uint32_t width, uint32_t height) {
     const std::size_t pixels = std::size_t(width) * height;
     switch (denoise) {
     case Denoise::None:
-        return 0;
+        return {};
     case Denoise::Svgf:
-        return PictureDenoiser::state_words(pixels);
+        return {PictureDenoiser::state_words(pixels), 0};
     case Denoise::Oidn:
-        return OidnDenoiser::state_words(pixels);
+        return OidnDenoiser::state_size(pixels);
     }
-    return 0;
+    return {};
 }
+
+bool adds_exactly(Denoise denoise) { return denoise == Denoise::None || denoiser_state_size(denoise, 1, 1).sums > 0; }
 
 std::string PostSteps::names() const {
     std::string names;
@@ -92,7 +94,7 @@ void PostSteps::add(Integrator& integrator, uint32_t first, uint32_t count, cons
         if (sink != nullptr && sink->should_stop()) return;
         launch_in(pictures_.queue(), "add_frame_to_film", window_,
                   AddFrameToFilm{sample_->view(), film.view(), scene, sample == 0});
-        for (const auto& denoiser : denoisers_) denoiser->add(*sample_, scene);
+        for (const auto& denoiser : denoisers_) denoiser->add(*sample_, scene, sample);
     }
     pictures_.queue().wait();
 }

@@ -14,8 +14,11 @@ namespace pertev {
 
 /// Makes the steps that `settings` request. Throws Error(BadInput, OutOfMemory, DeviceFault).
 std::vector<std::unique_ptr<Denoiser>> make_denoisers(Queue& queue, const RenderSettings& settings);
-/// Returns the number of words of their Denoiser::state; 0 without any.
-std::size_t denoiser_state_words(Denoise denoise, uint32_t width, uint32_t height);
+/// Returns the size of their Denoiser::state; 0 without any.
+DenoiserStateSize denoiser_state_size(Denoise denoise, uint32_t width, uint32_t height);
+
+/// Returns whether what they gather of samples adds up exactly in any order, as a film does.
+bool adds_exactly(Denoise denoise);
 
 class PostSteps {
 public:

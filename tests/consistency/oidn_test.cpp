@@ -4,15 +4,18 @@
 
 #include <dlfcn.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 
 #include <doctest/doctest.h>
 
+#include "base/write_file_atomically.h"
 #include "denoise/oidn/oidn_filter.h"
 #include "formats/read_scene.h"
 #include "image/picture_hash.h"
 #include "session/film_file/merge_films.h"
+#include "session/pictures/check_options.h"
 #include "session/session_bytes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
@@ -138,7 +141,7 @@ TEST_CASE("a library that is missing, lacks a function, has no device or is of a
                    ErrorCode::BadInput, "frame_denoiser", "oidn"));
 }
 
-TEST_CASE("parts by rows have the guides of one run") {
+TEST_CASE("parts of rows and samples have the guides of one run, in any order") {
     const StandIn stand_in;
     if (!stand_in.is_there()) return;
     Queue queue = requested_queue();
@@ -146,29 +149,54 @@ TEST_CASE("parts by rows have the guides of one run") {
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     RenderSettings settings = small_settings(Denoise::Oidn);
-    settings.samples = 19; // more than those that are always gathered
+    settings.samples = 23; // more than those that are always gathered
     DeviceScene on_device(queue);
     on_device.set(prepared, settings);
     PictureRenderer pictures(on_device);
-    FilmRender whole(pictures, mixed_scene_camera(), settings);
-    REQUIRE(whole.render({0, 19}) == 19);
+    FilmRender whole(pictures, mixed_scene_camera(), settings), fewer(pictures, mixed_scene_camera(), settings);
+    REQUIRE(whole.render({0, 23}) == 23);
+    REQUIRE(fewer.render({0, 16}) == 16);
+    const Image expected = whole.denoised().value();
+    CHECK(expected.pixels != fewer.denoised().value().pixels);
     FilmHeader header;
     header.width = settings.width, header.height = settings.height, header.denoise = settings.denoise;
-    header.part = {0, settings.height, {0, 19}};
-    Film all = header.make_film(queue);
-    for (const auto& [first, end] : {std::pair(0u, 5u), {5u, 32u}}) {
-        settings.first_row = first, settings.end_row = end;
-        FilmRender part(pictures, mixed_scene_camera(), settings);
-        REQUIRE(part.render({0, 19}) == 19);
-        for (std::size_t i = 0; i < all.targets().size(); ++i)
-            all.targets()[i]->add_bytes(0, part.film().targets()[i]->bytes());
+    header.spp = 23;
+    const std::vector<FilmPart> bands = {{0, 5, {0, 23}}, {5, 32, {0, 23}}},
+                                samples = {{0, 32, {0, 3}}, {0, 32, {3, 17}}, {0, 32, {17, 20}}, {0, 32, {20, 23}}},
+                                both = {{0, 5, {0, 23}}, {5, 32, {0, 18}}, {5, 32, {18, 23}}};
+    for (std::vector<FilmPart> parts : {bands, samples, both}) {
+        std::vector<std::string> files;
+        for (const FilmPart& of : parts) {
+            settings.first_row = of.first_row, settings.end_row = of.end_row;
+            FilmRender part(pictures, mixed_scene_camera(), settings);
+            REQUIRE(part.render(of.samples) == of.samples.count());
+            header.part = of;
+            files.push_back(scratch_folder() / "part.pvf");
+            const std::vector<std::byte> bytes = film_file_bytes(header, part.film());
+            write_file_atomically(files.back(), bytes);
+        }
+        for (int order = 0; order < 2; ++order) {
+            const FilmMerge merge(files, false);
+            Film all = merge.film(queue, nobody());
+            for (std::size_t i = 0; i < all.targets().size(); ++i)
+                CHECK(all.targets()[i]->bytes() == whole.film().targets()[i]->bytes());
+            const RenderResult result = result_of(merge.header(), all, queue);
+            CHECK(result.denoised.value().pixels == expected.pixels);
+            CHECK(result.denoiser == whole.denoiser());
+            std::ranges::reverse(files);
+        }
     }
-    all.set_part(header.part);
-    for (std::size_t i = 0; i < all.targets().size(); ++i)
-        CHECK(all.targets()[i]->bytes() == whole.film().targets()[i]->bytes());
-    const RenderResult result = result_of(header, all, queue);
-    CHECK(result.denoised.value().pixels == whole.denoised().value().pixels);
-    CHECK(result.denoiser == whole.denoiser());
+}
+
+TEST_CASE("parts of samples are accepted for Open Image Denoise") {
+    const StandIn stand_in;
+    if (!stand_in.is_there()) return;
+    PictureOptions options;
+    options.render.denoise = Denoise::Oidn;
+    options.part = "1/2";
+    CHECK(!thrown_error([&] { check_options(options, kRender); }));
+    options.render.denoise = Denoise::Svgf;
+    CHECK(is_about(thrown_error([&] { check_options(options, kRender); }), ErrorCode::BadInput, "denoise", "svgf"));
 }
 
 TEST_CASE("a call that fails is an error of its kind, and nothing leaks") {

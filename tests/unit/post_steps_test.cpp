@@ -16,7 +16,7 @@ struct LinearStep final : Denoiser {
     void begin(const NoisyFrame&, const CameraView&, const PixelWindow&) override {}
     uint32_t feature_samples() const override { return 0; }
     void add_features(const NoisyFrame&, const SceneView&) override {}
-    void add(const NoisyFrame&, const SceneView&) override {}
+    void add(const NoisyFrame&, const SceneView&, uint32_t) override {}
     DenoiserState state() const override { return {}; }
     void restore(const DenoiserState&) override {}
     Image apply(Image picture) override {

@@ -19,6 +19,66 @@ HD inline OidnGuide oidn_guide(const NoisyFrameView& frame, uint32_t pixel) {
     return {{min(albedo.r, 1.0f), min(albedo.g, 1.0f), min(albedo.b, 1.0f), 0}, {normal.x, normal.y, normal.z, 0}};
 }
 
+/// Exact sums of guides over samples, from which their order leaves no trace.
+struct OidnSums {
+    static constexpr uint32_t kArrays = 7; // albedo, normal, number of samples
+    static constexpr double kUnit = 0x1p-38;
+
+    int64_t* numbers; // one array after the other, in units of kUnit
+    uint32_t pixels;
+
+    HD int64_t& at(uint32_t array, uint32_t pixel) const { return numbers[std::size_t(array) * pixels + pixel]; }
+};
+
+/// The stage that adds a sample to sums of guides.
+struct AddOidnGuides {
+    NoisyFrameView frame;
+    OidnSums sums;
+
+    HD void operator()(uint32_t pixel) const {
+        const OidnGuide guide = oidn_guide(frame, pixel);
+        add(0, pixel, guide.albedo);
+        add(3, pixel, guide.normal);
+        sums.at(6, pixel) += 1;
+    }
+
+private:
+    static constexpr float kMost = 2; // times kMaxSamplesPerPixel it fits 64 bits
+
+    HD void add(uint32_t array, uint32_t pixel, Float4 guide) const {
+        const float values[] = {guide.x, guide.y, guide.z};
+        for (uint32_t i = 0; i < 3; ++i) {
+            sums.at(array + i, pixel) += static_cast<int64_t>(clamp(values[i], -kMost, kMost) * 0x1p38f);
+        }
+    }
+};
+
+/// The stage that makes the guides' means of all samples: of `first` ones, whose means are there, and of the sums.
+struct FinishOidnGuides {
+    const Float4 *first_albedo, *first_normal;
+    double first;
+    OidnSums sums;
+    Float4 *albedo, *normal;
+
+    HD void operator()(uint32_t pixel) const {
+        albedo[pixel] = mean(first_albedo[pixel], 0, pixel);
+        normal[pixel] = mean(first_normal[pixel], 3, pixel);
+    }
+
+private:
+    HD Float4 mean(Float4 of_first, uint32_t array, uint32_t pixel) const {
+        const int64_t more = sums.at(6, pixel);
+        if (more == 0) return of_first;
+        const double share = 1.0 / (first + static_cast<double>(more));
+        return {mean(of_first.x, sums.at(array, pixel), share), mean(of_first.y, sums.at(array + 1, pixel), share),
+                mean(of_first.z, sums.at(array + 2, pixel), share), 0};
+    }
+    HD float mean(float of_first, int64_t sum, double share) const {
+        return static_cast<float>((first * static_cast<double>(of_first) + static_cast<double>(sum) * OidnSums::kUnit) *
+                                  share);
+    }
+};
+
 /// The stage that takes a sample into means of guides: `share` is 1 over the number of samples so far.
 struct MeanOidnGuides {
     NoisyFrameView frame;

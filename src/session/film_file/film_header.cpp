@@ -122,7 +122,7 @@ std::string json_of_targets(const FilmHeader& header) {
 Film FilmHeader::make_film(Queue& queue) const {
     Film film(queue, width, height, aovs, light_layers, layers_at);
     if (denoise != Denoise::None)
-        film.hold(std::make_unique<DenoiserTarget>(denoiser_state_words(denoise, width, height)));
+        film.hold(std::make_unique<DenoiserTarget>(denoiser_state_size(denoise, width, height)));
     return film;
 }
 

@@ -98,9 +98,9 @@ void FilmMerge::take_header(const std::string& file, const FilmHeader& header) {
     header_.rays = rays, header_.render_seconds = seconds, header_.spp = spp;
 }
 
-/// Refuses parts of samples of a picture that is denoised: only the same samples of other rows add up.
+/// Refuses parts of samples of a picture whose denoiser adds floats: only the same samples of other rows add up.
 void FilmMerge::refuse_other_samples() const {
-    if (header_.denoise == Denoise::None) return;
+    if (adds_exactly(header_.denoise)) return;
     const auto first = std::ranges::find_if(parts_, [](const Part& part) { return !part.of.is_empty(); });
     for (auto part = first; part != parts_.end(); ++part) {
         if (part->of.is_empty() || part->of.samples == first->of.samples) continue;
@@ -162,7 +162,7 @@ void FilmMerge::check_rows(bool is_partial) {
 Film FilmMerge::film(Queue& queue, Sink& sink) const {
     const std::size_t bytes =
         Film::predicted_bytes(header_.width, header_.height, header_.aovs, header_.light_layers, header_.layers_at) +
-        denoiser_state_words(header_.denoise, header_.width, header_.height) * sizeof(uint32_t);
+        denoiser_state_size(header_.denoise, header_.width, header_.height).words * sizeof(uint32_t);
     if (bytes > machine_memory_bytes()) {
         throw Error(ErrorCode::OutOfMemory, FileLocation{parts_.front().file},
                     fmt::format("the film takes {:.1f} MiB; this machine has {:.1f} MiB", mebibytes(bytes),

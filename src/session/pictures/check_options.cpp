@@ -11,6 +11,7 @@
 #include "session/opening/open_scene.h"
 #include "session/opening/picture_settings.h"
 #include "session/pictures/choose_display.h"
+#include "session/post_steps.h"
 #include "session/sample_range.h"
 #include "settings/check_settings.h"
 #include "settings/value_names.h"
@@ -29,9 +30,9 @@ void check_solution(const std::string& file) {
     throw Error(ErrorCode::BadInput, "solution", file, "the file does not exist");
 }
 
-/// Refuses a part without all samples of its pixels to a denoiser, which adds floats up in the samples' order.
+/// Refuses a part without all samples of its pixels to a denoiser that adds floats up in the samples' order.
 void check_denoised_part(const PictureOptions& options) {
-    if (options.render.denoise == Denoise::None) return;
+    if (adds_exactly(options.render.denoise)) return;
     const SampleRange range = sample_range(options);
     if (range.first == 0 && (range.end == options.render.samples || !options.samples.empty())) return;
     throw Error(ErrorCode::BadInput, "denoise", std::string(name_of(options.render.denoise)),
