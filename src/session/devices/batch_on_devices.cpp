@@ -109,6 +109,7 @@ SharedBatch render_batch(RenderOnDevices& together, PictureRenderer& pictures, c
     const auto render = [&](DeviceWorker& worker) {
         std::optional<uint32_t> taken;
         try {
+            stay_near(worker.queue());
             const UseThreads use(worker.queue().threads());
             PictureRenderer& own = worker.pictures_of(pictures, settings);
             if (together.hooks().before_samples) together.hooks().before_samples(worker.number());
