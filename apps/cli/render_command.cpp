@@ -211,7 +211,8 @@ int render(RenderFlags& flags) {
     std::optional<Session> session(std::in_place, queue, ready->prepared(), record.camera.camera, settings);
     if (together) session->pictures().share(*together);
     if (frames_together) session->pictures().share_frames(*frames_together);
-    const bool has_film = !flags.checkpoint.empty() || std::ranges::any_of(flags.outputs, is_film_name);
+    const bool has_film =
+        (!flags.checkpoint.empty() && !flags.real_time) || std::ranges::any_of(flags.outputs, is_film_name);
     if (writes_tone_mapped(flags.outputs) || has_film) {
         record.display = choose_display(flags, *session, reporter);
         report_display(*record.display, is_metered(flags), reporter);

@@ -154,6 +154,15 @@ void Reconstruction::add_upsampled(const NoisyFrame& frame, const CameraView& li
     ++frames_;
 }
 
+void Reconstruction::begin_after(const NoisyFrame& frame, const CameraView& light_camera, const NoisyFrame* features,
+                                 const CameraView& camera) {
+    upsampled_.reset();
+    if (features != nullptr) upsampled_.emplace(*queue_, features->width(), features->height()).begin_after(camera);
+    has_gloss_ = frame.splits_light();
+    last_camera_ = light_camera;
+    frames_ = 1;
+}
+
 std::vector<RowArray> Reconstruction::rows_of_history() const {
     if (frames_ == 0) return {};
     const HistoryView last = history(frames_);

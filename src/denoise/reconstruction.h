@@ -42,6 +42,11 @@ public:
     void share(RowExchange* others) { others_ = others; }
     /// Arrays of the last frame that the next one needs; none after a cut.
     std::vector<RowArray> rows_of_history() const;
+    /// Goes on after a frame of another reconstruction, whose rows_of_history() the caller then fills in. `frame` is
+    /// like its samples, and `light_camera` has seen them; `features` and `camera` are those of add_upsampled, else
+    /// null.
+    void begin_after(const NoisyFrame& frame, const CameraView& light_camera, const NoisyFrame* features,
+                     const CameraView& camera);
     /// Arrays of the last frame that the functions below show.
     std::vector<RowArray> rows_of_result() const;
     /// Makes the picture of `frame`, which has this size, seen by `camera` in `scene`. `before` has the positions in

@@ -41,6 +41,10 @@ public:
     void share(RowExchange* others) { others_ = others; }
     /// Arrays of the last frame that the next one needs; none after a cut.
     std::vector<RowArray> rows_of_history() const;
+    /// Goes on after a frame of other reservoirs, whose rows_of_history() the caller then fills in.
+    void begin_after(const CameraRays& camera, const SampleNumbers& numbers) {
+        camera_before_ = camera, numbers_before_ = numbers, has_history_ = true;
+    }
     /// Arrays in which the samples of a frame leave their first bounce.
     FirstBounceView first_bounce() const;
 

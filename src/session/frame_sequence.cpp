@@ -11,16 +11,30 @@
 
 namespace pertev {
 
+namespace {
+
+/// Returns the settings of a frame of the picture's size, whose paths end at the first surface.
+RenderSettings settings_of_features(const RenderSettings& settings, const RenderSettings& of_light) {
+    RenderSettings of_features = of_light;
+    of_features.width = settings.width;
+    of_features.height = settings.height;
+    of_features.path.max_depth = 0;
+    return of_features;
+}
+
+} // namespace
+
 void FrameSequence::cut() {
     if (reconstruction_) reconstruction_->cut();
     if (restir_) restir_->cut();
+    restored_.reset();
     has_moved_ = scene_has_changed_ = false;
     camera_before_.reset();
 }
 
 void FrameSequence::scene_changes() {
     scene_has_changed_ = true;
-    if (!reconstruction_ || reconstruction_->frames() == 0 || has_moved_ || camera_before_) return;
+    if (!has_history() || has_moved_ || camera_before_) return;
     pictures_.scene().keep_instances();
     has_moved_ = true;
 }
@@ -79,6 +93,7 @@ void FrameSequence::check(const FrameTask& task) {
 }
 
 void FrameSequence::follow(const FrameSequence& leader) {
+    restored_ = leader.restored_;
     if (reconstruction_ && !leader.has_history()) reconstruction_->cut();
     if (restir_ && !(leader.restir_ && leader.restir_->has_history())) restir_->cut();
     has_moved_ = leader.has_moved_;
@@ -92,7 +107,7 @@ bool FrameSequence::render_rows(const FrameTask& task, RowExchange* others, Sink
     RenderSettings of_light = settings_of_frames(settings);
     of_light.width = scaled_side(settings.width, reconstruction);
     of_light.height = scaled_side(settings.height, reconstruction);
-    number_ = number;
+    number_ = number, camera_ = camera;
     NoisyFrame& frame = fit_frame(scene, sample_, of_light.width, of_light.height);
     if (!reconstruction_ || !temporal_gradients_ ||
         !temporal_gradients_->fits(frame)) { // another size, or other signals
@@ -105,11 +120,9 @@ bool FrameSequence::render_rows(const FrameTask& task, RowExchange* others, Sink
     Restir* const shared = restir_for(restir, of_light);
     reconstruction_->share(others);
     if (shared != nullptr) shared->share(others);
-    if (others != nullptr) {
-        std::vector<RowArray> last = reconstruction_->rows_of_history();
-        if (shared != nullptr) std::ranges::copy(shared->rows_of_history(), std::back_inserter(last));
-        others->begin_taking_last(last);
-    }
+    const bool is_restored = restored_ != nullptr; // then each device takes all rows
+    if (is_restored) take_restored(task, of_light);
+    if (others != nullptr) others->begin_taking_last(is_restored ? std::vector<RowArray>() : rows_of_history());
     rays_ = {};
     kind_seconds_ = {};
     const TemporalGradientsView change = measure_gradients(of_light, reconstruction);
@@ -131,10 +144,7 @@ bool FrameSequence::render_rows(const FrameTask& task, RowExchange* others, Sink
         sharing_timer_.stop();
     }
     if (reconstruction.resolution_scale < 1) {
-        RenderSettings of_features = of_light;
-        of_features.width = settings.width;
-        of_features.height = settings.height;
-        of_features.path.max_depth = 0;
+        const RenderSettings of_features = settings_of_features(settings, of_light);
         NoisyFrame& features = fit_frame(scene, features_, settings.width, settings.height);
         render_sample(number, camera, of_features, features);
         const CameraView feature_camera = pictures_.view_of(camera, of_features).camera.view;
@@ -148,6 +158,64 @@ bool FrameSequence::render_rows(const FrameTask& task, RowExchange* others, Sink
     const bool has_changed = std::exchange(scene_has_changed_, false);
     store_light(number, camera, of_light, reconstruction.follow_light && has_changed);
     return true;
+}
+
+std::vector<RowArray> FrameSequence::rows_of_history() const {
+    std::vector<RowArray> rows = reconstruction_.value().rows_of_history();
+    if (restir_) std::ranges::copy(restir_->rows_of_history(), std::back_inserter(rows));
+    return rows;
+}
+
+FrameHistory FrameSequence::history() {
+    PERTEV_CHECK(!restored_ && has_history());
+    if (SharedFrames* const shared = pictures_.sharing_frames())
+        shared->collect(*this, &FrameSequence::rows_of_history);
+    FrameHistory history = {number_, camera_, restir_ && restir_->has_history(), light_before_.has_value(), {}};
+    std::vector<RowArray> rows = rows_of_history();
+    if (history.has_light) std::ranges::copy(temporal_gradients_->before().rows(), std::back_inserter(rows));
+    for (const RowArray& array : rows) {
+        std::vector<std::byte>& bytes = history.arrays.emplace_back(array.row_bytes * array.height);
+        pictures_.queue().copy_to_host(bytes.data(), array.data, bytes.size());
+    }
+    return history;
+}
+
+void FrameSequence::restore(FrameHistory history, const RenderSettings& settings, Sink& sink) {
+    cut();
+    restored_ = std::make_shared<const FrameHistory>(std::move(history));
+    if (SharedFrames* const shared = pictures_.sharing_frames()) shared->take_scene(*this, settings, sink);
+}
+
+/// Takes what restore() got, once there is memory for it.
+void FrameSequence::take_restored(const FrameTask& task, const RenderSettings& of_light) {
+    const auto restored = std::exchange(restored_, nullptr);
+    const FrameHistory& was = *restored;
+    const CameraRays light = pictures_.view_of(was.camera, of_light).camera;
+    CameraView shown = light.view;
+    const NoisyFrame* features = nullptr;
+    if (task.reconstruction.resolution_scale < 1) {
+        features = &fit_frame(pictures_.scene(), features_, task.settings.width, task.settings.height);
+        shown = pictures_.view_of(was.camera, settings_of_features(task.settings, of_light)).camera.view;
+    }
+    const PathSettings& path = of_light.path;
+    reconstruction_->begin_after(*sample_, light.view, features, shown);
+    if (restir_ && was.has_reservoirs) restir_->begin_after(light, {path.sampler, was.number, path.seed});
+    std::vector<RowArray> rows = rows_of_history();
+    light_before_.reset();
+    if (was.has_light) {
+        light_before_ = {was.camera, was.number, path};
+        std::ranges::copy(temporal_gradients_->before().rows(), std::back_inserter(rows));
+    }
+    const bool is_alike = restir_.has_value() == was.has_reservoirs &&
+                          std::ranges::equal(
+                              rows, was.arrays, {}, [](const RowArray& to) { return to.row_bytes * to.height; },
+                              &std::vector<std::byte>::size);
+    if (!is_alike) {
+        cut();
+        throw Error(ErrorCode::BadInput, "the history of frames does not fit these settings");
+    }
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        pictures_.queue().copy_to_device(rows[i].data, was.arrays[i].data(), was.arrays[i].size());
 }
 
 /// Denoises the last frame for displays.

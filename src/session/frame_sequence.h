@@ -5,6 +5,7 @@
 // motion vectors. A frame depends only on scene, camera, settings and numbers of all frames since the last cut, on
 // every device alike. It needs no session.
 
+#include <memory>
 #include <optional>
 
 #include "denoise/oidn/oidn_frames.h"
@@ -12,6 +13,7 @@
 #include "denoise/temporal_gradients.h"
 #include "device/device_timer.h"
 #include "restir/restir.h"
+#include "session/frame_history.h"
 #include "session/shared_frames.h"
 
 namespace pertev {
@@ -34,6 +36,12 @@ public:
     bool render(uint32_t number, const Camera& camera, const RenderSettings& settings,
                 const ReconstructionSettings& reconstruction, const RestirSettings& restir, Sink& sink = nobody());
 
+    /// Returns what the next frame needs of the last one, which there is (has_history). Throws Error(DeviceFault).
+    FrameHistory history();
+    /// Goes on after a frame of another sequence with the same settings. The scene is as it was in that frame. render()
+    /// throws Error(BadInput) if the history does not fit. Throws as SharedFrames::take_scene.
+    void restore(FrameHistory history, const RenderSettings& settings, Sink& sink);
+
     // For the sequences of devices that make frames together (SharedFrames).
 
     /// Makes this device's rows of a frame, and takes what they need of other rows from `others`; all rows if that is
@@ -43,7 +51,7 @@ public:
     /// Takes over what the caller's sequence knows of cuts and of changes of the scene.
     void follow(const FrameSequence& leader);
     /// Returns whether the next frame depends on earlier ones.
-    bool has_history() const { return reconstruction_ && reconstruction_->frames() > 0; }
+    bool has_history() const { return restored_ || (reconstruction_ && reconstruction_->frames() > 0); }
     /// Returns whether the scene has to be kept as it is before it changes, because the next frame shows its motion.
     bool has_moved() const { return has_moved_; }
     bool scene_has_changed() const { return scene_has_changed_; }
@@ -52,6 +60,7 @@ public:
     // Arrays of the last frame: the result; what tones() reads; all of the frame of the picture's size.
     std::vector<RowArray> rows_of_result() const { return reconstruction_.value().rows_of_result(); }
     std::vector<RowArray> rows_of_tones() const;
+    std::vector<RowArray> rows_of_history() const;
     std::vector<RowArray> rows_of_guides() const { return guides().rows(); }
     FrameCounts counts() const;
 
@@ -81,6 +90,7 @@ private:
     void render_sample(uint32_t number, const Camera& camera, RenderSettings settings, NoisyFrame& frame,
                        Sink* sink = nullptr);
     void render_small(uint32_t number, const Camera& camera, const RenderSettings& of_light, NoisyFrame& frame);
+    void take_restored(const FrameTask& task, const RenderSettings& of_light);
     void check(const FrameTask& task);
     void denoise();
     const NoisyFrame& guides() const { return features_ ? *features_ : sample_.value(); }
@@ -109,9 +119,11 @@ private:
         PathSettings path;
     };
     std::optional<LightBefore> light_before_;
+    std::shared_ptr<const FrameHistory> restored_; // until the next frame takes it
     RayCounts rays_;
     SceneTracer::Seconds kind_seconds_;
     uint32_t number_ = 0; // sample number of the last frame
+    Camera camera_;       // camera of the last frame
 };
 
 } // namespace pertev

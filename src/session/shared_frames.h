@@ -38,6 +38,9 @@ public:
 
     /// Takes parts (ScenePart) of the scene as they are at the next frame, until when the scene stays.
     virtual void change_scene(const PreparedScene& scene, uint32_t parts) = 0;
+    /// Gives the other devices the scene as it is now, because the next frame of `leader` has a history though they
+    /// have made none. One that fails is left out, with a warning.
+    virtual void take_scene(FrameSequence& leader, const RenderSettings& settings, Sink& sink) = 0;
     /// Makes the next frame of `leader`, the caller's sequence, which gets the picture. Returns as
     /// FrameSequence::render. Throws Error(DeviceFault) if a device fails in the middle: the next frame is made by the
     /// others, after a cut.

@@ -2,15 +2,24 @@
 
 import json
 import os
+import random
 import signal
 import subprocess
+import threading
 import time
 
 from cli_frames_test import moving_gltf
-from cli_run import PROGRAM, CliTest, main, write
+from cli_run import PATIENCE_S, PROGRAM, SANITIZED, CliTest, main, write
 
+KILLS = 1000 if os.environ.get("PERTEV_LONG_TESTS") else 20
 SMALL = ["--size", "32x24", "--max-depth", "4", "--device", "cpu"]
 LINE = ["--real-time", *SMALL]
+
+
+def line_with(*arguments):
+    """Returns the flags of all sequences, without those that the arguments set."""
+    pairs = [SMALL[at:at + 2] for at in range(0, len(SMALL), 2)]
+    return ["--real-time", *(text for pair in pairs if pair[0] not in arguments for text in pair)]
 
 
 class RealTime(CliTest):
@@ -28,7 +37,7 @@ class RealTime(CliTest):
 
     def render(self, folder, *arguments, scene="m.gltf", output="f-##.png"):
         os.makedirs(self.path(folder), exist_ok=True)
-        return self.succeed("render", scene, "-o", f"{folder}/{output}", *LINE, "--json", *arguments)
+        return self.succeed("render", scene, "-o", f"{folder}/{output}", *line_with(*arguments), "--json", *arguments)
 
     def refuse_to_render(self, folder, *arguments, says):
         return self.refuse(2, "render", "m.gltf", "-o", f"{folder}/f-##.png", *LINE, *arguments, says=says)
@@ -91,6 +100,68 @@ class RealTime(CliTest):
         said = self.succeed("render", "m.gltf", "-o", "parts/f-##.png", *LINE, "--frames", "0-5", "--continue", *motion)
         self.assertIn("frames 0 to 4", said.stderr)
 
+    def test_with_a_checkpoint_no_frame_is_rendered_again(self):
+        for number, (devices, flags) in enumerate([("cpu", ["--restir", "gi"]), ("cpu,cpu", ["--resolution-scale", "0.5", "--restir", "di"]), ("cpu,cpu", [])]):
+            with self.subTest(flags=flags):
+                motion = ["--fps", "4", *flags]
+                kept = [*motion, "--checkpoint", f"{number}.pvf", "--device", devices]
+                self.render(f"whole{number}", "--frames", "0-6", *motion)
+                self.render(f"parts{number}", "--frames", "0-2", *kept)
+                said = self.render(f"parts{number}", "--frames", "0-4", "--continue", *kept)
+                self.assertIn(f"resumes after frame 2 in {number}.pvf", [event["text"] for event in said.events("notice")])
+                end = said.events("sequence")[0]
+                self.assertEqual((end["written"], end["kept"], end["rendered_again"]), (2, 3, 0))
+                self.flip(f"{number}.pvf")  # the generation before is of frame 2
+                end = self.render(f"parts{number}", "--frames", "0-6", "--continue", *kept).events("sequence")[0]
+                self.assertEqual((end["written"], end["kept"], end["rendered_again"]), (2, 5, 2))
+                self.assertEqual(self.pictures(f"parts{number}"), self.pictures(f"whole{number}"))
+                end = self.render(f"parts{number}", "--frames", "0-6", "--continue", *kept).events("sequence")[0]
+                self.assertEqual((end["written"], end["kept"], end["rendered_again"]), (0, 7, 0))
+                os.remove(self.path(f"parts{number}/f-01.png"))  # before the checkpoint's frame, so that it does not help
+                end = self.render(f"parts{number}", "--frames", "0-6", "--continue", *kept).events("sequence")[0]
+                self.assertEqual((end["written"], end["kept"], end["rendered_again"]), (1, 6, 1))
+                self.assertEqual(self.pictures(f"parts{number}"), self.pictures(f"whole{number}"))
+
+    def flip(self, name):
+        data = bytearray(self.read(name))
+        data[len(data) // 2] ^= 4
+        with open(self.path(name), "wb") as file:
+            file.write(data)
+
+    def test_a_checkpoint_of_another_sequence_is_refused(self):
+        motion = ["--fps", "4", "--frames", "0-2", "--checkpoint", "c.pvf"]
+        self.render("x", *motion)
+        self.render("y", *motion[:4], "--seed", "3")
+        os.remove(self.path("y/f-02.png"))
+        self.refuse_to_render("y", *motion, "--seed", "3", "--continue", says=["c.pvf", "--seed"])
+        self.refuse(2, "render", "m.gltf", "-o", "x/f-##.png", *SMALL, "--spp", "1", *motion, says=["--checkpoint", "--continue"])
+        self.refuse(6, "render", "m.gltf", "-o", "x/f-##.png", *LINE, *motion[:4], "--checkpoint", "nowhere/c.pvf", says=["nowhere/c.pvf"])
+
+    def test_a_sequence_that_is_killed_at_any_moment_loses_one_interval_at_most(self):
+        count, moments = 40, random.Random(3)
+        line = ["--frames", f"0-{count - 1}", "--fps", "20", "--restir", "di", "--size", "96x72", "--exposure", "0"]
+        self.render("whole", *line)
+        os.mkdir(self.path("x"))
+        line = ["render", "m.gltf", "-o", "x/f-##.png", *line_with(*line), *line, "--continue", "--checkpoint", "c.pvf", "--checkpoint-every", "1e-9"]
+        killed = 0
+        for _ in range(KILLS):
+            program = subprocess.Popen([PROGRAM, *line, "--json"], cwd=self.folder, env=self.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE)
+            self.addCleanup(program.kill)
+            threading.Timer(moments.uniform(0, 0.3 if not SANITIZED else 6), program.kill).start()
+            said = [json.loads(text) for text in program.communicate(timeout=PATIENCE_S)[0].decode().splitlines(keepends=True) if text.endswith("\n")]
+            killed += program.returncode == -signal.SIGKILL
+            # A frame's checkpoint is written before the next frame begins, so one frame at most has none.
+            self.assertLessEqual(sum(event["event"] == "frame" and "kept" in event and "hash" in event for event in said), 1)
+            if program.returncode == 0:  # the whole sequence: begin anew
+                self.assertEqual(self.pictures("x"), self.pictures("whole"))
+                for name in os.listdir(self.path("x")):
+                    os.remove(self.path(f"x/{name}"))
+        self.assertGreater(killed, 0)
+        print(f"killed {killed} times")
+        end = self.succeed(*line, "--json").events("sequence")[0]
+        self.assertLessEqual(end["rendered_again"], 1)
+        self.assertEqual(self.pictures("x"), self.pictures("whole"))
+
     def test_frames_with_another_hash_than_recorded_are_refused(self):
         motion = ["--fps", "4", "--frames", "0-3"]
         self.render("x", *motion)
@@ -114,23 +185,29 @@ class RealTime(CliTest):
         self.refuse_to_render("x", "--fps", "4", "--frames", "1-2", "--continue", says=['made with first frame "0"'])
 
     def test_an_interrupt_ends_after_a_whole_frame_and_continuing_gives_the_same_bytes(self):
+        self.check_interrupt(signal.SIGINT)
+
+    def test_a_signal_writes_the_checkpoint_so_that_no_frame_is_rendered_again(self):
+        self.check_interrupt(signal.SIGTERM, "--checkpoint", "c.pvf")
+
+    def check_interrupt(self, kind, *more):
         os.mkdir(self.path("x")), os.mkdir(self.path("again"))
         arguments = ["render", "m.gltf", "-o", "x/f-##.png", "--real-time", "--size", "320x240", "--device", "cpu",
                      "--exposure", "0", "--frames", "0-29", "--fps", "20"]
-        program = subprocess.Popen([PROGRAM, *arguments], cwd=self.folder, env=self.environment,
+        program = subprocess.Popen([PROGRAM, *arguments, *more], cwd=self.folder, env=self.environment,
                                    stdin=subprocess.DEVNULL, stderr=subprocess.PIPE)
         self.addCleanup(program.kill)
         while program.poll() is None and not os.path.exists(self.path("x/f-02.png")):
             time.sleep(0.01)
-        program.send_signal(signal.SIGINT)
+        program.send_signal(kind)
         said = program.communicate(timeout=300)[1].decode()
         self.assertEqual(program.returncode, 75, said)
         self.assertIn("--continue", said)
         there = self.pictures("x")
         self.assertEqual(list(there), [f"f-{k:02}.png" for k in range(len(there))])
         self.assertLess(len(there), 30)
-        end = self.succeed(*arguments, "--continue", "--json").events("sequence")[0]
-        self.assertEqual((end["kept"], end["rendered_again"], end["written"]), (len(there), len(there), 30 - len(there)))
+        end = self.succeed(*arguments, *more, "--continue", "--json").events("sequence")[0]
+        self.assertEqual((end["kept"], end["rendered_again"], end["written"]), (len(there), 0 if more else len(there), 30 - len(there)))
         arguments[3] = "again/f-##.png"
         self.succeed(*arguments)
         self.assertEqual(self.pictures("x"), self.pictures("again"))

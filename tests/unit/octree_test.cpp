@@ -17,19 +17,19 @@ using namespace pertev::test;
 
 namespace {
 
-const OctreeSettings kSettings[] = {{},
-                                    {.max_leaf = 1},
-                                    {.max_depth = 20, .max_leaf = 1, .max_references = 50},
-                                    {.max_depth = 4, .max_references = 2},
-                                    {.max_depth = 0},
-                                    {.max_references = 1}};
+const OctreeSettings kOctreeSettings[] = {{},
+                                          {.max_leaf = 1},
+                                          {.max_depth = 20, .max_leaf = 1, .max_references = 50},
+                                          {.max_depth = 4, .max_references = 2},
+                                          {.max_depth = 0},
+                                          {.max_references = 1}};
 
 } // namespace
 
 TEST_CASE("octrees over stress meshes are valid and respect their limits") {
     for (const StressMesh& c : stress_meshes()) {
         CAPTURE(c.name);
-        for (const OctreeSettings& settings : kSettings) {
+        for (const OctreeSettings& settings : kOctreeSettings) {
             CAPTURE(settings.max_references);
             CAPTURE(settings.max_depth);
             const Octree tree = build_octree(c.triangles, settings);

@@ -64,6 +64,33 @@ void FramesOnDevices::change_scene(const PreparedScene& scene, uint32_t parts) {
     for (const auto& follower : followers_) follower->copy.change(scene, parts);
 }
 
+void FramesOnDevices::take_scene(FrameSequence& leader, const RenderSettings& settings, Sink& sink) {
+    std::vector<Part> parts(devices());
+    for (std::size_t i = 0; i < followers_.size(); ++i) {
+        Follower& follower = *followers_[i];
+        follower.thread.start([&follower, &part = parts[i + 1], &leader, &settings] {
+            try {
+                const UseThreads use(follower.queue.threads());
+                follower.copy.update(leader.pictures().scene(), settings, false);
+                follower.queue.wait();
+            } catch (const Error& error) {
+                if (is_of_device(error)) {
+                    part.failure = error;
+                } else {
+                    part.error = std::current_exception();
+                }
+            } catch (...) {
+                part.error = std::current_exception();
+            }
+        });
+    }
+    for (const auto& follower : followers_) follower->thread.wait();
+    for (const Part& part : parts) {
+        if (part.error) std::rethrow_exception(part.error);
+    }
+    leave_out_failed(parts, sink);
+}
+
 /// Makes the team of the devices that have not failed.
 void FramesOnDevices::form_team() {
     if (team_) return;

@@ -40,6 +40,7 @@ public:
     ~FramesOnDevices() override;
 
     void change_scene(const PreparedScene& scene, uint32_t parts) override;
+    void take_scene(FrameSequence& leader, const RenderSettings& settings, Sink& sink) override;
     bool render(FrameSequence& leader, const FrameTask& task, Sink& sink) override;
     void collect(FrameSequence& leader, std::vector<RowArray> (FrameSequence::*arrays)() const) override;
     FrameCounts counts_of_others() override;

@@ -1,24 +1,15 @@
 #include "session/film_file/checkpoint.h"
 
-#include <filesystem>
-
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "base/machine_memory.h"
 #include "base/remove_leftovers.h"
 #include "base/write_file_atomically.h"
 #include "session/film_file/film_file.h"
+#include "session/film_file/generations.h"
 
 namespace pertev {
 namespace {
-
-namespace fs = std::filesystem;
-
-bool is_there(const std::string& file) {
-    std::error_code fault;
-    return fs::exists(file, fault) && !fault;
-}
 
 /// Returns how many bytes a film file may take: an exact sum of many samples has about five that differ.
 uint64_t most_bytes(const Film& film) {
@@ -33,7 +24,7 @@ uint64_t most_bytes(const Film& film) {
 } // namespace
 
 Checkpoint::Checkpoint(std::string file, FilmHeader picture)
-    : file_(std::move(file)), previous_(file_ + ".previous"), picture_(std::move(picture)) {}
+    : file_(std::move(file)), previous_(previous_generation(file_)), picture_(std::move(picture)) {}
 
 void Checkpoint::check_header(const std::string& file, const FilmHeader& header) const {
     const auto refuse = [&](const std::string& why) {
@@ -86,8 +77,8 @@ std::optional<Error> Checkpoint::take(const std::string& file, FilmRender& film,
 
 void Checkpoint::restore(FilmRender& film, Sink& sink) {
     remove_leftovers(file_);
-    if (!is_there(file_)) {
-        if (is_there(previous_)) {
+    if (!has_generation(file_)) {
+        if (has_generation(previous_)) {
             sink.warn({FileLocation{previous_}, "the render does not resume from it, because its checkpoint is "
                                                 "missing; rename it to the checkpoint to resume"});
         }
@@ -96,28 +87,13 @@ void Checkpoint::restore(FilmRender& film, Sink& sink) {
     const std::optional<Error> damage = take(file_, film, sink);
     if (!damage) return;
     const Error refusal(damage->code(), damage->remark().and_then("; delete it to begin anew"));
-    if (!is_there(previous_)) throw refusal;
+    if (!has_generation(previous_)) throw refusal;
     is_damaged_ = true;
     sink.warn(damage->remark().and_then(fmt::format("; the previous generation, {}, is used", previous_)));
     if (take(previous_, film, sink)) throw refusal;
 }
 
-void Checkpoint::check_space(const Film& film) const {
-    std::error_code unknown;
-    const std::optional<uint64_t> known = free_disk_bytes(fs::weakly_canonical(file_, unknown));
-    if (!known) return;
-    uint64_t free = *known;
-    for (const std::string& file : {file_, previous_}) {
-        const uint64_t size = fs::file_size(file, unknown);
-        if (!unknown) free += size;
-    }
-    const uint64_t needed = 3 * most_bytes(film);
-    if (free >= needed) return;
-    throw Error(ErrorCode::FileWrite, FileLocation{file_},
-                fmt::format("two generations of this checkpoint and a third while it is written may take {:.1f} MiB; "
-                            "the disk has {:.1f} MiB free",
-                            mebibytes(needed), mebibytes(free)));
-}
+void Checkpoint::check_space(const Film& film) const { check_space_for_generations(file_, most_bytes(film)); }
 
 void Checkpoint::write(FilmRender& film, PictureFacts facts) {
     FilmHeader header = picture_;

@@ -9,8 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "base/hash.h"
-#include "base/read_file.h"
+#include "session/film_file/block_file.h"
 #include "session/film_file/film_header.h"
 #include "session/writing/write_picture.h"
 
@@ -31,24 +30,13 @@ public:
 
     const FilmHeader& header() const { return header_; }
     /// Hash of everything before the blocks.
-    Hash128 header_hash() const { return header_hash_; }
+    Hash128 header_hash() const { return file_.header_hash(); }
     /// Adds all blocks to a film that is like header().make_film(). After an error the film is of no use. Called once.
     void add_to(Film& film);
 
 private:
-    void read(std::span<std::byte> to);
-    template <class T>
-    T read_value();
-    Hash128 check_hash(const Hasher& hasher, const std::string& what);
-    void read_block(std::vector<std::byte>& packed);
-    Error error(const std::string& why) const;
-
-    std::string name_;
-    InputFile file_;
-    uint64_t size_, at_ = 0; // bytes of the file, and how many were read
-    Hasher hashes_;          // takes the hashes of the header and of the blocks
+    BlockFileReader file_;
     FilmHeader header_;
-    Hash128 header_hash_;
 };
 
 } // namespace pertev

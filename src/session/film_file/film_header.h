@@ -6,18 +6,14 @@
 #include <string>
 
 #include "formats/json/json_value.h"
+#include "session/film_file/block_file.h"
 #include "session/writing/deciding_settings.h"
 
 namespace pertev {
 
 inline constexpr std::string_view kFilmFileMagic = "\x89PVF\r\n\x1a\n"; // text converters and 7 bits damage it
 inline constexpr uint32_t kFilmFileVersion = 2;
-inline constexpr uint32_t kMaxFilmHeaderBytes = 1u << 28;
-
-/// Number of elements of `stride` bytes in a block, except for a target's last.
-constexpr std::size_t film_block_elements(std::size_t stride) {
-    return std::clamp<std::size_t>((std::size_t(1) << 22) / stride, 1, std::size_t(1) << 15);
-}
+inline constexpr BlockFileKind kFilmFile = {kFilmFileMagic, kFilmFileVersion, "film"};
 
 struct FilmHeader {
     DecidingSettings settings; // without the number of samples, and without the name of the scene

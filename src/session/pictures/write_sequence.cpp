@@ -6,6 +6,7 @@
 #include "base/stopwatch.h"
 #include "image/picture_hash.h"
 #include "session/pictures/frame_settings.h"
+#include "session/pictures/sequence_history.h"
 #include "session/writing/deciding_settings.h"
 #include "session/writing/sequence_record.h"
 
@@ -20,6 +21,16 @@ DecidingSettings settings_of(const PictureOptions& options, const FrameRange& se
     return settings;
 }
 
+/// Finishes the frame under way if the caller stops, because an unfinished one would take the history along.
+struct WholeFrame final : Sink {
+    explicit WholeFrame(Sink& caller) : of_caller(caller) {}
+    void receive(const Message& message) override { of_caller.receive(message); }
+    const Messages& messages() const override { return of_caller.messages(); }
+    void progress(const Progress& now) override { of_caller.progress(now); }
+    bool should_stop() override { return false; }
+    Sink& of_caller;
+};
+
 /// The frames and their record.
 class SequenceWriter {
 public:
@@ -28,17 +39,22 @@ public:
         : frames_(frames), options_(options), outputs_(outputs), sink_(sink), sequence_(frames.camera.sequence),
           done_(outputs, settings_of(options, sequence_, frames.record), sequence_.names) {
         if (options.goes_on) done_.load();
-        if (frames.record.frame) with_history_ = count_frames_to_render();
+        if (!frames.record.frame) return;
+        with_history_ = count_frames_to_render();
+        if (!options.checkpoint.empty())
+            history_.emplace(frames, options, settings_of(options, sequence_, frames.record));
     }
 
     void run(const std::function<void(const FrameReport&)>& report, SequenceTally& tally) {
         tally.frames = sequence_.count();
         if (frames_.record.frame) frames_.session.cut();
+        if (history_ && options_.goes_on && with_history_ > 0) restored_ = history_->restore(count_whole(0), sink_);
         report_history();
         sink_.set_work("rendering");
         for (uint32_t number = 0; number < sequence_.count() && !sink_.should_stop(); ++number) {
-            if (!make(sequence_.first + number, report, tally)) return;
+            if (!make(sequence_.first + number, report, tally)) break;
         }
+        if (history_) history_->finish();
     }
 
 private:
@@ -51,14 +67,20 @@ private:
         return count;
     }
 
-    void report_history() {
-        uint32_t there = 0;
+    /// Number of frames from number `first` on that are there, before the first one that is missing.
+    uint32_t count_whole(uint32_t first) const {
+        uint32_t there = first;
         while (there < with_history_ && is_there(sequence_.first + there)) ++there;
+        return there - first;
+    }
+
+    void report_history() {
+        const uint32_t there = count_whole(restored_), first = sequence_.first + restored_;
         if (there == 0) return;
-        sink_.note(there == 1 ? fmt::format("renders frame {} again for the history of those after it", sequence_.first)
+        sink_.note(there == 1 ? fmt::format("renders frame {} again for the history of those after it", first)
                               : fmt::format("renders frames {} to {} again for the history of those after "
                                             "them",
-                                            sequence_.first, sequence_.first + there - 1));
+                                            first, first + there - 1));
         sink_.report_messages();
     }
 
@@ -79,7 +101,8 @@ private:
         made.time_s = sequence_.time_of(frame);
         if (!sequence_.names.empty()) made.camera = sequence_.names[frame];
         made.is_kept = is_there(frame);
-        const bool is_rendered = !made.is_kept || frame - sequence_.first < with_history_;
+        const uint32_t number = frame - sequence_.first;
+        const bool is_rendered = !made.is_kept || (number >= restored_ && number < with_history_);
         if (is_rendered) {
             if (frames_.record.frame) report_progress(made, 0);
             auto [result, update_s] = render(made);
@@ -91,6 +114,7 @@ private:
             made.update_s = update_s;
             made.render_s = result.render_seconds;
             if (!made.is_kept) write(result, report, made, tally);
+            if (history_) history_->add(frame, sink_);
         }
         tally.kept += made.is_kept;
         tally.again += made.is_kept && is_rendered;
@@ -104,7 +128,7 @@ private:
                 report_progress(made, now.made_share >= 1 ? now.share : 0);
                 return true;
             },
-            sink_);
+            history_ ? whole_ : sink_);
         return render_frame(made.frame, frames_, part);
     }
 
@@ -135,6 +159,9 @@ private:
     SequenceRecord done_;
     const Stopwatch watch_;
     uint32_t with_history_ = 0; // in real time: the number of first frames that are all rendered, for the history
+    uint32_t restored_ = 0;     // number of first frames that need not be, because the checkpoint has their history
+    std::optional<SequenceHistory> history_; // with a checkpoint
+    WholeFrame whole_{sink_};
 };
 
 } // namespace

@@ -140,8 +140,12 @@ void check_outputs(const PictureOptions& options, std::span<const std::string> o
         if (!frames) note_number_signs(output, sink);
     }
     if (!options.checkpoint.empty()) {
-        check_film_file(options, "checkpoint", options.checkpoint, frames.has_value());
-        written = ~0u;
+        if (options.real_time) { // it keeps the history of frames
+            check_writable(options.checkpoint);
+        } else {
+            check_film_file(options, "checkpoint", options.checkpoint, frames.has_value());
+            written = ~0u;
+        }
     }
     refuse_twins(outputs, frames);
     refuse_twins_of_kept(outputs, options);
