@@ -79,7 +79,7 @@ void OpenedScene::prepare(PictureOptions& options, const EditedScene& source, Si
     const PictureOptions asked = options; // without what the scene's file suggests
     const bool is_open = setup_ && apply_edits(source, sink) && adapt_setup(*setup_, used_, options, kRender, sink);
     if (!is_open) {
-        session_.reset(), together_.reset();
+        session_.reset(), together_.reset(), frames_together_.reset();
         try {
             open(options, source, sink);
         } catch (const Error& error) {
@@ -108,9 +108,16 @@ PictureRecord OpenedScene::record(const PictureOptions& options, const EditedSce
 Session& OpenedScene::session(const PictureRecord& record) {
     const uint32_t parts = std::exchange(setup_->changed_parts, 0);
     if (!session_) {
-        together_.reset();
-        if (setup_->queues.size() > 1) together_.emplace(setup_->queues, setup_->prepared());
-        return session_.emplace(*setup_->queue, setup_->prepared(), record.camera.camera, record.settings);
+        together_.reset(), frames_together_.reset();
+        const bool are_several = setup_->queues.size() > 1;
+        if (are_several) together_.emplace(setup_->queues, setup_->prepared());
+        session_.emplace(*setup_->queue, setup_->prepared(), record.camera.camera, record.settings);
+        if (are_several && uses_ == Uses::Sequence) {
+            frames_together_.emplace(setup_->queues, setup_->prepared());
+            session_->pictures().share(*together_);
+            session_->pictures().share_frames(*frames_together_);
+        }
+        return *session_;
     }
     try {
         if (parts != 0) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "python/scene_parameters.h"
+#include "session/devices/frames_on_devices.h"
 #include "session/devices/render_on_devices.h"
 #include "session/pictures/prepare_render.h"
 #include "session/session.h"
@@ -35,6 +36,12 @@ struct EditedScene {
 
 class OpenedScene {
 public:
+    enum class Uses {
+        Pictures, // all devices render batches of them
+        Sequence, // all devices render its pictures and frames
+    };
+    explicit OpenedScene(Uses uses = Uses::Pictures) : uses_(uses) {}
+
     /// Prepares a picture of the source by `options`, which get what the scene suggests, as it was opened, or opens it.
     /// Throws as prepare_render; the scene stays open if a setting is wrong.
     void prepare(PictureOptions& options, const EditedScene& source, Sink& sink);
@@ -55,10 +62,12 @@ private:
     bool apply_edits(const EditedScene& source, Sink& sink);
     void open(PictureOptions& options, const EditedScene& source, Sink& sink);
 
+    Uses uses_;
     PictureOptions used_; // options that setup_ was made or last adapted by
     std::unique_ptr<RenderSetup> setup_;
     std::optional<SceneParameters> parameters_;
     std::optional<RenderOnDevices> together_;
+    std::optional<FramesOnDevices> frames_together_;
     std::optional<Session> session_;
     uint64_t edits_ = 0; // how many of the source's edits the setup has
 };

@@ -1,7 +1,6 @@
 #include "python/session.h"
 
 #include "base/error.h"
-#include "session/device_names.h"
 #include "session/pictures/frame_settings.h"
 #include "session/pictures/render_sequence.h"
 
@@ -25,7 +24,6 @@ void PythonSession::prepare(Sink& sink) {
     scene_.with_source(sink, [&](const EditedScene& source) {
         if (record_ && edits_ == source.edit_count) return;
         PictureOptions options = scene_.options_of({"", settings_}, sink);
-        refuse_several_devices(options.machine.device, "a sequence");
         const RenderSetup* const before = opened_.setup();
         opened_.prepare(options, source, sink);
         if (opened_.setup() != before) cut_.reset(); // it was opened again, and has no history

@@ -57,7 +57,7 @@ double seconds_in_turn(Session& session, const CameraBatch& batch, uint32_t coun
 int bench_cameras(CamerasFlags& flags) {
     Reporter reporter(flags.render.report);
     const std::unique_ptr<BenchedScene> benched = read_benched_scene(flags.render, kBenchCameras, reporter);
-    const auto& [queue, scene, settings, camera, prepared] = *benched;
+    const auto& [queue, scene, settings, camera, prepared, queues] = *benched;
     BenchReport report(reporter, flags.render.report, *queue, "Batches of cameras");
     const uint32_t pictures = flags.pictures > 0 ? flags.pictures : (queue->is_cuda() ? 8192 : 32);
     const float size = length(bounds_of(scene).size());

@@ -12,6 +12,8 @@
 #include "device/device_timer.h"
 #include "image/picture_hash.h"
 #include "math/portable_math.h"
+#include "session/devices/device_names.h"
+#include "session/devices/frames_on_devices.h"
 #include "session/session.h"
 #include "settings/parse_values.h"
 #include "settings/settings_file.h"
@@ -33,15 +35,25 @@ Camera camera_of(const Camera& first, uint32_t frame, float scene_size) {
     return moved(first, 0.35f * sin(k * 0.05f), {0, 0, -0.001f * scene_size * k});
 }
 
+std::string names_of(std::span<const std::shared_ptr<Queue>> queues) {
+    std::vector<std::string> names;
+    for (const auto& queue : queues) names.push_back(queue->device_name());
+    return text_of_devices(names);
+}
+
 int bench_frames(FramesFlags& flags) {
     Reporter reporter(flags.render.report);
     const std::unique_ptr<BenchedScene> benched = read_benched_scene(flags.render, kBenchFrames, reporter);
-    const auto& [queue, scene, settings, camera, prepared] = *benched;
+    const auto& [queue, scene, settings, camera, prepared, queues] = *benched;
+    if (!makes_frames(settings.integrator)) refuse_several_devices(flags.render.machine.device, "plain samples");
     refuse(!makes_frames(settings.integrator) && flags.render.reconstruction.has_frame_options(),
            {"integrator", std::string(integrator_name(settings)),
             "this integrator's frames are plain samples; `restir` and `resolution_scale` apply to path and hybrid"});
     BenchReport report(reporter, flags.render.report, *queue, "Frames in real time");
+    std::optional<FramesOnDevices> together;
+    if (queues.size() > 1) together.emplace(queues, prepared);
     Session session(*queue, prepared, camera, settings);
+    if (together) session.pictures().share_frames(*together);
     const ToneMap tone_map = ToneMap::Agx;
     const float exposure = session.meter(tone_map);
     session.cut();
@@ -78,7 +90,7 @@ int bench_frames(FramesFlags& flags) {
     const Image last = reconstructs ? session.frame().picture() : session.picture();
     reporter.end_progress();
     report.add_alone("frames", {{"scene", "scene", flags.render.scene.scene},
-                                {"device", "device", queue->device_name()},
+                                {"device", "device", names_of(queues)},
                                 {"integrator", "integrator", integrator_name(settings)},
                                 {"width", "width", settings.width},
                                 {"height", "height", settings.height},

@@ -90,7 +90,7 @@ Fields fields_of(const NoiseFlags& flags, const RenderSettings& settings, const 
 int bench_noise(NoiseFlags& flags) {
     Reporter reporter(flags.render.report);
     const std::unique_ptr<BenchedScene> benched = read_benched_scene(flags.render, kBenchNoise, reporter);
-    const auto& [queue, scene, settings, camera, prepared] = *benched;
+    const auto& [queue, scene, settings, camera, prepared, queues] = *benched;
 
     BenchReport report(reporter, flags.render.report, *queue, "Variance of a picture");
     throw_if_interrupted();

@@ -100,7 +100,12 @@ std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, SettingVerb
     listen_for_interrupt();
     apply_camera_from(flags);
     auto benched = std::make_unique<BenchedScene>();
-    benched->queue = open_queue(flags.machine, reporter);
+    if (verb == kBenchFrames) {
+        for (auto& queue : open_queues(flags.machine, reporter)) benched->queues.push_back(std::move(queue));
+    } else {
+        benched->queues.push_back(open_queue(flags.machine, reporter));
+    }
+    benched->queue = benched->queues.front();
     const UseThreads threads(benched->queue->threads());
     reporter.report_messages();
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));

@@ -63,15 +63,16 @@ std::string lab_scene_title(const std::string& scene);
 
 /// The start of a benchmark of one scene.
 struct BenchedScene {
-    std::unique_ptr<Queue> queue;
+    std::shared_ptr<Queue> queue; // the first of `queues`
     Scene scene;
     RenderSettings settings;
     Camera camera;
     PreparedScene prepared; // points to `scene`
+    std::vector<std::shared_ptr<Queue>> queues;
 };
 
-/// Takes the device and reads the scene of the flags with its camera, light and trees. Reports messages, and handles
-/// Ctrl-C from then on. Throws Error; for wrong flags before anything is read.
+/// Takes the device, or those that make frames together, and reads the scene of the flags with its camera, light and
+/// trees. Reports messages, and handles Ctrl-C from then on. Throws Error; for wrong flags before anything is read.
 std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, SettingVerbs verb, Reporter& reporter);
 
 /// Flags of benchmarks of whole pictures.

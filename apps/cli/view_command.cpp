@@ -23,6 +23,7 @@
 #include "base/limits.h"
 #include "image/write_jpeg.h"
 #include "session/devices/frames_on_devices.h"
+#include "session/devices/render_on_devices.h"
 #include "session/pictures/choose_display.h"
 #include "session/pictures/prepare_render.h"
 #include "settings/value_names.h"
@@ -125,10 +126,15 @@ int view(ViewFlags& flags) {
     listen_for_interrupt();
     reporter.set_work("uploading the scene");
     const PictureRecord record = picture_record(flags.render, *ready, reporter.messages());
-    std::optional<FramesOnDevices> together; // the picture at rest is the first one's alone
-    if (ready->queues.size() > 1) together.emplace(ready->queues, ready->prepared(), AfterLoss::Cut);
+    std::optional<FramesOnDevices> together;
+    std::optional<RenderOnDevices> at_rest;
+    if (ready->queues.size() > 1) {
+        together.emplace(ready->queues, ready->prepared(), AfterLoss::Cut);
+        at_rest.emplace(ready->queues, ready->prepared());
+    }
     Session session(*ready->queue, ready->prepared(), record.camera.camera, ready->settings);
     if (together) session.pictures().share_frames(*together);
+    if (at_rest) session.pictures().share(*at_rest);
     const bool on_cuda = ready->queue->is_cuda();
     SessionFrames source(session, *ready->moving, on_cuda ? kFrameOnGpu : kFrameOnCpu);
     const Display display = choose_display(flags.render, session, reporter);

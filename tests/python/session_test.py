@@ -56,6 +56,15 @@ class Sessions(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.moves = moving_scene(folder.name)
 
+    def test_several_devices_make_frames_together(self):
+        for flags in ({"real_time": False, "spp": 3}, {}, {"restir": "gi"}):
+            alone, together = [[frame.hash for frame in self.session_on(devices, **flags)] for devices in ("cpu", "cpu,cpu")]
+            self.assertEqual(together, alone, flags)
+            self.assertGreater(len(set(alone)), 4)
+
+    def session_on(self, devices, **flags):
+        return pertev.Session(pertev.load(self.moves), fps=4, frames="0-5", size=(40, 36), device=devices, **flags)
+
     def test_frames_of_a_moving_scene_are_those_of_the_program(self):
         session = pertev.Session(pertev.load(self.moves), fps=4, frames="0-5", layers=["depth"], **SMALL)
         frames = list(session)

@@ -95,6 +95,9 @@ class Devices(CliTest):
         line = ["bench", "sequence", "cornell-box", "--frames", "0-2", "--size", "40x36", "--json"]
         alone, together = [self.succeed(*line, *devices).events("sequence_errors")[0] for devices in (ONE, TWO)]
         self.assertEqual((together["last_frame"], together["device"]), (alone["last_frame"], "2 x CPU"))
+        line = ["bench", "frames", "cornell-box", "--frames", "3", "--size", "40x36", "--restir", "di", "--json"]
+        alone, together = [self.succeed(*line, *devices).events("frames")[0] for devices in (ONE, TWO)]
+        self.assertEqual((together["picture"], together["device"]), (alone["picture"], "2 x CPU"))
 
     def test_the_viewer_starts_with_several_devices(self):
         program = subprocess.Popen([PROGRAM, "view", "cornell-box", *SIZE, "--port", "0", "--no-browser", *TWO, "--json"], cwd=self.folder,
@@ -109,7 +112,7 @@ class Devices(CliTest):
         self.refuse(2, "render", "nowhere.obj", "-o", "x.exr", "--denoise", "svgf", *TWO, says=["--device cpu,cpu", "--denoise"])
         for line in [["measure", "cornell-box", "--at", "0,0,0", "--normal", "0,1,0"], ["lab", "cornell-box", "-o", "report"], ["bench", "--scene", "cornell-box"],
                      ["bench", "render", "--scene", "cornell-box"], ["bench", "noise", "cornell-box"], ["bench", "rays", "--scene", "cornell-box"],
-                     ["bench", "frames", "cornell-box"]]:
+                     ["bench", "frames", "cornell-box", "--integrator", "photon_map"]]:
             with self.subTest(line=line):
                 self.refuse(2, *line, *TWO, says=["--device cpu,cpu"])
 

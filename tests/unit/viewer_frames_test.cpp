@@ -1,6 +1,7 @@
 // Pictures of the viewer (session_frames.h) against those of a plain session, and their exposure.
 
 #include <algorithm>
+#include <atomic>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -8,6 +9,8 @@
 #include "apps/viewer/session_frames.h"
 #include "image/picture_hash.h"
 #include "integrators/irradiance_cache/irradiance_cache_settings.h"
+#include "session/devices/frames_on_devices.h"
+#include "session/devices/render_on_devices.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 
@@ -73,6 +76,43 @@ TEST_CASE("frames in motion share light at the set resolution, and the picture a
         while (!rests || !rests->is_final) rests = frames.next(request);
         CHECK(rests->hash == at_rest);
     }
+}
+
+TEST_CASE("several devices accumulate the picture at rest to the bytes of one, after motion, an edit and a stop") {
+    Watched watched;
+    FrameRequest& request = watched.request;
+    request.view.options.render.samples = 9;
+    request.budget_s = 1e-9; // few samples at a time
+    std::vector<std::shared_ptr<Queue>> queues;
+    for (int i = 0; i < 2; ++i) queues.push_back(std::make_shared<Queue>(test::requested_queue()));
+    FramesOnDevices in_motion(queues, watched.scene.prepared(), AfterLoss::Cut);
+    std::atomic<uint32_t> slices[2] = {};
+    const DeviceHooks hooks = {.before_samples = {},
+                               .after_slice = [&](std::size_t device, SampleRange) { ++slices[device]; }};
+    RenderOnDevices at_rest(queues, watched.scene.prepared(), hooks);
+    Session session(*queues.front(), watched.scene.prepared(), request.camera, request.view.options.render);
+    session.pictures().share_frames(in_motion);
+    session.pictures().share(at_rest);
+    SessionFrames frames(session, watched.scene, 0.1);
+    for (const float step : {0.0f, 0.1f}) {
+        request.camera.world_from_camera.translation.x += step;
+        request.is_moving = true;
+        for (int k = 0; k < 2; ++k) REQUIRE(frames.next(request).has_value());
+        request.is_moving = false;
+        frames.abandon() = frames.hurry() = true;
+        frames.next(request);
+        frames.abandon() = frames.hurry() = false;
+        std::optional<ShownFrame> rests;
+        while (!rests || !rests->is_final) rests = frames.next(request);
+        Session plain = watched.session();
+        plain.set_camera(request.camera);
+        plain.render(9);
+        CHECK(rests->samples == 9);
+        CHECK(rests->hash == picture_hash(plain.picture()).hex());
+        plain.display(request.view.display.tone_map, rests->exposure_stops);
+        CHECK(rests->image.pixels == plain.displayed().pixels);
+    }
+    CHECK(slices[0] + slices[1] > 0);
 }
 
 TEST_CASE("metering and picking in a picture at rest keep its irradiance records") {

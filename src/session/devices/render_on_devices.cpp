@@ -14,6 +14,7 @@ namespace pertev {
 namespace {
 
 constexpr double kProgressSeconds = 0.1; // between two reports
+constexpr double kStopSeconds = 0.02;    // between two looks whether the caller stops, for a viewer's sake
 
 } // namespace
 
@@ -102,12 +103,15 @@ void RenderOnDevices::drive(SharedRun& run, const SharedPicture& picture, Sample
     std::vector<FilledFilm> last;
     Stopwatch since_report;
     while (!run.have_all_left()) {
-        std::optional<FilledFilm> film = run.wait_for_film(kProgressSeconds, !last.empty());
+        std::optional<FilledFilm> film = run.wait_for_film(kStopSeconds, !last.empty());
         if (film) last.push_back(std::move(*film));
         // The last films wait for each other.
         if (!last.empty() && !run.is_ending()) fold_last(run, std::exchange(last, {}), into);
         report_losses(run, sink);
-        if (since_report.seconds() < kProgressSeconds) continue;
+        if (since_report.seconds() < kProgressSeconds) {
+            if (sink.should_stop()) run.stop(on_cpu);
+            continue;
+        }
         since_report.restart();
         if (!report()) run.stop(on_cpu);
     }
