@@ -128,6 +128,8 @@ MUTATIONS = [
      ("src/session/pictures/sequence_history.cpp", "if (since_written_.seconds() < every_s_) return;", "if (every_s_ > 0) return;")),
     ("an interrupted frame takes the history along", "robust/cli_real_time",
      ("src/session/pictures/write_sequence.cpp", "bool should_stop() override { return false; }", "bool should_stop() override { return of_caller.should_stop(); }")),
+    ("files of killed processes stay beside frames", "robust/cli_real_time",
+     ("src/session/pictures/write_sequence.cpp", "if (options_.goes_on) std::ranges::for_each(", "if (false) std::ranges::for_each(")),
     ("a checkpoint after a missing frame is taken", "robust/cli_real_time",
      ("src/session/pictures/sequence_history.cpp", "kept->frame - first >= whole", "kept->frame - first >= 1000 + whole")),
     ("a checkpoint of other frames is taken", "consistency/frame_history robust/cli_real_time",

@@ -1,8 +1,11 @@
 #include "session/pictures/write_sequence.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/remove_leftovers.h"
 #include "base/stopwatch.h"
 #include "image/picture_hash.h"
 #include "session/pictures/frame_settings.h"
@@ -38,7 +41,10 @@ public:
                    const std::vector<std::string>& outputs, Sink& sink)
         : frames_(frames), options_(options), outputs_(outputs), sink_(sink), sequence_(frames.camera.sequence),
           done_(outputs, settings_of(options, sequence_, frames.record), sequence_.names) {
-        if (options.goes_on) done_.load();
+        if (options.goes_on) {
+            remove_leftovers(done_.path());
+            done_.load();
+        }
         if (!frames.record.frame) return;
         with_history_ = count_frames_to_render();
         if (!options.checkpoint.empty())
@@ -139,6 +145,7 @@ private:
         source.settings = settings_of_frame(options_, frames_.record, made.frame);
         std::vector<std::string> files;
         for (const std::string& output : outputs_) files.push_back(frame_file(output, made.frame, sequence_.names));
+        if (options_.goes_on) std::ranges::for_each(files, remove_leftovers); // a killed process left them
         made.written = write_picture(files, frames_.record, result);
         const std::string failures = failures_of(made.written);
         if (failures.empty()) {
