@@ -15,6 +15,7 @@
 #include "formats/gltf/read_gltf.h"
 #include "formats/obj/read_obj.h"
 #include "formats/ply/read_ply.h"
+#include "formats/stl/read_stl.h"
 #include "scene/invisible_materials.h"
 #include "scene/validate/validate.h"
 
@@ -31,6 +32,7 @@ struct FormatReader {
 const std::array kReaders = {
     FormatReader{".obj", read_obj, false, false},
     FormatReader{".ply", read_ply, false, false},
+    FormatReader{".stl", read_stl, false, false},
     FormatReader{".gltf", read_gltf, true, true},
     FormatReader{".glb", read_gltf, true, true},
 };

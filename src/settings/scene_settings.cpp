@@ -24,11 +24,11 @@ std::vector<Setting> scene_settings() {
             "A folder outside the scene's own that it may read from as well. It may be given again.",
             On{kScenes | kLab | kInfo}, Mark::NotKept),
         row("up_axis", "File", "x|y|z", FIELD(scene.up_axis),
-            "The axis of an .obj or .ply file that points up. All other settings are for a scene with y up.",
+            "The axis of an .obj, .ply or .stl file that points up. All other settings are for a scene with y up.",
             Otherwise{"y"}, On{kScenes | kLab | kInfo}, Mark::OpensScene, Recorded::AsUsed),
         row("unit", "File", "UNIT|M", FIELD(scene.unit),
-            "The unit of an .obj or .ply file: m, cm, mm, km, in, ft or a number of metres. All other settings are for "
-            "a scene in metres.",
+            "The unit of an .obj, .ply or .stl file: m, cm, mm, km, in, ft or a number of metres. All other settings "
+            "are for a scene in metres.",
             Otherwise{"m"}, On{kScenes | kLab | kInfo}, Mark::OpensScene, Recorded::AsUsed),
 
         row("camera", "Camera", "NAME|N", FIELD(scene.camera.camera),

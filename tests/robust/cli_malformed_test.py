@@ -16,7 +16,7 @@ from cli_run import SANITIZED, UNMETERED, CliTest, limit_addresses, main
 
 MAX_SECONDS = 60 if SANITIZED else 5  # processor time, because the machine may be loaded
 IMAGES = (".png", ".jpg", ".exr", ".hdr")
-SCENES = (".obj", ".ply", ".gltf", ".glb", ".pbrt", ".xml")
+SCENES = (".obj", ".ply", ".stl", ".gltf", ".glb", ".pbrt", ".xml")
 
 SQUARE = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n"
 
@@ -141,7 +141,7 @@ class FilesDamagedHere(MalformedTest):
                     self.assertEqual(self.use_image(self.put("fake" + extension, content), warns=True)[:2], [2, 2])
 
     def test_other_files_with_a_scene_extension_are_refused(self):
-        for extension in (".obj", ".ply", ".gltf", ".glb"):
+        for extension in (".obj", ".ply", ".stl", ".gltf", ".glb"):
             for content in [b"", b"\0" * 4096, b"<html>not here</html>", b"{}", b"[" * 50000, b"ply\n", b"\xff\xfe\n" * 99]:
                 name = "fake" + extension
                 self.put(name, content)

@@ -37,11 +37,14 @@ const std::string kSmallObj = "mtllib a.mtl\nv 0 0 0 1 1 1\nv 1 0 0\nv 1 1 0\nv 
                               "usemtl m\nf 1/1/1 2/2/1 3//1 4\nf -1 -2 -3\ng x\nusemtl n\nf 4 3 2\n";
 const std::string kSmallMtl =
     "newmtl m\nKd 1 0 0\nKs .1 .1 .1\nNs 30\nmap_Kd -s 1 1 -o 0.1 t.png\nmap_d t.png\nillum 4\n"
-    "newmtl n\nPr 0.2\nTf 1 1 1\nd 0.5\nNi 1.5\nmap_Bump -bm 2 t.png\n";
+    "newmtl n\nPc 1\nmap_Ps t.png\nPr 0.2\nTf 1 1 1\nd 0.5\nNi 1.5\nmap_Bump -bm 2 t.png\n";
 const std::string kSmallPly = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
                               "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
                               "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
                               "0 0 0 1 2 3\n1 0 0 1 2 3\n1 1 0 1 2 3\n0 1 0 1 2 3\n4 0 1 2 3\n3 0 1 2\n";
+
+const std::string kSmallStl = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e0 0\n"
+                              "endloop\nendfacet\nendsolid a\n";
 
 /// Changes, doubles or removes a few bytes, like a fuzzer.
 std::string damaged(std::string text, std::mt19937& random) {
@@ -77,15 +80,18 @@ TEST_CASE("every malformed public mesh causes an error or a scene") {
     }
 }
 
-TEST_CASE("damaged OBJ, MTL and PLY files cause an error or a scene") {
+TEST_CASE("damaged OBJ, MTL, PLY and STL files cause an error or a scene") {
     std::mt19937 random(7);
     const fs::path folder = test::scratch_folder();
     const uint64_t rounds = test::effort(1500, 60'000);
+    const std::string binary_stl = std::string(80, ' ') + std::string("\3\0\0\0", 4) + std::string(3 * 50, '\1');
     for (uint64_t round = 0; round < rounds; ++round) {
         CAPTURE(round);
         test::write_text(folder / "a.mtl", round % 3 == 0 ? damaged(kSmallMtl, random) : kSmallMtl);
         check_survives(test::write_text(folder / "a.obj", round % 3 == 1 ? damaged(kSmallObj, random) : kSmallObj));
         check_survives(test::write_text(folder / "a.ply", damaged(kSmallPly, random)));
+        check_survives(test::write_text(folder / "a.stl", damaged(kSmallStl, random)));
+        check_survives(test::write_text(folder / "b.stl", damaged(binary_stl, random)));
     }
 }
 

@@ -25,27 +25,27 @@ struct NumberKey {
     std::string_view key;
     float MtlStatements::*to;
 };
-constexpr NumberKey kNumbers[] = {{"illum", &MtlStatements::illum},
-                                  {"ns", &MtlStatements::ns},
-                                  {"ni", &MtlStatements::ni},
-                                  {"pr", &MtlStatements::pr},
-                                  {"pm", &MtlStatements::pm}};
+constexpr NumberKey kNumbers[] = {{"illum", &MtlStatements::illum}, {"ns", &MtlStatements::ns},
+                                  {"ni", &MtlStatements::ni},       {"pr", &MtlStatements::pr},
+                                  {"pm", &MtlStatements::pm},       {"ps", &MtlStatements::ps},
+                                  {"pc", &MtlStatements::pc},       {"pcr", &MtlStatements::pcr}};
 
 struct MapKey {
     std::string_view key;
     MtlTexture MtlStatements::*to;
 };
-constexpr MapKey kMaps[] = {{"map_kd", &MtlStatements::map_kd}, {"map_ke", &MtlStatements::map_ke},
-                            {"map_d", &MtlStatements::map_d},   {"map_pr", &MtlStatements::map_pr},
-                            {"map_pm", &MtlStatements::map_pm}, {"norm", &MtlStatements::norm},
-                            {"bump", &MtlStatements::bump},     {"map_bump", &MtlStatements::bump}};
+constexpr MapKey kMaps[] = {
+    {"map_kd", &MtlStatements::map_kd}, {"map_ke", &MtlStatements::map_ke},   {"map_d", &MtlStatements::map_d},
+    {"map_pr", &MtlStatements::map_pr}, {"map_pm", &MtlStatements::map_pm},   {"map_ps", &MtlStatements::map_ps},
+    {"map_pc", &MtlStatements::map_pc}, {"map_pcr", &MtlStatements::map_pcr}, {"norm", &MtlStatements::norm},
+    {"bump", &MtlStatements::bump},     {"map_bump", &MtlStatements::bump}};
 
 /// Statements that are ignored without a message: ambient light, and those that do not describe the surface.
-constexpr std::string_view kHarmless[] = {"ka", "map_ka", "map_aat", "sharpness", "pcr", "anisor"};
+constexpr std::string_view kHarmless[] = {"ka", "map_ka", "map_aat", "sharpness", "anisor"};
 /// Statements that are left out without a message if their value is zero, which exporters write for "none".
-constexpr std::string_view kLeftOutUnlessZero[] = {"ps", "pc", "aniso"};
-constexpr std::string_view kLeftOut[] = {"map_ks", "map_ns", "map_ps",   "map_pc", "map_pcr",
-                                         "disp",   "decal",  "map_disp", "refl",   "map_refl"};
+constexpr std::string_view kLeftOutUnlessZero[] = {"aniso"};
+constexpr std::string_view kLeftOut[] = {"map_ks", "map_ns",   "map_aniso", "map_anisor", "disp",
+                                         "decal",  "map_disp", "refl",      "map_refl"};
 
 template <class Range>
 bool holds(const Range& keys, std::string_view key) {

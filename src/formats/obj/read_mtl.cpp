@@ -6,6 +6,7 @@
 #include "base/read_file.h"
 #include "formats/gltf/uri.h"
 #include "formats/obj/parse_mtl.h"
+#include "formats/obj/texel_values.h"
 #include "math/vec3.h"
 
 namespace fs = std::filesystem;
@@ -34,6 +35,7 @@ public:
         to.emission_texture = texture(from.map_ke, true);
         if (to.emission_texture.has_image() && is_black(to.emission)) to.emission = grey(1);
         surface(from, to);
+        layers(from, to);
         alpha(from, result);
         bumps(from, result);
         return result;
@@ -105,6 +107,21 @@ private:
         }
     }
 
+    /// Reads the coat and the sheen. A map without its number, or with 0, counts alone.
+    void layers(const MtlStatements& from, Material& to) {
+        const auto factor = [](float number, const TextureRef& map) {
+            return map.has_image() && number == 0 ? 1 : number;
+        };
+        to.coat_texture = texture(from.map_pc, false);
+        to.coat_weight = factor(from.pc, to.coat_texture);
+        if (to.coat_weight > 0) {
+            to.coat_roughness_texture = texture(from.map_pcr, false);
+            to.coat_roughness = factor(from.pcr, to.coat_roughness_texture);
+        }
+        to.fuzz_color_texture = texture(from.map_ps, false); // a grey map of the weight
+        to.fuzz_weight = factor(from.ps, to.fuzz_color_texture);
+    }
+
     void alpha(const MtlStatements& from, MtlMaterial& to) {
         if (to.material.kind == MaterialKind::Dielectric) return;
         to.material.alpha = clamp(from.d, 0.0f, 1.0f);
@@ -117,11 +134,17 @@ private:
     void bumps(const MtlStatements& from, MtlMaterial& to) {
         to.material.normal_texture = texture(from.norm, false);
         to.material.normal_scale = from.norm.bump_multiplier;
-        if (from.norm.name.empty() && !from.bump.name.empty()) {
-            to.material.normal_texture = texture(from.bump, false);
-            to.material.normal_scale = 1; // -bm is a height
-            to.normal_may_be_height = to.material.normal_texture.has_image();
+        if (from.bump.name.empty()) return;
+        if (!from.norm.name.empty()) {
+            sink_.leave_out(
+                {FileLocation{path_.string(), from.bump.line}, "the bumps are left out beside a normal map"});
+            return;
         }
+        to.material.normal_texture = texture(from.bump, false);
+        to.material.normal_scale = 1;
+        to.normal_may_be_height = to.material.normal_texture.has_image();
+        to.bump_multiplier = from.bump.bump_multiplier;
+        to.bump_channel = from.bump.channel;
     }
 
     const fs::path& path_;
@@ -129,37 +152,15 @@ private:
     Sink& sink_;
 };
 
-std::size_t pixel_count(const TextureImage& image) {
-    return max(image.rgba8.pixels.size(), image.rgba_float.pixels.size()) / 4;
-}
-
-/// Returns a channel in [0, 1]; that of an 8-bit image as stored.
-float value(const TextureImage& image, std::size_t pixel, int channel) {
-    const std::size_t at = 4 * pixel + static_cast<std::size_t>(channel);
-    return image.rgba8.pixels.empty() ? image.rgba_float.pixels[at] : static_cast<float>(image.rgba8.pixels[at]) / 255;
-}
-
-/// Returns whether an image is a tangent-space normal map, which is bluish and whose texels are unit vectors; a height
-/// map is grey.
-bool looks_like_normals(const TextureImage& image) {
-    std::size_t good = 0, seen = 0;
-    for (std::size_t i = 0; i < pixel_count(image); i += 7, ++seen) {
-        const float r = value(image, i, 0), b = value(image, i, 2);
-        const float square = length_squared(Vec3{2 * r - 1, 2 * value(image, i, 1) - 1, 2 * b - 1});
-        good += b > 0.5f && b > r + 0.03f && square > 0.7f && square < 1.3f;
-    }
-    return seen > 0 && good > seen * 3 / 4;
-}
-
 struct AlphaStatistics {
     bool varies = false;    // some alpha below 1
     bool is_binary = false; // nearly all texels clear or solid: an outline, softened at most at its edge
 };
 
-AlphaStatistics alpha_statistics(const TextureImage& image, int channel) {
+AlphaStatistics alpha_statistics(const TextureImage& image, std::size_t channel) {
     std::size_t between = 0, below = 0;
     for (std::size_t i = 0; i < pixel_count(image); ++i) {
-        const float alpha = value(image, i, channel);
+        const float alpha = texel_value(image, i, channel);
         between += alpha >= 0.125f && alpha < 0.875f;
         below += alpha < 1;
     }
@@ -184,19 +185,12 @@ std::map<std::string, MtlMaterial> read_mtl(std::span<const std::byte> bytes, co
     return materials;
 }
 
-void finish_mtl_material(MtlMaterial& material, const std::vector<TextureImage>& images, const std::string& file,
-                         Sink& sink) {
+void finish_mtl_material(MtlMaterial& material, const std::vector<TextureImage>& images) {
     Material& to = material.material;
-    if (material.normal_may_be_height && to.normal_texture.has_image()) {
-        if (!looks_like_normals(images[static_cast<std::size_t>(to.normal_texture.image)])) {
-            sink.leave_out({FileLocation{file}, "a height map in map_bump is left out; only normal maps are read"});
-            to.normal_texture = {};
-        }
-    }
     if (!material.has_alpha_map || !to.alpha_texture.has_image()) return;
     const TextureImage& image = images[static_cast<std::size_t>(to.alpha_texture.image)];
     // `m` (matte) is the alpha channel; a grey picture without one is meant by its brightness.
-    int channel = material.alpha_channel == 'g' ? 1 : (material.alpha_channel == 'b' ? 2 : 0);
+    std::size_t channel = material.alpha_channel == 'g' ? 1 : (material.alpha_channel == 'b' ? 2 : 0);
     if (material.alpha_channel == 'm' && alpha_statistics(image, 3).varies) channel = 3;
     to.alpha_texture.channel = static_cast<uint8_t>(channel);
     const AlphaStatistics statistics = alpha_statistics(image, channel);

@@ -10,7 +10,8 @@
 //   Ks above 0.02 and not (0.5, 0.5, 0.5), which exporters write by default, Ns above 1 and illum not 1
 //                                               MetallicRoughness, metallic 0, Ni such that F0 = Ks / max(1, Kd + Ks)
 //   otherwise                                   Diffuse of Kd; without Kd, grey as without a material
-// Ns to GGX: alpha = sqrt(2 / (Ns + 2)) (Walter et al., EGSR 2007, section 5.2). d < 1 alone, and map_d, are alpha.
+// Pc, Pcr and Ps put a coat and a sheen on any of them. Ns to GGX: alpha = sqrt(2 / (Ns + 2)) (Walter et al., EGSR
+// 2007, section 5.2). d < 1 alone, and map_d, are alpha.
 
 #include <cstddef>
 #include <filesystem>
@@ -31,6 +32,8 @@ struct MtlMaterial {
     bool has_alpha_map = false;        // map_d is in alpha_texture, or is the alpha of map_Kd if it is the same image
     char alpha_channel = 'm';          // -imfchan of map_d
     bool normal_may_be_height = false; // from map_bump, which some exporters use for normal maps
+    float bump_multiplier = 1;         // -bm of map_bump, for heights
+    char bump_channel = 'm';           // -imfchan of map_bump
 };
 
 /// Materials of the file at `path` by name, the first of equal names; `loader` gets their textures. Throws
@@ -41,8 +44,7 @@ std::map<std::string, MtlMaterial> read_mtl(std::span<const std::byte> bytes, co
                                             TextureLoader& loader, Sink& sink);
 
 /// Finishes `material.material` after its images have been decoded (and its textures renumbered by the loader): reads
-/// the alpha mode and channel off the images, and drops a map_bump with heights, with a warning.
-void finish_mtl_material(MtlMaterial& material, const std::vector<TextureImage>& images, const std::string& file,
-                         Sink& sink);
+/// the alpha mode and channel off the images.
+void finish_mtl_material(MtlMaterial& material, const std::vector<TextureImage>& images);
 
 } // namespace pertev

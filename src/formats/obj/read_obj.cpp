@@ -20,6 +20,7 @@
 #include "base/read_file.h"
 #include "base/sink.h"
 #include "formats/files/load_textures.h"
+#include "formats/obj/bump_normals.h"
 #include "formats/obj/parse_obj.h"
 #include "formats/obj/read_mtl.h"
 #include "scene/scene_origin.h"
@@ -248,13 +249,23 @@ Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& 
                         });
                     });
 
-    for (Material& material : scene.materials) {
+    std::vector<BumpUse> bumps;
+    std::vector<float> multipliers; // each bump has one
+    for (uint32_t i = 0; i < scene.materials.size(); ++i) {
+        Material& material = scene.materials[i];
         const auto known = materials.find(material.name);
         if (known == materials.end()) continue;
         MtlMaterial finished = known->second;
         finished.material = material;
-        finish_mtl_material(finished, scene.images, file, sink);
+        finish_mtl_material(finished, scene.images);
         material = finished.material;
+        if (!finished.normal_may_be_height) continue;
+        bumps.push_back({i, finished.bump_channel});
+        multipliers.push_back(finished.bump_multiplier);
+    }
+    const std::vector<bool> had_heights = convert_bumps(bumps, scene);
+    for (std::size_t i = 0; i < bumps.size(); ++i) {
+        if (had_heights[i]) scene.materials[bumps[i].material].normal_scale = multipliers[i];
     }
     warn_of_textures_without_coordinates(scene, data, file, sink);
     drop_colors_beside_textures(scene, file, sink);

@@ -158,7 +158,7 @@ Scene read_scene_and_emitters(const std::filesystem::path& path, const ReadOptio
     if (options.variant.empty()) report_variants(scene, path.string(), sink);
     if (!(options.space == FileSpace()) && defines_space(path)) {
         sink.warn({FileLocation{path.string()},
-                   "the file is in metres with y up; `up_axis` and `unit` are for .obj and .ply"});
+                   "the file is in metres with y up; `up_axis` and `unit` are for .obj, .ply and .stl"});
     }
     if (!options.two_sided_lights && !defines_emitter_sides(path)) report_emitter_fronts(scene, path.string(), sink);
     return scene;
