@@ -27,6 +27,7 @@
 #include "radiosity/radiosity_solution.h"
 #include "scene/scene_origin.h"
 #include "session/film_file/film_file.h"
+#include "session/set_materials.h"
 #include "session/survey/default_light.h"
 #include "session/writing/check_outputs.h"
 #include "session/writing/metadata_json.h"
@@ -63,6 +64,11 @@ public:
         std::string json;
         for (const std::string& text : texts) json += (json.empty() ? "" : ",") + json_string(text);
         facts_.push_back({name, fmt::format("{}", fmt::join(texts, " ")), fmt::format("[{}]", json)});
+    }
+    /// Adds texts of which each has a line.
+    void add_lines(const std::string& name, const std::vector<std::string>& texts) {
+        add(name, texts);
+        facts_.back().text = fmt::format("{}", fmt::join(texts, fmt::format("\n{:25}", "")));
     }
     /// `origin` says where the value came from; empty: unknown.
     void add(const ExrMetadata::value_type& entry, const std::string& origin) {
@@ -154,6 +160,15 @@ std::string settings_of(const std::string& picture) {
     return with_samples(value_of("pertev.settings"), value_of("pertev.spp"));
 }
 
+/// Returns the memory of all textures.
+uint64_t count_image_bytes(const Scene& scene) {
+    uint64_t bytes = 0;
+    for (const TextureImage& image : scene.images) {
+        bytes += image.rgba8.pixels.size() + sizeof(float) * image.rgba_float.pixels.size();
+    }
+    return bytes;
+}
+
 /// Lists the file's animations and scenes, and those that a render plays and shows by default.
 void describe_choices(const Scene& scene, Facts& facts) {
     std::vector<std::string> animations = list_clips(scene.clips); // values of --animation
@@ -179,6 +194,7 @@ void describe_scene(const InfoFlags& flags, Facts& facts, Sink& sink) {
     facts.add("triangles_placed", placed);
     facts.add("materials", scene.materials.size());
     facts.add("images", scene.images.size());
+    facts.add("image_bytes", count_image_bytes(scene));
     const uint64_t emissive = count_emissive_triangles(scene);
     facts.add("lights", emissive + scene.lights.size() + (scene.environment ? 1 : 0)); // counted like render does
     facts.add("emissive_triangles", emissive);
@@ -209,6 +225,9 @@ void describe_scene(const InfoFlags& flags, Facts& facts, Sink& sink) {
     for (const SuggestedSetting& setting : scene.suggested) suggests.push_back(setting.name + "=" + setting.text);
     facts.add("suggests", suggests);
     facts.add("makes_up", makes_up);
+    std::vector<std::string> materials; // values of --material
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) materials.push_back(describe_material(scene, i));
+    facts.add_lines("material_list", materials);
 }
 
 void describe_solution(const InfoFlags& flags, Facts& facts) {

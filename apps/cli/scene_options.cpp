@@ -22,7 +22,9 @@ CLI::Option* add_scene_name(CLI::App& verb, SceneOptions& options) {
 }
 
 Scene read_any_scene(const SceneOptions& options, Sink& sink) {
-    return read_scene_and_emitters(options.scene, read_options(options), sink);
+    Scene scene = read_scene_and_emitters(options.scene, read_options(options), sink);
+    change_materials(options, scene);
+    return scene;
 }
 
 } // namespace pertev

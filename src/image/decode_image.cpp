@@ -8,6 +8,7 @@
 #include "image/decode_hdr.h"
 #include "image/decode_jpeg.h"
 #include "image/decode_png.h"
+#include "image/decode_webp.h"
 #include "image/image_format.h"
 
 namespace pertev {
@@ -17,13 +18,14 @@ namespace {
 ImageFormat format_of(std::span<const std::byte> bytes, const std::string& name) {
     if (const std::optional<ImageFormat> format = recognise_image(bytes)) return *format;
     throw Error(ErrorCode::BadInput, FileLocation{name},
-                fmt::format("{}; a picture must be PNG, JPEG, Radiance HDR or OpenEXR",
+                fmt::format("{}; a picture must be PNG, JPEG, WebP, Radiance HDR or OpenEXR",
                             bytes.empty() ? "the file is empty" : "the file has no known picture format"));
 }
 
 } // namespace
 
 ImageHeader read_image_header(std::span<const std::byte> bytes, const std::string& name) {
+    if (is_webp(bytes)) return read_webp_header(bytes, name);
     switch (format_of(bytes, name)) {
     case ImageFormat::Png:
         return read_png_header(bytes, name);
@@ -38,6 +40,7 @@ ImageHeader read_image_header(std::span<const std::byte> bytes, const std::strin
 }
 
 std::variant<Rgba8Image, Image> decode_image(std::span<const std::byte> bytes, const std::string& name, Sink& sink) {
+    if (is_webp(bytes)) return decode_webp(bytes, name);
     switch (format_of(bytes, name)) {
     case ImageFormat::Png:
         return decode_png(bytes, name, sink);

@@ -16,7 +16,7 @@ namespace pertev {
 
 /// Decodes the picture in `bytes`; `name` starts every message. Colour profiles, gamma chunks and Exif orientations
 /// are not applied (as glTF requires). Result by source:
-///   PNG up to 8 bits, JPEG   Rgba8Image, values as stored (colour: sRGB-encoded); grey is repeated, CMYK converted
+///   PNG up to 8 bits, JPEG, WebP Rgba8Image, values as stored (colour: sRGB-encoded); grey is repeated, CMYK converted
 ///   PNG with 16 bits         Image with the file's 1 to 4 channels in [0, 1], values as stored: still sRGB-encoded if
 ///                            the picture has colours (recognise_image distinguishes this from the next two)
 ///   HDR                      Image, RGB, linear; divided by the file's EXPOSURE and COLORCORR

@@ -27,13 +27,14 @@ struct SceneOptions {
     std::string scene;                          // a file, or the name of a built-in scene
     std::string file_scene, variant, animation; // names or numbers
     std::vector<std::filesystem::path> allowed_paths;
-    std::string up_axis, unit; // coordinate system of the file
+    std::string up_axis, unit;     // coordinate system of the file
+    uint32_t max_texture_size = 0; // pixels of the longer side; 0: any
     CameraChoice camera;
     std::string environment; // a file, or "r,g,b"
     float environment_rotation_deg = 0, environment_scale = 1;
-    std::string ground = "auto"; // or on, off
-    std::vector<std::string> emitters;
-    float efficacy = 0; // lm/W; 0: by the kind of file
+    std::string ground = "auto";                  // or on, off
+    std::vector<std::string> emitters, materials; // changes of the scene
+    float efficacy = 0;                           // lm/W; 0: by the kind of file
     bool two_sided_lights = false, show_back_faces = false;
 };
 

@@ -31,6 +31,13 @@ std::vector<Setting> scene_settings() {
             "are for a scene in metres.",
             Otherwise{"m"}, On{kScenes | kLab | kInfo}, Mark::OpensScene, Recorded::AsUsed),
 
+        row("material", "File", "NAME KEY=VALUE", FIELD(scene.materials),
+            "Sets parameters of the materials with this name, as in \"gold roughness=0.2\"; info lists them.",
+            On{kScenes | kInfo}, Mark::OpensScene, Recorded::AsUsed),
+        row("max_texture_size", "File", "N", FIELD(scene.max_texture_size),
+            "Larger textures are scaled down to this longer side.", Range{1, kMaxImageSide},
+            Unit{"pixels"}, Otherwise{"any size"}, On{kScenes | kLab | kInfo}, Mark::OpensScene, Recorded::AsUsed),
+
         row("camera", "Camera", "NAME|N", FIELD(scene.camera.camera),
             "The scene's camera to render from, by name or by number from 0.", Otherwise{"its first"}, On{kAimed},
             Mark::Common, Recorded::Always, Mark::Name, Changes::Camera),

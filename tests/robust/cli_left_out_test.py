@@ -50,9 +50,8 @@ class LeftOut(CliTest):
         meshes = [{"primitives": [{"attributes": {"POSITION": 0},
                                    "extensions": {"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {}}}}]}]
         scene = self.model(accessors=accessors, meshes=meshes, extensionsRequired=["KHR_draco_mesh_compression"])
-        command = "npx @gltf-transform/cli copy \"model.gltf\" \"model-converted.gltf\""
         for flags in [[], ["-q"], ["--json"], ["--strict"]]:
-            self.refuse(2, "render", scene, "-o", "x.png", *flags, *SMALL, says=["KHR_draco_mesh_compression", command])
+            self.refuse(2, "render", scene, "-o", "x.png", *flags, *SMALL, says=["KHR_draco_mesh_compression"])
 
     def test_a_complete_scene_skips_no_part_and_missing_light_and_camera_are_added(self):
         done = self.succeed("render", self.model(), "-o", "x.png", "--json", "--strict", *SMALL).events("done")[0]

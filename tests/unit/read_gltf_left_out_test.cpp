@@ -10,8 +10,10 @@
 
 #include "base/error.h"
 #include "base/write_file_atomically.h"
+#include "formats/gltf/draco.h"
 #include "formats/gltf/read_gltf.h"
 #include "formats/gltf/uri.h"
+#include "image/decode_webp.h"
 #include "scene/validate/validate.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/options.h"
@@ -285,6 +287,7 @@ TEST_CASE("a GLB's JSON may be padded with zero bytes, and its header may give a
 }
 
 TEST_CASE("a primitive with only compressed data is left out, with the command that converts the file") {
+    if (gltf::has_draco()) return;
     const std::string draco = R"("extensionsRequired":["KHR_draco_mesh_compression"],)"
                               R"("accessors":[{"componentType":5126,"type":"VEC3","count":3}],)";
     const std::string compressed =
@@ -309,7 +312,7 @@ TEST_CASE("a primitive with only compressed data is left out, with the command t
 
 TEST_CASE("a texture with only an unsupported image is left out, with the command that converts the file") {
     for (const auto& [extension, command] :
-         {std::pair("KHR_texture_basisu", "cli ktxdecompress "), std::pair("EXT_texture_webp", "cli png ")}) {
+         {std::pair("KHR_texture_basisu", "cli ktxdecompress "), std::pair("MSFT_texture_dds", "magick ")}) {
         CAPTURE(extension);
         const std::vector<std::string> left_out = left_out_of(triangle().json(
             R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],"nodes":[{"mesh":0}],"materials":[)"
@@ -329,6 +332,7 @@ TEST_CASE("an image of an unsupported format is left out with the command, where
             R"({"emissiveTexture":{"index":0}}],"textures":[{"source":0}],"images":[{"uri":"data:;base64,)" +
             bytes + "\"}]"));
         REQUIRE(left_out.size() == 1);
+        if (bytes == webp && has_webp()) continue; // it is damaged
         CHECK(left_out[0].find(command) != std::string::npos);
     }
 }

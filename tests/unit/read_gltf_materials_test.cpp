@@ -224,7 +224,7 @@ TEST_CASE("textures that cannot be read cause warnings, and the factor stays") {
         CHECK(!scene.materials.at(0).emission_texture.has_image());
         CHECK(test::has_warning(messages, {"model.gltf", warning}));
     };
-    read(R"({"index":0,"texCoord":2})", R"(,"textures":[{"source":0}],)" + kImage, "/materials/0/emissiveTexture");
+    read(R"({"index":0,"texCoord":256})", R"(,"textures":[{"source":0}],)" + kImage, "/materials/0/emissiveTexture");
     read(R"({"index":0})", R"(,"textures":[{}])", "/textures/0");
     read(R"({"index":0})", R"(,"textures":[{"source":0}],"images":[{"uri":"none.png"}])", "none.png");
     read(R"({"index":0})", R"(,"textures":[{"source":0}],"images":[{"uri":"data:image/png;base64,AAAA"}])",

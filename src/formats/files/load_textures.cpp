@@ -13,8 +13,10 @@
 #include "base/parallel_for.h"
 #include "base/read_file.h"
 #include "image/decode_image.h"
+#include "image/decode_webp.h"
 #include "image/image_format.h"
 #include "image/picture_primaries.h"
+#include "image/shrink_image.h"
 #include "image/srgb.h"
 
 namespace fs = std::filesystem;
@@ -76,11 +78,6 @@ void put_png16(const Image& image, Uses use, TextureImage& to) {
     to.rgba_float = std::move(rgba);
 }
 
-/// Returns the number of bytes of a picture as a TextureImage.
-uint64_t texture_bytes(const ImageHeader& header) {
-    return uint64_t(header.width) * header.height * 4 * (header.is_float ? sizeof(float) : 1);
-}
-
 TextureImage texture_of(std::variant<Rgba8Image, Image> image, bool is_png, Uses use, const std::string& name) {
     TextureImage to;
     to.name = name;
@@ -98,7 +95,7 @@ TextureImage texture_of(std::variant<Rgba8Image, Image> image, bool is_png, Uses
 std::string_view extension_of(std::span<const std::byte> picture) {
     const std::string_view bytes(reinterpret_cast<const char*>(picture.data()),
                                  std::min<std::size_t>(picture.size(), 12));
-    if (bytes.starts_with("RIFF") && bytes.ends_with("WEBP")) return "EXT_texture_webp";
+    if (is_webp(picture)) return has_webp() ? "" : "EXT_texture_webp";
     if (bytes.starts_with("\xabKTX 20")) return "KHR_texture_basisu";
     return bytes.ends_with("ftypavif") ? "EXT_texture_avif" : "";
 }
@@ -124,6 +121,13 @@ int32_t TextureLoader::add_bytes(std::string name, std::span<const std::byte> by
     return static_cast<int32_t>(sources_.size() - 1);
 }
 
+/// Returns the number of bytes of a picture as a TextureImage.
+uint64_t TextureLoader::texture_bytes(const ImageHeader& header) const {
+    const auto [width, height] =
+        shrunk_size(header.width, header.height, longest_ > 0 ? longest_ : std::max(header.width, header.height));
+    return uint64_t(width) * height * 4 * (header.is_float ? sizeof(float) : 1);
+}
+
 uint64_t TextureLoader::budget(uint64_t scene_bytes) const {
     uint64_t bytes = scene_bytes;
     for (const Source& source : sources_) {
@@ -141,7 +145,7 @@ void TextureLoader::check_budget(uint64_t limit) const {
         if (sum <= limit) continue;
         throw Error(ErrorCode::OverLimit, FileLocation{source.path.empty() ? source.name : source.path.string()},
                     fmt::format("with this picture the scene's images take {} MiB of memory; the limit for files of "
-                                "this size is {} MiB; share one image instead of copies, or use smaller images",
+                                "this size is {} MiB; share one image instead of copies, or set `max_texture_size`",
                                 sum >> 20, limit >> 20));
     }
 }
@@ -159,6 +163,10 @@ void TextureLoader::read(Source& source, uint64_t limit, std::atomic<uint64_t>& 
         source.is_png = recognise_image(bytes) == ImageFormat::Png;
         source.color_matrix = color_matrix_of(bytes, name, source.messages);
         source.image = decode_image(bytes, name, source.messages);
+        if (longest_ == 0) return;
+        // HDR and EXR hold linear colours.
+        const bool is_srgb = source.is_encoded && (source.is_png || std::holds_alternative<Rgba8Image>(*source.image));
+        std::visit([&](auto& image) { image = shrink_image(image, longest_, is_srgb); }, *source.image);
     } catch (const Error& error) {
         const std::string_view extension = extension_of(is_embedded ? source.bytes : file);
         source.fault = error.remark();
@@ -166,7 +174,9 @@ void TextureLoader::read(Source& source, uint64_t limit, std::atomic<uint64_t>& 
     }
 }
 
-void TextureLoader::decode() { decode_within(budget(0)); }
+void TextureLoader::decode() {
+    if (longest_ == 0) decode_within(budget(0)); // otherwise the means depend on how materials use the pictures
+}
 
 void TextureLoader::decode_within(uint64_t limit) {
     const auto is_done = [](const Source& source) { return source.image || source.fault; };
@@ -184,11 +194,12 @@ void TextureLoader::load_into(Scene& scene, uint64_t scene_bytes) {
     if (missing_ > kMissingNamed) {
         sink_->leave_out(fmt::format("missing: {}", counted(missing_ - kMissingNamed, "further texture")));
     }
+    const std::vector<Uses> uses = uses_of(scene, sources_.size());
+    for (std::size_t i = 0; i < sources_.size(); ++i) sources_[i].is_encoded = uses[i].as_srgb && !uses[i].as_data;
     const uint64_t limit = budget(scene_bytes);
     decode_within(limit);
     check_budget(limit);
 
-    const std::vector<Uses> uses = uses_of(scene, sources_.size());
     std::vector<TextureImage> textures(sources_.size());
     parallel_for(sources_.size(), 1, [&](uint64_t i) {
         Source& source = sources_[i];

@@ -21,6 +21,7 @@
 #include "formats/files/file_access.h"
 #include "image/color_primaries.h"
 #include "image/image.h"
+#include "image/image_header.h"
 #include "scene/scene.h"
 
 namespace pertev {
@@ -35,6 +36,9 @@ public:
     /// Sets `advice`, which is appended to messages about pictures that are not decoded: how to convert them. It gets
     /// the glTF extension of the picture's format.
     void advise_by(std::function<std::string(std::string_view extension)> advice) { advice_ = std::move(advice); }
+
+    /// Sets the most pixels of a picture's longer side; larger pictures are scaled down. 0: any.
+    void shrink_to(uint32_t longest) { longest_ = longest; }
 
     /// Image index of the file `reference`, as written at `from` (see FileAccess::resolve); the same file, however
     /// spelled, is one image. kNoImage after a warning if there is no such file. Throws Error(BadInput) if access is
@@ -68,17 +72,20 @@ private:
         std::optional<std::variant<Rgba8Image, Image>> image; // after decoding
         std::optional<ColorMatrix> color_matrix;              // to Rec. 709, if its colours have other primaries
         bool is_png = false;
+        bool is_encoded = false;     // used as sRGB-encoded colours alone; known once the scene's materials are
         std::optional<Remark> fault; // reason why it cannot be decoded
         Messages messages = {};
     };
     void decode_within(uint64_t limit);
     void read(Source& source, uint64_t limit, std::atomic<uint64_t>& all_bytes) const;
+    uint64_t texture_bytes(const ImageHeader& header) const;
 
     const FileAccess& access_;
     Sink* sink_;
     std::function<std::string(std::string_view)> advice_;
     std::vector<Source> sources_;
     std::map<std::filesystem::path, int32_t> by_path_;
+    uint32_t longest_ = 0;
     std::size_t missing_ = 0; // only the first few are named
 };
 

@@ -17,6 +17,7 @@ struct ReadOptions {
     FileSpace space;                                  // for formats that do not define theirs; others are unaffected
     std::string animation;                            // the animation that plays: a name, an index from 0, or "all";
                                                       // empty: the first
+    uint32_t max_texture_size = 0; // pixels of the longer side of textures; larger ones are scaled down; 0: any
     std::string variant;    // the set of materials: a name or an index from 0 in the file; empty: the file's default
     std::string file_scene; // the scene to show: a name or an index from 0 in the file; empty: the file's default
 };

@@ -106,7 +106,13 @@ Accessor::Accessor(const Document& document, Buffers& buffers, const JsonValue& 
     const JsonValue& accessor = document.item("accessors", reference);
     set_types(accessor, expected);
     count_ = accessor.at("count").to_unsigned();
-    set_dense(accessor, buffers);
+    if (const auto bytes = buffers.put_bytes(document.index_into("accessors", reference))) {
+        dense_ = *bytes;
+        stride_ = element_bytes();
+        check_range(accessor, 0, count_, stride_, stride_, bytes->size());
+    } else {
+        set_dense(accessor, buffers);
+    }
     if (const std::optional<JsonValue> sparse = accessor.find("sparse")) set_sparse(*sparse, buffers);
 }
 

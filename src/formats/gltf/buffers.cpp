@@ -140,6 +140,16 @@ BufferView Buffers::view(const JsonValue& reference) {
     return {*decompressed_[index], view.unsigned_or("byteStride", 0)};
 }
 
+void Buffers::put(const JsonValue& reference, std::vector<std::byte> bytes) {
+    put_[document_.index_into("accessors", reference)] = std::move(bytes);
+}
+
+std::optional<std::span<const std::byte>> Buffers::put_bytes(uint32_t accessor) const {
+    const auto found = put_.find(accessor);
+    if (found == put_.end()) return std::nullopt;
+    return found->second;
+}
+
 void Buffers::charge(uint64_t bytes, const JsonValue& json) {
     const uint64_t limit = justified_bytes(kFreeMeshBytes, file_bytes_);
     charged_bytes_ += bytes;

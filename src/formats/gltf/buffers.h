@@ -36,6 +36,11 @@ public:
     /// Counts `bytes` of memory that the reader fills because of the value `json`. A scene may use its data many
     /// times, but not without bound: throws Error(OverLimit) once the sum is out of proportion to the files.
     void charge(uint64_t bytes, const JsonValue& json);
+    /// Gives contiguous `bytes` to the accessor with the index `reference`, which has no buffer view, in place of
+    /// zeros.
+    void put(const JsonValue& reference, std::vector<std::byte> bytes);
+    /// Returns the bytes that an accessor was given; nothing if there are none.
+    std::optional<std::span<const std::byte>> put_bytes(uint32_t accessor) const;
     /// Bytes of all files read: the JSON and the buffers.
     uint64_t file_bytes() const { return file_bytes_; }
 
@@ -51,6 +56,7 @@ private:
                                                                           // missing is...
     std::vector<std::optional<Error>> faults_;                            // ...here
     std::vector<std::optional<std::vector<std::byte>>> decompressed_;     // [view]
+    std::map<uint32_t, std::vector<std::byte>> put_;                      // by accessor
     uint64_t file_bytes_ = 0, charged_bytes_ = 0;
 };
 

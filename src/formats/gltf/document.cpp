@@ -238,8 +238,8 @@ void Document::check_version(Sink& sink) const {
         throw version->error(fmt::format("glTF {} is not supported; expected 2.0", version_text(*version)));
     }
     const std::optional<JsonValue> least = asset->find("minVersion");
-    if (least && parts(*least) > std::array<unsigned, 2>{2, 0}) {
-        sink.leave_out({least->location(), fmt::format("the file needs glTF {}; features that 2.0 lacks are left out",
+    if (least && parts(*least) > std::array<unsigned, 2>{2, 1}) {
+        sink.leave_out({least->location(), fmt::format("the file needs glTF {}; features that 2.1 lacks are left out",
                                                        version_text(*least))});
     }
 }

@@ -10,11 +10,19 @@
 namespace pertev::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 12> kRead = {
-    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression",         "KHR_animation_pointer",
-    "KHR_materials_clearcoat", "KHR_materials_emissive_strength", "KHR_materials_ior",
-    "KHR_materials_sheen",     "KHR_materials_specular",          "KHR_materials_unlit",
-    "KHR_materials_variants",  "KHR_mesh_quantization",           "KHR_texture_transform"};
+constexpr std::array<std::string_view, 13> kRead = {"EXT_mesh_gpu_instancing",
+                                                    "EXT_meshopt_compression",
+                                                    "KHR_animation_pointer",
+                                                    "KHR_materials_clearcoat",
+                                                    "KHR_materials_emissive_strength",
+                                                    "KHR_materials_ior",
+                                                    "KHR_materials_sheen",
+                                                    "KHR_materials_specular",
+                                                    "KHR_materials_unlit",
+                                                    "KHR_materials_variants",
+                                                    "KHR_mesh_quantization",
+                                                    "KHR_node_visibility",
+                                                    "KHR_texture_transform"};
 
 // Some cases of these are read, and materials.cpp and material_layers.cpp warn of the others.
 constexpr std::array<std::string_view, 3> kReadInPart = {"KHR_materials_pbrSpecularGlossiness",
@@ -24,15 +32,16 @@ constexpr std::array<std::string_view, 3> kReadInPart = {"KHR_materials_pbrSpecu
 constexpr std::array<std::string_view, 2> kWithoutEffect = {"KHR_xmp", "KHR_xmp_json_ld"};
 
 struct Conversion {
-    std::string_view extension, command;
+    std::string_view extension, command; // command of gltf-transform; empty: it has none
 };
 
 // Compressions, for which a file may also have uncompressed data: primitives and textures warn if they have no
 // alternative.
-constexpr std::array<Conversion, 4> kConversions = {{{"KHR_draco_mesh_compression", "copy"},
+constexpr std::array<Conversion, 5> kConversions = {{{"KHR_draco_mesh_compression", "copy"},
                                                      {"KHR_texture_basisu", "ktxdecompress"},
                                                      {"EXT_texture_webp", "png"},
-                                                     {"EXT_texture_avif", "png"}}};
+                                                     {"EXT_texture_avif", "png"},
+                                                     {"MSFT_texture_dds", ""}}};
 
 template <class Names>
 bool holds(const Names& names, std::string_view name) {
@@ -54,6 +63,9 @@ bool is_known_extension(std::string_view name) {
 std::string conversion_advice(std::string_view extension, const std::filesystem::path& file) {
     const Conversion* conversion = conversion_of(extension);
     if (conversion == nullptr) return "";
+    if (conversion->command.empty()) {
+        return "; this command converts each of its pictures, for the texture's \"source\": magick NAME.dds NAME.png";
+    }
     std::filesystem::path to = file.filename();
     to.replace_filename(to.stem().string() + "-converted" + to.extension().string());
     return fmt::format("; this command converts the file: npx @gltf-transform/cli {} \"{}\" \"{}\"",

@@ -21,6 +21,12 @@ std::string members_as_text(const JsonValue& object, std::initializer_list<std::
     return text;
 }
 
+/// Returns whether a primitive has more than the sets 0 and 1 of texture coordinates.
+bool has_further_sets(const JsonValue& primitive) {
+    const std::optional<JsonValue> attributes = primitive.find("attributes");
+    return attributes && attributes->find("TEXCOORD_2");
+}
+
 } // namespace
 
 Meshes::Meshes(const Document& document, Buffers& buffers, const NodeGraph& nodes, Materials& materials, Scene& scene,
@@ -58,13 +64,31 @@ std::vector<Meshes::Part> Meshes::read_parts(uint32_t index) {
     for (std::size_t i = 0; i < primitives.size(); ++i) {
         sink_.check();
         const std::string part_name = primitives.size() > 1 ? fmt::format("{}/{}", name, i) : name;
-        std::optional<uint32_t> part;
-        read_or_leave_out(primitives[i], sink_, [&] { part = mesh_of(primitives[i], index, part_name); });
+        std::optional<uint32_t> part, material;
+        if (has_further_sets(primitives[i])) material = material_of(primitives[i]); // which tells the sets to read
+        TextureSets sets = material ? sets_of(*material) : TextureSets{0, 1};
+        const auto read_mesh = [&] { part = mesh_of(primitives[i], index, part_name, sets); };
+        read_or_leave_out(primitives[i], sink_, read_mesh);
         if (!part) continue;
-        parts.push_back({*part, material_of(primitives[i])});
+        if (!material) {
+            material = material_of(primitives[i]);
+            if (sets != sets_of(*material)) {
+                sets = sets_of(*material);
+                read_mesh();
+            }
+        }
+        parts.push_back({*part, *material});
         check_texture_coordinates(parts.back());
     }
     return parts;
+}
+
+/// Returns the sets of texture coordinates of a material, whose textures then have their numbers here.
+const TextureSets& Meshes::sets_of(uint32_t index) {
+    const auto [entry, is_new] = sets_.try_emplace(index);
+    Material& material = scene_.materials[index];
+    if (is_new) entry->second = pack_texture_sets(material, document_.file(), material.origin, sink_);
+    return entry->second;
 }
 
 /// Returns the index of a primitive's material; that of the default material if it cannot be read.
@@ -84,14 +108,16 @@ void Meshes::check_texture_coordinates(const Part& part) {
             {FileLocation{document_.file()},
              fmt::format(
                  "{}: a texture uses TEXCOORD_{}, which a mesh with this material lacks; the texel at (0, 0) is used",
-                 material.origin, texture->uv_set)});
+                 material.origin, sets_of(part.material)[texture->uv_set])});
     }
 }
 
-std::optional<uint32_t> Meshes::mesh_of(const JsonValue& primitive, uint32_t node, const std::string& name) {
-    const auto [entry, is_new] = by_data_.try_emplace(data_key(primitive, node));
+std::optional<uint32_t> Meshes::mesh_of(const JsonValue& primitive, uint32_t node, const std::string& name,
+                                        const TextureSets& sets) {
+    const std::string key = fmt::format("{};{},{}", data_key(primitive, node), sets[0], sets[1]);
+    const auto [entry, is_new] = by_data_.try_emplace(key);
     if (!is_new) return entry->second;
-    std::optional<Primitive> read = read_primitive({document_, buffers_, primitive, geometry_only_}, sink_);
+    std::optional<Primitive> read = read_primitive({document_, buffers_, primitive, geometry_only_, sets}, sink_);
     if (!read) return std::nullopt;
     buffers_.charge(name.size(), primitive);
     read->mesh.name = name;

@@ -35,7 +35,9 @@ private:
     std::vector<Part> read_parts(uint32_t index);
     uint32_t material_of(const JsonValue& primitive);
     void check_texture_coordinates(const Part& part);
-    std::optional<uint32_t> mesh_of(const JsonValue& primitive, uint32_t node, const std::string& name);
+    const TextureSets& sets_of(uint32_t material);
+    std::optional<uint32_t> mesh_of(const JsonValue& primitive, uint32_t node, const std::string& name,
+                                    const TextureSets& sets);
     void add_shape(const JsonValue& primitive, uint32_t node, std::vector<MorphTarget> targets);
     const std::vector<Transform>& joints_of(uint32_t skin);
     std::string use_key(uint32_t node) const;
@@ -50,6 +52,7 @@ private:
     Sink& sink_;
     std::map<std::string, std::vector<Part>> by_use_;        // several nodes may show the same
     std::map<std::string, std::optional<uint32_t>> by_data_; // nothing: not drawable
+    std::map<uint32_t, TextureSets> sets_;                   // by material
     std::map<uint32_t, std::vector<Transform>> joints_;      // [skin] at rest
     std::set<uint32_t> reshaped_nodes_;                      // nodes whose morph weights an animation changes
 };

@@ -101,6 +101,16 @@ void NodeGraph::place_nodes(const Document& document, Sink& sink) {
         attempt("the name", [&] { nodes_[node].name = nodes[node].string_or("name", ""); });
         attempt("the transform", [&] { nodes_[node].pose = pose_of(nodes[node], sink); });
     }
+    is_hidden_.resize(nodes.size());
+    for (const uint32_t node : order) {
+        const uint32_t parent = nodes_[node].parent;
+        bool is_visible = true;
+        read_or_leave_out(nodes[node].pointer() + "/extensions/KHR_node_visibility", sink, [&] {
+            if (const auto own = nodes[node].extension("KHR_node_visibility"))
+                is_visible = own->bool_or("visible", true);
+        });
+        is_hidden_[node] = !is_visible || (parent != kNoNode && is_hidden_[parent]);
+    }
     transforms_ = transforms_of(nodes_, order);
     world_from_node_ = world_from_nodes(transforms_, {0, 0, 0});
 }

@@ -22,6 +22,8 @@ public:
 
     /// The scene's nodes, each before its children, in the order of the file.
     const std::vector<uint32_t>& scene_nodes() const { return scene_nodes_; }
+    /// Returns whether KHR_node_visibility hides a node, by itself or by an ancestor.
+    bool is_hidden(uint32_t node) const { return is_hidden_[node]; }
     /// Transform of any node, in the scene or not, at rest, in double and as floats in the coordinates of the file.
     const NodeTransform& transform(uint32_t node) const { return transforms_[node]; }
     const Transform& world_from_node(uint32_t node) const { return world_from_node_[node]; }
@@ -42,6 +44,7 @@ private:
     std::vector<NodeTransform> transforms_;
     std::vector<Transform> world_from_node_;
     std::vector<uint32_t> scene_nodes_;
+    std::vector<bool> is_hidden_;
 };
 
 } // namespace pertev::gltf

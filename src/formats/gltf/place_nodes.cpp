@@ -145,12 +145,14 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
             read_or_leave_out(fmt::format("the {} of {}", what, node.pointer()), sink, add);
         };
         attempt("mesh", [&] {
-            if (node.find("mesh")) place_mesh(node, index);
+            if (node.find("mesh") && !nodes.is_hidden(index)) place_mesh(node, index);
         });
         attempt("camera", [&] {
             if (const auto reference = node.find("camera")) place_camera(node, *reference, index, world_from_node);
         });
-        attempt("light", [&] { place_emitter(node, index, world_from_node); });
+        attempt("light", [&] {
+            if (!nodes.is_hidden(index)) place_emitter(node, index, world_from_node);
+        });
     }
     if (!scene.instances.empty()) return;
     scene.no_instances = describe_nothing(document, nodes);

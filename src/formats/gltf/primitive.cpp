@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "formats/gltf/draco.h"
 #include "formats/gltf/extensions.h"
 #include "formats/gltf/leave_out.h"
 
@@ -93,7 +94,7 @@ void read_attributes(const PrimitiveRequest& request, const JsonValue& attribute
     mesh.positions = positions->read_vec3();
     if (vertices == 0) return;
     // The shape is there without these.
-    const auto attempt = [&](const char* name, std::initializer_list<ElementType> types, const auto& take) {
+    const auto attempt = [&](const std::string& name, std::initializer_list<ElementType> types, const auto& take) {
         read_or_leave_out(fmt::format("{}/{}", attributes.pointer(), name), sink, [&] {
             if (const auto accessor = reader.find(name, vertices, types)) take(*accessor);
         });
@@ -103,8 +104,10 @@ void read_attributes(const PrimitiveRequest& request, const JsonValue& attribute
     attempt("TANGENT", {ElementType::Vec4}, [&](const Accessor& tangents) {
         if (!mesh.normals.empty()) mesh.tangents = tangents.read_vec4(); // without normals they mean nothing
     });
-    attempt("TEXCOORD_0", {ElementType::Vec2}, [&](const Accessor& uv) { mesh.uv[0] = uv.read_vec2(); });
-    attempt("TEXCOORD_1", {ElementType::Vec2}, [&](const Accessor& uv) { mesh.uv[1] = uv.read_vec2(); });
+    for (std::size_t i = 0; i < mesh.uv.size(); ++i) {
+        attempt(fmt::format("TEXCOORD_{}", request.sets[i]), {ElementType::Vec2},
+                [&](const Accessor& uv) { mesh.uv[i] = uv.read_vec2(); });
+    }
     attempt("COLOR_0", {ElementType::Vec3, ElementType::Vec4},
             [&](const Accessor& colors) { mesh.colors = read_colors(colors); });
 }
@@ -176,10 +179,13 @@ std::optional<Primitive> read_primitive(const PrimitiveRequest& request, Sink& s
     const JsonValue attributes = request.primitive.at("attributes");
     const std::optional<JsonValue> position = attributes.find("POSITION");
     if (!position) return leave_out("a primitive without positions is left out");
-    if (is_compressed_alone(request, *position)) {
+    const bool is_compressed = is_compressed_alone(request, *position);
+    if (is_compressed && has_draco()) decode_draco(request.document, request.buffers, request.primitive);
+    if (is_compressed && !has_draco()) {
         constexpr std::string_view draco = "KHR_draco_mesh_compression";
-        return leave_out(fmt::format("a primitive compressed by {}, which is not supported, is left out{}", draco,
-                                     conversion_advice(draco, request.document.path())));
+        return leave_out(
+            fmt::format("a primitive compressed by {}, which this program was built without, is left out{}", draco,
+                        conversion_advice(draco, request.document.path())));
     }
     Primitive result;
     Mesh& mesh = result.mesh;

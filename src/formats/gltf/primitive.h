@@ -10,6 +10,7 @@
 #include "base/sink.h"
 #include "formats/gltf/accessor.h"
 #include "formats/gltf/document.h"
+#include "formats/gltf/texture_sets.h"
 #include "scene/mesh.h"
 #include "scene/mesh_shape.h"
 
@@ -20,6 +21,7 @@ struct PrimitiveRequest {
     Buffers& buffers;
     const JsonValue& primitive;
     bool geometry_only = false; // only positions, normals and indices
+    TextureSets sets = {0, 1};  // numbers of the sets that the mesh has as its first and second
 };
 
 struct Primitive {

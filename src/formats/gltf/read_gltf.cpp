@@ -12,6 +12,7 @@
 #include "formats/gltf/meshes.h"
 #include "formats/gltf/node_shapes.h"
 #include "formats/gltf/place_nodes.h"
+#include "formats/gltf/texture_sets.h"
 #include "formats/gltf/textures.h"
 #include "scene/scene_origin.h"
 
@@ -79,6 +80,7 @@ Scene read_gltf(const std::filesystem::path& path, std::vector<std::byte> bytes,
     gltf::NodeGraph nodes(document, scene.file_scene, sink);
 
     TextureLoader loader(access, sink);
+    loader.shrink_to(options.max_texture_size);
     gltf::Textures textures(document, buffers, loader, sink);
     gltf::Materials materials(document, options.geometry_only ? nullptr : &textures, scene, sink);
     gltf::Meshes meshes(document, buffers, nodes, materials, scene, options.geometry_only, sink);
@@ -89,6 +91,7 @@ Scene read_gltf(const std::filesystem::path& path, std::vector<std::byte> bytes,
     gltf::read_animations(document, buffers, scene, sink);
     loader.load_into(scene, buffers.file_bytes());
     materials.convert_textures(justified_bytes(kFreeImageBytes, buffers.file_bytes()));
+    gltf::drop_other_sets(scene, path.string(), sink);
 
     return scene;
 }

@@ -5,6 +5,7 @@
 #include "base/message_text.h"
 #include "formats/gltf/extensions.h"
 #include "formats/gltf/leave_out.h"
+#include "formats/gltf/texture_sets.h"
 #include "formats/gltf/uri.h"
 #include "math/portable_math.h"
 
@@ -30,8 +31,7 @@ Wrap read_wrap(const JsonValue& sampler, std::string_view key) {
 }
 
 // Pictures of a kind that this reader does not decode.
-constexpr std::string_view kOtherImages[] = {"KHR_texture_basisu", "EXT_texture_webp", "EXT_texture_avif",
-                                             "MSFT_texture_dds"};
+constexpr std::string_view kOtherImages[] = {"KHR_texture_basisu", "EXT_texture_avif", "MSFT_texture_dds"};
 
 constexpr float kMaxTransform = 0x1p39f;
 
@@ -73,15 +73,15 @@ TextureRef Textures::read(const JsonValue& info) {
     }
     read_member(source, "sampler", sink_,
                 [&](const JsonValue& sampler) { read_sampler(document_.item("samplers", sampler), texture); });
-    if (uv_set > 1) {
-        sink_.leave_out(
-            {info.location(),
-             fmt::format("set {} of texture coordinates; only 0 and 1 are supported; the texture is left out",
-                         uv_set)});
+    if (uv_set > kMaxTextureSet) {
+        sink_.leave_out({info.location(), fmt::format("set {} of texture coordinates; at most {} is supported; the "
+                                                      "texture is left out",
+                                                      uv_set, kMaxTextureSet)});
         return {};
     }
     texture.uv_set = static_cast<uint8_t>(uv_set);
-    const std::optional<JsonValue> reference = source.find("source");
+    std::optional<JsonValue> reference = source.find("source");
+    if (const auto webp = source.extension("EXT_texture_webp"); !reference && webp) reference = webp->find("source");
     if (!reference) {
         leave_out_without_image(source);
         return {};

@@ -22,7 +22,8 @@ public:
     Textures(const Document& document, Buffers& buffers, TextureLoader& loader, Sink& sink);
 
     /// The texture that `info`, a textureInfo, describes. The result has no image, with a warning, if that is missing,
-    /// of an unsupported kind, or uses a third set of texture coordinates. Throws Error(BadInput) for an invalid
+    /// of an unsupported kind. Its set of texture coordinates is that of the file
+    /// (formats/gltf/texture_sets.h). Throws Error(BadInput) for an invalid
     /// textureInfo.
     TextureRef read(const JsonValue& info);
 

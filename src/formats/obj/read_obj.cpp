@@ -277,6 +277,7 @@ Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& 
 Scene read_obj(const fs::path& path, const FileAccess& access, const ReadOptions& options, Sink& sink) {
     PartMessages of_materials(sink); // reported after those of the geometry
     TextureLoader loader(access, of_materials);
+    loader.shrink_to(options.max_texture_size);
     MaterialsBeside beside(path, access, loader, of_materials);
     const ObjData data = parse_obj(read_file(path), path.string(), sink, [&](const ObjMaterialFiles& line) {
         if (!options.geometry_only) beside.start(line);
@@ -297,6 +298,7 @@ Scene read_obj(const fs::path& path, const ObjTexts& texts, const FileAccess& ac
                Sink& sink) {
     const ObjData data = parse_obj(texts.geometry, path.string(), sink);
     TextureLoader loader(access, sink);
+    loader.shrink_to(options.max_texture_size);
     std::map<std::string, MtlMaterial> materials;
     if (!options.geometry_only) materials = read_mtl(texts.materials, path, loader, sink);
     return make_scene(data, materials, loader, path.string(), options, sink);

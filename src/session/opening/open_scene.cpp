@@ -13,6 +13,7 @@
 #include "scene/names.h"
 #include "session/degrees.h"
 #include "session/photometry.h"
+#include "session/set_materials.h"
 #include "session/survey/emitter_fronts.h"
 #include "session/survey/ground.h"
 #include "settings/parse_values.h"
@@ -143,6 +144,7 @@ ReadOptions read_options(const SceneOptions& options) {
     read.animation = options.animation;
     read.file_scene = options.file_scene;
     read.variant = options.variant;
+    read.max_texture_size = options.max_texture_size;
     return read;
 }
 
@@ -164,10 +166,17 @@ Scene read_scene_and_emitters(const std::filesystem::path& path, const ReadOptio
     return scene;
 }
 
+void change_materials(const SceneOptions& options, Scene& scene) {
+    std::vector<MaterialChange> changes;
+    for (const std::string& text : options.materials) changes.push_back(parse_material_change(text));
+    set_materials(scene, changes);
+}
+
 Scene open_scene(const SceneOptions& options, Sink& sink, SceneUse use, Ground ground, const ReadScene& read) {
     std::vector<EmitterStrength> emitters;
     for (const std::string& text : options.emitters) emitters.push_back(parse_emitter(text));
     Scene scene = read ? read(sink) : read_scene_and_emitters(options.scene, read_options(options), sink);
+    change_materials(options, scene);
     if (options.animation.empty()) report_animation(scene, options.scene, sink);
     if (options.two_sided_lights && std::ranges::none_of(scene.materials, &Material::is_emissive)) {
         sink.warn({"two_sided_lights", "", "no surface of the scene emits light"});

@@ -13,6 +13,7 @@
 #include "session/pictures/choose_display.h"
 #include "session/post_steps.h"
 #include "session/sample_range.h"
+#include "session/set_materials.h"
 #include "settings/check_settings.h"
 #include "settings/value_names.h"
 
@@ -57,6 +58,7 @@ void check_options(const PictureOptions& options, uint32_t verbs) {
     check_camera(settings, requested);
     read_options(options.scene);
     for (const std::string& emitter : options.scene.emitters) parse_emitter(emitter);
+    for (const std::string& material : options.scene.materials) parse_material_change(material);
     check_solution(options.radiosity.solution);
 }
 

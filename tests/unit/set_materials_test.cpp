@@ -1,0 +1,111 @@
+#include <doctest/doctest.h>
+
+#include "session/opening/open_scene.h"
+#include "session/set_materials.h"
+#include "tests/support/flat_scenes.h"
+#include "tests/support/options.h"
+#include "tests/support/thrown_error.h"
+#include "tests/support/write_text.h"
+
+using namespace pertev;
+
+namespace {
+
+Scene three_materials() {
+    Scene scene;
+    for (const char* name : {"gold leaf", "gold ring", ""}) {
+        Material material = test::white(0.5f);
+        material.name = name;
+        test::add(scene, test::floor_at(0, 1), material);
+    }
+    return scene;
+}
+
+void change(Scene& scene, const std::string& text) {
+    const MaterialChange changes[] = {parse_material_change(text)};
+    set_materials(scene, changes);
+}
+
+bool refuses_change(const std::string& text, const std::string& why) {
+    Scene scene = three_materials();
+    const auto error = test::thrown_error([&] { change(scene, text); });
+    return test::is_about(error, ErrorCode::BadInput, "material", text) && test::says(error, why);
+}
+
+} // namespace
+
+TEST_CASE("materials are changed by name, by wildcards, or by number where they have no name") {
+    Scene scene = three_materials();
+    change(scene, "gold leaf base_color=1,0.5,0.25");
+    CHECK(scene.materials[0].base_color == Rgb{1, 0.5f, 0.25f});
+    CHECK(scene.materials[1].base_color == grey(0.5f));
+    change(scene, "gold* metallic=1 roughness=0.25");
+    CHECK(scene.materials[1].metallic == 1);
+    CHECK(scene.materials[1].roughness == 0.25f);
+    CHECK(scene.materials[1].kind == MaterialKind::MetallicRoughness); // a diffuse one has neither
+    CHECK(scene.materials[2].kind == MaterialKind::Diffuse);
+    change(scene, "2 emission=3 double_sided=false alpha_mode=blend alpha=0.5");
+    CHECK(scene.materials[2].emission == grey(3));
+    CHECK_FALSE(scene.materials[2].double_sided);
+    CHECK(scene.materials[2].alpha_mode == AlphaMode::Blend);
+    CHECK(scene.materials[2].alpha == 0.5f);
+    change(scene, "gold ring kind=conductor eta=1,2,3 k=4");
+    CHECK(scene.materials[1].kind == MaterialKind::Conductor);
+    CHECK(scene.materials[1].eta == Rgb{1, 2, 3});
+    CHECK(scene.materials[1].k == grey(4));
+}
+
+TEST_CASE("a texture of a material can be dropped") {
+    Scene scene = three_materials();
+    scene.images.emplace_back().rgba8 = {1, 1, {1, 2, 3, 4}};
+    scene.materials[0].base_color_texture.image = 0;
+    change(scene, "gold leaf base_color_texture=none");
+    CHECK_FALSE(scene.materials[0].base_color_texture.has_image());
+    CHECK(refuses_change("gold leaf base_color_texture=x.png", "none"));
+}
+
+TEST_CASE("a change of a material that is not possible is refused with what is") {
+    CHECK(refuses_change("silver roughness=0.1", "'gold leaf'"));
+    CHECK(refuses_change("gold leaf shine=1", "roughness"));
+    CHECK(refuses_change("gold leaf roughness=2", "from 0 to 1"));
+    CHECK(refuses_change("gold leaf roughness=nan", "from 0 to 1"));
+    CHECK(refuses_change("gold leaf roughness=", "from 0 to 1"));
+    CHECK(refuses_change("gold leaf base_color=1,0", "3"));
+    CHECK(refuses_change("gold leaf kind=metal", "conductor"));
+    CHECK(refuses_change("gold leaf double_sided=1", "true"));
+    CHECK(refuses_change("gold leaf eta=1", "kind=conductor"));
+    for (const char* text : {"gold leaf", "roughness=1", "", " =1"}) {
+        CHECK(test::is_about(test::thrown_error([&] { parse_material_change(text); }), ErrorCode::BadInput, "material",
+                             text));
+    }
+}
+
+TEST_CASE("a material's description is a change that makes the same material") {
+    Scene scene = three_materials();
+    change(scene, "gold leaf base_color=1,0.5,0.25 metallic=1 roughness=0.123 coat_weight=0.5 thin_walled=false");
+    change(scene, "gold ring kind=conductor alpha_mode=mask k=1,2,3");
+    for (std::size_t i = 0; i < 2; ++i) {
+        const std::string text = describe_material(scene, i);
+        CAPTURE(text);
+        Scene fresh = three_materials();
+        change(fresh, text);
+        CHECK(describe_material(fresh, i) == text);
+    }
+    CHECK(describe_material(scene, 2) == "2 kind=diffuse base_color=0.5");
+    scene.images.emplace_back().name = "leaf.png";
+    scene.materials[2].base_color_texture.image = 0;
+    CHECK(describe_material(scene, 2).ends_with("base_color_texture=leaf.png"));
+}
+
+TEST_CASE("an opened scene has the changed materials, before its lights are set") {
+    SceneOptions options;
+    options.scene = "cornell-box";
+    options.materials = {"*hite* base_color=0.25"};
+    Messages messages;
+    const Scene scene = open_scene(options, messages);
+    std::size_t changed = 0;
+    for (const Material& material : scene.materials) changed += material.base_color == grey(0.25f);
+    CHECK(changed > 0);
+    options.materials = {"none roughness=1"};
+    CHECK(test::thrown_error([&] { open_scene(options, messages); }));
+}
