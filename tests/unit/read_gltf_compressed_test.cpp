@@ -214,3 +214,33 @@ TEST_CASE("a file of version 2.1 is read without a warning, and a later one with
     CHECK(left_out("2.1") == 0);
     CHECK(left_out("2.2") == 1);
 }
+
+TEST_CASE("author and licence are those of XMP, or of the asset's extras and copyright") {
+    const auto suggested = [](const std::string& asset, const std::string& members) {
+        GltfBuilder builder;
+        builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+        std::string json =
+            builder.json(members + R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}])");
+        const std::string version = R"("version":"2.0")";
+        json.replace(json.find(version), version.size(), version + asset);
+        Messages messages;
+        std::string found;
+        for (const SuggestedSetting& setting : test::read_gltf_text(json, messages).suggested) {
+            found += setting.name + "=" + setting.text + ";";
+        }
+        return found + std::to_string(messages.left_out().size());
+    };
+    const std::string packets = R"("extensions":{"KHR_xmp_json_ld":{"packets":[{"dc:creator":{"@list":["Ada","Bob"]},)"
+                                R"("dc:rights":{"@type":"rdf:Alt","rdf:_1":{"@language":"en","@value":"CC BY 4.0"}}},)"
+                                R"({"dc:creator":"Eve"}]}},)";
+    const auto packet = [](const std::string& index) {
+        return R"(,"extensions":{"KHR_xmp_json_ld":{"packet":)" + index + "}}";
+    };
+    CHECK(suggested(packet("0"), packets) == "author=Ada, Bob;license=CC BY 4.0;0");
+    CHECK(suggested(packet("1") + R"(,"copyright":"me")", packets) == "author=Eve;license=me;0");
+    CHECK(suggested(R"(,"extras":{"author":"Ann","license":"CC0"},"copyright":"me")", "") ==
+          "author=Ann;license=CC0;0");
+    CHECK(suggested(packet("2"), packets) == "1");
+    CHECK(suggested("", packets) == "0");
+    CHECK(suggested(R"(,"extras":3,"copyright":[[[[[["deep"]]]]]])", "") == "0");
+}

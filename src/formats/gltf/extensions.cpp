@@ -28,7 +28,7 @@ constexpr std::array<std::string_view, 13> kRead = {"EXT_mesh_gpu_instancing",
 constexpr std::array<std::string_view, 3> kReadInPart = {"KHR_materials_pbrSpecularGlossiness",
                                                          "KHR_materials_transmission", "KHR_materials_volume"};
 
-// The picture ignores these.
+// These change only the metadata of pictures.
 constexpr std::array<std::string_view, 2> kWithoutEffect = {"KHR_xmp", "KHR_xmp_json_ld"};
 
 struct Conversion {

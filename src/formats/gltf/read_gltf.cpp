@@ -7,6 +7,7 @@
 #include "formats/files/file_choices.h"
 #include "formats/files/load_textures.h"
 #include "formats/gltf/animations.h"
+#include "formats/gltf/credits.h"
 #include "formats/gltf/leave_out.h"
 #include "formats/gltf/materials.h"
 #include "formats/gltf/meshes.h"
@@ -77,6 +78,7 @@ Scene read_gltf(const std::filesystem::path& path, std::vector<std::byte> bytes,
     gltf::Buffers buffers(document, access, sink);
     gltf::choose(document, buffers, options, scene, sink);
     gltf::choose_variant(document, buffers, options, scene, sink);
+    gltf::read_credits(document, scene, sink);
     gltf::NodeGraph nodes(document, scene.file_scene, sink);
 
     TextureLoader loader(access, sink);
