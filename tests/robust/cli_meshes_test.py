@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""OBJ and PLY files of other programs: units and axes, names of files, colours, textures, invisible materials."""
+"""OBJ, PLY and STL files of other programs: units and axes, names of files, colours, textures, invisible materials."""
 
 import struct
 import zlib
 
-from cli_run import CliTest, main, read_exr, write
+from cli_run import CliTest, gltf_with_cameras, main, read_exr, write
 
 # A uniformly lit square of 2 by 2 m that faces +z, and a view of it.
 SQUARE = "v -1 -1 0{0}\nv 1 -1 0{0}\nv 1 1 0{0}\nv -1 1 0{0}\n"
@@ -103,6 +103,29 @@ class Meshes(CliTest):
         write(self.path("a.mtl"), "newmtl ghost\nKd 1 0 0\nd 1\nTr 1\n")
         self.assertEqual(self.warnings_of("a.obj"), [])
         self.assert_near(self.mean("a.obj"), RED)
+
+    def test_an_stl_file_is_grey_and_a_material_is_set_by_its_name_in_the_syntax_of_info(self):
+        corners = [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]
+        facets = [struct.pack("<12fH", *[0] * 3, *corners[0], *corners[i], *corners[i + 1], 0) for i in (1, 2)]
+        with open(self.path("sheet.stl"), "wb") as file:
+            file.write(b"solid binary".ljust(80) + struct.pack("<I", 2) + b"".join(facets))
+        self.assert_near(self.mean("sheet.stl"), (0.5, 0.5, 0.5))
+        self.assert_near(self.mean("sheet.stl", "--material", "sheet base_color=1,0,0"), RED)
+        self.assertEqual(self.info("x.exr")["pertev.material"], "sheet base_color=1,0,0")
+        listed = self.succeed("info", "sheet.stl", "--material", "sheet roughness=0.25", "--json").events("info")[0]["material_list"]
+        self.assertEqual(listed, ["sheet kind=metallic_roughness base_color=0.5 roughness=0.25"])
+        self.refuse(2, "render", "sheet.stl", "-o", "y.png", "--material", "shoot base_color=1", says=["--material 'shoot base_color=1'", "'sheet'"])
+        self.refuse(2, "render", "sheet.stl", "-o", "y.png", "--material", "sheet", says=["--material sheet"])
+
+    def test_exr_metadata_have_the_author_and_licence_of_a_gltf_file_unless_flags_state_others(self):
+        write(self.path("a.gltf"), gltf_with_cameras().replace('"version": "2.0"', '"version": "2.0", "extras": {"author": "Ada", "license": "CC0"}'))
+        made = ["render", "a.gltf", "-o", "x.exr", "--size", "8x8", "--spp", "1", "--device", "cpu"]
+        hashes = set()
+        for flags, license in [([], "CC0"), (["--license", "mine"], "mine")]:
+            hashes.add(self.succeed(*made, *flags, "--json").events("done")[0]["hash"])
+            info = self.info("x.exr")
+            self.assertEqual((info["pertev.author"], info["pertev.license"]), ("Ada", license))
+        self.assertEqual(len(hashes), 1)
 
     def test_exr_metadata_map_ids_to_object_names(self):
         write(self.path("a.obj"), SQUARE.format("") + "o left door\nf 1 2 3\no right door\nf 1 3 4\n")

@@ -215,7 +215,7 @@ TEST_CASE("a file of version 2.1 is read without a warning, and a later one with
     CHECK(left_out("2.2") == 1);
 }
 
-TEST_CASE("author and licence are those of XMP, or of the asset's extras and copyright") {
+TEST_CASE("author and licence are those of XMP, or of the asset's extras") {
     const auto suggested = [](const std::string& asset, const std::string& members) {
         GltfBuilder builder;
         builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
@@ -237,10 +237,11 @@ TEST_CASE("author and licence are those of XMP, or of the asset's extras and cop
         return R"(,"extensions":{"KHR_xmp_json_ld":{"packet":)" + index + "}}";
     };
     CHECK(suggested(packet("0"), packets) == "author=Ada, Bob;license=CC BY 4.0;0");
-    CHECK(suggested(packet("1") + R"(,"copyright":"me")", packets) == "author=Eve;license=me;0");
-    CHECK(suggested(R"(,"extras":{"author":"Ann","license":"CC0"},"copyright":"me")", "") ==
-          "author=Ann;license=CC0;0");
+    CHECK(suggested(packet("1") + R"(,"extras":{"author":"Ann","license":"mine"})", packets) ==
+          "author=Eve;license=mine;0");
+    CHECK(suggested(R"(,"extras":{"author":"Ann","license":"CC0"})", "") == "author=Ann;license=CC0;0");
     CHECK(suggested(packet("2"), packets) == "1");
     CHECK(suggested("", packets) == "0");
-    CHECK(suggested(R"(,"extras":3,"copyright":[[[[[["deep"]]]]]])", "") == "0");
+    CHECK(suggested(R"(,"extras":3)", "") == "0");
+    CHECK(suggested(R"(,"extras":{"author":[[[[[["deep"]]]]]]})", "") == "0");
 }

@@ -73,7 +73,6 @@ void read_credits(const Document& document, Scene& scene, Sink& sink) {
         const std::optional<JsonValue> extras = asset->find("extras");
         if (author.empty()) author = first_text(extras, {"author"});
         if (license.empty()) license = first_text(extras, {"license"});
-        if (license.empty()) license = first_text(*asset, {"copyright"});
     });
     const auto suggest = [&](const char* setting, const std::string& text) {
         if (!text.empty()) scene.suggested.push_back({setting, shortened(text)});
