@@ -58,9 +58,11 @@ class Scene(_core.Scene):
 
     materials    kind "metallic_roughness" (default), "diffuse", "conductor", "dielectric" or "unlit"; numbers and
                  colours as scene.params has them; textures of (height, width), or with 1, 3 or 4 channels, uint8 or float:
-                 base_color_texture, emission_texture, specular_color_texture, fuzz_color_texture (uint8: sRGB),
+                 base_color_texture, emission_texture, specular_color_texture, fuzz_color_texture,
+                 diffuse_transmission_color_texture (uint8: sRGB),
                  metallic_texture, roughness_texture, normal_texture, alpha_texture, transmission_texture,
-                 specular_texture, coat_texture, coat_roughness_texture, coat_normal_texture, fuzz_roughness_texture;
+                 specular_texture, coat_texture, coat_roughness_texture, coat_normal_texture, fuzz_roughness_texture,
+                 anisotropy_texture, thin_film_texture, thin_film_thickness_texture, diffuse_transmission_texture;
                  alpha_mode, double_sided, two_sided_emission, thin_walled
     lights       kind "point", "spot" or "directional"; intensity, position, direction or transform, range; inner_cone and
                  outer_cone in degrees

@@ -3,7 +3,7 @@
 // Makes the BSDF at a point of a mesh from a material, with textures and vertex colours.
 
 #include "device_scene/textured_factor.h"
-#include "shading/bsdf.h"
+#include "shading/make_reflection.h"
 
 namespace pertev {
 
@@ -33,6 +33,13 @@ HD inline Rgb textured_color(const SceneView& scene, const MeshView& mesh, Rgb f
     return factor * Rgb{texel.x, texel.y, texel.z};
 }
 
+/// Directions of a material at a point, in the shading frame.
+struct MaterialAxes {
+    Vec3 coat_normal = {0, 0, 1}; // unit
+    Vec2 along = {1, 0};          // unit, the direction in which highlights are stretched
+    float anisotropy = 0;         // [0, 1]
+};
+
 /// Makes the BSDF of a material that is not stacked.
 template <ShadingVariant kVariant>
 HD inline Bsdf make_unstacked_bsdf(const SceneView& scene, const MaterialParameters& material, const MeshView& mesh,
@@ -59,15 +66,25 @@ HD inline Bsdf make_unstacked_bsdf(const SceneView& scene, const MaterialParamet
     return make_diffuse(base_color);
 }
 
-/// Makes the BSDF of any material. `coat_normal` is unit, in the shading frame.
+/// Makes the BSDF of any material.
 HD_CALL inline Bsdf make_any_bsdf(const SceneView& scene, const MaterialParameters& material, const MeshView& mesh,
-                                  TriangleIndices i, float u, float v, Rgb base_color, Vec3 coat_normal) {
+                                  TriangleIndices i, float u, float v, Rgb base_color, const MaterialAxes& axes) {
     if (!material.is_stacked())
         return make_unstacked_bsdf<ShadingVariant::Unstacked>(scene, material, mesh, i, u, v, base_color);
     const auto number = [&](float factor, const TextureRef& ref) {
         return clamp(textured_factor(scene, mesh, factor, ref, i, u, v), 0.0f, 1.0f);
     };
     const float roughness = number(material.roughness, material.roughness_texture);
+    ReflectionParameters reflection = {.base_color = base_color,
+                                       .roughness = roughness,
+                                       .ior = material.ior,
+                                       .anisotropy = axes.anisotropy,
+                                       .along = axes.along};
+    if (material.has_thin_film()) {
+        const float full = number(1, material.thin_film_thickness_texture);
+        reflection.film = {number(material.thin_film_weight, material.thin_film_texture), material.thin_film_ior,
+                           1e-3f * lerp(material.thin_film_least_nm, material.thin_film_thickness_nm, full)};
+    }
     Bsdf bsdf;
     switch (material.kind) {
     case MaterialKind::Diffuse:
@@ -78,23 +95,24 @@ HD_CALL inline Bsdf make_any_bsdf(const SceneView& scene, const MaterialParamete
         bsdf = make_conductor(material.eta, material.k, roughness);
         break;
     case MaterialKind::Dielectric:
-        bsdf = make_dielectric(material.ior, roughness, base_color);
+        reflection.solid = 1;
+        bsdf = make_reflection(reflection);
         break;
     case MaterialKind::MetallicRoughness: {
-        const float metallic = number(material.metallic, material.metallic_texture);
         const float through = number(material.transmission_weight, material.transmission_texture);
-        if (!material.thin_walled && through * (1.0f - metallic) >= 0.5f) { // a solid is glass or opaque
-            bsdf = make_dielectric(material.ior, roughness, base_color);
-            break;
+        (material.thin_walled ? reflection.through : reflection.solid) = through;
+        reflection.metallic = number(material.metallic, material.metallic_texture);
+        reflection.weight = number(material.specular_weight, material.specular_texture);
+        reflection.color =
+            textured_color(scene, mesh, material.specular_color, material.specular_color_texture, i, u, v);
+        if (material.has_diffuse_transmission()) {
+            const TextureRef& colors = material.diffuse_transmission_color_texture;
+            reflection.translucent =
+                number(material.diffuse_transmission_weight, material.diffuse_transmission_texture);
+            reflection.translucent_color =
+                textured_color(scene, mesh, material.diffuse_transmission_color, colors, i, u, v);
         }
-        bsdf = make_reflection(
-            {.base_color = base_color,
-             .metallic = metallic,
-             .roughness = roughness,
-             .ior = material.ior,
-             .weight = number(material.specular_weight, material.specular_texture),
-             .color = textured_color(scene, mesh, material.specular_color, material.specular_color_texture, i, u, v),
-             .through = material.thin_walled ? through : 0.0f});
+        bsdf = make_reflection(reflection);
         break;
     }
     }
@@ -106,22 +124,22 @@ HD_CALL inline Bsdf make_any_bsdf(const SceneView& scene, const MaterialParamete
     if (material.coat_weight > 0) {
         const float weight = number(material.coat_weight, material.coat_texture);
         const float coat_roughness = number(material.coat_roughness, material.coat_roughness_texture);
-        if (weight > 0) bsdf = make_coated(bsdf, weight, coat_roughness, material.coat_ior, coat_normal);
+        if (weight > 0) bsdf = make_coated(bsdf, weight, coat_roughness, material.coat_ior, axes.coat_normal);
     }
     return bsdf;
 }
 
-/// Makes the BSDF of a material; `coat_normal` as above.
+/// Makes the BSDF of a material.
 template <ShadingVariant kVariant = ShadingVariant::General>
 HD inline Bsdf make_bsdf(const SceneView& scene, const MaterialParameters& material, const MeshView& mesh,
                          TriangleIndices i, float u, float v, Rgb base_color,
-                         [[maybe_unused]] Vec3 coat_normal = {0, 0, 1}) {
+                         [[maybe_unused]] const MaterialAxes& axes = {}) {
     if constexpr (kVariant != ShadingVariant::General) {
         return make_unstacked_bsdf<kVariant>(scene, material, mesh, i, u, v, base_color);
     } else {
         const bool is_diffuse = material.kind == MaterialKind::Diffuse && !material.is_stacked();
-        Bsdf bsdf = is_diffuse ? make_diffuse(base_color)
-                               : make_any_bsdf(scene, material, mesh, i, u, v, base_color, coat_normal);
+        Bsdf bsdf =
+            is_diffuse ? make_diffuse(base_color) : make_any_bsdf(scene, material, mesh, i, u, v, base_color, axes);
         bsdf.is_called = true;
         return bsdf;
     }

@@ -267,6 +267,32 @@ HD_CALL inline Vec3 coat_normal(const SceneView& scene, const InstanceView& inst
     return bent.z > 0 ? normalize(bent) : Vec3{0, 0, 1};
 }
 
+/// Sets the direction and strength of anisotropy, in the shading frame `frame` (KHR_materials_anisotropy). The tangent
+/// is the normal map's, or without one that of the anisotropy's own texture.
+HD_CALL inline void set_anisotropy(const SceneView& scene, const InstanceView& instance, const MeshView& mesh,
+                                   const MaterialParameters& material, const WorldTriangle& triangle, const Hit& hit,
+                                   const Frame& frame, MaterialAxes& axes) {
+    const TextureRef& own = material.anisotropy_texture;
+    const TextureRef& map = material.normal_texture.has_image() ? material.normal_texture : own;
+    const Frame tangents = tangent_frame(instance, mesh, triangle, hit, frame.normal, map);
+    axes.anisotropy = material.specular_roughness_anisotropy;
+    Vec2 turn = {1, 0};
+    if (own.has_image()) {
+        const Vec4 texel = lookup_texture(scene.images, own, texture_coordinate(mesh, own, triangle.i, hit.u, hit.v),
+                                          scene.linear_from_srgb);
+        turn = {2.0f * texel.x - 1.0f, 2.0f * texel.y - 1.0f};
+        axes.anisotropy *= clamp(texel.z, 0.0f, 1.0f);
+    }
+    float sine, cosine;
+    sin_cos(material.anisotropy_rotation, sine, cosine);
+    const Vec3 local = frame.to_local((cosine * turn.x - sine * turn.y) * tangents.tangent +
+                                      (sine * turn.x + cosine * turn.y) * tangents.bitangent);
+    const float size2 = local.x * local.x + local.y * local.y;
+    if (!(size2 > 1e-12f)) return;
+    const float inv = 1.0f / sqrt(size2);
+    axes.along = {inv * local.x, inv * local.y};
+}
+
 /// The surface at `hit` for a ray that arrives along `direction` (unit).
 template <ShadingVariant kVariant = ShadingVariant::General>
 HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 direction) {
@@ -280,12 +306,14 @@ HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 dire
     const Frame frame =
         shading_frame<kVariant>(scene, instance, mesh, material, triangle, hit, geometric_normal, -direction, tilt);
     const Rgb albedo = base_color_at<kVariant>(scene, material, mesh, triangle.i, hit.u, hit.v);
-    Vec3 of_coat = {0, 0, 1};
+    MaterialAxes axes;
     if constexpr (kVariant == ShadingVariant::General) {
         if (material.coat_weight > 0 &&
             (material.normal_texture.has_image() || material.coat_normal_texture.has_image())) {
-            of_coat = coat_normal(scene, instance, mesh, material, triangle, hit, geometric_normal, -direction, frame);
+            axes.coat_normal =
+                coat_normal(scene, instance, mesh, material, triangle, hit, geometric_normal, -direction, frame);
         }
+        if (material.has_anisotropy()) set_anisotropy(scene, instance, mesh, material, triangle, hit, frame, axes);
     }
     const bool is_unlit = material.kind == MaterialKind::Unlit;
     Rgb emission = {};
@@ -302,7 +330,7 @@ HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 dire
             .error = triangle.error,
             .geometric_normal = geometric_normal,
             .frame = frame,
-            .bsdf = make_bsdf<kVariant>(scene, material, mesh, triangle.i, hit.u, hit.v, albedo, of_coat),
+            .bsdf = make_bsdf<kVariant>(scene, material, mesh, triangle.i, hit.u, hit.v, albedo, axes),
             .emission = emission,
             .albedo = albedo,
             .triangle = {hit.instance, hit.primitive},

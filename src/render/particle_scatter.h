@@ -39,14 +39,14 @@ HD inline float factor(const Surface& surface, Vec3 wo, Vec3 wi, Vec3 wo_local, 
 /// same on both sides. Power is the same on both sides; radiance over n^2 (bsdf_sample.h) is arriving power divided by
 /// that square.
 HD inline float squared_index_beyond(const Surface& surface, Vec3 wi, float here) {
-    if (surface.bsdf.base.kind != LobeKind::Dielectric) return here;
-    const float squared = square(surface.bsdf.base.dielectric.ior);
+    const float ior = surface.bsdf.inner_ior();
+    if (ior == 1) return here;
+    const float squared = square(ior);
     return surface.frame.to_local(wi).z > 0 ? here * squared : here / squared;
 }
 /// Square of the refractive index along `wo`: `here`, unless the particle is transmitted through glass.
 HD inline float squared_index_along(const Surface& surface, Vec3 wi, Vec3 wo, float here) {
-    const bool goes_through = surface.bsdf.base.kind == LobeKind::Dielectric && !surface.same_side(wo, wi);
-    return goes_through ? squared_index_beyond(surface, wi, here) : here;
+    return surface.same_side(wo, wi) ? here : squared_index_beyond(surface, wi, here);
 }
 
 /// Power scattered per solid angle of `wo` for a power of 1 from `wi`, by the lobes of `classes`, and the density of

@@ -60,10 +60,21 @@ struct MaterialParameters {
     Rgb specular_color = {1, 1, 1}; // factor on that at normal incidence, >= 0; multiplied by the texture
     float coat_weight = 0, coat_roughness = 0, coat_ior = 1.5f, coat_normal_scale = 1;
     float fuzz_weight = 0, fuzz_roughness = 0.5f;
-    Rgb fuzz_color = {1, 1, 1}; // [0, 1], multiplied by the texture
+    Rgb fuzz_color = {1, 1, 1};              // [0, 1], multiplied by the texture
+    Rgb transmission_color = {1, 1, 1};      // [0, 1], what a solid transmits over transmission_depth
+    float transmission_depth = 0;            // metres; 0: a solid absorbs nothing
+    float specular_roughness_anisotropy = 0; // [0, 1], multiplied by the third channel of anisotropy_texture
+    float anisotropy_rotation = 0;           // radians, from the tangent towards the bitangent; the texture's first two
+                                             // channels turn it further (KHR_materials_anisotropy)
+    float thin_film_weight = 0, thin_film_ior = 1.3f;
+    float thin_film_thickness_nm = 400, thin_film_least_nm = 100; // where the texture of the thickness is 1 and 0
+    float diffuse_transmission_weight = 0;      // [0, 1], of the diffuse light, which leaves on the other side
+    Rgb diffuse_transmission_color = {1, 1, 1}; // [0, 1], multiplied by the texture
     TextureRef transmission_texture, specular_texture, specular_color_texture;
     TextureRef coat_texture, coat_roughness_texture, coat_normal_texture; // without the last the coat is not bent
     TextureRef fuzz_color_texture, fuzz_roughness_texture;
+    TextureRef anisotropy_texture, thin_film_texture, thin_film_thickness_texture;
+    TextureRef diffuse_transmission_texture, diffuse_transmission_color_texture;
 
     HD bool has_coat() const { return coat_weight > 0; }
     HD bool has_fuzz() const { return fuzz_weight > 0 && max_component(fuzz_color) > 0; }
@@ -74,9 +85,25 @@ struct MaterialParameters {
                (specular_weight != 1 || !(specular_color == Rgb{1, 1, 1}) || specular_texture.has_image() ||
                 specular_color_texture.has_image());
     }
-    /// Returns whether its BSDF needs more than one reflection on a base.
+    /// Returns whether it is a solid, which light enters, that absorbs by distance.
+    HD bool absorbs() const {
+        return transmission_depth > 0 && (kind == MaterialKind::Dielectric || (transmits() && !thin_walled));
+    }
+    HD bool has_anisotropy() const {
+        return (kind == MaterialKind::MetallicRoughness || kind == MaterialKind::Dielectric) &&
+               specular_roughness_anisotropy > 0;
+    }
+    HD bool has_thin_film() const {
+        return (kind == MaterialKind::MetallicRoughness || kind == MaterialKind::Dielectric) && thin_film_weight > 0;
+    }
+    HD bool has_diffuse_transmission() const {
+        return kind == MaterialKind::MetallicRoughness && diffuse_transmission_weight > 0;
+    }
+    /// Returns whether its BSDF needs more than one reflection on a base, or it absorbs by distance.
     HD bool is_stacked() const {
-        return kind != MaterialKind::Unlit && (has_coat() || has_fuzz() || transmits() || has_own_reflection());
+        return kind != MaterialKind::Unlit &&
+               (has_coat() || has_fuzz() || transmits() || has_own_reflection() || absorbs() || has_anisotropy() ||
+                has_thin_film() || has_diffuse_transmission());
     }
     bool is_emissive() const { return max_component(emission) > 0; }
     /// Returns whether it is sampled as an emitter. An unlit one is not: rays from the camera or a surface that hit it
@@ -111,6 +138,16 @@ void visit_parameters(Parameters& m, const Number& number, const Texture& textur
     number(m.fuzz_weight, "fuzz_weight", 0, 1);
     number(m.fuzz_roughness, "fuzz_roughness", 0, 1);
     color(m.fuzz_color, "fuzz_color", 0, 1);
+    color(m.transmission_color, "transmission_color", 0, 1);
+    number(m.transmission_depth, "transmission_depth", 0, 0x1p40f);
+    number(m.specular_roughness_anisotropy, "specular_roughness_anisotropy", 0, 1);
+    number(m.anisotropy_rotation, "anisotropy_rotation", -0x1p10f, 0x1p10f);
+    number(m.thin_film_weight, "thin_film_weight", 0, 1);
+    number(m.thin_film_ior, "thin_film_ior", 1, 0x1p10f);
+    number(m.thin_film_thickness_nm, "thin_film_thickness_nm", 0, 0x1p20f);
+    number(m.thin_film_least_nm, "thin_film_least_nm", 0, 0x1p20f);
+    number(m.diffuse_transmission_weight, "diffuse_transmission_weight", 0, 1);
+    color(m.diffuse_transmission_color, "diffuse_transmission_color", 0, 1);
     texture(m.base_color_texture, "base_color_texture");
     texture(m.alpha_texture, "alpha_texture");
     texture(m.metallic_texture, "metallic_texture");
@@ -125,6 +162,11 @@ void visit_parameters(Parameters& m, const Number& number, const Texture& textur
     texture(m.coat_normal_texture, "coat_normal_texture");
     texture(m.fuzz_color_texture, "fuzz_color_texture");
     texture(m.fuzz_roughness_texture, "fuzz_roughness_texture");
+    texture(m.anisotropy_texture, "anisotropy_texture");
+    texture(m.thin_film_texture, "thin_film_texture");
+    texture(m.thin_film_thickness_texture, "thin_film_thickness_texture");
+    texture(m.diffuse_transmission_texture, "diffuse_transmission_texture");
+    texture(m.diffuse_transmission_color_texture, "diffuse_transmission_color_texture");
 }
 
 /// Calls texture(reference, name) for each texture slot, with or without an image.

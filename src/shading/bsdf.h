@@ -12,23 +12,29 @@
 #include "shading/lobes/conductor_lobe.h"
 #include "shading/lobes/dielectric_lobe.h"
 #include "shading/lobes/diffuse_lobe.h"
+#include "shading/lobes/filmed_lobe.h"
+#include "shading/lobes/glass_lobe.h"
 #include "shading/lobes/schlick_lobe.h"
 #include "shading/lobes/sheen_lobe.h"
 #include "shading/lobes/specular_lobe.h"
 #include "shading/lobes/thin_lobe.h"
+#include "shading/lobes/translucent_lobe.h"
 
 namespace pertev {
 
 enum class LobeKind : uint8_t {
-    None,       // base that absorbs everything
-    Diffuse,    // base
-    Conductor,  // base
-    Dielectric, // base
-    Schlick,    // layer on a base that is diffuse or None
-    Specular,   // layer on a base that is diffuse or None, and on Thin
-    Thin,       // layer on a base that is diffuse or None
-    Coat,       // layer on anything
-    Sheen,      // layer on anything
+    None,        // base that absorbs everything
+    Diffuse,     // base
+    Conductor,   // base
+    Dielectric,  // base
+    Schlick,     // layer on a base that is diffuse or None
+    Specular,    // layer on a base that is diffuse or None, and on Thin and Translucent
+    Filmed,      // layer as Specular, with a film or stretched
+    Thin,        // layer on a base that is diffuse or None
+    Translucent, // layer on a base that is diffuse or None, and on Thin
+    Glass,       // layer on anything
+    Coat,        // layer on anything
+    Sheen,       // layer on anything
 };
 
 /// A lobe of any kind.
@@ -41,7 +47,10 @@ struct Lobe {
         DielectricLobe dielectric;
         SchlickLobe schlick;
         SpecularLobe reflection;
+        FilmedLobe filmed;
         ThinLobe thin;
+        TranslucentLobe translucent;
+        GlassLobe glass;
         CoatLobe coat;
         SheenLobe sheen;
     };
@@ -52,7 +61,10 @@ struct Lobe {
     HD Lobe(const DielectricLobe& lobe) : kind(LobeKind::Dielectric), beneath(0), dielectric(lobe) {}
     HD Lobe(const SchlickLobe& lobe) : kind(LobeKind::Schlick), beneath(0), schlick(lobe) {}
     HD Lobe(const SpecularLobe& lobe) : kind(LobeKind::Specular), beneath(0), reflection(lobe) {}
+    HD Lobe(const FilmedLobe& lobe) : kind(LobeKind::Filmed), beneath(0), filmed(lobe) {}
     HD Lobe(const ThinLobe& lobe) : kind(LobeKind::Thin), beneath(0), thin(lobe) {}
+    HD Lobe(const TranslucentLobe& lobe) : kind(LobeKind::Translucent), beneath(0), translucent(lobe) {}
+    HD Lobe(const GlassLobe& lobe) : kind(LobeKind::Glass), beneath(0), glass(lobe) {}
     HD Lobe(const CoatLobe& lobe) : kind(LobeKind::Coat), beneath(0), coat(lobe) {}
     HD Lobe(const SheenLobe& lobe) : kind(LobeKind::Sheen), beneath(0), sheen(lobe) {}
 
@@ -70,8 +82,14 @@ struct Lobe {
             return schlick.lobe_class();
         case LobeKind::Specular:
             return reflection.lobe_class();
+        case LobeKind::Filmed:
+            return filmed.lobe_class();
         case LobeKind::Thin:
             return thin.lobe_class();
+        case LobeKind::Translucent:
+            return translucent.lobe_class();
+        case LobeKind::Glass:
+            return glass.lobe_class();
         case LobeKind::Coat:
             return coat.lobe_class();
         case LobeKind::Sheen:
@@ -93,8 +111,14 @@ struct Lobe {
             return schlick.energy();
         case LobeKind::Specular:
             return reflection.energy();
+        case LobeKind::Filmed:
+            return filmed.energy();
         case LobeKind::Thin:
             return thin.energy();
+        case LobeKind::Translucent:
+            return translucent.energy();
+        case LobeKind::Glass:
+            return glass.energy();
         case LobeKind::Coat:
             return coat.energy();
         case LobeKind::Sheen:
@@ -106,6 +130,7 @@ struct Lobe {
         switch (kind) {
         case LobeKind::None:
         case LobeKind::Diffuse:
+        case LobeKind::Translucent:
         case LobeKind::Sheen:
             break;
         case LobeKind::Conductor:
@@ -116,8 +141,12 @@ struct Lobe {
             return schlick.gloss(cos_o);
         case LobeKind::Specular:
             return reflection.gloss(cos_o);
+        case LobeKind::Filmed:
+            return filmed.gloss(cos_o);
         case LobeKind::Thin:
             return thin.gloss(cos_o);
+        case LobeKind::Glass:
+            return glass.gloss(cos_o);
         case LobeKind::Coat:
             return coat.gloss(cos_o);
         }
@@ -127,6 +156,7 @@ struct Lobe {
         switch (kind) {
         case LobeKind::None:
         case LobeKind::Diffuse:
+        case LobeKind::Translucent:
         case LobeKind::Sheen:
             break;
         case LobeKind::Conductor:
@@ -137,8 +167,12 @@ struct Lobe {
             return schlick.specular(wo);
         case LobeKind::Specular:
             return reflection.specular(wo);
+        case LobeKind::Filmed:
+            return filmed.specular(wo);
         case LobeKind::Thin:
             return thin.specular(wo);
+        case LobeKind::Glass:
+            return glass.specular(wo);
         case LobeKind::Coat:
             return coat.specular(wo);
         }
@@ -159,8 +193,14 @@ struct Lobe {
             return schlick.evaluate(wo, wi, beneath, transmittance);
         case LobeKind::Specular:
             return reflection.evaluate(wo, wi, beneath, transmittance);
+        case LobeKind::Filmed:
+            return filmed.evaluate(wo, wi, beneath, transmittance);
         case LobeKind::Thin:
             return thin.evaluate(wo, wi, beneath, transmittance);
+        case LobeKind::Translucent:
+            return translucent.evaluate(wo, wi, beneath, transmittance);
+        case LobeKind::Glass:
+            return glass.evaluate(wo, wi, beneath, transmittance);
         case LobeKind::Coat:
             return coat.evaluate(wo, wi, beneath, transmittance);
         case LobeKind::Sheen:
@@ -182,8 +222,14 @@ struct Lobe {
             return schlick.draw(wo, beneath, u_lobe, u);
         case LobeKind::Specular:
             return reflection.draw(wo, beneath, u_lobe, u);
+        case LobeKind::Filmed:
+            return filmed.draw(wo, beneath, u_lobe, u);
         case LobeKind::Thin:
             return thin.draw(wo, beneath, u_lobe, u);
+        case LobeKind::Translucent:
+            return translucent.draw(wo, beneath, u_lobe, u);
+        case LobeKind::Glass:
+            return glass.draw(wo, beneath, u_lobe, u);
         case LobeKind::Coat:
             return coat.draw(wo, beneath, u_lobe, u);
         case LobeKind::Sheen:
@@ -194,13 +240,13 @@ struct Lobe {
 };
 
 struct Bsdf {
-    static constexpr int kMaxLayers = 4; // thin wall, reflection, sheen, coat
+    static constexpr int kMaxLayers = 5; // thin wall, translucent sheet, reflection or share of glass, sheen, coat
 
     Lobe base;
     int layer_count = 0;
-    Lobe layers[kMaxLayers]; // the innermost first; a Schlick lobe is the innermost, a Specular one is too or on Thin
-    bool is_stacked = false; // there are layers that may lie on anything
-    bool is_thin = false;    // there is a thin wall
+    Lobe layers[kMaxLayers];    // the innermost first; a Schlick lobe is the innermost
+    bool is_stacked = false;    // there are layers that may lie on anything
+    bool has_far_light = false; // a layer transmits light to the other side
     // Functions of the lobes are called, not inlined (HD_CALL): those of stacks always are, and kernels for stacks call
     // those of any BSDF, because inlining both would double their code.
     bool is_called = false;
@@ -219,10 +265,10 @@ struct Bsdf {
     HD void add(const CoatLobe& lobe) { stack(lobe); }
     HD void add(const SheenLobe& lobe) { stack(lobe); }
     HD void add(const SpecularLobe& lobe) { stack(lobe); }
-    HD void add(const ThinLobe& lobe) {
-        stack(lobe);
-        is_thin = true;
-    }
+    HD void add(const FilmedLobe& lobe) { stack(lobe); }
+    HD void add(const ThinLobe& lobe) { stack_far(lobe); }
+    HD void add(const TranslucentLobe& lobe) { stack_far(lobe); }
+    HD void add(const GlassLobe& lobe) { stack_far(lobe); }
 
     /// Returns whether the BSDF is a single diffuse lobe, which most surfaces have and a fast path handles.
     HD bool is_diffuse() const { return base.kind == LobeKind::Diffuse && layer_count == 0; }
@@ -271,7 +317,12 @@ struct Bsdf {
         return false;
     }
     /// Returns whether light may be transmitted from behind.
-    HD bool lets_through() const { return base.kind == LobeKind::Dielectric || is_thin; }
+    HD bool lets_through() const { return base.kind == LobeKind::Dielectric || has_far_light; }
+    /// Index of refraction inside over that outside, if light is refracted; else 1.
+    HD float inner_ior() const {
+        if (base.kind == LobeKind::Dielectric) return base.dielectric.ior;
+        return is_stacked ? inner_ior_of_stack(*this) : 1.0f;
+    }
     HD bool has_delta() const { return has(LobeClass::Specular); }
     /// Returns whether eval() is black for every pair of directions, so that light sampling is useless.
     HD bool has_delta_only() const {
@@ -288,6 +339,15 @@ private:
         layers[layer_count] = layer;
         layers[layer_count++].beneath = min(beneath, 1.0f);
         is_stacked = is_called = true;
+    }
+    HD void stack_far(const Lobe& layer) {
+        stack(layer);
+        has_far_light = true;
+    }
+    HD_CALL static float inner_ior_of_stack(const Bsdf& bsdf) {
+        for (int i = 0; i < bsdf.layer_count; ++i)
+            if (bsdf.layers[i].kind == LobeKind::Glass) return bsdf.layers[i].glass.ior;
+        return 1;
     }
     HD_CALL static Rgb diffuse_share_of_lobes(Bsdf bsdf, Vec3 wo, Vec3 wi) {
         const Rgb all = bsdf.eval(wo, wi), f = bsdf.evaluate(wo, wi, only(LobeClass::Diffuse)).f;
@@ -419,28 +479,6 @@ HD inline Bsdf make_metallic_roughness(Rgb base_color, float metallic, float rou
     Bsdf bsdf;
     if (metal < 1 && !is_black(base_color)) bsdf.base = DiffuseLobe{base_color, 1.0f - metal};
     bsdf.add(SchlickLobe{base_color, metal, alpha_from_roughness(roughness), f0_from_ior(ior)});
-    return bsdf;
-}
-
-/// Parameters of metallic-roughness with a weight and a colour of its reflection, and with thin walls.
-struct ReflectionParameters {
-    Rgb base_color;                    // [0, 1]
-    float metallic = 0, roughness = 1; // [0, 1]
-    float ior = 1.5f;                  // >= 1
-    float weight = 1;                  // specularFactor, [0, 1]
-    Rgb color = {1, 1, 1};             // specularColorFactor, >= 0
-    float through = 0;                 // share of the diffuse light that goes through instead, [0, 1]
-};
-HD inline Bsdf make_reflection(const ReflectionParameters& p) {
-    const float metal = clamp(p.metallic, 0.0f, 1.0f), alpha = alpha_from_roughness(p.roughness);
-    const float diffuse = (1.0f - metal) * (1.0f - p.through), through = (1.0f - metal) * p.through;
-    Bsdf bsdf;
-    if (diffuse > 0 && !is_black(p.base_color)) bsdf.base = DiffuseLobe{p.base_color, diffuse};
-    if (through > 0 && !is_black(p.base_color)) bsdf.add(ThinLobe{p.base_color, through, alpha});
-    if (!(p.weight > 0) && !(metal > 0)) return bsdf;
-    const Rgb f0 = f0_from_ior(p.ior) * p.color;
-    bsdf.add(SpecularLobe{p.base_color, metal, alpha, p.weight * Rgb{min(f0.r, 1.0f), min(f0.g, 1.0f), min(f0.b, 1.0f)},
-                          p.weight});
     return bsdf;
 }
 

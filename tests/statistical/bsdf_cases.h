@@ -8,7 +8,7 @@
 
 #include "math/random.h"
 #include "math/sampler.h"
-#include "shading/bsdf.h"
+#include "shading/make_reflection.h"
 
 namespace pertev::test {
 
@@ -30,6 +30,8 @@ inline float narrowest_alpha(const Bsdf& bsdf) {
         if (bsdf.layers[i].kind == LobeKind::Coat) add(bsdf.layers[i].coat.alpha);
         if (bsdf.layers[i].kind == LobeKind::Specular) add(bsdf.layers[i].reflection.alpha);
         if (bsdf.layers[i].kind == LobeKind::Thin) add(bsdf.layers[i].thin.alpha);
+        if (bsdf.layers[i].kind == LobeKind::Filmed) add(bsdf.layers[i].filmed.widths.narrowest());
+        if (bsdf.layers[i].kind == LobeKind::Glass) add(bsdf.layers[i].glass.widths.narrowest());
     }
     return least;
 }
@@ -61,6 +63,39 @@ inline std::vector<BsdfCase> layered_bsdf_cases() {
                                                      .through = 0.4f}),
                                     {0.2f, 0.1f, 0.3f}, 0.4f),
                          0.5f, 0.6f, 1.6f)},
+            {"brushed metal of 30 degrees", make_reflection({.base_color = {0.9f, 0.6f, 0.2f},
+                                                             .metallic = 0.8f,
+                                                             .roughness = 0.5f,
+                                                             .anisotropy = 0.7f,
+                                                             .along = {0.8660254f, 0.5f}})},
+            {"film on brushed plastic", make_reflection({.base_color = {0.3f, 0.6f, 0.5f},
+                                                         .roughness = 0.5f,
+                                                         .anisotropy = 0.5f,
+                                                         .along = {0.6f, -0.8f},
+                                                         .film = {.weight = 0.9f, .ior = 1.8f, .thickness = 0.45f}})},
+            {"film on half a metal", make_reflection({.base_color = {0.9f, 0.5f, 0.1f},
+                                                      .metallic = 0.5f,
+                                                      .roughness = 0.4f,
+                                                      .film = {.weight = 1, .ior = 1.33f, .thickness = 0.55f}})},
+            {"a third of glass in half a metal",
+             make_reflection(
+                 {.base_color = {0.9f, 0.6f, 0.2f}, .metallic = 0.4f, .roughness = 0.5f, .ior = 1.4f, .solid = 0.5f})},
+            {"brushed glass", make_reflection({.base_color = {1.0f, 0.9f, 0.7f},
+                                               .roughness = 0.5f,
+                                               .solid = 1,
+                                               .anisotropy = 0.5f,
+                                               .along = {0.6f, 0.8f}})},
+            {"film on glass", make_coated(make_reflection({.base_color = {1.0f, 0.9f, 0.7f},
+                                                           .roughness = 0.5f,
+                                                           .solid = 1,
+                                                           .film = {.weight = 1, .ior = 1.8f, .thickness = 0.4f}}),
+                                          0.5f, 0.5f, 1.5f)},
+            {"varnished leaf", make_coated(make_reflection({.base_color = {0.3f, 0.6f, 0.2f},
+                                                            .roughness = 0.6f,
+                                                            .through = 0.2f,
+                                                            .translucent = 0.5f,
+                                                            .translucent_color = {0.5f, 0.9f, 0.2f}}),
+                                           1, 0.5f, 1.5f)},
             {"sheen alone", make_sheen(Bsdf{}, {1.0f, 0.7f, 0.4f}, 0.35f)},
             {"dust on varnished half metal",
              make_sheen(make_coated(half_metal, 0.5f, 0.3f, 1.5f), {0.5f, 0.4f, 0.3f}, 0.3f)}};

@@ -202,6 +202,22 @@ TEST_CASE("no bsdf returns more than 1 + 1e-3 of the light") {
                                     .color = 4.0f * Rgb{color.g, color.b, color.r},
                                     .through = (i & 2) != 0 ? unit_interval(b.w) : 0.0f});
         }
+        if (((i >> 8) & 1) != 0) {
+            const Hash4 c = hash_words(i, 7, 8, 9), d = hash_words(i, 10, 11, 12);
+            const float turn = 6.2831853f * unit_interval(c.x);
+            bsdf = make_reflection({.base_color = color,
+                                    .metallic = (i & 1) != 0 ? metallic : 0.0f,
+                                    .roughness = roughness,
+                                    .ior = ior,
+                                    .through = (d.x & 3) == 0 ? unit_interval(d.y) : 0.0f,
+                                    .translucent = (d.x & 4) != 0 ? channel(d.z) : 0.0f,
+                                    .translucent_color = {color.g, color.b, color.r},
+                                    .solid = (d.x & 8) != 0 ? channel(d.w) : 0.0f,
+                                    .anisotropy = (i & 2) != 0 ? unit_interval(c.y) : 0.0f,
+                                    .along = {std::cos(turn), std::sin(turn)},
+                                    .film = {(d.x & 16) != 0 ? channel(c.z) : 0.0f, 1.0f + 1.5f * unit_interval(c.w),
+                                             1.2f * unit_interval(d.x)}});
+        }
         if (((i >> 5) & 1) != 0) bsdf = make_coated(bsdf, channel(b.y), unit_interval(b.w), 1.5f);
         if (((i >> 6) & 1) != 0) bsdf = make_sheen(bsdf, channel(b.z) * color, channel(b.w));
         const Vec3 wo = direction_at((b.w & 1) != 0 ? z : -z);
@@ -226,9 +242,9 @@ TEST_CASE("every bsdf is reciprocal, refraction up to the squares of the indices
             const Vec3 wi = (i & 1) != 0 && s.pdf > 0 ? s.wi : direction_at(2.0f * q.u.x - 1.0f, q.u.y);
             const Rgb there = f_of(c.bsdf, wo, wi);
             Rgb back = f_of(c.bsdf, wi, wo);
-            if (c.bsdf.base.kind == LobeKind::Dielectric && wo.z * wi.z < 0) {
-                const float eta = c.bsdf.base.dielectric.eta_from(wo); // f(wo, wi) / n_i^2 = f(wi, wo) / n_o^2
-                back = (eta * eta) * back;
+            if (wo.z * wi.z < 0) {
+                const float ior = c.bsdf.inner_ior(), eta = wo.z > 0 ? ior : 1.0f / ior;
+                back = (eta * eta) * back; // f(wo, wi) / n_i^2 = f(wi, wo) / n_o^2
             }
             const float size = std::max(max_component(there), max_component(back));
             if (size < 1e-12f) continue;

@@ -106,9 +106,12 @@ DirectionChart chart_for(Vec3 wo, float alpha) {
     return {make_frame(normalize(Vec3{-wo.x, -wo.y, wo.z})), static_cast<double>(alpha)};
 }
 
+/// Index of the far side over that of the near side.
+float eta_from(const Bsdf& bsdf, Vec3 wo) { return wo.z > 0 ? bsdf.inner_ior() : 1.0f / bsdf.inner_ior(); }
+
 /// Returns the chart about the refracted direction.
 DirectionChart chart_through(Vec3 wo, const Bsdf& glass) {
-    const float eta = glass.base.dielectric.eta_from(wo), across = std::sqrt(1.0f - wo.z * wo.z);
+    const float eta = eta_from(glass, wo), across = std::sqrt(1.0f - wo.z * wo.z);
     const float down = std::sqrt(std::max(1.0f - square(across / eta), 0.0f));
     const Vec3 wi = normalize(Vec3{-wo.x / eta, -wo.y / eta, wo.z > 0 ? -down : down});
     return {make_frame(wi), std::max(0.5 * static_cast<double>(narrowest_alpha(glass)), 0.02)};
@@ -118,8 +121,7 @@ DirectionChart chart_through(Vec3 wo, const Bsdf& glass) {
 /// whose half vector lies in the surface. No microfacet refracts beyond that.
 std::vector<double> jumps_of(const Bsdf& bsdf, Vec3 wo) {
     std::vector<double> jumps = {0};
-    if (bsdf.base.kind == LobeKind::Dielectric)
-        jumps.push_back(-static_cast<double>(wo.z) / static_cast<double>(bsdf.base.dielectric.eta_from(wo)));
+    if (bsdf.inner_ior() != 1) jumps.push_back(-static_cast<double>(wo.z) / static_cast<double>(eta_from(bsdf, wo)));
     return jumps;
 }
 

@@ -80,6 +80,17 @@ TEST_CASE("albedos of lobes and of Khronos's formulas are those of the document"
         [&](Vec3 wo, Vec3 wi, float r) {
             return (0.5 + 0.5 * std::pow(1 - half_cosine(wo, wi), 5)) * microfacets(wo, wi, r);
         });
+    const auto widths = [](float r) { return anisotropic_widths(r * r, 0.7f, {1, 0}); };
+    check(
+        "brushed metal of 0.5",
+        {{0.3f, {0.409, 0.411, 0.466}, {0.398, 0.394, 0.435}}, {0.6f, {0.380, 0.398, 0.450}, {0.326, 0.339, 0.405}}},
+        [](float r) {
+            return make_reflection({.base_color = grey(0.5f), .metallic = 1, .roughness = r, .anisotropy = 0.7f});
+        },
+        [&](Vec3 wo, Vec3 wi, float r) {
+            return (0.5 + 0.5 * std::pow(1 - half_cosine(wo, wi), 5)) *
+                   static_cast<double>(widths(r).evaluate_reflection(wo, wi).f / wi.z);
+        });
     check(
         "coat on 0.5",
         {{0.3f, {0.503, 0.505, 0.598}, {0.520, 0.520, 0.611}}, {1, {0.504, 0.507, 0.517}, {0.492, 0.495, 0.523}}},

@@ -4,7 +4,7 @@
 
 #include <initializer_list>
 
-#include "shading/bsdf.h"
+#include "shading/make_reflection.h"
 
 using namespace pertev;
 

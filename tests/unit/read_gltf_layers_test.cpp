@@ -94,7 +94,7 @@ TEST_CASE("the weight and colour of a reflection are read, and without any it is
     CHECK(metal.specular_weight == 0.0f);
 }
 
-TEST_CASE("transmission without a volume is a thin wall, and with one a solid that is glass or opaque") {
+TEST_CASE("transmission without a volume is a thin wall, and with one a share of solid glass") {
     const Material pane =
         read_with(R"("KHR_materials_transmission":{"transmissionFactor":0.5,"transmissionTexture":{"index":0}})");
     CHECK(pane.kind == MaterialKind::MetallicRoughness);
@@ -111,11 +111,49 @@ TEST_CASE("transmission without a volume is a thin wall, and with one a solid th
     CHECK(by_texture.kind == MaterialKind::MetallicRoughness);
     CHECK(!by_texture.thin_walled);
     CHECK(by_texture.transmission_weight == 1.0f);
-    Messages messages;
-    const Material half = read_with(R"("KHR_materials_transmission":{"transmissionFactor":0.5})" + thick, messages);
-    CHECK(test::has_warning(messages, {"/materials/0/extensions/KHR_materials_transmission"}));
+    const Material half = read_with(R"("KHR_materials_transmission":{"transmissionFactor":0.5})" + thick);
     CHECK(!half.thin_walled);
     CHECK(half.transmission_weight == 0.5f);
+}
+
+TEST_CASE("anisotropy, a thin film and diffuse transmission are read with their textures") {
+    const Material brushed = read_with(R"("KHR_materials_anisotropy":{"anisotropyStrength":0.5,)"
+                                       R"("anisotropyRotation":0.25,"anisotropyTexture":{"index":0}})");
+    CHECK(brushed.specular_roughness_anisotropy == 0.5f);
+    CHECK(brushed.anisotropy_rotation == 0.25f);
+    CHECK(brushed.anisotropy_texture.has_image());
+    CHECK(!brushed.anisotropy_texture.is_srgb);
+    CHECK(brushed.is_stacked());
+    CHECK(!read_with(R"("KHR_materials_anisotropy":{"anisotropyRotation":1})").is_stacked());
+    const Material bubble = read_with(R"("KHR_materials_iridescence":{"iridescenceFactor":0.5,"iridescenceIor":1.25,)"
+                                      R"("iridescenceThicknessMinimum":200,"iridescenceThicknessMaximum":700,)"
+                                      R"("iridescenceTexture":{"index":0},"iridescenceThicknessTexture":{"index":0}})");
+    CHECK(bubble.thin_film_weight == 0.5f);
+    CHECK(bubble.thin_film_ior == 1.25f);
+    CHECK(bubble.thin_film_least_nm == 200.0f);
+    CHECK(bubble.thin_film_thickness_nm == 700.0f);
+    CHECK(bubble.thin_film_texture.channel == 0);
+    CHECK(bubble.thin_film_thickness_texture.channel == 1);
+    CHECK(bubble.is_stacked());
+    const Material usual = read_with(R"("KHR_materials_iridescence":{"iridescenceFactor":1})");
+    CHECK(usual.thin_film_ior == 1.3f);
+    CHECK(usual.thin_film_least_nm == 100.0f);
+    CHECK(usual.thin_film_thickness_nm == 400.0f);
+    const Material leaf =
+        read_with(R"("KHR_materials_diffuse_transmission":{"diffuseTransmissionFactor":0.25,)"
+                  R"("diffuseTransmissionColorFactor":[0.5,1,0.25],"diffuseTransmissionTexture":{"index":0},)"
+                  R"("diffuseTransmissionColorTexture":{"index":0}})");
+    CHECK(leaf.diffuse_transmission_weight == 0.25f);
+    CHECK(leaf.diffuse_transmission_color == Rgb{0.5f, 1, 0.25f});
+    CHECK(leaf.diffuse_transmission_texture.channel == 3);
+    CHECK(leaf.diffuse_transmission_color_texture.is_srgb);
+    CHECK(leaf.is_stacked());
+    Messages messages;
+    CHECK(read_with(R"("KHR_materials_transmission":{"transmissionFactor":1},)"
+                    R"("KHR_materials_volume":{"thicknessFactor":1,"attenuationDistance":0})",
+                    messages)
+              .transmission_depth == 0.0f);
+    CHECK(test::has_warning(messages, {"/materials/0/extensions/KHR_materials_volume/attenuationDistance"}));
 }
 
 TEST_CASE("an unreadable member of a layer is left out alone") {

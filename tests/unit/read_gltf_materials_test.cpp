@@ -81,8 +81,8 @@ TEST_CASE("doubleSided makes backs visible and emissive") {
     CHECK(both.two_sided_emission);
 }
 
-TEST_CASE("solid clear glass is a dielectric, and what is left out of other transmission causes a warning") {
-    const auto read = [](const std::string& transmission, const std::string& volume, bool is_glass, bool warns) {
+TEST_CASE("solid clear glass is a dielectric, and nothing of a volume is left out") {
+    const auto read = [](const std::string& transmission, const std::string& volume, bool is_glass) {
         CAPTURE(transmission);
         CAPTURE(volume);
         Messages messages;
@@ -94,13 +94,22 @@ TEST_CASE("solid clear glass is a dielectric, and what is left out of other tran
         const Material& material = scene.materials.at(0);
         CHECK(material.kind == (is_glass ? MaterialKind::Dielectric : MaterialKind::MetallicRoughness));
         CHECK(material.ior == 1.25f);
-        CHECK(test::has_warning(messages, {"model.gltf", "left out"}) == warns);
+        CHECK(messages.all().empty());
+        return material;
     };
-    read(R"("transmissionFactor":1)", R"("thicknessFactor":1)", true, false);
-    read(R"("transmissionFactor":1)", R"("thicknessFactor":1,"attenuationDistance":2)", true, true);
-    read(R"("transmissionFactor":0.5)", R"("thicknessFactor":1)", false, true);
-    read(R"("transmissionFactor":1)", "", false, false);
-    read("", R"("thicknessFactor":1)", false, false);
+    read(R"("transmissionFactor":1)", R"("thicknessFactor":1)", true);
+    const Material absorbing =
+        read(R"("transmissionFactor":1)",
+             R"("thicknessFactor":1,"attenuationDistance":2,"attenuationColor":[0.25,0.5,1])", true);
+    CHECK(absorbing.transmission_color == Rgb{0.25f, 0.5f, 1});
+    CHECK(absorbing.transmission_depth == 2.0f);
+    CHECK(absorbing.absorbs());
+    CHECK(absorbing.is_stacked());
+    CHECK(!read(R"("transmissionFactor":1)", R"("thicknessFactor":1,"attenuationDistance":2)", true).is_stacked());
+    CHECK(!read(R"("transmissionFactor":1)", R"("attenuationDistance":2,"attenuationColor":[0,0,0])", false).absorbs());
+    CHECK(read(R"("transmissionFactor":0.5)", R"("thicknessFactor":1)", false).transmission_weight == 0.5f);
+    read(R"("transmissionFactor":1)", "", false);
+    read("", R"("thicknessFactor":1)", false);
 }
 
 TEST_CASE("each texture slot gets its image, its channel and its encoding") {

@@ -10,23 +10,27 @@
 namespace pertev::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 13> kRead = {"EXT_mesh_gpu_instancing",
+constexpr std::array<std::string_view, 18> kRead = {"EXT_mesh_gpu_instancing",
                                                     "EXT_meshopt_compression",
                                                     "KHR_animation_pointer",
+                                                    "KHR_materials_anisotropy",
                                                     "KHR_materials_clearcoat",
+                                                    "KHR_materials_diffuse_transmission",
                                                     "KHR_materials_emissive_strength",
                                                     "KHR_materials_ior",
+                                                    "KHR_materials_iridescence",
                                                     "KHR_materials_sheen",
                                                     "KHR_materials_specular",
+                                                    "KHR_materials_transmission",
                                                     "KHR_materials_unlit",
                                                     "KHR_materials_variants",
+                                                    "KHR_materials_volume",
                                                     "KHR_mesh_quantization",
                                                     "KHR_node_visibility",
                                                     "KHR_texture_transform"};
 
-// Some cases of these are read, and materials.cpp and material_layers.cpp warn of the others.
-constexpr std::array<std::string_view, 3> kReadInPart = {"KHR_materials_pbrSpecularGlossiness",
-                                                         "KHR_materials_transmission", "KHR_materials_volume"};
+// Some cases of these are read, and materials.cpp warns of the others.
+constexpr std::array<std::string_view, 1> kReadInPart = {"KHR_materials_pbrSpecularGlossiness"};
 
 // These change only the metadata of pictures.
 constexpr std::array<std::string_view, 2> kWithoutEffect = {"KHR_xmp", "KHR_xmp_json_ld"};

@@ -1,7 +1,8 @@
 // Extensions of glTF materials that add layers to metallic-roughness or change its reflection, as parameters of OpenPBR
 // (scene/material.h), and the material that a variant gives to a primitive.
 //
-// Source: KHR_materials_clearcoat, _sheen, _specular, _transmission, _volume and _variants.
+// Source: KHR_materials_clearcoat, _sheen, _specular, _transmission, _volume, _anisotropy, _iridescence,
+// _diffuse_transmission and _variants.
 
 #include <algorithm>
 
@@ -71,7 +72,8 @@ void Materials::read_specular(const JsonValue& source, Material& material) {
     std::array<float, 3> color = {1, 1, 1};
     attempt_at(*extension, [&] { material.specular_weight = extension->float_or("specularFactor", 1); });
     attempt_at(*extension, [&] { color = extension->floats_or<3>("specularColorFactor", color); });
-    if (material.specular_weight == 0 && material.metallic == 0 && !material.transmits()) {
+    const bool has_more = material.transmits() || material.has_thin_film() || material.has_diffuse_transmission();
+    if (material.specular_weight == 0 && material.metallic == 0 && !has_more) {
         material.specular_weight = 1;
         material.kind = MaterialKind::Diffuse; // without any reflection at the surface it is Lambert's law
         return;
@@ -88,9 +90,7 @@ void Materials::read_transmission(const JsonValue& source, Material& material) {
     const TextureRef texture = read_channel(*transmission, "transmissionTexture", 0);
     const std::optional<JsonValue> volume = source.extension("KHR_materials_volume");
     const bool is_solid = volume && volume->float_or("thicknessFactor", 0) > 0;
-    if (is_solid && volume->find("attenuationDistance")) {
-        sink_.leave_out({volume->location(), "the attenuation of KHR_materials_volume is not supported and left out"});
-    }
+    if (is_solid) attempt_at(*volume, [&] { read_attenuation(*volume, material); });
     if (is_solid && factor == 1 && !texture.has_image() && material.metallic == 0) {
         material.kind = MaterialKind::Dielectric;
         return;
@@ -98,11 +98,54 @@ void Materials::read_transmission(const JsonValue& source, Material& material) {
     material.transmission_weight = factor;
     material.transmission_texture = texture;
     material.thin_walled = !is_solid;
-    if (is_solid && (factor != 1 || texture.has_image())) {
-        sink_.leave_out({transmission->location(),
-                         "partial transmission of a solid is left out: it is glass where at least half of its light is "
-                         "transmitted, and else opaque"});
-    }
+}
+
+void Materials::read_attenuation(const JsonValue& volume, Material& material) {
+    if (!volume.find("attenuationDistance")) return;
+    const float distance = volume.float_or("attenuationDistance", 0);
+    if (!(distance > 0)) throw volume.at("attenuationDistance").error("expected a number above 0");
+    const std::array<float, 3> color = volume.floats_or<3>("attenuationColor", {1, 1, 1});
+    if (color == std::array<float, 3>{1, 1, 1}) return;
+    material.transmission_color = {color[0], color[1], color[2]};
+    material.transmission_depth = distance;
+}
+
+void Materials::read_anisotropy(const JsonValue& source, Material& material) {
+    const std::optional<JsonValue> extension = source.extension("KHR_materials_anisotropy");
+    if (!extension) return;
+    float& strength = material.specular_roughness_anisotropy;
+    attempt_at(*extension, [&] { strength = extension->float_or("anisotropyStrength", 0); });
+    if (strength == 0) return;
+    attempt_at(*extension, [&] { material.anisotropy_rotation = extension->float_or("anisotropyRotation", 0); });
+    material.anisotropy_texture = read_texture(*extension, "anisotropyTexture", false);
+}
+
+void Materials::read_thin_film(const JsonValue& source, Material& material) {
+    const std::optional<JsonValue> extension = source.extension("KHR_materials_iridescence");
+    if (!extension) return;
+    const auto read_number = [&](float& value, std::string_view key, float usual) {
+        attempt_at(*extension, [&] { value = extension->float_or(key, usual); });
+    };
+    read_number(material.thin_film_weight, "iridescenceFactor", 0);
+    if (material.thin_film_weight == 0) return;
+    read_number(material.thin_film_ior, "iridescenceIor", 1.3f);
+    read_number(material.thin_film_least_nm, "iridescenceThicknessMinimum", 100);
+    read_number(material.thin_film_thickness_nm, "iridescenceThicknessMaximum", 400);
+    material.thin_film_texture = read_channel(*extension, "iridescenceTexture", 0);
+    material.thin_film_thickness_texture = read_channel(*extension, "iridescenceThicknessTexture", 1);
+}
+
+void Materials::read_diffuse_transmission(const JsonValue& source, Material& material) {
+    const std::optional<JsonValue> extension = source.extension("KHR_materials_diffuse_transmission");
+    if (!extension || material.kind != MaterialKind::MetallicRoughness) return;
+    std::array<float, 3> color = {1, 1, 1};
+    float& weight = material.diffuse_transmission_weight;
+    attempt_at(*extension, [&] { weight = extension->float_or("diffuseTransmissionFactor", 0); });
+    if (weight == 0) return;
+    attempt_at(*extension, [&] { color = extension->floats_or<3>("diffuseTransmissionColorFactor", color); });
+    material.diffuse_transmission_color = {color[0], color[1], color[2]};
+    material.diffuse_transmission_texture = read_channel(*extension, "diffuseTransmissionTexture", 3);
+    material.diffuse_transmission_color_texture = read_texture(*extension, "diffuseTransmissionColorTexture", true);
 }
 
 } // namespace pertev::gltf

@@ -5,8 +5,8 @@
 //
 // Source: glTF 2.0 section 3.9; KHR_materials_emissive_strength, KHR_materials_ior, KHR_materials_unlit,
 // KHR_materials_pbrSpecularGlossiness by conversion; KHR_materials_variants. material_layers.cpp reads
-// KHR_materials_clearcoat, _sheen, _specular, _transmission and, without attenuation, _volume. Occlusion textures are
-// not read, because a path tracer computes what they approximate.
+// KHR_materials_clearcoat, _sheen, _specular, _transmission, _volume, _anisotropy, _iridescence and
+// _diffuse_transmission. Occlusion textures are not read, because a path tracer computes what they approximate.
 
 #include <optional>
 #include <vector>
@@ -50,6 +50,10 @@ private:
     void read_alpha(const JsonValue& source, Material& material) const;
     void read_specular(const JsonValue& source, Material& material);
     void read_transmission(const JsonValue& source, Material& material);
+    static void read_attenuation(const JsonValue& volume, Material& material);
+    void read_anisotropy(const JsonValue& source, Material& material);
+    void read_thin_film(const JsonValue& source, Material& material);
+    void read_diffuse_transmission(const JsonValue& source, Material& material);
     void read_coat(const JsonValue& source, Material& material);
     void read_fuzz(const JsonValue& source, Material& material);
     float read_ior(const JsonValue& material) const;

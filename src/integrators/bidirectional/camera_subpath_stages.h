@@ -26,6 +26,7 @@ struct ShadeCameraSubpaths {
         SubpathState state = subpaths.states[subpath];
         if (hit.instance == kNoHit) return add_background(state, ray);
         const Surface surface = make_surface<kVariant>(picture.scene, hit, ray.direction);
+        arrive_through_solids<kVariant>(scene, subpaths, i, round, ray, hit, state.throughput);
         state.mis.arrive(cosine_at(surface, ray.direction), state.is_from_far != 0 ? 1.0f : square(hit.t));
         state.is_from_far = 0;
         if (state.depth() == 0) {
@@ -91,6 +92,9 @@ private:
         connection.start = surface.triangle;
         connection.target = light.is_delta ? TriangleId{} : TriangleId{light.instance, light.primitive};
         connection.key = coin;
+        if constexpr (kVariant == ShadingVariant::General) {
+            light.radiance = light.radiance * transmittance_to_light<kVariant>(view, surface.triangle, light);
+        }
         connection.light = (weight / light.pdf) * (state.throughput * scattered.camera.f * light.radiance);
         subpaths.queue_connection(atomic_add(&subpaths.counts->connections, 1u), connection, state.pixel);
     }
@@ -200,6 +204,10 @@ struct ConnectSubpaths {
         connection.key = coin_key({state.pixel, state.sample, scene.settings.seed ^ kConnectionCoins},
                                   round * 0x1000u + number, true);
         connection.light = (weight * inverse) * (ends[0].throughput * camera.f * particle.f * ends[1].throughput);
+        if constexpr (kVariant == ShadingVariant::General) {
+            connection.light = connection.light * transmittance_of_solid(view, camera.triangle, particle.triangle,
+                                                                         along, sqrt(distance_squared), kAtRest);
+        }
         subpaths.queue_connection(atomic_add(&subpaths.counts->connections, 1u), connection, state.pixel);
     }
 };

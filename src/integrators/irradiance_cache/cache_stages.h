@@ -68,9 +68,16 @@ struct ShadeCacheSubpaths {
         const Ray ray = load_ray(subpaths.rays[round % 2] + i);
         const Hit hit = subpaths.hits().load(i);
         SubpathState state = subpaths.states[subpath];
-        const CacheState cache_state = cache.cache_state_of(subpath);
+        CacheState cache_state = cache.cache_state_of(subpath);
         if (hit.instance == kNoHit) return add_background(subpath, state, cache_state, ray);
         const Surface surface = make_surface<kVariant>(picture.scene, hit, ray.direction);
+        if constexpr (kVariant == ShadingVariant::General) {
+            const Rgb passed =
+                transmittance_to_hit<kVariant>(picture.scene, subpaths.start_of(i, round), ray.direction, hit);
+            state.throughput = state.throughput * passed;
+            cache_state.seen = cache_state.seen * passed;
+            cache.store_path(subpath, cache.path_of(subpath) * passed);
+        }
         if (adds_light() && state.depth() == 0) {
             add_seen(picture, film, state, ray, hit, surface);
         } else if (adds_light() && !is_black(surface.emission)) {
@@ -149,6 +156,9 @@ private:
         connection.start = surface.triangle;
         connection.target = light.is_delta ? TriangleId{} : TriangleId{light.instance, light.primitive};
         connection.key = coin;
+        if constexpr (kVariant == ShadingVariant::General) {
+            light.radiance = light.radiance * transmittance_to_light<kVariant>(view, surface.triangle, light);
+        }
         connection.light = (weight / light.pdf) * (state.throughput * scattered.f * light.radiance);
         subpaths.queue_connection(atomic_add(&subpaths.counts->connections, 1u), connection,
                                   film_index(subpath, state));

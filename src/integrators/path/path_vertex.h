@@ -8,6 +8,7 @@
 // sampling, power heuristic) and 10.4 (Russian roulette).
 
 #include "device_scene/moved_surface.h"
+#include "device_scene/solid_absorption.h"
 #include "device_scene/surface.h"
 #include "integrators/path/medium.h"
 #include "integrators/path/path_listener.h"
@@ -119,6 +120,10 @@ HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path
     if (!light.is_delta && settings.strategy == LightStrategy::Mis) {
         weight = power_heuristic(light.pdf, scattered.pdf);
     }
+    if constexpr ((kFeatures & kStacked) != 0) {
+        light.radiance =
+            light.radiance * transmittance_to_light<variant_of(kFeatures)>(scene, vertex.triangle(), light, path.time);
+    }
     shadow.contribution = clamp_contribution(settings, path.depth + 1, weight,
                                              path.throughput * scattered.f * ((weight / light.pdf) * light.radiance));
     const float emitter_error = kMoves ? emitter_error_at(scene, light, path.time) : 0.0f;
@@ -219,6 +224,10 @@ HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const
         return false;
     }
     Surface surface = make_vertex<kFeatures>(scene, path, hit);
+    if constexpr ((kFeatures & kStacked) != 0) {
+        path.throughput = path.throughput * transmittance_to_hit<variant_of(kFeatures)>(scene, path.start,
+                                                                                        path.direction, hit, path.time);
+    }
     listener.vertex(path, hit, surface);
     add_surface_emission<kFeatures>(job, path, hit, surface, listener);
     if (surface.is_unlit || path.depth >= job.settings.max_depth) return false;

@@ -60,7 +60,7 @@ struct ShadeGather {
         const Ray ray = load_ray(subpaths.rays[round % 2] + i);
         const Hit hit = subpaths.hits().load(i);
         SubpathState state = subpaths.states[subpath];
-        const GatherState gather_state = gather.gather_state_of(subpath);
+        GatherState gather_state = gather.gather_state_of(subpath);
         const bool searches_emitters = gather.marks[subpath] == kSearchesEmitters;
         const bool sees_emitters_whole = (gather.marks[subpath] & kSeesEmittersWhole) != 0;
         if (hit.instance == kNoHit) {
@@ -69,6 +69,8 @@ struct ShadeGather {
         }
         if (searches_emitters && light_of(picture.scene.lights, hit.instance, hit.primitive) == kNoLight) return;
         const Surface surface = make_surface<kVariant>(picture.scene, hit, ray.direction);
+        arrive_through_solids<kVariant>(scene, subpaths, i, round, ray, hit, state.throughput);
+        arrive_through_solids<kVariant>(scene, subpaths, i, round, ray, hit, gather_state.past_mirrors);
         if (state.depth() == 0) {
             add_seen(picture, film, state, ray, hit, surface);
         } else if (!is_black(surface.emission)) {
@@ -150,6 +152,9 @@ private:
         connection.start = surface.triangle;
         connection.target = light.is_delta ? TriangleId{} : TriangleId{light.instance, light.primitive};
         connection.key = coin;
+        if constexpr (kVariant == ShadingVariant::General) {
+            light.radiance = light.radiance * transmittance_to_light<kVariant>(view, surface.triangle, light);
+        }
         connection.light = (1.0f / light.pdf) * (state.throughput * drawn_share(vertex, light, all) * light.radiance);
         subpaths.queue_connection(atomic_add(&subpaths.counts->connections, 1u), connection, state.pixel);
         return nearness;

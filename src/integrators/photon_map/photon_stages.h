@@ -98,9 +98,10 @@ struct ShadePhotons {
         const uint32_t subpath = subpaths.owners[round % 2][i];
         SubpathState state = subpaths.states[subpath];
         if (hit.instance == kNoHit) return pass.add_energy(&PhotonEnergy::escaped, state.throughput);
+        const Ray ray = load_ray(subpaths.rays[round % 2] + i);
+        arrive_through_solids<kVariant>(scene, subpaths, i, round, ray, hit, state.throughput);
         const Rgb arrived = state.throughput;
         pass.add_energy(&PhotonEnergy::arrived, arrived);
-        const Ray ray = load_ray(subpaths.rays[round % 2] + i);
         const Surface surface = make_surface<kVariant>(scene.picture.scene, hit, ray.direction);
         if (state.depth() == 0) state.throughput = left_at(hit.t, ray.t_max) * state.throughput;
         const bool is_caustic = pass.is_caustic(state.pixel);

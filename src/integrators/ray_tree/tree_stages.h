@@ -4,6 +4,7 @@
 // over a few trees of its own.
 
 #include "device/atomics.h"
+#include "device_scene/solid_absorption.h"
 #include "integrators/ray_tree/tree_vertex.h"
 #include "render/begin_order.h"
 #include "render/film_view.h"
@@ -52,8 +53,14 @@ struct ShadeTrees {
         const uint32_t tree = trees.owners[round % 2][i];
         TreeState state = trees.states[tree];
         state.shadows = 0;
-        const PendingRay ray = trees.load_ray(tree, state.pending);
+        PendingRay ray = trees.load_ray(tree, state.pending);
         const Hit hit = trees.hits().load(i);
+        if constexpr (kVariant == ShadingVariant::General) {
+            if (hit.instance != kNoHit) {
+                ray.weight = ray.weight * transmittance_to_hit<kVariant>(picture.scene, ray.start, ray.direction, hit,
+                                                                         time_in_code(state));
+            }
+        }
         if (hit.instance == kNoHit) {
             if (first_shadow == 0) add_background(state, ray);
         } else {
@@ -63,6 +70,9 @@ struct ShadeTrees {
     }
 
 private:
+    HD float time_in_code(const TreeState& state) const {
+        return kMotion != MotionVariant::None ? time_of(picture.camera, settings, state) : kAtRest;
+    }
     HD void add_background(TreeState& state, const PendingRay& ray) const {
         const LightSetView& lights = picture.scene.lights;
         if (ray.depth == 0) add_no_first_hit(film, state.pixel, state.sample);
@@ -79,7 +89,7 @@ private:
     HD void shade(uint32_t tree, TreeState& state, const PendingRay& ray, const Hit& hit) const {
         const SceneView& scene = picture.scene;
         constexpr bool kMayMove = kMotion != MotionVariant::None;
-        const float time = kMayMove ? time_of(picture.camera, settings, state) : kAtRest;
+        const float time = time_in_code(state);
         const bool moves = is_moving<kMotion>(scene);
         const MovedHit moved(scene, hit, time);
         Surface surface = make_surface<kVariant>(scene, hit, kMayMove ? moved.back(ray.direction) : ray.direction);
@@ -108,6 +118,13 @@ private:
         for (uint32_t number = first_shadow; number < min(all, first_shadow + kShadowsAtOnce); ++number) {
             TreeShadowRay shadow;
             if (!Algorithm::sample_direct_light(vertex, number, shadow)) continue;
+            if constexpr (kVariant == ShadingVariant::General) {
+                const Ray& line = shadow.ray;
+                const float distance = line.t_max < kInfinity ? length(line.direction) : kInfinity;
+                shadow.contribution =
+                    shadow.contribution * transmittance_of_solid(picture.scene, vertex.surface.triangle, shadow.target,
+                                                                 line.direction, distance, vertex.time);
+            }
             const uint32_t slot = atomic_add(&trees.counts->shadows, 1u);
             trees.queue_shadow(slot, shadow, vertex.surface.triangle, key, vertex.time);
             slots[count++] = slot;

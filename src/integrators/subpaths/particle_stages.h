@@ -128,6 +128,7 @@ struct ShadeParticles {
         SubpathState state = subpaths.states[subpath];
         const Surface surface = make_surface<kVariant>(scene.picture.scene, hit, ray.direction);
         if (state.depth() == 0) state.throughput = left_at(hit.t, ray.t_max) * state.throughput;
+        arrive_through_solids<kVariant>(scene, subpaths, i, round, ray, hit, state.throughput);
         if (surface.is_unlit || is_black(state.throughput)) return;
         state.mis.arrive(cosine_at(surface, ray.direction), state.is_from_far != 0 ? 1.0f : square(hit.t));
         state.is_from_far = 0;
@@ -181,6 +182,11 @@ private:
         connection.light = (weight * seen.density / seen.distance_squared) * (scattered.particle.f * state.throughput);
         connection.light =
             (1.0f / squared_index_along(surface, wi, wo, subpaths.squared_indices[subpath])) * connection.light;
+        if constexpr (kVariant == ShadingVariant::General) {
+            const Rgb passed = transmittance_of_solid(scene.picture.scene, surface.triangle, {}, wo,
+                                                      length(surface.position - seen.from), kAtRest);
+            connection.light = passed * connection.light;
+        }
         const uint32_t slot = atomic_add(&subpaths.counts->connections, 1u);
         subpaths.queue_connection(slot, connection, state.pixel);
         subpaths.connection_rasters[slot] = seen.raster;

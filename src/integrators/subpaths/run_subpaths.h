@@ -70,7 +70,7 @@ public:
         const Ray* under_way = subpaths.rays[round % 2];
         const auto ray_of = [&](uint32_t i) { return under_way[i]; };
         const auto accept_of = [&](uint32_t i) {
-            return AcceptHit{scene, {subpaths.starts[i].x, subpaths.starts[i].y}, {}, subpaths.keys[i]};
+            return AcceptHit{scene, subpaths.start_of(i, round), {}, subpaths.keys[i]};
         };
         pertev::find_hits(trees_, scene, kind == RayKind::Camera, rays.value(), ray_of, accept_of, hits_.data());
         for (uint32_t i = 0; i < rays.value(); ++i) subpaths.hits().store(i, hits_[i]);

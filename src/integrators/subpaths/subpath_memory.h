@@ -139,9 +139,10 @@ struct SubpathsView {
     SubpathState* states;   // [subpaths]
     float* squared_indices; // [subpaths] for light subpaths: squared index at their vertex, over that at their light
 
-    // Current rays, contiguous. Rounds alternate between two arrays for them and for their owners, the subpaths.
+    // Current rays, contiguous. Rounds alternate between two arrays for them, for the triangles that they leave, and
+    // for their owners, the subpaths.
     Ray* rays[2];
-    Uint2* starts;
+    Uint2* starts[2];
     uint32_t* keys; // keys of coins
     uint32_t* owners[2];
     Float4* hit_records;
@@ -162,7 +163,14 @@ struct SubpathsView {
 
     SubpathCounts* counts;
 
-    RayQueueView query(uint32_t round) const { return {.rays = rays[round % 2], .starts = starts, .keys = keys}; }
+    RayQueueView query(uint32_t round) const {
+        return {.rays = rays[round % 2], .starts = starts[round % 2], .keys = keys};
+    }
+    /// Returns the triangle that ray `i` of a round leaves.
+    HD TriangleId start_of(uint32_t i, uint32_t round) const {
+        const Uint2 start = starts[round % 2][i];
+        return {start.x, start.y};
+    }
     RayQueueView connection_query() const {
         return {.rays = connection_rays,
                 .starts = connection_starts,
@@ -177,7 +185,7 @@ struct SubpathsView {
     HD void queue_ray(uint32_t slot, uint32_t subpath, const Ray& ray, TriangleId start, uint32_t key,
                       uint32_t round) const {
         store_ray(rays[round % 2] + slot, ray);
-        starts[slot] = {start.instance, start.primitive};
+        starts[round % 2][slot] = {start.instance, start.primitive};
         keys[slot] = key;
         owners[round % 2][slot] = subpath;
     }
@@ -205,7 +213,8 @@ inline std::size_t lay_out(SubpathsView& view, std::byte* memory, const SubpathC
         add_array(view.squared_indices, subpaths);
         add_array(view.rays[0], subpaths);
         add_array(view.rays[1], subpaths);
-        add_array(view.starts, subpaths);
+        add_array(view.starts[0], subpaths);
+        add_array(view.starts[1], subpaths);
         add_array(view.keys, subpaths);
         add_array(view.owners[0], subpaths);
         add_array(view.owners[1], subpaths);

@@ -3,6 +3,7 @@
 // Operations of camera and light subpaths at a surface.
 
 #include "base/host_device.h"
+#include "device_scene/solid_absorption.h"
 #include "integrators/subpaths/subpath_memory.h"
 #include "integrators/subpaths/subpath_settings.h"
 #include "render/picture_view.h"
@@ -30,6 +31,16 @@ HD inline BothWays scatter_both_ways(const Surface& surface, Vec3 wo, Vec3 wi) {
 
 HD inline float cosine_at(const Surface& surface, Vec3 direction) {
     return abs(dot(surface.geometric_normal, direction));
+}
+
+/// Weights `throughput` by the solid that ray `i` of a round went through to `hit`.
+template <ShadingVariant kVariant>
+HD inline void arrive_through_solids(const SubpathScene& scene, const SubpathsView& subpaths, uint32_t i,
+                                     uint32_t round, const Ray& ray, const Hit& hit, Rgb& throughput) {
+    if constexpr (kVariant == ShadingVariant::General) {
+        throughput = throughput * transmittance_to_hit<kVariant>(scene.picture.scene, subpaths.start_of(i, round),
+                                                                 ray.direction, hit);
+    }
 }
 
 /// Russian roulette from a subpath's vertex `vertex` (counted from 1) on: the survival probability is the square root

@@ -161,15 +161,24 @@ constexpr uint32_t kNone = 0xffffffffu;
 /// if there is none.
 using MeshBySet = std::array<uint32_t, 2>;
 
+/// Returns whether only its anisotropy needs tangents, with or without a texture.
+bool is_stretched(const Material& material) {
+    return material.has_anisotropy() && !material.normal_texture.has_image();
+}
+
 /// Adds copies of meshes that need tangents for both sets, and redirects instances to theirs.
 std::vector<MeshBySet> choose_meshes(Scene& scene) {
     std::vector<MeshBySet> chosen(scene.meshes.size(), {kNone, kNone});
     for (Instance& instance : scene.instances) {
         const Material& material = scene.materials[instance.material];
-        const bool is_of_coat = !material.normal_texture.has_image() && material.has_coat();
-        const TextureRef& map = is_of_coat ? material.coat_normal_texture : material.normal_texture;
+        const bool is_of_coat =
+            !material.normal_texture.has_image() && material.has_coat() && material.coat_normal_texture.has_image();
+        const TextureRef& map = is_of_coat               ? material.coat_normal_texture
+                                : is_stretched(material) ? material.anisotropy_texture
+                                                         : material.normal_texture;
         const Mesh& mesh = scene.meshes[instance.mesh];
-        if (!map.has_image() || !mesh.tangents.empty() || mesh.uv[map.uv_set].empty()) continue;
+        if (!(map.has_image() || is_stretched(material)) || !mesh.tangents.empty() || mesh.uv[map.uv_set].empty())
+            continue;
         MeshBySet& by_set = chosen[instance.mesh];
         if (by_set[map.uv_set] == kNone) {
             if (by_set[1 - map.uv_set] == kNone) {

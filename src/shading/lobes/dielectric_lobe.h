@@ -30,6 +30,11 @@ struct DielectricLobe {
         return ior > 1 ? clamp(ior, kIorMin, kIorMax) : clamp(ior, 1.0f / kIorMax, 1.0f / kIorMin);
     }
 
+    /// Fraction of the light lost on the near side that is returned on the far side.
+    HD static float transmitted_share(float eta, float average_near, float average_far) {
+        return (1.0f - fresnel_dielectric_average(eta)) * min(1.0f, average_far / average_near);
+    }
+
     HD bool is_smooth() const { return !(alpha >= kSmoothAlpha) || ior == 1; }
     /// Index of the far side over that of the near side.
     HD float eta_from(Vec3 wo) const { return wo.z > 0 ? ior : 1.0f / ior; }
@@ -115,11 +120,6 @@ struct DielectricLobe {
     }
 
 private:
-    /// Fraction of the light lost on the near side that is returned on the far side.
-    HD static float transmitted_share(float eta, float average_near, float average_far) {
-        return (1.0f - fresnel_dielectric_average(eta)) * min(1.0f, average_far / average_near);
-    }
-
     HD LobeDraw draw_smooth(Vec3 wo, float u_lobe, float eta) const {
         const DielectricFresnel fresnel = fresnel_dielectric(min(abs(wo.z), 1.0f), eta);
         const float r = fresnel.reflectance;

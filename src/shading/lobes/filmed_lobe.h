@@ -1,0 +1,147 @@
+#pragma once
+
+// The reflection of metallic-roughness with stretched microfacets (KHR_materials_anisotropy) and a thin film
+// (KHR_materials_iridescence); else it is as specular_lobe.h. A lobe of its own, so that the common ones stay small.
+//
+// Multiple scattering is compensated by GgxWidths::energy_width(), which errs towards too little light. What lies
+// beneath gets 1 - max(C(o), C(i)) of the light, with the strongest channel's reflectance C for the narrower width:
+// neither a film's colours nor stretched microfacets have an average that the form of schlick_lobe.h needs.
+
+#include "shading/lobes/ggx_widths.h"
+#include "shading/lobes/schlick_lobe.h"
+#include "shading/lobes/thin_film.h"
+
+namespace pertev {
+
+struct FilmedLobe {
+    Rgb base_color; // [0, 1], the metal's reflectance at normal incidence
+    float metallic; // [0, 1]
+    GgxWidths widths;
+    Rgb f0;    // [0, f90], reflectance of the dielectric at normal incidence
+    float f90; // [0, 1], the same at grazing incidence
+    ThinFilm film;
+
+    struct Average {
+        float lost; // for the lobe with F = 1
+        Rgb more;   // factor of the compensating lobe, dielectric and metal mixed
+    };
+    struct Albedo {
+        float lost;
+        float coat;     // reflectance of the dielectric's strongest channel, [0, 1]
+        float strength; // the strongest channel of the mixture's single scattering
+    };
+
+    HD bool is_smooth() const { return widths.is_smooth(); }
+    HD LobeClass lobe_class() const { return is_smooth() ? LobeClass::Specular : LobeClass::Glossy; }
+    HD float energy() const { return max_component(average_reflectance()); }
+    HD Gloss gloss(float cos_o) const {
+        const Average average = make_average();
+        const Albedo at_o = albedo_at(cos_o);
+        return {(1.0f - at_o.lost) * reflectance(cos_o) + at_o.lost * average.more, widths.energy_width(),
+                1.0f - at_o.coat};
+    }
+    HD SpecularBranches specular(Vec3 wo) const {
+        SpecularBranches branches;
+        if (is_smooth()) branches.mirror = reflectance(abs(wo.z));
+        return branches;
+    }
+
+    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, LayerTransmittance& transmittance) const {
+        const Vec3 o = widths.turned({wo.x, wo.y, abs(wo.z)}), i = widths.turned({wi.x, wi.y, abs(wi.z)});
+        const Average average = make_average();
+        const Albedo at_o = albedo_at(o.z), at_i = albedo_at(i.z);
+        const LayerShares shares = make_shares(average, at_o, beneath);
+        BsdfValue value;
+        if (!is_smooth() && wo.z * wi.z > 0) {
+            const GgxReflection once = widths.evaluate_reflection(o, i);
+            const Rgb more = (i.z * kInvPi * at_o.lost * at_i.lost / average.lost) * average.more;
+            value = {transmittance.light * (once.f * reflectance(once.cos_h) + more),
+                     transmittance.reach *
+                         (shares.specular * once.pdf + shares.more * pdf_grazing_lobe(i.z, widths.energy_width()))};
+        }
+        transmittance.pass(at_o.coat, at_i.coat, shares.beneath);
+        return value;
+    }
+    HD LobeDraw draw(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
+        const Average average = make_average();
+        const LayerShares shares = make_shares(average, albedo_at(abs(wo.z)), beneath);
+        Vec3 wi;
+        if (u_lobe < shares.beneath) return draw_beneath(u_lobe, shares.beneath);
+        if (u_lobe - shares.beneath < shares.more) {
+            wi = sample_grazing_lobe(widths.energy_width(), u);
+        } else if (is_smooth()) {
+            return draw_mirror(wo, (1.0f / shares.specular) * reflectance(abs(wo.z)), shares.specular);
+        } else {
+            const Vec3 o = widths.turned({wo.x, wo.y, abs(wo.z)});
+            wi = normalize(widths.turned_back(reflect(o, widths.sample_visible_normal(o, u))));
+            if (!(wi.z > 0)) return {};
+        }
+        wi.z = copysign(wi.z, wo.z);
+        return draw_direction(wi);
+    }
+
+private:
+    HD bool has_film() const { return film.weight > 0; }
+    HD Rgb with_film(Rgb plain, float cosine, Rgb base_f0, float most) const {
+        if (!has_film()) return plain;
+        return plain + film.weight * (most * film_reflectance(cosine, film, ior_from_f0(base_f0)) - plain);
+    }
+    HD Rgb of_dielectric(float cosine) const {
+        const Rgb plain = f0 + schlick_weight(cosine) * (grey(f90) - f0);
+        return f90 > 0 ? with_film(plain, cosine, (1.0f / f90) * f0, f90) : plain;
+    }
+    HD Rgb of_metal(float cosine) const {
+        return with_film(fresnel_schlick(cosine, base_color), cosine, base_color, 1);
+    }
+    /// Reflectance of one bounce.
+    HD Rgb reflectance(float cosine) const {
+        if (!(metallic > 0)) return of_dielectric(cosine);
+        if (!(metallic < 1)) return of_metal(cosine);
+        return lerp(of_dielectric(cosine), of_metal(cosine), metallic);
+    }
+    HD Rgb average_of_dielectric() const {
+        if (!has_film()) return f0 + (1.0f / 21.0f) * (grey(f90) - f0);
+        return 0.36391724f * of_dielectric(0.35505103f) + 0.63608276f * of_dielectric(0.84494897f);
+    }
+    HD Rgb average_of_metal() const {
+        if (!has_film()) return fresnel_schlick_average(base_color);
+        return 0.36391724f * of_metal(0.35505103f) + 0.63608276f * of_metal(0.84494897f);
+    }
+    HD Rgb average_reflectance() const {
+        if (!(metallic > 0)) return average_of_dielectric();
+        if (!(metallic < 1)) return average_of_metal();
+        return lerp(average_of_dielectric(), average_of_metal(), metallic);
+    }
+
+    HD Average make_average() const {
+        Average a = {};
+        const float width = widths.energy_width();
+        a.lost = is_smooth() ? 0.0f : metal_average_lost(width);
+        if (metallic < 1) a.more = multiple_scattering_tint(average_of_dielectric(), a.lost);
+        if (metallic > 0) a.more = lerp(a.more, multiple_scattering_tint(average_of_metal(), a.lost), metallic);
+        return a;
+    }
+    HD Albedo albedo_at(float cosine) const {
+        Albedo a = {};
+        const float width = widths.energy_width();
+        a.lost = is_smooth() ? 0.0f : widths.energy_factor(cosine) * metal_lost(cosine, width);
+        if (has_film()) {
+            if (metallic < 1) a.coat = max_component(of_dielectric(cosine));
+            a.strength = metallic > 0 ? lerp(a.coat, max_component(of_metal(cosine)), metallic) : a.coat;
+            return a;
+        }
+        const float w = is_smooth() ? schlick_weight(cosine)
+                                    : metal_schlick(cosine, widths.narrowest()) + widths.grazing_excess(cosine);
+        const float most = max_component(f0);
+        a.coat = most + (f90 - most) * w;
+        const Rgb mixed = lerp(f0, base_color, metallic);
+        a.strength = max_component(mixed + w * (grey(lerp(f90, 1.0f, metallic)) - mixed));
+        return a;
+    }
+    HD LayerShares make_shares(const Average& average, const Albedo& at_o, float beneath) const {
+        return layer_shares((1.0f - at_o.lost) * at_o.strength, at_o.lost * max_component(average.more),
+                            beneath * (1.0f - at_o.coat));
+    }
+};
+
+} // namespace pertev
