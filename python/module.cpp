@@ -14,7 +14,7 @@
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
 
-#include "apps/cli/run_program.h"
+#include "apps/cli/commands.h"
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "formats/builtin_scenes.h"

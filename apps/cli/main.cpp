@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "apps/cli/run_program.h"
+#include "apps/cli/commands.h"
 
 int main(int argc, char** argv) {
     __builtin_cpu_init();

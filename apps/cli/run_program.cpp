@@ -1,4 +1,4 @@
-#include "apps/cli/run_program.h"
+// The command line as a whole: flags of the program itself, and errors of any verb.
 
 #include <fcntl.h>
 #include <poll.h>
