@@ -126,7 +126,7 @@ MUTATIONS = [
      ("src/session/pictures/write_sequence.cpp", "(number >= restored_ && number < with_history_)", "number < with_history_")),
     ("the checkpoint of frames is written at the end alone", "robust/cli_real_time",
      ("src/session/pictures/sequence_history.cpp", "if (since_written_.seconds() < every_s_) return;", "if (every_s_ > 0) return;")),
-    ("an interrupted frame takes the history along", "robust/cli_real_time",
+    ("an interrupted frame takes the history along", "unit/write_sequence robust/cli_real_time",
      ("src/session/pictures/write_sequence.cpp", "bool should_stop() override { return false; }", "bool should_stop() override { return of_caller.should_stop(); }")),
     ("files of killed processes stay beside frames", "robust/cli_real_time",
      ("src/session/pictures/write_sequence.cpp", "if (options_.goes_on) std::ranges::for_each(", "if (false) std::ranges::for_each(")),

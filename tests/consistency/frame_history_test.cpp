@@ -233,6 +233,7 @@ TEST_CASE("a checkpoint of another sequence is refused with the difference") {
     disk.kept().write(1, disk.history);
     disk.settings[1].second = "4";
     const auto error = test::thrown_error([&] { disk.kept().read(disk.messages); });
+    REQUIRE(error.has_value());
     CHECK(test::is_about(error, ErrorCode::BadInput, "checkpoint"));
     CHECK(std::string(error->what()).find("`seed`") != std::string::npos);
     CHECK(disk.warnings() == 0);

@@ -236,12 +236,12 @@ TEST_CASE("Open Image Denoise gets means of guides and does not change film and 
     Session session(queue, prepared, scene.cameras.front(), settings);
     session.render(7);
     session.denoised(); // an invalid sample does not change the guides
-    session.render(9);
+    session.render(16); // to more than are always gathered
     const RenderResult denoised = session.result();
     CHECK(denoised.denoiser == "Open Image Denoise 2.5.1 on the CPU, high quality");
     settings.denoise = Denoise::None;
     session.set_settings(settings);
-    session.render(16);
+    session.render(23);
     const RenderResult plain = session.result();
     CHECK(plain.denoiser.empty());
     CHECK(!plain.denoised);

@@ -83,6 +83,8 @@ class RealTime(CliTest):
         expected = self.pictures("whole")
         self.render("parts", "--frames", "0-2", *motion)
         made = {name: os.stat(self.path(f"parts/{name}")).st_mtime_ns for name in self.pictures("parts")}
+        for name in ("f-04.png", "f-##.json"):
+            write(self.path(f"parts/.{name}.4194305.0"), "no process has this number")
         said = self.render("parts", "--frames", "0-5", "--continue", *motion)
         self.assertEqual(self.pictures("parts"), expected)
         for name, when in made.items():

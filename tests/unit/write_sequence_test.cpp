@@ -2,6 +2,8 @@
 
 #include "session/pictures/write_sequence.h"
 
+#include <set>
+
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -29,11 +31,15 @@ PictureOptions small_turntable() {
     return options;
 }
 
-/// A sink that ends a sequence after some frames.
+/// A sink that ends a sequence after some frames, or in the middle of one.
 struct Caller final : Messages {
-    uint32_t most = 100;
+    uint32_t most = 100, most_begun = 100;
     std::vector<FrameReport> frames;
-    bool should_stop() override { return frames.size() >= most; }
+    std::set<std::string> begun; // frames in real time
+    void progress(const Progress& now) override {
+        if (now.doing.starts_with("frame ")) begun.insert(now.doing);
+    }
+    bool should_stop() override { return frames.size() >= most || begun.size() > most_begun; }
 };
 
 SequenceTally write_frames(PictureOptions options, Caller& caller, const std::string& output) {
@@ -84,6 +90,23 @@ TEST_CASE("an ended sequence continues where it stopped, and is refused with oth
         CHECK(error->reason().find(fmt::format("`{}`", other.front().first)) != std::string::npos);
         CHECK(error->location()->pointer == "/settings");
     }
+}
+
+TEST_CASE("a sequence with a checkpoint that ends in the middle of a frame keeps its history") {
+    const std::filesystem::path folder = test::scratch_folder();
+    PictureOptions options = small_turntable();
+    set(options, {{"real_time", "true"}});
+    Caller whole, ended, later;
+    CHECK(write_frames(options, whole, folder / "whole-#.exr").is_complete());
+    set(options, {{"checkpoint", (folder / "c.pvf").string()}, {"continue", "true"}});
+    ended.most_begun = 2;
+    CHECK(write_frames(options, ended, folder / "f-#.exr").written == 3);
+    const SequenceTally tally = write_frames(options, later, folder / "f-#.exr");
+    CHECK(tally.kept == 3);
+    CHECK(tally.again == 0);
+    CHECK(tally.is_complete());
+    REQUIRE(later.frames.size() == 4);
+    CHECK(later.frames[3].hash == whole.frames[3].hash);
 }
 
 TEST_CASE("the settings of a frame reproduce it without its sequence") {
