@@ -50,7 +50,7 @@ std::string binary_stl(uint32_t stated, uint32_t triangles, const std::string& h
 TEST_CASE("stl: each solid of a text is an instance with its name, and equal corners are one vertex") {
     Messages messages;
     const Scene scene = load_stl("solid big part\n" + kFacet + facet("1 0 0;1 1 0;-0 1 0") + "endsolid big part\n" +
-                                     "solid empty\nendsolid\nsolid\r\n" + kFacet + "endsolid\n",
+                                     "solid empty\nendsolid\nsolid\r\n" + facet("5 0 0;6 0 0;5 1 0") + "endsolid\n",
                                  messages);
     REQUIRE(scene.instances.size() == 2);
     CHECK(scene.instances[0].name == "big part");
@@ -61,6 +61,7 @@ TEST_CASE("stl: each solid of a text is an instance with its name, and equal cor
     CHECK(scene.meshes[0].indices == std::vector<uint32_t>{0, 1, 2, 1, 3, 2});
     CHECK(scene.meshes[0].positions.size() == 4);
     CHECK(scene.meshes[1].triangle_count() == 1);
+    CHECK(scene.meshes[1].positions[0] == Vec3{5, 0, 0});
     CHECK(scene.meshes[0].normals.empty());
     CHECK(messages.all().empty());
 }

@@ -35,6 +35,8 @@ TEST_CASE("colours that are sRGB-encoded have the mean of their light, alpha and
     const Rgba8Image colours = shrink_image(image, 1, true), data = shrink_image(image, 1, false);
     CHECK(colours.pixels == std::vector<uint8_t>{188, 188, 188, 128});
     CHECK(data.pixels == std::vector<uint8_t>{128, 128, 128, 128});
+    const Rgba8Image grey_and_black{2, 1, {0, 0, 0, 255, 128, 128, 128, 255}};
+    CHECK(shrink_image(grey_and_black, 1, true).pixels == std::vector<uint8_t>{92, 92, 92, 255});
     const Image encoded{2, 1, 4, {0, 0, 0, 0, 1, 1, 1, 1}};
     CHECK(shrink_image(encoded, 1, true).pixels[0] == doctest::Approx(srgb_encode(0.5f)));
     CHECK(shrink_image(encoded, 1, true).pixels[3] == 0.5f);
