@@ -12,8 +12,7 @@
 #include "shading/lobes/conductor_lobe.h"
 #include "shading/lobes/dielectric_lobe.h"
 #include "shading/lobes/diffuse_lobe.h"
-#include "shading/lobes/filmed_lobe.h"
-#include "shading/lobes/glass_lobe.h"
+#include "shading/lobes/packed_lobes.h"
 #include "shading/lobes/schlick_lobe.h"
 #include "shading/lobes/sheen_lobe.h"
 #include "shading/lobes/specular_lobe.h"
@@ -47,10 +46,10 @@ struct Lobe {
         DielectricLobe dielectric;
         SchlickLobe schlick;
         SpecularLobe reflection;
-        FilmedLobe filmed;
+        PackedFilmedLobe filmed;
         ThinLobe thin;
         TranslucentLobe translucent;
-        GlassLobe glass;
+        PackedGlassLobe glass;
         CoatLobe coat;
         SheenLobe sheen;
     };
@@ -83,13 +82,13 @@ struct Lobe {
         case LobeKind::Specular:
             return reflection.lobe_class();
         case LobeKind::Filmed:
-            return filmed.lobe_class();
+            return filmed.unpacked().lobe_class();
         case LobeKind::Thin:
             return thin.lobe_class();
         case LobeKind::Translucent:
             return translucent.lobe_class();
         case LobeKind::Glass:
-            return glass.lobe_class();
+            return glass.unpacked().lobe_class();
         case LobeKind::Coat:
             return coat.lobe_class();
         case LobeKind::Sheen:
@@ -112,13 +111,13 @@ struct Lobe {
         case LobeKind::Specular:
             return reflection.energy();
         case LobeKind::Filmed:
-            return filmed.energy();
+            return filmed.unpacked().energy();
         case LobeKind::Thin:
             return thin.energy();
         case LobeKind::Translucent:
             return translucent.energy();
         case LobeKind::Glass:
-            return glass.energy();
+            return glass.unpacked().energy();
         case LobeKind::Coat:
             return coat.energy();
         case LobeKind::Sheen:
@@ -142,11 +141,11 @@ struct Lobe {
         case LobeKind::Specular:
             return reflection.gloss(cos_o);
         case LobeKind::Filmed:
-            return filmed.gloss(cos_o);
+            return filmed.unpacked().gloss(cos_o);
         case LobeKind::Thin:
             return thin.gloss(cos_o);
         case LobeKind::Glass:
-            return glass.gloss(cos_o);
+            return glass.unpacked().gloss(cos_o);
         case LobeKind::Coat:
             return coat.gloss(cos_o);
         }
@@ -168,11 +167,11 @@ struct Lobe {
         case LobeKind::Specular:
             return reflection.specular(wo);
         case LobeKind::Filmed:
-            return filmed.specular(wo);
+            return filmed.unpacked().specular(wo);
         case LobeKind::Thin:
             return thin.specular(wo);
         case LobeKind::Glass:
-            return glass.specular(wo);
+            return glass.unpacked().specular(wo);
         case LobeKind::Coat:
             return coat.specular(wo);
         }
@@ -194,13 +193,13 @@ struct Lobe {
         case LobeKind::Specular:
             return reflection.evaluate(wo, wi, beneath, transmittance);
         case LobeKind::Filmed:
-            return filmed.evaluate(wo, wi, beneath, transmittance);
+            return filmed.unpacked().evaluate(wo, wi, beneath, transmittance);
         case LobeKind::Thin:
             return thin.evaluate(wo, wi, beneath, transmittance);
         case LobeKind::Translucent:
             return translucent.evaluate(wo, wi, beneath, transmittance);
         case LobeKind::Glass:
-            return glass.evaluate(wo, wi, beneath, transmittance);
+            return glass.unpacked().evaluate(wo, wi, beneath, transmittance);
         case LobeKind::Coat:
             return coat.evaluate(wo, wi, beneath, transmittance);
         case LobeKind::Sheen:
@@ -223,13 +222,13 @@ struct Lobe {
         case LobeKind::Specular:
             return reflection.draw(wo, beneath, u_lobe, u);
         case LobeKind::Filmed:
-            return filmed.draw(wo, beneath, u_lobe, u);
+            return filmed.unpacked().draw(wo, beneath, u_lobe, u);
         case LobeKind::Thin:
             return thin.draw(wo, beneath, u_lobe, u);
         case LobeKind::Translucent:
             return translucent.draw(wo, beneath, u_lobe, u);
         case LobeKind::Glass:
-            return glass.draw(wo, beneath, u_lobe, u);
+            return glass.unpacked().draw(wo, beneath, u_lobe, u);
         case LobeKind::Coat:
             return coat.draw(wo, beneath, u_lobe, u);
         case LobeKind::Sheen:
@@ -240,7 +239,7 @@ struct Lobe {
 };
 
 struct Bsdf {
-    static constexpr int kMaxLayers = 5; // thin wall, translucent sheet, reflection or share of glass, sheen, coat
+    static constexpr int kMaxLayers = 4; // thin wall or sheet, reflection or share of glass, sheen, coat
 
     Lobe base;
     int layer_count = 0;

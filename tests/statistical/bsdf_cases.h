@@ -30,8 +30,8 @@ inline float narrowest_alpha(const Bsdf& bsdf) {
         if (bsdf.layers[i].kind == LobeKind::Coat) add(bsdf.layers[i].coat.alpha);
         if (bsdf.layers[i].kind == LobeKind::Specular) add(bsdf.layers[i].reflection.alpha);
         if (bsdf.layers[i].kind == LobeKind::Thin) add(bsdf.layers[i].thin.alpha);
-        if (bsdf.layers[i].kind == LobeKind::Filmed) add(bsdf.layers[i].filmed.widths.narrowest());
-        if (bsdf.layers[i].kind == LobeKind::Glass) add(bsdf.layers[i].glass.widths.narrowest());
+        if (bsdf.layers[i].kind == LobeKind::Filmed) add(bsdf.layers[i].filmed.unpacked().widths.narrowest());
+        if (bsdf.layers[i].kind == LobeKind::Glass) add(bsdf.layers[i].glass.unpacked().widths.narrowest());
     }
     return least;
 }
