@@ -15,7 +15,7 @@ using test::GltfBuilder;
 namespace read_gltf_compressed_test { // test files are compiled together
 
 /// A square of four vertices with normals and texture coordinates, by draco_encoder 1.5.5.
-const std::string kSquare =
+const std::string kSquareByDraco =
     "RFJBQ08CAgEBAAAABAICAgAAAR//ARH/ARH/ARED/wAAAAAAAQAAAQAJAwAAAgEDCQIAAQIBAQkDAAIDAQEBAAMDATABEAMA"
     "KIKYAAAAAAD/PwAAAAAAAAAAAAAAAAAAAACAPw4FAQEAAgMBQAEADAIAAACAAoBwAAAAAP8PAAAAAAAAAAAAAAAAgD8MBgMB"
     "AQEBAUABAP8DAAD/AQAA/wJEQAo=";
@@ -60,7 +60,7 @@ using namespace read_gltf_compressed_test;
 TEST_CASE("Draco's geometry is that of its accessors") {
     if (!gltf::has_draco()) return;
     Messages messages;
-    const Scene scene = test::read_gltf_text(square(bytes_of(kSquare)), messages);
+    const Scene scene = test::read_gltf_text(square(bytes_of(kSquareByDraco)), messages);
     REQUIRE(scene.meshes.size() == 1);
     const Mesh& mesh = scene.meshes[0];
     REQUIRE(mesh.positions.size() == 4);
@@ -80,7 +80,7 @@ TEST_CASE("Draco's geometry is that of its accessors") {
 
 TEST_CASE("a damaged Draco stream, or one that does not fit its accessors, is left out with the reason") {
     if (!gltf::has_draco()) return;
-    const std::vector<std::byte> whole = bytes_of(kSquare);
+    const std::vector<std::byte> whole = bytes_of(kSquareByDraco);
     for (const std::size_t size : {std::size_t(5), whole.size() / 2}) {
         const std::vector<std::byte> torn(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
         CHECK(test::gltf_fault(square(torn)).find("KHR_draco_mesh_compression") != std::string::npos);
