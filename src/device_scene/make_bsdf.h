@@ -2,6 +2,8 @@
 
 // Makes the BSDF at a point of a mesh from a material, with textures and vertex colours.
 
+#include <type_traits>
+
 #include "device_scene/textured_factor.h"
 #include "shading/make_reflection.h"
 
@@ -39,6 +41,9 @@ struct MaterialAxes {
     Vec2 along = {1, 0};          // unit, the direction in which highlights are stretched
     float anisotropy = 0;         // [0, 1]
 };
+struct NoMaterialAxes {}; // of materials that are not stacked
+template <ShadingVariant kVariant>
+using MaterialAxesOf = std::conditional_t<kVariant == ShadingVariant::General, MaterialAxes, NoMaterialAxes>;
 
 /// Makes the BSDF of a material that is not stacked.
 template <ShadingVariant kVariant>
@@ -133,7 +138,7 @@ HD_CALL inline Bsdf make_any_bsdf(const SceneView& scene, const MaterialParamete
 template <ShadingVariant kVariant = ShadingVariant::General>
 HD inline Bsdf make_bsdf(const SceneView& scene, const MaterialParameters& material, const MeshView& mesh,
                          TriangleIndices i, float u, float v, Rgb base_color,
-                         [[maybe_unused]] const MaterialAxes& axes = {}) {
+                         [[maybe_unused]] const MaterialAxesOf<kVariant>& axes = {}) {
     if constexpr (kVariant != ShadingVariant::General) {
         return make_unstacked_bsdf<kVariant>(scene, material, mesh, i, u, v, base_color);
     } else {

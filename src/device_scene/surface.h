@@ -306,7 +306,7 @@ HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 dire
     const Frame frame =
         shading_frame<kVariant>(scene, instance, mesh, material, triangle, hit, geometric_normal, -direction, tilt);
     const Rgb albedo = base_color_at<kVariant>(scene, material, mesh, triangle.i, hit.u, hit.v);
-    MaterialAxes axes;
+    MaterialAxesOf<kVariant> axes;
     if constexpr (kVariant == ShadingVariant::General) {
         if (material.coat_weight > 0 &&
             (material.normal_texture.has_image() || material.coat_normal_texture.has_image())) {
