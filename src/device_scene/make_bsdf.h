@@ -41,7 +41,7 @@ struct MaterialAxes {
     Vec2 along = {1, 0};          // unit, the direction in which highlights are stretched
     float anisotropy = 0;         // [0, 1]
 };
-struct NoMaterialAxes {}; // of materials that are not stacked
+struct NoMaterialAxes {}; // materials without stacks have none
 template <ShadingVariant kVariant>
 using MaterialAxesOf = std::conditional_t<kVariant == ShadingVariant::General, MaterialAxes, NoMaterialAxes>;
 

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <doctest/doctest.h>
 
 #include "denoise/reproject.h"
@@ -42,7 +43,7 @@ TEST_CASE("a virtual point at distance 0 behind the surface moves with the surfa
     CHECK(same.depth == doctest::Approx(then.depth).epsilon(1e-4));
     // A point farther behind the mirror moves less.
     const Reprojection far = reproject_virtual(cameras, pixel, 5, 1000);
-    CHECK(abs(far.pixel.x - pixel.x) < 0.02f * abs(same.pixel.x - pixel.x) + 0.01f);
+    CHECK(std::abs(far.pixel.x - pixel.x) < 0.02f * std::abs(same.pixel.x - pixel.x) + 0.01f);
 }
 
 TEST_CASE("reprojection follows moved objects") {
@@ -94,9 +95,9 @@ TEST_CASE("displayed colours convert back to light within rounding") {
         const Rgb back = light_of_shown(shown_color(light));
         const float error =
             (1e-6f + 1e-6f * luminance(light)) * luminance(light); // 1 - Y loses digits where Y is near 1
-        CHECK(abs(back.r - light.r) <= 2 * error);
-        CHECK(abs(back.g - light.g) <= 2 * error);
-        CHECK(abs(back.b - light.b) <= 12 * error);
+        CHECK(std::abs(back.r - light.r) <= 2 * error);
+        CHECK(std::abs(back.g - light.g) <= 2 * error);
+        CHECK(std::abs(back.b - light.b) <= 12 * error);
     }
 }
 

@@ -63,15 +63,20 @@ DecidingSettings deciding_settings(const PictureOptions& options, const PictureR
 }
 
 std::optional<SettingDifference> first_difference(const DecidingSettings& before, const DecidingSettings& after) {
+    std::optional<SettingDifference> first;
+    int weight = 0;
     for (const DecidingSettings* const names : {&after, &before}) {
         for (const auto& [name, value] : *names) {
             SettingDifference difference = {name, value_of(before, name), value_of(after, name)};
-            if (difference.before == difference.after) continue;
+            // Another version may have other settings, and a metered exposure follows any other difference.
+            const int rank = name == "version" ? 3 : name == "exposure" ? 1 : 2;
+            if (difference.before == difference.after || rank <= weight) continue;
             if (find_setting(name) != nullptr) difference.name = '`' + name + '`';
-            return difference;
+            first = std::move(difference);
+            weight = rank;
         }
     }
-    return std::nullopt;
+    return first;
 }
 
 } // namespace pertev
