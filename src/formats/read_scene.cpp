@@ -30,10 +30,8 @@ struct FormatReader {
 };
 
 const std::array kReaders = {
-    FormatReader{".obj", read_obj, false, false},
-    FormatReader{".ply", read_ply, false, false},
-    FormatReader{".stl", read_stl, false, false},
-    FormatReader{".gltf", read_gltf, true, true},
+    FormatReader{".obj", read_obj, false, false}, FormatReader{".ply", read_ply, false, false},
+    FormatReader{".stl", read_stl, false, false}, FormatReader{".gltf", read_gltf, true, true},
     FormatReader{".glb", read_gltf, true, true},
 };
 

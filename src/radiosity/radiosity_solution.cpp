@@ -145,9 +145,11 @@ void check_scene(const std::filesystem::path& path, const RadiositySolution& sol
     if (!solution.light) return;
     const SolvedLight light = solved_light(scene);
     if (solution.light->surfaces != light.surfaces) {
-        refuse_file(path, "a radiosity solution of this scene with other materials: what surfaces reflect, let through "
-                          "or emit has changed since, or by `material`, `lamp`, `efficacy` or `two_sided_lights`; solve the scene "
-                          "again with the same settings");
+        refuse_file(
+            path,
+            "a radiosity solution of this scene with other materials: what surfaces reflect, let through "
+            "or emit has changed since, or by `material`, `lamp`, `efficacy` or `two_sided_lights`; solve the scene "
+            "again with the same settings");
     }
     if (solution.light->lights != light.lights) {
         refuse_file(path,
