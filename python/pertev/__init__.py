@@ -8,6 +8,7 @@
 """
 
 import importlib
+import operator
 import os
 
 from ._cameras import BatchResult, Cameras, DeviceArray, chunk_size, read_cameras, render_batch
@@ -72,9 +73,10 @@ def render(scene, *, cameras=None, seeds=None, color=True, layers=(), output=(),
 def render_chunks(scene, cameras, *, chunk=None, seeds=None, color=True, layers=(), settings=None, **values):
     """Renders pictures by many cameras in parts, and yields a BatchResult for each.
 
-    chunk   the number of cameras of a part; None: as many as keep the device busy and fit into its memory
+    chunk   the number of cameras of a part, at least 1; None: as many as keep the device busy and fit into its memory
 
-    The other arguments are those of render(). A BatchResult that is no longer used frees its memory.
+    The other arguments are those of render(). A BatchResult that is no longer used frees its memory. Raises ValueError
+    for a chunk below 1, and for seeds that are neither one nor one a camera.
     """
     check_process()
     used = scene if isinstance(scene, Scene) else Scene(scene)
@@ -82,7 +84,13 @@ def render_chunks(scene, cameras, *, chunk=None, seeds=None, color=True, layers=
     values, settings = with_layers(values, layers), os.fspath(settings or "")
     if chunk is None:
         chunk = chunk_size(used, cameras, color, settings, values)
+    elif operator.index(chunk) < 1:
+        raise ValueError(f"chunk: expected at least 1, not {chunk}")
+    if hasattr(seeds, "__index__") and not hasattr(seeds, "__len__"):
+        seeds = operator.index(seeds)
     one_for_all = seeds is None or isinstance(seeds, int) or len(seeds) == 1
+    if not one_for_all and len(seeds) != len(cameras):
+        raise ValueError(f"seeds: expected 1 or {len(cameras)}, one a camera, not {len(seeds)}")
     for first in range(0, len(cameras), chunk):
         part = slice(first, first + chunk)
         yield render_batch(used, cameras[part], seeds if one_for_all else seeds[part], color, settings, values, None)

@@ -8,6 +8,7 @@ one render. Workers import pertev and read the scene by its name: each must find
 """
 
 import os
+import shutil
 import tempfile
 
 from . import render
@@ -37,14 +38,24 @@ def _source_of(scene, parts, values):
 
 
 def _merged(films, output):
-    """Merges the contents of film files as they come."""
-    with tempfile.TemporaryDirectory() as folder:
-        files = []
+    """Merges the contents of film files as they come. If all have come and cannot be merged, their files are kept, and a
+    note of the exception names the folder."""
+    folder, is_whole, files = tempfile.mkdtemp(), False, []
+    try:
         for film in films:
             files.append(os.path.join(folder, f"{len(files)}.pvf"))
             with open(files[-1], "wb") as file:
                 file.write(film)
-        return merge(files, output=output)
+        is_whole = True
+        picture = merge(files, output=output)
+    except BaseException as error:
+        if is_whole:
+            error.add_note(f"the parts are kept in {folder}")
+        else:
+            shutil.rmtree(folder)
+        raise
+    shutil.rmtree(folder)
+    return picture
 
 
 def ray(scene, *, parts, output=(), retries=3, options=None, **values):

@@ -118,6 +118,13 @@ class Cameras(unittest.TestCase):
             together = numpy.concatenate([host(getattr(part, name)) for part in parts])
             self.assertEqual(host(getattr(whole, name)).tobytes(), together.tobytes())
         self.assertEqual([len(part) for part in pertev.render_chunks(self.scene, poses(5), **SMALL)], [5])
+        for wrong in ({"chunk": 0}, {"chunk": -1}, {"seeds": [1, 2]}, {"seeds": range(6)}):
+            with self.subTest(wrong), self.assertRaises(ValueError):
+                list(pertev.render_chunks(self.scene, poses(5), **{"chunk": 2, **wrong}, **SMALL))
+        with self.assertRaises(TypeError):
+            list(pertev.render_chunks(self.scene, poses(5), chunk=1.5, **SMALL))
+        of_one = list(pertev.render_chunks(self.scene, poses(1), chunk=1, seeds=numpy.int64(3), **SMALL))
+        self.assertEqual(len(of_one), 1)
 
     def test_several_devices_share_a_batch(self):
         call = {"cameras": poses(9), "seeds": numpy.arange(9), "layers": LAYERS, **SMALL}

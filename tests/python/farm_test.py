@@ -5,6 +5,7 @@ It runs by the Python of PERTEV_FARM_PYTHON, which has PyPI's `ray` and `dask[di
 import importlib.util
 import os
 import pathlib
+import shutil
 import signal
 import sys
 import tempfile
@@ -120,6 +121,17 @@ class Farm(unittest.TestCase):
                              ({"parts": 2, "checkpoint": "c.pvf"}, TypeError)]:
             with self.subTest(values), self.assertRaises(kind):
                 pertev.farm.dask(None, "cornell-box", **values)
+
+    def test_parts_that_cannot_be_merged_are_kept(self):
+        from pertev import farm
+        job = {**JOB, "spp": 4}
+        films = [farm._render_part("cornell-box", i, 2, job) for i in (1, 2)]
+        with self.assertRaises(pertev.Error) as caught:
+            farm._merged(iter(films), str(self.folder / "no such folder" / "a.exr"))
+        kept = pathlib.Path(caught.exception.__notes__[0].removeprefix("the parts are kept in "))
+        self.addCleanup(shutil.rmtree, kept)
+        merged = pertev.merge(sorted(kept.glob("*.pvf")), output=self.folder / "a.exr")
+        self.assertEqual(merged.hash, pertev.render("cornell-box", **job).hash)
 
 
 if __name__ == "__main__":  # workers that are spawned import this file
