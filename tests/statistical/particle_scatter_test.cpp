@@ -33,8 +33,7 @@ double camera_at(const Surface& surface, Vec3 w) {
 
 /// n^2 |w . Ng|
 double etendue(const Surface& surface, Vec3 w) {
-    const bool inside = surface.bsdf.base.kind == LobeKind::Dielectric && dot(w, surface.geometric_normal) < 0;
-    const double n = inside ? static_cast<double>(surface.bsdf.base.dielectric.ior) : 1.0;
+    const double n = dot(w, surface.geometric_normal) < 0 ? static_cast<double>(surface.bsdf.inner_ior()) : 1.0;
     return n * n * std::fabs(static_cast<double>(dot(w, surface.geometric_normal)));
 }
 
