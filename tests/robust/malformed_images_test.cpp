@@ -182,7 +182,7 @@ TEST_CASE("a file's content overrules its name, and errors for other files list 
         FAIL("no error");
     } catch (const Error& error) {
         CHECK(error.code() == ErrorCode::BadInput);
-        CHECK(std::string(error.what()).find("PNG, JPEG, Radiance HDR or OpenEXR") != std::string::npos);
+        CHECK(std::string(error.what()).find("PNG, JPEG, WebP, Radiance HDR or OpenEXR") != std::string::npos);
     }
     CHECK_THROWS_AS(read_image(std::span<const std::byte>{}, "empty.png"), Error);
     const std::filesystem::path path = test::scratch_folder() / "really_a_png.exr";
