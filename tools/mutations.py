@@ -177,7 +177,7 @@ MUTATIONS = part_mutations.MUTATIONS + format_mutations.MUTATIONS + [
      ("src/shading/make_reflection.h", "SpecularLobe{p.base_color, metal, alpha, f0, p.weight}", "SpecularLobe{p.base_color, metal, alpha, f0, 1}")),
     ("a solid that absorbs only what leaves it outwards", "statistical/solid_absorption", ("src/device_scene/solid_absorption.h", "if (material.absorbs() && points_inwards(", "if (material.absorbs() && !points_inwards(")),
     ("of two solids that overlap, the later one absorbs", "statistical/solid_absorption", ("src/device_scene/solid_absorption.h", "start.instance <= end.instance;", "start.instance > end.instance;")),
-    ("particles that no solid absorbs", "statistical/solid_absorption", ("src/integrators/subpaths/subpath_vertex.h", "throughput = throughput * transmittance_to_hit<", "if (false) throughput = throughput * transmittance_to_hit<")),
+    ("particles that no solid absorbs", "statistical/solid_absorption", ("src/integrators/subpaths/subpath_vertex.h", "((weights = weights * passed), ...);", "static_cast<void>(passed);")),
     ("a film on metal of another phase", "statistical/thin_film", ("src/shading/lobes/thin_film.h", "const float path = 2.0f * film.ior", "const float path = 1.9f * film.ior")),
     ("stretched microfacets sampled as even ones", "statistical/bsdf_sampling", ("src/shading/lobes/ggx_widths.h", "const Vec3 m = {x * (s * cos_phi + w.x), y *", "const Vec3 m = {x * (s * cos_phi + w.x), x *")),
     ("a share of glass on all of the rest", "statistical/bsdf_energy", ("src/shading/lobes/glass_lobe.h", "transmittance.light = transmittance.light * (1.0f - weight);", "")),

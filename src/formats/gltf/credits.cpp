@@ -12,7 +12,7 @@ namespace pertev::gltf {
 namespace {
 
 /// Returns the texts in a value of XMP, separated by commas: a text, an object with a text or a list, or an array.
-/// Of alternatives (rdf:Alt), the first.
+/// The first of alternatives (rdf:Alt) stands for all of them.
 std::string text_in(const JsonValue& value, int depth = 0) {
     constexpr int kMostDepth = 4;
     const std::string json = value.to_json();

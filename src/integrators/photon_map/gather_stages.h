@@ -69,8 +69,8 @@ struct ShadeGather {
         }
         if (searches_emitters && light_of(picture.scene.lights, hit.instance, hit.primitive) == kNoLight) return;
         const Surface surface = make_surface<kVariant>(picture.scene, hit, ray.direction);
-        arrive_through_solids<kVariant>(scene, subpaths, i, round, ray, hit, state.throughput);
-        arrive_through_solids<kVariant>(scene, subpaths, i, round, ray, hit, gather_state.past_mirrors);
+        arrive_through_solids<kVariant>(scene, subpaths, i, round, ray, hit, state.throughput,
+                                        gather_state.past_mirrors);
         if (state.depth() == 0) {
             add_seen(picture, film, state, ray, hit, surface);
         } else if (!is_black(surface.emission)) {

@@ -33,13 +33,15 @@ HD inline float cosine_at(const Surface& surface, Vec3 direction) {
     return abs(dot(surface.geometric_normal, direction));
 }
 
-/// Weights `throughput` by the solid that ray `i` of a round went through to `hit`.
-template <ShadingVariant kVariant>
+/// Multiplies each of `weights`, all Rgb, by the transmittance of the solid that ray `i` of a round went through to
+/// `hit`.
+template <ShadingVariant kVariant, class... Weights>
 HD inline void arrive_through_solids(const SubpathScene& scene, const SubpathsView& subpaths, uint32_t i,
-                                     uint32_t round, const Ray& ray, const Hit& hit, Rgb& throughput) {
+                                     uint32_t round, const Ray& ray, const Hit& hit, Weights&... weights) {
     if constexpr (kVariant == ShadingVariant::General) {
-        throughput = throughput * transmittance_to_hit<kVariant>(scene.picture.scene, subpaths.start_of(i, round),
-                                                                 ray.direction, hit);
+        const Rgb passed =
+            transmittance_to_hit<kVariant>(scene.picture.scene, subpaths.start_of(i, round), ray.direction, hit);
+        ((weights = weights * passed), ...);
     }
 }
 

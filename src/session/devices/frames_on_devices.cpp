@@ -48,6 +48,21 @@ struct FramesOnDevices::Part {
     double seconds = 0;
     std::optional<Error> failure; // the device has failed
     std::exception_ptr error;     // something else has
+
+    /// Keeps the exception that is being handled.
+    void keep_exception() {
+        try {
+            throw;
+        } catch (const Error& thrown) {
+            if (is_of_device(thrown)) {
+                failure = thrown;
+            } else {
+                error = std::current_exception();
+            }
+        } catch (...) {
+            error = std::current_exception();
+        }
+    }
 };
 
 FramesOnDevices::FramesOnDevices(std::span<const std::shared_ptr<Queue>> queues, const PreparedScene& scene,
@@ -73,14 +88,8 @@ void FramesOnDevices::take_scene(FrameSequence& leader, const RenderSettings& se
                 const UseThreads use(follower.queue.threads());
                 follower.copy.update(leader.pictures().scene(), settings, false);
                 follower.queue.wait();
-            } catch (const Error& error) {
-                if (is_of_device(error)) {
-                    part.failure = error;
-                } else {
-                    part.error = std::current_exception();
-                }
             } catch (...) {
-                part.error = std::current_exception();
+                part.keep_exception();
             }
         });
     }
@@ -140,14 +149,8 @@ bool FramesOnDevices::render_together(FrameSequence& leader, const FrameTask& ta
             part.seconds = watch.seconds() - team.waited(number);
             return;
         } catch (const FrameAbandoned&) {
-        } catch (const Error& error) {
-            if (is_of_device(error)) {
-                part.failure = error;
-            } else {
-                part.error = std::current_exception();
-            }
         } catch (...) {
-            part.error = std::current_exception();
+            part.keep_exception();
         }
         is_lost = true;
         team.abandon();
