@@ -68,7 +68,7 @@ struct SampledSurfaces {
         if (f.object == kNoHit) return f;
         const Vec3 point = point_at(instances, meshes, hit);
         f.point = transform_transposed(camera.world_from_camera, point - camera.world_from_camera.translation);
-        if (camera.lens.model != LensModel::Straight) { // guides lie where a straight lens shows their pixels
+        if (!camera.lens.is_straight()) { // guides lie where a straight lens shows their pixels
             const LensProjection through = project_through_lens(camera.lens, f.point);
             f.point = {-f.point.z * through.at.x, -f.point.z * through.at.y, f.point.z};
         }

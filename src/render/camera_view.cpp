@@ -28,9 +28,8 @@ CameraView make_camera_view(const Camera& camera, uint32_t width, uint32_t heigh
         view.half_width = static_cast<float>(0.5 * own->width / own->focal_x);
         view.half_height = static_cast<float>(0.5 * own->height / own->focal_y);
         view.centre = {halves(own->centre_x, own->width), halves(own->centre_y, own->height)};
-    } else if (view.lens.model == LensModel::Fisheye) { // whose height is in radians, were it not for its coefficients
-        const float half_angle = 0.5f * camera.fov_y;
-        view.half_height = fisheye_radius(view.lens, half_angle).radius;
+    } else {
+        view.half_height = half_height_through(view.lens, 0.5f * camera.fov_y);
         view.half_width = view.half_height * aspect;
     }
     return view;

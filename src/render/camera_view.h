@@ -1,6 +1,6 @@
 #pragma once
 
-// The device form of a camera: its rays (pinhole, thin lens, distorting lens, fisheye and orthographic) and the
+// The device form of a camera: its rays (pinhole, thin and distorting lens, orthographic) and the
 // projection of points; render/connect_to_camera.h projects through the lens. Only these files and
 // render/lens_distortion.h distinguish kinds of cameras. A pixel position is in pixels from the picture's upper left
 // corner.
@@ -68,7 +68,7 @@ HD inline RayLineOf<T> make_camera_line(const CameraView& camera, Vec2Of<T> pixe
     MaskOf<T> is_seen = true;
     switch (camera.projection) {
     case Projection::Perspective:
-        if (camera.lens.model != LensModel::Straight) {
+        if (!camera.lens.is_straight()) {
             const SeenThroughLens<T> seen =
                 seen_through_lens(camera.lens, at, 0x1p-5f * (camera.inv_width * camera.half_width));
             direction = seen.direction;
@@ -94,7 +94,7 @@ HD inline RayLineOf<T> make_camera_line(const CameraView& camera, Vec2Of<T> pixe
     const auto world_from_camera = for_lanes<T>(camera.world_from_camera);
     const Vec3Of<T> from = transform_point(world_from_camera, origin),
                     towards = normalize(transform_vector(world_from_camera, direction));
-    if (camera.lens.model == LensModel::Straight) return {from, towards};
+    if (camera.lens.is_straight()) return {from, towards};
     const T nowhere = kNowhere, diagonal = 0x1.279a74p-1f;
     return {select(is_seen, from, {nowhere, nowhere, nowhere}),
             select(is_seen, towards, {diagonal, diagonal, diagonal})};
@@ -119,7 +119,7 @@ HD inline ProjectedPoint project_point(const CameraView& camera, Vec3 point) {
     const float depth = -local.z;
     const float scale = 1.0f / growth_at(camera, depth);
     Vec2 at = {scale * local.x, scale * local.y};
-    if (camera.lens.model != LensModel::Straight) {
+    if (!camera.lens.is_straight()) {
         const LensProjection through = project_through_lens(camera.lens, local);
         at = through.is_seen ? through.at : Vec2{float_of(0x7fc00000u), float_of(0x7fc00000u)};
     }
@@ -134,9 +134,9 @@ HD inline Vec3 unproject_point(const CameraView& camera, Vec2 pixel, float depth
 }
 
 /// Returns whether project_point is valid at `depth`: in front of the camera, or for an orthographic camera or a
-/// fisheye.
+/// lens that sees behind.
 HD inline bool is_projected(const CameraView& camera, float depth) {
-    return depth > 0 || has_parallel_rays(camera.projection) || camera.lens.model == LensModel::Fisheye;
+    return depth > 0 || has_parallel_rays(camera.projection) || camera.lens.sees_behind();
 }
 
 /// Returns where a camera, moved from `now` to `before`, saw what is infinitely far away at `pixel`.

@@ -27,7 +27,7 @@ HD inline float camera_density(const CameraRays& camera, Vec3 origin, Vec3 direc
     const float area = 4.0f * view.half_width * view.half_height;
     if (!falls_with_distance(camera)) return 1.0f / (area * cosine);
     const float of_straight = 1.0f / (area * cosine * cosine * cosine);
-    if (view.lens.model == LensModel::Straight) return of_straight;
+    if (view.lens.is_straight()) return of_straight;
     Vec3 local = transform_transposed(view.world_from_camera, direction);
     if (camera.has_lens()) { // the direction to the ray's point in focus from the middle of the lens
         const Vec3 lens = transform_transposed(view.world_from_camera, origin - view.world_from_camera.translation);
@@ -36,7 +36,7 @@ HD inline float camera_density(const CameraRays& camera, Vec3 origin, Vec3 direc
     }
     const LensProjection through = project_through_lens(view.lens, local);
     if (!through.is_seen) return 0.0f;
-    return view.lens.model == LensModel::Fisheye ? through.growth / area : through.growth * of_straight;
+    return view.lens.sees_behind() ? through.growth / area : through.growth * of_straight;
 }
 
 /// Projects `point` through the lens point `u`. Returns false if it is not in front of the camera, or if the camera
@@ -45,7 +45,7 @@ HD inline bool connect_to_camera(const CameraRays& camera, Vec3 point, Vec2 u, C
     const CameraView& view = camera.view;
     const Vec3 local = transform_transposed(view.world_from_camera, point - view.world_from_camera.translation);
     const float depth = -local.z;
-    if (!(depth > 0 || view.lens.model == LensModel::Fisheye) || camera.is_meter()) return false;
+    if (!(depth > 0 || view.lens.sees_behind()) || camera.is_meter()) return false;
     const Vec2 lens = camera.has_lens() ? view.aperture_radius * sample_uniform_disk_concentric(u) : Vec2{0, 0};
     float x, y; // in the plane at distance 1, or in the orthographic view
     Vec3 from = {lens.x, lens.y, 0};
@@ -64,9 +64,9 @@ HD inline bool connect_to_camera(const CameraRays& camera, Vec3 point, Vec2 u, C
         x = from.x - lens.x;
         y = from.y - lens.y;
     }
-    if (view.lens.model != LensModel::Straight) {
+    if (!view.lens.is_straight()) {
         const LensProjection through =
-            project_through_lens(view.lens, view.lens.model == LensModel::Fisheye ? local : Vec3{x, y, -1});
+            project_through_lens(view.lens, view.lens.sees_behind() ? local : Vec3{x, y, -1});
         if (!through.is_seen) return false;
         x = through.at.x;
         y = through.at.y;

@@ -93,4 +93,15 @@ LensView make_lens_view(const Camera& camera) {
     return lens;
 }
 
+float half_height_through(const LensView& lens, float half_angle) {
+    switch (lens.model) {
+    case LensModel::Straight:
+    case LensModel::OpenCv: // without its coefficients
+        return tan(half_angle);
+    case LensModel::Fisheye:
+        break;
+    }
+    return fisheye_radius(lens, half_angle).radius;
+}
+
 } // namespace pertev

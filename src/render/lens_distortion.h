@@ -22,12 +22,17 @@ struct LensView {
     float k1, k2, k3, k4, k5, k6; // radial
     float p1, p2;                 // tangential; p1 for y up
     float limit;                  // distance from the axis in the view, or for a fisheye radians from it
+
+    HD bool is_straight() const { return model == LensModel::Straight; }
+    HD bool sees_behind() const { return pertev::sees_behind(model); }
 };
 
 /// Returns whether the camera's pictures have straight lines: polynomial lenses with the coefficients 0 are straight.
 bool has_straight_lens(const Camera& camera);
 /// Makes the lens of a camera, with its limit.
 LensView make_lens_view(const Camera& camera);
+/// Returns half the height of a picture that sees `half_angle` up and down, without intrinsics.
+float half_height_through(const LensView& lens, float half_angle);
 
 /// A picture position and the derivative of its x and y with respect to the view, a symmetric matrix.
 template <class T>

@@ -10,6 +10,7 @@
 #include "base/host_device.h"
 #include "math/rigid_motion.h"
 #include "math/transform.h"
+#include "scene/lens_model.h"
 #include "scene/node_number.h"
 
 namespace pertev {
@@ -42,9 +43,6 @@ HD constexpr bool is_light_meter(Projection projection) {
     }
     return true;
 }
-
-/// Model of a lens whose picture does not have straight lines (render/lens_distortion.h).
-enum class LensModel : uint8_t { Straight, OpenCv, Fisheye };
 
 /// A calibrated view: focal lengths and principal point in pixels of a picture of `width` x `height` pixels, from its
 /// upper left corner. In a picture of another size both scale with width and height.

@@ -107,7 +107,7 @@ void check_shutter(const RenderSettings& settings) {
 }
 
 void check_camera(const RenderSettings& settings, const Camera& camera) {
-    refuse(settings.denoise == Denoise::Svgf && camera.lens == LensModel::Fisheye, "lens", "fisheye",
+    refuse(settings.denoise == Denoise::Svgf && sees_behind(camera.lens), "lens", name_of(camera.lens),
            "`denoise=svgf` needs a lens that sees less than half of all directions (`denoise=oidn` supports it)");
     if (!rasterises_camera(settings.integrator)) return;
     const std::string why = why_no_raster(camera);

@@ -15,6 +15,7 @@
 #include "scene/scene_origin.h"
 #include "settings/parse_values.h"
 #include "settings/setting_table.h"
+#include "settings/value_names.h"
 
 namespace pertev {
 namespace {
@@ -105,12 +106,14 @@ void set_lens(const CameraChoice& choice, Camera& camera) {
         if (camera.lens == LensModel::Straight) camera.lens = LensModel::OpenCv;
         camera.distortion = choice.distortion;
     }
-    if (camera.lens == LensModel::Fisheye && !camera.distortion.empty() && camera.distortion.size() != 4) {
+    const std::string_view lens = name_of(camera.lens);
+    if (!takes_coefficients(camera.lens, camera.distortion.size())) {
         throw Error(ErrorCode::BadInput, "distortion", text_of(camera.distortion),
-                    "expected four coefficients with `lens=fisheye`");
+                    fmt::format("expected {} with `lens={}`", coefficient_names(camera.lens), lens));
     }
-    if (camera.lens == LensModel::Fisheye && camera.aperture_radius > 0) {
-        throw Error(ErrorCode::BadInput, "lens", "fisheye", "a fisheye has no depth of field; set `aperture=0`");
+    if (sees_behind(camera.lens) && camera.aperture_radius > 0) {
+        throw Error(ErrorCode::BadInput, "lens", std::string(lens),
+                    "this lens has no depth of field; set `aperture=0`");
     }
 }
 
