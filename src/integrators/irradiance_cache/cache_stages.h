@@ -71,13 +71,9 @@ struct ShadeCacheSubpaths {
         CacheState cache_state = cache.cache_state_of(subpath);
         if (hit.instance == kNoHit) return add_background(subpath, state, cache_state, ray);
         const Surface surface = make_surface<kVariant>(picture.scene, hit, ray.direction);
-        if constexpr (kVariant == ShadingVariant::General) {
-            const Rgb passed =
-                transmittance_to_hit<kVariant>(picture.scene, subpaths.start_of(i, round), ray.direction, hit);
-            state.throughput = state.throughput * passed;
-            cache_state.seen = cache_state.seen * passed;
-            cache.store_path(subpath, cache.path_of(subpath) * passed);
-        }
+        Rgb path = cache.path_of(subpath);
+        arrive_through_solids<kVariant>(scene, subpaths, i, round, ray, hit, state.throughput, cache_state.seen, path);
+        if (kVariant == ShadingVariant::General) cache.store_path(subpath, path);
         if (adds_light() && state.depth() == 0) {
             add_seen(picture, film, state, ray, hit, surface);
         } else if (adds_light() && !is_black(surface.emission)) {
