@@ -56,7 +56,7 @@ std::string text_of(const CLI::Option& option, bool is_short) {
         text += fmt::format(" ({})", full.substr(at + kWithoutIt.size(), full.size() - at - kWithoutIt.size() - 1));
     if (setting != nullptr && !is_short && *setting->more != '\0') text += fmt::format(" {}", setting->more);
     if (has_default) text += fmt::format(" ({})", option.get_default_str());
-    return option.get_required() ? text + " Required." : text;
+    return option.get_required() ? text + (text.ends_with('.') ? " Required." : ". Required.") : text;
 }
 
 std::string entry(const CLI::Option& option, bool is_short) {

@@ -79,7 +79,7 @@ void add_pictures(Queue& queue, const MeasuredScene& scene, const LabSettings& s
         thesis.local_and_global.push_back(
             {.group = fmt::format("Figure 6.{}: local and global illumination", figure),
              .title = light,
-             .caption = fmt::format("{}, {}, {} samples a pixel{}", scene.name, light, result->samples,
+             .caption = fmt::format("{}, {}, {} samples per pixel{}", scene.name, light, result->samples,
                                     interrupted() ? " (interrupted)" : ""),
              .image = tone_map_image(result->picture, ToneMap::Srgb, stops),
              .file = fmt::format("figure-6.{}-{}.png", figure, light)});

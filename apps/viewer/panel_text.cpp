@@ -73,16 +73,16 @@ constexpr NumberRow kRows[] = {
     {"Now", "colours", [](const ViewState&, const ViewNumbers& n) { return n.frame->caption; }},
     {"Frames", "rendered",
      [](const ViewState&, const ViewNumbers& n) {
-         return n.frames_per_second > 0 ? fmt::format("{:.1f} a second", n.frames_per_second) : "";
+         return n.frames_per_second > 0 ? fmt::format("{:.1f} per second", n.frames_per_second) : "";
      }},
     {"Frames", "screen of the steering viewer",
      [](const ViewState& v, const ViewNumbers&) {
-         return v.screen_rate > 0 ? fmt::format("{:.0f} a second", v.screen_rate) : "";
+         return v.screen_rate > 0 ? fmt::format("{:.0f} per second", v.screen_rate) : "";
      }},
     {"Frames", "frame rate of automatic size",
      [](const ViewState&, const ViewNumbers& n) {
          if (n.frame->kept_rate == 0) return std::string();
-         return fmt::format("{:.0f} a second{}", n.frame->kept_rate,
+         return fmt::format("{:.0f} per second{}", n.frame->kept_rate,
                             n.frame->keeps_rate ? "" : ", not reached at the smallest size");
      }},
     {"Rays", "camera",

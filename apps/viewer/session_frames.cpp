@@ -199,7 +199,7 @@ Rgba8Image SessionFrames::show(const FrameRequest& request, ShownFrame& frame) {
     uint32_t most = 0;
     Rgba8Image image = show_work(work, width, height, nodes ? WorkKind::Nodes : WorkKind::Triangles, most);
     frame.caption = std::string("black: none; pale yellow: ") + std::to_string(most) +
-                    (nodes ? " nodes a camera ray" : " triangles a camera ray");
+                    (nodes ? " nodes per camera ray" : " triangles per camera ray");
     return image;
 }
 
@@ -209,7 +209,7 @@ Rgba8Image SessionFrames::show_layer(const FrameRequest& request, ShownFrame& fr
     if (request.view.layer == ShownLayer::Motion) {
         Rgba8Image image = show_motion(session_.frame().motion(), most);
         frame.caption =
-            fmt::format("grey: no motion; right is red, down is green; saturated at {:.3g} pixels a frame", most);
+            fmt::format("grey: no motion; right is red, down is green; saturated at {:.3g} pixels per frame", most);
         return image;
     }
     Rgba8Image image = show_deviation(session_.frame().deviation(), most);

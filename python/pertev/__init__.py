@@ -76,7 +76,7 @@ def render_chunks(scene, cameras, *, chunk=None, seeds=None, color=True, layers=
     chunk   the number of cameras of a part, at least 1; None: as many as keep the device busy and fit into its memory
 
     The other arguments are those of render(). A BatchResult that is no longer used frees its memory. Raises ValueError
-    for a chunk below 1, and for seeds that are neither one nor one a camera.
+    for a chunk below 1, and for seeds that are neither one nor one per camera.
     """
     check_process()
     used = scene if isinstance(scene, Scene) else Scene(scene)
@@ -90,7 +90,7 @@ def render_chunks(scene, cameras, *, chunk=None, seeds=None, color=True, layers=
         seeds = operator.index(seeds)
     one_for_all = seeds is None or isinstance(seeds, int) or len(seeds) == 1
     if not one_for_all and len(seeds) != len(cameras):
-        raise ValueError(f"seeds: expected 1 or {len(cameras)}, one a camera, not {len(seeds)}")
+        raise ValueError(f"seeds: expected 1 or {len(cameras)}, one per camera, not {len(seeds)}")
     for first in range(0, len(cameras), chunk):
         part = slice(first, first + chunk)
         yield render_batch(used, cameras[part], seeds if one_for_all else seeds[part], color, settings, values, None)

@@ -77,8 +77,8 @@ Fields run_fields(const LabReport& report, const CombinationFigures& c, const Ru
                   {"frame_mrays", "",
                    frame_s ? ResultCell(static_cast<double>(frame_rays(report, set->depth)) / *frame_s * 1e-6)
                            : ResultCell()},
-                  {"nodes_per_ray", "nodes a ray", of(&RunFigures::nodes), "", "{:.1f}"},
-                  {"triangles_per_ray", "triangles a ray", of(&RunFigures::triangles), "", "{:.1f}"},
+                  {"nodes_per_ray", "nodes per ray", of(&RunFigures::nodes), "", "{:.1f}"},
+                  {"triangles_per_ray", "triangles per ray", of(&RunFigures::triangles), "", "{:.1f}"},
                   {"node_lanes", "lanes, nodes", of(&RunFigures::node_lanes), "", "{:.1f}"},
                   {"triangle_lanes", "lanes, triangles", of(&RunFigures::triangle_lanes), "", "{:.1f}"},
                   {"node_sectors", "sectors, nodes", of(&RunFigures::node_sectors), "", "{:.1f}"},
@@ -175,9 +175,9 @@ std::string text_of(const LabReport& report) {
     ResultTable rates = pivot(runs, "combination", "set", "mrays");
     std::ranges::stable_sort(rates.rows, std::greater{}, [](const auto& row) { return row[1].number().value_or(0); });
     std::string text = text_of(structures_of(report));
-    text += fmt::format("\nmillion rays a second on {}\n{}", report.device, text_of(rates));
+    text += fmt::format("\nmillion rays per second on {}\n{}", report.device, text_of(rates));
     const ResultTable frames = pivot(runs, "combination", "frame_depth", "frames_per_second");
-    if (!frames.rows.empty()) text += "\nframes a second by depth of paths\n" + text_of(frames) + '\n';
+    if (!frames.rows.empty()) text += "\nframes per second by depth of paths\n" + text_of(frames) + '\n';
     for (const std::string& note : notes_of(report)) text += note + '\n';
     if (report.interrupted) text += "interrupted: the results are incomplete\n";
     return text;

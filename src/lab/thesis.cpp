@@ -91,7 +91,7 @@ std::string caption_of(const ThesisPicture& picture) {
     if (is_rendered(picture)) {
         const std::string solved =
             picture.solve_seconds > 0 ? fmt::format("solved in {:.3g} s, ", picture.solve_seconds) : "";
-        text += fmt::format(" Integrator {}, {}{} sample{} a pixel in {:.3g} s{}.", picture.integrator, solved,
+        text += fmt::format(" Integrator {}, {}{} sample{} per pixel in {:.3g} s{}.", picture.integrator, solved,
                             picture.stats.samples, picture.stats.samples == 1 ? "" : "s", picture.stats.render_seconds,
                             picture.interrupted ? " (interrupted)" : "");
     }

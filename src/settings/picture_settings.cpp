@@ -67,7 +67,7 @@ std::vector<Setting> picture_settings() {
         row("spp", "Quality", "N", FIELD(render.samples),
             "The number of samples per pixel; four times as many halve the noise.", Range{1, kMaxSamplesPerPixel},
             On{kShown | kMeasure | kBenchNoise | kBenchCameras | kBenchPictures}, Mark::Common,
-            Panel{"Samples a pixel", PanelGroup::Light}, Changes::Picture),
+            Panel{"Samples per pixel", PanelGroup::Light}, Changes::Picture),
         row("integrator", "Quality", "NAME", integrator_field, "The light transport algorithm (docs/transport.md).",
             More{"path finds all light; direct and indirect render its direct and its indirect part. hybrid is path "
                  "with rasterised primary visibility. cast, whitted and distributed are "

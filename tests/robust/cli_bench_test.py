@@ -36,14 +36,14 @@ class Bench(CliTest):
                                  *flags, "--max-depth", depth, "--json").events("done")
             self.assertEqual(made["hash"], alike[0]["hash"])
         text = self.succeed("bench", "render", *line).stdout
-        self.assertRegex(text, r"(?s)^job +S8\ndevice +CPU\n.*samples a second .*\n"
+        self.assertRegex(text, r"(?s)^job +S8\ndevice +CPU\n.*samples per second .*\n"
                                r"no ratios to others: .* NVIDIA H200, 1920x1080, 256 spp, 262204 triangles [^\n]*\n$")
         self.assertEqual([made[key] for key in ("moved_samples_per_second", "ratio_to_isolated_rays")], [None] * 2)
         held = self.succeed("bench", "render", *line, "--isolated", "--json").events("job")[0]
         self.assertGreater(held["ratio_to_isolated_rays"], 0)
         moved = self.succeed("bench", "render", *line, "--moves", "3", "--json").events("job")[0]
         self.assertGreater(moved["moved_samples_per_second"], 0)
-        self.assertRegex(self.succeed("bench", "render", *line, "--moves", "3").stdout, r"\nsamples a second after a move +\d")
+        self.assertRegex(self.succeed("bench", "render", *line, "--moves", "3").stdout, r"\nsamples per second after a move +\d")
         self.refuse(2, "bench", "render", "--job", "S6", *line, says=["--job", "S5", "cornell-box-8"])
         self.refuse(2, "bench", "render", "--size", "", "--scene", "cornell-box", says=["--size"])
 

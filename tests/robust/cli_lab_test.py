@@ -140,7 +140,7 @@ class WhatIsMeasured(LabTest):
     def test_a_plain_run_prints_a_table_with_every_structure_and_traversal(self):
         outcome = self.succeed(*self.lab("cornell-box"))
         self.assertNotIn("WRONG", outcome.stdout + outcome.stderr)
-        structures, rates = outcome.stdout.split("million rays a second")
+        structures, rates = outcome.stdout.split("million rays per second")
         for name in self.names_of("--structures"):
             self.assertRegex(structures, rf"(?m)^{name} +\d+ +\d+ +[\d.e-]+ ")
         for name in self.names_of("--traversals"):

@@ -216,6 +216,7 @@ class WhatIsSaid(CliTest):
             text = self.succeed(*verb.split(), "--help", "all").stdout
             listed = set(re.findall(r"(?<![\w-])--?[a-z][a-z-]*", re.sub(r" {3,}.*", "", text)))
             self.assertEqual(listed - {"-h", "--help"}, set(flags.split()), verb)
+            self.assertNotRegex(" ".join(text.split()), r"[^.] Required\.", verb)
 
     def test_the_progress_bar_shows_share_samples_rate_and_time_left_only_on_a_terminal(self):
         arguments = ["render", "cornell-box", "-o", "x.png", "--size", "16x16", "--spp", "8", "--device", "cpu", *UNMETERED]

@@ -85,7 +85,7 @@ class Page(unittest.TestCase):
                    "const floor = at(640, 690), wall = at(360, 300); "
                    "return floor[0] + floor[1] + floor[2] > 150 && wall[0] > 2 * wall[1]; })()")
         self.assertIn("film hash", page.value("document.querySelector('#readings').innerText"))
-        rate = page.until("/screen of the steering viewer\\s*(\\d+) a second/.exec(document.querySelector('#readings').textContent)?.[1]")
+        rate = page.until("/screen of the steering viewer\\s*(\\d+) per second/.exec(document.querySelector('#readings').textContent)?.[1]")
         self.assertTrue(10 <= int(rate) <= 300, rate)
         rendered = self.eye.done()["hash"]
         self.assertEqual(page.value("document.body.dataset.hash"), rendered)
@@ -276,7 +276,7 @@ class Page(unittest.TestCase):
         for restir in ("gi", "off"):
             self.choose("restir", restir)
             self.moved(lambda: page.drag("left", 40, 0))
-        for layer, says in [("motion", "pixels a frame"), ("deviation", "standard deviation")]:
+        for layer, says in [("motion", "pixels per frame"), ("deviation", "standard deviation")]:
             self.choose("layer", layer)
             page.drag("left", 40, 0)
             page.until(f"document.querySelector('#readings').innerText.includes('{says}') && document.body.dataset.samples > 1")

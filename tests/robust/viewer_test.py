@@ -421,7 +421,7 @@ class Pictures(CliTest):
                 rows = client.text("state", lambda s, n=number: s["input"] >= n)["rows"]
                 rates = {row[2] for row in rows if row[:2] == ["Frames", "frame rate of automatic size"]}
             if header["width"] < 640:
-                self.assertEqual(rates, {"8 a second"})
+                self.assertEqual(rates, {"8 per second"})
             # Input comes faster than pictures: these come all the same, five a second where the machine has a moment for
             # it, and none is far behind.
             for _ in range(10):

@@ -131,7 +131,7 @@ TEST_CASE("the terminal's table has a column for each set, gaps included, and th
     CHECK(table.find(name_of(gap)) < table.find("binned while-while"));
     CHECK(line_with(table, "binned while-while").ends_with("4.00    4.00      4.00"));
     CHECK(line_with(table, name_of(gap)).ends_with("8.00       -      1.00"));
-    const std::string frames = text.substr(text.find("frames a second by depth"));
+    const std::string frames = text.substr(text.find("frames per second by depth"));
     CHECK(has(line_with(frames, "binned while-while"), "0.50  0.40"));
     CHECK(text.ends_with("interrupted: the results are incomplete\n"));
 }

@@ -106,7 +106,7 @@ TEST_CASE("the thesis's pictures are grouped by figure, with their commands") {
     const Measurement m = measurement_of(thesis);
     REQUIRE(m.pictures.size() == 2);
     CHECK(m.pictures[0].group == "Figure 3.8: a mirror");
-    CHECK(m.pictures[0].caption == "A mirror. Integrator path, 32 samples a pixel in 2 s. Made by: pertev render x");
+    CHECK(m.pictures[0].caption == "A mirror. Integrator path, 32 samples per pixel in 2 s. Made by: pertev render x");
     CHECK(m.pictures[1].caption == "Points. Made by the laboratory alone.");
     const ResultTable& table = m.table("pictures");
     CHECK(table.at(0, "file") == "figure-3.8.png");

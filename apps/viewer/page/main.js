@@ -139,7 +139,7 @@ function showReadings() {
   /** @type {[string, string, string][]} */
   const own = [];
   const rate = pictureRate();
-  if (rate) own.push(["Frames", "shown here", `${rate.toFixed(1)} a second`]);
+  if (rate) own.push(["Frames", "shown here", `${rate.toFixed(1)} per second`]);
   if (shown.latency) own.push(["Frames", "input to picture", `${shown.latency.toFixed(0)} ms`]);
   const rows = [...state.rows];
   rows.push(...own);
