@@ -39,16 +39,16 @@ Queue& PictureRenderer::film_queue() { return sharing_ != nullptr ? sharing_->fi
 void PictureRenderer::set_scene(const PreparedScene& scene, const RenderSettings& settings) {
     const UseThreads use(queue().threads());
     scene_.set(scene, settings);
-    tell_others(scene, kAllParts);
+    update_other_devices(scene, kAllParts);
 }
 
 void PictureRenderer::update_scene(const PreparedScene& scene, uint32_t parts, const RenderSettings& settings) {
     const UseThreads use(queue().threads());
     scene_.update(scene, parts, settings);
-    tell_others(scene, parts);
+    update_other_devices(scene, parts);
 }
 
-void PictureRenderer::tell_others(const PreparedScene& scene, uint32_t parts) {
+void PictureRenderer::update_other_devices(const PreparedScene& scene, uint32_t parts) {
     if (sharing_ != nullptr) sharing_->change_scene(scene, parts);
     if (sharing_frames_ != nullptr) sharing_frames_->change_scene(scene, parts);
 }

@@ -74,7 +74,7 @@ public:
 
 private:
     /// Lets other devices that render with this one take the change.
-    void tell_others(const PreparedScene& scene, uint32_t parts);
+    void update_other_devices(const PreparedScene& scene, uint32_t parts);
     MotionTrack motion_of(const Camera& camera, Vec3 centre);
 
     DeviceScene& scene_;

@@ -56,15 +56,15 @@ TEST_CASE("lost samples are handed out again, even after the end, and new ones a
     slices.end();
     CHECK(slices.is_empty());
     CHECK(!slices.take(0, kNoLimit));
-    slices.give_back({0, 10});
-    slices.give_back({15, 15}); // nothing
+    slices.requeue({0, 10});
+    slices.requeue({15, 15}); // nothing
     CHECK(!slices.is_empty());
     CHECK(slices.take(0, kNoLimit) == SampleRange{0, 10});
     CHECK(slices.is_empty());
     CHECK(slices.handed_out() == 20);
     SampleSlices others({0, 100}, 2, 10, 0);
     REQUIRE(others.take(0, kNoLimit) == SampleRange{0, 10});
-    others.give_back({0, 10});
+    others.requeue({0, 10});
     CHECK(others.take(10, kNoLimit) == SampleRange{0, 2}); // in pieces that fit the device
     CHECK(others.take(10, kNoLimit) == SampleRange{2, 4});
 }

@@ -135,12 +135,12 @@ void DeviceWorker::render(SharedRun& run, const SharedPicture& picture, uint32_t
 
 void DeviceWorker::take_slices(SharedRun& run, const SharedPicture& picture, PictureRenderer& pictures,
                                Integrator& integrator, const DeviceHooks& hooks) {
-    double rate = 0;                          // samples a second
+    double rate = 0;                          // samples per second
     const RayCounts made = integrator.rays(); // by the precomputation, which counts once for all devices
     Stopwatch since_fold;
-    const auto hand_over = [&] {
+    const auto submit = [&] {
         Film& next = other_film();
-        run.hand_over(std::exchange(held_, {.device = number_, .film = &next, .slices = {}, .rays = {}}), &next);
+        run.submit(std::exchange(held_, {.device = number_, .film = &next, .slices = {}, .rays = {}}), &next);
         since_fold.restart();
     };
     for (;;) {
@@ -148,7 +148,7 @@ void DeviceWorker::take_slices(SharedRun& run, const SharedPicture& picture, Pic
         if (!slice) {
             if (run.is_dropped() || run.is_lost(number_)) break;
             if (!held_.slices.empty()) {
-                hand_over();
+                submit();
             } else if (!run.wait_for_work(number_)) {
                 break;
             }
@@ -167,7 +167,7 @@ void DeviceWorker::take_slices(SharedRun& run, const SharedPicture& picture, Pic
         held_.rays = held_.rays + (integrator.rays() - before) + (is_first ? made : RayCounts());
         held_.done += slice->count();
         run.add_done(slice->count());
-        if (since_fold.seconds() >= hooks.fold_s) hand_over();
+        if (since_fold.seconds() >= hooks.fold_s) submit();
     }
     // A device whose film could not be read is lost with what it holds.
     if (run.is_lost(number_)) throw Error(ErrorCode::DeviceFault, "its film cannot be read");

@@ -1,6 +1,6 @@
 #pragma once
 
-// One of the devices that render a picture together: its scene, integrator and films. It has a queue of its own for its
+// A device that renders a picture with others: its scene, integrator and films. It has a queue of its own for its
 // films, so that a film is copied to the host while the next one is being rendered.
 
 #include <functional>
@@ -46,7 +46,7 @@ public:
     /// Seconds of uploading; 0 on the caller's device.
     double upload_seconds() const { return own_scene_ ? own_scene_->upload_seconds() : 0; }
     std::string name() const; // cuda:1, for people
-    /// Its number in a run.
+    /// The device's number in a run.
     std::size_t number() const { return number_; }
     void set_number(std::size_t number) { number_ = number; }
     // The caller's thread calls these for films that were handed over.
@@ -73,7 +73,7 @@ private:
     Queue& queue_;
     std::optional<SceneCopy> own_scene_;
     std::optional<Queue> film_queue_;
-    std::optional<Film> films_[2]; // one is filled while the other is added to the sum; one alone if memory is short
+    std::optional<Film> films_[2]; // one is filled while the other is added to the sum; a single one if memory is short
     std::optional<Film> landing_;  // a film of another device, before it is added; on the caller's device alone
     FilledFilm held_;              // the contents of the film that is being filled
 };

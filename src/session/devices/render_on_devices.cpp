@@ -49,7 +49,7 @@ SharedSamples RenderOnDevices::render(const SharedPicture& picture, SampleRange 
     SharedRun run(range, picture.settings, workers_.size());
     std::vector<std::thread> threads;
     try {
-        say_paths(sink);
+        open_copy_paths(sink);
         for (std::size_t i = 0; i < workers_.size(); ++i) {
             workers_[i]->set_number(i);
             threads.emplace_back([&, i] { workers_[i]->render(run, picture, range.count(), into, hooks_); });
@@ -67,8 +67,8 @@ SharedSamples RenderOnDevices::render(const SharedPicture& picture, SampleRange 
 }
 
 /// Opens the paths on which films and the scene are copied, and names those of GPUs.
-void RenderOnDevices::say_paths(Sink& sink) {
-    if (std::exchange(has_said_paths_, true)) return;
+void RenderOnDevices::open_copy_paths(Sink& sink) {
+    if (std::exchange(has_copy_paths_, true)) return;
     Queue& to = workers_.front()->queue();
     std::string paths;
     for (const auto& worker : workers_) {

@@ -5,7 +5,7 @@
 // device, to which they are copied directly where that can be. The picture has the bytes of one device's.
 //
 // A device that fails costs what it took since its film was last added (kFoldSeconds), which the others render again.
-// One that is too small for the scene is left out. Either is a warning.
+// A device that is too small for the scene is left out. In both cases there is a warning.
 
 #include <memory>
 #include <span>
@@ -36,7 +36,7 @@ public:
     double sum_seconds() const { return sum_seconds_; }
 
 private:
-    void say_paths(Sink& sink);
+    void open_copy_paths(Sink& sink);
     void drive(SharedRun& run, const SharedPicture& picture, SampleRange range, uint32_t before, Film& into,
                Sink& sink);
     void fold(SharedRun& run, const FilledFilm& film, Film& into);
@@ -49,7 +49,7 @@ private:
     std::vector<std::unique_ptr<DeviceWorker>> workers_; // without those that were lost in earlier calls
     bool into_is_empty_ = false;                         // the film to which films are added has no samples yet
     double sum_seconds_ = 0;
-    bool has_said_paths_ = false;
+    bool has_copy_paths_ = false;
     std::vector<std::vector<std::byte>> landing_; // a film's targets on the host, before they are added
 };
 

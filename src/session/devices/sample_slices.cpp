@@ -29,7 +29,7 @@ std::optional<SampleRange> SampleSlices::take(double rate, double most_s) {
     return slice;
 }
 
-void SampleSlices::give_back(SampleRange lost) {
+void SampleSlices::requeue(SampleRange lost) {
     if (lost.count() > 0) lost_.push_back(lost);
 }
 

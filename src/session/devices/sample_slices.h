@@ -26,12 +26,12 @@ public:
     SampleSlices(SampleRange range, std::size_t devices, uint32_t first_count, uint32_t fixed_count)
         : range_(range), next_(range.first), devices_(devices), first_count_(first_count), fixed_count_(fixed_count) {}
 
-    /// Returns the next slice for a device that takes `rate` samples a second (0: unknown) and should take it in
+    /// Returns the next slice for a device that takes `rate` samples per second (0: unknown) and should take it in
     /// `most_s` seconds; nothing if there is none at present. It has at least one sample.
     std::optional<SampleRange> take(double rate, double most_s);
-    /// Takes back samples that were lost; they are handed out before all others, even after end().
-    void give_back(SampleRange lost);
-    /// Ends the counter: only samples given back are handed out from now on.
+    /// Queues samples that were lost again; take() returns them before all others, even after end().
+    void requeue(SampleRange lost);
+    /// Ends the counter: take() returns only queued samples from now on.
     void end() { is_ended_ = true; }
 
     /// Returns whether take() would return nothing.

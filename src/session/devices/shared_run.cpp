@@ -64,7 +64,7 @@ void SharedRun::add_done(uint32_t samples) {
 
 bool SharedRun::is_busy(const Film* film) const { return std::ranges::find(busy_, film) != busy_.end(); }
 
-void SharedRun::hand_over(FilledFilm film, const Film* next) {
+void SharedRun::submit(FilledFilm film, const Film* next) {
     std::unique_lock lock(mutex_);
     const std::size_t device = film.device;
     busy_.push_back(film.film);
@@ -91,7 +91,7 @@ bool SharedRun::wait_for_work(std::size_t device) {
 
 void SharedRun::lose(const FilledFilm& unsaved, const Error& why) {
     const std::lock_guard lock(mutex_);
-    for (const SampleRange& slice : unsaved.slices) slices_.give_back(slice);
+    for (const SampleRange& slice : unsaved.slices) slices_.requeue(slice);
     done_ -= unsaved.done;
     if (!is_lost_[unsaved.device]) losses_.emplace_back(unsaved.device, why);
     if (!first_loss_) first_loss_ = why;

@@ -1,6 +1,6 @@
 #pragma once
 
-// One call of RenderOnDevices::render: what its devices, each with a thread, and the caller's thread tell each other.
+// A call of RenderOnDevices::render: the state that the threads of its devices share with the caller's thread.
 // A device takes slices into a film of its own and hands that over now and then; the caller adds it to the sum. Samples
 // in films that were not yet added are lost with their device, and the others render them again.
 
@@ -46,12 +46,12 @@ public:
     void start_clock();
     /// Reports the share of its precomputation that a device has done. Returns whether it goes on.
     bool goes_on_making(std::size_t device, double share);
-    /// Returns a slice for a device that takes `rate` samples a second, 0 if that is unknown; nothing if there is none
-    /// at present.
+    /// Returns a slice for a device that takes `rate` samples per second, 0 if that is unknown; nothing if there is
+    /// none at present.
     std::optional<SampleRange> take(std::size_t device, double rate);
     void add_done(uint32_t samples);
-    /// Hands over a film to be added to the sum and cleared. Waits until `next` is clear.
-    void hand_over(FilledFilm film, const Film* next);
+    /// Submits a film, which is then added to the sum and cleared. Waits until `next` is clear.
+    void submit(FilledFilm film, const Film* next);
     /// Waits until there may be a slice. Returns false at the end, or if the device is lost.
     bool wait_for_work(std::size_t device);
     /// Gives the device up, with samples that it has not handed over.
@@ -109,7 +109,7 @@ private:
     uint32_t done_ = 0, in_sum_ = 0;
     RayCounts rays_;
     double first_seconds_ = 0, last_slice_seconds_ = 0;
-    std::atomic<bool> is_dropped_ = false; // also if the run failed
+    std::atomic<bool> is_dropped_ = false; // no device goes on, because the caller ended the run or it failed
 };
 
 } // namespace pertev
