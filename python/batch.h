@@ -20,9 +20,9 @@ namespace pertev {
 struct CamerasArgument {
     std::vector<std::vector<double>> poses;      // numbers of the setting camera_pose, by camera
     std::vector<std::vector<double>> intrinsics; // numbers of this setting: one for all, one per camera, or none
-    std::vector<uint32_t> seeds;                 // one for all, one per camera, or none
+    std::vector<uint32_t> seeds;                 // none, a seed for all, or one per camera
     bool has_color = true;                       // otherwise only layers at centres are made
-    bool is_single = false;                      // there are no poses
+    bool is_single = false;                      // the batch is a single camera without poses
 
     std::size_t count() const { return is_single ? 1 : poses.size(); }
 

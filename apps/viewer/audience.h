@@ -37,7 +37,7 @@ struct SendJob {
     std::shared_ptr<const PublishedFrame> picture; // otherwise this picture: as JPEG,
     int quality = 80;
     float scale = 1;
-    bool is_piece = false; // or as a piece of a PNG
+    bool is_piece = false; // sent as a piece of a PNG, not as a JPEG
     std::size_t offset = 0, piece_bytes = 0;
 };
 

@@ -25,7 +25,7 @@ enum class MessageKind : uint8_t {
     Pick,         // query at a position of the picture
     Home,         // back to the initial camera
     Camera,       // to one of the scene's cameras
-    Set,          // one setting
+    Set,          // changes a setting
     Meter,        // exposure by the light meter
     Play,         // starts or stops time
     Time,         // sets the scene's time
@@ -44,7 +44,7 @@ enum class PickUse : uint8_t { Show, Orbit, Focus };
 
 struct ClientMessage {
     MessageKind kind = MessageKind::Hello;
-    uint32_t input = 0;                      // its number, which is returned with the first picture that shows its
+    uint32_t input = 0;                      // number of the input, which the first picture returns that shows its
                                              // effect
     float right = 0, up = 0, forward = 0;    // Move: [-1, 1]
     float seconds = 0;                       // Move: duration, [0, 0.25]

@@ -14,7 +14,7 @@ std::string welcome_text(const ViewerStart& start);
 
 /// Inputs of the panel's numbers.
 struct ViewNumbers {
-    const ShownFrame* frame = nullptr; // its image may have been moved out
+    const ShownFrame* frame = nullptr; // the shown frame, whose image may have been moved out
     double frames_per_second = 0;
     double made_share = 1; // progress of the precomputation for the next picture
     double pack_ms = 0;

@@ -52,7 +52,7 @@ public:
     bool is_at_start() const { return guide_ == Guide::Start; }
     const std::string& name() const { return name_; }
 
-    // Each of these sets the lens of the camera's new guide; of a path all but the aperture.
+    // Functions that move the camera set the lens of its new guide; of a path all but the aperture.
 
     void return_to_start(std::optional<double> time_s, Camera& lens);
     /// Returns false if there is no such camera.

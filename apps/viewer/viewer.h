@@ -31,7 +31,7 @@ struct ViewerStart {
     const Scene* scene = nullptr;  // outlives the viewer; at the time of the frame source
     bool is_animated = false;      // whether time moves it
     std::string why_still;         // for people: why time does not move a scene with animations; empty: no message
-    std::optional<double> still_s; // its fixed time then, in seconds; none: at rest
+    std::optional<double> still_s; // fixed time of a scene that does not move, in seconds; none: at rest
     ViewState view;
     StartCamera camera;
     SceneClock clock;

@@ -16,7 +16,7 @@ public:
         uint32_t client = 0;
         std::string key; // key of the page, kept over reconnects
         bool wants_wheel = false;
-        std::string request; // its recent attempt to steer while another client did; empty: none
+        std::string request; // recent attempt to steer while another client did; empty: none
         double requested_s = 0;
     };
     static constexpr double kRequestStays = 20; // seconds

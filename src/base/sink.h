@@ -39,7 +39,7 @@ struct Progress {
     double seconds = 0;                 // since the work began
     std::optional<double> seconds_left; // none: unknown
     double share_of_step = 0;           // finished share of a long step that is done in pieces
-    // These apply to renders.
+    // The members from here on apply to renders.
     uint32_t samples_done = 0, samples = 0; // in the film now, and at the end of the call
     uint64_t rays = 0;                      // rays of the call
     double made_share = 1;                  // share of the integrator's precomputation; 1 when it is complete

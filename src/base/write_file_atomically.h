@@ -18,8 +18,8 @@ namespace pertev {
 /// path and the system's reason, if that fails or if `path` is not a regular file (a device would be replaced, not
 /// written); nothing is left behind. `sink` may end it, which leaves the old content.
 void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes, Sink& sink = nobody());
-/// Replaces `path` likewise, but its old content, if there is any, stays as `previous`, whose own is lost. At any
-/// moment `path` is there, if it was. After an error it is as it was.
+/// Replaces `path` atomically. Its old content, if there is any, stays as `previous`, whose own content is lost. At
+/// any moment `path` exists if it did before the call. After an error it is unchanged.
 void write_generation(const std::filesystem::path& path, const std::filesystem::path& previous,
                       std::span<const std::byte> bytes);
 

@@ -27,7 +27,7 @@ struct PictureSums {
     Float4* diffuse;       // rgb of samples on the guide's surface, scattered by diffuse lobes; their number
     Float4* gloss;         // rgb, scattered by other lobes
     Float4* diffuse_share; // rgb of divisors of these samples; luminances of the signal
-    Float4* gloss_share;   // like diffuse_share, for the other signal
+    Float4* gloss_share;   // divisors of these samples for the gloss signal
     Vec2* squares;         // squares of these luminances
     Float4* neighbour;     // rgb of samples on another known surface, scattered; their number
     Float4* loose;         // rgb of samples whose surface no nearby guide shows; their number
@@ -36,7 +36,7 @@ struct PictureSums {
     Float4* normal;        // normal of the guide's surface; their number
     Float4* met;           // rgb of emission; number of loose samples, whose emission is excluded
     Float4* diffuse_color; // rgb of divisors of the guide's surface
-    Float4* gloss_color;   // like diffuse_color, for the other signal
+    Float4* gloss_color;   // divisors of the guide's surface for the gloss signal
     Float4* neighbour_diffuse[kNeighbourSurfaces]; // divisors of another surface; bits of a pixel whose guide shows it,
                                                    // kNoHit: none
     Float4* neighbour_gloss[kNeighbourSurfaces];   // for the other signal; their number

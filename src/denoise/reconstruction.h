@@ -91,10 +91,10 @@ public:
 
     // Layers of the last frame, if ReconstructionSettings::keep_layers was set.
 
-    /// Two channels: motion since the previous frame, in pixels to the right and down.
+    /// Motion since the previous frame, in pixels to the right and down, in two channels.
     Image motion() const;
-    /// One channel: standard deviation of the luminance of both signals together, as used by the filter; 1000 and
-    /// more means unknown.
+    /// Standard deviation of the luminance of both signals together, as the filter uses it, in one channel; 1000
+    /// and more means unknown.
     Image deviation() const;
 
 private:

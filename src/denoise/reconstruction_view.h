@@ -21,7 +21,7 @@ namespace pertev {
 struct HistoryView {
     Float4* guide;   // packed Guide
     Float4* diffuse; // mean of the signal over the frames that saw this surface point; their number
-    Float4* gloss;   // like diffuse, for the other signal
+    Float4* gloss;   // mean of the gloss signal over the same frames
     Vec2* squares;   // mean square of the luminances of both
     Float4* recent;  // means over few frames: rgb diffuse, luminance of the other
     Float4* shown;   // the reconstructed picture as shown_color; w is unused
@@ -58,7 +58,7 @@ HD inline float alpha_of(Float4 packed) {
     return (1.0f / 65535.0f) * (float_of(0x4b000000 | bits_of(packed.y) >> 16) - 8388608.0f);
 }
 
-/// Both signals, each with the variance of its mean's luminance.
+/// The two signals, each with the variance of its mean's luminance.
 struct SignalsView {
     Float4* diffuse; // rgb, variance
     Float4* gloss;

@@ -9,7 +9,7 @@ namespace pertev {
 
 struct DeviceIdentity {
     std::string uuid; // GPU-8c4d7a52-...
-    std::string bus;  // its place on PCI by the kernel's name: 0000:3b:00.0
+    std::string bus;  // place on PCI by the kernel's name: 0000:3b:00.0
 };
 
 /// Returns the identities of all CUDA devices, in the order of their indices. That starts the driver.

@@ -11,7 +11,7 @@
 namespace pertev {
 
 enum class CopyPath : uint8_t {
-    Memory, // both are the same device's
+    Memory, // within the memory of one device
     NvLink, // directly
     Pcie,   // directly
     Host,   // through the memory of the host

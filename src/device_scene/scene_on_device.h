@@ -14,12 +14,12 @@ namespace pertev {
 /// Parts of a scene that may change separately, as bits of a set of type uint32_t.
 enum ScenePart : uint32_t {
     kPartGeometry = 1,     // meshes
-    kPartInstances = 2,    // their transforms and motions, and the world's origin; whether their materials have alpha
-                           // and cull their backs
+    kPartInstances = 2,    // transforms and motions, and the world's origin; whether the materials have alpha
+                           // and cull back faces
     kPartMaterials = 4,    // everything else of materials; their emission is part of the lights too
     kPartTextures = 8,     // images
     kPartLights = 16,      // near and far lights, and their sampling, except for the environment's own tables
-    kPartTrees = 32,       // not here: they belong to a tracer (tracer/)
+    kPartTrees = 32,       // trees, which belong to a tracer (tracer/)
     kPartEnvironment = 64, // pixels and sampling tables; with another environment the lights change too
     kPartShapes = 128,     // inputs of deforming vertices, which never change; needs geometry too
     kPartPoses = 256,      // PlacedScene::poses, the state of these vertices
@@ -48,7 +48,7 @@ public:
     const MeshView* meshes_before() const { return deforming_.is_empty() ? view_.meshes : deforming_.before(); }
 
 private:
-    // One function per part (see ScenePart).
+    // Each function uploads one ScenePart.
     void update_geometry(Queue& queue, const PlacedScene& prepared);
     void update_instances(Queue& queue, const PlacedScene& prepared);
     void update_materials(Queue& queue, const Scene& scene);

@@ -60,7 +60,7 @@ double mean_of(const Image& image);
 /// Mean of two pictures with equal sample counts, which is the picture of all samples.
 Image mean_of(const Image& a, const Image& b);
 
-/// One pixel per block of `side` x `side` pixels, side >= 1; blocks at the right and lower border average fewer
+/// Means over blocks of `side` x `side` pixels, side >= 1; blocks at the right and lower border average fewer
 /// pixels. Sums are in double, row by row. Means over blocks have less
 /// noise, by the block's side.
 Image block_means(const Image& image, uint32_t side);

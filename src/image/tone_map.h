@@ -74,14 +74,14 @@ HD inline float exposure_scale(float stops) { return exp2(stops); }
 /// Tone-maps linear light times `scale` to display-encoded sRGB in [0, 1]. Any input is allowed: NaN and negative
 /// values count as 0, infinity as 2^40.
 HD inline Rgb tone_map(Rgb linear, ToneMap kind, float scale = 1.0f) {
-    constexpr float kMaxLight = 0x1p40f; // its square is still finite
+    constexpr float kMaxLight = 0x1p40f; // largest light; the square of this is finite
     const Rgb c = {clamp(linear.r * scale, 0.0f, kMaxLight), clamp(linear.g * scale, 0.0f, kMaxLight),
                    clamp(linear.b * scale, 0.0f, kMaxLight)};
     switch (kind) {
     case ToneMap::Srgb:
         return srgb_encode(c);
     case ToneMap::Agx:
-        return tone::agx(c); // its curve ends in display code values
+        return tone::agx(c); // AgX's curve ends in display code values
     case ToneMap::Aces:
         return srgb_encode(tone::aces(c));
     case ToneMap::Neutral:
@@ -90,7 +90,7 @@ HD inline Rgb tone_map(Rgb linear, ToneMap kind, float scale = 1.0f) {
     return {};
 }
 
-/// One 8-bit RGBA pixel for display. `light` is premultiplied by alpha; alpha is clamped to [0, 1] and stays linear.
+/// Writes an RGBA pixel for display. `light` is premultiplied by alpha; alpha is clamped to [0, 1] and stays linear.
 HD inline void tone_map_pixel(Rgb light, float alpha, ToneMap kind, float scale, uint8_t* rgba) {
     alpha = clamp(alpha, 0.0f, 1.0f);
     if (alpha > 0 && alpha < 1) light = (1.0f / alpha) * light;

@@ -16,7 +16,7 @@
 
 namespace pertev {
 
-/// One ray per thread over binary nodes; the record's node counts belong to this tracer.
+/// Tracer of one ray per thread over binary nodes; the record's node counts belong to this tracer.
 inline constexpr Combination kBinaryTracer = {.structure = StructureKind::Binned,
                                               .traversal = TraversalKind::WhileWhile};
 

@@ -16,7 +16,7 @@ class JobTable {
 public:
     /// `name` is jobs.json or figures.json.
     explicit JobTable(std::string name = "jobs.json") : name_(std::move(name)) {}
-    JobTable(const JobTable&) = delete; // its values point into it
+    JobTable(const JobTable&) = delete; // values point into the table
     JobTable& operator=(const JobTable&) = delete;
 
     const gltf::JsonValue& root() const { return root_; }

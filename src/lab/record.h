@@ -42,7 +42,7 @@ struct RecordScene {
 struct RecordJob {
     std::string name;
     std::optional<float> reflectance; // if all surfaces are grey, under a sky of radiance 1
-    std::optional<RecordView> view;   // its own, or that of a scene of the record; otherwise the file's
+    std::optional<RecordView> view;   // the scene's own view, or one of the record; otherwise the file's
     PixelFilter filter = PixelFilter::Tent;
     std::optional<uint32_t> roulette_depth; // if it is Roulette::Throughput; otherwise the default
     uint32_t width = 0, height = 0, samples = 0;

@@ -18,7 +18,7 @@
 
 namespace pertev {
 
-/// One column of the tables.
+/// A column of the tables.
 struct ThesisVariant {
     const char* name; // such as "PSWW" or "PSWW-R"
     const char* meaning;

@@ -17,7 +17,7 @@
 
 namespace pertev {
 
-/// One picture of a repetition, which contains all samples so far.
+/// A picture of a repetition, which contains all samples so far.
 struct TransportFigures {
     uint32_t samples = 0; // per pixel
     double seconds = 0;   // rendering time of all these samples; a solution's includes solving
@@ -53,7 +53,7 @@ struct TransportReference {
     /// The relMSE that the reference's own noise adds to every result, estimated from its two halves; absent for a
     /// file.
     std::optional<double> rel_mse;
-    std::optional<double> flip; // one half against the other
+    std::optional<double> flip; // FLIP between the reference's two halves
     std::string lacks;          // light that it misses; empty if none is known
 };
 

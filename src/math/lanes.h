@@ -32,7 +32,7 @@ struct Mask8 {
     friend Mask8 operator==(Mask8 a, Mask8 b) { return ~(a.bits ^ b.bits); }
     friend Mask8 operator!=(Mask8 a, Mask8 b) { return a.bits ^ b.bits; }
 
-    /// One bit per lane, that of lane 0 first.
+    /// Bits of the lanes, that of lane 0 first.
     friend unsigned bit_mask(Mask8 a) {
         return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(a.bits)));
     }
@@ -80,7 +80,7 @@ struct Floats8 : LaneArithmetic<Floats8> {
     friend Floats8 select(Mask8 condition, Floats8 a, Floats8 b) {
         return _mm256_blendv_ps(b.v, a.v, reinterpret_cast<__m256>(condition.bits));
     }
-    // minps returns its second operand unless the first is less, as min() does with exchanged operands; NaN likewise.
+    // minps returns its second operand unless the first is less, NaN included, as min() does with exchanged operands.
     friend Floats8 min(Floats8 a, Floats8 b) { return _mm256_min_ps(b.v, a.v); }
     friend Floats8 max(Floats8 a, Floats8 b) { return _mm256_max_ps(b.v, a.v); }
 

@@ -179,7 +179,7 @@ HD inline Vec2 sample_2d(SamplerKind kind, SampleKey key, uint32_t group, Pair p
     return {unit_interval(bits.x), unit_interval(bits.y)};
 }
 
-/// One number in (0, 1): number 0 to 3 of the group.
+/// Returns number 0 to 3 of the group, in (0, 1).
 HD inline float sample_1d(SamplerKind kind, SampleKey key, uint32_t group, uint32_t number = 0) {
     switch (kind) {
     case SamplerKind::Sobol:

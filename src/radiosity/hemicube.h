@@ -19,7 +19,7 @@ class HemicubePixels {
 public:
     explicit HemicubePixels(uint32_t resolution);
 
-    /// One face: the top is number 0.
+    /// A face of the hemicube; the top is number 0.
     struct Face {
         Vec3 right, up, forward; // unit
         uint32_t width, height;  // pixels

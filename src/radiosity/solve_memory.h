@@ -21,7 +21,7 @@ struct SolveMemory {
     uint64_t patches = 0;    // sending patches, at most
     uint64_t shown = 0;      // patches after they have been divided, at most
     std::vector<Part> parts; // parts that coexist when memory peaks
-    std::size_t bytes = 0;   // their sum
+    std::size_t bytes = 0;   // sum of the parts
     std::size_t by_rows = 0; // instead of links: `bytes` of RadiositySolver::GaussSeidel; 0: no links, or too many rows
 };
 

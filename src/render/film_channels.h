@@ -21,7 +21,7 @@ enum AovBits : uint32_t {
     kAovDepth = 4,     // distance along the camera's axis, metres
     kAovPosition = 8,  // in the file's coordinates, in metres; relative to SceneView::position_shift in a far scene
     kAovIds = 16,      // ids of sample 0, which are not sums; see FilmView::ids
-    kAovMotion = 32,   // not in the film: denoise/motion_vectors.h
+    kAovMotion = 32,   // motion vectors, which are not in the film: denoise/motion_vectors.h
     kAovDistance = 64, // along the camera ray, metres
 };
 
@@ -37,7 +37,7 @@ struct AovGroup {
     const char* name;        // name as text
     const char* layer;       // layer name in files
     const char* channels[3]; // channel names in files; null if there are fewer
-    bool is_summed;          // its channels are sums in the film
+    bool is_summed;          // the channels are sums in the film
     bool over_hits;          // mean over the samples that hit something, not over all
 };
 

@@ -20,7 +20,7 @@
 
 namespace pertev {
 
-/// One layer of the finished picture: its name, channel names and pixels.
+/// A layer of the finished picture: name, channel names and pixels.
 struct FilmLayer {
     std::string name; // layer and channels are named as in kAovTable
     std::vector<std::string> channels;

@@ -37,7 +37,7 @@ public:
     FilmView film_view() const;
     /// The film view of some rows, at least one.
     FilmView film_view(RowBand rows) const;
-    /// Its arrays, for other devices.
+    /// The frame's arrays by rows, for other devices.
     std::vector<RowArray> rows() const;
     const NoisyFrameView& view() const { return view_; }
     uint32_t width() const { return width_; }

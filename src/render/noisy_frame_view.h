@@ -23,8 +23,8 @@ struct FirstBounceView {
     // on the light that the first bounce hit, if any.
     EmitterPoint* light = nullptr;
 
-    // These are null unless the light from the point that the first bounce hit is needed too (the samples include
-    // it):
+    // The arrays from here on are null unless the light from the point that the first bounce hit is needed too (the
+    // samples include it):
     Float4* hit = nullptr;     // bits of instance (kNoHit: no hit) and primitive, u, v of the point that the first
                                // bounce hit
     Float4* way = nullptr;     // rgb throughput of the path on arrival; density of the first bounce, 1/sr

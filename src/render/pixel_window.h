@@ -46,7 +46,7 @@ struct PixelWindow {
 /// it takes registers.
 template <class Stage>
 struct InWindow {
-    Stage stage; // one call per pixel
+    Stage stage; // is called once per pixel
     PixelWindow window;
 
     HD void operator()(uint32_t slot) const { stage(window.pixel_at(FilmSlot{slot})); }

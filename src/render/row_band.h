@@ -41,7 +41,7 @@ HD inline PixelPosition tiled_in_band(uint32_t i, uint32_t width, RowBand rows) 
 /// Runs a stage for the pixels from `first` on.
 template <class Stage>
 struct FromPixel {
-    Stage stage; // one call per pixel
+    Stage stage; // is called once per pixel
     uint32_t first;
 
     HD void operator()(uint32_t i) const { stage(first + i); }

@@ -32,7 +32,7 @@ struct MeshShape {
 
     uint32_t joints_per_vertex = 0; // joints per vertex of a skin; 0: no vertex has joints
     std::vector<uint32_t> joints;   // [vertices * joints_per_vertex], indices into the skin's joints
-    std::vector<float> weights;     // same size; any sum, and a vertex without weight is not moved
+    std::vector<float> weights;     // a weight for each of `joints`; any sum, and a vertex without weight is not moved
     bool is_turned_over = false;    // the mesh's triangles have the opposite winding of the file's (shape_mesh)
 };
 

@@ -32,7 +32,7 @@ struct Node {
     uint32_t parent = kNoNode; // index into Scene::nodes; the parent may come after this node
     uint32_t skin = kNoSkin;   // index into Scene::skins, which moves its instances instead of the node
     std::variant<NodePose, DoubleTransform> pose; // parent from local; a matrix cannot be animated
-    std::vector<float> morph_weights;             // one per morph target of its mesh, at rest; empty: the mesh has
+    std::vector<float> morph_weights;             // weights at rest of the mesh's morph targets; empty: the mesh has
                                                   // none
 };
 

@@ -17,7 +17,7 @@ namespace pertev {
 /// layers at centres.
 struct CameraBatch {
     std::vector<Camera> cameras;
-    std::vector<uint32_t> seeds; // one per picture, or one for all; empty: the seed of the settings
+    std::vector<uint32_t> seeds; // seed of each picture, or of all; empty: the seed of the settings
 
     uint32_t count() const { return static_cast<uint32_t>(cameras.size()); }
     uint32_t seed_of(uint32_t picture, const RenderSettings& settings) const {

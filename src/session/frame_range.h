@@ -15,11 +15,11 @@
 namespace pertev {
 
 struct FrameRange {
-    uint32_t first = 0, last = 0;   // both are frames; first <= last
+    uint32_t first = 0, last = 0;   // the range's ends, which belong to it; first <= last
     std::optional<double> fps;      // frames per second; without it all frames have one time
-    std::optional<double> time_s;   // that time; without it the scene is at rest
+    std::optional<double> time_s;   // time of all frames without `fps`; without it the scene is at rest
     uint32_t turntable = 0;         // frames per revolution of the camera; 0: it does not revolve
-    std::vector<std::string> names; // names of cameras, one a frame; empty: all frames have the same
+    std::vector<std::string> names; // name of each frame's camera; empty: all frames have the same
     std::optional<Shutter> shutter; // around each frame's time; without it a frame shows one moment
 
     uint32_t count() const { return last - first + 1; }

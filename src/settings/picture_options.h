@@ -32,7 +32,7 @@ struct SceneOptions {
     CameraChoice camera;
     std::string environment; // a file, or "r,g,b"
     float environment_rotation_deg = 0, environment_scale = 1;
-    std::string ground = "auto";                  // or on, off
+    std::string ground = "auto";                  // auto, on or off
     std::vector<std::string> emitters, materials; // changes of the scene
     std::string author, license;                  // the metadata show them
     float efficacy = 0;                           // lm/W; 0: by the kind of file
@@ -94,10 +94,10 @@ struct PictureOptions {
     std::vector<std::string> aovs, lpe, displacement;             // lists of texts
     std::string false_color;                                      // luminance or illuminance
     std::string false_color_range;                                // A,B
-    std::optional<double> time_s;                                 // none: at rest
+    std::optional<double> time_s;                                 // none: the scene is at rest
     std::string frames, camera_path, shutter;                     // A-B; a file; [OPEN,]SECONDS
     std::string cameras;                                          // a file or folder of many cameras
-    std::shared_ptr<const std::vector<CameraOfFile>> camera_list; // its cameras, once it is read
+    std::shared_ptr<const std::vector<CameraOfFile>> camera_list; // cameras of that file, once it is read
     double fps = 0;
     uint32_t turntable = 0;
     std::string rows, samples; // A:B

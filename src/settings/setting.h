@@ -102,11 +102,11 @@ inline constexpr ValueName<SettingVerbs> kVerbNames[] = {{kRender, "render"},
 
 /// Form in which a picture's file records a setting under its name.
 enum class Recorded : uint8_t {
-    No,        // nothing
-    Always,    // its value
+    No,        // not recorded
+    Always,    // the setting's value
     AsUsed,    // the value that the picture has, whether it was given or not; nothing if that is empty
-    WhereUsed, // its value, if the integrator has it and it is not empty
-    Changed,   // its value, if it is not the default
+    WhereUsed, // the setting's value, if the integrator has it and it is not empty
+    Changed,   // the setting's value, if it is not the default
 };
 
 /// The part of a prepared render that another value of a setting changes. One that could be less costs time, and no
@@ -131,7 +131,7 @@ struct Setting {
     SettingField (*field)(PictureOptions&);
     const char* sentence;       // describes the setting
     const char* more = "";      // further sentences for longer help
-    const char* old_name = "";  // its name in earlier versions, which files may have; the flag takes it, hidden
+    const char* old_name = "";  // name in earlier versions, which files may have; the flag takes it, hidden
     double low = 0, high = 0;   // range of numbers; high 0: the maximum of the field
     bool above = false;         // whether `low` itself is excluded
     const char* unit = "";      // unit of numbers

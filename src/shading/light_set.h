@@ -44,7 +44,7 @@ struct EmissiveTriangle {
     uint32_t instance : 30 = 0;
     uint32_t is_mirrored : 1 = 0; // cross(ab, ac) points out of the back
     uint32_t is_two_sided : 1 = 0;
-    uint32_t primitive = 0, material = 0; // like `instance`, ids in the scene
+    uint32_t primitive = 0, material = 0; // ids in the scene, as `instance` is
     float pmf = 0;                        // probability that sample_light selects it
 
     /// Returns whether it emits against `wi`, a direction towards it. `normal` is cross(ab, ac).
@@ -56,7 +56,7 @@ struct EmissiveTriangle {
 /// An emissive instance: its triangles and the table that selects one of them.
 struct Emitter {
     uint32_t first_triangle = 0, triangle_count = 0;
-    uint32_t first_start = 0, first_guide = 0, guide_bits = 0; // its table in LightSetView::triangle_starts, _guides
+    uint32_t first_start = 0, first_guide = 0, guide_bits = 0; // table in LightSetView::triangle_starts, _guides
 };
 static_assert(kMaxInstances <= 1u << 30, "EmissiveTriangle::instance has 30 bits");
 
@@ -158,7 +158,7 @@ HD inline bool triangle_light_at(const LightSetView& view, uint32_t light, float
     const float distance_squared = length_squared(to_light), distance = sqrt(distance_squared);
     const Vec3 wi = to_light / distance;
     const Vec3 normal = cross(triangle.ab, triangle.ac);
-    if (!triangle.emits_against(wi, normal)) return false; // its dark back
+    if (!triangle.emits_against(wi, normal)) return false; // the triangle's dark back
     const float pdf = pmf * triangle_pdf(normal, wi, distance_squared);
     if (!(pdf > 0) || !is_finite(pdf)) return false; // edge-on, or the receiver lies on the light
     const Vec2 uv = (1.0f - b.x - b.y) * triangle.uv0 + b.x * triangle.uv1 + b.y * triangle.uv2;

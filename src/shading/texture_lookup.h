@@ -20,7 +20,7 @@ namespace pertev {
 
 /// Pixels of one image; exactly one pointer is set. Row 0 is the top row.
 struct TextureImageView {
-    uint32_t width = 0, height = 0;    // both at least 1
+    uint32_t width = 0, height = 0;    // size of the image, at least 1 x 1
     const uint8_t* rgba8 = nullptr;    // [height * width * 4], 4-byte aligned
     const float* rgba_float = nullptr; // [height * width * 4], linear, 16-byte aligned
 };
@@ -65,7 +65,7 @@ HD inline TexelPair linear_texels(float u, Wrap wrap, uint32_t size) {
             static_cast<uint32_t>(i1 > last ? (repeats ? 0 : last) : i1), x - below};
 }
 
-/// One texel as linear RGBA. `linear_from_srgb` [256] is used for the colours of sRGB-encoded 8-bit images.
+/// Returns a texel as linear RGBA. `linear_from_srgb` [256] is used for the colours of sRGB-encoded 8-bit images.
 HD inline Vec4 load_texel(const TextureImageView& image, uint32_t x, uint32_t y, bool is_srgb,
                           const float* linear_from_srgb) {
     const size_t texel = 4 * (size_t(y) * image.width + x);
@@ -84,7 +84,7 @@ HD inline Vec4 load_texel(const TextureImageView& image, uint32_t x, uint32_t y,
     return value;
 }
 
-/// One channel (0 to 3) of one texel, linear.
+/// Returns channel 0 to 3 of a texel, linear.
 HD inline float load_texel_channel(const TextureImageView& image, uint32_t x, uint32_t y, uint32_t channel,
                                    bool is_srgb, const float* linear_from_srgb) {
     const size_t texel = 4 * (size_t(y) * image.width + x) + channel;

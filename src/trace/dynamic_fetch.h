@@ -31,7 +31,7 @@
 
 namespace pertev {
 
-/// One kind of search: the visitor, made for each ray, and the result. `accept` outlives it.
+/// A kind of search: the visitor, made for each ray, and the result. `accept` outlives it.
 template <bool kAny, class Accept>
 struct RaySearch;
 

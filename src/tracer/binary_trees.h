@@ -39,7 +39,7 @@ BinaryTrees build_binary_trees(const SceneTriangles& triangles, BvhBuilder build
 enum class PartChange {
     None,
     Deformed, // with other vertex positions
-    Replaced, // other triangles
+    Replaced, // by other triangles
 };
 
 /// A refitted tree is rebuilt once its SAH cost is more than this multiple of its cost after the build.

@@ -1,6 +1,6 @@
 #pragma once
 
-// One structure over a scene's triangles, in the layout that a traversal reads. It is built on the host and then
+// A structure over a scene's triangles, in the layout that a traversal reads. It is built on the host and then
 // copied to the memory of the device that traverses it.
 
 #include <cstddef>
@@ -105,7 +105,7 @@ private:
     StructureFigures figures_;
     bool has_instances_ = false;
     std::vector<std::shared_ptr<const void>> parts_;  // the trees; the layout determines their type
-    std::vector<std::shared_ptr<const void>> memory_; // other memory that the views point to
+    std::vector<std::shared_ptr<const void>> memory_; // memory beside the trees that the views point to
     std::vector<Array> arrays_;
     std::unordered_map<const void*, std::size_t> offsets_;
     std::size_t device_bytes_ = 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-// One way to trace rays: a structure, its traversal and the distribution of rays, as a Combination names them. All
+// A way to trace rays: a structure, its traversal and the distribution of rays, as a Combination names them. All
 // exact tracers find bit-identical hits. The laboratory measures tracers; rendering uses one per ray kind
 // (tracer/scene_tracer.h).
 

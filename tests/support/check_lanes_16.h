@@ -13,7 +13,7 @@ struct LaneDifferences {
 };
 
 #if defined(PERTEV_HAS_16_LANES)
-/// Only for processors that have_sixteen_lanes.
+/// Compares lanes by AVX-512; the processor must have_sixteen_lanes.
 LaneDifferences check_lanes_of_16();
 #endif
 

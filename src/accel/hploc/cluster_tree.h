@@ -123,7 +123,7 @@ HD inline Plans plan_inner(const CollapseSettings& costs, float area, const Plan
     }
     const float as_node = least[kMaxWidth] + area * costs.node_cost;
     const bool may_be_leaf = plans.size.triangles <= static_cast<uint32_t>(costs.max_leaf);
-    // One triangle per step, as in the traversal of compressed nodes.
+    // The search tests one triangle per step, as in the traversal of compressed nodes.
     const float as_leaf = area * (costs.triangle_cost * static_cast<float>(plans.size.triangles));
     const bool leaf = may_be_leaf && as_leaf <= as_node;
     plans.plan.splits = splits[kMaxWidth] << (3 * kMaxWidth) | (leaf ? 1u : 0u);

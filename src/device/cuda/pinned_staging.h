@@ -58,7 +58,7 @@ public:
 
     /// Returns when `host` is complete.
     void copy_to_host(void* host, const void* device, std::size_t bytes) {
-        check_cuda(cudaStreamSynchronize(stream_), "copy to host"); // both pieces are free
+        check_cuda(cudaStreamSynchronize(stream_), "copy to host"); // frees both pieces
         used_ = 0;
         const std::size_t parts = (bytes + kBytes - 1) / kBytes;
         const auto size_of = [&](std::size_t part) { return std::min(kBytes, bytes - part * kBytes); };

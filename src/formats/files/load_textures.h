@@ -65,8 +65,8 @@ private:
 
     struct Source {
         std::string name;
-        std::filesystem::path path;       // or
-        std::span<const std::byte> bytes; // embedded
+        std::filesystem::path path;       // empty: embedded
+        std::span<const std::byte> bytes; // encoded image, if it is embedded
 
         uint64_t texture_bytes = 0;                           // bytes that the picture will take; 0: not known yet
         std::optional<std::variant<Rgba8Image, Image>> image; // after decoding
@@ -86,7 +86,7 @@ private:
     std::vector<Source> sources_;
     std::map<std::filesystem::path, int32_t> by_path_;
     uint32_t longest_ = 0;
-    std::size_t missing_ = 0; // only the first few are named
+    std::size_t missing_ = 0; // number of missing images, of which the first few are named
 };
 
 } // namespace pertev

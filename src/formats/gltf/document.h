@@ -26,7 +26,7 @@ public:
     /// Parses the file. Throws Error(BadInput) if it is not JSON or not glTF 2. Warns of each required or used
     /// extension that is left out.
     Document(const std::filesystem::path& path, std::vector<std::byte> bytes, Sink& sink);
-    Document(const Document&) = delete; // its values point into it
+    Document(const Document&) = delete; // values point into the document
     Document& operator=(const Document&) = delete;
 
     const std::filesystem::path& path() const { return path_; }

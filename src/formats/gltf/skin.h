@@ -11,7 +11,7 @@
 
 namespace pertev::gltf {
 
-/// One matrix per joint (Skin::joint_from_mesh); empty if the file has none.
+/// Inverse bind matrix of each joint (Skin::joint_from_mesh); empty if the file has none.
 std::vector<Transform> read_inverse_bind_matrices(const Document& document, Buffers& buffers, const JsonValue& skin,
                                                   std::size_t joint_count);
 

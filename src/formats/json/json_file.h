@@ -18,7 +18,7 @@ public:
     explicit JsonFile(const std::filesystem::path& path);
     /// Parses the text of a file, or of a part of it.
     JsonFile(std::string name, std::string_view text);
-    JsonFile(const JsonFile&) = delete; // its values point into it
+    JsonFile(const JsonFile&) = delete; // values point into the file
     JsonFile& operator=(const JsonFile&) = delete;
 
     const gltf::JsonValue& root() const { return *root_; }

@@ -16,11 +16,11 @@
 
 namespace pertev {
 
-/// One `solid` of a text, or all of a binary file.
+/// A `solid` of a text, or the whole of a binary file.
 struct StlSolid {
     std::string name;
-    std::size_t line = 0;      // its line in a text
-    std::size_t triangles = 0; // the next so many of StlData
+    std::size_t line = 0;      // line of the solid in a text
+    std::size_t triangles = 0; // number of its triangles, which follow those of the solid before in StlData
 };
 
 struct StlData {

@@ -133,7 +133,7 @@ private:
     }
 };
 
-/// One end of a connection between two vertices.
+/// An end of a connection between two vertices.
 struct ConnectedEnd {
     Rgb f;                       // scattered along the connection, per solid angle
     float onwards_density = 0;   // density of the subpath's own continuation along the connection, 1/sr

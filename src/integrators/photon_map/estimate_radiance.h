@@ -21,7 +21,7 @@
 
 namespace pertev {
 
-/// Both maps of a pass.
+/// The global and the caustic map of a pass.
 struct PhotonMapsView {
     PhotonMapView global, caustic;
     bool global_has_all = false; // contains the caustic map's photons too

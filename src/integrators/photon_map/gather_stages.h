@@ -28,7 +28,7 @@ inline constexpr uint32_t kSeesEmittersWhole = 4; // mark, combined with others:
 inline constexpr uint32_t kNumberOfSearch = 2;    // index among a vertex's choices: whether a ray looks for
                                                   // emitters
 inline constexpr float kMinSearchChance = 0.125f; // minimum probability of that ray
-inline constexpr float kSearchWithin = 4.0f;      // its probability is 1 if an emitter's area is more than 1/4 of the
+inline constexpr float kSearchWithin = 4.0f;      // the ray's probability is 1 if an emitter's area exceeds 1/4 of the
                                                   // squared distance
 
 /// The stage that starts camera subpaths 0, 1, ... of a pass.

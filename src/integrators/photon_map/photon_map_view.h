@@ -100,7 +100,7 @@ struct PhotonGridView {
     PhotonCells cells;
     const Float4* points = nullptr;   // ordered by bucket: position, bits of the photon's number
     const uint32_t* starts = nullptr; // [buckets + 1] start in `points`
-    uint32_t max_kept = 0xffffffffu;  // only the first points of a bucket are used
+    uint32_t max_kept = 0xffffffffu;  // number of points of a bucket that are used, the first ones
 };
 
 /// Calls visit(begin, end) for each bucket, a range of grid.points, that may contain a photon near `at`.
@@ -134,7 +134,7 @@ HD inline uint32_t count_near(const PhotonGridView& grid, Vec3 at) {
     return count;
 }
 
-/// One of `of` equal shares of a search.
+/// Share `number` of a search that is divided into `of` equal ones.
 struct Share {
     uint32_t number = 0, of = 1;
 };

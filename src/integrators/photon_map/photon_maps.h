@@ -48,7 +48,7 @@ private:
     Buffer<uint32_t> order_[2];   // [0] as stored, [1] sorted
     Buffer<uint32_t> starts_[2];  // starts of buckets: [0] of the global map, [1] of the caustic map
     Buffer<std::byte> scratch_;   // memory for sorting
-    Buffer<PhotonCounts> counts_; // one element
+    Buffer<PhotonCounts> counts_; // the counts of a pass, an array of one element
     // Only one of these three structures is filled; global photons come first.
     Buffer<PointKdNode> kd_nodes_;
     Buffer<PointOctreeNode> octree_nodes_;

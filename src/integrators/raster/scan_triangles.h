@@ -129,7 +129,7 @@ struct ScanRows {
     HD void operator()(uint32_t i) const {
         if (i >= *pass.row_count) return;
         const Uint2 at = pass.rows[i];
-        if (at.x == kNoHit) return; // its triangle found no room
+        if (at.x == kNoHit) return; // the triangle found no room
         TriangleScan scan = {pass, at.x, {}, {}, false};
         if (scan.begin()) scan.scan(static_cast<int32_t>(at.y));
     }

@@ -116,7 +116,7 @@ struct DicedTriangle {
     /// because the edge crosses the plane of the eye.
     HD bool is_long(const Pinhole& camera, double rate, const DicedPoint& a, const DicedPoint& b) const {
         const float u = 0.5f * (a.at.x + b.at.x) * 0x1p23f, v = 0.5f * (a.at.y + b.at.y) * 0x1p23f;
-        if (!(floor(u) == u && floor(v) == v)) return false; // its middle would have no exact weights
+        if (!(floor(u) == u && floor(v) == v)) return false; // the edge's middle would have no exact weights
         if (is_long(camera, rate, a.base, b.base)) return true;
         if (displacement == nullptr) return false;
         const PinholePoint middle = point(camera.is_perspective, 0.5f * (a.at + b.at)).position; // it may bulge

@@ -33,7 +33,7 @@ struct SampleLists {
     SamplePosition* positions; // 1/256 pixels from the picture's upper left corner
     uint64_t* nearest;         // (bits of the depth, triangle) of the nearest one, or kNothingThere
     uint64_t* ways;            // that triangle's micropolygon (Piece::way)
-    uint32_t* next;            // next on the list, or kNoSample
+    uint32_t* next;            // the sample that follows on the list, or kNoSample
     uint32_t* heads;           // [pixels] head of each cell's list
     float* far; // [pixels] depth beyond which everything is hidden for all samples on the list, updated by
                 // FindFar

@@ -16,7 +16,7 @@ namespace pertev {
 /// Heights that displace the surfaces of a material along their interpolated normals by scale (height - middle).
 struct HeightMap {
     uint32_t material;     // index in the scene
-    Image heights;         // one channel, repeating; (u, v) = (0, 0) is the upper left corner
+    Image heights;         // image of one channel, repeating; (u, v) = (0, 0) is the upper left corner
     float scale = 1;       // in the mesh's own unit, of any sign
     float middle = 0;      // the height without displacement
     std::string text = {}; // text of the request

@@ -54,7 +54,7 @@ struct Micropolygon {
         const DoubleVec3 a = world_position(piece.corners[0]);
         const DoubleVec3 ab = world_position(piece.corners[1]) - a, ac = world_position(piece.corners[2]) - a;
         const Vec3 bare = bare_normal();
-        const bool is_turned = dot(bare, s.geometric_normal) < 0; // its vertex normals define the other side as the
+        const bool is_turned = dot(bare, s.geometric_normal) < 0; // vertex normals define the other side as the
                                                                   // front
         const float sign = (triangle.placed->is_mirrored != 0) != is_turned ? -1.0f : 1.0f;
         const DoubleVec3 across = cross(ab, ac);

@@ -20,7 +20,7 @@ struct Particle {
     TriangleId start; // triangle that it leaves
     Rgb power;        // W, divided by the density of everything that was sampled
     MisSums mis;
-    bool is_from_far; // its ray is one of many parallel ones, so its first segment has no distance
+    bool is_from_far; // the ray is one of many parallel ones, so the first segment has no distance
 };
 
 /// Density of an emitter's direction with `cosine` to its normal, 1/sr.

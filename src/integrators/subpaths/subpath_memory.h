@@ -70,9 +70,9 @@ HD inline float mis_weight(float weight_sum) { return weight_sum < kInfinity ? 1
 struct alignas(16) SubpathState {
     Rgb throughput; // from the camera: of radiance; from a light: power, W
     MisSums mis;
-    uint32_t pixel, sample;   // its sample; photons and rays of records have other numbers here
+    uint32_t pixel, sample;   // pixel and sample of the path; photons and rays of records have other numbers
     uint16_t scatterings = 0; // so far
-    uint16_t is_from_far = 0; // 1 if its first segment has no distance
+    uint16_t is_from_far = 0; // 1 if the first segment has no distance
 
     HD uint32_t depth() const { return scatterings; }
 };

@@ -46,12 +46,12 @@ struct ScatteringTerm {
     uint32_t names = kNoNames; // index into LightPathExpression::filters
 };
 
-/// One letter of an expression, or a set in brackets.
+/// A letter of an expression, or a set in brackets.
 struct LightPathLetter {
     enum class Kind : uint8_t { Light, Eye, Scattering };
     Kind kind = Kind::Scattering;
     std::vector<ScatteringTerm> terms = {}; // for Scattering: any of these
-    bool is_negated = false;                // none of the terms
+    bool is_negated = false;                // matches what is none of the terms
     uint32_t names = kNoNames;              // for Light
 };
 

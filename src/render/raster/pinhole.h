@@ -3,8 +3,8 @@
 // A camera without a lens as the rasterizer sees it: triangles in its own space, in double, and the pixels whose rays
 // may hit them. Its rays are those of render/camera_rays.h, anywhere in the pixel filter.
 //
-// Its space has x to the right and y down in the picture, at distance 1 from the camera (perspective) or in metres
-// (orthographic), so that both increase with pixels, and depth along the camera's axis in metres. A point is
+// The camera's space has x to the right and y down in the picture, at distance 1 from the camera (perspective) or in
+// metres (orthographic), so that both increase with pixels, and depth along the camera's axis in metres. A point is
 // homogeneous: it appears at (x / w, y / w), with w = depth or w = 1. Thus nothing is divided before clipping (Olano,
 // Greer, "Triangle Scan Conversion Using 2D Homogeneous Coordinates", 1997).
 

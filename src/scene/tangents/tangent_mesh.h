@@ -25,14 +25,14 @@ struct TangentMesh {
     Vec2 coordinate(std::size_t corner) const { return uv[indices[corner]]; }
 };
 
-/// Next and previous corner of the same triangle.
+/// The corner of a triangle that follows `corner`, and the one before it.
 inline std::size_t next_corner(std::size_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
 inline std::size_t previous_corner(std::size_t corner) { return corner % 3 == 0 ? corner + 2 : corner - 1; }
 
 struct UvDirections {
     Vec3 along_u, along_v;     // unit; zero if the coordinates define no direction
     bool is_counter_clockwise; // orientation in the plane of (u, v), u right and v up
-    bool is_known;             // both directions have a length
+    bool is_known;             // along_u and along_v have a length
 };
 
 /// Returns whether a number is not zero; numbers below the least normal float count as zero.

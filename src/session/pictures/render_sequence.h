@@ -23,7 +23,7 @@ struct ListedCamera {
 struct FrameCamera {
     const MovingCamera& camera;
     FrameRange sequence;
-    std::span<const ListedCamera> list = {}; // one a frame, in place of `camera`; empty: none
+    std::span<const ListedCamera> list = {}; // camera of each frame, in place of `camera`; empty: none
 };
 
 /// Moves the session's scene to a time, if there is one. Throws as MovingScene::set_time and Session::update_scene.

@@ -18,11 +18,11 @@ namespace pertev {
 /// A frame that has just been written, or that an earlier run has written.
 struct FrameReport {
     uint32_t frame = 0;
-    std::optional<double> time_s; // none: at rest
+    std::optional<double> time_s; // time of the frame; none: the scene is at rest
     bool is_kept = false;
-    std::string camera;     // its name in a list; empty: there is none
+    std::string camera;     // name of the frame's camera in a list; empty: there is none
     std::string hash;       // the picture's hash; empty if it is kept and was not rendered again
-    WrittenPicture written; // its files, also those that could not be written; none if it is kept
+    WrittenPicture written; // the frame's files, also those that could not be written; none if it is kept
     uint32_t samples = 0;
     double update_s = 0, render_s = 0; // seconds to move the scene, and to render
 };

@@ -37,7 +37,7 @@ struct SceneSource : SceneOptions {
 /// A camera, and the requested values in text that states the same.
 struct CameraSource {
     Camera camera;
-    std::string name;                 // or number among the scene's cameras; empty: none requested
+    std::string name;                 // name or number among the scene's cameras; empty: none requested
     std::optional<DoubleVec3> target; // in the coordinates of the file
     std::optional<Vec3> up;
     float fov_deg = 0;             // 0: none requested

@@ -8,9 +8,9 @@
 namespace pertev {
 
 struct Gloss {
-    Rgb reflectance = {0, 0, 0}; // approximate fraction of uniform light that they scatter, [0, 1]
+    Rgb reflectance = {0, 0, 0}; // approximate fraction of uniform light that glossy lobes scatter, [0, 1]
     float alpha = 1;             // GGX width of the sharpest, [0, 1]; 1 if there is none
-    float transmittance = 1;     // their transmittance towards the viewer for light from beneath, [0, 1]
+    float transmittance = 1;     // transmittance of the gloss towards the viewer for light from beneath, [0, 1]
 };
 
 HD inline Gloss operator+(Gloss a, Gloss b) {

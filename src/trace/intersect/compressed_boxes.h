@@ -40,7 +40,7 @@ HD inline float float_of_byte(uint32_t word, int k, uint32_t base) {
 #endif
 }
 
-/// One axis of a node for a ray: maps a byte to the parameter at which the ray crosses its plane.
+/// An axis of a node for a ray: maps a byte to the parameter at which the ray crosses its plane.
 struct CompressedAxis {
     float step, near, far; // near and far are offsets
     uint32_t near_planes[2], far_planes[2];

@@ -63,8 +63,8 @@ struct CompressedTraversalState {
     static constexpr bool kRtaAtPops = kOptions.rta && kOptions.rta_at_pops;
     // Closest-hit searches use the signs of 1/direction, because with a register for an order they are 5 % slower.
     static constexpr bool kEitherWay = kOptions.any_hit && kOptions.near_first;
-    // One store, where a struct would take two. If the upper half is at least 2^24, it is a NodeGroup whose base is
-    // the lower half; otherwise it is the `left` of triangles, and the lower half is their node.
+    // A single store, where a struct would take two. If the upper half is at least 2^24, it is a NodeGroup whose base
+    // is the lower half; otherwise it is the `left` of triangles, and the lower half is their node.
     using Slot = uint64_t;
     // Each node on the path has at most one entry for its children and one for its triangles; entries above belong to
     // nodes below.

@@ -49,7 +49,7 @@ void traverse_scene_together(const HostTrees& scene, uint32_t count, const RayOf
     uint32_t packets = 0;
     for (uint32_t first = 0; first < count; first += kSize) {
         const uint32_t some = min(count - first, kSize);
-        if (packets == 0 && first >= kViewRays * kSize) { // further ones will not be coherent either
+        if (packets == 0 && first >= kViewRays * kSize) { // later rays will not be coherent either
             put_alone(first, some);
             continue;
         }

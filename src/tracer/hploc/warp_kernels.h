@@ -218,7 +218,7 @@ __device__ inline uint32_t slot_of_lane(uint32_t child, Vec3 from, uint32_t k) {
     bool wants = child != kNone;
     uint64_t own = ~uint64_t(0);
     while (__any_sync(kAllLanes, wants)) {
-        if (wants && (own == ~uint64_t(0) || !(free >> (own & 7u) & 1u))) { // its best slot is taken
+        if (wants && (own == ~uint64_t(0) || !(free >> (own & 7u) & 1u))) { // the lane's best slot is taken
             own = ~uint64_t(0);
 #pragma unroll
             for (uint32_t s = 0; s < kMaxWidth; ++s) {
