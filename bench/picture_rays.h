@@ -22,7 +22,7 @@ struct PictureRays {
 
 void trace_as_pictures(const HostTrees& trees, const PictureRays& set);
 #if defined(PERTEV_HAS_16_LANES)
-/// Its code for processors with AVX-512 (base/processor.h).
+/// Does the same by code for processors with AVX-512 (base/processor.h).
 void trace_by_avx_512(const HostTrees& trees, const PictureRays& set);
 #endif
 

@@ -22,7 +22,7 @@ FOLDERS = ["src", "apps", "tests", "tools", "bench", "cmake", "python", ".ci"]
 C_SUFFIXES = {".h", ".cpp", ".cu", ".inl", ".js"}
 SCRIPT_SUFFIXES = {".cmake", ".sh"}
 FRAGMENTS = re.compile(r"[/*!<#\s]*(?:of|what|those|the same|likewise|as|beside)\b", re.IGNORECASE)
-CLAUSES = re.compile(r"/// *(?:whether|why|how|where|when|that|these|it|they|then|and|so|to|from|by|without|with the)\b",
+CLAUSES = re.compile(r"/// *(?:its|their|whether|why|how|where|when|that|these|it|they|then|and|so|to|from|by|without|with the)\b",
                      re.IGNORECASE)
 VAGUE = re.compile(r"\b(?:(?:is|are) (?:told|asked|seen)|asked (?:for|about)|somebody|nobody(?!\()|stuff|thrice|the very|but for|"
                    r"cut short|proven|lamps?|what is (?:there|wrong|right)|for ever|whichever way|as it is,)\b", re.IGNORECASE)
@@ -138,6 +138,7 @@ CASES = [
     (".py", "a = 1  # beside it\n", 1),
     (".py", "a = '# of'\n# A list\n# of names.\n", 0),
     (".h", "/// Whether it is.\nbool a();\n", 1),
+    (".h", "/// Its size.\nint a();\n", 1),
     (".h", "// Why it is so\nbool a();\n", 0),
     (".h", "/// That ray, unbounded.\nint a();\n", 1),
     (".h", "/// With the slash.\nint a();\n", 1),
