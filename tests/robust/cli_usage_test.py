@@ -131,7 +131,7 @@ class Flags(CliTest):
         for verb in [["render"], ["view"], ["info"], ["measure"], ["lab"], ["solve", "radiosity"], ["bench", "frames"]]:
             text = self.succeed(*verb, "--help").stdout
             for name in names:
-                self.assertRegex(text, rf"[ (]{name}[,;) \n]", f"{verb}")
+                self.assertRegex(text, rf"[ (]{name}[,;.) \n]", f"{verb}")
         for name in names:
             self.assertIn(f"`{name}`", readme)
 
