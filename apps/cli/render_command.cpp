@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <filesystem>
 #include <initializer_list>
 #include <optional>
 
@@ -123,12 +122,6 @@ int render_frames(const RenderFlags& flags, const SequenceOfFrames& frames, Repo
     return cut_short ? exit_status(ErrorCode::Interrupted) : 0;
 }
 
-/// Deletes the part that this rank kept, once the whole picture is written.
-void delete_part(const std::string& checkpoint) {
-    std::error_code ignored; // it costs space alone
-    for (const char* generation : {"", ".previous"}) std::filesystem::remove(checkpoint + generation, ignored);
-}
-
 int write_one(const RenderFlags& flags, const RenderSettings& settings, const PictureRecord& record,
               std::optional<Session>& session, const Queue& queue, const Stopwatch& watch, const Ranks* ranks,
               Reporter& reporter) {
@@ -146,7 +139,7 @@ int write_one(const RenderFlags& flags, const RenderSettings& settings, const Pi
         reporter.set_work("summing the films of all ranks");
         ranks->sum(flags.render.samples, kept->film(), result);
         if (ranks->rank() > 0) {
-            if (ranks->all(true)) delete_part(flags.checkpoint);
+            if (ranks->all(true)) Generations(flags.checkpoint).remove(); // the whole picture is written
             return 0;
         }
     }
@@ -164,7 +157,7 @@ int write_one(const RenderFlags& flags, const RenderSettings& settings, const Pi
     WrittenPicture written = write_picture(flags.outputs, facts, result);
     written.files.insert(written.files.end(), films.begin(), films.end());
     report_files(written, reporter);
-    if (ranks != nullptr && ranks->all(failures_of(written).empty())) delete_part(flags.checkpoint);
+    if (ranks != nullptr && ranks->all(failures_of(written).empty())) Generations(flags.checkpoint).remove();
     report_result(result, written, queue, record.device, watch.seconds(), cut_short, reporter);
     refuse_faults(written, result.invalid_samples, flags.strict);
     return cut_short ? exit_status(ErrorCode::Interrupted) : 0;

@@ -1,5 +1,7 @@
 #include "restir/restir.h"
 
+#include <cstring>
+
 #include "base/error.h"
 #include "device/launch.h"
 #include "restir/add_direct_light.h"
@@ -48,6 +50,34 @@ std::vector<RowArray> Restir::rows_of_history() const {
         arrays.push_back({bounces_.data() + pixels_, width_ * sizeof(BounceReservoir), height_});
     }
     return arrays;
+}
+
+bool Restir::are_of_scene(std::span<const std::vector<std::byte>> arrays, std::span<const uint32_t> triangle_counts) {
+    const auto is_triangle = [&](uint32_t instance, uint32_t primitive) {
+        return instance < triangle_counts.size() && primitive < triangle_counts[instance];
+    };
+    const auto all_are = [&]<class Element>(std::size_t array, const Element&, const auto& is_sound) {
+        for (std::size_t at = 0; at + sizeof(Element) <= arrays[array].size(); at += sizeof(Element)) {
+            Element element;
+            std::memcpy(&element, arrays[array].data() + at, sizeof element);
+            if (!is_sound(element)) return false;
+        }
+        return true;
+    };
+    // An empty reservoir is not looked at, and neither is a hit where there is none.
+    const auto has_light = [&](const LightReservoir& reservoir) {
+        const EmitterPoint& point = reservoir.point;
+        return !(reservoir.weight > 0) || !point.is_there() || point.kind() != SourceKind::Triangle ||
+               is_triangle(point.instance, point.index);
+    };
+    const auto has_surface = [&](const Float4& hit) {
+        return bits_of(hit.x) == kNoHit || is_triangle(bits_of(hit.x), bits_of(hit.y));
+    };
+    const auto has_point = [&](const BounceReservoir& reservoir) {
+        return !(reservoir.weight > 0) || is_triangle(reservoir.instance, reservoir.primitive);
+    };
+    return all_are(0, LightReservoir(), has_light) && all_are(1, Float4(), has_surface) &&
+           (arrays.size() < 4 || all_are(3, BounceReservoir(), has_point));
 }
 
 uint64_t Restir::rays() const {

@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "render/noisy_frame.h"
@@ -41,6 +42,9 @@ public:
     void share(RowExchange* others) { others_ = others; }
     /// Arrays of the last frame that the next one needs; none after a cut.
     std::vector<RowArray> rows_of_history() const;
+    /// Returns whether such arrays, of the right sizes but of a file that anybody may have made, name no triangles that
+    /// the scene lacks. `triangle_counts` are those of its instances.
+    static bool are_of_scene(std::span<const std::vector<std::byte>> arrays, std::span<const uint32_t> triangle_counts);
     /// Goes on after a frame of other reservoirs, whose rows_of_history() the caller then fills in.
     void begin_after(const CameraRays& camera, const SampleNumbers& numbers) {
         camera_before_ = camera, numbers_before_ = numbers, has_history_ = true;

@@ -57,6 +57,11 @@ void DeviceScene::upload(const PreparedScene& scene, uint32_t parts, const Rende
         throw;
     }
     instance_count_ = static_cast<uint32_t>(scene.scene->instances.size());
+    if ((parts & kPartGeometry) != 0) { // otherwise instances only move
+        triangle_counts_.clear();
+        for (const Instance& instance : scene.scene->instances)
+            triangle_counts_.push_back(scene.scene->meshes[instance.mesh].triangle_count());
+    }
     placed_ = scene.placed;
     has_poses_ = !scene.poses.empty();
     deformed_ = scene_->deformed(scene);

@@ -42,6 +42,8 @@ public:
     PreviousScene before() const { return {instances_before_.data(), scene_->meshes_before()}; }
 
     bool is_there() const { return scene_.has_value(); }
+    /// Numbers of triangles of all instances.
+    const std::vector<uint32_t>& triangle_counts() const { return triangle_counts_; }
     /// Returns the view of the scene; there must be a scene and a tracer.
     const SceneView& view() const;
     SceneTracer& tracer() { return tracer_.value(); }
@@ -64,6 +66,7 @@ private:
     std::optional<SceneTracer> tracer_;
     Buffer<InstanceView> instances_before_;
     uint32_t instance_count_ = 0;
+    std::vector<uint32_t> triangle_counts_;
     bool has_poses_ = false;
     double upload_seconds_ = 0;
 };

@@ -201,6 +201,7 @@ void FrameSequence::take_restored(const FrameTask& task, const RenderSettings& o
     reconstruction_->begin_after(*sample_, light.view, features, shown);
     if (restir_ && was.has_reservoirs) restir_->begin_after(light, {path.sampler, was.number, path.seed});
     std::vector<RowArray> rows = rows_of_history();
+    const std::size_t first_reservoirs = reconstruction_->rows_of_history().size(), first_light = rows.size();
     light_before_.reset();
     if (was.has_light) {
         light_before_ = {was.camera, was.number, path};
@@ -210,9 +211,14 @@ void FrameSequence::take_restored(const FrameTask& task, const RenderSettings& o
                           std::ranges::equal(
                               rows, was.arrays, {}, [](const RowArray& to) { return to.row_bytes * to.height; },
                               &std::vector<std::byte>::size);
-    if (!is_alike) {
+    const auto are_of_scene = [&] { // else a damaged or forged file would lead beyond the scene's arrays
+        const std::span reservoirs(was.arrays.begin() + static_cast<std::ptrdiff_t>(first_reservoirs),
+                                   first_light - first_reservoirs);
+        return Restir::are_of_scene(reservoirs, pictures_.scene().triangle_counts());
+    };
+    if (!is_alike || (was.has_reservoirs && !are_of_scene())) {
         cut();
-        throw Error(ErrorCode::BadInput, "the history of frames does not fit these settings");
+        throw Error(ErrorCode::BadInput, "the history of frames does not fit these settings, or it is damaged");
     }
     for (std::size_t i = 0; i < rows.size(); ++i)
         pictures_.queue().copy_to_device(rows[i].data, was.arrays[i].data(), was.arrays[i].size());

@@ -123,6 +123,40 @@ TEST_CASE("a checkpoint keeps the previous generation unless it is damaged") {
     CHECK(samples_in(work.file + ".previous") == 2);
 }
 
+TEST_CASE("two damaged generations are refused together, each with what is wrong") {
+    Interrupted work({});
+    FilmRender film = work.film();
+    Checkpoint checkpoint = work.checkpoint();
+    for (const uint32_t end : {1u, 2u}) {
+        REQUIRE(film.render({end - 1, end}) == 1);
+        checkpoint.write(film, {});
+    }
+    const std::string previous = work.file + ".previous";
+    fs::resize_file(work.file, fs::file_size(work.file) - 1);
+    fs::resize_file(previous, 3);
+    const auto error = work.refusal();
+    REQUIRE(error);
+    CHECK(error->code() == ErrorCode::BadInput);
+    CHECK(error->location() == FileLocation{work.file});
+    for (const std::string& part : {std::string("truncated"), previous, std::string("this is not a film file")}) {
+        CAPTURE(error->what());
+        CHECK(test::says(error, part));
+    }
+    fs::remove(previous);
+    const auto alone = work.refusal();
+    REQUIRE(alone);
+    CHECK(!test::says(alone, previous));
+    // A missing one is no reason to begin anew in silence.
+    fs::rename(work.file, previous);
+    Messages messages;
+    FilmRender next = work.film();
+    work.checkpoint().restore(next, messages);
+    CHECK(next.samples().count() == 0);
+    REQUIRE(messages.all().size() == 1);
+    CHECK(messages.all().front().is_warning);
+    CHECK(messages.all().front().remark.location == FileLocation{previous});
+}
+
 TEST_CASE("a checkpoint of another version, setting, part or size is refused with the difference") {
     Interrupted work({});
     FilmRender film = work.film();

@@ -4,12 +4,14 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <fstream>
 #include <memory>
 #include <optional>
 
 #include "base/read_file.h"
 #include "image/picture_hash.h"
+#include "restir/bounce_reservoir.h"
 #include "scene/validate/validate.h"
 #include "session/devices/frames_on_devices.h"
 #include "session/film_file/history_file.h"
@@ -159,6 +161,81 @@ TEST_CASE("a history that does not fit is refused, and the next frame begins a s
     }
 }
 
+TEST_CASE("a history that names what the scene lacks is refused, on each device") {
+    KeptOptions options;
+    options.restir.light = RestirLight::Indirect;
+    KeptSequence first(1, options);
+    for (uint32_t k = 0; k <= kKeptFrame; ++k) first.render(k);
+    const FrameHistory good = first.history();
+    // Behind the arrays of the reconstruction, and before those of light: reservoirs, hits, normals, bounces.
+    constexpr std::size_t kPixels = 50 * 38, kBounces = 3;
+    const auto is_bounces = [&](const auto& array) { return array.size() == kPixels * sizeof(BounceReservoir); };
+    const auto bounces = std::ranges::find_if(good.arrays, is_bounces);
+    REQUIRE(bounces != good.arrays.end());
+    const auto lights = static_cast<std::size_t>(bounces - good.arrays.begin()) - kBounces;
+    const auto forged = [&]<class Element>(std::size_t array, const auto& change, const Element&) {
+        FrameHistory history = good;
+        std::size_t changes = 0;
+        for (std::size_t at = 0; at < history.arrays[array].size(); at += sizeof(Element)) {
+            Element element;
+            std::memcpy(&element, &history.arrays[array][at], sizeof element);
+            if (!change(element)) continue;
+            std::memcpy(&history.arrays[array][at], &element, sizeof element);
+            ++changes;
+        }
+        CHECK(changes > 0);
+        return history;
+    };
+    const auto change_light = [](uint32_t instance, uint32_t primitive) {
+        return [=](LightReservoir& of) {
+            const bool is_some = of.weight > 0 && of.point.is_there() && of.point.kind() == SourceKind::Triangle;
+            if (is_some) of.point.instance = instance, of.point.index = primitive;
+            return is_some;
+        };
+    };
+    const auto change_bounce = [](uint32_t instance, uint32_t primitive) {
+        return [=](BounceReservoir& of) {
+            if (of.weight > 0) of.instance = instance, of.primitive = primitive;
+            return of.weight > 0;
+        };
+    };
+    const auto change_hit = [](uint32_t primitive) {
+        return [=](Float4& hit) {
+            const bool is_some = bits_of(hit.x) != kNoHit;
+            if (is_some) hit.y = float_of(primitive);
+            return is_some;
+        };
+    };
+    constexpr uint32_t kFar = 1000000;
+    std::vector<FrameHistory> bad;
+    bad.push_back(forged(lights, change_light(kFar, 0), LightReservoir()));
+    bad.push_back(forged(lights, change_light(0, kFar), LightReservoir()));
+    bad.push_back(forged(lights + 1, change_hit(kFar), Float4()));
+    bad.push_back(forged(lights + kBounces, change_bounce(kFar, 0), BounceReservoir()));
+    bad.push_back(forged(lights + kBounces, change_bounce(kNoHit, 0), BounceReservoir()));
+    bad.push_back(forged(lights + kBounces, change_bounce(0, kFar), BounceReservoir()));
+    for (std::size_t i = 0; i < bad.size(); ++i) {
+        CAPTURE(i);
+        for (const std::size_t devices : {1u, 2u}) {
+            KeptSequence sequence(devices, options);
+            sequence.restore(kKeptFrame, bad[i]);
+            const auto error = test::thrown_error([&] { sequence.render(kKeptFrame + 1); });
+            REQUIRE(error.has_value());
+            CHECK(error->code() == ErrorCode::BadInput);
+        }
+    }
+    KeptSequence sequence(1, options); // a history that names nothing that is looked at is taken
+    sequence.restore(kKeptFrame, forged(
+                                     lights + kBounces,
+                                     [](BounceReservoir& of) {
+                                         if (of.weight > 0) return false;
+                                         of.instance = kFar;
+                                         return true;
+                                     },
+                                     BounceReservoir()));
+    CHECK(sequence.render(kKeptFrame + 1) == first.render(kKeptFrame + 1));
+}
+
 namespace {
 
 struct HistoryOnDisk {
@@ -219,6 +296,13 @@ TEST_CASE("a damaged checkpoint of frames is found, and the generation before is
         CHECK(disk.kept().read(disk.messages).value().frame == 3);
         disk.flip(at);
         CHECK(disk.kept().read(disk.messages).value().frame == 1);
+        const std::vector<std::byte> damaged_too = read_file(disk.file);
+        std::ofstream(disk.file + ".previous", std::ios::binary)
+            .write(reinterpret_cast<const char*>(damaged_too.data()), std::streamsize(damaged_too.size()));
+        CHECK(!disk.kept().read(disk.messages)); // and both are named
+        const std::string said = disk.messages.all().back().text;
+        CHECK(said.find(disk.file + ":") != std::string::npos);
+        CHECK(said.find(disk.file + ".previous") != std::string::npos);
         fs::remove(disk.file + ".previous");
         CHECK(!disk.kept().read(disk.messages));
     }

@@ -1,6 +1,6 @@
 #pragma once
 
-// The fuzz target of film files (tests/fuzz/film_files.cpp), for programs that make its inputs.
+// A fuzz target (tests/fuzz/film_files.cpp, history_files.cpp), for programs that make its inputs.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,9 +9,9 @@
 
 namespace pertev {
 
-/// Returns a film file from which inputs may be made; different numbers give different kinds of films.
+/// Returns a file from which inputs may be made; different numbers give different kinds.
 std::vector<std::byte> fuzz_seed(uint32_t number);
-/// Runs the target and sets whether the input was a film. Aborts at a fault.
-void fuzz_film_file(std::span<const std::byte> input, bool& is_film);
+/// Runs the target and sets whether the input was read as a file. Aborts at a fault.
+void fuzz_input(std::span<const std::byte> input, bool& is_read);
 
 } // namespace pertev

@@ -1,12 +1,15 @@
-// Makes inputs for the fuzz target of film files where there is no libFuzzer: `fuzz_film_files [SECONDS [SEED]]`. An
-// input that aborts is left in the working folder as fuzz-input.pvf.
+// Makes inputs for a fuzz target where there is no libFuzzer: `fuzz_film_files [SECONDS [SEED]]`. An input that aborts
+// is left in the working folder as fuzz-input.pvf. With the name of a file in place of seconds it runs that input
+// alone.
 
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <random>
 
+#include "base/read_file.h"
 #include "base/stopwatch.h"
 #include "tests/fuzz/fuzz_target.h"
 
@@ -65,24 +68,30 @@ void mutate(std::mt19937_64& random, Bytes& bytes) {
 } // namespace
 
 int main(int count, char** arguments) {
+    if (count == 2 && std::filesystem::exists(arguments[1])) {
+        bool is_read = false;
+        pertev::fuzz_input(pertev::read_file(arguments[1]), is_read);
+        std::printf("%s\n", is_read ? "read" : "refused");
+        return 0;
+    }
     const double seconds = count > 1 ? std::atof(arguments[1]) : 2;
     std::mt19937_64 random(count > 2 ? std::strtoull(arguments[2], nullptr, 10) : 1);
     for (const int number : {SIGABRT, SIGSEGV}) std::signal(number, &keep_input);
     constexpr uint32_t kSeeds = 12;
     const pertev::Stopwatch watch;
-    uint64_t runs = 0, films = 0;
+    uint64_t runs = 0, read = 0;
     for (; watch.seconds() < seconds; ++runs) {
         g_input = pertev::fuzz_seed(static_cast<uint32_t>(runs % kSeeds));
         if (runs >= kSeeds) mutate(random, g_input);
-        bool is_film = false;
-        pertev::fuzz_film_file(g_input, is_film);
-        films += is_film ? 1 : 0;
-        if (runs < kSeeds && !is_film) {
+        bool is_read = false;
+        pertev::fuzz_input(g_input, is_read);
+        read += is_read ? 1 : 0;
+        if (runs < kSeeds && !is_read) {
             std::fprintf(stderr, "seed %llu is refused\n", static_cast<unsigned long long>(runs));
             return 1;
         }
     }
-    std::printf("%llu inputs, of which %llu are films\n", static_cast<unsigned long long>(runs),
-                static_cast<unsigned long long>(films));
-    return films > kSeeds && films < runs ? 0 : 1; // else nothing behind the checksums was reached
+    std::printf("%llu inputs, of which %llu were read\n", static_cast<unsigned long long>(runs),
+                static_cast<unsigned long long>(read));
+    return read > kSeeds && read < runs ? 0 : 1; // else nothing behind the checksums was reached
 }

@@ -3,10 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "base/remove_leftovers.h"
-#include "base/write_file_atomically.h"
 #include "session/film_file/film_file.h"
-#include "session/film_file/generations.h"
 
 namespace pertev {
 namespace {
@@ -24,13 +21,13 @@ uint64_t most_bytes(const Film& film) {
 } // namespace
 
 Checkpoint::Checkpoint(std::string file, FilmHeader picture)
-    : file_(std::move(file)), previous_(previous_generation(file_)), picture_(std::move(picture)) {}
+    : generations_(std::move(file)), picture_(std::move(picture)) {}
 
 void Checkpoint::check_header(const std::string& file, const FilmHeader& header) const {
     const auto refuse = [&](const std::string& why) {
         Remark remark(FileLocation{file}, why + "; name another file, or delete it to begin anew");
         remark.setting = "checkpoint";
-        throw Error(ErrorCode::BadInput, std::move(remark));
+        throw RefusedGeneration(ErrorCode::BadInput, std::move(remark));
     };
     if (const auto different = film_difference(header, picture_)) {
         refuse(fmt::format("the checkpoint belongs to another picture: {} is \"{}\" there, not \"{}\"", different->name,
@@ -52,48 +49,26 @@ void Checkpoint::check_header(const std::string& file, const FilmHeader& header)
     }
 }
 
-/// Takes the samples of one generation. Returns why it is damaged, or nothing.
-std::optional<Error> Checkpoint::take(const std::string& file, FilmRender& film, Sink& sink) const {
-    std::optional<FilmFileReader> reader;
-    try {
-        reader.emplace(file);
-    } catch (const Error& error) {
-        return error;
-    }
-    const FilmHeader& header = reader->header();
+/// Takes the samples of one generation. Returns a notice of what was taken.
+std::string Checkpoint::take(const std::string& file, FilmRender& film) const {
+    FilmFileReader reader(file);
+    const FilmHeader& header = reader.header();
     check_header(file, header);
-    if (header.part.is_empty()) return std::nullopt;
-    try {
-        film.restore(
-            header.part.samples, [&](Film& into) { reader->add_to(into); }, header.rays, header.render_seconds);
-    } catch (const Error& error) {
-        if (error.code() != ErrorCode::BadInput) throw;
-        return error;
-    }
-    sink.note(fmt::format("resumes from {} of {} samples in {}", header.part.samples.count(),
-                          picture_.part.samples.count(), file));
-    return std::nullopt;
+    if (header.part.is_empty()) return "";
+    film.restore(
+        header.part.samples, [&](Film& into) { reader.add_to(into); }, header.rays, header.render_seconds);
+    return fmt::format("resumes from {} of {} samples in {}", header.part.samples.count(),
+                       picture_.part.samples.count(), file);
 }
 
 void Checkpoint::restore(FilmRender& film, Sink& sink) {
-    remove_leftovers(file_);
-    if (!has_generation(file_)) {
-        if (has_generation(previous_)) {
-            sink.warn({FileLocation{previous_}, "the render does not resume from it, because its checkpoint is "
-                                                "missing; rename it to the checkpoint to resume"});
-        }
-        return;
-    }
-    const std::optional<Error> damage = take(file_, film, sink);
-    if (!damage) return;
-    const Error refusal(damage->code(), damage->remark().and_then("; delete it to begin anew"));
-    if (!has_generation(previous_)) throw refusal;
-    is_damaged_ = true;
-    sink.warn(damage->remark().and_then(fmt::format("; the previous generation, {}, is used", previous_)));
-    if (take(previous_, film, sink)) throw refusal;
+    std::string notice; // follows a warning about the generation that was not taken
+    const auto damage = generations_.take([&](const std::string& file) { notice = take(file, film); }, sink);
+    if (damage) throw Error(damage->code(), damage->remark().and_then("; delete what is there to begin anew"));
+    if (!notice.empty()) sink.note(std::move(notice));
 }
 
-void Checkpoint::check_space(const Film& film) const { check_space_for_generations(file_, most_bytes(film)); }
+void Checkpoint::check_space(const Film& film) const { generations_.check_space(most_bytes(film)); }
 
 void Checkpoint::write(FilmRender& film, PictureFacts facts) {
     FilmHeader header = picture_;
@@ -105,12 +80,7 @@ void Checkpoint::write(FilmRender& film, PictureFacts facts) {
     else
         header.part = sums.part();
     header.render_seconds = film.stats().render_seconds;
-    const std::vector<std::byte> bytes = film_file_bytes(header, sums);
-    if (is_damaged_)
-        write_file_atomically(file_, bytes);
-    else
-        write_generation(file_, previous_, bytes);
-    is_damaged_ = false;
+    generations_.write(film_file_bytes(header, sums));
 }
 
 } // namespace pertev

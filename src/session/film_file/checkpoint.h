@@ -1,13 +1,12 @@
 #pragma once
 
-// The checkpoint of a picture: a film file (film_file.h) with the samples so far, and the generation before it beside
-// it as FILE.previous. Each is written atomically, so that whatever ends the process leaves a whole one.
+// The checkpoint of a picture: a film file (film_file.h) with the samples so far, and the generation before it.
 
-#include <optional>
 #include <string>
 
 #include "base/sink.h"
 #include "session/film_file/film_header.h"
+#include "session/film_file/generations.h"
 #include "session/film_render.h"
 
 namespace pertev {
@@ -17,9 +16,9 @@ public:
     /// Makes an object without reading anything. `picture` is the header of the finished film.
     Checkpoint(std::string file, FilmHeader picture);
 
-    /// Takes the samples of the file, if it is there, into `film`, and notes how many. Removes what killed processes
-    /// left beside it. If the file is damaged, it warns and takes those of the generation before. Throws
-    /// Error(BadInput) if the file is of another picture, naming the first difference, or if no generation is whole.
+    /// Takes the samples of the file, if it is there, into `film`, and notes how many. If the file is damaged, it warns
+    /// and takes those of the generation before. Throws Error(BadInput) if the file is of another picture, naming the
+    /// first difference, or if no generation is whole.
     void restore(FilmRender& film, Sink& sink);
     /// Throws Error(FileWrite) if two generations of such a film, and the next while it is written, may not fit on
     /// the disk.
@@ -28,15 +27,14 @@ public:
     /// of the picture. Throws Error(FileWrite); then the file is the one before.
     void write(FilmRender& film, PictureFacts facts);
 
-    const std::string& file() const { return file_; }
+    const std::string& file() const { return generations_.file(); }
 
 private:
     void check_header(const std::string& file, const FilmHeader& header) const;
-    std::optional<Error> take(const std::string& file, FilmRender& film, Sink& sink) const;
+    std::string take(const std::string& file, FilmRender& film) const;
 
-    std::string file_, previous_;
+    Generations generations_;
     FilmHeader picture_;
-    bool is_damaged_ = false; // the file, which thus is no generation to keep
 };
 
 } // namespace pertev

@@ -6,16 +6,11 @@
 #include "base/error.h"
 #include "base/json_text.h"
 #include "base/machine_memory.h"
-#include "base/remove_leftovers.h"
-#include "base/write_file_atomically.h"
 #include "formats/json/json_file.h"
-#include "session/film_file/block_file.h"
-#include "session/film_file/generations.h"
 
 namespace pertev {
 namespace {
 
-constexpr BlockFileKind kHistoryFile = {"\x89PVH\r\n\x1a\n", 1, "history"};
 constexpr std::size_t kStride = sizeof(float); // all arrays are of words
 
 std::string json_of(const DecidingSettings& settings, uint32_t frame, const FrameHistory& history) {
@@ -29,16 +24,18 @@ std::string json_of(const DecidingSettings& settings, uint32_t frame, const Fram
                        fmt::join(sizes, ","));
 }
 
-/// The refusal of a history of another sequence.
-class OtherSequence : public Error {
-public:
-    using Error::Error;
-};
+constexpr std::size_t kMostArrays = 64; // which a history has by far fewer of
+
+uint32_t read_number(const gltf::JsonValue& value) {
+    const uint64_t number = value.to_unsigned();
+    if (number > UINT32_MAX) throw value.error("the number is too large");
+    return static_cast<uint32_t>(number);
+}
 
 } // namespace
 
 HistoryFile::HistoryFile(std::string file, DecidingSettings settings)
-    : file_(std::move(file)), previous_(previous_generation(file_)), settings_(std::move(settings)) {}
+    : generations_(std::move(file)), settings_(std::move(settings)) {}
 
 KeptFrame HistoryFile::read_generation(const std::string& file) const {
     BlockFileReader reader(file, kHistoryFile);
@@ -52,16 +49,17 @@ KeptFrame HistoryFile::read_generation(const std::string& file) const {
                                "another file, or delete it to render earlier frames again",
                                different->name, different->before, different->after));
         why.setting = "checkpoint";
-        throw OtherSequence(ErrorCode::BadInput, std::move(why));
+        throw RefusedGeneration(ErrorCode::BadInput, std::move(why));
     }
     KeptFrame kept;
-    kept.frame = static_cast<uint32_t>(root.at("frame").to_unsigned());
-    kept.history.number = static_cast<uint32_t>(root.at("sample").to_unsigned());
+    kept.frame = read_number(root.at("frame"));
+    kept.history.number = read_number(root.at("sample"));
     kept.history.has_reservoirs = root.at("reservoirs").to_bool();
     kept.history.has_light = root.at("light").to_bool();
     std::vector<std::size_t> sizes;
     uint64_t fewest = 0, all = 0;
     for (const gltf::JsonValue& size : root.at("arrays").elements()) {
+        if (sizes.size() == kMostArrays) throw size.error("too many arrays");
         sizes.push_back(size.to_unsigned());
         if (sizes.back() % kStride != 0 || sizes.back() > UINT64_C(1) << 48) throw size.error("no size of an array");
         fewest += BlockFileReader::fewest_bytes(sizes.back(), kStride);
@@ -75,44 +73,25 @@ KeptFrame HistoryFile::read_generation(const std::string& file) const {
 }
 
 std::optional<KeptFrame> HistoryFile::read(Sink& sink) {
-    remove_leftovers(file_);
-    if (!has_generation(file_)) return std::nullopt;
-    try {
-        return read_generation(file_);
-    } catch (const OtherSequence&) {
-        throw;
-    } catch (const Error& error) {
-        if (error.code() != ErrorCode::BadInput) throw;
-        is_damaged_ = true;
-        if (!has_generation(previous_)) {
-            sink.warn(error.remark().and_then("; earlier frames are rendered again"));
-            return std::nullopt;
-        }
-        sink.warn(error.remark().and_then(fmt::format("; the previous generation, {}, is used", previous_)));
-    }
-    try {
-        return read_generation(previous_);
-    } catch (const OtherSequence&) {
-        throw;
-    } catch (const Error& error) {
-        if (error.code() != ErrorCode::BadInput) throw;
-        sink.warn(error.remark().and_then("; earlier frames are rendered again"));
-        return std::nullopt;
-    }
+    std::optional<KeptFrame> kept;
+    const auto damage =
+        generations_.take([&](const std::string& generation) { kept = read_generation(generation); }, sink);
+    if (damage) sink.warn(damage->remark().and_then("; earlier frames are rendered again"));
+    return kept;
+}
+
+std::vector<std::byte> history_file_bytes(const DecidingSettings& settings, uint32_t frame,
+                                          const FrameHistory& history) {
+    BlockFileBytes bytes(kHistoryFile, json_of(settings, frame, history));
+    for (const auto& array : history.arrays) bytes.add_array(array, kStride);
+    return bytes.take();
 }
 
 void HistoryFile::write(uint32_t frame, const FrameHistory& history) {
     uint64_t most = 0;
     for (const auto& array : history.arrays) most += array.size();
-    check_space_for_generations(file_, most);
-    BlockFileBytes bytes(kHistoryFile, json_of(settings_, frame, history));
-    for (const auto& array : history.arrays) bytes.add_array(array, kStride);
-    const std::vector<std::byte> file = bytes.take();
-    if (is_damaged_)
-        write_file_atomically(file_, file);
-    else
-        write_generation(file_, previous_, file);
-    is_damaged_ = false;
+    generations_.check_space(most);
+    generations_.write(history_file_bytes(settings_, frame, history));
 }
 
 } // namespace pertev
