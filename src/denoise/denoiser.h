@@ -35,6 +35,8 @@ public:
     virtual void add(const NoisyFrame& frame, const SceneView& scene, uint32_t sample) = 0;
     /// Returns what it has gathered of the window's pixels; those of others are missing.
     virtual DenoiserState state() const = 0;
+    /// Forgets the samples since begin(), and keeps the features. Only states with sums (DenoiserStateSize) can.
+    virtual void forget_samples() { PERTEV_CHECK(false); }
     /// Replaces that, of all pixels, by the state of denoisers of the same picture and kind, whose windows may have
     /// been others, as may their samples if the state has sums (DenoiserStateSize). Throws Error(BadInput) for words
     /// that are no such state.

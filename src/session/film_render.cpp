@@ -91,8 +91,9 @@ Film& FilmRender::film() {
 AddTargets FilmRender::targets_of_films() {
     if (settings_.denoise == Denoise::None) return add_targets_;
     const DenoiserStateSize size = denoiser_state_size(settings_.denoise, settings_.width, settings_.height);
-    return [add = add_targets_, size, steps = steps_](Film& film) {
+    return [add = add_targets_, size, steps = steps_, are_several = pictures_.sharing() != nullptr](Film& film) {
         if (add) add(film);
+        if (are_several) return film.hold(std::make_unique<DenoiserTarget>(size)); // each device has its own steps
         film.hold(std::make_unique<DenoiserTarget>(size, [steps] { return steps->state(); }));
     };
 }
@@ -110,8 +111,8 @@ void FilmRender::restore(SampleRange samples, const std::function<void(Film&)>& 
     Film& into = film();
     try {
         add(into);
-        if (settings_.denoise != Denoise::None) {
-            auto* const target = dynamic_cast<DenoiserTarget*>(into.targets().back().get());
+        if (settings_.denoise != Denoise::None && pictures_.sharing() == nullptr) {
+            DenoiserTarget* const target = denoiser_target(into);
             PERTEV_CHECK(target != nullptr);
             steps_->begin(camera_, settings_, nullptr);
             steps_->restore(target->take());
@@ -130,12 +131,13 @@ uint32_t FilmRender::render(SampleRange range, Sink& sink) {
     const uint32_t count = std::min(range.count(), kMaxSamplesPerPixel - std::min(first, kMaxSamplesPerPixel));
     if (count == 0) return 0;
     if (SharedRender* const sharing = pictures_.sharing()) {
-        PERTEV_CHECK(settings_.denoise == Denoise::None);
+        PERTEV_CHECK(adds_exactly(settings_.denoise));
         find_hidden_backs(); // while its device is known to work
         Film& into = film();
         SharedSamples added;
         try {
-            const SharedPicture picture = {pictures_, camera_, settings_, add_targets_, number_, first - before};
+            const AddTargets add = targets_of_films();
+            const SharedPicture picture = {pictures_, camera_, settings_, add, number_, first - before};
             added = sharing->render(picture, {first, first + count}, before, into, sink);
         } catch (...) {
             forget_samples();
@@ -221,7 +223,26 @@ void FilmRender::find_hidden_backs() {
 
 std::optional<Image> FilmRender::denoised() {
     if (settings_.denoise == Denoise::None || samples().count() == 0) return std::nullopt;
-    return steps_->apply(picture());
+    if (pictures_.sharing() == nullptr) {
+        Image image = steps_->apply(picture());
+        denoiser_ = steps_->names();
+        return image;
+    }
+    const DenoiserTarget* const gathered = denoiser_target(film());
+    PERTEV_CHECK(gathered != nullptr);
+    DenoiserState state(gathered->byte_count() / sizeof(uint32_t));
+    gathered->read(0, std::as_writable_bytes(std::span(state)));
+    const auto denoise_on = [&](Queue& queue) {
+        DenoisedPicture denoised = denoise(queue, settings_, picture(), state);
+        denoiser_ = std::move(denoised.denoiser);
+        return std::move(denoised.image);
+    };
+    try {
+        return denoise_on(pictures_.queue());
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::DeviceFault) throw;
+        return denoise_on(pictures_.film_queue()); // the film outlives a device that has failed
+    }
 }
 
 RenderStats FilmRender::stats() {

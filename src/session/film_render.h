@@ -62,7 +62,7 @@ public:
     /// Returns the picture after the post steps; none if the settings request no step, or without samples.
     std::optional<Image> denoised();
     /// The name of what denoised it (Denoiser::name).
-    std::string denoiser() const { return settings_.denoise == Denoise::None ? "" : steps_->names(); }
+    std::string denoiser() const { return settings_.denoise == Denoise::None ? "" : denoiser_; }
     std::vector<FilmLayer> layers() { return film().layers(); }
     /// Returns statistics, for which it reads two numbers from the device. The share of hidden backs is computed once
     /// per scene, camera and size.
@@ -82,7 +82,8 @@ private:
     PictureRenderer& pictures_;
     Camera camera_;
     RenderSettings settings_;
-    std::shared_ptr<PostSteps> steps_; // which the film may read
+    std::shared_ptr<PostSteps> steps_; // which the film may read; unused if devices share the picture
+    std::string denoiser_;             // that made denoised()
     AddTargets add_targets_;
     std::optional<Film> film_;
     std::optional<Film> pass_film_; // the current pass, if film_ must survive an unfinished one

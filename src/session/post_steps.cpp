@@ -38,6 +38,20 @@ DenoiserStateSize denoiser_state_size(Denoise denoise, uint32_t width, uint32_t 
 
 bool adds_exactly(Denoise denoise) { return denoise == Denoise::None || denoiser_state_size(denoise, 1, 1).sums > 0; }
 
+DenoisedPicture denoise(Queue& queue, const RenderSettings& settings, Image picture, const DenoiserState& gathered) {
+    const auto steps = make_denoisers(queue, settings);
+    steps.front()->restore(gathered);
+    DenoisedPicture denoised = {apply_steps(steps, std::move(picture)), ""};
+    denoised.denoiser = steps.front()->name();
+    return denoised;
+}
+
+DenoiserTarget* denoiser_target(const Film& film) {
+    for (const auto& target : film.targets())
+        if (auto* const found = dynamic_cast<DenoiserTarget*>(target.get())) return found;
+    return nullptr;
+}
+
 std::string PostSteps::names() const {
     std::string names;
     for (const auto& denoiser : denoisers_) names += denoiser->name();

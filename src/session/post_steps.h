@@ -20,6 +20,17 @@ DenoiserStateSize denoiser_state_size(Denoise denoise, uint32_t width, uint32_t 
 /// Returns whether what they gather of samples adds up exactly in any order, as a film does.
 bool adds_exactly(Denoise denoise);
 
+/// A picture after its steps, and Denoiser::name of what made it.
+struct DenoisedPicture {
+    Image image;
+    std::string denoiser;
+};
+/// Denoises a picture on `queue` by what denoisers have gathered of its samples (DenoiserTarget). Throws
+/// Error(BadInput) if that is not whole, and as make_denoisers.
+DenoisedPicture denoise(Queue& queue, const RenderSettings& settings, Image picture, const DenoiserState& gathered);
+/// Returns the film's target for what a denoiser gathers; null if it has none.
+DenoiserTarget* denoiser_target(const Film& film);
+
 class PostSteps {
 public:
     /// Makes an object without steps; `pictures` outlives it.
@@ -38,6 +49,8 @@ public:
     DenoiserState state() const { return denoisers_.empty() ? DenoiserState() : denoisers_.front()->state(); }
     /// Replaces what the step has gathered since begin(), as Denoiser::restore.
     void restore(const DenoiserState& state) { denoisers_.front()->restore(state); }
+    /// Forgets the samples since begin(), as Denoiser::forget_samples.
+    void forget_samples() { denoisers_.front()->forget_samples(); }
     /// The steps' Denoiser::name.
     std::string names() const;
 

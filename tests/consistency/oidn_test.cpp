@@ -5,15 +5,19 @@
 #include <dlfcn.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
+#include <thread>
 
 #include <doctest/doctest.h>
 
+#include "base/stopwatch.h"
 #include "base/write_file_atomically.h"
 #include "denoise/oidn/oidn_filter.h"
 #include "formats/read_scene.h"
 #include "image/picture_hash.h"
+#include "session/devices/render_on_devices.h"
 #include "session/film_file/merge_films.h"
 #include "session/pictures/check_options.h"
 #include "session/session_bytes.h"
@@ -186,6 +190,76 @@ TEST_CASE("parts of rows and samples have the guides of one run, in any order") 
             std::ranges::reverse(files);
         }
     }
+}
+
+TEST_CASE("several devices gather the guides of one, also if one of them fails") {
+    const StandIn stand_in;
+    if (!stand_in.is_there()) return;
+    Messages messages;
+    const Scene scene = make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RenderSettings settings = small_settings(Denoise::Oidn);
+    settings.samples = 40;
+    settings.pass_samples = 1; // one sample a slice
+    const auto bytes_of = [](const Film& film) {
+        std::vector<std::vector<std::byte>> all;
+        for (const auto& target : film.targets()) all.push_back(target->bytes());
+        return all;
+    };
+    Queue queue = requested_queue();
+    Session alone(queue, prepared, mixed_scene_camera(), settings);
+    alone.render(settings.range());
+    const RenderResult expected = alone.result();
+    for (const int fails : {0, 1}) {
+        for (const double fold_s : {0.0, kFoldSeconds}) {
+            CAPTURE(fails);
+            CAPTURE(fold_s);
+            std::atomic<int> slices[3] = {};
+            DeviceHooks hooks;
+            hooks.fold_s = fold_s;
+            hooks.after_slice = [&](std::size_t number, SampleRange) {
+                if (++slices[number] == 2 && number == 1 && fails == 1)
+                    throw Error(ErrorCode::DeviceFault, "a test ends this device");
+                const Stopwatch watch; // until each has taken two slices
+                const auto all_have = [&] { return slices[0] > 1 && slices[1] > 1 && slices[2] > 1; };
+                while (!all_have() && slices[number] > 1 && watch.seconds() < 20) std::this_thread::yield();
+            };
+            std::vector<std::shared_ptr<Queue>> queues;
+            for (int i = 0; i < 3; ++i) queues.push_back(std::make_shared<Queue>(requested_queue()));
+            RenderOnDevices together(queues, prepared, hooks);
+            Session session(*queues.front(), prepared, mixed_scene_camera(), settings);
+            session.pictures().share(together);
+            CHECK(session.render({0, 18}) == 18); // more than are always gathered, and then the others
+            CHECK(session.render({18, 40}) == 22);
+            CHECK(slices[1] > 1);
+            CHECK(bytes_of(session.film()) == bytes_of(alone.film()));
+            const RenderResult result = session.result();
+            CHECK(result.denoised.value().pixels == expected.denoised.value().pixels);
+            CHECK(result.denoiser == expected.denoiser);
+            CHECK(result.rays.total() == expected.rays.total());
+        }
+    }
+    // Samples of a checkpoint, and others of another picture.
+    std::vector<std::shared_ptr<Queue>> queues = {std::make_shared<Queue>(requested_queue()),
+                                                  std::make_shared<Queue>(requested_queue())};
+    RenderOnDevices together(queues, prepared);
+    Session session(*queues.front(), prepared, mixed_scene_camera(), settings);
+    session.pictures().share(together);
+    for (const uint32_t seed : {9u, settings.path.seed}) {
+        RenderSettings of_seed = settings;
+        of_seed.path.seed = seed;
+        session.set_settings(of_seed);
+        session.render({0, 20});
+    }
+    FilmRender goes_on(session.pictures(), mixed_scene_camera(), settings);
+    const auto take = [&](Film& into) {
+        for (std::size_t i = 0; i < into.targets().size(); ++i)
+            into.targets()[i]->set_bytes(session.film().targets()[i]->bytes());
+    };
+    goes_on.restore({0, 20}, take, {}, 0);
+    CHECK(goes_on.render({20, 40}) == 20);
+    CHECK(bytes_of(goes_on.film()) == bytes_of(alone.film()));
+    CHECK(goes_on.denoised().value().pixels == expected.denoised.value().pixels);
 }
 
 TEST_CASE("parts of samples are accepted for Open Image Denoise") {

@@ -60,6 +60,18 @@ class Denoised(CliTest):
             errors = [relative_error(layer(of, ""), layer(reference, "")) for of in (rows, noisy)]
             self.assertLess(errors[0], 0.3 * errors[1], lens)
 
+    def test_several_devices_have_the_film_of_one_and_its_denoised_picture(self):
+        line = ["render", "cornell-box", "--size", SIZE, "--spp", "24", "--denoise", "oidn", "--aov", "albedo,normal", "--exposure", "0", "--json"]
+        whole = self.succeed(*line, "-o", "one.exr", "--device", "cpu").events("done")[0]
+        shared = self.succeed(*line, "-o", "two.exr", "-o", "two.pvf", "--device", "cpu,cpu").events("done")[0]
+        alone, together = (read_exr(self.path(name))[2] for name in ("one.exr", "two.exr"))
+        self.assertEqual((shared["hash"], shared["layers_hash"]), (whole["hash"], whole["layers_hash"]))
+        self.assertRegex(self.info("two.exr")["pertev.denoiser"], "^Open Image Denoise 2")
+        apart = mean_difference(layer(alone, ""), layer(alone, "noisy"))
+        self.assertLess(mean_difference(layer(together, ""), layer(alone, "")), 1e-3 * apart)
+        self.succeed("merge", "two.pvf", "-o", "merged.exr")
+        self.assertLess(mean_difference(layer(read_exr(self.path("merged.exr"))[2], ""), layer(alone, "")), 1e-3 * apart)
+
     def test_four_samples_are_much_closer_to_the_reference_and_the_film_is_unchanged(self):
         plain, noisy = self.picture("plain.exr")
         done, rows = self.picture("x.exr", "--denoise", "oidn")

@@ -22,7 +22,11 @@ public:
 
     void begin(const NoisyFrame&, const CameraView&, const PixelWindow& window) override {
         window_ = window;
-        samples_ = features_ = 0;
+        features_ = 0;
+        forget_samples();
+    }
+    void forget_samples() override {
+        samples_ = 0;
         sums_.zero();
     }
     uint32_t feature_samples() const override { return kFeatures; }

@@ -114,12 +114,19 @@ void DeviceWorker::render(SharedRun& run, const SharedPicture& picture, uint32_t
         PictureRenderer& pictures = pictures_of(picture.pictures, picture.settings);
         if (hooks.before_samples) hooks.before_samples(number_);
         make_films(picture, into);
-        Integrator& integrator = pictures.begin(picture.camera, picture.settings, count, picture.number);
-        run.start_clock();
         DropSink drops(run);
+        const bool has_steps = picture.settings.denoise != Denoise::None;
+        if (has_steps) {
+            begin_steps(picture, pictures, drops);
+        } else {
+            steps_.reset();
+        }
+        Integrator& integrator =
+            pictures.begin(picture.camera, picture.settings, has_steps ? 1 : count, picture.number);
+        run.start_clock();
         integrator.stop_with(&drops);
         const auto goes_on = [&](double share) { return run.goes_on_making(number_, share); };
-        if (integrator.prepare(goes_on)) take_slices(run, picture, pictures, integrator, hooks);
+        if (integrator.prepare(goes_on)) take_slices(run, picture, pictures, integrator, drops, hooks);
         integrator.stop_with(nullptr);
     } catch (const Error& error) {
         if (is_its_own(error)) {
@@ -133,13 +140,38 @@ void DeviceWorker::render(SharedRun& run, const SharedPicture& picture, uint32_t
     run.leave();
 }
 
+/// Makes the steps of a denoised picture, which have its features from then on, and no samples.
+void DeviceWorker::begin_steps(const SharedPicture& picture, PictureRenderer& pictures, Sink& drops) {
+    if (!steps_ || steps_of_ != &pictures) {
+        steps_.emplace(pictures);
+        steps_of_ = &pictures, steps_number_ = 0;
+    }
+    if (steps_number_ == picture.number) return steps_->forget_samples();
+    steps_number_ = 0;
+    if (steps_->begin(picture.camera, picture.settings, queue_.is_cuda() ? nullptr : &drops))
+        steps_number_ = picture.number;
+}
+
+void DeviceWorker::add_samples(Integrator& integrator, SampleRange slice, Sink& drops) {
+    if (!steps_) {
+        integrator.render(slice.first, slice.count(), held_.film->view());
+    } else {
+        steps_->add(integrator, slice.first, slice.count(), *held_.film, queue_.is_cuda() ? nullptr : &drops);
+    }
+}
+
 void DeviceWorker::take_slices(SharedRun& run, const SharedPicture& picture, PictureRenderer& pictures,
-                               Integrator& integrator, const DeviceHooks& hooks) {
+                               Integrator& integrator, Sink& drops, const DeviceHooks& hooks) {
     double rate = 0;                          // samples per second
     const RayCounts made = integrator.rays(); // by the precomputation, which counts once for all devices
     Stopwatch since_fold;
     const auto submit = [&] {
         Film& next = other_film();
+        if (steps_) { // the samples take along what they gathered
+            const DenoiserState state = steps_->state();
+            denoiser_target(*held_.film)->set_bytes(std::as_bytes(std::span(state)));
+            steps_->forget_samples();
+        }
         run.submit(std::exchange(held_, {.device = number_, .film = &next, .slices = {}, .rays = {}}), &next);
         since_fold.restart();
     };
@@ -159,7 +191,7 @@ void DeviceWorker::take_slices(SharedRun& run, const SharedPicture& picture, Pic
         const bool is_first = slice->first == picture.first;
         const RayCounts before = integrator.rays();
         if (is_first) pictures.find_centres(picture.camera, picture.settings, *held_.film);
-        integrator.render(slice->first, slice->count(), held_.film->view());
+        add_samples(integrator, *slice, drops);
         if (hooks.after_slice) hooks.after_slice(number_, *slice);
         if (run.is_dropped()) break;
         const double now = slice->count() / std::max(watch.seconds(), 1e-9);

@@ -10,6 +10,7 @@
 
 #include "session/devices/scene_copy.h"
 #include "session/devices/shared_run.h"
+#include "session/post_steps.h"
 #include "session/shared_render.h"
 
 namespace pertev {
@@ -65,17 +66,22 @@ public:
 
 private:
     void take_slices(SharedRun& run, const SharedPicture& picture, PictureRenderer& pictures, Integrator& integrator,
-                     const DeviceHooks& hooks);
+                     Sink& drops, const DeviceHooks& hooks);
     void make_films(const SharedPicture& picture, const Film& into);
+    void begin_steps(const SharedPicture& picture, PictureRenderer& pictures, Sink& drops);
+    void add_samples(Integrator& integrator, SampleRange slice, Sink& drops);
     Film& other_film() { return films_[1] && &*films_[0] == held_.film ? *films_[1] : *films_[0]; }
 
     std::size_t number_;
     Queue& queue_;
     std::optional<SceneCopy> own_scene_;
     std::optional<Queue> film_queue_;
-    std::optional<Film> films_[2]; // one is filled while the other is added to the sum; a single one if memory is short
-    std::optional<Film> landing_;  // a film of another device, before it is added; on the caller's device alone
-    FilledFilm held_;              // the contents of the film that is being filled
+    std::optional<Film> films_[2];   // one is filled while the other is added to the sum; one alone if memory is short
+    std::optional<Film> landing_;    // a film of another device, before it is added; on the caller's device alone
+    FilledFilm held_;                // the contents of the film that is being filled
+    std::optional<PostSteps> steps_; // denoised pictures have them
+    const PictureRenderer* steps_of_ = nullptr; // they belong to its picture of this number
+    uint64_t steps_number_ = 0;
 };
 
 } // namespace pertev

@@ -182,22 +182,6 @@ Film FilmMerge::film(Queue& queue, Sink& sink) const {
     return film;
 }
 
-namespace {
-
-void denoise(const FilmHeader& header, Film& film, Queue& queue, RenderResult& result) {
-    RenderSettings settings;
-    settings.width = header.width, settings.height = header.height, settings.denoise = header.denoise;
-    const auto steps = make_denoisers(queue, settings);
-    for (const auto& target : film.targets()) {
-        if (auto* const gathered = dynamic_cast<DenoiserTarget*>(target.get()))
-            steps.front()->restore(gathered->take());
-    }
-    result.denoised = apply_steps(steps, result.picture);
-    result.denoiser = steps.front()->name();
-}
-
-} // namespace
-
 RenderResult result_of(const FilmHeader& header, Film& film, Queue& queue) {
     RenderResult result;
     result.samples = film.part().samples.count();
@@ -207,7 +191,13 @@ RenderResult result_of(const FilmHeader& header, Film& film, Queue& queue) {
     result.picture = film.picture(header.facts.transparent);
     result.layers = film.layers();
     result.ids = film.ids();
-    if (header.denoise != Denoise::None) denoise(header, film, queue, result);
+    if (header.denoise == Denoise::None) return result;
+    RenderSettings settings;
+    settings.width = header.width, settings.height = header.height, settings.denoise = header.denoise;
+    DenoiserTarget* const gathered = denoiser_target(film);
+    PERTEV_CHECK(gathered != nullptr);
+    auto [image, denoiser] = denoise(queue, settings, result.picture, gathered->take());
+    result.denoised = std::move(image), result.denoiser = std::move(denoiser);
     return result;
 }
 
