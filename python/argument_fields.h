@@ -59,7 +59,7 @@ public:
         return value ? text_argument(*value, path_of(field)) : otherwise;
     }
     void number(const char* field, float& value) {
-        if (const auto given = array(field)) value = given->of_shape({}).floats().front();
+        if (const auto given = array(field)) value = given->of_shape({}).of_finite_numbers().floats().front();
     }
     void flag(const char* field, bool& value) {
         const auto given = take(field);
@@ -70,7 +70,7 @@ public:
     void vector(const char* field, Vec3& value) {
         const auto given = array(field);
         if (!given) return;
-        const std::vector<float> v = given->of_shape({3}).floats();
+        const std::vector<float> v = given->of_shape({3}).of_finite_numbers().floats();
         value = {v[0], v[1], v[2]};
     }
     void color(const char* field, Rgb& value) {
@@ -81,13 +81,13 @@ public:
     std::optional<DoubleVec3> point(const char* field) {
         const auto given = array(field);
         if (!given) return std::nullopt;
-        const std::vector<double> v = given->of_shape({3}).doubles();
+        const std::vector<double> v = given->of_shape({3}).of_finite_numbers().doubles();
         return DoubleVec3{v[0], v[1], v[2]};
     }
     std::optional<std::vector<double>> transform(const char* field) {
         const auto given = array(field);
         if (!given) return std::nullopt;
-        std::vector<double> values = given->of_shape({4, 4}).doubles();
+        std::vector<double> values = given->of_shape({4, 4}).of_finite_numbers().doubles();
         const double last[] = {0, 0, 0, 1};
         if (!std::equal(last, last + 4, values.begin() + 12)) given->fail("expected 0, 0, 0, 1 as the last row");
         return values;

@@ -1,8 +1,10 @@
 #include "python/array_argument.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -133,13 +135,31 @@ std::vector<uint32_t> ArrayArgument::indices(std::size_t end) const {
     if (!is_whole()) fail("the array's dtype is not an integer type");
     std::vector<uint32_t> found;
     found.reserve(array_.size());
-    for (const int64_t index : values<int64_t>()) {
-        if (index < 0 || static_cast<uint64_t>(index) >= end) {
-            fail(fmt::format("index {} is out of range; there are {}", index, end));
+    const auto take = [&](auto index) {
+        if (std::cmp_less(index, 0) || std::cmp_greater_equal(index, end)) {
+            fail(fmt::format("{} is out of range; expected whole numbers from 0 to {}", index,
+                             static_cast<int64_t>(end) - 1));
         }
         found.push_back(static_cast<uint32_t>(index));
+    };
+    if (static_cast<Code>(array_.dtype().code) == Code::UInt) {
+        for (const uint64_t index : values<uint64_t>()) take(index);
+    } else {
+        for (const int64_t index : values<int64_t>()) take(index);
     }
     return found;
+}
+
+const ArrayArgument& ArrayArgument::of_finite_numbers() const {
+    const std::vector<double> all = doubles();
+    const auto bad = std::ranges::find_if(all, [](double number) { return !std::isfinite(number); });
+    if (bad == all.end()) return *this;
+    std::string place; // such as "1, 0, 3"
+    auto rest = static_cast<std::size_t>(bad - all.begin());
+    for (std::size_t axis = axes(); axis-- > 0; rest /= length(axis))
+        place = fmt::format("{}{}{}", rest % length(axis), place.empty() ? "" : ", ", place);
+    fail(axes() == 0 ? fmt::format("expected a finite number, not {}", *bad)
+                     : fmt::format("expected finite numbers; [{}] is {}", place, *bad));
 }
 
 } // namespace pertev

@@ -23,6 +23,8 @@ public:
     /// Checks the shape, in which kAny stands for any length.
     const ArrayArgument& of_shape(std::initializer_list<std::size_t> shape) const;
     bool has_shape(std::initializer_list<std::size_t> shape) const;
+    /// Checks that no number is infinite or NaN.
+    const ArrayArgument& of_finite_numbers() const;
     std::size_t length(std::size_t axis) const { return array_.shape(axis); }
     std::size_t axes() const { return array_.ndim(); }
     bool is_uint8() const;

@@ -1,18 +1,31 @@
 #include "python/batch.h"
 
 #include <algorithm>
+#include <cstring>
+#include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/error.h"
 #include "base/stopwatch.h"
+#include "image/picture_hash.h"
 #include "session/batch_render.h"
 #include "session/devices/batch_on_devices.h"
 #include "session/opening/calibrated_camera.h"
 #include "session/opening/choose_camera.h"
+#include "session/pictures/frame_settings.h"
 
 namespace pertev {
 namespace {
+
+/// Returns what places camera `k`.
+CameraChoice choice_of(const CamerasArgument& cameras, const PictureOptions& options, std::size_t k) {
+    CameraChoice choice = options.scene.camera;
+    choice.pose = cameras.poses[k];
+    if (!cameras.intrinsics.empty()) choice.intrinsics = cameras.intrinsics[cameras.intrinsics.size() > 1 ? k : 0];
+    return choice;
+}
 
 /// Returns the cameras of the batch, all of which have the options' lens. A single picture has the camera `own`.
 CameraBatch batch_of(const CamerasArgument& cameras, const PictureOptions& options, const RenderSettings& settings,
@@ -21,12 +34,14 @@ CameraBatch batch_of(const CamerasArgument& cameras, const PictureOptions& optio
     if (cameras.is_single) batch.cameras = {own};
     const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
     for (std::size_t k = 0; k < cameras.poses.size(); ++k) {
-        CameraChoice choice = options.scene.camera;
-        choice.pose = cameras.poses[k];
-        if (!cameras.intrinsics.empty()) choice.intrinsics = cameras.intrinsics[cameras.intrinsics.size() > 1 ? k : 0];
-        fit_intrinsics({settings.width, settings.height}, choice);
+        CameraChoice choice = choice_of(cameras, options, k);
         PartMessages unsaid(sink); // the first camera's messages were reported
-        batch.cameras.push_back(choose_camera(choice, scene, aspect, unsaid));
+        try {
+            fit_intrinsics({settings.width, settings.height}, choice);
+            batch.cameras.push_back(choose_camera(choice, scene, aspect, unsaid));
+        } catch (const Error& error) {
+            throw error_of_camera(error, k);
+        }
         sink.check_at(k);
     }
     return batch;
@@ -52,7 +67,18 @@ void copy_part(Queue& queue, void* to, const void* from, uint64_t first, uint64_
     queue.copy_on_device(static_cast<std::byte*>(to) + first * bytes_each, from, count * bytes_each);
 }
 
+/// Returns the metadata without those of an entry.
+void leave_out(std::string_view name, ExrMetadata& metadata) {
+    std::erase_if(metadata, [&](const auto& entry) { return entry.first == name; });
+}
+
 } // namespace
+
+Error error_of_camera(const Error& error, std::size_t number) {
+    const bool is_pose = error.setting() == "camera_pose", is_lens = error.setting() == "intrinsics";
+    if (!is_pose && !is_lens) return error;
+    return {error.code(), is_pose ? "cameras" : "K", "", fmt::format("camera {}: {}", number, error.reason())};
+}
 
 RenderSettings CamerasArgument::settings_of(RenderSettings settings) const {
     if (!has_color) settings.samples = 0;
@@ -77,7 +103,7 @@ bool PythonBatch::fits(const RenderSettings& settings, const CamerasArgument& ca
 }
 
 void PythonBatch::render(OpenedScene& opened, Session& session, const CamerasArgument& cameras,
-                         const PictureOptions& options, Sink& sink) {
+                         std::shared_ptr<const PictureRecord> record, const PictureOptions& options, Sink& sink) {
     const RenderSetup& setup = *opened.setup();
     const RenderSettings settings = cameras.settings_of(session.settings());
     Queue& queue = *setup.queue;
@@ -106,11 +132,12 @@ void PythonBatch::render(OpenedScene& opened, Session& session, const CamerasArg
         is_single_ = cameras.is_single;
     }
     arrays_.fit(queue, settings, count);
+    record_ = std::move(record), options_ = options, made_by_ = cameras, batch_ = batch;
     const Stopwatch watch;
     if (RenderOnDevices* const together = opened.together()) {
         const SharedBatch made = render_batch(*together, session.pictures(), batch, settings, at_once, arrays_, sink);
         sink.check();
-        invalid_samples_ = made.invalid_samples;
+        invalid_samples_ = made.invalid_samples, rays_ = made.rays;
         seconds_ = watch.seconds();
         return;
     }
@@ -119,7 +146,9 @@ void PythonBatch::render(OpenedScene& opened, Session& session, const CamerasArg
         render.next(arrays_, sink);
     } else {
         const uint64_t pixels = uint64_t(width_) * height_;
+        arrays_.noisy_hashes.assign(settings.denoise != Denoise::None ? count : 0, {});
         for (BatchArrays part; render.next(part, sink);) {
+            std::ranges::copy(part.noisy_hashes, arrays_.noisy_hashes.begin() + part.first);
             const uint64_t first = part.first * pixels, pixel_count = part.pictures * pixels;
             if (color_channels_ > 0) {
                 copy_part(queue, arrays_.color.data(), part.color.data(), first, pixel_count,
@@ -137,7 +166,7 @@ void PythonBatch::render(OpenedScene& opened, Session& session, const CamerasArg
     queue.wait();
     sink.check();
     arrays_.first = 0, arrays_.pictures = count;
-    invalid_samples_ = render.invalid_samples();
+    invalid_samples_ = render.invalid_samples(), rays_ = render.rays();
     seconds_ = watch.seconds();
 }
 
@@ -156,11 +185,59 @@ std::vector<PythonBatch::Array> PythonBatch::arrays() const {
     return all;
 }
 
-std::vector<std::byte> PythonBatch::download(const Array& array) const {
-    std::vector<std::byte> bytes(sizeof(float) * array.channels * arrays_.pictures * height_ * width_);
-    queue_->copy_to_host(bytes.data(), array.values, bytes.size());
+std::vector<std::byte> PythonBatch::download(const Array& array) const { return download(array, 0, arrays_.pictures); }
+
+/// Returns the bytes of `count` pictures from number `first` on.
+std::vector<std::byte> PythonBatch::download(const Array& array, std::size_t first, std::size_t count) const {
+    const std::size_t each = sizeof(float) * array.channels * height_ * width_;
+    std::vector<std::byte> bytes(each * count);
+    queue_->copy_to_host(bytes.data(), static_cast<const std::byte*>(array.values) + first * each, bytes.size());
     queue_->wait();
     return bytes;
+}
+
+std::optional<std::string> PythonBatch::hash(std::size_t picture) const {
+    if (color_channels_ == 0) return std::nullopt;
+    if (!arrays_.noisy_hashes.empty()) return arrays_.noisy_hashes[picture].hex();
+    const std::vector<std::byte> bytes = download(arrays().front(), picture, 1);
+    return picture_hash(width_, height_, {reinterpret_cast<const float*>(bytes.data()), bytes.size() / sizeof(float)})
+        .hex();
+}
+
+ExrMetadata PythonBatch::metadata(std::size_t picture) const {
+    PictureRecord record = *record_;
+    PictureOptions options = options_;
+    record.settings = made_by_.settings_of(record.settings);
+    record.settings.path.seed = batch_.seed_of(static_cast<uint32_t>(picture), record.settings);
+    options.render.path.seed = record.settings.path.seed;
+    if (!batch_.seeds.empty()) {
+        options.given["seed"] = SettingOrigin::Caller;
+        const std::vector<std::string> words = words_of(record.scene.by_caller);
+        std::set<std::string> names(words.begin(), words.end());
+        names.insert("seed");
+        record.scene.by_caller = fmt::format("{}", fmt::join(names, " "));
+    }
+    if (!made_by_.is_single) {
+        const CameraChoice choice = choice_of(made_by_, options, picture);
+        options.scene.camera.pose = choice.pose, options.scene.camera.intrinsics = choice.intrinsics;
+        record.camera = source_of(choice, batch_.cameras[picture], record.camera.origin);
+    }
+    record.scene.settings = settings_of_frame(options, record, 0);
+    std::vector<PixelIds> ids(arrays_.ids.size() > 0 ? std::size_t(width_) * height_ : 0);
+    if (!ids.empty()) {
+        const std::vector<std::byte> bytes = download(arrays().back(), picture, 1);
+        std::memcpy(ids.data(), bytes.data(), bytes.size());
+    }
+    RenderStats stats;
+    stats.samples = record.settings.samples, stats.invalid_samples = invalid_samples_;
+    stats.render_seconds = seconds_, stats.rays = rays_;
+    const std::optional<std::string> known = hash(picture);
+    ExrMetadata metadata = picture_metadata(facts_of(record, ids), stats, known.value_or(""));
+    if (!known) leave_out("pertev.hash", metadata);
+    if (made_by_.is_single) return metadata;
+    for (const char* of_all : {"pertev.rays", "pertev.invalid_samples", "pertev.render_seconds"})
+        leave_out(of_all, metadata);
+    return metadata;
 }
 
 } // namespace pertev

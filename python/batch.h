@@ -32,13 +32,20 @@ struct CamerasArgument {
 
 class PythonBatch {
 public:
-    /// Renders with the settings and the device of `session`, which is that of `opened`. The arrays are complete on
-    /// return. Those of an earlier call are filled again. Throws Error(BadInput) if they do not fit, and
-    /// Error(OutOfMemory, Interrupted, ...).
-    void render(OpenedScene& opened, Session& session, const CamerasArgument& cameras, const PictureOptions& options,
-                Sink& sink);
+    /// Renders with the settings and the device of `session`, which is that of `opened`. `record` and `options` are
+    /// those of the call. The arrays are complete on return. Those of an earlier call are filled again. Throws
+    /// Error(BadInput) if they do not fit, and Error(OutOfMemory, Interrupted, ...).
+    void render(OpenedScene& opened, Session& session, const CamerasArgument& cameras,
+                std::shared_ptr<const PictureRecord> record, const PictureOptions& options, Sink& sink);
 
+    bool is_single() const { return is_single_; }
     bool is_empty() const { return queue_ == nullptr; }
+    /// Returns the hash of a picture, as its array holds it now, or of its samples if it is denoised; nothing if there
+    /// is no colour.
+    std::optional<std::string> hash(std::size_t picture) const;
+    /// Returns the metadata of a picture, as an EXR has them.
+    ExrMetadata metadata(std::size_t picture) const;
+
     uint64_t invalid_samples() const { return invalid_samples_; }
     double seconds() const { return seconds_; }
     std::size_t count() const { return arrays_.pictures; }
@@ -57,6 +64,7 @@ public:
     std::vector<std::byte> download(const Array& array) const;
 
 private:
+    std::vector<std::byte> download(const Array& array, std::size_t first, std::size_t count) const;
     bool fits(const RenderSettings& settings, const CamerasArgument& cameras, const Queue& queue) const;
 
     std::shared_ptr<Queue> queue_; // outlives the buffers
@@ -64,8 +72,17 @@ private:
     uint32_t width_ = 0, height_ = 0, color_channels_ = 0;
     bool is_single_ = false;
     uint64_t invalid_samples_ = 0;
+    RayCounts rays_;
     double seconds_ = 0;
+    // These made the pictures.
+    std::shared_ptr<const PictureRecord> record_;
+    PictureOptions options_;
+    CamerasArgument made_by_;
+    CameraBatch batch_;
 };
+
+/// Returns the error with Python's names of what places a camera, and the camera's number.
+Error error_of_camera(const Error& error, std::size_t number);
 
 /// Returns how many pictures are rendered at once.
 uint32_t size_of_chunk(OpenedScene& opened, const RenderSettings& settings, const CamerasArgument& cameras,

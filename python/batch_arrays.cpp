@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "python/batch.h"
+#include "python/result.h"
 
 namespace nb = nanobind;
 
@@ -56,6 +57,27 @@ nb::object array_named(nb::handle self, const std::string& name) {
         if (array.name == name) return array_of(array, self);
     }
     throw nb::attribute_error(fmt::format("there is no array '{}'; request it by layers=['{}']", name, name).c_str());
+}
+
+/// Returns what `of` gives for the single picture, or a list of it for all pictures.
+template <class Of>
+nb::object of_pictures(const PythonBatch& batch, const Of& of) {
+    if (batch.is_single()) return of(0);
+    nb::list all;
+    for (std::size_t k = 0; k < batch.count(); ++k) all.append(of(k));
+    return all;
+}
+
+nb::object hashes_of(const PythonBatch& batch) {
+    return of_pictures(batch, [&](std::size_t k) -> nb::object {
+        const std::optional<std::string> hash = batch.hash(k);
+        if (!hash) throw nb::attribute_error("a hash is that of `color`, which was not requested");
+        return nb::str(hash->c_str());
+    });
+}
+
+nb::object infos_of(const PythonBatch& batch) {
+    return of_pictures(batch, [&](std::size_t k) -> nb::object { return info_of_metadata(batch.metadata(k)); });
 }
 
 nb::dict arrays_of(nb::handle self) {
@@ -132,6 +154,14 @@ of them does. The first axis counts the cameras (a single picture has no such ax
     }
     batch.def(nb::init<>())
         .def_prop_ro("arrays", &arrays_of, "All arrays by their names")
+        .def_prop_ro(
+            "info", &infos_of,
+            "The metadata that an EXR of each picture has, without their prefix: a list of dictionaries, or one "
+            "of a single picture")
+        .def_prop_ro(
+            "hash", &hashes_of,
+            "The hash of each picture as `color` holds it now, or as it was before it was denoised: a list, or "
+            "a text of a single picture")
         .def_prop_ro("seconds", &PythonBatch::seconds, "Seconds of rendering alone")
         .def("__len__", &PythonBatch::count)
         .def("__repr__", [](const PythonBatch& self) {

@@ -67,10 +67,8 @@ void write_result(const std::string& path, const PythonResult& result, const std
     const std::vector<std::string> paths = {path};
     PictureFacts facts = result.facts();
     if (writes_tone_mapped(paths)) {
-        PictureRecord shown;
-        shown.display = Display{curve_of(curve), exposure, {}};
-        facts.display = shown.display;
-        facts.shown = facts_of(shown, {}).shown;
+        facts.display = Display{curve_of(curve), exposure, {}};
+        facts.shown = display_metadata(*facts.display);
     } else if (result.merged) {
         facts.shown.clear();
     }

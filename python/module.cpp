@@ -29,7 +29,7 @@
 #include "python/scene_arrays.h"
 #include "python/session.h"
 #include "scene/scene_origin.h"
-#include "session/film_file/merge_picture.h"
+#include "session/pictures/merge_picture.h"
 #include "settings/setting_table.h"
 
 namespace nb = nanobind;
@@ -133,10 +133,11 @@ PythonResult render(PythonScene& scene, const std::string& settings_file, const 
     return made;
 }
 
-PythonResult merge(const std::vector<std::string>& files, bool is_partial, const std::vector<std::string>& outputs) {
+PythonResult merge(const std::vector<std::string>& files, bool is_partial, const std::vector<std::string>& outputs,
+                   const std::string& tone_map, const std::string& exposure) {
     if (files.empty()) throw Error(ErrorCode::BadInput, "files", "", "there is no film file");
     return result_of([&](PythonSink& sink) {
-        MergedPicture picture = merge_picture(files, {is_partial, ""}, outputs, sink);
+        MergedPicture picture = merge_picture(files, {is_partial, "", {tone_map, exposure}}, outputs, sink);
         PythonResult made(std::move(picture.result), std::move(picture.facts));
         if (outputs.empty()) return made;
         RenderResult written_result = made.result; // files take the layers out of it
@@ -190,13 +191,13 @@ CamerasArgument cameras_of(nb::handle poses, nb::handle intrinsics, nb::handle s
     if (!places.has_shape({kAny, 4, 4}) && !places.has_shape({kAny, 3, 4}))
         places.fail("expected (N, 4, 4) or (N, 3, 4)");
     CamerasArgument cameras;
-    cameras.poses = rows_of(places);
+    cameras.poses = rows_of(places.of_finite_numbers());
     cameras.has_color = has_color;
     const std::size_t count = cameras.poses.size();
     if (count == 0) places.fail("expected at least one camera");
     if (!intrinsics.is_none()) {
         const ArrayArgument array(intrinsics, "K");
-        cameras.intrinsics = rows_of(array);
+        cameras.intrinsics = rows_of(array.of_finite_numbers());
         const std::size_t rows = cameras.intrinsics.size();
         const bool has_shape = array.has_shape({kAny, 3, 3}) || array.has_shape({kAny, 4});
         if (!has_shape || (rows != 1 && rows != count)) array.fail("expected (3, 3), or (N, 3, 3) for N cameras");
@@ -215,6 +216,10 @@ nb::object render_batch(PythonScene& scene, const std::string& settings_file, co
                         nb::handle poses, nb::handle intrinsics, nb::handle seeds, bool has_color, nb::object out) {
     const CamerasArgument cameras = cameras_of(poses, intrinsics, seeds, has_color);
     if (out.is_none()) out = nb::cast(PythonBatch());
+    if (!nb::isinstance<PythonBatch>(out)) {
+        throw Error(ErrorCode::BadInput, "out", "",
+                    "with `cameras` or `on_device` expected the BatchResult of an earlier call");
+    }
     PythonBatch& batch = nb::cast<PythonBatch&>(out);
     run_unlocked([&](PythonSink& sink) { scene.render_batch({settings_file, settings}, cameras, batch, sink); });
     return out;
@@ -355,7 +360,8 @@ NB_MODULE(_core, module) {
     module.def("builtin_scenes", &builtin_scene_names, "Names of the scenes that are part of Pertev");
     define_scene(module);
     define_images(module);
-    module.def("merge", &merge);
+    module.def("merge", &merge, nb::arg("files"), nb::arg("partial"), nb::arg("outputs"), nb::arg("tone_map") = "",
+               nb::arg("exposure") = "");
     module.def("_run_program", [](std::vector<std::string> words) {
         std::vector<char*> pointers;
         for (std::string& word : words) pointers.push_back(word.data());

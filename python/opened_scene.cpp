@@ -105,7 +105,18 @@ PictureRecord OpenedScene::record(const PictureOptions& options, const EditedSce
     return record;
 }
 
-Session& OpenedScene::session(const PictureRecord& record) {
+Session& OpenedScene::session(const PictureRecord& record, bool for_batch) {
+    Session& session = updated_session(record);
+    if (!together_) return session;
+    if (for_batch) {
+        session.pictures().stop_sharing();
+    } else {
+        session.pictures().share(*together_);
+    }
+    return session;
+}
+
+Session& OpenedScene::updated_session(const PictureRecord& record) {
     const uint32_t parts = std::exchange(setup_->changed_parts, 0);
     if (!session_) {
         together_.reset(), frames_together_.reset();
@@ -114,7 +125,6 @@ Session& OpenedScene::session(const PictureRecord& record) {
         session_.emplace(*setup_->queue, setup_->prepared(), record.camera.camera, record.settings);
         if (are_several && uses_ == Uses::Sequence) {
             frames_together_.emplace(setup_->queues, setup_->prepared());
-            session_->pictures().share(*together_);
             session_->pictures().share_frames(*frames_together_);
         }
         return *session_;

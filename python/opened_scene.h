@@ -37,7 +37,7 @@ struct EditedScene {
 class OpenedScene {
 public:
     enum class Uses {
-        Pictures, // all devices render batches of them
+        Pictures, // all devices render its pictures and batches of them
         Sequence, // all devices render its pictures and frames
     };
     explicit OpenedScene(Uses uses = Uses::Pictures) : uses_(uses) {}
@@ -52,15 +52,16 @@ public:
     const SceneParameters& parameters();
     /// Returns the record of a picture without its display; prepare() has gone before.
     PictureRecord record(const PictureOptions& options, const EditedScene& source, Sink& sink);
-    /// Returns the session, made or brought up to date, with the record's camera and settings.
-    Session& session(const PictureRecord& record);
-    /// Returns what renders batches by several devices, for which session() has gone before; null if there is one
-    /// device.
+    /// Returns the session, made or brought up to date, with the record's camera and settings. Several devices render
+    /// its pictures together, but `for_batch` each renders alone.
+    Session& session(const PictureRecord& record, bool for_batch = false);
+    /// Returns what renders by several devices, for which session() has gone before; null if there is one device.
     RenderOnDevices* together() { return together_ ? &*together_ : nullptr; }
 
 private:
     bool apply_edits(const EditedScene& source, Sink& sink);
     void open(PictureOptions& options, const EditedScene& source, Sink& sink);
+    Session& updated_session(const PictureRecord& record);
 
     Uses uses_;
     PictureOptions used_; // options that setup_ was made or last adapted by

@@ -135,22 +135,23 @@ void FilmReader::read(Session& session, const std::shared_ptr<Queue>& queue, std
     const Film& film = session.film();
     const uint32_t pixels = film.width() * film.height();
     const UseThreads use(queue->threads());
+    Queue& of_film = session.pictures().film_queue(); // one of the CPU if several devices have rendered
     for (const OutArray& array : arrays) {
         const std::size_t bytes = bytes_of(array);
-        if (queue->is_cuda() && (queue_ != queue || on_device_.size() < bytes)) {
+        if (of_film.is_cuda() && (queue_ != queue || on_device_.size() < bytes)) {
             on_device_ = {};
             queue_ = queue;
             on_device_ = {*queue, bytes, "arrays to be filled"};
         }
-        std::byte* const to = queue->is_cuda() ? on_device_.data() : array.memory;
+        std::byte* const to = of_film.is_cuda() ? on_device_.data() : array.memory;
         if (is_picture(array.name)) {
             film.picture_into(reinterpret_cast<float*>(to), pixels, session.settings().transparent);
         } else if (array.name == "ids") {
-            queue->copy_on_device(to, film.view().ids, bytes);
+            of_film.copy_on_device(to, film.view().ids, bytes);
         } else {
             film.layer_into(reinterpret_cast<float*>(to), pixels, group_named(array.name)->bit);
         }
-        if (queue->is_cuda()) queue->copy_to_host(array.memory, to, bytes);
+        if (of_film.is_cuda()) of_film.copy_to_host(array.memory, to, bytes);
     }
 }
 

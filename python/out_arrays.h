@@ -41,7 +41,7 @@ class FilmReader {
 public:
     /// Returns whether a film has all arrays. It has no motion, no light layers and nothing denoised.
     static bool reads(std::span<const OutArray> arrays, const RenderSettings& settings);
-    /// Reads the film of `session`, whose queue is `queue`.
+    /// Reads the film of `session`, whose device is that of `queue`.
     void read(Session& session, const std::shared_ptr<Queue>& queue, std::span<const OutArray> arrays);
 
 private:

@@ -81,24 +81,8 @@ nb::object layer_of(nb::handle owner, const char* name) {
     return layers[name];
 }
 
-/// Metadata that are texts of JSON.
-constexpr std::string_view kJsonTexts[] = {"pertev.settings",  "pertev.made_up",   "pertev.left_out",
-                                           "pertev.instances", "pertev.materials", "pertev.reconstruction"};
-
-/// Returns the metadata by their names; texts of JSON as what they hold.
 nb::dict info_of(PythonResult& self) {
-    nb::dict info;
-    const nb::object parse = nb::module_::import_("json").attr("loads");
-    const ExrMetadata metadata = picture_metadata(self.facts(), self.result, self.known_hash());
-    for (const auto& entry : metadata) {
-        const std::string_view name = entry.first;
-        constexpr std::string_view kOurs = "pertev.";
-        const std::string* text = std::get_if<std::string>(&entry.second);
-        const bool holds_json = text != nullptr && std::ranges::find(kJsonTexts, name) != std::end(kJsonTexts);
-        info[std::string(name.starts_with(kOurs) ? name.substr(kOurs.size()) : name).c_str()] =
-            parse(holds_json ? *text : metadata_json(entry));
-    }
-    return info;
+    return info_of_metadata(picture_metadata(self.facts(), self.result, self.known_hash()));
 }
 
 /// Returns the record of a rendered picture. Throws AttributeError for a merged one.
@@ -133,7 +117,25 @@ nb::bytes png_of(const PythonResult& self) {
     return nb::bytes(reinterpret_cast<const char*>(png.data()), png.size());
 }
 
+/// Metadata that are texts of JSON.
+constexpr std::string_view kJsonTexts[] = {"pertev.settings",  "pertev.made_up",   "pertev.left_out",
+                                           "pertev.instances", "pertev.materials", "pertev.reconstruction"};
+
 } // namespace
+
+nb::dict info_of_metadata(const ExrMetadata& metadata) {
+    nb::dict info;
+    const nb::object parse = nb::module_::import_("json").attr("loads");
+    for (const auto& entry : metadata) {
+        const std::string_view name = entry.first;
+        constexpr std::string_view kOurs = "pertev.";
+        const std::string* text = std::get_if<std::string>(&entry.second);
+        const bool holds_json = text != nullptr && std::ranges::find(kJsonTexts, name) != std::end(kJsonTexts);
+        info[std::string(name.starts_with(kOurs) ? name.substr(kOurs.size()) : name).c_str()] =
+            parse(holds_json ? *text : metadata_json(entry));
+    }
+    return info;
+}
 
 const std::string& PythonResult::known_hash() {
     if (hash.empty()) hash = picture_hash(result.picture).hex();

@@ -31,6 +31,9 @@ struct PythonResult {
     RenderResult whole() const;
 };
 
+/// Returns metadata by their names, without their prefix; texts of JSON as what they hold.
+nanobind::dict info_of_metadata(const ExrMetadata& metadata);
+
 void define_result(nanobind::module_& module);
 
 } // namespace pertev

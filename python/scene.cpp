@@ -8,7 +8,6 @@
 
 #include "base/error.h"
 #include "image/picture_hash.h"
-#include "session/devices/device_names.h"
 #include "session/film_file/film_file.h"
 #include "session/opening/strictness.h"
 #include "session/pictures/choose_display.h"
@@ -112,7 +111,6 @@ PythonResult PythonScene::render(const CallSettings& settings, const std::vector
                                  std::span<const OutArray> out, Sink& sink) {
     const std::unique_lock turn = wait_for_turn(sink);
     prepare(settings, outputs, sink);
-    refuse_several_devices(options_.machine.device, "a picture without `cameras`");
     Session& session = opened_.session(*record_);
     check_arrays(out, session.settings());
     session.cut();
@@ -153,18 +151,29 @@ PythonResult PythonScene::render(const CallSettings& settings, const std::vector
     return made;
 }
 
+/// Makes record_ and options_ those of a call whose settings have the first camera.
+void PythonScene::prepare_cameras(const CallSettings& settings, const CamerasArgument& cameras, Sink& sink) {
+    try {
+        prepare(settings, {}, sink);
+    } catch (const Error& error) {
+        if (cameras.is_single) throw;
+        throw error_of_camera(error, 0);
+    }
+}
+
 void PythonScene::render_batch(const CallSettings& settings, const CamerasArgument& cameras, PythonBatch& batch,
                                Sink& sink) {
     const std::unique_lock turn = wait_for_turn(sink);
-    Session& session = opened_.session(prepare(settings, {}, sink));
-    batch.render(opened_, session, cameras, options_, sink);
+    prepare_cameras(settings, cameras, sink);
+    Session& session = opened_.session(*record_, true);
+    batch.render(opened_, session, cameras, record_, options_, sink);
     if (options_.strict) refuse_invalid_samples(batch.invalid_samples());
 }
 
 uint32_t PythonScene::batch_size(const CallSettings& settings, const CamerasArgument& cameras, Sink& sink) {
     const std::unique_lock turn = wait_for_turn(sink);
-    const PictureRecord& record = prepare(settings, {}, sink);
-    return size_of_chunk(opened_, cameras.settings_of(record.settings), cameras, options_);
+    prepare_cameras(settings, cameras, sink);
+    return size_of_chunk(opened_, cameras.settings_of(record_->settings), cameras, options_);
 }
 
 std::vector<std::string> PythonScene::paths(Sink& sink) {

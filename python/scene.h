@@ -87,6 +87,7 @@ private:
     std::unique_lock<std::timed_mutex> wait_for_turn(Sink& sink);
     void open_in_turn(Sink& sink);
     PythonResult render_into(Session& session, std::span<const OutArray> out, Sink& sink);
+    void prepare_cameras(const CallSettings& settings, const CamerasArgument& cameras, Sink& sink);
     const PictureRecord& prepare(const CallSettings& settings, const std::vector<std::string>& outputs, Sink& sink);
 
     EditedScene source_;

@@ -109,8 +109,8 @@ Material material_of(ArgumentFields& fields, std::vector<TextureImage>& images) 
         const std::vector<float*>& values = numbers[name];
         const auto given = fields.array(name);
         if (!given) continue;
-        const std::vector<float> read =
-            values.size() == 1 ? given->of_shape({}).floats() : given->of_shape({3}).floats();
+        const ArrayArgument& shaped = values.size() == 1 ? given->of_shape({}) : given->of_shape({3});
+        const std::vector<float> read = shaped.of_finite_numbers().floats();
         for (std::size_t i = 0; i < values.size(); ++i) *values[i] = read[i];
     }
     return material;
@@ -199,6 +199,15 @@ void for_each(const nb::dict& parts, const char* group,
     if (!nb::isinstance<nb::dict>(objects)) refuse_argument(group, "expected a dictionary of objects by their names");
     for (const auto& [key, value] : nb::borrow<nb::dict>(objects)) {
         const std::string name = text_argument(key, group);
+        if (!nb::isinstance<nb::dict>(value)) {
+            const bool is_mesh = group == std::string_view("meshes"),
+                       is_instance = group == std::string_view("instances");
+            refuse_argument(fmt::format("{}/{}", group, name),
+                            fmt::format("expected a dictionary{}", is_mesh
+                                                                       ? R"(, as {"vertices": (N, 3), "faces": (M, 3)})"
+                                                                   : is_instance ? R"(, as {"mesh": "a mesh's name"})"
+                                                                                 : ""));
+        }
         ArgumentFields fields(value, fmt::format("{}/{}", group, name));
         make(name, fields);
         fields.refuse_others();

@@ -10,7 +10,7 @@
 #include "apps/cli/report_result.h"
 #include "base/message_text.h"
 #include "base/stopwatch.h"
-#include "session/film_file/merge_picture.h"
+#include "session/pictures/merge_picture.h"
 
 namespace pertev {
 namespace {
@@ -64,6 +64,13 @@ void add_merge_command(CLI::App& app, int& status) {
     verb.add_option("--denoise", flags->options.denoise,
                     "The denoiser, which must be that of the parts, as by default.")
         ->type_name("NAME");
+    verb.add_option("--tone-map", flags->options.display.tone_map,
+                    "The tone mapping of PNG and JPEG output, if not that of the parts.")
+        ->type_name("NAME");
+    verb.add_option(
+            "--exposure", flags->options.display.exposure,
+            "The exposure of PNG and JPEG output, if not that of the parts; auto is what a meter found for these.")
+        ->type_name("STOPS|auto");
     add_report_flags(verb, flags->report);
     add_progress_flag(verb, flags->report);
     verb.callback([flags, &status] { status = merge(*flags); });

@@ -11,12 +11,12 @@ import importlib
 import operator
 import os
 
-from ._cameras import BatchResult, Cameras, DeviceArray, chunk_size, read_cameras, render_batch
+from ._cameras import BatchResult, Cameras, DeviceArray, cameras_of, chunk_size, read_cameras, render_batch
 from ._core import Result, builtin_scenes
 from ._images import compare, read, tone_map, write
 from ._process import check_process
 from ._parts import merge, names_of
-from ._scene import Params, Scene, Session, load, scene
+from ._scene import Params, Scene, Session, load, scene, scene_of
 from ._settings import OF_PARTS, OF_STILLS, texts_of, with_layers
 from ._viewer import Viewer, view
 from .errors import DeviceError, Error, InputError, InterruptedRender, LimitError, MemoryLimitError, WriteError
@@ -37,16 +37,16 @@ def render(scene, *, cameras=None, seeds=None, color=True, layers=(), output=(),
     """Renders a picture of a scene and returns it as a Result.
 
     scene     what load() returns, or as its `scene`
-    cameras   Cameras, or an array of poses (N, 4, 4): all pictures are one job if they are not denoised, and the call returns a
-              BatchResult
+    cameras   Cameras, an array of poses (N, 4, 4), or a file of read_cameras(): all pictures are one job if they are not denoised,
+              and the call returns a BatchResult
     seeds     of these pictures: one for all or (N,); None: that of the setting
     color     False with layers_at="centre" and many cameras or `on_device`: only layers are made
     layers    names of layers to render as well: "albedo", "normal", "depth", "distance", "position", "ids", "motion"
     output    a file to write, or several: .exr .png .jpg .hdr
     settings  a file of settings, which `values` overrule
     out       arrays to fill, by the names of the Result's attributes: {"color": array}, which are then those of the
-              Result, beside `color`; nothing else of the picture's size is allocated. With `cameras` or `on_device` an
-              earlier BatchResult of the same scene, whose arrays are filled again
+              Result, beside `color`; nothing else of the picture's size is allocated. An array alone is that of `color`.
+              With `cameras` or `on_device` an earlier BatchResult of the same scene, whose arrays are filled again
     on_device True: the arrays stay in the memory of the device, and the call returns them as a BatchResult
     values    any setting of docs/settings.md by its name: size=(640, 480), spp=64, eye=(0, 1, 3), device="cpu".
               None is as if it was not given. part=(1, 4), samples=(64, 128) and checkpoint=FILE are for a single picture;
@@ -57,15 +57,19 @@ def render(scene, *, cameras=None, seeds=None, color=True, layers=(), output=(),
     open scene. Raises Error (pertev.errors), and TypeError for a name or a type that no setting has.
     """
     check_process()
-    used = scene if isinstance(scene, Scene) else Scene(scene)
+    used = scene_of(scene)
     if cameras is not None or on_device:
         for name in OF_PARTS.keys() & {name for name, value in values.items() if value is not None}:
             raise TypeError(f"{name} is of a single picture, not of many cameras or of arrays on the device")
         if output:
             raise TypeError("output: pictures of many cameras or on the device are arrays; `pertev render` writes files")
-        return render_batch(used, cameras, seeds, color, os.fspath(settings or ""), with_layers(values, layers), out)
+        return render_batch(used, cameras_of(cameras, values), seeds, color, os.fspath(settings or ""),
+                            with_layers(values, layers), out)
     if seeds is not None or not color:
         raise TypeError("seeds and color are for many `cameras`, or for `on_device`")
+    if isinstance(out, BatchResult):
+        raise TypeError("out: a BatchResult is for `cameras` or `on_device`; expected arrays, as {'color': array}")
+    out = out if out is None or isinstance(out, dict) else {"color": out}
     return used._render(os.fspath(settings or ""), texts_of(with_layers(values, layers), OF_STILLS),
                         names_of(output), out)
 
@@ -79,8 +83,8 @@ def render_chunks(scene, cameras, *, chunk=None, seeds=None, color=True, layers=
     for a chunk below 1, and for seeds that are neither one nor one per camera.
     """
     check_process()
-    used = scene if isinstance(scene, Scene) else Scene(scene)
-    cameras = cameras if isinstance(cameras, Cameras) else Cameras(cameras)
+    used = scene_of(scene)
+    cameras = cameras_of(cameras, values)
     values, settings = with_layers(values, layers), os.fspath(settings or "")
     if chunk is None:
         chunk = chunk_size(used, cameras, color, settings, values)

@@ -5,7 +5,20 @@ import os
 from . import _core
 from ._arrays import on_host
 from ._settings import texts_of
-from .errors import InputError
+from .errors import InputError, input_error
+
+
+def _numbers(value, name):
+    """Returns an array of NumPy. Raises InputError of the argument's name."""
+    import numpy  # which `import pertev` does without
+
+    try:
+        array = numpy.asarray(on_host(value))
+    except ValueError as error: # rows of different lengths
+        raise input_error(name, f"not an array of numbers: {error}") from None
+    if array.dtype.kind not in "fiu" or array.ndim == 0:
+        raise input_error(name, f"expected an array of numbers, not {array.dtype if array.ndim else type(value).__name__}")
+    return array
 
 
 class Cameras:
@@ -18,14 +31,15 @@ class Cameras:
     intrinsics_size  the size for which K holds; None: that of the pictures
     lens, distortion as the settings: one lens for all
 
-    Arrays may be on a GPU. `names` are those of a file's cameras (read_cameras).
+    Arrays may be on a GPU. `names` are those of a file's cameras (read_cameras), and `size` is that of pictures for which the
+    call has none.
     """
 
-    names = None
+    names = size = None
 
     def __init__(self, poses, K=None, *, convention=None, intrinsics_size=None, lens=None, distortion=None):
-        self.poses = on_host(poses)
-        self.K = K if K is None else on_host(K)
+        self.poses = _numbers(poses, "cameras")
+        self.K = K if K is None else _numbers(K, "K")
         self.settings = {"convention": convention, "intrinsics_size": intrinsics_size, "lens": lens, "distortion": distortion}
 
     def __len__(self):
@@ -35,22 +49,23 @@ class Cameras:
         """The cameras of a slice."""
         few = Cameras(self.poses[part], self.K if self._has_one_K() else self.K[part])
         few.settings = self.settings
-        few.names = self.names and self.names[part]
+        few.names, few.size = self.names and self.names[part], self.size
         return few
 
     def _has_one_K(self):
-        import numpy  # which `import pertev` does without
+        return self.K is None or self.K.shape in ((3, 3), (4,))
 
-        return self.K is None or numpy.shape(self.K) in ((3, 3), (4,))
-
-    def _arguments(self):
-        """Returns the intrinsics as one row per camera or for all, and the settings of the first camera, which stand for all."""
+    def _arguments(self, values):
+        """Returns the intrinsics as one row per camera or for all, and the texts of a call's settings, in which the first camera
+        stands for all."""
         import numpy
 
         K = [self.K] if self.K is not None and self._has_one_K() else self.K
-        first = {"camera_pose": numpy.asarray(self.poses[0], dtype=float).ravel() if len(self.poses) else None,
-                 "intrinsics": None if K is None else numpy.asarray(K[0], dtype=float).ravel()}
-        return K, {**first, **self.settings}
+        first = {"camera_pose": self.poses[0] if len(self.poses) else None, "intrinsics": None if K is None else K[0]}
+        # Numbers that are not finite are refused with the arrays.
+        rows = {name: row if row is None else numpy.nan_to_num(row.astype(float)).ravel() for name, row in first.items()}
+        size = {} if values.get("size") is not None else {"size": self.size}
+        return K, texts_of({**values, **rows, **self.settings, **size})
 
 
 def read_cameras(path, *, size=None, convention=None):
@@ -64,7 +79,7 @@ def read_cameras(path, *, size=None, convention=None):
     import numpy
 
     rows = _core.read_cameras(os.fspath(path), *(size or (0, 0)))
-    others = {name for _, settings in rows for name in settings} - {"camera_pose", "intrinsics", *Cameras([]).settings}
+    others = {name for _, settings in rows for name in settings} - {"camera_pose", "intrinsics", "size", *Cameras([]).settings}
     if others:
         raise InputError(f"{path}: {', '.join(sorted(others))}: use `pertev render --cameras` for these settings")
 
@@ -85,23 +100,31 @@ def read_cameras(path, *, size=None, convention=None):
                       numpy.array([of if len(of) == 4 else of[[0, 4, 2, 5]] for of in K]) if K else None,
                       convention=of_all("convention", convention), intrinsics_size=of_all("intrinsics_size"),
                       lens=of_all("lens"), distortion=of_all("distortion"))
-    cameras.names = [name for name, _ in rows]
+    cameras.names, cameras.size = [name for name, _ in rows], of_all("size")
     return cameras
+
+
+def cameras_of(cameras, values):
+    """Returns Cameras, or None, for what render() takes as such; `values` are the settings of the call."""
+    if cameras is None or isinstance(cameras, Cameras):
+        return cameras
+    if isinstance(cameras, (str, os.PathLike)):
+        width, height = texts_of({"size": values.get("size")}).get("size", ["0x0"])[0].split("x")
+        return read_cameras(cameras, size=(int(width), int(height)), convention=values.get("convention"))
+    return Cameras(cameras)
 
 
 def render_batch(scene, cameras, seeds, color, settings, values, out):
     seeds = [seeds] if isinstance(seeds, int) else seeds
     if cameras is None:
         return scene._render_batch(settings, texts_of(values), None, None, seeds, color, out)
-    if not isinstance(cameras, Cameras):
-        cameras = Cameras(cameras)
-    K, own = cameras._arguments()
-    return scene._render_batch(settings, texts_of({**values, **own}), cameras.poses, K, seeds, color, out)
+    K, texts = cameras._arguments(values)
+    return scene._render_batch(settings, texts, cameras.poses, K, seeds, color, out)
 
 
 def chunk_size(scene, cameras, color, settings, values):
-    K, own = cameras._arguments()
-    return scene._batch_size(settings, texts_of({**values, **own}), cameras.poses, K, color)
+    K, texts = cameras._arguments(values)
+    return scene._batch_size(settings, texts, cameras.poses, K, color)
 
 
 BatchResult, DeviceArray = _core.BatchResult, _core.DeviceArray

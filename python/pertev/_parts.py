@@ -4,6 +4,7 @@ import os
 
 from . import _core
 from ._process import check_process
+from ._settings import texts_of
 
 
 def names_of(files):
@@ -11,15 +12,17 @@ def names_of(files):
     return [os.fspath(file) for file in ([files] if isinstance(files, (str, os.PathLike)) else files)]
 
 
-def merge(files, *, output=(), partial=False):
+def merge(files, *, output=(), partial=False, tone_map=None, exposure=None):
     """Returns the picture of the film files (.pvf) of its parts, which render() wrote, as a Result without pose and K.
 
     files    a file or several, in any order
     output   a file to write, or several: .exr .png .jpg .hdr, or .pvf with all samples
     partial  True: a picture of the samples that are there, if some are missing
+    tone_map, exposure  as the settings, for .png and .jpg, in place of those of the parts
 
     The picture has the bytes of one render of all samples. Raises InputError for parts that overlap, are missing or are of
     other pictures, and as render().
     """
     check_process()
-    return _core.merge(names_of(files), partial, names_of(output))
+    shown = texts_of({"tone_map": tone_map, "exposure": exposure})
+    return _core.merge(names_of(files), partial, names_of(output), *("".join(shown.get(name, ())) for name in ("tone_map", "exposure")))

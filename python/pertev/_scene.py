@@ -98,6 +98,15 @@ class Scene(_core.Scene):
         return _reopened, (self.name, self._settings, self._edits())
 
 
+def scene_of(scene):
+    """Returns a Scene for what render() takes as one."""
+    if isinstance(scene, Scene):
+        return scene
+    if not isinstance(scene, (str, os.PathLike)):
+        raise TypeError(f"scene: expected what pertev.load() returns, a file, or the name of a built-in scene, not {type(scene).__name__}")
+    return Scene(scene)
+
+
 def _reopened(name, settings, edits):
     scene = load(name, **settings)
     for path, value in edits.items():
@@ -114,6 +123,8 @@ def load(scene, **values):
     A picture with another camera, size or integrator, with other samples, or at another time, takes the scene as it is;
     other settings, such as `device` or `environment`, open it again. Raises as render().
     """
+    if not isinstance(scene, (str, os.PathLike)):
+        raise TypeError(f"scene: expected a file or the name of a built-in scene, not {type(scene).__name__}")
     opened = Scene(scene, **values)
     opened._open()
     return opened
@@ -146,7 +157,7 @@ class Session(_core.Session):
 
     def __init__(self, scene, *, layers=(), **values):
         check_process()
-        scene = scene if isinstance(scene, Scene) else Scene(scene)
+        scene = scene_of(scene)
         given = with_layers({"real_time": True, "frames": None if values.get("turntable") else "0-1000000000", **values},
                             layers)
         super().__init__(scene, texts_of(given, OF_FRAMES))

@@ -1,9 +1,11 @@
 """Settings as texts: Python's values in the syntax of the table."""
 
 import difflib
+import math
 import os
 
 from . import _core
+from .errors import input_error
 
 OF_PICTURES = {row["name"]: row for row in _core.settings()}
 OF_FRAMES = {**OF_PICTURES, **{row["name"]: row for row in _core.frame_settings()}}
@@ -25,6 +27,8 @@ def _text(row, value):
         return str(value)
     elif hasattr(value, "__float__") and getattr(value, "ndim", 0) == 0:
         number = float(value)
+        if not math.isfinite(number):
+            raise input_error(row["name"], f"expected finite numbers, not {number}", str(value))
         return str(int(number)) if number.is_integer() and abs(number) < 2**53 else repr(number)
     elif hasattr(value, "__iter__"):
         return ("x" if row["type"] == "size" else SEPARATORS.get(row["form"], ",")).join(_text(row, item) for item in value)

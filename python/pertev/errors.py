@@ -16,6 +16,13 @@ class InputError(Error, ValueError):
     """A file or a setting is wrong."""
 
 
+def input_error(setting, reason, value=""):
+    """Returns an InputError about a setting or an argument."""
+    error = InputError(f"{setting}: {reason}")
+    error.setting, error.reason, error.value = setting, reason, value
+    return error
+
+
 class LimitError(Error, ValueError):
     """Valid, but larger than Pertev's limits."""
 

@@ -14,7 +14,7 @@ import tempfile
 from . import render
 from ._parts import merge
 from ._process import check_process
-from ._scene import Scene
+from ._scene import scene_of
 
 
 def _render_part(scene, part, count, values):
@@ -34,7 +34,7 @@ def _source_of(scene, parts, values):
     for name in ("part", "part_base", "samples", "rows", "checkpoint", "out", "cameras", "on_device"):
         if values.get(name) is not None:
             raise TypeError(f"{name} is not for pictures in parts")
-    return scene if isinstance(scene, Scene) else os.fspath(scene)
+    return scene if scene_of(scene) is scene else os.fspath(scene)
 
 
 def _merged(films, output):

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/stopwatch.h"
+#include "image/picture_hash.h"
 
 namespace pertev {
 namespace {
@@ -115,6 +116,7 @@ bool BatchRender::add_samples(const PictureView& picture, Sink& sink) {
 }
 
 bool BatchRender::render_in_turn(BatchArrays& arrays, Sink& sink) {
+    arrays.noisy_hashes.assign(settings_.denoise != Denoise::None ? arrays.pictures : 0, {});
     for (uint32_t k = 0; k < arrays.pictures; ++k) {
         RenderSettings settings = settings_;
         settings.path.seed = batch_.seed_of(done_ + k, settings_);
@@ -128,6 +130,7 @@ bool BatchRender::render_in_turn(BatchArrays& arrays, Sink& sink) {
         invalid_samples_ += in_turn_->film().invalid_samples();
         resolve(in_turn_->film(), 1, k, arrays);
         if (const std::optional<Image> denoised = in_turn_->denoised()) {
+            arrays.noisy_hashes[k] = picture_hash(in_turn_->picture());
             pictures_.queue().copy_to_device(arrays.color.data() + k * denoised->pixels.size(), denoised->pixels.data(),
                                              denoised->pixels.size() * sizeof(float));
             pictures_.queue().wait(); // the image ends here

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "base/hash.h"
 #include "device/buffer.h"
 #include "render/batch_view.h"
 #include "session/render_memory.h"
@@ -46,6 +47,7 @@ struct BatchArrays {
     Buffer<float> color; // RGB, or RGBA if the settings are transparent, denoised if they say so; empty without samples
     std::vector<Layer> layers;
     Buffer<PixelIds> ids;
+    std::vector<Hash128> noisy_hashes; // picture_hash() of each picture before it was denoised; else empty
 
     /// Allocates what is missing for `count` pictures; a caller may have taken buffers. Throws Error(OutOfMemory).
     void fit(Queue& queue, const RenderSettings& settings, uint32_t count);

@@ -56,21 +56,29 @@ double share_that_counts(const Image& scattered) {
     return sum / (static_cast<double>(scattered.width) * scattered.height);
 }
 
-float meter_exposure(const RenderSettings& settings, ToneMap tone_map,
-                     const std::function<Image(const RenderSettings&)>& render) {
+Image metered_light(const RenderSettings& settings, const std::function<Image(const RenderSettings&)>& render) {
     RenderSettings meter = meter_settings(settings);
     meter.transparent = true; // without the sky
-    const Image light = render(meter);
+    Image light = render(meter);
     RenderSettings emitters = meter;
     emitters.path.max_depth = 0;
-    const Image scattered = scattered_light(light, render(emitters));
-    if (share_that_counts(scattered) >= kFewestThatCount) return auto_exposure_stops(scattered, tone_map);
+    Image scattered = scattered_light(light, render(emitters));
+    if (share_that_counts(scattered) >= kFewestThatCount) return scattered;
     meter.transparent = settings.transparent;
-    return auto_exposure_stops(settings.transparent ? light : render(meter), tone_map);
+    return settings.transparent ? light : render(meter);
+}
+
+float meter_exposure(const RenderSettings& settings, ToneMap tone_map,
+                     const std::function<Image(const RenderSettings&)>& render) {
+    return auto_exposure_stops(metered_light(settings, render), tone_map);
 }
 
 float Meter::stops(const Camera& camera, const RenderSettings& settings, ToneMap tone_map) {
-    return meter_exposure(settings, tone_map, [&](const RenderSettings& meter) {
+    return auto_exposure_stops(light(camera, settings), tone_map);
+}
+
+Image Meter::light(const Camera& camera, const RenderSettings& settings) {
+    return metered_light(settings, [&](const RenderSettings& meter) {
         Film& film = fit_film(pictures_.queue(), film_, meter);
         film.clear();
         pictures_.begin(camera, meter, meter.samples).render(0, meter.samples, film.view());

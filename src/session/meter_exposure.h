@@ -20,11 +20,13 @@ inline constexpr uint32_t kMeterPixels = 6400, kMeterSamples = 16;
 double share_that_counts(const Image& scattered);
 inline constexpr double kFewestThatCount = 0.01;
 
-/// Stops for the picture of `settings`, displayed by `tone_map` (image/auto_exposure.h defines them): a multiple of
-/// 1/100 in [-60, 60]. It is based on the light that surfaces scatter towards the camera; directly visible emitters
-/// and sky do not count unless there is nothing else. It depends on the scene, the camera, and the light paths and
-/// aspect ratio of `settings`, not on seed, samples or filter, and is equal on every device, to the bit. `render`
-/// renders the scene with the settings that it gets; it is called two or three times, with some 10^5 samples each.
+/// Returns what the meter sees of the picture of `settings`, for auto_exposure_stops: the light that surfaces scatter
+/// towards the camera; directly visible emitters and sky do not count unless there is nothing else. It depends on the
+/// scene, the camera, and the light paths and aspect ratio of `settings`, not on seed, samples or filter, and is equal
+/// on every device, to the bit. `render` renders the scene with the settings that it gets; it is called two or three
+/// times, with some 10^5 samples each.
+Image metered_light(const RenderSettings& settings, const std::function<Image(const RenderSettings&)>& render);
+/// Stops for the picture of `settings`, displayed by `tone_map`: a multiple of 1/100 in [-60, 60].
 float meter_exposure(const RenderSettings& settings, ToneMap tone_map,
                      const std::function<Image(const RenderSettings&)>& render);
 
@@ -33,7 +35,9 @@ class Meter {
 public:
     /// Makes a meter; `pictures` outlives it.
     explicit Meter(PictureRenderer& pictures) : pictures_(pictures) {}
-    /// Returns meter_exposure() for the view of `camera`. Throws Error(OutOfMemory, DeviceFault).
+    /// Returns metered_light() for the view of `camera`. Throws Error(OutOfMemory, DeviceFault).
+    Image light(const Camera& camera, const RenderSettings& settings);
+    /// Returns meter_exposure() for it. Throws as light().
     float stops(const Camera& camera, const RenderSettings& settings, ToneMap tone_map);
 
 private:

@@ -45,6 +45,7 @@ public:
 
     /// Lets films that are made from now on be rendered by other devices too; `sharing` outlives them.
     void share(SharedRender& sharing) { sharing_ = &sharing; }
+    void stop_sharing() { sharing_ = nullptr; }        // films that were made before are of no use then
     SharedRender* sharing() const { return sharing_; } // null: this device renders alone
     /// Does that for real-time frames, before the first one.
     void share_frames(SharedFrames& sharing) { sharing_frames_ = &sharing; }

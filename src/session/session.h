@@ -83,6 +83,8 @@ public:
     /// Returns picture, denoised picture, layers, ids, motion vectors and stats together.
     RenderResult result();
     float meter(ToneMap tone_map) { return meter_.stops(camera(), settings(), tone_map); }
+    /// Returns what the light meter sees (metered_light). Throws as meter().
+    Image metered_light() { return meter_.light(camera(), settings()); }
 
     /// Renders the next frame of a sequence by FrameSequence::render. The film stays as it is.
     bool render_frame(uint32_t number, const ReconstructionSettings& reconstruction, const RestirSettings& restir = {},

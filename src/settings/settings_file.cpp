@@ -81,6 +81,22 @@ std::string with_samples(const std::string& json, std::string_view samples) {
                        json.substr(std::min(json.find_first_of(",}", begin), json.size())));
 }
 
+std::string with_setting(const std::string& json, const PictureOptions& options, std::string_view name) {
+    const Setting* const setting = find_setting(name);
+    const std::string open = R"("settings":{)";
+    const std::size_t found = json.find(open);
+    if (found == std::string::npos || setting == nullptr) return json;
+    const std::string key = json_string(name) + ":", value = json_of(options, *setting);
+    const std::size_t first = found + open.size(), known = json.find(key, first);
+    if (known == std::string::npos) {
+        return fmt::format("{}{}{}{}{}", json.substr(0, first), key, value, json[first] == '}' ? "" : ",",
+                           json.substr(first));
+    }
+    const std::size_t begin = known + key.size(); // a number follows, or a text without quotes in it
+    const std::size_t end = json[begin] == '"' ? json.find('"', begin + 1) + 1 : json.find_first_of(",}", begin);
+    return fmt::format("{}{}{}", json.substr(0, begin), value, json.substr(std::min(end, json.size())));
+}
+
 std::string reconstruction_json(const ReconstructionOptions& options) {
     PictureOptions used;
     used.reconstruction = {.settings = options.used(), .sharing = options.sharing};

@@ -30,6 +30,8 @@ std::string settings_json(const PictureOptions& options, const std::string& hash
 
 /// Returns such an object of a picture that has `samples` per pixel; `json` as it is if it does not name them.
 std::string with_samples(const std::string& json, std::string_view samples);
+/// Returns it with the value that `options` have for a setting, which it may lack.
+std::string with_setting(const std::string& json, const PictureOptions& options, std::string_view name);
 
 /// Returns the settings that determine a real-time frame besides those of its picture, as a JSON object.
 std::string reconstruction_json(const ReconstructionOptions& options);

@@ -140,9 +140,6 @@ class Cameras(unittest.TestCase):
             together = pertev.render(scene, **call, **more)
             self.assertEqual(host(together.color).tobytes(), host(pertev.render(changed, **call, **more).color).tobytes())
             self.assertNotEqual(host(together.color).tobytes(), host(before.color).tobytes())
-            with self.assertRaises(pertev.InputError) as refused:
-                pertev.render(scene, **SMALL)
-            self.assertEqual(refused.exception.setting, "device")
 
     def test_layers_need_no_color(self):
         batch = pertev.render(self.scene, cameras=poses(2), color=False, layers=LAYERS, layers_at="centre", size=(24, 16))
@@ -180,7 +177,7 @@ class Cameras(unittest.TestCase):
                                 ({"cameras": pertev.Cameras(poses(2), numpy.zeros((2, 2)))}, "K"),
                                 ({"cameras": poses(2), "seeds": [1, 2, 3]}, "seeds"),
                                 ({"cameras": poses(2), "seeds": [-1]}, "seeds"),
-                                ({"cameras": 0 * poses(2)}, "camera_pose"),
+                                ({"cameras": 0 * poses(2)}, "cameras"),
                                 ({"cameras": poses(2), "denoise": "svgf", "color": False, "layers": "depth", "layers_at": "centre"},
                                  "denoise")]:
             with self.assertRaises(pertev.InputError) as refused:

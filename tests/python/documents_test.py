@@ -3,6 +3,7 @@
 import os
 import pathlib
 import re
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -37,6 +38,12 @@ class Documents(unittest.TestCase):
                         os.chdir(home)
                     ran += 1
         self.assertGreater(ran, 1)
+
+    def test_the_readmes_command_runs_as_it_is(self):
+        commands = re.findall(r"(?m)^venv/bin/python -c '(.*)'$", (ROOT / "README.md").read_text(encoding="utf-8"))
+        self.assertEqual(len(commands), 1)
+        made = subprocess.run([sys.executable, "-c", commands[0]], check=True, capture_output=True, text=True)
+        self.assertGreater(float(made.stdout), 0.01)
 
     def test_names_of_the_module_in_documents_exist(self):
         found = 0

@@ -70,7 +70,7 @@ class Errors(unittest.TestCase):
 
     def test_settings_have_the_names_of_python(self):
         for values, setting in [({"filter_radius": -1}, "filter_radius"), ({"layers": "deepness"}, "aov"), ({"eye": (1, 2)}, "eye"),
-                                ({"camera_pose": range(5)}, "camera_pose"), ({"device": "cuda:99"}, "device"), ({"device": "cpu,cpu"}, "device"),
+                                ({"camera_pose": range(5)}, "camera_pose"), ({"device": "cuda:99"}, "device"), ({"device": "cpu,cpu", "denoise": "svgf"}, "device"),
                                 ({"false_color_range": "1", "false_color": "luminance"}, "false_color_range")]:
             with self.subTest(values):
                 error = self.refused(pertev.InputError, setting, lambda: pertev.render(self.scene, **{**SMALL, **values}))
@@ -92,6 +92,65 @@ class Errors(unittest.TestCase):
                            ("picture", lambda: pertev.tone_map(picture[None])), ("picture", lambda: pertev.tone_map(Elsewhere(picture)))]:
             with self.subTest(name):
                 self.refused(pertev.InputError, name, call)
+
+    def test_cameras_that_are_none_are_named_with_their_number(self):
+        places = numpy.repeat(POSES, 3, 0)
+
+        def with_number(array, at, number):
+            changed = numpy.array(array, float)
+            changed[at] = number
+            return changed
+
+        K = [[8, 0, 4], [0, 8, 3], [0, 0, 1]]
+        for name, said, arguments in [
+                ("cameras", "[1, 0, 3]", (with_number(places, (1, 0, 3), numpy.nan),)), ("cameras", "[0, 2, 2]", (with_number(places, (0, 2, 2), numpy.inf),)),
+                ("cameras", "camera 2", (with_number(places, (2, 0, 0), 3),)), ("cameras", "camera 0", (with_number(places, (0, 0, 0), 3),)),
+                ("K", "camera 0", (places, numpy.zeros((3, 3)))), ("K", "[0, 1, 1] is nan", (places, with_number(K, (1, 1), numpy.nan))),
+                ("K", "camera 1", (places, with_number([K] * len(places), (1, 0, 1), 2))), ("cameras", "float", (1.0,)), ("cameras", "<U", (["a", "b"],)),
+                ("cameras", "", ([[1, 2], [3]],))]:
+            with self.subTest((name, said)):
+                error = self.refused(pertev.InputError, name, lambda: pertev.render(self.scene, cameras=pertev.Cameras(*arguments), **SMALL))
+                self.assertIn(said, str(error))
+        self.refused(pertev.InputError, "camera_pose", lambda: pertev.render(self.scene, camera_pose=with_number(POSES[0], (0, 0), numpy.nan), **SMALL))
+
+    def test_whole_numbers_out_of_range_are_named(self):
+        mesh = {"vertices": numpy.eye(3)}
+        for number in (2**64 - 1, 2**63, 3):
+            faces = numpy.array([[0, 1, number]], numpy.uint64)
+            error = self.refused(pertev.InputError, "meshes/m/faces", lambda: pertev.Scene(meshes={"m": {**mesh, "faces": faces}}, instances={"i": {"mesh": "m"}}))
+            self.assertIn(f"{number} is out of range", str(error))
+        for seeds, number in ((numpy.array([2**63 + 5], numpy.uint64), 2**63 + 5), ([2**32], 2**32), (-1, -1)):
+            error = self.refused(pertev.InputError, "seeds", lambda: pertev.render(self.scene, cameras=POSES, seeds=seeds, **SMALL))
+            self.assertIn(f"{number} is out of range", str(error))
+
+    def test_parts_of_scenes_that_are_no_dictionaries_or_not_finite_are_named(self):
+        mesh = {"vertices": numpy.eye(3), "faces": [[0, 1, 2]]}
+        good = {"meshes": {"m": mesh}, "instances": {"i": {"mesh": "m"}}}
+        error = self.refused(pertev.InputError, "meshes/m", lambda: pertev.Scene(**{**good, "meshes": {"m": numpy.eye(3)}}))
+        self.assertIn("faces", str(error))
+        for name, change in [("instances/i", {"instances": {"i": "m"}}), ("instances/i/transform", {"instances": {"i": {"mesh": "m", "transform": numpy.full((4, 4), numpy.inf)}}}),
+                             ("cameras/c/eye", {"cameras": {"c": {"eye": (0, numpy.nan, 0), "target": (0, 0, 0)}}}),
+                             ("materials/a/roughness", {"materials": {"a": {"roughness": numpy.nan}}}), ("lights/l/range", {"lights": {"l": {"range": numpy.nan}}})]:
+            with self.subTest(name):
+                self.refused(pertev.InputError, name, lambda: pertev.Scene(**{**good, **change}))
+
+    def test_what_is_no_scene_is_a_type_error_that_says_what_is_one(self):
+        for call in (lambda: pertev.render(None), lambda: pertev.render(3, **SMALL), lambda: pertev.load(None), lambda: pertev.Session(None),
+                     lambda: next(pertev.render_chunks(None, POSES)), lambda: pertev.load(self.scene)):
+            with self.assertRaises(TypeError) as caught:
+                call()
+            self.assertIn("built-in scene", str(caught.exception))
+
+    def test_an_array_of_out_is_that_of_color(self):
+        color = numpy.zeros((6, 8, 3), numpy.float32)
+        picture = pertev.render(self.scene, **SMALL, out=color)
+        self.assertIs(picture.color, color)
+        self.assertEqual(picture.hash, pertev.render(self.scene, **SMALL).hash)
+        self.assertTrue((color == pertev.render(self.scene, **SMALL).color).all())
+        for wrong in (color, {"color": color}):
+            self.refused(pertev.InputError, "out", lambda: pertev.render(self.scene, cameras=POSES, **SMALL, out=wrong))
+        with self.assertRaises(TypeError):
+            pertev.render(self.scene, **SMALL, out=pertev.render(self.scene, cameras=POSES, **SMALL))
 
     def test_unsuitable_out_arrays_are_refused(self):
         read_only = numpy.empty((6, 8, 3), numpy.float32)

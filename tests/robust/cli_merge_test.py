@@ -183,6 +183,29 @@ class Merge(CliTest):
         self.assertIn("pertev.exposure", self.info("all.exr"))
         self.assertNotIn("pertev.exposure", self.info("plain.exr"))
 
+    def test_another_tone_map_or_exposure_of_a_merge_is_that_of_one_run(self):
+        def said_of(name):
+            said = self.metadata(name)
+            return {key: json.loads(value) if key == "pertev.settings" else value for key, value in said.items()}
+
+        for made in (["--exposure", "auto"], ["--exposure", "0.5", "--tone-map", "neutral"]):
+            for i in (1, 2):
+                self.part(f"{i}.pvf", "--spp", "2", "--part", f"{i}/2", *made)
+            for shown in (["--tone-map", "aces"], ["--exposure", "1.25"], ["--tone-map", "srgb", "--exposure", "-2"]):
+                with self.subTest(made=made, shown=shown):
+                    as_one = [*(made[:2] if "--exposure" not in shown else []), *(made[2:] if "--tone-map" not in shown else []), *shown]
+                    self.part("whole.exr", "-o", "whole.png", "--spp", "2", *as_one)
+                    self.merge("1.pvf", "2.pvf", "-o", "all.exr", "-o", "all.png", "-o", "all.pvf", *shown)
+                    self.assertEqual(self.read("all.png"), self.read("whole.png"))
+                    self.assertEqual(said_of("all.exr"), said_of("whole.exr"))
+                    self.merge("all.pvf", "-o", "again.png")
+                    self.assertEqual(self.read("again.png"), self.read("whole.png"))
+        self.refuse(2, "merge", "1.pvf", "2.pvf", "-o", "x.png", "--exposure", "auto", says=["1.pvf", "--exposure auto", "meter"])
+        for flags, says in ((["--tone-map", "sepia"], "--tone-map sepia"), (["--exposure", "bright"], "--exposure bright")):
+            self.refuse(2, "merge", "1.pvf", "2.pvf", "-o", "x.png", *flags, says=[says])
+        self.succeed("render", "cornell-box", "-o", "colors.pvf", *SMALL, "--spp", "2", "--false-color", "luminance")
+        self.refuse(2, "merge", "colors.pvf", "-o", "x.png", "--tone-map", "agx", says=["--exposure"])
+
     def test_a_part_is_a_range_of_samples_and_may_be_empty(self):
         whole = self.part("alone.exr", "--spp", "3")
         names = self.parts(5, "--spp", "3")

@@ -90,6 +90,7 @@ void copy_chunk(Queue& to, BatchArrays& all, Queue& from, const BatchArrays& par
         copy(all.layers[i].values, part.layers[i].values, part.layers[i].channels);
     }
     if (part.ids.size() > 0) copy(all.ids, part.ids, 1);
+    std::ranges::copy(part.noisy_hashes, all.noisy_hashes.begin() + part.first);
 }
 
 } // namespace
@@ -102,6 +103,7 @@ SharedBatch render_batch(RenderOnDevices& together, PictureRenderer& pictures, c
     Queue& first_queue = pictures.queue();
     arrays.fit(first_queue, settings, batch.count());
     arrays.first = 0, arrays.pictures = batch.count();
+    arrays.noisy_hashes.assign(settings.denoise != Denoise::None ? batch.count() : 0, {});
     first_queue.wait(); // others write into the arrays
     ChunkRun run(batch.count(), chunk);
     SharedBatch result;

@@ -68,8 +68,12 @@ std::string json_of_display(const Display& display) {
                              json_string(shown->quantity), json_string(shown->unit), exact_number(shown->factor),
                              exact_number(shown->least), exact_number(shown->most));
     }
-    return fmt::format(R"({{"tone_map":"{}","exposure":{}{}}})", name_of(display.tone_map),
-                       exact_number(display.exposure_stops), colors);
+    std::vector<std::string> stops;
+    for (const auto& [curve, metered] : display.metered)
+        stops.push_back(fmt::format(R"("{}":{})", name_of(curve), exact_number(metered)));
+    const std::string metered = stops.empty() ? "" : fmt::format(R"(,"metered":{{{}}})", fmt::join(stops, ","));
+    return fmt::format(R"({{"tone_map":"{}","exposure":{}{}{}}})", name_of(display.tone_map),
+                       exact_number(display.exposure_stops), colors, metered);
 }
 
 template <NamedValue Value>
@@ -80,7 +84,14 @@ Value read_name(const JsonValue& value) {
 }
 
 Display read_display(const JsonValue& value) {
-    Display display = {read_name<ToneMap>(value.at("tone_map")), value.at("exposure").to_float(), std::nullopt};
+    Display display = {read_name<ToneMap>(value.at("tone_map")), value.at("exposure").to_float(), std::nullopt, {}};
+    if (const auto metered = value.find("metered")) {
+        for (const auto& [name, stops] : metered->members()) {
+            const auto curve = value_named<ToneMap>(name);
+            if (!curve) throw stops.error("unknown tone map");
+            display.metered.emplace_back(*curve, stops.to_float());
+        }
+    }
     if (const auto colors = value.find("false_colors")) {
         display.false_colors =
             FalseColors{std::string(colors->at("quantity").to_string()), std::string(colors->at("unit").to_string()),

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "image/auto_exposure.h"
 #include "settings/parse_values.h"
 #include "settings/value_names.h"
 
@@ -78,7 +79,10 @@ Display choose_display(const PictureOptions& options, Session& session, Sink& si
         stops = *requested;
     } else {
         sink.set_work("metering");
-        stops = session.meter(display.tone_map);
+        const Image light = session.metered_light();
+        for (const auto& [curve, name] : kToneMaps)
+            display.metered.emplace_back(curve, auto_exposure_stops(light, curve));
+        stops = *display.metered_stops(display.tone_map);
         const std::string_view name = name_of(display.tone_map);
         sink.note(fmt::format(
             "metered exposure: {:+.2f} stops, tone mapping by {} (`exposure={:.2f}` `tone_map={}` fixes both; "

@@ -213,6 +213,11 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
     return metadata;
 }
 
+std::optional<float> Display::metered_stops(ToneMap curve) const {
+    const auto found = std::ranges::find(metered, curve, &std::pair<ToneMap, float>::first);
+    return found == metered.end() ? std::nullopt : std::optional(found->second);
+}
+
 PictureFacts facts_of(const PictureRecord& record, std::span<const PixelIds> ids) {
     PictureRecord not_shown = record;
     not_shown.display.reset();
@@ -240,6 +245,12 @@ PictureFacts facts_of(const PictureRecord& record, std::span<const PixelIds> ids
     }
     append(facts.origin, id_metadata(scene, ids));
     return facts;
+}
+
+ExrMetadata display_metadata(const Display& display) {
+    PictureRecord shown;
+    shown.display = display;
+    return facts_of(shown, {}).shown;
 }
 
 ExrMetadata picture_metadata(const PictureFacts& facts, const RenderStats& stats, const std::string& hash) {

@@ -63,7 +63,11 @@ struct FalseColors {
 struct Display {
     ToneMap tone_map = ToneMap::Agx;
     float exposure_stops = 0;
-    std::optional<FalseColors> false_colors; // replaces tones and exposure
+    std::optional<FalseColors> false_colors;             // replaces tones and exposure
+    std::vector<std::pair<ToneMap, float>> metered = {}; // stops by each tone map, if the light meter has set them
+
+    /// Returns the metered stops for a tone map; none if there are none.
+    std::optional<float> metered_stops(ToneMap curve) const;
 };
 
 struct PictureRecord {
@@ -110,6 +114,8 @@ struct PictureFacts {
 };
 /// `ids` are those of the picture; none without a layer of ids.
 PictureFacts facts_of(const PictureRecord& record, std::span<const PixelIds> ids);
+/// Returns PictureFacts::shown of a display.
+ExrMetadata display_metadata(const Display& display);
 
 /// Entries of the facts, and of the results. `hash` is that of the film's picture, denoised or not.
 ExrMetadata picture_metadata(const PictureFacts& facts, const RenderStats& stats, const std::string& hash);

@@ -1,4 +1,4 @@
-#include "session/film_file/merge_picture.h"
+#include "session/pictures/merge_picture.h"
 
 #include <algorithm>
 
@@ -38,11 +38,13 @@ MergedPicture merge_picture(std::span<const std::string> files, const MergeOptio
     if (parts.has_gaps()) refuse_film_with_gaps(outputs);
     Queue queue = Queue::make_cpu();
     MergedPicture picture;
-    picture.facts = parts.header().facts;
+    FilmHeader header = parts.header();
+    show_merged(options.display, files.front(), header.facts);
+    picture.facts = header.facts;
     if (!writes_tone_mapped(outputs)) picture.facts.shown.clear(); // which only film files have
     Film film = parts.film(queue, sink);
-    picture.films = write_film_files(outputs, parts.header(), film);
-    picture.result = result_of(parts.header(), film, queue);
+    picture.films = write_film_files(outputs, header, film);
+    picture.result = result_of(header, film, queue);
     return picture; // without the film, because writing takes memory too
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "session/film_file/merge_films.h"
+#include "session/pictures/show_merged.h"
 
 namespace pertev {
 
@@ -20,6 +21,7 @@ struct MergedPicture {
 struct MergeOptions {
     bool is_partial = false; // samples may be missing
     std::string denoise;     // the denoiser of the picture, for which the films must have been rendered; empty: theirs
+    MergedDisplay display = {};
 };
 
 /// Checks the names of the outputs, merges `files`, and writes the film files among the outputs; write_picture() writes

@@ -1,0 +1,79 @@
+#include "session/pictures/show_merged.h"
+
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "session/pictures/choose_display.h"
+#include "settings/setting_table.h"
+#include "settings/settings_file.h"
+#include "settings/value_names.h"
+
+namespace pertev {
+namespace {
+
+std::string& text_named(const std::string& name, ExrMetadata& metadata) {
+    const auto found = std::ranges::find(metadata, name, &ExrMetadata::value_type::first);
+    auto& entry = found != metadata.end() ? *found : metadata.emplace_back(name, std::string());
+    return std::get<std::string>(entry.second);
+}
+
+/// Lets the names of settings by their sources say that the caller has given one.
+void note_given(const std::string& setting, ExrMetadata& origin) {
+    for (const char* source : {"pertev.by_caller", "pertev.by_default", "pertev.by_scene", "pertev.by_settings"}) {
+        std::string& text = text_named(source, origin);
+        const std::vector<std::string> words = words_of(text);
+        std::set<std::string> names(words.begin(), words.end());
+        names.erase(setting);
+        if (source == std::string_view("pertev.by_caller")) names.insert(setting);
+        text = fmt::format("{}", fmt::join(names, " "));
+    }
+    std::erase_if(origin, [](const auto& entry) {
+        const auto* const text = std::get_if<std::string>(&entry.second);
+        return text != nullptr && text->empty() && entry.first.starts_with("pertev.by_");
+    });
+}
+
+} // namespace
+
+void show_merged(const MergedDisplay& requested, const std::string& film, PictureFacts& facts) {
+    if (requested.is_empty()) return;
+    PictureOptions options;
+    const auto set = [&](const std::string& name, const std::string& value) {
+        if (!value.empty()) set_value(options, *find_setting(name), std::vector{value});
+    };
+    set("tone_map", requested.tone_map);
+    set("exposure", requested.exposure);
+    const Display before = facts.display.value_or(Display{});
+    Display display = {.tone_map =
+                           options.tone_map.value_or(before.false_colors ? Display{}.tone_map : before.tone_map),
+                       .metered = before.metered};
+    const std::optional<float> requested_stops = requested_exposure(options);
+    if (requested_stops) {
+        display.exposure_stops = *requested_stops;
+        display.metered.clear();
+    } else if (const auto metered = before.metered_stops(display.tone_map)) {
+        display.exposure_stops = *metered;
+    } else if (requested.exposure.empty() && !before.false_colors && facts.display) {
+        display.exposure_stops = before.exposure_stops; // a fixed one, which holds for every tone map
+    } else {
+        Remark remark(FileLocation{film}, "the part was rendered without the light meter, which has to see the scene; "
+                                          "state a number of stops, or render the parts with `exposure=auto`");
+        remark.setting = "exposure", remark.value = requested.exposure;
+        throw Error(ErrorCode::BadInput, std::move(remark));
+    }
+    facts.display = display;
+    facts.shown = display_metadata(display);
+    for (const char* name : {"tone_map", "exposure"}) {
+        if ((name == std::string_view("exposure") ? requested.exposure : requested.tone_map).empty()) continue;
+        note_given(name, facts.origin);
+        for (auto& [entry, value] : facts.origin) {
+            auto* const text = std::get_if<std::string>(&value);
+            if (text != nullptr && entry == "pertev.settings") *text = with_setting(*text, options, name);
+        }
+    }
+}
+
+} // namespace pertev
