@@ -38,9 +38,11 @@ MEMBERS = {"ids": "NDArray[numpy.uint32]", "layers": "dict[str, NDArray[Any]]", 
            "samples": "int", "seconds": "float", "name": "str", "params": "Params", "frame": "int | None",
            "pose": "NDArray[numpy.float64]", "K": "NDArray[numpy.float64]", "bounds": "NDArray[numpy.float64]",
            "instance_names": "list[str]", "material_names": "list[str]", "arrays": "dict[str, Any]", "shape": "tuple[int, ...]", "__cuda_array_interface__": "dict[str, Any]"}
-OF_BATCHES = {"color": "Any", "albedo": "Any", "normal": "Any", "depth": "Any", "distance": "Any", "position": "Any", "ids": "Any"}
+OF_BATCHES = {"color": "Any", "albedo": "Any", "normal": "Any", "depth": "Any", "distance": "Any", "position": "Any", "ids": "Any",
+              "info": "dict[str, Any] | list[dict[str, Any]]", "hash": "str | list[str]"}
 SIGNATURES = {
-    "merge": "(files: _Text | Sequence[_Text], *, output: _Text | Sequence[_Text] = (), partial: bool = False) -> Result",
+    "merge": "(files: _Text | Sequence[_Text], *, output: _Text | Sequence[_Text] = (), partial: bool = False, "
+             "tone_map: _Curve | None = None, exposure: float | str | None = None) -> Result",
     "read": "(path: _Text) -> _Floats",
     "read_cameras": "(path: _Text, *, size: tuple[int, int] | None = None, "
                     "convention: Literal['opengl', 'opencv', 'blender'] | None = None) -> Cameras",
@@ -130,7 +132,7 @@ def main():
     lines += class_of("Result", core.Result, "", properties_of(core.Result))
     lines += class_of("DeviceArray", core.DeviceArray, "", properties_of(core.DeviceArray))
     lines += class_of("BatchResult", core.BatchResult, "", properties_of(core.BatchResult, {**MEMBERS, **OF_BATCHES}))
-    lines += class_of("Cameras", package.Cameras, "", ["poses: Any", "K: Any", "settings: dict[str, Any]", "names: list[str] | None"])
+    lines += class_of("Cameras", package.Cameras, "", ["poses: Any", "K: Any", "settings: dict[str, Any]", "names: list[str] | None", "size: str | None"])
     lines += class_of("Params", package.Params, "(Mapping[str, Any])")
     others = [row for row in rows if row["name"] != "environment"] # which may be an array too
     made_of = takes_settings("__init__", ["self,", "source: _Text | None = None,", "*,", *PARTS], "None", others, scene)
@@ -140,11 +142,11 @@ def main():
                       takes_settings("set", ["self,", "*,"], "None", all_rows, session.set))
     lines += class_of("Viewer", viewer, "", ["url: str"])
     lines += takes_settings("load", ["scene: _Text,", "*,"], "Scene", rows, package.load)
-    lines += takes_settings("render", ["scene: Scene | _Text,", "*,", "cameras: Cameras | Any = None,", *BATCH,
+    lines += takes_settings("render", ["scene: Scene | _Text,", "*,", "cameras: Cameras | _Text | Any = None,", *BATCH,
                                        "output: _Text | Sequence[_Text] = (),", "settings: _Text | None = None,",
-                                       "out: Mapping[str, Any] | BatchResult | None = None,", "on_device: bool = False,"],
+                                       "out: Mapping[str, Any] | BatchResult | Any = None,", "on_device: bool = False,"],
                             "Any", of_parts, package.render)
-    lines += takes_settings("render_chunks", ["scene: Scene | _Text,", "cameras: Cameras | Any,", "*,",
+    lines += takes_settings("render_chunks", ["scene: Scene | _Text,", "cameras: Cameras | _Text | Any,", "*,",
                                               "chunk: int | None = None,", *BATCH, "settings: _Text | None = None,"],
                             "Iterator[BatchResult]", rows, package.render_chunks)
     lines += takes_settings("scene", ["name: str,", "*,"], "Scene", rows, package.scene)

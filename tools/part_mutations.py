@@ -95,6 +95,8 @@ MUTATIONS = [
      ("src/session/devices/device_worker.cpp", "if (steps_number_ == picture.number) return steps_->forget_samples();", "if (steps_number_ > 0) return steps_->forget_samples();")),
     ("guides of a checkpoint are not those of its samples", "consistency/oidn",
      ("src/session/film_render.cpp", "if (settings_.denoise != Denoise::None && pictures_.sharing() == nullptr) {", "if (settings_.denoise != Denoise::None) {")),
+    ("the first rank denoises by its own guides", "robust/cli_ranks",
+     ("src/session/mpi/ranks.cpp", "into.targets()[i]->add_bytes(0, all.targets()[i]->bytes());", "into.targets()[i]->add_bytes(0, film.film().targets()[i]->bytes());")),
     ("several devices denoise by what adds floats", "robust/cli_devices python/devices",
      ("src/session/devices/machine.cpp", "if (!adds_exactly(options.render.denoise))", "if (false)")),
     ("a merge forgets the requested tone map", "robust/cli_merge python/parts",

@@ -137,7 +137,7 @@ int write_one(const RenderFlags& flags, const RenderSettings& settings, const Pi
     if (ranks != nullptr) {
         if (!ranks->all(!cut_short)) return exit_status(ErrorCode::Interrupted); // each keeps its part
         reporter.set_work("summing the films of all ranks");
-        ranks->sum(flags.render.samples, kept->film(), result);
+        ranks->sum(flags.render.samples, kept->film_render(), result);
         if (ranks->rank() > 0) {
             if (ranks->all(true)) Generations(flags.checkpoint).remove(); // the whole picture is written
             return 0;

@@ -70,6 +70,15 @@ class Parts(unittest.TestCase):
         with self.assertRaises(AttributeError):
             again.K
 
+    def test_a_merge_is_shown_as_requested(self):
+        shown = {"tone_map": "aces", "exposure": -1.5}
+        pertev.render(self.scene, spp=4, output=self.folder / "whole.png", **{**SMALL, **shown})
+        merged = pertev.merge(self.parts(2, spp=4), output=self.folder / "a.png", **shown)
+        self.assertEqual((self.folder / "a.png").read_bytes(), (self.folder / "whole.png").read_bytes())
+        self.assertEqual((merged.info["tone_map"], merged.info["exposure"]), ("aces", -1.5))
+        for setting, wrong in (("tone_map", "sepia"), ("exposure", "bright"), ("exposure", "auto")):
+            self.refused(pertev.InputError, setting, lambda: pertev.merge([self.folder / "1.pvf", self.folder / "2.pvf"], **{setting: wrong}))
+
     def test_the_programs_parts_and_those_of_a_call_are_parts_of_one_picture(self):
         whole = pertev.render(self.scene, spp=6, **SMALL)
         pertev.render(self.scene, spp=6, part=(0, 2), part_base=0, output=self.folder / "0.pvf", **SMALL)

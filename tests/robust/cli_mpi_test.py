@@ -16,6 +16,7 @@ import unittest
 from cli_run import PATIENCE_S, PROGRAM, UNMETERED, CliTest, main
 
 MPIRUN = ["mpirun", "--oversubscribe", "--allow-run-as-root", "--bind-to", "none"]
+STAND_IN = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(PROGRAM))), "tests/liboidn_stand_in.so")
 SMALL = ["--size", "24x18", "--device", "cpu", "--threads", "1", *UNMETERED]
 
 
@@ -124,6 +125,14 @@ class Ranks(CliTest):
         self.assertEqual(self.info("x.exr")["pertev.hash"], whole["hash"])
         sent = json.loads(ip("-n", names[1], "-s", "-j", "link", "show", "vb"))[0]["stats64"]["tx"]["bytes"]
         self.assertGreater(sent, 24 * 18 * 4 * 16)
+
+    @unittest.skipUnless(has_mpi() and os.path.exists(STAND_IN), "no mpirun, a build without MPI, or no stand-in for Open Image Denoise")
+    def test_the_first_rank_denoises_the_picture_of_all(self):
+        self.environment["PERTEV_OIDN"] = STAND_IN
+        self.check(3, "--spp", 20, "--denoise", "oidn")
+        self.assertEqual(self.info("x.exr")["pertev.denoiser"], self.info("whole.exr")["pertev.denoiser"])
+        self.succeed("render", "cornell-box", "-o", "plain.png", *SMALL, "--spp", "20")
+        self.assertNotEqual(self.read("x.png"), self.read("plain.png"))
 
     @unittest.skipUnless(has_mpi(), "no mpirun, or a build without MPI")
     def test_what_ranks_cannot_do_is_refused(self):

@@ -145,28 +145,56 @@ bool Ranks::all(bool here) const {
     return least == 1;
 }
 
-void Ranks::sum(uint32_t spp, Film& film, RenderResult& result) const {
+void Ranks::sum_targets(Film& film) const {
     const SumOperation sums;
     for (const auto& target : film.targets()) {
         const std::size_t stride = target->stride(), most = std::max<std::size_t>(kAtOnce * 16 / stride, 1) * stride;
         for (std::size_t first = 0; first < target->byte_count(); first += most)
             add_from_others(*this, sums, *target, first, std::min(most, target->byte_count() - first));
     }
+}
+
+/// Sums films of which the first rank's denoiser has its own part, and lets it have all.
+void Ranks::sum_denoised(uint32_t spp, FilmRender& film, const RayCounts& rays, double seconds) const {
+    const RenderSettings& settings = film.settings();
+    Queue queue = Queue::make_cpu();
+    Film all = make_film(queue, settings);
+    all.hold(std::make_unique<DenoiserTarget>(denoiser_state_size(settings.denoise, settings.width, settings.height)));
+    for (std::size_t i = 0; i < all.targets().size(); ++i)
+        all.targets()[i]->set_bytes(film.film().targets()[i]->bytes());
+    sum_targets(all);
+    if (rank_ > 0) return;
+    const auto take = [&](Film& into) {
+        for (std::size_t i = 0; i < all.targets().size(); ++i)
+            into.targets()[i]->add_bytes(0, all.targets()[i]->bytes());
+    };
+    film.restore({0, spp}, take, rays, seconds);
+}
+
+void Ranks::sum(uint32_t spp, FilmRender& film, RenderResult& result) const {
     const uint64_t rays[] = {result.rays.camera, result.rays.bounce, result.rays.shadow};
     uint64_t all_rays[3] = {};
     double seconds = 0;
     MPI_Reduce(rays, all_rays, 3, MPI_UINT64_T, MPI_SUM, 0, MPI_COMM_WORLD);
     MPI_Reduce(&result.render_seconds, &seconds, 1, MPI_DOUBLE, MPI_SUM, 0, MPI_COMM_WORLD);
+    const RayCounts sum_of_rays = {all_rays[0], all_rays[1], all_rays[2]};
+    const bool is_denoised = film.settings().denoise != Denoise::None;
+    if (is_denoised) {
+        sum_denoised(spp, film, sum_of_rays, seconds);
+    } else {
+        sum_targets(film.film());
+    }
     if (rank_ > 0) return;
-    film.set_samples({0, spp});
+    film.film().set_samples({0, spp});
     const bool is_transparent = result.picture.channels == 4;
     result.samples = spp;
-    result.rays = {all_rays[0], all_rays[1], all_rays[2]};
+    result.rays = sum_of_rays;
     result.render_seconds = seconds;
-    result.invalid_samples = film.invalid_samples();
-    result.picture = film.picture(is_transparent);
+    result.invalid_samples = film.film().invalid_samples();
+    result.picture = film.film().picture(is_transparent);
     result.layers = film.layers();
-    result.ids = film.ids();
+    result.ids = film.film().ids();
+    if (is_denoised) result.denoised = film.denoised(), result.denoiser = film.denoiser();
 }
 
 #else
@@ -182,7 +210,7 @@ std::unique_ptr<Ranks> Ranks::join() {
 
 Ranks::~Ranks() { static_cast<void>(rank_); }
 bool Ranks::all(bool here) const { return here; }
-void Ranks::sum(uint32_t, Film&, RenderResult&) const {}
+void Ranks::sum(uint32_t, FilmRender&, RenderResult&) const {}
 
 #endif
 

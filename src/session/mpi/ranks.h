@@ -10,8 +10,8 @@
 #include <memory>
 #include <string>
 
+#include "session/film_render.h"
 #include "settings/picture_options.h"
-#include "settings/render_settings.h"
 
 namespace pertev {
 
@@ -37,11 +37,14 @@ public:
     /// Returns whether all ranks call it with true. Each rank calls it, and waits for the others.
     bool all(bool here) const;
     /// Adds the films and the statistics of the other ranks to those of the first one, which then are those of `spp`
-    /// samples of each pixel. Each rank calls it. Throws Error(OutOfMemory, DeviceFault).
-    void sum(uint32_t spp, Film& film, RenderResult& result) const;
+    /// samples of each pixel, denoised if that is set. Each rank calls it. Throws Error(OutOfMemory, DeviceFault).
+    void sum(uint32_t spp, FilmRender& film, RenderResult& result) const;
 
 private:
     Ranks(uint32_t rank, uint32_t count) : rank_(rank), count_(count) {}
+
+    void sum_targets(Film& film) const;
+    void sum_denoised(uint32_t spp, FilmRender& film, const RayCounts& rays, double seconds) const;
 
     uint32_t rank_, count_;
 };

@@ -21,6 +21,7 @@ public:
     /// seconds, where a failure is a warning, and in the end.
     RenderResult render(Sink& sink);
     Film& film() { return film_.film(); }
+    FilmRender& film_render() { return film_; }
     /// Returns the checkpoint's file, with the reason if it could not be written in the end.
     const WrittenFile& written() const { return written_; }
 
