@@ -35,7 +35,7 @@ add_custom_command(OUTPUT ${PERTEV_GENERATED_DIR}/embedded_files.cpp
   COMMENT "Embedding the laboratory's page" VERBATIM)
 target_sources(pertev_lab PRIVATE ${PERTEV_GENERATED_DIR}/embedded_files.cpp)
 
-# Tables of lobes: 10 s of one core, once. Sums stand side by side for the vectoriser, which divides where masks say no.
+# Tables of lobes: 30 s of one core, once. Sums stand side by side for the vectoriser, which divides where masks say no.
 add_executable(pertev_make_lobe_tables ${PROJECT_SOURCE_DIR}/tools/make_lobe_tables.cpp)
 target_link_libraries(pertev_make_lobe_tables PRIVATE fmt::fmt TBB::tbb)
 target_compile_options(pertev_make_lobe_tables PRIVATE -O3 -fno-trapping-math -fno-sanitize=all)
@@ -43,8 +43,9 @@ target_link_options(pertev_make_lobe_tables PRIVATE -fno-sanitize=all)
 set_target_properties(pertev_make_lobe_tables PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PERTEV_GENERATED_DIR})
 set(lobes ${PERTEV_GENERATED_DIR}/shading/lobes)
 file(MAKE_DIRECTORY ${lobes})
-set(lobe_files energy_table_data.h sheen_table_data.h lobe_table_data.cpp metal_lost.inl metal_schlick.inl metal_average_lost.inl
-    metal_average_schlick.inl glass_lost.inl glass_average_lost.inl albedo.inl)
+set(lobe_files energy_table_data.h sheen_table_data.h beckmann_table_data.h lobe_table_data.cpp metal_lost.inl metal_schlick.inl metal_average_lost.inl
+    metal_average_schlick.inl glass_lost.inl glass_average_lost.inl albedo.inl beckmann_lost.inl beckmann_schlick.inl beckmann_average_lost.inl
+    beckmann_glass_lost.inl beckmann_average_glass_lost.inl)
 list(TRANSFORM lobe_files PREPEND ${lobes}/)
 add_custom_command(OUTPUT ${lobe_files}
   COMMAND pertev_make_lobe_tables ${lobes} COMMENT "Integrating the tables of lobes" VERBATIM)

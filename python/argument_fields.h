@@ -93,7 +93,7 @@ public:
         return values;
     }
     /// Returns the index of a text among names.
-    uint32_t one_of(const char* field, const std::string& otherwise, std::initializer_list<std::string_view> names) {
+    uint32_t one_of(const char* field, const std::string& otherwise, std::initializer_list<const char*> names) {
         const std::string value = text(field, otherwise);
         const auto found = std::ranges::find(names, value);
         if (found == names.end()) {

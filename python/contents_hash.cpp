@@ -26,8 +26,9 @@ std::string hash_of_contents(const Scene& scene) {
     }
     for (const Material& material : scene.materials) {
         add_text(material.name);
-        add_all(std::vector{static_cast<uint8_t>(material.kind), static_cast<uint8_t>(material.alpha_mode),
-                            uint8_t(material.double_sided), uint8_t(material.two_sided_emission)});
+        visit_choices(material, [&](auto choice, auto&&...) { hasher.add_value(static_cast<uint8_t>(choice)); });
+        add_all(std::vector{uint8_t(material.double_sided), uint8_t(material.two_sided_emission),
+                            uint8_t(material.thin_walled)});
         visit_parameters(
             material, [&](const float& value, auto&&...) { hasher.add_value(value); },
             [&](const TextureRef& texture, const char*) { hasher.add_value(texture.image); });

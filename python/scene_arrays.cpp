@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "python/argument_fields.h"
 #include "python/transform_values.h"
+#include "scene/metals.h"
 #include "scene/scene_origin.h"
 #include "scene/validate/validate.h"
 #include "session/degrees.h"
@@ -80,9 +81,20 @@ TextureImage image_of(const ArrayArgument& array) {
 
 Material material_of(ArgumentFields& fields, std::vector<TextureImage>& images) {
     Material material;
-    material.kind = static_cast<MaterialKind>(fields.one_of(
-        "kind", "metallic_roughness", {"diffuse", "conductor", "dielectric", "metallic_roughness", "unlit"}));
-    material.alpha_mode = static_cast<AlphaMode>(fields.one_of("alpha_mode", "opaque", {"opaque", "mask", "blend"}));
+    material.kind = MaterialKind::MetallicRoughness;
+    visit_choices(material, [&](auto& choice, const char* name, std::initializer_list<const char*> names) {
+        const std::string otherwise = names.begin()[static_cast<int>(choice)];
+        choice = static_cast<std::remove_reference_t<decltype(choice)>>(fields.one_of(name, otherwise, names));
+    });
+    if (const std::string name = fields.text("metal", ""); !name.empty()) {
+        const MeasuredMetal* const metal = find_metal(name);
+        if (metal == nullptr) {
+            throw Error(ErrorCode::BadInput, fields.path_of("metal"), name, "expected one of " + names_of_metals());
+        }
+        material.kind = MaterialKind::Conductor;
+        material.eta = metal->eta;
+        material.k = metal->k;
+    }
     fields.flag("double_sided", material.double_sided);
     fields.flag("two_sided_emission", material.two_sided_emission);
     fields.flag("thin_walled", material.thin_walled);

@@ -1,5 +1,6 @@
 // Writes the tables of lobes into the folder that it is given: energy_table_data.h, which says how much energy GGX
-// microfacets lose to single scattering, and sheen_table_data.h, the directional albedo of the sheen lobe. The numbers
+// microfacets lose to single scattering, beckmann_table_data.h, the same of Beckmann's, and sheen_table_data.h, the
+// directional albedo of the sheen lobe. The numbers
 // stand in *.inl, which only lobe_table_data.cpp and device code read.
 //
 // The build runs it. Axes and meaning are stated in src/shading/lobes/energy_tables.h and sheen_lobe.h, which must
@@ -19,7 +20,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -27,40 +27,16 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include "beckmann_integrals.h"
+
 namespace {
 
-using std::numbers::pi;
-using Values = std::vector<double>;
-
 constexpr int kMuNodes = 36, kRoughnessNodes = 20, kIorNodes = 14, kAverageNodes = 64;
+constexpr int kBeckmannRoughnessNodes = 10, kBeckmannIorNodes = 7;
 constexpr double kAlphaMin = 1e-3, kIorMin = 1.1, kIorMax = 3, kOvershoot = 2e-4;
 constexpr int kSheenMuNodes = 24, kSheenRoughnessNodes = 16;
 constexpr double kSheenRoughnessMin = 0.2;
-constexpr uint64_t kHash = 0x2d378497c66a387d; // hash of the numbers of all tables
-
-struct Node {
-    double x, weight;
-};
-
-/// Returns the nodes of Gauss and Legendre in [0, 1].
-std::vector<Node> gauss_legendre(int count) {
-    std::vector<Node> nodes;
-    for (int i = count; i-- > 0;) {
-        double z = std::cos(pi * (i + 0.75) / (count + 0.5)), slope = 1;
-        for (int step = 0; step < 10; ++step) { // Newton's
-            double p = 1, before = 0;
-            for (int k = 0; k < count; ++k) {
-                const double next = ((2 * k + 1) * z * p - k * before) / (k + 1);
-                before = p;
-                p = next;
-            }
-            slope = count * (z * p - before) / (z * z - 1);
-            z -= p / slope;
-        }
-        nodes.push_back({(z + 1) / 2, 1 / ((1 - z * z) * slope * slope)});
-    }
-    return nodes;
-}
+constexpr uint64_t kHash = 0xc661878e4bd84096; // hash of the numbers of all tables
 
 constexpr int kHeights = 96, kAngles = 48; // sizes of the rule over the cap of visible normals
 
@@ -242,12 +218,12 @@ double interpolate(const double* row, int nodes, double position) {
 }
 
 /// Returns the row along mu at roughness `r` of a quantised table.
-Values row_at(const double* table, double r) {
+Values row_at(const double* table, double r, int roughnesses = kRoughnessNodes) {
     Values row(kMuNodes);
     for (int x = 0; x < kMuNodes; ++x) {
-        Values column(kRoughnessNodes);
-        for (int i = 0; i < kRoughnessNodes; ++i) column[i] = table[i * kMuNodes + x] / 65535;
-        row[x] = interpolate(column.data(), kRoughnessNodes, r);
+        Values column(roughnesses);
+        for (int i = 0; i < roughnesses; ++i) column[i] = table[i * kMuNodes + x] / 65535;
+        row[x] = interpolate(column.data(), roughnesses, r);
     }
     return row;
 }
@@ -267,10 +243,10 @@ double average(double alpha, const Function& of) {
 }
 
 /// Adds the averages of what is lost, over alpha, of a table of metal or one index.
-void add_average_lost(const double* table, Values& averages) {
+void add_average_lost(const double* table, Values& averages, int roughnesses = kRoughnessNodes) {
     for (int i = 0; i < kAverageNodes; ++i) {
         const double alpha = alpha_at(average_r(i));
-        const Values row = row_at(table, average_r(i));
+        const Values row = row_at(table, average_r(i), roughnesses);
         averages.push_back(average(alpha, [&](double, double x) { return interpolate(row.data(), kMuNodes, x); }) /
                            alpha);
     }
@@ -386,6 +362,45 @@ TableGroup energy_tables() {
          {"float", "glass_average_lost", average_glass}}};
 }
 
+TableGroup beckmann_table() {
+    const Grid grid{{1, kRoughnessNodes, kMuNodes}};
+    const Values lost = quantised(grid.lowered(grid.tabulate([](Values& column, double r, double x) {
+        column[0] = 1 - reflected_by_beckmann(mu_at(x, alpha_at(r)), alpha_at(r))[0];
+    })));
+    Values schlick = grid.lowered(grid.tabulate([](Values& column, double r, double x) { // Its form is that of GGX.
+        const double mu = mu_at(x, alpha_at(r));
+        const std::array<double, 2> reflected = reflected_by_beckmann(mu, alpha_at(r));
+        column[0] = 0.5 * (1 - (reflected[1] / reflected[0] - std::pow(1 - mu, 5)));
+    }));
+    for (double& v : schlick) v = 1 - v;
+    Values average_lost;
+    add_average_lost(lost.data(), average_lost);
+    const Grid glass{{kBeckmannIorNodes, kBeckmannRoughnessNodes, kMuNodes}};
+    Values glass_lost, average_glass;
+    for (const bool inside : {false, true}) {
+        Values etas;
+        for (int q = 0; q < glass.size(0); ++q) {
+            const double eta = eta_at(glass.at(0, q));
+            etas.push_back(inside ? 1 / eta : eta);
+        }
+        const Values table = quantised(glass.lowered(glass.tabulate([&](Values& column, double r, double x) {
+            column = lost_by_beckmann_glass(mu_at(x, alpha_at(r)), alpha_at(r), etas);
+        })));
+        for (int q = 0; q < kBeckmannIorNodes; ++q) {
+            add_average_lost(&table[glass.index(q, 0, 0)], average_glass, kBeckmannRoughnessNodes);
+        }
+        glass_lost.insert(glass_lost.end(), table.begin(), table.end());
+    }
+    return {"beckmann_table",
+            fmt::format("inline constexpr int kRoughnessNodes = {}, kIorNodes = {}; // of glass\n",
+                        kBeckmannRoughnessNodes, kBeckmannIorNodes),
+            {{"uint16_t", "beckmann_lost", lost},
+             {"uint16_t", "beckmann_schlick", quantised(schlick)},
+             {"float", "beckmann_average_lost", average_lost},
+             {"uint16_t", "beckmann_glass_lost", glass_lost},
+             {"float", "beckmann_average_glass_lost", average_glass}}};
+}
+
 TableGroup sheen_table() {
     const Grid grid{{1, kSheenRoughnessNodes, kSheenMuNodes}};
     // Rather too much than too little, since what the sheen takes the lobes beneath do not get: turned over, so that
@@ -410,7 +425,7 @@ int main(int count, char** arguments) {
         return 2;
     }
     const std::string folder = std::string(arguments[1]) + "/";
-    const TableGroup groups[] = {energy_tables(), sheen_table()};
+    const TableGroup groups[] = {energy_tables(), sheen_table(), beckmann_table()};
     std::string all_numbers, definitions = kOrigin;
     for (const TableGroup& group : groups) {
         for (const Table& table : group.tables) all_numbers += table.numbers();

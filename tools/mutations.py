@@ -2,9 +2,10 @@
 file, text that is there once, and its replacement."""
 
 import format_mutations
+import lobe_mutations
 import part_mutations
 
-MUTATIONS = part_mutations.MUTATIONS + format_mutations.MUTATIONS + [
+MUTATIONS = part_mutations.MUTATIONS + format_mutations.MUTATIONS + lobe_mutations.MUTATIONS + [
     ("shadow rays without a time", "consistency/shutter", ("src/integrators/path/path_loop.inl", "paths_[shadow_paths_[i]].time}", "kAtRest}")),
     ("weights without the ways that end earlier", "statistical/bidirectional",
      ("src/integrators/subpaths/subpath_memory.h", "last + earlier * squared_density(reverse_pdf)", "last + 0.0f * earlier * squared_density(reverse_pdf)")),
@@ -173,16 +174,14 @@ MUTATIONS = part_mutations.MUTATIONS + format_mutations.MUTATIONS + [
      ("src/render/particle_scatter.h", "const float ior = surface.bsdf.inner_ior();", "const float ior = 1.5f;")),
     ("light through a pane that its reflection does not reduce", "statistical/bsdf_energy",
      ("src/shading/lobes/thin_lobe.h", "(transmittance.light_of_delta() * share", "(transmittance.light * share")),
-    ("a weight of the reflection that leaves it at grazing angles", "statistical/bsdf_energy",
-     ("src/shading/make_reflection.h", "SpecularLobe{p.base_color, metal, alpha, f0, p.weight}", "SpecularLobe{p.base_color, metal, alpha, f0, 1}")),
     ("a solid that absorbs only what leaves it outwards", "statistical/solid_absorption", ("src/device_scene/solid_absorption.h", "if (material.absorbs() && points_inwards(", "if (material.absorbs() && !points_inwards(")),
     ("of two solids that overlap, the later one absorbs", "statistical/solid_absorption", ("src/device_scene/solid_absorption.h", "start.instance <= end.instance;", "start.instance > end.instance;")),
     ("particles that no solid absorbs", "statistical/solid_absorption", ("src/integrators/subpaths/subpath_vertex.h", "((weights = weights * passed), ...);", "static_cast<void>(passed);")),
     ("a film on metal of another phase", "statistical/thin_film", ("src/shading/lobes/thin_film.h", "const float path = 2.0f * film.ior", "const float path = 1.9f * film.ior")),
-    ("stretched microfacets sampled as even ones", "statistical/bsdf_sampling", ("src/shading/lobes/ggx_widths.h", "const Vec3 m = {x * (s * cos_phi + w.x), y *", "const Vec3 m = {x * (s * cos_phi + w.x), x *")),
+    ("stretched microfacets sampled as even ones", "statistical/bsdf_sampling", ("src/shading/lobes/microfacets.h", "const Vec3 m = {x * (s * cos_phi + w.x), y *", "const Vec3 m = {x * (s * cos_phi + w.x), x *")),
     ("a share of glass on all of the rest", "statistical/bsdf_energy", ("src/shading/lobes/glass_lobe.h", "transmittance.light = transmittance.light * (1.0f - weight);", "")),
     ("light through a leaf that its reflection does not reduce", "statistical/bsdf_energy", ("src/shading/lobes/translucent_lobe.h", "(transmittance.light_of_delta() * share", "(transmittance.light * share")),
-    ("the strength of anisotropy without its square", "statistical/khronos_albedo", ("src/shading/lobes/ggx_widths.h", "(1.0f - alpha) * (strength * strength)", "(1.0f - alpha) * strength")),
+    ("the strength of anisotropy without its square", "statistical/khronos_albedo", ("src/shading/lobes/microfacets.h", "(1.0f - alpha) * (strength * strength)", "(1.0f - alpha) * strength")),
     ("the thickness of a film from the red channel", "unit/read_gltf_layers", ("src/formats/gltf/material_layers.cpp", '"iridescenceThicknessTexture", 1)', '"iridescenceThicknessTexture", 0)')),
     ("a solid's colour without its distance", "unit/read_gltf_materials", ("src/formats/gltf/material_layers.cpp", "    material.transmission_depth = distance;\n", "")),
     ("the roughness of sheen from the red channel", "unit/read_gltf_layers",

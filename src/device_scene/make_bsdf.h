@@ -84,7 +84,11 @@ HD_CALL inline Bsdf make_any_bsdf(const SceneView& scene, const MaterialParamete
                                        .roughness = roughness,
                                        .ior = material.ior,
                                        .anisotropy = axes.anisotropy,
-                                       .along = axes.along};
+                                       .along = axes.along,
+                                       .diffuse_roughness = material.base_diffuse_roughness,
+                                       .dispersion = material.dispersion()};
+    reflection.is_beckmann = material.microfacet_distribution == MicrofacetDistribution::Beckmann;
+    reflection.is_single = material.energy == MicrofacetEnergy::Single;
     if (material.has_thin_film()) {
         const float full = number(1, material.thin_film_thickness_texture);
         reflection.film = {number(material.thin_film_weight, material.thin_film_texture), material.thin_film_ior,
@@ -94,10 +98,10 @@ HD_CALL inline Bsdf make_any_bsdf(const SceneView& scene, const MaterialParamete
     switch (material.kind) {
     case MaterialKind::Diffuse:
     case MaterialKind::Unlit:
-        bsdf = make_diffuse(base_color);
+        bsdf = make_rough_diffuse(base_color, material.base_diffuse_roughness);
         break;
     case MaterialKind::Conductor:
-        bsdf = make_conductor(material.eta, material.k, roughness);
+        bsdf = make_metal(material.eta, material.k, reflection);
         break;
     case MaterialKind::Dielectric:
         reflection.solid = 1;
@@ -110,6 +114,10 @@ HD_CALL inline Bsdf make_any_bsdf(const SceneView& scene, const MaterialParamete
         reflection.weight = number(material.specular_weight, material.specular_texture);
         reflection.color =
             textured_color(scene, mesh, material.specular_color, material.specular_color_texture, i, u, v);
+        if (material.metal_fresnel == MetalFresnel::F82) {
+            const Rgb tint = reflection.color;
+            reflection.metal_tint = {min(tint.r, 1.0f), min(tint.g, 1.0f), min(tint.b, 1.0f)};
+        }
         if (material.has_diffuse_transmission()) {
             const TextureRef& colors = material.diffuse_transmission_color_texture;
             reflection.translucent =

@@ -3,6 +3,7 @@
 // Materials as plain numbers and references to textures; shading/ makes BSDFs from them.
 
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -14,20 +15,32 @@
 namespace pertev {
 
 enum class MaterialKind : uint8_t {
-    Diffuse,           // Lambert; base_color is the albedo
-    Conductor,         // GGX metal with complex index of refraction eta + i k
-    Dielectric,        // GGX glass or water, reflection and refraction; base_color tints what is refracted
+    Diffuse,           // base_color is the albedo; rough by base_diffuse_roughness
+    Conductor,         // metal with complex index of refraction eta + i k
+    Dielectric,        // glass or water, reflection and refraction; base_color tints what is refracted
     MetallicRoughness, // glTF 2.0 appendix B: metal and (diffuse + dielectric coat) mixed by `metallic`
     Unlit,             // KHR_materials_unlit: base_color is emitted as it is, nothing is reflected
 };
 
 enum class AlphaMode : uint8_t { Opaque, Mask, Blend };
+enum class MetalFresnel : uint8_t {
+    Schlick, // glTF: base_color at normal incidence, 1 at grazing incidence
+    F82,     // OpenPBR: the same, times specular_color at 82 degrees
+};
+enum class MicrofacetDistribution : uint8_t { Ggx, Beckmann };
+enum class MicrofacetEnergy : uint8_t {
+    Compensated, // a second lobe returns what one bounce off rough microfacets loses
+    Single,      // it stays lost, as in many other renderers
+};
 
 /// MaterialParameters is plain data that is copied to a device unchanged. A new parameter needs a member here, a row
 /// in visit_parameters, its reading, and the code that uses it.
 struct MaterialParameters {
     MaterialKind kind = MaterialKind::Diffuse;
     AlphaMode alpha_mode = AlphaMode::Opaque;
+    MetalFresnel metal_fresnel = MetalFresnel::Schlick; // for MetallicRoughness
+    MicrofacetDistribution microfacet_distribution = MicrofacetDistribution::Ggx;
+    MicrofacetEnergy energy = MicrofacetEnergy::Compensated; // this and the one above: not of coats and thin walls
 
     // The front of a triangle is the side from which its corners run counter-clockwise in the mesh's own space,
     // whatever its vertex normals are. Thus a node that mirrors a mesh keeps its front.
@@ -54,15 +67,19 @@ struct MaterialParameters {
 
     // Parameters of OpenPBR Surface 1.1.1, in its names; those of a metal or dielectric are above. Weights and
     // roughnesses are in [0, 1] and multiplied by their texture's channel.
-    bool thin_walled = true;        // for transmission_weight: otherwise the object is solid
-    float transmission_weight = 0;  // for MetallicRoughness: of what is not metal, goes through instead of into Lambert
-    float specular_weight = 1;      // for MetallicRoughness, of the dielectric's reflection
-    Rgb specular_color = {1, 1, 1}; // factor on that at normal incidence, >= 0; multiplied by the texture
+    bool thin_walled = true;       // for transmission_weight: otherwise the object is solid
+    float transmission_weight = 0; // for MetallicRoughness: of what is not metal, goes through instead of into Lambert
+    float base_diffuse_roughness = 0; // above 0 diffuse light is that of EON
+    float specular_weight = 1;        // for MetallicRoughness, of the dielectric's reflection
+    Rgb specular_color = {1, 1, 1};   // factor on that at normal incidence, >= 0; multiplied by the texture; with F82
+                                      // also the metal's tint, at most 1
     float coat_weight = 0, coat_roughness = 0, coat_ior = 1.5f, coat_normal_scale = 1;
     float fuzz_weight = 0, fuzz_roughness = 0.5f;
-    Rgb fuzz_color = {1, 1, 1};              // [0, 1], multiplied by the texture
-    Rgb transmission_color = {1, 1, 1};      // [0, 1], what a solid transmits over transmission_depth
-    float transmission_depth = 0;            // metres; 0: a solid absorbs nothing
+    Rgb fuzz_color = {1, 1, 1};         // [0, 1], multiplied by the texture
+    Rgb transmission_color = {1, 1, 1}; // [0, 1], what a solid transmits over transmission_depth
+    float transmission_depth = 0;       // metres; 0: a solid absorbs nothing
+    // The indices of red and blue differ by (ior - 1) scale / number (KHR_materials_dispersion: 20 / its dispersion).
+    float transmission_dispersion_scale = 0, transmission_dispersion_abbe_number = 20;
     float specular_roughness_anisotropy = 0; // [0, 1], multiplied by the third channel of anisotropy_texture
     float anisotropy_rotation = 0;           // radians, from the tangent towards the bitangent; the texture's first two
                                              // channels turn it further (KHR_materials_anisotropy)
@@ -89,9 +106,20 @@ struct MaterialParameters {
     HD bool absorbs() const {
         return transmission_depth > 0 && (kind == MaterialKind::Dielectric || (transmits() && !thin_walled));
     }
-    HD bool has_anisotropy() const {
-        return (kind == MaterialKind::MetallicRoughness || kind == MaterialKind::Dielectric) &&
-               specular_roughness_anisotropy > 0;
+    HD bool has_microfacets() const { return kind != MaterialKind::Diffuse && kind != MaterialKind::Unlit; }
+    HD bool has_anisotropy() const { return has_microfacets() && specular_roughness_anisotropy > 0; }
+    /// Returns whether its microfacets are not those that most materials have, which are faster.
+    HD bool has_other_microfacets() const {
+        return has_microfacets() &&
+               (microfacet_distribution != MicrofacetDistribution::Ggx || energy != MicrofacetEnergy::Compensated);
+    }
+    HD bool has_rough_diffuse() const {
+        return (kind == MaterialKind::Diffuse || kind == MaterialKind::MetallicRoughness) && base_diffuse_roughness > 0;
+    }
+    /// Returns the reciprocal of Abbe's number of a solid.
+    HD float dispersion() const {
+        const bool is_solid = kind == MaterialKind::Dielectric || (transmits() && !thin_walled);
+        return is_solid ? transmission_dispersion_scale / transmission_dispersion_abbe_number : 0.0f;
     }
     HD bool has_thin_film() const {
         return (kind == MaterialKind::MetallicRoughness || kind == MaterialKind::Dielectric) && thin_film_weight > 0;
@@ -103,13 +131,25 @@ struct MaterialParameters {
     HD bool is_stacked() const {
         return kind != MaterialKind::Unlit &&
                (has_coat() || has_fuzz() || transmits() || has_own_reflection() || absorbs() || has_anisotropy() ||
-                has_thin_film() || has_diffuse_transmission());
+                has_thin_film() || has_diffuse_transmission() || has_rough_diffuse() || has_other_microfacets() ||
+                dispersion() > 0);
     }
     bool is_emissive() const { return max_component(emission) > 0; }
     /// Returns whether it is sampled as an emitter. An unlit one is not: rays from the camera or a surface that hit it
     /// return its colour.
     bool is_emitter() const { return is_emissive() && kind != MaterialKind::Unlit; }
 };
+
+/// Calls choice(value, name, names) for each choice of a material; `names` lists its values in their order.
+template <class Parameters, class Choice>
+void visit_choices(Parameters& m, const Choice& choice) {
+    using Names = std::initializer_list<const char*>;
+    choice(m.kind, "kind", Names{"diffuse", "conductor", "dielectric", "metallic_roughness", "unlit"});
+    choice(m.alpha_mode, "alpha_mode", Names{"opaque", "mask", "blend"});
+    choice(m.metal_fresnel, "metal_fresnel", Names{"schlick", "f82"});
+    choice(m.microfacet_distribution, "microfacet_distribution", Names{"ggx", "beckmann"});
+    choice(m.energy, "energy", Names{"compensated", "single"});
+}
 
 /// Calls number(value, name, least, most) for each number of a material and each channel of its colours, and
 /// texture(reference, name) for each texture slot, with or without an image.
@@ -129,6 +169,7 @@ void visit_parameters(Parameters& m, const Number& number, const Texture& textur
     number(m.ior, "ior", 1, 0x1p10f);
     number(m.normal_scale, "normal_scale", -0x1p10f, 0x1p10f);
     number(m.transmission_weight, "transmission_weight", 0, 1);
+    number(m.base_diffuse_roughness, "base_diffuse_roughness", 0, 1);
     number(m.specular_weight, "specular_weight", 0, 1);
     color(m.specular_color, "specular_color", 0, 0x1p10f);
     number(m.coat_weight, "coat_weight", 0, 1);
@@ -140,6 +181,8 @@ void visit_parameters(Parameters& m, const Number& number, const Texture& textur
     color(m.fuzz_color, "fuzz_color", 0, 1);
     color(m.transmission_color, "transmission_color", 0, 1);
     number(m.transmission_depth, "transmission_depth", 0, 0x1p40f);
+    number(m.transmission_dispersion_scale, "transmission_dispersion_scale", 0, 1);
+    number(m.transmission_dispersion_abbe_number, "transmission_dispersion_abbe_number", 1, 0x1p10f);
     number(m.specular_roughness_anisotropy, "specular_roughness_anisotropy", 0, 1);
     number(m.anisotropy_rotation, "anisotropy_rotation", -0x1p10f, 0x1p10f);
     number(m.thin_film_weight, "thin_film_weight", 0, 1);

@@ -8,23 +8,16 @@
 
 #include "base/error.h"
 #include "base/message_text.h"
-#include "base/value_names.h"
 #include "formats/files/parse_number.h"
+#include "scene/metals.h"
 #include "scene/names.h"
 
 namespace pertev {
 namespace {
 
-constexpr ValueName<MaterialKind> kKindNames[] = {{MaterialKind::Diffuse, "diffuse"},
-                                                  {MaterialKind::Conductor, "conductor"},
-                                                  {MaterialKind::Dielectric, "dielectric"},
-                                                  {MaterialKind::MetallicRoughness, "metallic_roughness"},
-                                                  {MaterialKind::Unlit, "unlit"}};
-constexpr ValueName<AlphaMode> kAlphaModeNames[] = {
-    {AlphaMode::Opaque, "opaque"}, {AlphaMode::Mask, "mask"}, {AlphaMode::Blend, "blend"}};
 /// Parameters that a Diffuse material does not use.
-constexpr std::string_view kOfReflection[] = {"metallic",        "roughness",      "ior",
-                                              "specular_weight", "specular_color", "transmission_weight"};
+constexpr std::string_view kOfReflection[] = {
+    "metallic", "roughness", "ior", "specular_weight", "specular_color", "transmission_weight", "metal_fresnel"};
 constexpr std::string_view kOfConductor[] = {"eta", "k"};
 
 bool is_one_of(std::span<const std::string_view> names, std::string_view name) {
@@ -55,9 +48,15 @@ public:
         if (is_one_of(kOfConductor, key) && material_.kind != MaterialKind::Conductor) {
             refuse(key + " is of kind=conductor alone");
         }
-        if (key == "kind") return set_named(kKindNames, key, value, material_.kind);
-        if (key == "alpha_mode") return set_named(kAlphaModeNames, key, value, material_.alpha_mode);
+        if (key == "metal") return set_metal(value);
         bool is_known = false;
+        visit_choices(material_, [&](auto& choice, std::string_view name, std::initializer_list<const char*> names) {
+            if (key != name) return;
+            is_known = true;
+            const auto found = std::ranges::find(names, value);
+            if (found == names.end()) refuse(fmt::format("{} is one of {}", key, fmt::join(names, ", ")));
+            choice = static_cast<std::remove_reference_t<decltype(choice)>>(found - names.begin());
+        });
         visit_flags(material_, [&](bool& flag, const char* name) {
             if (key != name) return;
             is_known = true;
@@ -73,16 +72,13 @@ private:
         throw Error(ErrorCode::BadInput, "material", change_.text, why);
     }
 
-    template <class Value, std::size_t n>
-    void set_named(const ValueName<Value> (&names)[n], const std::string& key, const std::string& value, Value& to) {
-        std::vector<std::string_view> known;
-        for (const ValueName<Value>& entry : names) {
-            known.push_back(entry.name);
-            if (entry.name != value) continue;
-            to = entry.value;
-            return;
-        }
-        refuse(fmt::format("{} is one of {}", key, fmt::join(known, ", ")));
+    /// Makes it a conductor with a measured metal's index.
+    void set_metal(const std::string& value) {
+        const MeasuredMetal* const metal = find_metal(value);
+        if (metal == nullptr) refuse("metal is one of " + names_of_metals());
+        material_.kind = MaterialKind::Conductor;
+        material_.eta = metal->eta;
+        material_.k = metal->k;
     }
 
     void set_numbers(const std::string& key, const std::string& text, bool& is_known) {
@@ -121,11 +117,12 @@ private:
     }
 
     static std::vector<std::string> known_names() {
-        std::vector<std::string> names = {"kind", "alpha_mode"};
+        std::vector<std::string> names = {"metal"};
         MaterialParameters any;
         const auto add = [&](const char* name) {
             if (names.back() != name) names.emplace_back(name);
         };
+        visit_choices(any, [&](auto&, const char* name, auto&&) { add(name); });
         visit_flags(any, [&](bool&, const char* name) { add(name); });
         visit_parameters(
             any, [&](float&, const char* name, float, float) { add(name); },
@@ -184,22 +181,18 @@ void set_materials(Scene& scene, std::span<const MaterialChange> changes) {
 
 std::string describe_material(const Scene& scene, std::size_t index) {
     const Material& material = scene.materials[index];
-    const auto text_of_kind = [&] {
-        for (const auto& entry : kKindNames) {
-            if (entry.value == material.kind) return entry.name;
-        }
-        return std::string_view();
-    };
-    std::string text = fmt::format("{} kind={}", name_of_material(scene, index), text_of_kind());
-    for (const auto& entry : kAlphaModeNames) {
-        if (entry.value == material.alpha_mode && material.alpha_mode != AlphaMode::Opaque) {
-            text += fmt::format(" alpha_mode={}", entry.name);
-        }
-    }
     const MaterialParameters usual;
+    std::vector<int> usual_choices;
+    visit_choices(usual, [&](auto choice, auto&&...) { usual_choices.push_back(static_cast<int>(choice)); });
+    std::string text = name_of_material(scene, index);
+    std::size_t at = 0;
+    visit_choices(material, [&](auto choice, std::string_view name, std::initializer_list<const char*> names) {
+        if (static_cast<int>(choice) == usual_choices[at++] && name != "kind") return;
+        text += fmt::format(" {}={}", name, names.begin()[static_cast<int>(choice)]);
+    });
     std::vector<bool> usual_flags;
     visit_flags(usual, [&](bool flag, const char*) { usual_flags.push_back(flag); });
-    std::size_t at = 0;
+    at = 0;
     visit_flags(material, [&](bool flag, const char* name) {
         if (flag != usual_flags[at++]) text += fmt::format(" {}={}", name, flag);
     });

@@ -1,242 +1,12 @@
 #pragma once
 
 // A BSDF: a base with layers on it, each a lobe (lobes/layer_transmittance.h), as one plain struct without references.
-// A new lobe needs a file in lobes/, a kind, a member and a case in each switch of Lobe (the compiler names the missing
-// ones), a make function, and a line in tests/statistical/bsdf_cases.h.
-
-#include <cstdint>
+// A new lobe needs a file in lobes/, what lobe.h says, a make function, and a line in tests/statistical/bsdf_cases.h.
 
 #include "base/host_device.h"
-#include "shading/lobes/bsdf_sample.h"
-#include "shading/lobes/coat_lobe.h"
-#include "shading/lobes/conductor_lobe.h"
-#include "shading/lobes/dielectric_lobe.h"
-#include "shading/lobes/diffuse_lobe.h"
-#include "shading/lobes/packed_lobes.h"
-#include "shading/lobes/schlick_lobe.h"
-#include "shading/lobes/sheen_lobe.h"
-#include "shading/lobes/specular_lobe.h"
-#include "shading/lobes/thin_lobe.h"
-#include "shading/lobes/translucent_lobe.h"
+#include "shading/lobe.h"
 
 namespace pertev {
-
-enum class LobeKind : uint8_t {
-    None,        // base that absorbs everything
-    Diffuse,     // base
-    Conductor,   // base
-    Dielectric,  // base
-    Schlick,     // layer on a base that is diffuse or None
-    Specular,    // layer on a base that is diffuse or None, and on Thin and Translucent
-    Filmed,      // layer as Specular, with a film or stretched
-    Thin,        // layer on a base that is diffuse or None
-    Translucent, // layer on a base that is diffuse or None, and on Thin
-    Glass,       // layer on anything
-    Coat,        // layer on anything
-    Sheen,       // layer on anything
-};
-
-/// A lobe of any kind.
-struct Lobe {
-    LobeKind kind;
-    float beneath; // for a layer: energy of everything beneath it, [0, 1]
-    union {
-        DiffuseLobe diffuse;
-        ConductorLobe conductor;
-        DielectricLobe dielectric;
-        SchlickLobe schlick;
-        SpecularLobe reflection;
-        PackedFilmedLobe filmed;
-        ThinLobe thin;
-        TranslucentLobe translucent;
-        PackedGlassLobe glass;
-        CoatLobe coat;
-        SheenLobe sheen;
-    };
-
-    HD Lobe() : kind(LobeKind::None) {} // NOLINT(cppcoreguidelines-pro-type-member-init): nothing else is read
-    HD Lobe(const DiffuseLobe& lobe) : kind(LobeKind::Diffuse), beneath(0), diffuse(lobe) {}
-    HD Lobe(const ConductorLobe& lobe) : kind(LobeKind::Conductor), beneath(0), conductor(lobe) {}
-    HD Lobe(const DielectricLobe& lobe) : kind(LobeKind::Dielectric), beneath(0), dielectric(lobe) {}
-    HD Lobe(const SchlickLobe& lobe) : kind(LobeKind::Schlick), beneath(0), schlick(lobe) {}
-    HD Lobe(const SpecularLobe& lobe) : kind(LobeKind::Specular), beneath(0), reflection(lobe) {}
-    HD Lobe(const FilmedLobe& lobe) : kind(LobeKind::Filmed), beneath(0), filmed(lobe) {}
-    HD Lobe(const ThinLobe& lobe) : kind(LobeKind::Thin), beneath(0), thin(lobe) {}
-    HD Lobe(const TranslucentLobe& lobe) : kind(LobeKind::Translucent), beneath(0), translucent(lobe) {}
-    HD Lobe(const GlassLobe& lobe) : kind(LobeKind::Glass), beneath(0), glass(lobe) {}
-    HD Lobe(const CoatLobe& lobe) : kind(LobeKind::Coat), beneath(0), coat(lobe) {}
-    HD Lobe(const SheenLobe& lobe) : kind(LobeKind::Sheen), beneath(0), sheen(lobe) {}
-
-    HD LobeClass lobe_class() const {
-        switch (kind) {
-        case LobeKind::None:
-            break;
-        case LobeKind::Diffuse:
-            return diffuse.lobe_class();
-        case LobeKind::Conductor:
-            return conductor.lobe_class();
-        case LobeKind::Dielectric:
-            return dielectric.lobe_class();
-        case LobeKind::Schlick:
-            return schlick.lobe_class();
-        case LobeKind::Specular:
-            return reflection.lobe_class();
-        case LobeKind::Filmed:
-            return filmed.unpacked().lobe_class();
-        case LobeKind::Thin:
-            return thin.lobe_class();
-        case LobeKind::Translucent:
-            return translucent.lobe_class();
-        case LobeKind::Glass:
-            return glass.unpacked().lobe_class();
-        case LobeKind::Coat:
-            return coat.lobe_class();
-        case LobeKind::Sheen:
-            return sheen.lobe_class();
-        }
-        return LobeClass::Diffuse;
-    }
-    HD float energy() const {
-        switch (kind) {
-        case LobeKind::None:
-            break;
-        case LobeKind::Diffuse:
-            return diffuse.energy();
-        case LobeKind::Conductor:
-            return conductor.energy();
-        case LobeKind::Dielectric:
-            return dielectric.energy();
-        case LobeKind::Schlick:
-            return schlick.energy();
-        case LobeKind::Specular:
-            return reflection.energy();
-        case LobeKind::Filmed:
-            return filmed.unpacked().energy();
-        case LobeKind::Thin:
-            return thin.energy();
-        case LobeKind::Translucent:
-            return translucent.energy();
-        case LobeKind::Glass:
-            return glass.unpacked().energy();
-        case LobeKind::Coat:
-            return coat.energy();
-        case LobeKind::Sheen:
-            return sheen.energy();
-        }
-        return 0;
-    }
-    HD Gloss gloss(float cos_o) const {
-        switch (kind) {
-        case LobeKind::None:
-        case LobeKind::Diffuse:
-        case LobeKind::Translucent:
-        case LobeKind::Sheen:
-            break;
-        case LobeKind::Conductor:
-            return conductor.gloss(cos_o);
-        case LobeKind::Dielectric:
-            return dielectric.gloss(cos_o);
-        case LobeKind::Schlick:
-            return schlick.gloss(cos_o);
-        case LobeKind::Specular:
-            return reflection.gloss(cos_o);
-        case LobeKind::Filmed:
-            return filmed.unpacked().gloss(cos_o);
-        case LobeKind::Thin:
-            return thin.gloss(cos_o);
-        case LobeKind::Glass:
-            return glass.unpacked().gloss(cos_o);
-        case LobeKind::Coat:
-            return coat.gloss(cos_o);
-        }
-        return {};
-    }
-    HD SpecularBranches specular(Vec3 wo) const {
-        switch (kind) {
-        case LobeKind::None:
-        case LobeKind::Diffuse:
-        case LobeKind::Translucent:
-        case LobeKind::Sheen:
-            break;
-        case LobeKind::Conductor:
-            return conductor.specular(wo);
-        case LobeKind::Dielectric:
-            return dielectric.specular(wo);
-        case LobeKind::Schlick:
-            return schlick.specular(wo);
-        case LobeKind::Specular:
-            return reflection.specular(wo);
-        case LobeKind::Filmed:
-            return filmed.unpacked().specular(wo);
-        case LobeKind::Thin:
-            return thin.specular(wo);
-        case LobeKind::Glass:
-            return glass.unpacked().specular(wo);
-        case LobeKind::Coat:
-            return coat.specular(wo);
-        }
-        return {};
-    }
-    /// Value and density that the lobe adds under `transmittance`; a layer then moves `transmittance` beneath itself.
-    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, LayerTransmittance& transmittance) const {
-        switch (kind) {
-        case LobeKind::None:
-            break;
-        case LobeKind::Diffuse:
-            return diffuse.evaluate(wo, wi, transmittance);
-        case LobeKind::Conductor:
-            return conductor.evaluate(wo, wi, transmittance);
-        case LobeKind::Dielectric:
-            return dielectric.evaluate(wo, wi, transmittance);
-        case LobeKind::Schlick:
-            return schlick.evaluate(wo, wi, beneath, transmittance);
-        case LobeKind::Specular:
-            return reflection.evaluate(wo, wi, beneath, transmittance);
-        case LobeKind::Filmed:
-            return filmed.unpacked().evaluate(wo, wi, beneath, transmittance);
-        case LobeKind::Thin:
-            return thin.evaluate(wo, wi, beneath, transmittance);
-        case LobeKind::Translucent:
-            return translucent.evaluate(wo, wi, beneath, transmittance);
-        case LobeKind::Glass:
-            return glass.unpacked().evaluate(wo, wi, beneath, transmittance);
-        case LobeKind::Coat:
-            return coat.evaluate(wo, wi, beneath, transmittance);
-        case LobeKind::Sheen:
-            return sheen.evaluate(wo, wi, beneath, transmittance);
-        }
-        return {};
-    }
-    HD LobeDraw draw(Vec3 wo, float u_lobe, Vec2 u) const {
-        switch (kind) {
-        case LobeKind::None:
-            break;
-        case LobeKind::Diffuse:
-            return diffuse.draw(wo, u);
-        case LobeKind::Conductor:
-            return conductor.draw(wo, u_lobe, u);
-        case LobeKind::Dielectric:
-            return dielectric.draw(wo, u_lobe, u);
-        case LobeKind::Schlick:
-            return schlick.draw(wo, beneath, u_lobe, u);
-        case LobeKind::Specular:
-            return reflection.draw(wo, beneath, u_lobe, u);
-        case LobeKind::Filmed:
-            return filmed.unpacked().draw(wo, beneath, u_lobe, u);
-        case LobeKind::Thin:
-            return thin.draw(wo, beneath, u_lobe, u);
-        case LobeKind::Translucent:
-            return translucent.draw(wo, beneath, u_lobe, u);
-        case LobeKind::Glass:
-            return glass.unpacked().draw(wo, beneath, u_lobe, u);
-        case LobeKind::Coat:
-            return coat.draw(wo, beneath, u_lobe, u);
-        case LobeKind::Sheen:
-            return sheen.draw(wo, beneath, u_lobe, u);
-        }
-        return {};
-    }
-};
 
 struct Bsdf {
     static constexpr int kMaxLayers = 4; // thin wall or sheet, reflection or share of glass, sheen, coat
@@ -253,6 +23,9 @@ struct Bsdf {
     Bsdf() = default;
     /// Makes a BSDF of one lobe, which is constructed in place, because a copy would wait for its own stores.
     HD explicit Bsdf(const DiffuseLobe& lobe) : base(lobe) {}
+
+    HD explicit Bsdf(const RoughDiffuseLobe& lobe) : base(lobe), is_called(true) {}
+    HD explicit Bsdf(const MetalLobe& lobe) : base(lobe), is_called(true) {}
 
     /// Adds the reflection on the base, the innermost layer.
     HD void add(const SchlickLobe& lobe) {
@@ -302,6 +75,7 @@ struct Bsdf {
     }
     /// Reflectance of the diffuse base, [0, 1], regardless of layers.
     HD Rgb diffuse_albedo() const {
+        if (is_called && base.kind == LobeKind::RoughDiffuse) return base.rough_diffuse.average_albedo();
         return base.kind == LobeKind::Diffuse ? base.diffuse.share * base.diffuse.albedo : Rgb{0, 0, 0};
     }
 
@@ -368,7 +142,7 @@ private:
     HD BsdfValue evaluate_lobes(Vec3 wo, Vec3 wi, LobeClasses classes) const {
         if (is_called) return evaluate_stack(*this, wo, wi, classes);
         LayerTransmittance transmittance;
-        if (layer_count == 0) return masked(base.lobe_class(), base.evaluate(wo, wi, transmittance), classes);
+        if (layer_count == 0) return masked(base.lobe_class(), base.evaluate_inlined(wo, wi), classes);
         const BsdfValue layer = layers[0].schlick.evaluate(wo, wi, layers[0].beneath, transmittance);
         const LobeClass layer_class = layers[0].schlick.lobe_class();
         return masked(layer_class, layer, classes) +
@@ -379,7 +153,7 @@ private:
         LobeDraw draw = {.u_lobe = u_lobe, .is_beneath = true};
         if (layer_count == 1) draw = layers[0].schlick.draw(wo, layers[0].beneath, u_lobe, u);
         const LobeClass lobe_class = draw.is_beneath ? base.lobe_class() : layers[0].schlick.lobe_class();
-        if (draw.is_beneath) draw = base.draw(wo, draw.u_lobe, u);
+        if (draw.is_beneath) draw = base.draw_inlined(wo, draw.u_lobe, u);
         return finish(draw, lobe_class, wo);
     }
 

@@ -21,39 +21,67 @@ struct ReflectionParameters {
     float anisotropy = 0;              // [0, 1]
     Vec2 along = {1, 0};               // unit, the tangent along which the highlights are stretched
     ThinFilm film = {};
+    float diffuse_roughness = 0; // [0, 1]
+    float dispersion = 0;        // reciprocal of Abbe's number, >= 0
+    Rgb metal_tint = {1, 1, 1};  // [0, 1], F82 tint of the metal
+    bool is_beckmann = false, is_single = false;
 
-    HD bool is_plain() const { return !(anisotropy > 0) && !(film.weight > 0); }
+    HD bool has_plain_microfacets() const { return !(anisotropy > 0) && !is_beckmann && !is_single; }
+    HD bool is_clear() const { return is_plain() && !(dispersion > 0); }
+    HD bool is_plain() const { return has_plain_microfacets() && !(film.weight > 0); }
+    HD bool is_tinted() const { return metallic > 0 && !(metal_tint == Rgb{1, 1, 1}); }
+    HD Microfacets microfacets() const {
+        Microfacets widths = anisotropic_widths(alpha_from_roughness(roughness), anisotropy, along);
+        widths.is_beckmann = is_beckmann;
+        widths.is_single = is_single;
+        return widths;
+    }
 };
+
+/// Makes a diffuse BSDF of `albedo` and `roughness` in [0, 1].
+HD inline Bsdf make_rough_diffuse(Rgb albedo, float roughness) {
+    return roughness > 0 ? Bsdf(RoughDiffuseLobe{albedo, 1, roughness}) : make_diffuse(albedo);
+}
+
+/// Makes a conductor of the complex index eta + i k with any microfacets; of the parameters it uses those.
+HD inline Bsdf make_metal(Rgb eta, Rgb k, const ReflectionParameters& p) {
+    if (p.has_plain_microfacets()) return make_conductor(eta, k, p.roughness);
+    return Bsdf(MetalLobe{eta, k, p.microfacets()});
+}
 
 /// Adds the reflection of a dielectric and a metal.
 HD inline void add_reflection(Bsdf& bsdf, const ReflectionParameters& p, float metal) {
     if (!(p.weight > 0) && !(metal > 0)) return;
-    const float alpha = alpha_from_roughness(p.roughness);
     const Rgb own = f0_from_ior(p.ior) * p.color;
     const Rgb f0 = p.weight * Rgb{min(own.r, 1.0f), min(own.g, 1.0f), min(own.b, 1.0f)};
-    if (p.is_plain()) return bsdf.add(SpecularLobe{p.base_color, metal, alpha, f0, p.weight});
-    bsdf.add(FilmedLobe{p.base_color, metal, anisotropic_widths(alpha, p.anisotropy, p.along), f0, p.weight, p.film});
+    if (p.is_plain() && !p.is_tinted()) {
+        return bsdf.add(SpecularLobe{p.base_color, metal, alpha_from_roughness(p.roughness), f0, p.weight});
+    }
+    bsdf.add(FilmedLobe{p.base_color, metal, p.microfacets(), f0, p.weight, p.film, p.metal_tint});
 }
 
 /// Adds glass for `share` of the light; the index is clamped for a rough surface (make_dielectric).
 HD inline void add_glass(Bsdf& bsdf, const ReflectionParameters& p, float share) {
-    const float alpha = alpha_from_roughness(p.roughness);
-    bsdf.add(GlassLobe{p.base_color, share, anisotropic_widths(alpha, p.anisotropy, p.along),
-                       DielectricLobe::usable_ior(p.ior, alpha), p.film});
+    const float spread = 0.5f * p.dispersion * max(p.ior - 1.0f, 0.0f);
+    bsdf.add(GlassLobe{p.base_color, share, p.microfacets(),
+                       DielectricLobe::usable_ior(p.ior, alpha_from_roughness(p.roughness)), p.film, spread});
 }
 
 HD inline Bsdf make_reflection(const ReflectionParameters& p) {
     const float metal_of_all = clamp(p.metallic, 0.0f, 1.0f), glass = (1.0f - metal_of_all) * p.solid;
     Bsdf bsdf;
     if (!(glass < 1)) {
-        if (p.is_plain()) return make_dielectric(p.ior, p.roughness, p.base_color);
+        if (p.is_clear()) return make_dielectric(p.ior, p.roughness, p.base_color);
         add_glass(bsdf, p, 1);
         return bsdf;
     }
     const float metal = glass > 0 ? metal_of_all / (1.0f - glass) : metal_of_all;
     const float opaque = (1.0f - metal) * (1.0f - p.through), through = (1.0f - metal) * p.through;
     const float diffuse = opaque * (1.0f - p.translucent), far = opaque * p.translucent;
-    if (diffuse > 0 && !is_black(p.base_color)) bsdf.base = DiffuseLobe{p.base_color, diffuse};
+    if (diffuse > 0 && !is_black(p.base_color)) {
+        bsdf = p.diffuse_roughness > 0 ? Bsdf(RoughDiffuseLobe{p.base_color, diffuse, p.diffuse_roughness})
+                                       : Bsdf(DiffuseLobe{p.base_color, diffuse});
+    }
     if (through > 0 && !is_black(p.base_color)) {
         bsdf.add(ThinLobe{p.base_color, through, alpha_from_roughness(p.roughness)});
     }

@@ -25,6 +25,7 @@ inline float narrowest_alpha(const Bsdf& bsdf) {
     const auto add = [&](float alpha) { least = alpha < kSmoothAlpha ? least : std::fmin(least, alpha); };
     if (bsdf.base.kind == LobeKind::Conductor) add(bsdf.base.conductor.alpha);
     if (bsdf.base.kind == LobeKind::Dielectric) add(bsdf.base.dielectric.alpha);
+    if (bsdf.base.kind == LobeKind::Metal) add(bsdf.base.metal.unpacked().widths.narrowest());
     for (int i = 0; i < bsdf.layer_count; ++i) {
         if (bsdf.layers[i].kind == LobeKind::Schlick) add(bsdf.layers[i].schlick.alpha);
         if (bsdf.layers[i].kind == LobeKind::Coat) add(bsdf.layers[i].coat.alpha);
@@ -34,6 +35,47 @@ inline float narrowest_alpha(const Bsdf& bsdf) {
         if (bsdf.layers[i].kind == LobeKind::Glass) add(bsdf.layers[i].glass.unpacked().widths.narrowest());
     }
     return least;
+}
+
+/// Returns lobes with parameters of OpenPBR that glTF does not have, and those that other renderers' files name.
+inline std::vector<BsdfCase> openpbr_bsdf_cases() {
+    const auto metal = [](float roughness, ReflectionParameters p) {
+        p.roughness = roughness;
+        return make_metal(kGoldEta, kGoldK, p);
+    };
+    return {
+        {"slightly rough diffuse", make_rough_diffuse({0.8f, 0.5f, 0.2f}, 0.1f)},
+        {"rough diffuse", make_rough_diffuse({0.8f, 0.5f, 0.2f}, 0.5f)},
+        {"white, entirely rough diffuse", make_rough_diffuse(grey(1), 1)},
+        {"plastic on rough diffuse", make_reflection({.base_color = {0.8f, 0.5f, 0.2f},
+                                                      .roughness = 0.4f,
+                                                      .through = 0.2f,
+                                                      .translucent = 0.3f,
+                                                      .translucent_color = {0.5f, 0.9f, 0.2f},
+                                                      .diffuse_roughness = 0.8f})},
+        {"velvet on rough diffuse", make_sheen(make_rough_diffuse({0.8f, 0.2f, 0.3f}, 1), {0.6f, 0.7f, 1.0f}, 0.5f)},
+        {"F82 metal",
+         make_reflection(
+             {.base_color = {0.9f, 0.5f, 0.1f}, .metallic = 1, .roughness = 0.4f, .metal_tint = {0.2f, 0.6f, 1}})},
+        {"half an F82 metal",
+         make_reflection(
+             {.base_color = {0.9f, 0.5f, 0.1f}, .metallic = 0.5f, .roughness = 0.5f, .metal_tint = {0.2f, 0.6f, 1}})},
+        {"gold of Beckmann and roughness 0.3", metal(0.3f, {.base_color = {}, .is_beckmann = true})},
+        {"gold of Beckmann and roughness 1", metal(1, {.base_color = {}, .is_beckmann = true})},
+        {"gold of GGX and one bounce", metal(0.6f, {.base_color = {}, .is_single = true})},
+        {"brushed gold of Beckmann and one bounce",
+         metal(0.5f,
+               {.base_color = {}, .anisotropy = 0.7f, .along = {0.6f, 0.8f}, .is_beckmann = true, .is_single = true})},
+        {"varnished gold of Beckmann",
+         make_coated(metal(0.5f, {.base_color = {}, .is_beckmann = true}), 0.5f, 0.3f, 1.8f)},
+        {"plastic of Beckmann",
+         make_reflection({.base_color = {0.2f, 0.5f, 0.8f}, .roughness = 0.5f, .is_beckmann = true})},
+        {"plastic of one bounce",
+         make_reflection({.base_color = {0.2f, 0.5f, 0.8f}, .roughness = 0.6f, .is_single = true})},
+        {"glass of Beckmann",
+         make_reflection({.base_color = {1.0f, 0.9f, 0.7f}, .roughness = 0.5f, .solid = 1, .is_beckmann = true})},
+        {"glass of one bounce",
+         make_reflection({.base_color = {1.0f, 0.9f, 0.7f}, .roughness = 0.6f, .solid = 1, .is_single = true})}};
 }
 
 /// Returns layers on each other and on every base.
@@ -116,6 +158,7 @@ inline std::vector<BsdfCase> rough_bsdf_cases() {
     cases.push_back({"glass of index 1.1", make_dielectric(1.1f, 0.5f, grey(1))});
     cases.push_back({"glass of index 2.4", make_dielectric(2.4f, 0.35f, grey(1))});
     for (const BsdfCase& c : layered_bsdf_cases()) cases.push_back(c);
+    for (const BsdfCase& c : openpbr_bsdf_cases()) cases.push_back(c);
     return cases;
 }
 

@@ -1,7 +1,9 @@
 #include <doctest/doctest.h>
 
+#include "scene/metals.h"
 #include "session/opening/open_scene.h"
 #include "session/set_materials.h"
+#include "shading/lobes/fresnel.h"
 #include "tests/support/flat_scenes.h"
 #include "tests/support/options.h"
 #include "tests/support/thrown_error.h"
@@ -53,6 +55,35 @@ TEST_CASE("materials are changed by name, by wildcards, or by number where they 
     CHECK(scene.materials[1].kind == MaterialKind::Conductor);
     CHECK(scene.materials[1].eta == Rgb{1, 2, 3});
     CHECK(scene.materials[1].k == grey(4));
+    change(scene, "gold leaf kind=metallic_roughness metal_fresnel=f82 microfacet_distribution=beckmann energy=single");
+    CHECK(scene.materials[0].metal_fresnel == MetalFresnel::F82);
+    CHECK(scene.materials[0].microfacet_distribution == MicrofacetDistribution::Beckmann);
+    CHECK(scene.materials[0].energy == MicrofacetEnergy::Single);
+    change(scene, "2 base_diffuse_roughness=0.5");
+    CHECK(scene.materials[2].kind == MaterialKind::Diffuse);
+    CHECK(scene.materials[2].is_stacked());
+}
+
+TEST_CASE("measured metals reflect as published, and an unknown one is answered with the list") {
+    Scene scene = three_materials();
+    change(scene, "gold* metal=gold");
+    CHECK(scene.materials[1].kind == MaterialKind::Conductor);
+    CHECK(scene.materials[1].eta == find_metal("gold")->eta);
+    CHECK(refuses_change("gold leaf metal=unobtainium", "aluminium"));
+    CHECK(refuses_change("gold leaf metal=unobtainium", "vanadium"));
+    CHECK(find_metal("Gold") == nullptr);
+    const auto at_normal = [](const char* name) {
+        const MeasuredMetal& metal = *find_metal(name);
+        return fresnel_conductor(1, metal.eta, metal.k);
+    };
+    const auto is_near = [](Rgb a, Rgb b) { return max_component(a - b) < 0.03f && max_component(b - a) < 0.03f; };
+    CHECK(is_near(at_normal("silver"), {0.99f, 0.98f, 0.98f})); // linear Rec. 709, from tables of reflectance
+    CHECK(is_near(at_normal("aluminium"), {0.91f, 0.92f, 0.92f}));
+    CHECK(is_near(at_normal("copper"), {0.93f, 0.63f, 0.53f}));
+    CHECK(is_near(at_normal("iron"), {0.53f, 0.51f, 0.49f}));
+    for (std::size_t i = 1; i < measured_metals().size(); ++i) {
+        CHECK(measured_metals()[i - 1].name < measured_metals()[i].name);
+    }
 }
 
 TEST_CASE("a texture of a material can be dropped") {
@@ -83,7 +114,7 @@ TEST_CASE("a change of a material that is not possible is refused with what is")
 TEST_CASE("a material's description is a change that makes the same material") {
     Scene scene = three_materials();
     change(scene, "gold leaf base_color=1,0.5,0.25 metallic=1 roughness=0.123 coat_weight=0.5 thin_walled=false");
-    change(scene, "gold ring kind=conductor alpha_mode=mask k=1,2,3");
+    change(scene, "gold ring kind=conductor alpha_mode=mask k=1,2,3 microfacet_distribution=beckmann energy=single");
     for (std::size_t i = 0; i < 2; ++i) {
         const std::string text = describe_material(scene, i);
         CAPTURE(text);

@@ -12,6 +12,7 @@
 #include "base/host_device.h"
 #include "math/rgb.h"
 #include "math/scalar.h"
+#include "shading/lobes/beckmann_table_data.h"
 #include "shading/lobes/energy_table_data.h"
 #include "shading/lobes/fresnel.h"
 
@@ -42,12 +43,14 @@ HD inline float roughness_position(float alpha) {
     constexpr float lowest = 0.031622776f; // sqrt(kAlphaMin)
     return (sqrt(alpha) - lowest) * (1.0f / (1.0f - lowest));
 }
-HD inline Cell roughness_cell(float alpha) { return make_cell(roughness_position(alpha), kRoughnessNodes); }
+HD inline Cell roughness_cell(float alpha, int nodes = kRoughnessNodes) {
+    return make_cell(roughness_position(alpha), nodes);
+}
 /// Cell of the averages, which change fastest at the least roughness.
 HD inline Cell average_cell(float alpha) { return make_cell(safe_sqrt(roughness_position(alpha)), kAverageNodes); }
-HD inline Cell ior_cell(float ior) {
+HD inline Cell ior_cell(float ior, int nodes = kIorNodes) {
     constexpr float lowest = 0.21821789f, highest = 0.70710678f; // values for kIorMin and kIorMax
-    return make_cell((safe_sqrt((ior - 1.0f) / (ior + 1.0f)) - lowest) * (1.0f / (highest - lowest)), kIorNodes);
+    return make_cell((safe_sqrt((ior - 1.0f) / (ior + 1.0f)) - lowest) * (1.0f / (highest - lowest)), nodes);
 }
 
 inline constexpr float kUnit = 1.0f / 65535.0f;
@@ -94,6 +97,24 @@ HD inline float metal_average_schlick(float alpha) {
     return along([](int i) { return metal_average_schlick_at(i); }, c.node, c.fraction);
 }
 
+/// metal_lost(), metal_average_lost() and metal_schlick() of Beckmann's microfacets.
+HD inline float beckmann_lost(float mu, float alpha) {
+    using namespace energy_table;
+    return kUnit * along([](int i) { return beckmann_table::beckmann_lost_at(i); }, 0, roughness_cell(alpha),
+                         mu_cell(mu, alpha), kMuNodes);
+}
+HD inline float beckmann_average_lost(float alpha) {
+    using namespace energy_table;
+    const Cell c = average_cell(alpha);
+    return alpha * along([](int i) { return beckmann_table::beckmann_average_lost_at(i); }, c.node, c.fraction);
+}
+HD inline float beckmann_schlick(float mu, float alpha) {
+    using namespace energy_table;
+    const float beyond = along([](int i) { return beckmann_table::beckmann_schlick_at(i); }, 0, roughness_cell(alpha),
+                               mu_cell(mu, alpha), kMuNodes);
+    return max(schlick_weight(mu) + (2.0f * kUnit * beyond - 1.0f), 0.0f);
+}
+
 /// Fraction lost by a dielectric, reflection and refraction together, seen at cosine `mu`. `eta` is the index of the
 /// far side over that of the near side: in [kIorMin, kIorMax] from outside, in [1 / kIorMax, 1 / kIorMin] from
 /// inside.
@@ -112,6 +133,25 @@ HD inline float glass_average_lost(float alpha, float eta) {
     const int first = (eta > 1 ? 0 : kIorNodes) * kAverageNodes;
     return alpha * along([](int i) { return glass_average_lost_at(i); }, first, ior_cell(eta > 1 ? eta : 1.0f / eta),
                          average_cell(alpha), kAverageNodes);
+}
+
+/// glass_lost() and glass_average_lost() of Beckmann's microfacets.
+HD inline float beckmann_glass_lost(float mu, float alpha, float eta) {
+    using namespace energy_table;
+    constexpr int iors = beckmann_table::kIorNodes, rows = beckmann_table::kRoughnessNodes, stride = rows * kMuNodes;
+    const Cell ior = ior_cell(eta > 1 ? eta : 1.0f / eta, iors), row = roughness_cell(alpha, rows),
+               column = mu_cell(mu, alpha);
+    const int first = ((eta > 1 ? 0 : iors) + ior.node) * stride;
+    const auto table = [](int i) { return beckmann_table::beckmann_glass_lost_at(i); };
+    return kUnit * lerp(along(table, first, row, column, kMuNodes), along(table, first + stride, row, column, kMuNodes),
+                        ior.fraction);
+}
+HD inline float beckmann_average_glass_lost(float alpha, float eta) {
+    using namespace energy_table;
+    constexpr int iors = beckmann_table::kIorNodes;
+    const int first = (eta > 1 ? 0 : iors) * kAverageNodes;
+    return alpha * along([](int i) { return beckmann_table::beckmann_average_glass_lost_at(i); }, first,
+                         ior_cell(eta > 1 ? eta : 1.0f / eta, iors), average_cell(alpha), kAverageNodes);
 }
 
 /// Colour of the light that is returned after several bounces off facets with average reflectance `f_average`, if a

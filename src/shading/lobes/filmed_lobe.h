@@ -1,13 +1,14 @@
 #pragma once
 
-// The reflection of metallic-roughness with stretched microfacets (KHR_materials_anisotropy) and a thin film
-// (KHR_materials_iridescence); else it is as specular_lobe.h. A lobe of its own, so that the common ones stay small.
+// The reflection of metallic-roughness with stretched microfacets (KHR_materials_anisotropy), Beckmann's, single
+// scattering, and a thin film (KHR_materials_iridescence) or, without one, a metal's F82 tint; else it is as
+// specular_lobe.h. A lobe of its own, so that the common ones stay small.
 //
-// Multiple scattering is compensated by GgxWidths::energy_width(), which errs towards too little light. What lies
+// Multiple scattering is compensated by Microfacets::energy_width(), which errs towards too little light. What lies
 // beneath gets 1 - max(C(o), C(i)) of the light, with the strongest channel's reflectance C for the narrower width:
 // neither a film's colours nor stretched microfacets have an average that the form of schlick_lobe.h needs.
 
-#include "shading/lobes/ggx_widths.h"
+#include "shading/lobes/microfacets.h"
 #include "shading/lobes/schlick_lobe.h"
 #include "shading/lobes/thin_film.h"
 
@@ -16,10 +17,11 @@ namespace pertev {
 struct FilmedLobe {
     Rgb base_color; // [0, 1], the metal's reflectance at normal incidence
     float metallic; // [0, 1]
-    GgxWidths widths;
+    Microfacets widths;
     Rgb f0;    // [0, f90], reflectance of the dielectric at normal incidence
     float f90; // [0, 1], the same at grazing incidence
     ThinFilm film;
+    Rgb tint = {1, 1, 1}; // [0, 1], of the metal at 82 degrees (fresnel_f82)
 
     struct Average {
         float lost; // for the lobe with F = 1
@@ -54,10 +56,9 @@ struct FilmedLobe {
         BsdfValue value;
         if (!is_smooth() && wo.z * wi.z > 0) {
             const GgxReflection once = widths.evaluate_reflection(o, i);
-            const Rgb more = (i.z * kInvPi * at_o.lost * at_i.lost / average.lost) * average.more;
+            const Rgb more = (i.z * kInvPi * at_o.lost * at_i.lost / max(average.lost, 1e-9f)) * average.more;
             value = {transmittance.light * (once.f * reflectance(once.cos_h) + more),
-                     transmittance.reach *
-                         (shares.specular * once.pdf + shares.more * pdf_grazing_lobe(i.z, widths.energy_width()))};
+                     transmittance.reach * (shares.specular * once.pdf + shares.more * widths.pdf_lost_lobe(i.z))};
         }
         transmittance.pass(at_o.coat, at_i.coat, shares.beneath);
         return value;
@@ -68,7 +69,7 @@ struct FilmedLobe {
         Vec3 wi;
         if (u_lobe < shares.beneath) return draw_beneath(u_lobe, shares.beneath);
         if (u_lobe - shares.beneath < shares.more) {
-            wi = sample_grazing_lobe(widths.energy_width(), u);
+            wi = widths.sample_lost_lobe(u);
         } else if (is_smooth()) {
             return draw_mirror(wo, (1.0f / shares.specular) * reflectance(abs(wo.z)), shares.specular);
         } else {
@@ -82,6 +83,7 @@ struct FilmedLobe {
 
 private:
     HD bool has_film() const { return film.weight > 0; }
+    HD bool is_tinted() const { return !(tint == Rgb{1, 1, 1}) && !has_film(); }
     HD Rgb with_film(Rgb plain, float cosine, Rgb base_f0, float most) const {
         if (!has_film()) return plain;
         return plain + film.weight * (most * film_reflectance(cosine, film, ior_from_f0(base_f0)) - plain);
@@ -91,6 +93,7 @@ private:
         return f90 > 0 ? with_film(plain, cosine, (1.0f / f90) * f0, f90) : plain;
     }
     HD Rgb of_metal(float cosine) const {
+        if (is_tinted()) return fresnel_f82(cosine, base_color, tint);
         return with_film(fresnel_schlick(cosine, base_color), cosine, base_color, 1);
     }
     /// Reflectance of one bounce.
@@ -104,7 +107,7 @@ private:
         return 0.36391724f * of_dielectric(0.35505103f) + 0.63608276f * of_dielectric(0.84494897f);
     }
     HD Rgb average_of_metal() const {
-        if (!has_film()) return fresnel_schlick_average(base_color);
+        if (!has_film()) return fresnel_f82_average(base_color, tint);
         return 0.36391724f * of_metal(0.35505103f) + 0.63608276f * of_metal(0.84494897f);
     }
     HD Rgb average_reflectance() const {
@@ -115,23 +118,20 @@ private:
 
     HD Average make_average() const {
         Average a = {};
-        const float width = widths.energy_width();
-        a.lost = is_smooth() ? 0.0f : metal_average_lost(width);
+        a.lost = widths.average_lost();
         if (metallic < 1) a.more = multiple_scattering_tint(average_of_dielectric(), a.lost);
         if (metallic > 0) a.more = lerp(a.more, multiple_scattering_tint(average_of_metal(), a.lost), metallic);
         return a;
     }
     HD Albedo albedo_at(float cosine) const {
         Albedo a = {};
-        const float width = widths.energy_width();
-        a.lost = is_smooth() ? 0.0f : widths.energy_factor(cosine) * metal_lost(cosine, width);
+        a.lost = widths.lost(cosine);
         if (has_film()) {
             if (metallic < 1) a.coat = max_component(of_dielectric(cosine));
             a.strength = metallic > 0 ? lerp(a.coat, max_component(of_metal(cosine)), metallic) : a.coat;
             return a;
         }
-        const float w = is_smooth() ? schlick_weight(cosine)
-                                    : metal_schlick(cosine, widths.narrowest()) + widths.grazing_excess(cosine);
+        const float w = widths.schlick(cosine);
         const float most = max_component(f0);
         a.coat = most + (f90 - most) * w;
         const Rgb mixed = lerp(f0, base_color, metallic);

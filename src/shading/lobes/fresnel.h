@@ -87,6 +87,28 @@ HD inline float fresnel_schlick_average(float f0) { return f0 + (1.0f - f0) * (1
 HD inline Rgb fresnel_schlick_average(Rgb f0) {
     return {fresnel_schlick_average(f0.r), fresnel_schlick_average(f0.g), fresnel_schlick_average(f0.b)};
 }
+/// The fraction of b (x (1 - x)^6) that F82 takes from Schlick's reflectance; `tint` in [0, 1] is the factor at the
+/// cosine 1/7, about 82 degrees.
+HD inline float f82_drop(float f0, float tint) {
+    constexpr float weight = 0.46266437f, inv_most = 17.6513846f; // (6/7)^5, 7 (7/6)^6
+    return (f0 + (1.0f - f0) * weight) * (1.0f - tint) * inv_most;
+}
+/// Schlick's approximation with a tint near grazing incidence (Kutz, Hasan & Edmondson, "Novel Aspects of the Adobe
+/// Standard Material", 2021).
+HD inline float fresnel_f82(float cos_o, float f0, float tint) {
+    const float w = schlick_weight(cos_o);
+    return clamp(f0 + (1.0f - f0) * w - f82_drop(f0, tint) * (cos_o * w * (1.0f - cos_o)), 0.0f, 1.0f);
+}
+HD inline Rgb fresnel_f82(float cos_o, Rgb f0, Rgb tint) {
+    return {fresnel_f82(cos_o, f0.r, tint.r), fresnel_f82(cos_o, f0.g, tint.g), fresnel_f82(cos_o, f0.b, tint.b)};
+}
+/// Average of it over a cosine-weighted hemisphere. The clamp, which is left out, would only raise it.
+HD inline Rgb fresnel_f82_average(Rgb f0, Rgb tint) {
+    const auto of = [](float at_normal, float factor) {
+        return max(fresnel_schlick_average(at_normal) - (1.0f / 126.0f) * f82_drop(at_normal, factor), 0.0f);
+    };
+    return {of(f0.r, tint.r), of(f0.g, tint.g), of(f0.b, tint.b)};
+}
 /// Reflectance at normal incidence of a dielectric.
 HD inline float f0_from_ior(float ior) { return square((ior - 1.0f) / (ior + 1.0f)); }
 

@@ -1,13 +1,16 @@
 #pragma once
 
 // A share of glass in a solid: a layer on an opaque BSDF, which has the rest (KHR_materials_transmission with a volume,
-// where the transmission is neither 0 nor 1), and glass with stretched microfacets or a thin film. It is as
+// where the transmission is neither 0 nor 1), and glass with stretched or Beckmann microfacets or a thin film. It is as
 // dielectric_lobe.h, which has the rules of refraction; all glass without those stays there.
 //
 // The film reflects as from outside on both sides, by the angle there, so refraction stays reciprocal.
+//
+// With dispersion each channel has an index of its own: a sample draws a channel and then a direction by its index, and
+// the density is the mean of the three, so that no channel's weight exceeds three times that of clear glass.
 
 #include "shading/lobes/dielectric_lobe.h"
-#include "shading/lobes/ggx_widths.h"
+#include "shading/lobes/microfacets.h"
 #include "shading/lobes/thin_film.h"
 
 namespace pertev {
@@ -15,9 +18,10 @@ namespace pertev {
 struct GlassLobe {
     Rgb tint;     // factor on transmitted light, [0, 1]
     float weight; // [0, 1], of the light that meets glass
-    GgxWidths widths;
+    Microfacets widths;
     float ior; // inside over outside, as DielectricLobe::usable_ior
     ThinFilm film;
+    float spread = 0; // dispersion: blue's index less green's, and green's less red's
 
     HD bool is_smooth() const { return widths.is_smooth() || ior == 1; }
     HD LobeClass lobe_class() const { return is_smooth() ? LobeClass::Specular : LobeClass::Glossy; }
@@ -25,7 +29,7 @@ struct GlassLobe {
     HD Gloss gloss(float) const { return {grey(weight), widths.energy_width(), 1.0f - weight}; }
     HD SpecularBranches specular(Vec3 wo) const {
         SpecularBranches branches;
-        if (!is_smooth()) return branches;
+        if (!is_smooth()) return branches; // dispersed light is taken to go along green's direction
         const Interface at = interface(wo, min(abs(wo.z), 1.0f));
         branches.mirror = weight * at.reflectance;
         if (!at.is_passed) return branches;
@@ -38,7 +42,7 @@ struct GlassLobe {
         const float p_beneath = probability_beneath(beneath);
         BsdfValue value;
         if (!is_smooth() && abs(wo.z) > 0 && abs(wi.z) > 0) {
-            value = wo.z * wi.z < 0 ? evaluate_refraction(wo, wi) : evaluate_reflection(wo, wi);
+            value = evaluate_channels(wo, wi);
             value = {(transmittance.light_of_delta() * weight) * value.f,
                      transmittance.reach * ((1.0f - p_beneath) * value.pdf)};
         }
@@ -51,14 +55,21 @@ struct GlassLobe {
         const float p_beneath = probability_beneath(beneath);
         if (u_lobe < p_beneath) return draw_beneath(u_lobe, p_beneath);
         const float u_glass = min((u_lobe - p_beneath) / (1.0f - p_beneath), 0x1.fffffep-1f);
+        if (spread > 0) {
+            const float at = 3.0f * u_glass;
+            const int channel = to_int(at, 0, 2);
+            const float u_rest = min(at - static_cast<float>(channel), 0x1.fffffep-1f);
+            if (is_smooth()) return draw_smooth_channel(channel, wo, u_rest, 1.0f - p_beneath);
+            return of_channel(channel).draw(wo, 0, u_rest, u);
+        }
         if (is_smooth()) return draw_smooth(wo, u_glass, 1.0f - p_beneath);
-        const float eta = eta_from(wo), width = widths.energy_width();
+        const float eta = eta_from(wo);
         const Vec3 o = widths.turned({wo.x, wo.y, abs(wo.z)});
         Vec3 i;
         const float lost = lost_at(o.z, eta);
         if (u_glass < lost) {
             const float share = share_of_lost(eta);
-            i = sample_grazing_lobe(width, u);
+            i = widths.sample_lost_lobe(u, true);
             if (u_glass < lost * share) i.z = -i.z;
         } else {
             const Vec3 m = widths.sample_visible_normal(o, u);
@@ -83,6 +94,52 @@ private:
         float chance;   // probability that a sample is reflected
         bool is_passed; // there is refraction
     };
+    /// The glass of one channel's index, without dispersion.
+    HD GlassLobe of_channel(int channel) const {
+        GlassLobe one = *this;
+        one.ior = DielectricLobe::usable_ior(ior + static_cast<float>(channel - 1) * spread, widths.y);
+        one.spread = 0;
+        return one;
+    }
+    HD BsdfValue evaluate_channels(Vec3 wo, Vec3 wi) const {
+        const bool is_refracted = wo.z * wi.z < 0;
+        if (!(spread > 0)) return is_refracted ? evaluate_refraction(wo, wi) : evaluate_reflection(wo, wi);
+        Rgb f = {};
+        float pdf = 0;
+        for (int channel = 0; channel < 3; ++channel) {
+            const GlassLobe one = of_channel(channel);
+            const BsdfValue value = is_refracted ? one.evaluate_refraction(wo, wi) : one.evaluate_reflection(wo, wi);
+            f += value.f * channel_alone(channel);
+            pdf += (1.0f / 3.0f) * value.pdf;
+        }
+        return {f, pdf};
+    }
+    HD static Rgb channel_alone(int channel) {
+        return {channel == 0 ? 1.0f : 0.0f, channel == 1 ? 1.0f : 0.0f, channel == 2 ? 1.0f : 0.0f};
+    }
+    /// draw_smooth() with dispersion. All channels mirror in one direction and refract in three.
+    HD LobeDraw draw_smooth_channel(int channel, Vec3 wo, float u, float reach) const {
+        const GlassLobe one = of_channel(channel);
+        const float cosine = min(abs(wo.z), 1.0f);
+        const Interface at = one.interface(wo, cosine);
+        if (u < at.chance) {
+            Rgb reflected = {};
+            float chance = 0;
+            for (int i = 0; i < 3; ++i) {
+                const Interface other = of_channel(i).interface(wo, cosine);
+                reflected += other.reflectance * channel_alone(i);
+                chance += (1.0f / 3.0f) * other.chance;
+            }
+            return draw_mirror(wo, (weight / (reach * chance)) * reflected, reach * chance);
+        }
+        if (!at.is_passed) return {};
+        const float chance = (1.0f / 3.0f) * (1.0f - at.chance);
+        return {.sample = {.wi = one.refracted(wo, at.cos_t),
+                           .weight = (weight / (reach * chance)) *
+                                     ((grey(1) - at.reflectance) * tint * channel_alone(channel)),
+                           .pdf = reach * chance,
+                           .is_transmission = true}};
+    }
     HD float eta_from(Vec3 wo) const { return wo.z > 0 ? ior : 1.0f / ior; }
     HD Interface interface(Vec3 wo, float cos_m) const {
         const DielectricFresnel fresnel = fresnel_dielectric(cos_m, eta_from(wo));
@@ -106,32 +163,30 @@ private:
     }
     /// A film changes the share that is reflected and thus loses less than the tables have: half of it is compensated.
     HD float lost_at(float cosine, float eta) const {
-        return (1.0f - 0.5f * film.weight) * widths.energy_factor(cosine) *
-               glass_lost(cosine, widths.energy_width(), eta);
+        return (1.0f - 0.5f * film.weight) * widths.energy_factor(cosine) * widths.glass_loss(cosine, eta);
     }
     HD float share_of_lost(float eta) const {
-        const float width = widths.energy_width();
-        return DielectricLobe::transmitted_share(eta, glass_average_lost(width, eta),
-                                                 glass_average_lost(width, 1.0f / eta));
+        return DielectricLobe::transmitted_share(eta, widths.average_glass_loss(eta),
+                                                 widths.average_glass_loss(1.0f / eta));
     }
 
     HD BsdfValue evaluate_reflection(Vec3 wo, Vec3 wi) const {
-        const float eta = eta_from(wo), width = widths.energy_width();
+        const float eta = eta_from(wo);
         const Vec3 o = widths.turned({wo.x, wo.y, abs(wo.z)}), i = widths.turned({wi.x, wi.y, abs(wi.z)});
-        const float lost_o = lost_at(o.z, eta), average = glass_average_lost(width, eta);
+        const float lost_o = lost_at(o.z, eta), average = widths.average_glass_loss(eta);
         const float stays = 1.0f - share_of_lost(eta);
         const GgxReflection once = widths.evaluate_reflection(o, i);
         const Interface at = interface(wo, once.cos_h);
         const float more = i.z * kInvPi * (stays * lost_o * lost_at(i.z, eta) / average);
         return {once.f * at.reflectance + grey(more),
-                (1.0f - lost_o) * at.chance * once.pdf + lost_o * stays * pdf_grazing_lobe(i.z, width)};
+                (1.0f - lost_o) * at.chance * once.pdf + lost_o * stays * widths.pdf_lost_lobe(i.z, true)};
     }
     HD BsdfValue evaluate_refraction(Vec3 wo, Vec3 wi) const {
-        const float eta = eta_from(wo), width = widths.energy_width(), cos_o = abs(wo.z), cos_i = abs(wi.z);
+        const float eta = eta_from(wo), cos_o = abs(wo.z), cos_i = abs(wi.z);
         const float lost_o = lost_at(cos_o, eta), share = share_of_lost(eta);
-        const float far_lost = lost_at(cos_i, 1.0f / eta), far_average = glass_average_lost(width, 1.0f / eta);
+        const float far_lost = lost_at(cos_i, 1.0f / eta), far_average = widths.average_glass_loss(1.0f / eta);
         Rgb f = grey(share * lost_o * far_lost / far_average * (cos_i * kInvPi));
-        float pdf = lost_o * share * pdf_grazing_lobe(cos_i, width);
+        float pdf = lost_o * share * widths.pdf_lost_lobe(cos_i, true);
         const bool outside = wo.z > 0; // a is the outside's direction, as in DielectricLobe
         const Vec3 a = outside ? wo : wi, b = outside ? wi : wo;
         const Vec3 sum = a + ior * b;

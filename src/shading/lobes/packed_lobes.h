@@ -7,6 +7,7 @@
 
 #include "shading/lobes/filmed_lobe.h"
 #include "shading/lobes/glass_lobe.h"
+#include "shading/lobes/metal_lobe.h"
 
 namespace pertev {
 
@@ -14,6 +15,7 @@ namespace pertev {
 struct UnitPair {
     uint32_t bits;
 
+    HD explicit UnitPair(uint32_t both) : bits(both) {}
     HD UnitPair(float low, float high) : bits(word_of(low) | word_of(high) << 16) {}
     HD float low() const { return number_of(bits & 0xffffu); }
     HD float high() const { return number_of(bits >> 16); }
@@ -23,23 +25,52 @@ private:
     HD static float number_of(uint32_t word) { return static_cast<float>(word) * (1.0f / 65535.0f); }
 };
 
-/// Widths and film, with a weight of the film.
-struct PackedSurface {
-    float width;            // GgxWidths::y
-    UnitPair wide_and_film; // GgxWidths::x, ThinFilm::weight
+/// Microfacets and a number in [0, 1].
+struct PackedMicrofacets {
+    uint32_t width;         // Microfacets::y, at most 1, which leaves the two highest bits for the kinds
+    UnitPair wide_and_more; // Microfacets::x, the number
     UnitPair along;         // both components from [-1, 1]
-    float film_ior, film_thickness;
 
-    HD PackedSurface(const GgxWidths& widths, const ThinFilm& film)
-        : width(widths.y), wide_and_film(widths.x, film.weight),
-          along(0.5f + 0.5f * widths.along.x, 0.5f + 0.5f * widths.along.y), film_ior(film.ior),
-          film_thickness(film.thickness) {}
-    HD GgxWidths widths() const {
-        const bool is_even = (wide_and_film.bits & 0xffffu) == UnitPair::word_of(width);
-        const float x = 2.0f * along.low() - 1.0f, y = 2.0f * along.high() - 1.0f, inv = 1.0f / sqrt(x * x + y * y);
-        return {is_even ? width : wide_and_film.low(), width, {inv * x, inv * y}};
+    HD PackedMicrofacets(const Microfacets& widths, float more)
+        : width(bits_of(widths.y) | (widths.is_beckmann ? kBeckmann : 0u) | (widths.is_single ? kSingle : 0u)),
+          wide_and_more(widths.x, more), along(0.5f + 0.5f * widths.along.x, 0.5f + 0.5f * widths.along.y) {}
+    HD Microfacets widths() const {
+        const float y = float_of<float>(width & ~(kBeckmann | kSingle));
+        const bool is_even = (wide_and_more.bits & 0xffffu) == UnitPair::word_of(y);
+        const float x = 2.0f * along.low() - 1.0f, z = 2.0f * along.high() - 1.0f, inv = 1.0f / sqrt(x * x + z * z);
+        return {
+            is_even ? y : wide_and_more.low(), y, {inv * x, inv * z}, (width & kBeckmann) != 0, (width & kSingle) != 0};
     }
-    HD ThinFilm film() const { return {wide_and_film.high(), film_ior, film_thickness}; }
+    HD float more() const { return wide_and_more.high(); }
+
+private:
+    static constexpr uint32_t kBeckmann = 1u << 31, kSingle = 1u << 30;
+};
+
+/// Microfacets and a film, or without one a tint.
+struct PackedSurface {
+    PackedMicrofacets microfacets; // and the film's weight
+    uint32_t film_ior, film_thickness;
+
+    HD PackedSurface(const Microfacets& widths, const ThinFilm& film, Rgb tint = {1, 1, 1})
+        : microfacets(widths, film.weight), film_ior(bits_of(film.ior)), film_thickness(bits_of(film.thickness)) {
+        if (has_film()) return;
+        film_ior = UnitPair(tint.r, tint.g).bits;
+        film_thickness = UnitPair::word_of(tint.b);
+    }
+    HD Microfacets widths() const { return microfacets.widths(); }
+    HD ThinFilm film() const {
+        if (!has_film()) return {};
+        return {microfacets.more(), float_of<float>(film_ior), float_of<float>(film_thickness)};
+    }
+    HD Rgb tint() const {
+        if (has_film()) return {1, 1, 1};
+        const UnitPair red_green(film_ior);
+        return {red_green.low(), red_green.high(), UnitPair(film_thickness).low()};
+    }
+
+private:
+    HD bool has_film() const { return microfacets.more() > 0; }
 };
 
 struct PackedFilmedLobe {
@@ -48,34 +79,44 @@ struct PackedFilmedLobe {
 
     HD explicit PackedFilmedLobe(const FilmedLobe& lobe)
         : color_rg(lobe.base_color.r, lobe.base_color.g), color_b_metallic(lobe.base_color.b, lobe.metallic),
-          f0_rg(lobe.f0.r, lobe.f0.g), f0_b_f90(lobe.f0.b, lobe.f90), surface(lobe.widths, lobe.film) {}
+          f0_rg(lobe.f0.r, lobe.f0.g), f0_b_f90(lobe.f0.b, lobe.f90), surface(lobe.widths, lobe.film, lobe.tint) {}
     HD FilmedLobe unpacked() const {
         return {{color_rg.low(), color_rg.high(), color_b_metallic.low()},
                 color_b_metallic.high(),
                 surface.widths(),
                 {f0_rg.low(), f0_rg.high(), f0_b_f90.low()},
                 f0_b_f90.high(),
-                surface.film()};
+                surface.film(),
+                surface.tint()};
     }
 };
 
 struct PackedGlassLobe {
     UnitPair tint_rg, tint_b_weight;
-    float ior;
+    float ior, spread;
     PackedSurface surface;
 
     HD explicit PackedGlassLobe(const GlassLobe& lobe)
         : tint_rg(lobe.tint.r, lobe.tint.g), tint_b_weight(lobe.tint.b, lobe.weight), ior(lobe.ior),
-          surface(lobe.widths, lobe.film) {}
+          spread(lobe.spread), surface(lobe.widths, lobe.film) {}
     HD GlassLobe unpacked() const {
         return {{tint_rg.low(), tint_rg.high(), tint_b_weight.low()},
                 tint_b_weight.high(),
                 surface.widths(),
                 ior,
-                surface.film()};
+                surface.film(),
+                spread};
     }
 };
 
-static_assert(sizeof(PackedFilmedLobe) == 36 && sizeof(PackedGlassLobe) <= 36);
+struct PackedMetalLobe {
+    Rgb eta, k;
+    PackedMicrofacets microfacets;
+
+    HD explicit PackedMetalLobe(const MetalLobe& lobe) : eta(lobe.eta), k(lobe.k), microfacets(lobe.widths, 0) {}
+    HD MetalLobe unpacked() const { return {eta, k, microfacets.widths()}; }
+};
+
+static_assert(sizeof(PackedFilmedLobe) == 36 && sizeof(PackedGlassLobe) <= 36 && sizeof(PackedMetalLobe) == 36);
 
 } // namespace pertev

@@ -1,0 +1,121 @@
+#pragma once
+
+// Microfacets of two widths: the surface's normals are stretched along one tangent and squeezed along the other, after
+// GGX or Beckmann, with or without the energy of further bounces. With GGX each function equals that of ggx.h where
+// both widths are equal.
+//
+// Source: as ggx.h and beckmann.h; Heitz 2014, section 5.4 (the slopes of a stretched distribution);
+// KHR_materials_anisotropy.
+
+#include "shading/lobes/beckmann.h"
+#include "shading/lobes/energy_tables.h"
+#include "shading/lobes/ggx.h"
+#include "shading/lobes/grazing_lobe.h"
+
+namespace pertev {
+
+/// Widths along x and y of a frame that is turned about the normal.
+struct Microfacets {
+    float x, y;          // [0, 1], both at least kSmoothAlpha unless the surface is smooth
+    Vec2 along = {1, 0}; // unit: x of the turned frame, in the frame of the BSDF
+    bool is_beckmann = false;
+    bool is_single = false; // no light of further bounces
+
+    HD bool is_smooth() const { return !(min(x, y) >= kSmoothAlpha); }
+    HD Vec3 turned(Vec3 w) const { return {along.x * w.x + along.y * w.y, along.x * w.y - along.y * w.x, w.z}; }
+    HD Vec3 turned_back(Vec3 w) const { return {along.x * w.x - along.y * w.y, along.y * w.x + along.x * w.y, w.z}; }
+
+    // The arguments of all functions below are in the turned frame.
+
+    HD float normals(Vec3 h) const {
+        if (is_beckmann) {
+            const float z2 = h.z * h.z;
+            if (!(z2 > 1e-6f)) return 0;
+            return exp(-(square(h.x / x) + square(h.y / y)) / z2) / (kPi * x * y * (z2 * z2));
+        }
+        const float t = square(h.x / x) + square(h.y / y) + h.z * h.z;
+        return 1.0f / (kPi * x * y * (t * t));
+    }
+    HD float slope_length(Vec3 w) const {
+        const float across2 = square(x * w.x) + square(y * w.y);
+        return is_beckmann ? beckmann::slope_length(abs(w.z), sqrt(across2)) : sqrt(w.z * w.z + across2);
+    }
+    HD Vec3 sample_visible_normal(Vec3 wo, Vec2 u) const {
+        const Vec3 w = normalize(Vec3{x * wo.x, y * wo.y, wo.z});
+        if (is_beckmann) {
+            const Vec3 slopes = beckmann::sample_visible_normal(w, u);
+            return normalize(Vec3{x * slopes.x, y * slopes.y, slopes.z});
+        }
+        const float drop = u.y * (1.0f + w.z);
+        const float s = safe_sqrt(drop * (2.0f - drop));
+        float sin_phi, cos_phi;
+        sin_cos_2pi(u.x, sin_phi, cos_phi);
+        const Vec3 m = {x * (s * cos_phi + w.x), y * (s * sin_phi + w.y), (1.0f - u.y) * (1.0f + w.z)};
+        const float length2 = length_squared(m);
+        if (!(length2 > 0)) return {0, 0, 1};
+        return (1.0f / sqrt(length2)) * m;
+    }
+    HD GgxReflection evaluate_reflection(Vec3 wo, Vec3 wi) const {
+        const Vec3 sum = wo + wi;
+        const Vec3 h = (1.0f / sqrt(length_squared(sum))) * sum;
+        const float d = normals(h), so = slope_length(wo), si = slope_length(wi);
+        return {d * wi.z / (2.0f * (so * wi.z + si * wo.z)), d / (2.0f * (wo.z + so)), min(abs(dot(wo, h)), 1.0f)};
+    }
+    HD float narrowest() const { return min(x, y); }
+    HD float widest() const { return max(x, y); }
+    /// Width of the isotropic surface whose lost energy stands for that of this one; what it adds to Schlick's weight
+    /// for light at a cosine; and the factor on the lost energy, because an uneven surface loses less at grazing
+    /// angles. They were found by comparing single scattering over widths and angles, so that nothing is gained.
+    HD float energy_width() const { return x == y ? x : sqrt(x * y) * (1.0f - 0.16f * unevenness()); }
+    HD float grazing_excess(float cosine) const { return unevenness() * max(0.045f - 0.9f * cosine, 0.0f); }
+    HD float energy_factor(float cosine) const { return 1.0f - unevenness() * max(0.7f - 2.3f * cosine, 0.0f); }
+
+    /// Fraction of the light that one bounce off a reflector with F = 1 loses and further bounces return, at a cosine,
+    /// and its average. Both are 0 for smooth and single scattering.
+    HD float lost(float cosine) const {
+        if (is_smooth() || is_single) return 0;
+        const float width = energy_width();
+        return energy_factor(cosine) * (is_beckmann ? beckmann_lost(cosine, width) : metal_lost(cosine, width));
+    }
+    HD float average_lost() const {
+        if (is_smooth() || is_single) return 0;
+        return is_beckmann ? beckmann_average_lost(energy_width()) : metal_average_lost(energy_width());
+    }
+    /// Average of Schlick's weight over the light that it reflects at a cosine, rather too much.
+    HD float schlick(float cosine) const {
+        if (is_smooth()) return schlick_weight(cosine);
+        if (is_beckmann) return beckmann_schlick(cosine, narrowest()) + grazing_excess(cosine);
+        return metal_schlick(cosine, narrowest()) + grazing_excess(cosine);
+    }
+    /// lost() and average_lost() of glass, without energy_factor().
+    HD float glass_loss(float cosine, float eta) const {
+        if (is_smooth() || is_single) return 0;
+        const float width = energy_width();
+        return is_beckmann ? beckmann_glass_lost(cosine, width, eta) : glass_lost(cosine, width, eta);
+    }
+    HD float average_glass_loss(float eta) const {
+        const float width = energy_width();
+        return is_beckmann ? beckmann_average_glass_lost(width, eta) : glass_average_lost(width, eta);
+    }
+    /// Samples a direction for that light, u in [0, 1)^2, and the density at a cosine, 1/sr.
+    HD Vec3 sample_lost_lobe(Vec2 u, bool is_glass = false) const {
+        const float width = energy_width();
+        return has_own_lost_lobe(is_glass) ? beckmann::sample_lost_lobe(width, u) : sample_grazing_lobe(width, u);
+    }
+    HD float pdf_lost_lobe(float cosine, bool is_glass = false) const {
+        const float width = energy_width();
+        return has_own_lost_lobe(is_glass) ? beckmann::pdf_lost_lobe(cosine, width) : pdf_grazing_lobe(cosine, width);
+    }
+
+private:
+    /// Very rough glass loses light at all angles, as GGX's.
+    HD bool has_own_lost_lobe(bool is_glass) const { return is_beckmann && !(is_glass && energy_width() > 0.5f); }
+    HD float unevenness() const { return min(2.5f * (1.0f - narrowest() / widest()), 1.0f); }
+};
+
+/// Widths of KHR_materials_anisotropy: `alpha` across, and towards 1 with the square of `strength` along.
+HD inline Microfacets anisotropic_widths(float alpha, float strength, Vec2 along) {
+    return {alpha + (1.0f - alpha) * (strength * strength), alpha, along};
+}
+
+} // namespace pertev

@@ -1,0 +1,97 @@
+// Single scattering off GGX's and Beckmann's microfacets against values of Mitsuba 3.9 (bsdf.eval of roughconductor,
+// roughdielectric and roughplastic), recorded for pairs of directions. Its masking of both directions is independent,
+// and ours correlated by height, which the comparison takes into account; so are Schlick's reflectance of plastic and
+// the square of the index, which our radiance does not have.
+
+#include <doctest/doctest.h>
+
+#include <span>
+
+#include "tests/statistical/bsdf_cases.h"
+
+using namespace pertev;
+using namespace pertev::test;
+
+namespace {
+
+struct RecordedByMitsuba {
+    Vec3 wo, wi;
+    Rgb metal; // alpha 0.25, gold's index
+    float glass, plastic;
+};
+
+/// Correlated over independent masking.
+float correlation(const Microfacets& widths, Vec3 wo, Vec3 wi) {
+    const auto lambda = [&](Vec3 w) { return 0.5f * (widths.slope_length(w) / abs(w.z) - 1.0f); };
+    const float o = lambda(wo), i = lambda(wi);
+    return (1.0f + o) * (1.0f + i) / (1.0f + o + i);
+}
+
+void compare_with_mitsuba(bool is_beckmann, std::span<const RecordedByMitsuba> above,
+                          std::span<const RecordedByMitsuba> through) {
+    const ReflectionParameters metal = {
+        .base_color = {}, .roughness = 0.5f, .is_beckmann = is_beckmann, .is_single = true};
+    const Bsdf gold = make_metal(kGoldEta, kGoldK, metal);
+    const ReflectionParameters clear = {
+        .base_color = grey(1), .roughness = 0.6f, .solid = 1, .is_beckmann = is_beckmann, .is_single = true};
+    const Bsdf glass = make_reflection(clear);
+    const Bsdf plastic =
+        make_reflection({.base_color = grey(0), .roughness = 0.5f, .is_beckmann = is_beckmann, .is_single = true});
+    const double tolerance = is_beckmann ? 0.01 : 1e-3; // its Beckmann masking is a rational fit
+    for (const RecordedByMitsuba& r : above) {
+        CAPTURE(r.wo.z);
+        CAPTURE(r.wi.z);
+        const float more = correlation(metal.microfacets(), r.wo, r.wi);
+        const Rgb f = gold.eval(r.wo, r.wi);
+        CHECK(f.r == doctest::Approx(more * r.metal.r).epsilon(tolerance));
+        CHECK(f.g == doctest::Approx(more * r.metal.g).epsilon(tolerance));
+        CHECK(f.b == doctest::Approx(more * r.metal.b).epsilon(tolerance));
+        CHECK(glass.eval(r.wo, r.wi).g ==
+              doctest::Approx(correlation(clear.microfacets(), r.wo, r.wi) * r.glass).epsilon(tolerance));
+        const float cos_h = dot(r.wo, normalize(r.wo + r.wi));
+        const float schlick = fresnel_schlick(cos_h, grey(0.04f)).g / fresnel_dielectric(cos_h, 1.5f).reflectance;
+        CHECK(plastic.eval(r.wo, r.wi).g == doctest::Approx(more * schlick * r.plastic).epsilon(tolerance));
+    }
+    for (const RecordedByMitsuba& r : through) {
+        CAPTURE(r.wo.z);
+        CAPTURE(r.wi.z);
+        const float eta = r.wo.z > 0 ? 1.5f : 1 / 1.5f;
+        const float more = correlation(clear.microfacets(), r.wo, r.wi) * eta * eta;
+        CHECK(glass.eval(r.wo, r.wi).g == doctest::Approx(more * r.glass).epsilon(2 * tolerance));
+    }
+}
+
+const Vec3 kMirrorA = direction_at(0.9f, 0.1f), kMirrorB = direction_at(0.5f, 0.1f),
+           kMirrorC = direction_at(0.7f, 0.1f), kMirrorA2 = direction_at(0.8f, 0.55f),
+           kMirrorB2 = direction_at(0.6f, 0.65f), kMirrorC2 = direction_at(0.95f, 0.3f);
+const Vec3 kBelow = direction_at(-0.75f, 0.6f), kUp1 = direction_at(0.6f, 0.55f), kUp2 = direction_at(0.5f, 0.65f),
+           kInside1 = direction_at(-0.9f, 0.1f), kInside2 = direction_at(-0.8f, 0.1f);
+
+} // namespace
+
+TEST_CASE("GGX's metal, glass and plastic of one bounce are those of Mitsuba") {
+    const RecordedByMitsuba above[] = {
+        {kMirrorA, kMirrorA2, {0.827267f, 0.538979f, 0.444465f}, 0.0221434f, 0.0362953f},
+        {kMirrorB, kMirrorB2, {0.660917f, 0.434348f, 0.365369f}, 0.0401567f, 0.0497604f},
+        {kMirrorC, kMirrorC2, {0.095354f, 0.062121f, 0.0511586f}, 0.00572132f, 0.00404246f}};
+    const RecordedByMitsuba through[] = {
+        {kMirrorB, kBelow, {}, 3.67437f, 0}, {kInside1, kUp1, {}, 0.761377f, 0}, {kInside2, kUp2, {}, 0.97291f, 0}};
+    compare_with_mitsuba(false, above, through);
+}
+
+TEST_CASE("Beckmann's metal, glass and plastic of one bounce are those of Mitsuba") {
+    const RecordedByMitsuba above[] = {
+        {kMirrorA, kMirrorA2, {1.04335f, 0.679762f, 0.560561f}, 0.025663f, 0.0457758f},
+        {kMirrorB, kMirrorB2, {1.04312f, 0.685524f, 0.576657f}, 0.0620795f, 0.0785361f},
+        {kMirrorC, kMirrorC2, {0.035178f, 0.0229177f, 0.0188734f}, 0.00694637f, 0.00149134f}};
+    const RecordedByMitsuba through[] = {
+        {kMirrorB, kBelow, {}, 5.17294f, 0}, {kInside1, kUp1, {}, 1.19048f, 0}, {kInside2, kUp2, {}, 1.56959f, 0}};
+    compare_with_mitsuba(true, above, through);
+    // With the widths 0.4 and 0.15 along x and y.
+    const Microfacets widths = {.x = 0.4f, .y = 0.15f, .is_beckmann = true, .is_single = true};
+    const Bsdf brushed{MetalLobe{kGoldEta, kGoldK, widths}};
+    CHECK(brushed.eval(kMirrorA, kMirrorA2).r ==
+          doctest::Approx(correlation(widths, kMirrorA, kMirrorA2) * 1.21439f).epsilon(0.01));
+    CHECK(brushed.eval(kMirrorB, kMirrorB2).g ==
+          doctest::Approx(correlation(widths, kMirrorB, kMirrorB2) * 0.699192f).epsilon(0.01));
+}

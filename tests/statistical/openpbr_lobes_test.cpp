@@ -1,0 +1,268 @@
+// Lobes with parameters of OpenPBR and of other renderers' files: the light that they return, and known values.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "tests/statistical/bsdf_cases.h"
+#include "tests/support/options.h"
+
+using namespace pertev;
+using namespace pertev::test;
+
+namespace {
+
+constexpr float kLobeRoughnesses[] = {0.05f, 0.1f, 0.2f, 0.35f, 0.5f, 0.75f, 1.0f};
+constexpr float kLobeCosines[] = {3e-3f, 0.03f, 0.12f, 0.35f, 0.65f, 1.0f};
+
+/// The smallest and largest mean weight of what `make` makes of each roughness, over all angles on one side.
+template <class Make>
+MeanWeight light_range(const Make& make, float side = 1) {
+    double least = 1e9, largest = 0;
+    for (const float roughness : kLobeRoughnesses)
+        for (const float cosine : kLobeCosines) {
+            const MeanWeight mean = mean_weight(make(roughness), direction_at(side * cosine),
+                                                static_cast<uint32_t>(effort(1 << 14, 1 << 20)));
+            least = std::min(least, mean.least());
+            largest = std::max(largest, mean.largest());
+        }
+    return {least, 0, largest};
+}
+
+/// Integral of eval over all directions: heights by midpoints of z = x^2, angles evenly.
+double integrated_albedo(const Bsdf& bsdf, Vec3 wo, int heights = 400, int angles = 200) {
+    double sum = 0;
+    for (int i = 0; i < heights; ++i)
+        for (int j = 0; j < angles; ++j) {
+            const double x = (i + 0.5) / heights;
+            const Vec3 wi = direction_at(static_cast<float>(x * x), static_cast<float>((j + 0.5) / angles));
+            sum += 2 * x * static_cast<double>(bsdf.eval(wo, wi).g);
+        }
+    return sum * 2 * 3.14159265358979 / heights / angles;
+}
+
+/// Largest weight of a sample, as the mean of its channels, over a grid of numbers.
+float largest_weight(const Bsdf& bsdf) {
+    float largest = 0;
+    for (const float cosine : kLobeCosines)
+        for (uint32_t i = 0; i < 1 << 14; ++i) {
+            const SamplePoint p = even_point(i, 1 << 14);
+            const BsdfSample s = bsdf.sample(direction_at(cosine), p.lobe, p.u);
+            if (s.pdf > 0) largest = std::max(largest, (s.weight.r + s.weight.g + s.weight.b) / 3);
+        }
+    return largest;
+}
+
+} // namespace
+
+TEST_CASE("white rough diffuse returns all light to 0.1 % at every roughness and angle") {
+    for (const float roughness : {0.01f, 0.1f, 0.3f, 0.6f, 1.0f})
+        for (const float cosine : {0.01f, 0.1f, 0.3f, 0.6f, 0.9f, 1.0f}) {
+            const Bsdf bsdf = make_rough_diffuse(grey(1), roughness);
+            const double albedo = integrated_albedo(bsdf, direction_at(cosine));
+            INFO("roughness " << roughness << ", cosine " << cosine << ": " << albedo);
+            CHECK(albedo > 0.999);
+            CHECK(albedo < 1.001);
+            CHECK(mean_weight(bsdf, direction_at(-cosine), 1 << 16).g == doctest::Approx(albedo).epsilon(2e-3));
+        }
+}
+
+TEST_CASE(
+    "rough diffuse is Lambert's at roughness 0, sends light back where it is rough, and has the published values") {
+    const Rgb albedo = {0.8f, 0.5f, 0.2f};
+    CHECK(make_rough_diffuse(albedo, 0).is_diffuse());
+    const Bsdf lambert = make_diffuse(albedo), near = make_rough_diffuse(albedo, 1e-5f);
+    const Bsdf rough = make_rough_diffuse(albedo, 1);
+    for (uint32_t i = 0; i < 200; ++i) {
+        const SamplePoint p = random_point(i, 5), q = random_point(i, 6);
+        const Vec3 wo = direction_at(2.0f * p.u.x - 1.0f, p.u.y), wi = direction_at(2.0f * q.u.x - 1.0f, q.u.y);
+        CHECK(near.eval(wo, wi).g == doctest::Approx(lambert.eval(wo, wi).g).epsilon(1e-4));
+    }
+    const Vec3 wo = direction_at(0.3f, 0), back = wo, onwards = direction_at(0.3f, 0.5f);
+    CHECK(rough.eval(wo, back).g > 1.5f * lambert.eval(wo, back).g);
+    CHECK(rough.eval(wo, onwards).g < 0.6f * lambert.eval(wo, onwards).g);
+    // By the listing of the paper (section 3), in double: roughness 0.5, cosines 0.6 and 0.4, 60 degrees between.
+    const Vec3 i = direction_at(0.6f, 0), o = direction_at(0.4f, 1.0f / 6);
+    const Rgb f = (1 / 0.6f) * make_rough_diffuse(albedo, 0.5f).eval(o, i);
+    CHECK(f.r == doctest::Approx(0.302214).epsilon(1e-4));
+    CHECK(f.g == doctest::Approx(0.186033).epsilon(1e-4));
+    CHECK(f.b == doctest::Approx(0.0733387).epsilon(1e-4));
+    // The average albedo is that of light from everywhere.
+    double sum = 0;
+    for (int k = 0; k < 200; ++k) {
+        const double x = (k + 0.5) / 200;
+        sum += 2 * x * integrated_albedo(rough, direction_at(static_cast<float>(x)), 100, 60) / 200;
+    }
+    CHECK(static_cast<double>(rough.diffuse_albedo().g) == doctest::Approx(sum).epsilon(2e-3));
+}
+
+TEST_CASE("a white rough base beneath a reflection returns all light to 1 %, and gains none beneath any layer") {
+    for (const float diffuse_roughness : {0.1f, 0.5f, 1.0f}) {
+        const MeanWeight glossy = light_range([&](float r) {
+            return make_reflection({.base_color = grey(1), .roughness = r, .diffuse_roughness = diffuse_roughness});
+        });
+        INFO("diffuse roughness " << diffuse_roughness << ": from " << glossy.least() << " to " << glossy.largest());
+        CHECK(glossy.r > 0.93); // at grazing angles, where light goes back along its way
+        CHECK(glossy.b < 1.001);
+        const MeanWeight varnished = light_range(
+            [&](float r) { return make_coated(make_rough_diffuse(grey(1), diffuse_roughness), 1, r, 1.5f); });
+        CHECK(varnished.b < 1.001);
+    }
+}
+
+TEST_CASE("F82 metal has its colours at 0 and 82 degrees, Schlick's without a tint, and returns all light if white") {
+    const Rgb f0 = {0.9f, 0.5f, 0.1f}, tint = {0.2f, 0.6f, 1};
+    const Rgb untinted = fresnel_schlick(1.0f / 7, f0), tinted = fresnel_f82(1.0f / 7, f0, tint);
+    CHECK(tinted.r == doctest::Approx(0.2f * untinted.r).epsilon(1e-4));
+    CHECK(tinted.g == doctest::Approx(0.6f * untinted.g).epsilon(1e-4));
+    CHECK(tinted.b == doctest::Approx(untinted.b).epsilon(1e-5));
+    CHECK(fresnel_f82(1, f0, tint).r == doctest::Approx(0.9f).epsilon(1e-6));
+    CHECK(fresnel_f82(0, f0, tint).r == 1);
+    CHECK(fresnel_f82(0.5f, 0, 0) == 0); // clamped
+    double sum = 0;
+    for (int i = 0; i < 10'000; ++i) {
+        const float x = (static_cast<float>(i) + 0.5f) / 10'000;
+        sum += 2 * static_cast<double>(x * fresnel_f82(x, f0, tint).r) / 10'000;
+    }
+    CHECK(static_cast<double>(fresnel_f82_average(f0, tint).r) == doctest::Approx(sum).epsilon(1e-4));
+    const auto metal = [](Rgb color, Rgb of_edge, float r) {
+        return make_reflection({.base_color = color, .metallic = 1, .roughness = r, .metal_tint = of_edge});
+    };
+    // The tint is stored in 16 bits, so this one takes the lobe of tints.
+    const MeanWeight white = light_range([&](float r) { return metal(grey(1), {1, 1, 0.99999f}, r); });
+    INFO("white: from " << white.least() << " to " << white.largest());
+    CHECK(white.r > 0.995);
+    CHECK(white.b < 1.001);
+    const Bsdf smooth = metal(f0, tint, 0), rough = metal(f0, tint, 0.1f);
+    CHECK(smooth.specular(direction_at(1.0f / 7)).mirror.r == doctest::Approx(tinted.r).epsilon(1e-3));
+    CHECK(mean_weight(rough, direction_at(0.9f), 1 << 14).r ==
+          doctest::Approx(static_cast<double>(fresnel_f82(0.9f, f0, tint).r)).epsilon(5e-3));
+}
+
+TEST_CASE("Beckmann's metal, plastic and glass return all light if compensated, and less by one bounce") {
+    for (const bool is_beckmann : {false, true}) {
+        const auto metal = [&](bool is_single) {
+            return light_range([&](float r) {
+                return make_metal(
+                    grey(0), grey(2),
+                    {.base_color = {}, .roughness = r, .is_beckmann = is_beckmann, .is_single = is_single});
+            });
+        };
+        const MeanWeight all = metal(false), single = metal(true);
+        INFO("Beckmann " << is_beckmann << ": from " << all.least() << " to " << all.largest() << ", single from "
+                         << single.least());
+        CHECK(all.r > 0.995);
+        CHECK(all.b < 1.001);
+        CHECK(single.r < (is_beckmann ? 0.6 : 0.5));
+        CHECK(single.b < 1.001);
+        for (const float side : {1.0f, -1.0f})
+            for (const float ior : {1.1f, 1.5f, 2.4f}) {
+                const auto glass = [&](bool is_single) {
+                    return light_range(
+                        [&](float r) {
+                            return make_reflection({.base_color = grey(1),
+                                                    .roughness = r,
+                                                    .ior = ior,
+                                                    .solid = 1,
+                                                    .anisotropy = is_beckmann || is_single ? 0.0f : 1e-6f,
+                                                    .is_beckmann = is_beckmann,
+                                                    .is_single = is_single});
+                        },
+                        side);
+                };
+                const MeanWeight compensated = glass(false), once = glass(true);
+                CAPTURE(ior);
+                CAPTURE(side);
+                CAPTURE(once.r);
+                CAPTURE(compensated.r);
+                CAPTURE(compensated.b);
+                CHECK(compensated.r > (is_beckmann ? 0.95 : 0.985));
+                CHECK(compensated.b < 1.001);
+                CHECK(once.r < compensated.r - 0.01);
+                CHECK(once.b < 1.001);
+            }
+        const auto plastic = [&](bool is_single) {
+            return light_range([&](float r) {
+                return make_reflection({.base_color = grey(1),
+                                        .roughness = r,
+                                        .ior = 1.8f,
+                                        .anisotropy = 1e-6f,
+                                        .is_beckmann = is_beckmann,
+                                        .is_single = is_single});
+            });
+        };
+        CHECK(plastic(false).r > 0.85);
+        CHECK(plastic(false).b < 1.001);
+        CHECK(plastic(true).b < 1.001);
+    }
+}
+
+TEST_CASE("no sample of rough diffuse or metal has a weight above 1.5, and none of glass above 2") {
+    for (const float r : kLobeRoughnesses) {
+        CAPTURE(r);
+        CHECK(largest_weight(make_rough_diffuse(grey(1), r)) < 1.5f);
+        for (const bool is_single : {false, true}) {
+            const ReflectionParameters p = {
+                .base_color = grey(1), .roughness = r, .solid = 1, .is_beckmann = true, .is_single = is_single};
+            CHECK(largest_weight(make_metal(grey(0), grey(2), p)) < 1.5f);
+            if (r > 0.2f) CHECK(largest_weight(make_reflection(p)) < 2);
+        }
+    }
+}
+
+TEST_CASE("dispersed glass refracts each channel by its own index, keeps all light, and is sampled by its density") {
+    const auto glass = [](float roughness, Rgb tint = grey(1)) {
+        return make_reflection(
+            {.base_color = tint, .roughness = roughness, .ior = 1.5f, .solid = 1, .dispersion = 0.2f});
+    };
+    const float iors[] = {1.45f, 1.5f, 1.55f};
+    const Bsdf smooth = glass(0);
+    const Vec3 wo = direction_at(0.6f);
+    bool is_found[3] = {};
+    for (uint32_t i = 0; i < 1000; ++i) {
+        const SamplePoint p = even_point(i, 1000);
+        const BsdfSample s = smooth.sample(wo, p.lobe, p.u);
+        REQUIRE(s.is_delta());
+        const float weights[] = {s.weight.r, s.weight.g, s.weight.b};
+        if (!s.is_transmission) {
+            const float sum = weights[0] + weights[1] + weights[2];
+            CHECK(sum == doctest::Approx(3).epsilon(1e-4)); // the mean is 1
+            for (int c = 0; c < 3; ++c)
+                CHECK(weights[c] * s.pdf ==
+                      doctest::Approx(fresnel_dielectric(0.6f, iors[c]).reflectance).epsilon(1e-3));
+            continue;
+        }
+        for (int c = 0; c < 3; ++c) {
+            if (!(weights[c] > 0)) continue;
+            is_found[c] = true;
+            CHECK(weights[c] == doctest::Approx(3).epsilon(1e-4));
+            CHECK(std::hypot(s.wi.x, s.wi.y) * iors[c] == doctest::Approx(0.8f).epsilon(1e-4));
+        }
+    }
+    CHECK((is_found[0] && is_found[1] && is_found[2]));
+    for (const float side : {1.0f, -1.0f}) {
+        const MeanWeight range = light_range([&](float r) { return glass(r); }, side);
+        INFO("side " << side << ": from " << std::min(range.r, range.b) << " to " << range.largest());
+        CHECK(range.r > 0.985);
+        CHECK(range.b < 1.002);
+    }
+    const Bsdf rough = glass(0.6f, {1.0f, 0.9f, 0.7f});
+    for (const float cosine : {0.9f, -0.5f}) {
+        double light = 0, density = 0;
+        constexpr uint32_t kPoints = 1 << 18;
+        for (uint32_t i = 0; i < kPoints; ++i) {
+            const SamplePoint p = even_point(i, kPoints);
+            const BsdfValue at = rough.evaluate(direction_at(cosine), direction_at(2.0f * p.u.x - 1.0f, p.u.y));
+            light += 4 * 3.14159265358979 * static_cast<double>(at.f.b) / kPoints;
+            density += 4 * 3.14159265358979 * static_cast<double>(at.pdf) / kPoints;
+        }
+        double drawn = 0;
+        for (uint32_t i = 0; i < 1 << 16; ++i) {
+            const SamplePoint p = even_point(i, 1 << 16);
+            if (rough.sample(direction_at(cosine), p.lobe, p.u).pdf > 0) drawn += 1.0 / (1 << 16);
+        }
+        CHECK(light == doctest::Approx(mean_weight(rough, direction_at(cosine), 1 << 18).b).epsilon(3e-3));
+        CHECK(density == doctest::Approx(drawn).epsilon(3e-3));
+    }
+    CHECK(largest_weight(rough) < 1.5f);
+}
