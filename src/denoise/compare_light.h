@@ -10,7 +10,7 @@
 namespace pertev {
 
 /// The stage that compares the light of both pictures where they show the same surface; elsewhere the gradient is
-/// unknown.
+/// unknown. The guide has the changed share of the pixel's light in place of a lobe's width.
 struct CompareLight {
     NoisyFrameView before, after; // scene as it was, and as it is
     Float4 *guide, *was, *is;
@@ -20,12 +20,15 @@ struct CompareLight {
         const uint32_t object = bits_of(after.hit[i].x);
         const bool is_same = object != kNoHit && bits_of(before.hit[i].x) == object &&
                              is_similar_surface(normal_before, normal.w, vec3_of(normal));
-        guide[i] = pack({vec3_of(normal), after.albedo[i].w, normal.w, is_same ? object : kNoHit});
-        was[i] = signals_of(before, i);
-        is[i] = signals_of(after, i);
+        const Float4 then = signals_of(before, i), now = signals_of(after, i);
+        was[i] = then;
+        is[i] = now;
+        guide[i] =
+            pack({vec3_of(normal), changed_share(light_of(then), light_of(now)), normal.w, is_same ? object : kNoHit});
     }
 
 private:
+    HD static float light_of(Float4 signals) { return fused_luminance(rgb_of(signals)) + signals.w; }
     HD static Float4 signals_of(const NoisyFrameView& frame, uint32_t i) {
         const SplitLight light = split_light(frame, i);
         const float gloss = frame.splits_light() ? fused_luminance(light.gloss / light.gloss_divisor) : 0.0f;
@@ -75,6 +78,25 @@ struct SpreadLight {
 private:
     HD static Float4 plus_scaled(Float4 a, float scale, Float4 b) {
         return {fma(scale, b.x, a.x), fma(scale, b.y, a.y), fma(scale, b.z, a.z), fma(scale, b.w, a.w)};
+    }
+};
+
+/// The stage that finds the largest changed share of the light of each pixel and its eight neighbours. It is not
+/// averaged, because shadows of moving objects have sharp edges.
+struct FindChangedShare {
+    const Float4* guide; // of CompareLight
+    float* share;
+    uint32_t width, height;
+
+    HD void operator()(uint32_t i) const {
+        const int w = static_cast<int>(width), h = static_cast<int>(height);
+        const int x = static_cast<int>(i % width), y = static_cast<int>(i / width);
+        float largest = 0;
+        for (int k = 0; k < 9; ++k) {
+            const Float4 there = guide[held(y, k / 3 - 1, h) * w + held(x, k % 3 - 1, w)];
+            if (object_of(there) != kNoHit) largest = max(largest, alpha_of(there));
+        }
+        share[i] = largest;
     }
 };
 

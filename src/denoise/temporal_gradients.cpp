@@ -27,9 +27,12 @@ TemporalGradientsView TemporalGradients::compare() {
         std::swap(was, free_was);
         std::swap(is, free_is);
     }
+    auto* const share = reinterpret_cast<float*>(free_was);
+    launch(*queue_, "find_changed_share", pixels, FindChangedShare{guide, share, width, height});
     return {guide,
             was,
             is,
+            share,
             width,
             height,
             static_cast<float>(width) / static_cast<float>(frame_width_),

@@ -18,6 +18,7 @@ struct TemporalGradientsView {
     const Float4* guide = nullptr; // packed Guide. Null: light is not known to have changed
     const Float4* was = nullptr;   // rgb of the diffuse signal, luminance of the other one, of the scene as it was
     const Float4* is = nullptr;    // in the same form, of the scene as it is
+    const float* share = nullptr;  // largest changed share of light around the pixel (FindChangedShare)
     uint32_t width = 0, height = 0;
     float columns = 0, rows = 0; // columns and rows of the small picture per one of the frame
 };
@@ -65,12 +66,14 @@ HD inline Rgb followed(Rgb light, Rgb was, Rgb is) {
     return {followed(light.r, was.r, is.r), followed(light.g, was.g, is.g), followed(light.b, was.b, is.b)};
 }
 
+/// Share of the light that is new or gone, in [0, 1].
+HD inline float changed_share(float was, float is) { return abs(is - was) / max(max(is, was), 1e-6f); }
+
 /// Maximum number of frames of a mean if light changes this much per frame: each update leaves an error, and errors
 /// add up.
 HD inline float frames_in_change(float longest, float was, float is) {
     constexpr float kLeft = 3; // frames of a mean if all of the light is new: one over this
-    const float change = abs(is - was) / max(max(is, was), 1e-6f);
-    return max(longest / fma(kLeft * change, longest, 1.0f), 1.0f);
+    return max(longest / fma(kLeft * changed_share(was, is), longest, 1.0f), 1.0f);
 }
 
 } // namespace pertev

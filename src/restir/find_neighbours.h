@@ -15,15 +15,35 @@ inline constexpr uint32_t kMaxNeighbours = 3;
 /// Up to kMaxNeighbours pixels, followed by kNoPixel.
 struct alignas(16) Neighbours {
     uint32_t pixels[kMaxNeighbours] = {kNoPixel, kNoPixel, kNoPixel};
-    uint32_t unused = 0;
+    float max_count = kInfinity; // maximum count of their reservoirs
 };
 
-/// Temporal neighbours: pixels of the previous frame.
+/// The largest changed share of light, in [0, 1], around each pixel of a small picture of the previous frame's view.
+struct ChangedLight {
+    const float* share = nullptr; // null: no light has changed
+    uint32_t width = 0, height = 0;
+    float columns = 0, rows = 0; // columns and rows of the small picture per one of the frame
+
+    /// Returns the share around a pixel of the frame that lies inside it.
+    HD float at(Vec2 pixel) const {
+        const int w = static_cast<int>(width), h = static_cast<int>(height);
+        const int x = to_int(pixel.x * columns, 0, w - 1), y = to_int(pixel.y * rows, 0, h - 1);
+        return share[y * w + x];
+    }
+};
+
+/// Temporal neighbours: pixels of the previous frame. Visibility of this frame's samples from them is tested in the
+/// scene as it is now. Where light has changed, this was not the visibility when their reservoirs were filled, and one
+/// that found no light would count as one that could have found the new light. So the more has changed, the less they
+/// count. The change is measured with random numbers of its own (denoise/temporal_gradients.h), and balance weights
+/// may have any counts that do not depend on the samples, so this introduces no bias.
 struct FindBefore {
     SceneView scene;
     PreviousScene scene_before;
     FrameCameras cameras;
     GBufferView now, last; // last: only hits and normals
+    ChangedLight change;
+    float max_count; // where no light has changed
     Neighbours* to;
 
     HD void operator()(uint32_t pixel) const {
@@ -40,6 +60,12 @@ struct FindBefore {
                 if (bits_of(last.hit[there].x) == object && at.depth > 0 &&
                     is_similar_surface(last.normal[there], at.depth, vec3_of(now.normal[pixel]))) {
                     found.pixels[0] = there;
+                    found.max_count = max_count;
+                    if (change.share != nullptr) {
+                        constexpr float kLeft = 3; // as in frames_in_change (denoise/temporal_gradients_view.h)
+                        const float changed = change.at(p);
+                        found.max_count *= square(1.0f - changed) / fma(kLeft * changed, max_count, 1.0f);
+                    }
                 }
             }
         }

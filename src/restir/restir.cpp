@@ -87,7 +87,7 @@ uint64_t Restir::rays() const {
 }
 
 void Restir::add(const NoisyFrame& frame, const PictureView& picture, const SampleNumbers& numbers, SceneTracer& tracer,
-                 const PreviousScene& before, const RestirSettings& settings) {
+                 const PreviousScene& before, const ChangedLight& change, const RestirSettings& settings) {
     PERTEV_CHECK(frame.width() == width_ && frame.height() == height_);
     const NoisyFrameView& noisy = frame.view();
     const FilmView film = frame.film_view();
@@ -116,11 +116,11 @@ void Restir::add(const NoisyFrame& frame, const PictureView& picture, const Samp
     if (has_history_ && settings.history > 0) {
         const FrameCameras cameras = {picture.camera.view, camera_before_.view, width_, height_};
         launch_in_band(*queue_, "find_before", rows_, width_,
-                       FindBefore{scene, before, cameras, noisy, last, neighbours_.data()});
-        const auto most = static_cast<float>(settings.history);
-        reuse(scene, here, there, fresh, kept, fresh, most, 2, tracer, kGroupReuse);
+                       FindBefore{scene, before, cameras, noisy, last, change, static_cast<float>(settings.history),
+                                  neighbours_.data()});
+        reuse(scene, here, there, fresh, kept, fresh, 2, tracer, kGroupReuse);
         if (has_bounces) {
-            reuse(scene, here, there, fresh_bounces, kept_bounces, fresh_bounces, most, 2, tracer, kGroupReuse + 1);
+            reuse(scene, here, there, fresh_bounces, kept_bounces, fresh_bounces, 2, tracer, kGroupReuse + 1);
         }
     }
     if (others_ != nullptr) {
@@ -132,13 +132,12 @@ void Restir::add(const NoisyFrame& frame, const PictureView& picture, const Samp
     }
     launch_in_band(*queue_, "find_beside", rows_, width_,
                    FindNeighbours{here, settings.neighbours, settings.radius, neighbours_.data()});
-    reuse(scene, here, here, fresh, fresh, kept, kInfinity, kMaxEntries, tracer, kGroupReuse + 2);
+    reuse(scene, here, here, fresh, fresh, kept, kMaxEntries, tracer, kGroupReuse + 2);
     with_stacks(scene.variant, [&]<ShadingVariant kVariant>() {
         launch_in_band(*queue_, "add_direct_light", rows_, width_, AddDirectLight<kVariant>{scene, here, kept, film});
     });
     if (has_bounces) {
-        reuse(scene, here, here, fresh_bounces, fresh_bounces, kept_bounces, kInfinity, kMaxEntries, tracer,
-              kGroupReuse + 3);
+        reuse(scene, here, here, fresh_bounces, fresh_bounces, kept_bounces, kMaxEntries, tracer, kGroupReuse + 3);
         with_stacks(scene.variant, [&]<ShadingVariant kVariant>() {
             launch_in_band(*queue_, "add_indirect_light", rows_, width_,
                            AddIndirectLight<kVariant>{scene, here, kept_bounces, film});
@@ -157,12 +156,11 @@ void Restir::add(const NoisyFrame& frame, const PictureView& picture, const Samp
 /// each.
 template <class Reservoir>
 void Restir::reuse(const SceneView& scene, const PixelSurfaces& here, const PixelSurfaces& there, const Reservoir* own,
-                   const Reservoir* others, Reservoir* to, float max_count, uint32_t entries, SceneTracer& tracer,
-                   uint32_t group) {
+                   const Reservoir* others, Reservoir* to, uint32_t entries, SceneTracer& tracer, uint32_t group) {
     with_stacks(scene.variant, [&]<ShadingVariant kVariant>() {
         launch_in_band(*queue_, "reuse_reservoirs", rows_, width_,
                        ReuseReservoirs<Reservoir, kVariant>{scene, here, there, own, others, neighbours_.data(), to,
-                                                            shares_.data(), max_count, group});
+                                                            shares_.data(), group});
     });
     for (uint32_t entry = 0; entry < entries; ++entry) {
         test_visibility(scene, entry == 0 ? here : there, to, tracer, entry);

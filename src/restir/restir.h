@@ -53,9 +53,9 @@ public:
     FirstBounceView first_bounce() const;
 
     /// Adds to `frame` the light that its samples omitted; they must have filled first_bounce(). `before` has the
-    /// positions in the previous frame. Throws Error(DeviceFault).
+    /// positions in the previous frame, `change` the light that has changed since. Throws Error(DeviceFault).
     void add(const NoisyFrame& frame, const PictureView& picture, const SampleNumbers& numbers, SceneTracer& tracer,
-             const PreviousScene& before, const RestirSettings& settings);
+             const PreviousScene& before, const ChangedLight& change, const RestirSettings& settings);
 
     /// Number of rays that the last add() traced. Waits for it.
     uint64_t rays() const;
@@ -67,8 +67,7 @@ public:
 private:
     template <class Reservoir>
     void reuse(const SceneView& scene, const PixelSurfaces& here, const PixelSurfaces& there, const Reservoir* own,
-               const Reservoir* others, Reservoir* to, float max_count, uint32_t entries, SceneTracer& tracer,
-               uint32_t group);
+               const Reservoir* others, Reservoir* to, uint32_t entries, SceneTracer& tracer, uint32_t group);
     template <class Reservoir>
     void test_visibility(const SceneView& scene, const PixelSurfaces& surfaces, Reservoir* reservoirs,
                          SceneTracer& tracer, uint32_t entry);

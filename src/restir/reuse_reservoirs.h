@@ -34,8 +34,7 @@ struct ReuseReservoirs {
     const Neighbours* neighbours;
     Reservoir* to;
     Shares* shares;
-    float max_count; // maximum count of a neighbour
-    uint32_t group;  // group of random numbers
+    uint32_t group; // group of random numbers
 
     HD void operator()(uint32_t pixel) const {
         const Reservoir first = own[pixel];
@@ -56,7 +55,7 @@ private:
         uint32_t count = 1;
         for (uint32_t k = 0; k < kMaxNeighbours && neighbours[pixel].pixels[k] != kNoPixel; ++k) {
             entries[count] = others[neighbours[pixel].pixels[k]];
-            entries[count].count = min(entries[count].count, max_count);
+            entries[count].count = min(entries[count].count, neighbours[pixel].max_count);
             ++count;
         }
         for (uint32_t j = 0; j < count; ++j) {

@@ -140,7 +140,8 @@ bool FrameSequence::render_rows(const FrameTask& task, RowExchange* others, Sink
     if (shared != nullptr) {
         const PathSettings& path = settings.path;
         sharing_timer_.start();
-        shared->add(frame, light, {path.sampler, number, path.seed}, scene.tracer(), before, restir);
+        const ChangedLight changed = {change.share, change.width, change.height, change.columns, change.rows};
+        shared->add(frame, light, {path.sampler, number, path.seed}, scene.tracer(), before, changed, restir);
         sharing_timer_.stop();
     }
     if (reconstruction.resolution_scale < 1) {

@@ -244,7 +244,7 @@ TEST_CASE("a temporal gradient is taken from a nearby pixel of the same object a
         is(guide.size(), Float4{1, 1, 1, 3});
     is[1] = {4, 4, 4, 3};
     guide[1] = pack({{0, 0, 1}, 1, 2, 8});
-    const TemporalGradientsView change = {guide.data(), was.data(), is.data(), kWidth, kHeight, 0.25f, 0.25f};
+    const TemporalGradientsView change = {guide.data(), was.data(), is.data(), nullptr, kWidth, kHeight, 0.25f, 0.25f};
     const LightStep step = light_step(change, {4, 4}, {0, 0, 1}, 7); // between all four pixels on the left
     CHECK(step.was.r == doctest::Approx(2));
     CHECK(step.is.r == doctest::Approx(1));

@@ -1,0 +1,119 @@
+// A box crosses a lit floor: where its shadow has just been, reservoirs that found no light must not count as ones that
+// could have found it.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "render/update_scene.h"
+#include "session/session.h"
+#include "tests/support/lit_scenes.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+using namespace pertev::test;
+
+namespace {
+
+constexpr uint32_t kCrossingWidth = 128, kCrossingHeight = 64, kFirstCrossing = 12, kCrossingFrames = 32, kTrail = 3;
+constexpr float kStepOfFrame = 0.125f; // metres, five pixels
+constexpr ReconstructionSettings kRawFrames = {
+    .history = 1, .passes = 0, .clamp_fireflies = false, .clamp_history = false, .anti_alias = false};
+
+/// A floor, a box on it (instance 1) and a small emitter above, which throws the box's shadow to the side.
+Scene scene_of_crossing() {
+    Scene scene;
+    const Mesh square = make_square(1);
+    Material grey;
+    grey.base_color = {0.5f, 0.5f, 0.5f};
+    grey.double_sided = true;
+    scene.materials.push_back(grey);
+    Mesh box;
+    for (const Transform& side :
+         {make_translation({0, 1, 0}), make_rotation(1, 0, 0, 0),
+          compose(make_rotation(0.70710678f, 0, 0, 0.70710678f), make_translation({0, 1, 0})),
+          compose(make_rotation(0.70710678f, 0, 0, -0.70710678f), make_translation({0, 1, 0})),
+          compose(make_rotation(0, 0, 0.70710678f, 0.70710678f), make_translation({0, 1, 0})),
+          compose(make_rotation(0, 0, 0.70710678f, -0.70710678f), make_translation({0, 1, 0}))}) {
+        const auto base = static_cast<uint32_t>(box.positions.size());
+        for (const Vec3 p : square.positions) box.positions.push_back(transform_point(side, p));
+        for (const uint32_t i : square.indices) box.indices.push_back(base + i);
+    }
+    scene.meshes = {square, box};
+    Instance floor, block;
+    floor.mesh = 0, floor.material = 0;
+    floor.world_from_local = make_scale({20, 1, 20});
+    block.mesh = 1, block.material = 0;
+    block.world_from_local = compose(make_translation({-2.2f, 0.3f, 0}), make_scale({0.25f, 0.25f, 0.25f}));
+    scene.instances = {floor, block};
+    add_emitter(scene, square, {400, 400, 400}, compose(make_translation({0, 4, -3}), make_scale({0.1f, 1, 0.1f})));
+    return scene;
+}
+
+Camera camera_of_crossing() {
+    Camera camera;
+    camera.world_from_camera = look_at({0, 4, 3}, {0, 0, 0.3f}, {0, 1, 0});
+    camera.fov_y = 0.3f;
+    return camera;
+}
+
+/// Returns the light of frames over that of references, on the floor where the shadow was up to kTrail frames before.
+double light_in_trail(const RestirSettings& restir, bool follows = true) {
+    ReconstructionSettings raw = kRawFrames;
+    raw.follow_light = follows;
+    Messages messages;
+    Scene scene = scene_of_crossing();
+    PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RenderSettings settings;
+    settings.width = kCrossingWidth, settings.height = kCrossingHeight;
+    settings.path.max_depth = restir.light == RestirLight::Indirect ? 2 : 1;
+    Queue queue = requested_queue();
+    Session frames(queue, prepared, camera_of_crossing(), settings),
+        references(queue, prepared, camera_of_crossing(), settings);
+    std::vector<Image> expected;
+    double light = 0, right = 0, pixels = 0;
+    for (uint32_t k = 0; k < kFirstCrossing + kCrossingFrames; ++k) {
+        scene.instances[1].world_from_local.translation.x += kStepOfFrame;
+        SceneUpdate update;
+        update.moved_instances = {1};
+        prepared = update_scene(prepared, scene, update, messages);
+        frames.update_scene(prepared, parts_of(update));
+        frames.render_frame(k, raw, restir);
+        if (k + kTrail < kFirstCrossing) continue;
+        references.update_scene(prepared, parts_of(update));
+        references.cut();
+        references.render(16);
+        expected.push_back(references.picture());
+        if (k < kFirstCrossing) continue;
+        const Image &now = expected.back(), shown = frames.frame().picture();
+        const double lit = 0.9 * static_cast<double>(now.at(2, kCrossingHeight / 2)[1]);
+        for (uint32_t y = 0; y < kCrossingHeight; ++y) {
+            for (uint32_t x = 0; x < kCrossingWidth; ++x) {
+                bool was_dark = false;
+                for (uint32_t j = 2; j <= kTrail + 1; ++j) {
+                    was_dark = was_dark || static_cast<double>(expected[expected.size() - j].at(x, y)[1]) < 0.02 * lit;
+                }
+                const auto value = static_cast<double>(now.at(x, y)[1]);
+                if (!was_dark || value < 0.5 * lit) continue;
+                light += static_cast<double>(shown.at(x, y)[1]), right += value, ++pixels;
+            }
+        }
+    }
+    REQUIRE(pixels > 20 * kCrossingFrames);
+    return light / right;
+}
+
+} // namespace
+
+TEST_CASE("with ReSTIR a moving shadow leaves no trail") {
+    const double without = light_in_trail({.light = RestirLight::Direct, .history = 0});
+    CHECK(without == doctest::Approx(1).epsilon(0.05));
+    CHECK(light_in_trail({.light = RestirLight::Direct}, false) < 0.8); // nobody knows that light has changed
+    for (const RestirLight light : {RestirLight::Direct, RestirLight::Indirect}) {
+        const double with = light_in_trail({.light = light});
+        MESSAGE(with, " of the light with history, ", without, " without");
+        CHECK(with == doctest::Approx(1).epsilon(0.05));
+    }
+}
