@@ -67,7 +67,8 @@ struct AccumulateSignals {
             }
         }
         const Float4 diffuse = limited(signals.diffuse, at);
-        Float4 recent = diffuse;
+        const bool is_known = diffuse.w >= 0;
+        Float4 recent = is_known ? diffuse : Float4{kUnknownSignal, 0, 0, 0};
         recent.w = 0;
         Vec2 squares = {square(fused_luminance(rgb_of(diffuse))), 0};
         if (has_gloss) {
@@ -89,25 +90,32 @@ struct AccumulateSignals {
                     lerp(square(ratio) * mean_of_taps(of_gloss, cameras, before.squares).y, squares.y, 1.0f / mean.w);
             }
         }
-        Float4 mean = mean_of_taps(taps, cameras, before.diffuse);
+        // A sample of a black surface, or history of one, says nothing.
+        const Taps known = taps_of_known(taps, cameras, before.diffuse);
+        Float4 mean = mean_of_taps(known, cameras, before.diffuse);
         float ratio = 1;
         if constexpr (kFollows) {
             const float light = fused_luminance(rgb_of(mean));
             mean = with_w(followed(rgb_of(mean), step.was, step.is), mean.w);
             ratio = ratio_of(light, fused_luminance(rgb_of(mean)));
         }
-        mean = gone_on(taps, mean, diffuse, longest_diffuse);
+        if (is_known) {
+            mean = gone_on(known, mean, diffuse, longest_diffuse);
+        } else {
+            mean = known.sum > kEnoughWeight ? with_w(rgb_of(mean), min(mean.w, longest_diffuse)) : Float4{0, 0, 0, 0};
+        }
         now.diffuse[pixel] = mean;
-        if (mean.w > 1) {
-            squares.x = lerp(square(ratio) * mean_of_taps(taps, cameras, before.squares).x, squares.x, 1.0f / mean.w);
-            Float4 recently = mean_of_taps(taps, cameras, before.recent);
+        if (is_known ? mean.w > 1 : mean.w > 0) {
+            squares.x = lerp(square(ratio) * mean_of_taps(known, cameras, before.squares).x, squares.x,
+                             is_known ? 1.0f / mean.w : 0.0f);
+            Float4 recently = mean_of_taps(known, cameras, before.recent);
             if constexpr (kFollows) {
                 recently = with_w(followed(rgb_of(recently), step.was, step.is),
                                   followed(recently.w, step.gloss_was, step.gloss_is));
             }
-            const float share = 1.0f / min(mean.w, kRecent);
-            recent = {lerp(recently.x, recent.x, share), lerp(recently.y, recent.y, share),
-                      lerp(recently.z, recent.z, share), lerp(recently.w, recent.w, share)};
+            const float share = 1.0f / min(mean.w, kRecent), of_diffuse = is_known ? share : 0.0f;
+            recent = {lerp(recently.x, recent.x, of_diffuse), lerp(recently.y, recent.y, of_diffuse),
+                      lerp(recently.z, recent.z, of_diffuse), lerp(recently.w, recent.w, share)};
         }
         now.squares[pixel] = squares;
         now.recent[pixel] = recent;

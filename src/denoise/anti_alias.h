@@ -12,6 +12,19 @@
 
 namespace pertev {
 
+/// The temporal means of light, which have as many frames as a pixel's surface has been visible in under the same
+/// light.
+struct SteadyLight {
+    const Float4* means;    // diffuse of the frame's HistoryView
+    uint32_t width, height; // pixels; they may be fewer than the picture's
+    float frames;           // number of frames from which on light is steady
+
+    HD bool is_at(PixelPosition at, uint32_t picture_width, uint32_t picture_height) const {
+        const uint32_t x = at.x * width / picture_width, y = at.y * height / picture_height;
+        return means[y * width + x].w >= frames;
+    }
+};
+
 struct AntiAlias {
     const Float4* picture; // output of ComposePicture
     const Vec2* was_at;    // output of AccumulateSignals
@@ -19,12 +32,14 @@ struct AntiAlias {
     Float4* shown;
     uint32_t width, height;
     bool has_history;
+    SteadyLight steady;
     RowBand band = {};                    // the rows to be made
     static constexpr uint32_t kReach = 1; // rows beside a pixel's that it reads
     // Weight of the current frame, and the number of standard deviations of the surrounding colours by which history
     // may differ from their mean: without motion, the increment per pixel of motion, and the limit. Each frame with
     // motion samples the previous one between its pixels, which blurs, and highlights do not move as surfaces do.
     static constexpr float kNew = 0.1f, kNewPerPixel = 0.1f, kNewAtMost = 0.4f;
+    static constexpr float kAtRest = 0.01f; // pixels
     static constexpr float kDeviations = 1, kDeviationsPerPixel = -0.25f, kDeviationsAtLeast = 0.5f;
 
     HD void operator()(uint32_t i) const {
@@ -52,6 +67,8 @@ private:
         const float x_moved = then.x - (static_cast<float>(at.x) + 0.5f),
                     y_moved = then.y - (static_cast<float>(at.y) + 0.5f);
         const float pixels_moved = sqrt(square(x_moved) + square(y_moved));
+        // At rest a history is right, even if this frame's samples have missed what is smaller than a pixel.
+        if (pixels_moved < kAtRest && steady.is_at(at, width, height)) return lerp(old, own, kNew);
         const float deviations = max(fma(kDeviationsPerPixel, pixels_moved, kDeviations), kDeviationsAtLeast);
         const Rgb limited = {within(old.r, around.mean.r, deviations * around.deviation.r),
                              within(old.g, around.mean.g, deviations * around.deviation.g),

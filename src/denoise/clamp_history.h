@@ -40,16 +40,16 @@ struct ClampHistory {
             diffuse = limit(diffuse, around, deviation_of_frames(squares.x, diffuse));
             now.diffuse[pixel] = diffuse;
         }
-        out.diffuse[pixel] = with_w(rgb_of(diffuse), variance(squares.x, diffuse, around.variance));
+        out.diffuse[pixel] =
+            with_w(rgb_of(diffuse), diffuse.w > 0 ? variance(squares.x, diffuse, around.variance) : kUnknownSignal);
         if (!has_gloss) return;
         Float4 gloss = now.gloss[pixel];
         if (limits) {
             gloss = limit_gloss(gloss, around, deviation_of_frames(squares.y, gloss));
             now.gloss[pixel] = gloss;
         }
-        out.gloss[pixel] =
-            with_w(rgb_of(gloss),
-                   variance(squares.y, gloss, around.variance == kUnknown ? kUnknown : square(around.gloss_deviation)));
+        out.gloss[pixel] = with_w(
+            rgb_of(gloss), variance(squares.y, gloss, around.is_known ? square(around.gloss_deviation) : kUnknown));
     }
 
 private:
@@ -58,6 +58,7 @@ private:
         Rgb mean, deviation;
         float gloss_mean, gloss_deviation;
         float variance; // variance of the luminance; kUnknown if too few pixels are similar
+        bool is_known;  // whether enough pixels are similar
     };
 
     /// Thirteen of the surrounding 25 pixels in a chessboard pattern, which give as much information at half of the
@@ -72,29 +73,32 @@ private:
         const Vec3 normal = normal_of(guide);
         const uint32_t object = object_of(guide);
         Rgb sum = {0, 0, 0}, squares = {0, 0, 0};
-        float gloss = 0, gloss_squares = 0, light = 0, light_squares = 0, count = 0;
+        float gloss = 0, gloss_squares = 0, gloss_count = 0, light = 0, light_squares = 0, count = 0;
         for (int k = 0; k < 25; k += 2) {
             const int tap = rows[k / 5] + columns[k % 5];
             const Float4 there = now.guide[tap];
             if (object_of(there) != object || !(fused_dot(normal_of(there), normal) > 0.9f)) continue;
             const Float4 recent = now.recent[tap];
-            const Rgb c = rgb_of(recent);
-            sum += c;
-            squares = {fma(c.r, c.r, squares.r), fma(c.g, c.g, squares.g), fma(c.b, c.b, squares.b)};
             gloss += recent.w;
             gloss_squares = fma(recent.w, recent.w, gloss_squares);
+            gloss_count += 1;
+            const Rgb c = rgb_of(recent);
+            if (c.r < 0) continue; // unknown
+            sum += c;
+            squares = {fma(c.r, c.r, squares.r), fma(c.g, c.g, squares.g), fma(c.b, c.b, squares.b)};
             const float l = fused_luminance(c);
             light += l;
             light_squares = fma(l, l, light_squares);
             count += 1;
         }
-        const float inv = 1.0f / max(count, 1.0f);
+        const float inv = 1.0f / max(count, 1.0f), inv_gloss = 1.0f / max(gloss_count, 1.0f);
         Neighbours n;
         n.mean = inv * sum;
         const Rgb spread = inv * squares - n.mean * n.mean;
         n.deviation = {safe_sqrt(spread.r), safe_sqrt(spread.g), safe_sqrt(spread.b)};
-        n.gloss_mean = inv * gloss;
-        n.gloss_deviation = safe_sqrt(inv * gloss_squares - n.gloss_mean * n.gloss_mean);
+        n.gloss_mean = inv_gloss * gloss;
+        n.gloss_deviation = safe_sqrt(inv_gloss * gloss_squares - n.gloss_mean * n.gloss_mean);
+        n.is_known = gloss_count >= 4;
         n.variance = count < 4 ? kUnknown : max(inv * light_squares - square(inv * light), 0.0f);
         return n;
     }

@@ -32,7 +32,7 @@ private:
     HD static Float4 signals_of(const NoisyFrameView& frame, uint32_t i) {
         const SplitLight light = split_light(frame, i);
         const float gloss = frame.splits_light() ? fused_luminance(light.gloss / light.gloss_divisor) : 0.0f;
-        return with_w(light.diffuse / light.diffuse_divisor, gloss);
+        return with_w(rgb_of(diffuse_signal(light.diffuse, light.diffuse_divisor)), gloss);
     }
 };
 

@@ -36,7 +36,7 @@ struct EstimateVariance {
                     continue;
                 }
                 if (!(sums.diffuse[at].w > 0)) continue;
-                of_diffuse.add(diffuse_of(at));
+                if (const Sums there_is = diffuse_of(at); there_is.is_known()) of_diffuse.add(there_is);
                 if (has_gloss) of_gloss.add(gloss_of(at));
             }
         }
@@ -68,6 +68,10 @@ private:
 
         /// Squared deviations from the mean of the samples, at least 0.
         HD float spread() const { return max(squares - square(signal) / samples, 0.0f); }
+        /// Returns whether there are samples of a surface that is not black.
+        HD bool is_known() const {
+            return samples > 0 && max(divisors.r, max(divisors.g, divisors.b)) >= kLeastKnown * samples;
+        }
     };
     HD Sums diffuse_of(uint32_t at) const {
         const Float4 share = sums.diffuse_share[at];
@@ -99,12 +103,14 @@ private:
             if (freedoms >= kFreedoms) return within / freedoms;
             return pixels >= 6 && all.samples > 1 ? all.spread() / (all.samples - 1) : kUnknown;
         }
-        /// Mean and variance of a pixel. A pixel without samples on its guide's surface takes the mean of its
-        /// neighbours. If its own samples spread more than those of its neighbours, it uses its own spread, because
-        /// otherwise a single bright one would remain.
+        /// Mean and variance of a pixel. A pixel without samples on its guide's surface, or where that is black, takes
+        /// the mean of its neighbours. If its own samples spread more than those of its neighbours, it uses its own
+        /// spread, because otherwise a single bright one would remain.
         HD Float4 mean(const Sums& own, float scale) const {
-            const Sums& known = own.samples > 0 ? own : all;
-            const Rgb light = known.samples > 0 ? known.light / known.divisors : Rgb{0, 0, 0};
+            const Sums& known = own.is_known() ? own : all;
+            if (!known.is_known()) return {0, 0, 0, kUnknownSignal};
+            const float inv = 1.0f / known.samples;
+            const Rgb light = rgb_of(diffuse_signal(inv * known.light, inv * known.divisors));
             const float variance =
                 own.samples > 1 ? max(variance_of_sample(), own.spread() / (own.samples - 1)) : variance_of_sample();
             return with_w(light, (scale * variance) / max(own.samples, 1.0f));

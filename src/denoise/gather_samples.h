@@ -159,7 +159,7 @@ struct GatherLight {
         if (found.object == kNoHit) return;
         if (samples.shows_own(pixel, found)) {
             const SplitLight light = split_light(frame, pixel);
-            const float diffuse = luminance(light.diffuse / light.diffuse_divisor),
+            const float diffuse = luminance(rgb_of(diffuse_signal(light.diffuse, light.diffuse_divisor))),
                         gloss = luminance(light.gloss / light.gloss_divisor);
             SampledSurfaces::add(sums.diffuse[pixel], light.diffuse, 1);
             SampledSurfaces::add(sums.gloss[pixel], light.gloss);

@@ -18,7 +18,8 @@ struct KeepLayers {
     HD void operator()(uint32_t i) const {
         const Vec2 centre = {static_cast<float>(i % width) + 0.5f, static_cast<float>(i / width) + 0.5f};
         const Vec2 then = has_history ? was_at[i] : centre;
-        layers[i] = {centre.x - then.x, centre.y - then.y, signals.diffuse[i].w, has_gloss ? signals.gloss[i].w : 0.0f};
+        layers[i] = {centre.x - then.x, centre.y - then.y, max(signals.diffuse[i].w, 0.0f),
+                     has_gloss ? signals.gloss[i].w : 0.0f};
     }
 };
 

@@ -111,6 +111,11 @@ SignalsView Reconstruction::filter(const NoisyFrame& frame, const CameraView& ca
     return b;
 }
 
+SteadyLight Reconstruction::steady_light(const HistoryView& now, const ReconstructionSettings& settings) const {
+    constexpr uint32_t kLeast = 8; // frames in which lamps smaller than a pixel have been seen
+    return {now.diffuse, width_, height_, static_cast<float>(std::max(settings.history * 3 / 4, kLeast))};
+}
+
 void Reconstruction::add(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,
                          const PreviousScene& scene_before, const TemporalGradientsView& change,
                          const ReconstructionSettings& settings) {
@@ -127,7 +132,7 @@ void Reconstruction::add(const NoisyFrame& frame, const CameraView& camera, cons
     if (settings.anti_alias) {
         launch(*queue_, "anti_alias", own.count() * width_,
                AntiAlias{picture, positions_before(), history(frames_).shown, now.shown, width_, height_, frames_ > 0,
-                         own});
+                         steady_light(now, settings), own});
     }
     timer_.stop();
     last_camera_ = camera;
@@ -147,8 +152,8 @@ void Reconstruction::add_upsampled(const NoisyFrame& frame, const CameraView& li
     Float4* memory = nullptr;
     const SignalsView light = filter(frame, light_camera, scene, scene_before, change, settings,
                                      upsampled_->rows_of_light(others_, height_), memory);
-    upsampled_->add(features, camera, {light, now.guide, light_camera, width_, height_, frame.splits_light()}, scene,
-                    scene_before, settings, frames_ > 0, others_);
+    upsampled_->add(features, camera, {light, now.guide, light_camera, width_, height_, frame.splits_light()},
+                    steady_light(now, settings), scene, scene_before, settings, frames_ > 0, others_);
     timer_.stop();
     last_camera_ = light_camera;
     ++frames_;

@@ -20,10 +20,10 @@ namespace pertev {
 /// Data of a frame that the next one needs.
 struct HistoryView {
     Float4* guide;   // packed Guide
-    Float4* diffuse; // mean of the signal over the frames that saw this surface point; their number
+    Float4* diffuse; // mean of the signal over the frames that saw this surface point; their number, 0 if unknown
     Float4* gloss;   // mean of the gloss signal over the same frames
     Vec2* squares;   // mean square of the luminances of both
-    Float4* recent;  // means over few frames: rgb diffuse, luminance of the other
+    Float4* recent;  // means over few frames: rgb diffuse (r is kUnknownSignal if unknown), luminance of the other
     Float4* shown;   // the reconstructed picture as shown_color; w is unused
 };
 
@@ -60,7 +60,7 @@ HD inline float alpha_of(Float4 packed) {
 
 /// The two signals, each with the variance of its mean's luminance.
 struct SignalsView {
-    Float4* diffuse; // rgb, variance
+    Float4* diffuse; // rgb, variance or kUnknownSignal
     Float4* gloss;
 };
 
@@ -74,19 +74,42 @@ HD inline Rgb add_scaled(Rgb sum, float scale, Rgb c) {
 /// `x + offset` clamped to [0, count).
 HD inline int held(int x, int offset, int count) { return clamp(x + offset, 0, count - 1); }
 
-/// Minimum divisor of a signal.
-inline constexpr float kMinAlbedo = 0.01f;
-HD inline Rgb divisor_of(Rgb albedo) {
-    return {max(albedo.r, kMinAlbedo), max(albedo.g, kMinAlbedo), max(albedo.b, kMinAlbedo)};
-}
-
 /// Divisor of the diffuse signal at a pixel: the reflectance of its diffuse lobes as the camera sees them, so that
 /// the signal of a point does not depend on the view.
 HD inline Rgb diffuse_divisor(const NoisyFrameView& frame, uint32_t pixel) {
-    return divisor_of(frame.emission[pixel].w * rgb_of(frame.albedo[pixel]));
+    return frame.emission[pixel].w * rgb_of(frame.albedo[pixel]);
 }
+/// Divisor of the other signal, which is a coarser estimate of reflectance and therefore not small.
 HD inline Rgb gloss_divisor(const NoisyFrameView& frame, uint32_t pixel) {
-    return divisor_of(rgb_of(frame.gloss[pixel]));
+    constexpr float kLeast = 0.01f;
+    const Float4 albedo = frame.gloss[pixel];
+    return {max(albedo.x, kLeast), max(albedo.y, kLeast), max(albedo.z, kLeast)};
+}
+
+/// w of a diffuse signal that is unknown because the surface is black. No mean counts it, otherwise what is beside
+/// black would be darkened.
+inline constexpr float kUnknownSignal = -1;
+/// Least reflectance of a channel whose light is known.
+inline constexpr float kLeastKnown = 1e-4f;
+
+/// The diffuse signal of light over its divisor; w is 0 or kUnknownSignal. A channel in which the surface is black is
+/// that of the others, so that saturated colours do not tint what is beside them more than their light is tinted.
+HD inline Float4 diffuse_signal(Rgb light, Rgb divisor) {
+    float known = 0, sum = 0;
+    const auto channel = [&](float of_light, float of_divisor) {
+        if (!(of_divisor >= kLeastKnown)) return kUnknownSignal;
+        const float signal = of_light / of_divisor;
+        sum += signal;
+        known += 1;
+        return signal;
+    };
+    Rgb signal;
+    signal.r = channel(light.r, divisor.r);
+    signal.g = channel(light.g, divisor.g);
+    signal.b = channel(light.b, divisor.b);
+    if (!(known > 0)) return {0, 0, 0, kUnknownSignal};
+    const float others = sum / known;
+    return {signal.r < 0 ? others : signal.r, signal.g < 0 ? others : signal.g, signal.b < 0 ? others : signal.b, 0};
 }
 
 } // namespace pertev

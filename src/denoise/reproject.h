@@ -74,6 +74,23 @@ HD inline uint32_t tap_pixel(const Taps& taps, const FrameCameras& cameras, int 
     return taps.first + static_cast<uint32_t>(k & 1) + static_cast<uint32_t>(k >> 1) * cameras.width;
 }
 
+/// Returns the taps whose value has a positive w; unchanged if all have.
+HD inline Taps taps_of_known(Taps taps, const FrameCameras& cameras, const Float4* values) {
+    float sum = 0;
+    for (int k = 0; k < 4; ++k) {
+        if (!(taps.weights[k] > 0)) continue;
+        if (!(values[tap_pixel(taps, cameras, k)].w > 0)) taps.weights[k] = 0;
+        sum += taps.weights[k];
+    }
+    if (!(sum > 0)) {
+        taps.sum = 0;
+    } else if (sum < 0.999f) {
+        taps.sum *= sum;
+        for (float& weight : taps.weights) weight *= 1.0f / sum;
+    }
+    return taps;
+}
+
 /// Mean of `values` over the taps, at least one of which matches.
 HD inline Float4 mean_of_taps(const Taps& taps, const FrameCameras& cameras, const Float4* values) {
     Float4 mean = {0, 0, 0, 0};

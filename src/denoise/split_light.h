@@ -8,7 +8,7 @@
 
 namespace pertev {
 
-/// Scattered light of the first surface, and divisor_of its reflectance. The signals are light over divisor.
+/// Scattered light of the first surface, and the divisors of diffuse_signal and of the other signal.
 struct SplitLight {
     Rgb diffuse, gloss;
     Rgb diffuse_divisor, gloss_divisor;

@@ -50,6 +50,7 @@ struct UpsamplePicture {
 private:
     struct Light {
         Rgb diffuse, gloss;
+        float known = 0; // weight of taps whose diffuse signal is known
     };
     static constexpr int kTaps = 4; // per side
 
@@ -92,12 +93,14 @@ private:
             weights = of_any;
         }
         if (!(weights > 0)) return {{0, 0, 0}, {0, 0, 0}};
-        const float inv = 1.0f / weights;
-        return {inv * sum.diffuse, inv * sum.gloss};
+        return {(sum.known > 0 ? 1.0f / sum.known : 0.0f) * sum.diffuse, (1.0f / weights) * sum.gloss};
     }
 
     HD void add(Light& sum, float& weights, uint32_t tap, float weight) const {
-        sum.diffuse += weight * rgb_of(coarse.signals.diffuse[tap]);
+        if (const Float4 diffuse = coarse.signals.diffuse[tap]; !(diffuse.w < 0)) {
+            sum.diffuse += weight * rgb_of(diffuse);
+            sum.known += weight;
+        }
         if (coarse.has_gloss) sum.gloss += weight * rgb_of(coarse.signals.gloss[tap]);
         weights += weight;
     }

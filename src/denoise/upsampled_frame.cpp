@@ -28,8 +28,8 @@ RowBand UpsampledFrame::rows_of_light(const RowExchange* others, uint32_t height
 }
 
 void UpsampledFrame::add(const NoisyFrame& features, const CameraView& camera, const CoarseLight& light,
-                         const SceneView& scene, const PreviousScene& before, const ReconstructionSettings& settings,
-                         bool has_history, RowExchange* others) {
+                         const SteadyLight& steady, const SceneView& scene, const PreviousScene& before,
+                         const ReconstructionSettings& settings, bool has_history, RowExchange* others) {
     PERTEV_CHECK(features.width() == width_ && features.height() == height_);
     const RowBand own = own_rows(others, height_), of_picture = own.grown(AntiAlias::kReach, height_);
     if (others != nullptr) others->take(features.rows(), of_picture);
@@ -40,7 +40,7 @@ void UpsampledFrame::add(const NoisyFrame& features, const CameraView& camera, c
                                    was_at_.data(), picture, has_history});
     if (settings.anti_alias) {
         launch(*queue_, "anti_alias", own.count() * width_,
-               AntiAlias{picture, was_at_.data(), shown(frames_), now, width_, height_, has_history, own});
+               AntiAlias{picture, was_at_.data(), shown(frames_), now, width_, height_, has_history, steady, own});
     }
     last_camera_ = camera;
     ++frames_;

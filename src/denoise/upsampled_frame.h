@@ -3,6 +3,7 @@
 // A frame whose light was reconstructed at a lower resolution than its surfaces: upsamples the picture
 // (upsample_picture.h), and computes its temporal mean (anti_alias.h).
 
+#include "denoise/anti_alias.h"
 #include "denoise/reconstruction_settings.h"
 #include "denoise/upsample_picture.h"
 #include "device/buffer.h"
@@ -17,9 +18,9 @@ public:
 
     /// Makes the next picture from `light`. `features` is a frame of the picture's size, seen by `camera`, whose paths
     /// end at the first surface.
-    void add(const NoisyFrame& features, const CameraView& camera, const CoarseLight& light, const SceneView& scene,
-             const PreviousScene& before, const ReconstructionSettings& settings, bool has_history,
-             RowExchange* others = nullptr);
+    void add(const NoisyFrame& features, const CameraView& camera, const CoarseLight& light, const SteadyLight& steady,
+             const SceneView& scene, const PreviousScene& before, const ReconstructionSettings& settings,
+             bool has_history, RowExchange* others = nullptr);
     /// Makes shown(), which the caller then fills, the picture before the next one; `camera` has seen it.
     void begin_after(const CameraView& camera) { last_camera_ = camera; }
     /// Rows of the light, `height` in all, that this device's rows of the picture read.

@@ -122,15 +122,18 @@ private:
         /// `deviation` is the difference of light up to which a tap counts.
         HD Sum(Float4 own, float deviation)
             : light(rgb_of(own)), variance(own.w), centre(fused_luminance(rgb_of(own))),
-              inv_deviation(1.0f / (deviation + 1e-4f)) {}
+              inv_deviation(1.0f / (deviation + 1e-4f)) {
+            if (own.w < 0) weight = variance = inv_deviation = 0; // unknown, so any light is as good
+        }
         HD void add(Float4 tap, float kernel, float difference) {
             const float unlike = abs(fused_luminance(rgb_of(tap)) - centre);
-            const float w = kernel * falloff(fma(unlike, inv_deviation, difference));
+            const float w = tap.w < 0 ? 0.0f : kernel * falloff(fma(unlike, inv_deviation, difference));
             light = add_scaled(light, w, rgb_of(tap));
             variance = fma(w * w, tap.w, variance);
             weight += w;
         }
         HD Float4 mean() const {
+            if (!(weight > 0)) return {0, 0, 0, kUnknownSignal};
             const float inv = 1.0f / weight;
             return with_w(inv * light, inv * inv * variance);
         }
@@ -138,10 +141,10 @@ private:
 
     /// Variance of the light at a pixel, averaged over its neighbours because variances are noisy themselves.
     HD float variance_of(const Float4* signal, float own, const int* rows, const int* columns) const {
-        float sum = 4.0f * own;
+        float sum = 4.0f * max(own, 0.0f);
         for (int k = 0; k < 9; ++k) {
             if (k == 4) continue;
-            sum = fma(k % 2 == 1 ? 2.0f : 1.0f, signal[rows[k / 3] + columns[k % 3]].w, sum);
+            sum = fma(k % 2 == 1 ? 2.0f : 1.0f, max(signal[rows[k / 3] + columns[k % 3]].w, 0.0f), sum);
         }
         return sum * (1.0f / 16.0f);
     }

@@ -238,8 +238,8 @@ TEST_CASE("variance is temporal, or spatial where the history is short") {
 namespace {
 
 /// Returns the tested pixel of a picture with `own` at the centre of `around`, and a history of `old` to the left of
-/// column kStageHalf + 2.
-float shown_after(float own, float around, float old, bool is_near_moving) {
+/// column kStageHalf + 2. The light has been steady for `frames` frames, of which 8 are enough.
+float shown_after(float own, float around, float old, bool is_near_moving, float frames = 7) {
     std::vector<Float4> picture(kStagePixels, Float4{around, 0, 0, 5}), before(kStagePixels, Float4{0, 0, 0, 0}),
         shown(kStagePixels);
     std::vector<Vec2> was_at;
@@ -252,7 +252,9 @@ float shown_after(float own, float around, float old, bool is_near_moving) {
         picture[kLeftOfBorder + 1].w = 2;
         was_at[kLeftOfBorder + 1].x += 6;
     }
-    const AntiAlias stage = {picture.data(), was_at.data(), before.data(), shown.data(), kStageSide, kStageSide, true};
+    const std::vector<Float4> means(kStagePixels, Float4{0, 0, 0, frames});
+    const AntiAlias stage = {picture.data(), was_at.data(), before.data(), shown.data(),
+                             kStageSide,     kStageSide,    true,          {means.data(), kStageSide, kStageSide, 8}};
     for (uint32_t i = 0; i < kStagePixels; ++i) stage(i);
     return shown[kLeftOfBorder].x;
 }
@@ -265,6 +267,9 @@ TEST_CASE(
     CHECK(shown_after(0.9f, 0.5f, 0.5f, false) == doctest::Approx(0.5 + 0.1 * 0.4));
     CHECK(shown_after(0.9f, 0.5f, 0.1f, false) == doctest::Approx(0.4187 + 0.1 * (0.9 - 0.4187)).epsilon(0.001));
     CHECK(shown_after(0.5f, 0.5f, 0.9f, false) == doctest::Approx(0.5));
+    // Under steady light the history is right, unless the surface moves.
+    CHECK(shown_after(0.5f, 0.5f, 0.9f, false, 8) == doctest::Approx(0.9 + 0.1 * (0.5 - 0.9)));
+    CHECK(shown_after(0.9f, 0.5f, 0.5f, true, 8) == shown_after(0.9f, 0.5f, 0.5f, true));
     // The history where the nearest pixel came from is black. It has moved by six pixels, so old colours are clamped
     // to half a deviation, and current ones have a weight of 0.4.
     CHECK(shown_after(0.9f, 0.5f, 0.5f, true) == doctest::Approx(0.4816 + 0.4 * (0.9 - 0.4816)).epsilon(0.001));
