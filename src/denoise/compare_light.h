@@ -84,7 +84,7 @@ private:
 /// The stage that finds the largest changed share of the light of each pixel and its eight neighbours. It is not
 /// averaged, because shadows of moving objects have sharp edges.
 struct FindChangedShare {
-    const Float4* guide; // of CompareLight
+    const Float4* guide; // guide of CompareLight
     float* share;
     uint32_t width, height;
 

@@ -112,7 +112,7 @@ SignalsView Reconstruction::filter(const NoisyFrame& frame, const CameraView& ca
 }
 
 SteadyLight Reconstruction::steady_light(const HistoryView& now, const ReconstructionSettings& settings) const {
-    constexpr uint32_t kLeast = 8; // frames in which lamps smaller than a pixel have been seen
+    constexpr uint32_t kLeast = 8; // frames in which emitters smaller than a pixel have been seen
     return {now.diffuse, width_, height_, static_cast<float>(std::max(settings.history * 3 / 4, kLeast))};
 }
 

@@ -62,7 +62,8 @@ struct FindBefore {
                     found.pixels[0] = there;
                     found.max_count = max_count;
                     if (change.share != nullptr) {
-                        constexpr float kLeft = 3; // as in frames_in_change (denoise/temporal_gradients_view.h)
+                        constexpr float kLeft =
+                            3; // equal to that of frames_in_change (denoise/temporal_gradients_view.h)
                         const float changed = change.at(p);
                         found.max_count *= square(1.0f - changed) / fma(kLeft * changed, max_count, 1.0f);
                     }

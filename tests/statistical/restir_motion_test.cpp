@@ -110,7 +110,7 @@ double light_in_trail(const RestirSettings& restir, bool follows = true) {
 TEST_CASE("with ReSTIR a moving shadow leaves no trail") {
     const double without = light_in_trail({.light = RestirLight::Direct, .history = 0});
     CHECK(without == doctest::Approx(1).epsilon(0.05));
-    CHECK(light_in_trail({.light = RestirLight::Direct}, false) < 0.8); // nobody knows that light has changed
+    CHECK(light_in_trail({.light = RestirLight::Direct}, false) < 0.8); // the change of light is unknown
     for (const RestirLight light : {RestirLight::Direct, RestirLight::Indirect}) {
         const double with = light_in_trail({.light = light});
         MESSAGE(with, " of the light with history, ", without, " without");
