@@ -29,11 +29,8 @@ void note_given(const std::string& setting, ExrMetadata& origin) {
         names.erase(setting);
         if (source == std::string_view("pertev.by_caller")) names.insert(setting);
         text = fmt::format("{}", fmt::join(names, " "));
+        if (text.empty()) std::erase_if(origin, [&](const auto& entry) { return entry.first == source; });
     }
-    std::erase_if(origin, [](const auto& entry) {
-        const auto* const text = std::get_if<std::string>(&entry.second);
-        return text != nullptr && text->empty() && entry.first.starts_with("pertev.by_");
-    });
 }
 
 } // namespace
