@@ -176,7 +176,7 @@ class Commands(CliTest):
                 self.assertGreater(int(re.search(r"filters: (\d+)", self.said(BUILD / "bin" / name, "--count", *chosen))[1]), 0)
             else:
                 self.said("ninja", "-C", BUILD, "-t", "query", name)
-        elif program == "-m": # of python3; tests/python/documents_test.py runs what follows
+        elif program == "-m": # python3 has it; tests/python/documents_test.py runs what follows
             self.said(sys.executable, *words[:2], "--help")
         elif program.startswith("examples/"): # tests/python/examples_test.py runs them, where the module is built
             self.assertFalse([flag for flag in flags if f'"{flag}"' not in (ROOT / program).read_text(encoding="utf-8")])

@@ -12,7 +12,7 @@ import time
 from cli_run import FLOOR, PROGRAM, SANITIZED, UNMETERED, CliTest, as_flag, gltf_with_cameras, main, read_exr, write
 
 FLAGS = {
-    "merge": "--denoise --output -o --partial --progress --quiet -q --json",
+    "merge": "--denoise --exposure --tone-map --output -o --partial --progress --quiet -q --json",
     "render": "--output -o --progress --rows --part --part-base --samples --checkpoint --checkpoint-every --records --camera-pose --convention --intrinsics --intrinsics-size --lens --distortion --camera-from --cameras --layers-at --frame-denoiser "
               "--allow-path --up-axis --unit --quiet -q --json --strict --camera --eye --target --up --fov --projection "
               "--view-height --aperture --focus --environment --environment-rotation --environment-scale "
