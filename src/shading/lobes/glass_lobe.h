@@ -60,9 +60,15 @@ struct GlassLobe {
             const int channel = to_int(at, 0, 2);
             const float u_rest = min(at - static_cast<float>(channel), 0x1.fffffep-1f);
             if (is_smooth()) return draw_smooth_channel(channel, wo, u_rest, 1.0f - p_beneath);
-            return of_channel(channel).draw(wo, 0, u_rest, u);
+            return of_channel(channel).draw_glass(wo, u_rest, 1.0f - p_beneath, u);
         }
-        if (is_smooth()) return draw_smooth(wo, u_glass, 1.0f - p_beneath);
+        return draw_glass(wo, u_glass, 1.0f - p_beneath, u);
+    }
+
+private:
+    /// Draws from the glass alone, without dispersion.
+    HD LobeDraw draw_glass(Vec3 wo, float u_glass, float reach, Vec2 u) const {
+        if (is_smooth()) return draw_smooth(wo, u_glass, reach);
         const float eta = eta_from(wo);
         const Vec3 o = widths.turned({wo.x, wo.y, abs(wo.z)});
         Vec3 i;
@@ -85,8 +91,6 @@ struct GlassLobe {
         }
         return draw_direction({i.x, i.y, wo.z < 0 ? -i.z : i.z}, i.z < 0);
     }
-
-private:
     /// The interface for light at a microfacet.
     struct Interface {
         Rgb reflectance;
