@@ -321,9 +321,9 @@ HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 dire
         emission = albedo;
     } else if ((material.emission.r > 0 || material.emission.g > 0 || material.emission.b > 0) &&
                (material.two_sided_emission || dot(triangle.normal, direction) < 0)) {
-        emission = surface_emission<has_textures(kVariant)>(
+        emission = emitted_radiance<emitter_look(kVariant)>(
             scene.lights, instance.material,
-            texture_coordinate(mesh, material.emission_texture, triangle.i, hit.u, hit.v));
+            texture_coordinate(mesh, material.emission_texture, triangle.i, hit.u, hit.v), triangle.normal, direction);
     }
     // In one expression, so that the BSDF is constructed in place.
     return {.position = triangle.position,

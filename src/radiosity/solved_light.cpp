@@ -51,6 +51,17 @@ public:
             hasher_.add_value(static_cast<uint32_t>(material.thin_walled));
             add(material.transmission_texture);
         }
+        if (material.has_rough_diffuse()) hasher_.add_value(material.base_diffuse_roughness);
+        if (material.has_diffuse_transmission()) {
+            hasher_.add_value(material.diffuse_transmission_weight);
+            add(material.diffuse_transmission_texture);
+        }
+        if (material.is_emitter() && material.has_coat()) {
+            for (const float value : {material.coat_weight, material.coat_roughness, material.coat_ior})
+                hasher_.add_value(value);
+            add(material.coat_texture);
+            add(material.coat_roughness_texture);
+        }
         hasher_.add_value(static_cast<uint32_t>(material.is_emitter()));
         if (material.is_emitter()) {
             add_bytes(hasher_, material.emission);

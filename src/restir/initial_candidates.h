@@ -35,8 +35,8 @@ struct SampleInitialCandidates {
         for (uint32_t k = 0; k < candidates; ++k) {
             const SampleKey candidate = {key.stream, key.sample * candidates + k, key.seed};
             LightSample light;
-            if (!sample_light(scene.lights, surface.light_context(wo),
-                              sample_bits(here.sampler, candidate, kGroupCandidates), light)) {
+            if (!sample_light<emitter_look(kVariant)>(scene.lights, surface.light_context(wo),
+                                                      sample_bits(here.sampler, candidate, kGroupCandidates), light)) {
                 continue;
             }
             const BsdfValue value = evaluate_surface<kVariant>(surface, wo, light.wi);

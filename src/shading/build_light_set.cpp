@@ -232,6 +232,16 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
     LightSetData data;
     for (const Material& material : scene.materials) {
         data.emissions.push_back({material.is_emitter() ? material.emission : Rgb{}, material.emission_texture});
+        SurfaceEmission& surface = data.emissions.back();
+        if (!material.has_coat() || !material.is_emitter()) continue;
+        surface.coat_weight = material.coat_weight;
+        surface.coat_roughness = material.coat_roughness;
+        surface.coat_f0 = f0_from_ior(material.coat_ior);
+        const uint8_t set = material.emission_texture.uv_set; // triangles of emitters have no other
+        if (material.coat_texture.uv_set == set) surface.coat_texture = material.coat_texture;
+        if (material.coat_roughness_texture.uv_set == set) {
+            surface.coat_roughness_texture = material.coat_roughness_texture;
+        }
     }
     add_triangles(scene, centre, data);
     for (const Light& light : scene.lights) {

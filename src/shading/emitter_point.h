@@ -70,7 +70,8 @@ HD inline bool find_light(const LightSetView& view, const EmitterPoint& point, c
     const uint32_t light = light_of(view, point.instance, point.index);
     if (light == kNoLight) return false;
     const float pmf = ChosenByPower::pmf_of_triangle(view, context, light);
-    if (!triangle_light_at<true>(view, light, pmf, context.point, {point.u, point.v}, sample)) return false;
+    if (!triangle_light_at<EmitterLook::Coated>(view, light, pmf, context.point, {point.u, point.v}, sample))
+        return false;
     measure = 2.0f * pmf / sample.pdf; // in weights, a triangle has the area 1/2
     return true;
 }

@@ -31,7 +31,9 @@
 #include "scene/texture.h"
 #include "shading/environment_light.h"
 #include "shading/guided_cdf.h"
+#include "shading/lobes/schlick_lobe.h"
 #include "shading/punctual_light.h"
+#include "shading/shading_variant.h"
 #include "shading/texture_lookup.h"
 
 namespace pertev {
@@ -60,10 +62,13 @@ struct Emitter {
 };
 static_assert(kMaxInstances <= 1u << 30, "EmissiveTriangle::instance has 30 bits");
 
-/// Emission of a material: emission times the texture.
+/// Emission of a material: emission times the texture, beneath its coat.
 struct SurfaceEmission {
     Rgb emission; // W/(sr m2); 0 for materials that are no lights
     TextureRef texture;
+    float coat_weight = 0, coat_roughness = 0, coat_f0 = 0;
+    TextureRef coat_texture = {},
+               coat_roughness_texture = {}; // kNoImage if their coordinates differ from those of `texture`
 };
 
 /// Kinds of light that are sampled, found and emitted in different ways.
@@ -129,14 +134,40 @@ HD inline uint32_t light_of(const LightSetView& view, uint32_t instance, uint32_
     return first == kNoLight ? kNoLight : first + primitive;
 }
 
-/// Radiance that material `material` emits at `uv` (in the set that its emission texture uses). Without kTextures no
-/// emissive material has a texture.
-template <bool kTextures = true>
+/// Radiance that material `material` emits at `uv` (in the set that its emission texture uses), beneath any coat.
+template <EmitterLook kLook = EmitterLook::Coated>
 HD inline Rgb surface_emission(const LightSetView& view, uint32_t material, Vec2 uv) {
     const SurfaceEmission& surface = view.emissions[material];
-    if (!kTextures || surface.texture.image == kNoImage) return surface.emission;
+    if (kLook == EmitterLook::Plain || surface.texture.image == kNoImage) return surface.emission;
     const Vec4 texel = lookup_texture(view.images, surface.texture, uv, view.linear_from_srgb);
     return surface.emission * Rgb{texel.x, texel.y, texel.z};
+}
+
+/// Transmittance of an emitter's coat at `cosine` to the geometric normal, which every sampling of emitters knows.
+HD_CALL inline float coat_transmittance(const LightSetView& view, const SurfaceEmission& surface, Vec2 uv,
+                                        float cosine) {
+    const auto textured = [&](float factor, const TextureRef& ref) {
+        if (ref.image == kNoImage) return factor;
+        return clamp(factor * lookup_texture_channel(view.images, ref, uv, view.linear_from_srgb), 0.0f, 1.0f);
+    };
+    const float roughness = textured(surface.coat_roughness, surface.coat_roughness_texture);
+    const SchlickLobe coat = {grey(0), 0, square(roughness), surface.coat_f0};
+    return 1.0f - textured(surface.coat_weight, surface.coat_texture) *
+                      coat.albedo_at(min(cosine, 1.0f), coat.make_average()).coat;
+}
+
+/// Radiance that leaves it at `uv` along or against the unit `direction`; `normal` is the geometric one, of any length.
+template <EmitterLook kLook>
+HD inline Rgb emitted_radiance(const LightSetView& view, uint32_t material, Vec2 uv, [[maybe_unused]] Vec3 normal,
+                               [[maybe_unused]] Vec3 direction) {
+    const Rgb radiance = surface_emission<kLook>(view, material, uv);
+    if constexpr (kLook == EmitterLook::Coated) {
+        const SurfaceEmission& surface = view.emissions[material];
+        if (surface.coat_weight > 0) {
+            return coat_transmittance(view, surface, uv, abs(dot(normalize(normal), direction))) * radiance;
+        }
+    }
+    return radiance;
 }
 
 /// Solid-angle density of a uniformly sampled point on a triangle, 1/sr. `wi` is unit and leads from the receiver to
@@ -149,7 +180,7 @@ HD inline T triangle_pdf(Vec3Of<T> normal, Vec3Of<T> wi, T distance_squared) {
 
 /// Sets `sample` to the point `b` (weights of the second and third vertex) on triangle light `light`, as sample_light
 /// does for `from_point` if it selects the light with probability `pmf`. Returns false if nothing arrives.
-template <bool kTextures>
+template <EmitterLook kLook>
 HD inline bool triangle_light_at(const LightSetView& view, uint32_t light, float pmf, Vec3 from_point, Vec2 b,
                                  LightSample& sample) {
     const EmissiveTriangle& triangle = view.triangles[light];
@@ -162,7 +193,7 @@ HD inline bool triangle_light_at(const LightSetView& view, uint32_t light, float
     const float pdf = pmf * triangle_pdf(normal, wi, distance_squared);
     if (!(pdf > 0) || !is_finite(pdf)) return false; // edge-on, or the receiver lies on the light
     const Vec2 uv = (1.0f - b.x - b.y) * triangle.uv0 + b.x * triangle.uv1 + b.y * triangle.uv2;
-    const Rgb radiance = surface_emission<kTextures>(view, triangle.material, uv);
+    const Rgb radiance = emitted_radiance<kLook>(view, triangle.material, uv, normal, wi);
     if (is_black(radiance)) return false;
     sample = {wi,  distance, point, normalize(normal), radiance, pdf, false, triangle.instance, triangle.primitive,
               b.x, b.y};
@@ -248,7 +279,7 @@ struct ChosenByPower {
 };
 
 /// The functions with which sample_light computes a context's sample for each kind of light.
-template <bool kTextures, class Emitters>
+template <EmitterLook kLook, class Emitters>
 struct SampleOfKind {
     const LightSetView& view;
     const LightContext& context;
@@ -257,11 +288,11 @@ struct SampleOfKind {
 
     HD bool triangle(uint32_t light, Vec2 b, float pmf) const {
         if constexpr (std::is_same_v<Emitters, EmittersAtRest>) {
-            return triangle_light_at<kTextures>(view, light, pmf, context.point, b, sample);
+            return triangle_light_at<kLook>(view, light, pmf, context.point, b, sample);
         } else {
             const auto motion = emitters(view.triangles[light].instance);
             const Vec3 from_point = motion.move_back(context.point);
-            if (!triangle_light_at<kTextures>(view, light, pmf, from_point, b, sample)) return false;
+            if (!triangle_light_at<kLook>(view, light, pmf, from_point, b, sample)) return false;
             sample.wi = motion.rotate(sample.wi);
             sample.light_point = motion.move(sample.light_point);
             sample.light_normal = motion.rotate(sample.light_normal);
@@ -289,10 +320,10 @@ struct SampleOfKind {
 /// spot of a triangle, outside a cone, edge-on; that sample counts as 0. Occlusion and alpha are up to the caller: if
 /// the triangle's material is not opaque, radiance times alpha at (instance, primitive, b1, b2) arrives. `emitters`
 /// returns the rigid motion of an instance's emitter at the context's time (math/rigid_motion.h).
-template <bool kTextures = true, class Choice = ChosenByPower, class Emitters = EmittersAtRest>
+template <EmitterLook kLook = EmitterLook::Coated, class Choice = ChosenByPower, class Emitters = EmittersAtRest>
 HD inline bool sample_light(const LightSetView& view, const LightContext& context, SampleBits u, LightSample& sample,
                             const Emitters& emitters = {}) {
-    return Choice::draw(view, context, u, SampleOfKind<kTextures, Emitters>{view, context, emitters, sample});
+    return Choice::draw(view, context, u, SampleOfKind<kLook, Emitters>{view, context, emitters, sample});
 }
 
 /// Density with which sample_light samples, for `context`, the direction to `hit_point` on triangle light `light`,

@@ -75,7 +75,7 @@ private:
         const SceneView& view = scene.picture.scene;
         LightSample light;
         const SampleBits bits = sample_bits(scene.settings.sampler, key, light_group(state.depth()), Pair::Last);
-        if (!sample_light<has_textures(kVariant)>(view.lights, surface.light_context(wo), bits, light)) return;
+        if (!sample_light<emitter_look(kVariant)>(view.lights, surface.light_context(wo), bits, light)) return;
         const BothWays scattered = scatter_both_ways<kVariant>(surface, wo, light.wi);
         if (is_black(scattered.camera.f)) return;
         const uint32_t coin = coin_key(key, state.depth(), true);

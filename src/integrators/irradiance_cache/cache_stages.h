@@ -138,7 +138,7 @@ private:
         if (surface.bsdf.has_delta_only() || is_black(state.throughput)) return;
         LightSample light;
         const SampleBits bits = sample_bits(scene.settings.sampler, vertex.key, light_group(state.depth()), Pair::Last);
-        if (!sample_light<has_textures(kVariant)>(view.lights, surface.light_context(vertex.wo), bits, light)) return;
+        if (!sample_light<emitter_look(kVariant)>(view.lights, surface.light_context(vertex.wo), bits, light)) return;
         const BsdfValue scattered = evaluate_surface<kVariant>(surface, vertex.wo, light.wi);
         if (is_black(scattered.f)) return;
         const uint32_t coin = coin_key(vertex.key, state.depth(), true);

@@ -244,7 +244,7 @@ struct LightOfLane {
         const LightContext context(receiver);
         const EmittersAtRest at_rest;
         LightSample sample;
-        const SampleOfKind<false, EmittersAtRest> at_receiver = {view, context, at_rest, sample};
+        const SampleOfKind<EmitterLook::Plain, EmittersAtRest> at_receiver = {view, context, at_rest, sample};
         switch (draw.kind) {
         case SourceKind::Triangle:
             return enter_triangle(draw);
@@ -450,7 +450,7 @@ void add_emission(const PathJob& job, unsigned lanes, const LaneVertices& vertic
         Surface surface = {};
         surface.position = {surfaces.position.x[lane], surfaces.position.y[lane], surfaces.position.z[lane]};
         surface.triangle = {hit.instance, hit.primitive};
-        surface.emission = surface_emission<false>(scene.lights, material, {});
+        surface.emission = surface_emission<EmitterLook::Plain>(scene.lights, material, {});
         Listeners<> listener(job);
         add_surface_emission<kPlainDiffuse>(job, path, hit, surface, listener);
     }

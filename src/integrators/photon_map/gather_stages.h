@@ -138,7 +138,7 @@ private:
         const Surface& surface = vertex.surface;
         LightSample light;
         const SampleBits bits = sample_bits(scene.settings.sampler, vertex.key, light_group(state.depth()), Pair::Last);
-        if (!sample_light<has_textures(kVariant)>(view.lights, surface.light_context(vertex.wo), bits, light)) return 0;
+        if (!sample_light<emitter_look(kVariant)>(view.lights, surface.light_context(vertex.wo), bits, light)) return 0;
         const float nearness = nearness_of(light);
         const BsdfValue all = evaluate_surface<kVariant>(surface, vertex.wo, light.wi);
         if (is_black(all.f)) return nearness;

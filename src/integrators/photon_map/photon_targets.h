@@ -120,7 +120,8 @@ struct AimFromKind {
         const float cosine = dot(normal, direction.to);
         if (!(cosine > 0)) return false; // the target is behind the emitter
         start_particle(triangle, emission, normal, direction.to, freely.particle);
-        freely.particle.power = (cosine / (emission.pdf * direction.pdf)) * emission.radiance;
+        freely.particle.power =
+            (cosine / (emission.pdf * direction.pdf)) * emission.radiance_along(freely.scene, triangle, cosine);
         return true;
     }
     HD bool punctual(uint32_t number, float pmf) const {

@@ -77,7 +77,9 @@ struct TreeVertex {
         const uint32_t of = number() == 0 ? uint32_t(kGroupCamera) : group(kTreeScatter);
         LightSample sample;
         const SampleBits u = sample_bits(settings.sampler, key(), of, Pair::Last);
-        if (!draw_direct(picture.scene, moves, surface.light_context(wo(), time), u, sample)) return false;
+        if (!draw_direct<emitter_look(kVariant)>(picture.scene, moves, surface.light_context(wo(), time), u, sample)) {
+            return false;
+        }
         const BsdfValue all = evaluate_surface<kVariant>(surface, wo(), sample.wi);
         if (is_black(all.f) || is_hole(sample)) return false;
         Rgb f = all.f;

@@ -41,8 +41,16 @@ HD inline float left_at(float distance, float t_max) {
 /// A point on an emitter that light leaves.
 struct EmissionPoint {
     Vec3 point, normal; // `normal` is unit, by the winding
-    Rgb radiance;
+    Rgb radiance;       // beneath any coat
+    Vec2 uv;
     float pdf; // 1/m2, including the selection of the emitter
+
+    /// Radiance that leaves along the unit `direction` of cosine `cosine` to the normal.
+    HD Rgb radiance_along(const SceneView& scene, const EmissiveTriangle& triangle, float cosine) const {
+        const SurfaceEmission& surface = scene.lights.emissions[triangle.material];
+        return surface.coat_weight > 0 ? coat_transmittance(scene.lights, surface, uv, abs(cosine)) * radiance
+                                       : radiance;
+    }
 };
 
 /// Finds the point with the weights `at` of a triangle light's second and third vertex. Returns false if it emits
@@ -54,8 +62,8 @@ HD inline bool find_emission_point(const SceneView& scene, uint32_t light, Vec2 
         !AcceptHit{scene, {}, {}, key}.passes_alpha(triangle.instance, triangle.primitive, at.x, at.y)) {
         return false; // transparent part of the light
     }
-    const Vec2 uv = (1.0f - at.x - at.y) * triangle.uv0 + at.x * triangle.uv1 + at.y * triangle.uv2;
-    emission.radiance = surface_emission<true>(scene.lights, triangle.material, uv);
+    emission.uv = (1.0f - at.x - at.y) * triangle.uv0 + at.x * triangle.uv1 + at.y * triangle.uv2;
+    emission.radiance = surface_emission(scene.lights, triangle.material, emission.uv);
     emission.pdf = pdf_position(triangle);
     if (is_black(emission.radiance) || !(emission.pdf > 0)) return false;
     emission.point = triangle.a + (at.x * triangle.ab + at.y * triangle.ac);
@@ -94,7 +102,7 @@ struct EmitFromKind {
         const float pdf = pdf_emission(triangle, local.z);
         if (!(pdf > 0)) return false;
         start_particle(triangle, emission, normal, normalize(make_frame(normal).to_world(local)), particle);
-        particle.power = (local.z / (emission.pdf * pdf)) * emission.radiance;
+        particle.power = (local.z / (emission.pdf * pdf)) * emission.radiance_along(scene, triangle, local.z);
         particle.mis = {square(1.0f / pdf), min(square(local.z / (emission.pdf * pdf)), kMaxWeightSum)};
         return true;
     }
