@@ -82,6 +82,21 @@ TEST_CASE("mtl: Pc, Pcr and Ps put a coat and a sheen on any base") {
     CHECK(l.messages.left_out().empty());
 }
 
+TEST_CASE("mtl: aniso stretches reflections, and anisor turns them by a share of a whole turn") {
+    const MtlScene l = mtl_scene(test::scratch_folder(), "newmtl brushed\nKd 0.5 0.5 0.5\nPr 0.4\nPm 1\naniso 0.75\n"
+                                                         "anisor 0.125\n"
+                                                         "newmtl plain\nPr 0.4\nPm 1\naniso 0\nanisor 0.5\n"
+                                                         "newmtl clamped\nPr 0.4\naniso 3\n");
+    const Material& brushed = l.material("brushed");
+    CHECK(brushed.has_anisotropy());
+    CHECK(brushed.specular_roughness_anisotropy == 0.75f);
+    CHECK(brushed.anisotropy_rotation == doctest::Approx(0.25 * 3.14159265358979));
+    CHECK_FALSE(l.material("plain").is_stacked());
+    CHECK(l.material("clamped").specular_roughness_anisotropy == 1);
+    CHECK(l.messages.left_out().empty());
+    CHECK(l.messages.all().size() == 1); // clamped
+}
+
 TEST_CASE("mtl: maps of coat and sheen count with their numbers, or alone without") {
     const fs::path folder = test::scratch_folder();
     write_heights(folder / "t.png", 4, 4, [](uint32_t x, uint32_t) { return static_cast<uint8_t>(60 * x); });

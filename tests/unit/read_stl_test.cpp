@@ -94,7 +94,7 @@ TEST_CASE("stl: what is unreadable in a text is left out with its line, and the 
     }
 }
 
-TEST_CASE("stl: binary files are known by their size, also if they begin with solid") {
+TEST_CASE("stl: binary files are known by what no text has, also if they begin with solid") {
     for (const std::string header : {"made by a test", "solid of a program that writes binary"}) {
         Messages messages;
         const Scene scene = load_stl(binary_stl(3, 3, header), messages);
@@ -103,6 +103,10 @@ TEST_CASE("stl: binary files are known by their size, also if they begin with so
         CHECK(scene.meshes[0].positions[4] == Vec3{1, 0, 1});
         CHECK(scene.instances[0].name == "part");
         CHECK(messages.all().empty());
+
+        const Scene torn = load_stl(binary_stl(3, 3, header).substr(0, 84 + 2 * 50), messages);
+        CHECK(torn.meshes.at(0).triangle_count() == 2);
+        CHECK(messages.left_out().size() == 1);
     }
 }
 

@@ -28,7 +28,8 @@ struct NumberKey {
 constexpr NumberKey kNumbers[] = {{"illum", &MtlStatements::illum}, {"ns", &MtlStatements::ns},
                                   {"ni", &MtlStatements::ni},       {"pr", &MtlStatements::pr},
                                   {"pm", &MtlStatements::pm},       {"ps", &MtlStatements::ps},
-                                  {"pc", &MtlStatements::pc},       {"pcr", &MtlStatements::pcr}};
+                                  {"pc", &MtlStatements::pc},       {"pcr", &MtlStatements::pcr},
+                                  {"aniso", &MtlStatements::aniso}, {"anisor", &MtlStatements::anisor}};
 
 struct MapKey {
     std::string_view key;
@@ -41,9 +42,7 @@ constexpr MapKey kMaps[] = {
     {"bump", &MtlStatements::bump},     {"map_bump", &MtlStatements::bump}};
 
 /// Statements that are ignored without a message: ambient light, and those that do not describe the surface.
-constexpr std::string_view kHarmless[] = {"ka", "map_ka", "map_aat", "sharpness", "anisor"};
-/// Statements that are left out without a message if their value is zero, which exporters write for "none".
-constexpr std::string_view kLeftOutUnlessZero[] = {"aniso"};
+constexpr std::string_view kHarmless[] = {"ka", "map_ka", "map_aat", "sharpness"};
 constexpr std::string_view kLeftOut[] = {"map_ks", "map_ns",   "map_aniso", "map_anisor", "disp",
                                          "decal",  "map_disp", "refl",      "map_refl"};
 
@@ -131,8 +130,6 @@ private:
         } else if (key == "tr") {
             const float tr = only_number(line);
             if (!to.has_d) to.d = 1 - tr;
-        } else if (holds(kLeftOutUnlessZero, key)) {
-            if (only_number(line) != 0) left_out_[std::string(key_)].add(lines_.number());
         } else if (holds(kLeftOut, key)) {
             if (!rest_as_name(line).empty()) left_out_[std::string(key_)].add(lines_.number());
         } else if (!holds(kHarmless, key)) {

@@ -33,6 +33,7 @@ struct MtlStatements {
     std::optional<Rgb> kd;
     Rgb ks = {}, ke = {}, tf = {};
     float illum = 0, ns = 1, ni = 1, pr = 0, pm = 0, ps = 0, pc = 0, pcr = 0;
+    float aniso = 0, anisor = 0; // anisor in turns
     float d = 1;
     bool has_d = false; // d itself was given, which overrides Tr, its complement
     MtlTexture map_kd, map_ke, map_d, map_pr, map_pm, map_ps, map_pc, map_pcr, norm, bump;

@@ -107,11 +107,13 @@ private:
         }
     }
 
-    /// Reads the coat and the sheen. A map without its number, or with 0, counts alone.
+    /// Reads the anisotropy, the coat and the sheen. A map without its number, or with 0, counts alone.
     void layers(const MtlStatements& from, Material& to) {
         const auto factor = [](float number, const TextureRef& map) {
             return map.has_image() && number == 0 ? 1 : number;
         };
+        to.specular_roughness_anisotropy = from.aniso;
+        to.anisotropy_rotation = 2 * kPi * from.anisor;
         to.coat_texture = texture(from.map_pc, false);
         to.coat_weight = factor(from.pc, to.coat_texture);
         if (to.coat_weight > 0) {

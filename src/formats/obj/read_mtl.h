@@ -10,8 +10,8 @@
 //   Ks above 0.02 and not (0.5, 0.5, 0.5), which exporters write by default, Ns above 1 and illum not 1
 //                                               MetallicRoughness, metallic 0, Ni such that F0 = Ks / max(1, Kd + Ks)
 //   otherwise                                   Diffuse of Kd; without Kd, grey as without a material
-// Pc, Pcr and Ps put a coat and a sheen on any of them. Ns to GGX: alpha = sqrt(2 / (Ns + 2)) (Walter et al., EGSR
-// 2007, section 5.2). d < 1 alone, and map_d, are alpha.
+// Pc, Pcr and Ps put a coat and a sheen on any of them; aniso, turned by anisor, stretches reflections. Ns to GGX:
+// alpha = sqrt(2 / (Ns + 2)) (Walter et al., EGSR 2007, section 5.2). d < 1 alone, and map_d, are alpha.
 
 #include <cstddef>
 #include <filesystem>

@@ -204,12 +204,7 @@ bool is_text(std::string_view bytes) {
 
 StlData parse_stl(std::span<const std::byte> bytes, const std::string& file, Sink& sink) {
     std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    uint32_t stated = 0;
-    if (bytes.size() >= kHeaderBytes) std::memcpy(&stated, bytes.data() + kHeaderBytes - 4, 4);
-    const bool has_binary_size =
-        bytes.size() >= kHeaderBytes && bytes.size() == kHeaderBytes + uint64_t(stated) * kTriangleBytes;
-    if (has_binary_size) return parse_binary(bytes, stated, file, sink);
-    const std::string_view begin = text.substr(0, 1024);
+    const std::string_view begin = text.substr(0, 1024); // it holds a binary file's count, which is no text
     if (is_text(begin)) {
         if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
         PartMessages messages(sink);
@@ -219,6 +214,8 @@ StlData parse_stl(std::span<const std::byte> bytes, const std::string& file, Sin
             return data;
         }
     } else if (bytes.size() >= kHeaderBytes + kTriangleBytes) {
+        uint32_t stated = 0;
+        std::memcpy(&stated, bytes.data() + kHeaderBytes - 4, 4);
         return parse_binary(bytes, stated, file, sink);
     }
     throw Error(ErrorCode::BadInput, FileLocation{file},
