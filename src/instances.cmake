@@ -46,8 +46,9 @@ pertev_host_shading(layers LayerListeners LayerFeatures)
 
 # Stages of device_scene.
 pertev_launches(device_scene/mesh_stages.cu
-  device_scene/classify_opacity.h scene/deform_vertices.h
+  device_scene/classify_opacity.h device_scene/halve_texture.h scene/deform_vertices.h
   STAGES DeformVertices
+    HalveTexture
     HalveTexelBounds
     ClassifyOpacity)
 

@@ -1,6 +1,22 @@
 """Mutations of readers of files: meshes, materials, textures. See mutations.py."""
 
 MUTATIONS = [
+    ("a level of a mip-map is the mean of encoded colours", "unit/mip_maps", ("src/device_scene/halve_texture.h", "load_texel(from, column, row, is_srgb, linear_from_srgb)", "load_texel(from, column, row, false, linear_from_srgb)")),
+    ("a level of a mip-map counts each texel it touches as a whole", "unit/mip_maps",
+     ("src/device_scene/halve_texture.h", "rows.weight(row) * columns.weight(column)", "1 + 0 * rows.weight(row) * columns.weight(column)")),
+    ("what is cut out colours a mip-map", "unit/mip_maps", ("src/device_scene/halve_texture.h", "if (!is_srgb || !(sum.w > 0) || sum.w == weights)", "if (true)")),
+    ("a mirrored ray's cone begins anew", "unit/mip_maps", ("src/integrators/path/path_vertex.h", "return seen - path.bsdf_pdf;", "return seen;")),
+    ("a scattered ray has the camera's cone", "unit/mip_maps", ("src/integrators/path/path_vertex.h", "kShare * distance / sqrt(path.bsdf_pdf)", "0 * kShare * distance / sqrt(path.bsdf_pdf)")),
+    ("ReSTIR sees textures without mip-maps", "unit/mip_maps", ("src/restir/pixel_surfaces.h", "filters ? camera.pixel_width(distance) : 0.0f", "0 * distance")),
+    ("mip-maps stay when their textures change", "unit/mip_maps", ("src/device_scene/scene_on_device.cpp", "    mip_maps_.reset(); // made of the former ones\n", "")),
+    ("a kernel for batches draws a batch's numbers without one", "unit/mip_maps", ("src/integrators/path/path_stages.h", "const bool is_tall = (kFeatures & kBatched) != 0 && job.picture.batch.is_there();", "const bool is_tall = (kFeatures & kBatched) != 0;")),
+    ("films are filtered like frames", "unit/mip_maps", ("src/integrators/path/path_job.h", "job.settings.mip_maps == MipMaps::On &&", "job.settings.mip_maps != MipMaps::Off &&"),
+     ("src/integrators/path/path_vertex.h", "job.settings.mip_maps != MipMaps::On", "job.settings.mip_maps == MipMaps::Off"),
+     ("src/session/picture_renderer.cpp", "settings.path.mip_maps == MipMaps::On", "settings.path.mip_maps != MipMaps::Off")),
+    ("denormal halves are rounded", "unit/pack_texels", ("src/device_scene/pack_texels.cpp", "return multiple == floor(multiple);", "return true;")),
+    ("16-bit texels are a product with 1 / 65535", "unit/pack_texels", ("src/shading/texture_lookup.h", "fma(fma(-quotient, 65535.0f, value), inv, quotient)", "quotient")),
+    ("a device's 16-bit colours are linear", "unit/pack_texels", ("src/shading/texture_lookup.h", "return {of_words[r], of_words[g], of_words[b], unit_of_word(a)};", "return {unit_of_word(r), of_words[g], of_words[b], unit_of_word(a)};")),
+    ("a material has two sets of texture coordinates", "unit/read_gltf_compressed", ("src/formats/gltf/texture_sets.cpp", "if (used.size() > kTextureSets) used.resize(kTextureSets);", "if (used.size() > 2) used.resize(2);")),
     ("bumps are dents", "unit/read_mtl", ("src/formats/obj/bump_normals.cpp", "Vec3{-along_x, -along_y, 1}", "Vec3{along_x, along_y, 1}")),
     ("heights of an MTL file rise with the rows", "unit/read_mtl",
      ("src/formats/obj/bump_normals.cpp", "(at(x, y - 1) - at(x, y + 1))", "(at(x, y + 1) - at(x, y - 1))")),

@@ -168,7 +168,7 @@ MUTATIONS = [
     ("a history that does not fit is taken", "consistency/frame_history",
      ("src/session/frame_sequence.cpp", "    if (!is_alike || (", "    if ((!is_alike && was.arrays.empty()) || (")),
     ("reservoirs of a history are forgotten", "consistency/frame_history robust/cli_real_time",
-     ("src/session/frame_sequence.cpp", "restir_->begin_after(light, {path.sampler, was.number, path.seed});",
+     ("src/session/frame_sequence.cpp", "restir_->begin_after(light, {path.sampler, was.number, path.seed, path.mip_maps == MipMaps::On});",
       "restir_->begin_after(light, {path.sampler, was.number + 1, path.seed});")),
     ("a sequence with a checkpoint renders its frames again", "robust/cli_real_time",
      ("src/session/pictures/write_sequence.cpp", "(number >= restored_ && number < with_history_)", "number < with_history_")),

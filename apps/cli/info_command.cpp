@@ -18,6 +18,7 @@
 #include "apps/cli/setting_flags.h"
 #include "base/error.h"
 #include "base/file_extension.h"
+#include "device_scene/pack_texels.h"
 #include "formats/files/file_choices.h"
 #include "formats/read_scene.h"
 #include "image/image_format.h"
@@ -160,15 +161,6 @@ std::string settings_of(const std::string& picture) {
     return with_samples(value_of("pertev.settings"), value_of("pertev.spp"));
 }
 
-/// Returns the memory of all textures.
-uint64_t count_image_bytes(const Scene& scene) {
-    uint64_t bytes = 0;
-    for (const TextureImage& image : scene.images) {
-        bytes += image.rgba8.pixels.size() + sizeof(float) * image.rgba_float.pixels.size();
-    }
-    return bytes;
-}
-
 /// Lists the file's animations and scenes, and those that a render plays and shows by default.
 void describe_choices(const Scene& scene, Facts& facts) {
     std::vector<std::string> animations = list_clips(scene.clips); // values of --animation
@@ -194,7 +186,7 @@ void describe_scene(const InfoFlags& flags, Facts& facts, Sink& sink) {
     facts.add("triangles_placed", placed);
     facts.add("materials", scene.materials.size());
     facts.add("images", scene.images.size());
-    facts.add("image_bytes", count_image_bytes(scene));
+    facts.add("image_bytes", texture_bytes(scene));
     const uint64_t emissive = count_emissive_triangles(scene);
     facts.add("lights", emissive + scene.lights.size() + (scene.environment ? 1 : 0)); // counted like render does
     facts.add("emissive_triangles", emissive);

@@ -18,6 +18,7 @@
 #include "base/machine_memory.h"
 #include "base/message_text.h"
 #include "base/stopwatch.h"
+#include "device_scene/pack_texels.h"
 #include "session/devices/frames_on_devices.h"
 #include "session/devices/render_on_devices.h"
 #include "session/film_file/film_file.h"
@@ -45,15 +46,17 @@ void report_start(const RenderFlags& flags, const RenderSetup& ready, Reporter& 
     const bool has_more = has_ground(scene); // counts the file's contents, without defaults
     const uint64_t triangles = prepared.triangles - (has_more ? scene.meshes.back().triangle_count() : 0);
     const uint64_t instances = scene.instances.size() - (has_more ? 1 : 0);
+    const uint64_t textures = texture_bytes(scene);
     reporter.print(fmt::format("{}: {}, {}, {}; loaded in {:.2f} s, trees in {:.2f} s; "
-                               "rendering {}x{}, {} spp{} on {}, using {:.0f} MiB",
+                               "rendering {}x{}, {} spp{} on {}, using {:.0f} MiB{}",
                                flags.scene.scene, counted(triangles, "triangle"), counted(instances, "instance"),
                                counted(prepared.lights.count(), "light"), ready.load_s, prepared.build_seconds,
                                settings.width, settings.height, settings.range().count(),
-                               flags.real_time ? " per frame, reconstructed," : "", device, mebibytes(ready.bytes)));
+                               flags.real_time ? " per frame, reconstructed," : "", device, mebibytes(ready.bytes),
+                               textures > 0 ? fmt::format(" with {:.1f} MiB of textures", mebibytes(textures)) : ""));
     reporter.event(fmt::format(
-        R"({{"event":"scene","scene":{},"triangles":{},"instances":{},"lights":{},"load_seconds":{:.6f},"build_seconds":{:.6f}}})",
-        json_string(flags.scene.scene), triangles, instances, prepared.lights.count(), ready.load_s,
+        R"({{"event":"scene","scene":{},"triangles":{},"instances":{},"lights":{},"texture_bytes":{},"load_seconds":{:.6f},"build_seconds":{:.6f}}})",
+        json_string(flags.scene.scene), triangles, instances, prepared.lights.count(), textures, ready.load_s,
         prepared.build_seconds));
     reporter.event(
         fmt::format(R"({{"event":"picture","width":{},"height":{},"spp":{},"device":{},"predicted_bytes":{}}})",

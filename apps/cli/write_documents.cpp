@@ -243,19 +243,23 @@ std::string settings_document() {
             group = setting.group;
             verbs = common_verbs(group);
             text += fmt::format("\n## {}\n\nVerbs, where a row names no others: {}.\n\n"
-                                "| setting | values | unit | default | |\n|---|---|---|---|---|\n",
+                                "| setting | values | default | |\n|---|---|---|---|\n",
                                 group, verbs);
         }
         std::string says = setting.sentence;
         if (*setting.more != '\0') says += fmt::format(" {}", setting.more);
         if (setting.integrators != 0)
             says += fmt::format(" Integrators: {}.", fmt::join(integrators_with(setting), ", "));
-        if (!setting.needs.empty()) says += fmt::format(" Needs one of: {}.", setting.needs);
+        if (!setting.needs.empty())
+            says += fmt::format(" Needs{}: {}.", setting.needs.find(' ') != setting.needs.npos ? " one of" : "",
+                                setting.needs);
         if (!setting.excludes.empty()) says += fmt::format(" Not with: {}.", setting.excludes);
         if (verbs_with(setting) != verbs) says += fmt::format(" Verbs: {}.", verbs_with(setting));
         if (!setting.is_kept) says += " Not kept.";
-        text += fmt::format("| `{}` | {} | {} | {} | {} |\n", flag_of(setting.name), cell(range_of(setting)),
-                            setting.unit, cell(default_of(setting)), cell(says));
+        const std::string range = cell(range_of(setting));
+        text += fmt::format("| `{}` | {}{}{} | {} | {} |\n", flag_of(setting.name), range,
+                            range.empty() || *setting.unit == '\0' ? "" : " ", setting.unit, cell(default_of(setting)),
+                            cell(says));
     }
     return text;
 }

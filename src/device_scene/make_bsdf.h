@@ -15,8 +15,7 @@ HD inline Rgb base_color_at(const SceneView& scene, const MaterialParameters& ma
                             TriangleIndices i, float u, float v) {
     Rgb color = material.base_color;
     if (const TextureRef& ref = material.base_color_texture; has_texture<kVariant>(ref)) {
-        const Vec4 texel =
-            lookup_texture(scene.images, ref, texture_coordinate(mesh, ref, i, u, v), scene.linear_from_srgb);
+        const Vec4 texel = texel_at(scene, mesh, ref, i, u, v);
         color = color * Rgb{texel.x, texel.y, texel.z};
     }
     if (mesh.colors != nullptr) {
@@ -30,8 +29,7 @@ HD inline Rgb base_color_at(const SceneView& scene, const MaterialParameters& ma
 HD inline Rgb textured_color(const SceneView& scene, const MeshView& mesh, Rgb factor, const TextureRef& ref,
                              TriangleIndices i, float u, float v) {
     if (!ref.has_image()) return factor;
-    const Vec4 texel =
-        lookup_texture(scene.images, ref, texture_coordinate(mesh, ref, i, u, v), scene.linear_from_srgb);
+    const Vec4 texel = texel_at(scene, mesh, ref, i, u, v);
     return factor * Rgb{texel.x, texel.y, texel.z};
 }
 

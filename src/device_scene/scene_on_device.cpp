@@ -1,6 +1,7 @@
 #include "device_scene/scene_on_device.h"
 
 #include "base/error.h"
+#include "device_scene/pack_texels.h"
 #include "device_scene/part_arrays.h"
 #include "image/srgb_table.h"
 
@@ -24,7 +25,7 @@ PartArrays list_geometry(const PlacedScene& prepared, std::vector<MeshView>& mes
             arrays.add(mesh.normals, meshes[i].normals);
             arrays.add(mesh.tangents, meshes[i].tangents);
         }
-        for (int set = 0; set < 2; ++set) arrays.add(mesh.uv[set], meshes[i].uv[set]);
+        for (std::size_t set = 0; set < kTextureSets; ++set) arrays.add(mesh.uv[set], meshes[i].uv[set]);
         arrays.add(mesh.colors, meshes[i].colors);
         arrays.add(mesh.indices, meshes[i].indices);
     }
@@ -90,16 +91,45 @@ PartArrays list_materials(const Scene& scene, std::vector<MaterialParameters>& m
     return arrays;
 }
 
-PartArrays list_textures(const Scene& scene, std::vector<TextureImageView>& images, SceneView& view) {
+/// Images as they are on the device.
+struct Textures {
+    std::vector<PackedTexels> packed; // [images]
+    std::vector<float> linear_from_srgb;
+};
+
+PartArrays list_textures(const Scene& scene, Textures& textures, std::vector<TextureImageView>& images,
+                         SceneView& view) {
     PartArrays arrays;
     images = views_of_images(scene);
+    textures.packed.resize(images.size());
+    const std::span<const float> of_bytes = srgb_decode_table();
+    textures.linear_from_srgb.assign(of_bytes.begin(), of_bytes.end());
     for (std::size_t i = 0; i < images.size(); ++i) {
+        const std::vector<float>& floats = scene.images[i].rgba_float.pixels;
+        PackedTexels& packed = textures.packed[i];
+        if (!floats.empty()) packed = pack_texels(floats), images[i].depth = packed.depth;
         arrays.add(scene.images[i].rgba8.pixels, images[i].rgba8);
-        arrays.add(scene.images[i].rgba_float.pixels, images[i].rgba_float);
+        arrays.add(packed.words, images[i].rgba16);
+        arrays.add(packed.words.empty() ? std::span<const float>(floats) : std::span<const float>(),
+                   images[i].rgba_float);
+        if (packed.depth != TexelDepth::Srgb16 || textures.linear_from_srgb.size() > kSrgbBytes) continue;
+        const std::span<const float> of_words = srgb_words_table();
+        textures.linear_from_srgb.insert(textures.linear_from_srgb.end(), of_words.begin(), of_words.end());
     }
     arrays.add(images, view.images);
-    arrays.add(std::span<const float>(srgb_decode_table()), view.linear_from_srgb);
+    arrays.add(textures.linear_from_srgb, view.linear_from_srgb);
     return arrays;
+}
+
+/// Returns which images have sRGB-encoded colours for some material.
+std::vector<bool> find_srgb_images(const Scene& scene) {
+    std::vector<bool> are_srgb(scene.images.size());
+    for (const Material& material : scene.materials) {
+        for (const TextureRef* texture : material.textures()) {
+            if (texture->is_srgb) are_srgb[static_cast<std::size_t>(texture->image)] = true;
+        }
+    }
+    return are_srgb;
 }
 
 void add_table(PartArrays& arrays, const GuidedCdf& table, GuidedCdfView& view) {
@@ -187,10 +217,18 @@ void SceneOnDevice::update_materials(Queue& queue, const Scene& scene) {
 }
 
 void SceneOnDevice::update_textures(Queue& queue, const Scene& scene) {
-    std::vector<TextureImageView> images;
-    list_textures(scene, images, view_).upload(queue, textures_, "textures");
+    mip_maps_.reset(); // made of the former ones
+    Textures textures;
+    list_textures(scene, textures, images_, view_).upload(queue, textures_, "textures");
+    are_srgb_ = find_srgb_images(scene);
     view_.lights.images = view_.images; // lights read textures too
     view_.lights.linear_from_srgb = view_.linear_from_srgb;
+}
+
+void SceneOnDevice::make_mip_maps(Queue& queue) {
+    if (mip_maps_ || images_.empty()) return;
+    mip_maps_.emplace(queue, images_, are_srgb_, view_.linear_from_srgb);
+    view_.images = mip_maps_->images();
 }
 
 void SceneOnDevice::update_lights(Queue& queue, const PlacedScene& prepared) {

@@ -3,8 +3,12 @@
 // A prepared scene in device memory, without its trees, which belong to a tracer (tracer/scene_tracer.h): owns the
 // buffers and provides the view. It consists of parts with one buffer each, which are updated separately.
 
+#include <optional>
+#include <vector>
+
 #include "device/buffer.h"
 #include "device_scene/deforming_meshes.h"
+#include "device_scene/mip_map_levels.h"
 #include "device_scene/opacity_micromaps.h"
 #include "device_scene/placed_scene.h"
 #include "device_scene/scene_view.h"
@@ -39,6 +43,10 @@ public:
     /// Uploads only `parts`; reuses each part's buffer if it is large enough.
     void update(Queue& queue, const PlacedScene& prepared, uint32_t parts);
 
+    /// Makes the mip-maps of the scene's images if there are none, which changes view(). Textures that are updated
+    /// lose theirs. Throws Error(OutOfMemory), without an effect.
+    void make_mip_maps(Queue& queue);
+
     /// Meshes whose vertices have moved on the device, for refitting trees.
     std::vector<DeformedMesh> deformed(const PlacedScene& prepared) const {
         return deforming_.deformed(prepared, meshes_);
@@ -63,6 +71,9 @@ private:
     std::vector<MeshView> meshes_; // empty if none deforms
     DeformingMeshes deforming_;
     OpacityMicromaps micromaps_;
+    std::vector<TextureImageView> images_; // on the device, without mip-maps
+    std::vector<bool> are_srgb_;           // [images] colours are sRGB-encoded
+    std::optional<MipMapLevels> mip_maps_;
     Buffer<std::byte> geometry_, instances_, materials_, lights_, environment_, textures_;
 };
 

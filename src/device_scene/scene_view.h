@@ -22,7 +22,7 @@ struct MeshView {
     const Vec3* positions;
     const Vec3* normals;
     const Vec4* tangents;
-    const Vec2* uv[2];
+    const Vec2* uv[kTextureSets];
     const Vec4* colors;
     const uint32_t* indices; // [3 * triangles]
 };
@@ -47,7 +47,7 @@ struct SceneView {
     const MaterialParameters* materials;
     ShadingVariant variant; // shading variant of all materials
     const TextureImageView* images;
-    const float* linear_from_srgb; // [256]
+    const float* linear_from_srgb; // [kSrgbBytes], and [kSrgbWords] if there is an image of depth Srgb16
     LightSetView lights;
     uint32_t any_alpha;       // 0 if hits need not check their instance for alpha
     uint32_t any_hidden_back; // 0 if hits of camera rays need not check their instance for culled backs
@@ -68,9 +68,10 @@ HD inline bool shows_background(const SceneView& scene, uint32_t instance) {
     return instance == kNoHit || instance + 1 == scene.background;
 }
 
-/// The three vertex numbers of a triangle.
+/// The three vertex numbers of a triangle, and how coarsely its textures are looked up.
 struct TriangleIndices {
     uint32_t a, b, c;
+    float footprint = 0; // area of the ray's cone where it meets the triangle, in twice the triangle's; 0: no cone
 };
 
 HD inline TriangleIndices triangle_indices(const MeshView& mesh, uint32_t primitive) {

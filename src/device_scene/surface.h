@@ -241,8 +241,7 @@ HD inline Frame shading_frame(const SceneView& scene, const InstanceView& instan
     if (has_texture<kVariant>(material.normal_texture)) {
         const TextureRef& ref = material.normal_texture;
         const Frame frame = tangent_frame(instance, mesh, triangle, hit, normal, ref);
-        const Vec4 texel = lookup_texture(scene.images, ref, texture_coordinate(mesh, ref, triangle.i, hit.u, hit.v),
-                                          scene.linear_from_srgb);
+        const Vec4 texel = texel_at(scene, mesh, ref, triangle.i, hit.u, hit.v);
         normal = mapped_normal(frame, {texel.x, texel.y, texel.z}, material.normal_scale);
     }
     const bool behind = dot(wo, geometric_normal) < 0; // valid_normal expects the front
@@ -258,8 +257,7 @@ HD_CALL inline Vec3 coat_normal(const SceneView& scene, const InstanceView& inst
     Vec3 normal = world_normal(instance.local_from_world, local, geometric_normal);
     if (const TextureRef& ref = material.coat_normal_texture; ref.has_image()) {
         const Frame along = tangent_frame(instance, mesh, triangle, hit, normal, ref);
-        const Vec4 texel = lookup_texture(scene.images, ref, texture_coordinate(mesh, ref, triangle.i, hit.u, hit.v),
-                                          scene.linear_from_srgb);
+        const Vec4 texel = texel_at(scene, mesh, ref, triangle.i, hit.u, hit.v);
         normal = mapped_normal(along, {texel.x, texel.y, texel.z}, material.coat_normal_scale);
     }
     const float side = dot(wo, geometric_normal) < 0 ? -1.0f : 1.0f;
@@ -278,8 +276,7 @@ HD_CALL inline void set_anisotropy(const SceneView& scene, const InstanceView& i
     axes.anisotropy = material.specular_roughness_anisotropy;
     Vec2 turn = {1, 0};
     if (own.has_image()) {
-        const Vec4 texel = lookup_texture(scene.images, own, texture_coordinate(mesh, own, triangle.i, hit.u, hit.v),
-                                          scene.linear_from_srgb);
+        const Vec4 texel = texel_at(scene, mesh, own, triangle.i, hit.u, hit.v);
         turn = {2.0f * texel.x - 1.0f, 2.0f * texel.y - 1.0f};
         axes.anisotropy *= clamp(texel.z, 0.0f, 1.0f);
     }
@@ -293,13 +290,24 @@ HD_CALL inline void set_anisotropy(const SceneView& scene, const InstanceView& i
     axes.along = {inv * local.x, inv * local.y};
 }
 
-/// The surface at `hit` for a ray that arrives along `direction` (unit).
+/// Area of a cone of `width` metres where it meets a triangle, in twice the triangle's (TriangleIndices); 0 for a
+/// triangle without an area.
+HD inline float footprint_on(const WorldTriangle& triangle, Vec3 direction, float width) {
+    const Vec3 normal = cross(triangle.ab, triangle.ac);
+    const float seen = abs(dot(normal, direction)); // twice the area, times the cosine
+    const float share = width * width / max(seen, 0x1p-10f * length(normal));
+    return share < kInfinity ? share : 0.0f;
+}
+
+/// The surface at `hit` for a ray that arrives along `direction` (unit). `cone_width` is the width in metres of what
+/// the ray stands for there, by which its textures are filtered; 0: they are not.
 template <ShadingVariant kVariant = ShadingVariant::General>
-HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 direction) {
+HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 direction, float cone_width = 0) {
     const InstanceView& instance = scene.instances[hit.instance];
     const MeshView& mesh = scene.meshes[instance.mesh];
     const MaterialParameters& material = scene.materials[instance.material];
-    const WorldTriangle triangle = world_triangle(instance, mesh, hit);
+    WorldTriangle triangle = world_triangle(instance, mesh, hit);
+    if (has_textures(kVariant) && cone_width > 0) triangle.i.footprint = footprint_on(triangle, direction, cone_width);
 
     const Vec3 geometric_normal = front_normal(instance, mesh, triangle);
     float tilt = 0;

@@ -29,7 +29,9 @@ public:
 
     void add(const Mesh& mesh) {
         add_list(hasher_, mesh.normals); // they may say which side is the front
-        for (const std::vector<Vec2>& uv : mesh.uv) add_list(hasher_, uv);
+        for (std::size_t set = 0; set < mesh.uv.size(); ++set) {
+            if (set < 2 || !mesh.uv[set].empty()) add_list(hasher_, mesh.uv[set]); // early solutions had two
+        }
         add_list(hasher_, mesh.colors);
     }
 

@@ -53,6 +53,8 @@ struct CameraRays {
         pinhole.aperture_radius = 0;
         return ray(make_camera_line(pinhole, Vec2{corner.x + 0.5f, corner.y + 0.5f}, Vec2{0, 0}), time);
     }
+    /// Width of a pixel at a distance along its ray, metres, as in the middle of the picture.
+    HD float pixel_width(float distance) const { return pixel_size(view, distance); }
     /// Time of the sample with the random numbers of `key`, uniform over the open shutter, in [0, 1).
     HD float time(SamplerKind sampler, SampleKey key) const {
         return is_open ? sample_1d(sampler, key, kGroupLens, kNumberTime) : kAtRest;

@@ -18,7 +18,7 @@ struct AddDirectLight {
         const LightReservoir reservoir = reservoirs[pixel];
         if (!(reservoir.weight > 0)) return;
         const Vec3 direction = here.direction(pixel), wo = -direction;
-        const Surface surface = make_surface<kVariant>(scene, here.hit(pixel), direction);
+        const Surface surface = here.surface<kVariant>(scene, pixel, direction);
         LightSample light;
         float measure = 1;
         if (!find_light(scene.lights, reservoir.point, surface.light_context(wo), light, measure)) return;

@@ -18,7 +18,7 @@ struct AddIndirectLight {
         const BounceReservoir reservoir = reservoirs[pixel];
         if (!(reservoir.weight > 0)) return;
         const Vec3 direction = here.direction(pixel), wo = -direction;
-        const Surface surface = make_surface<kVariant>(scene, here.hit(pixel), direction);
+        const Surface surface = here.surface<kVariant>(scene, pixel, direction);
         const Reconnection seen = reconnect(world_triangle(scene, reservoir), surface.position);
         if (!seen.is_there) return;
         const Surface there = make_surface<kVariant>(scene, reservoir.hit(), seen.wi);

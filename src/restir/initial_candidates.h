@@ -26,7 +26,7 @@ struct SampleInitialCandidates {
         reservoir = {};
         if (!here.is_there(pixel)) return;
         const Vec3 direction = here.direction(pixel), wo = -direction;
-        const Surface surface = make_surface<kVariant>(scene, here.hit(pixel), direction);
+        const Surface surface = here.surface<kVariant>(scene, pixel, direction);
         if (surface.is_unlit || surface.bsdf.has_delta_only()) return;
         reservoir.count = 1;
         const SampleKey key = here.key(pixel);

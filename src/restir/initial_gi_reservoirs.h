@@ -27,7 +27,7 @@ struct MakeInitialGiReservoirs {
         const Rgb found = {sent.x, sent.y, sent.z};
         if (bits_of(hit.x) == kNoHit || is_black(found) || film.frame.light[pixel].w == 0) return;
         const Vec3 direction = here.direction(pixel);
-        const Surface surface = make_surface<kVariant>(scene, here.hit(pixel), direction);
+        const Surface surface = here.surface<kVariant>(scene, pixel, direction);
         BounceReservoir taken = {};
         taken.instance = bits_of(hit.x);
         taken.primitive = bits_of(hit.y);

@@ -14,6 +14,7 @@ struct PixelSurfaces {
     CameraRays camera;
     SamplerKind sampler;
     uint32_t sample, seed; // the frame's sample number and seed
+    bool filters;          // textures have mip-maps
 
     HD bool is_there(uint32_t pixel) const { return bits_of(g_buffer.hit[pixel].x) != kNoHit; }
     HD SampleKey key(uint32_t pixel) const { return {pixel, sample, seed}; }
@@ -28,6 +29,12 @@ struct PixelSurfaces {
         CameraRays straight = camera; // frames have no other lens; saying so spares registers
         straight.view.lens = {};
         return straight.ray(pixel, sampler, key(pixel)).direction;
+    }
+    /// The pixel's surface, seen along `direction`, which is that of its path.
+    template <ShadingVariant kVariant>
+    HD Surface surface(const SceneView& scene, uint32_t pixel, Vec3 seen_along) const {
+        const float distance = g_buffer.normal[pixel].w / dot(seen_along, camera.axis);
+        return make_surface<kVariant>(scene, hit(pixel), seen_along, filters ? camera.pixel_width(distance) : 0.0f);
     }
     HD WorldTriangle triangle(const SceneView& scene, uint32_t pixel) const {
         const Hit at = hit(pixel);

@@ -93,9 +93,13 @@ void Restir::add(const NoisyFrame& frame, const PictureView& picture, const Samp
     const FilmView film = frame.film_view();
     const SceneView& scene = picture.scene;
     const GBufferView last = {seen_before_.data(), seen_before_.data() + pixels_};
-    const PixelSurfaces here = {noisy, picture.camera, numbers.sampler, numbers.sample, numbers.seed};
-    const PixelSurfaces there = {last, camera_before_, numbers_before_.sampler, numbers_before_.sample,
-                                 numbers_before_.seed};
+    const PixelSurfaces here = {noisy, picture.camera, numbers.sampler, numbers.sample, numbers.seed, numbers.filters};
+    const PixelSurfaces there = {last,
+                                 camera_before_,
+                                 numbers_before_.sampler,
+                                 numbers_before_.sample,
+                                 numbers_before_.seed,
+                                 numbers_before_.filters};
     LightReservoir *const fresh = reservoirs_.data(), *const kept = fresh + pixels_;
     ray_counts_.zero();
     traced_ = 0;

@@ -24,10 +24,11 @@
 
 namespace pertev {
 
-/// The numbers that determine the random numbers of a frame's samples.
+/// The numbers that determine the random numbers of a frame's samples, and whether their textures are filtered.
 struct SampleNumbers {
     SamplerKind sampler;
     uint32_t sample, seed;
+    bool filters;
 };
 
 class Restir {

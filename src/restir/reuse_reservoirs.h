@@ -64,7 +64,7 @@ private:
             const PixelSurfaces& surfaces = j == 0 ? here : there;
             const uint32_t seen_by = j == 0 ? pixel : neighbours[pixel].pixels[j - 1];
             const Vec3 direction = surfaces.direction(seen_by);
-            const Surface surface = make_surface<kVariant>(scene, surfaces.hit(seen_by), direction);
+            const Surface surface = surfaces.surface<kVariant>(scene, seen_by, direction);
             for (uint32_t i = 0; i < count; ++i) {
                 if (!(entries[i].weight > 0)) continue;
                 targets[j][i] = luminance(light_scattered(scene, surface, -direction, entries[i]));

@@ -3,6 +3,7 @@
 // Texture images, and their use in materials. (u, v) = (0, 0) is the upper left corner of the image's top row (glTF);
 // readers of formats with v upwards flip it.
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@ enum class Wrap : uint8_t { Repeat, MirroredRepeat, ClampToEdge };
 enum class TextureFilter : uint8_t { Nearest, Linear };
 
 inline constexpr int32_t kNoImage = -1;
+inline constexpr std::size_t kTextureSets = 4; // number of sets of texture coordinates of a mesh
 
 /// A decoded image; exactly one of the two members has pixels.
 struct TextureImage {
@@ -29,7 +31,7 @@ struct TextureRef {
     int32_t image = kNoImage; // index into Scene::images; kNoImage: only the slot's factor counts
     Wrap wrap_s = Wrap::Repeat, wrap_t = Wrap::Repeat;
     TextureFilter filter = TextureFilter::Linear;
-    uint8_t uv_set = 0;   // 0 or 1
+    uint8_t uv_set = 0;   // below kTextureSets
     bool is_srgb = false; // colour channels of an 8-bit image are sRGB-encoded
     uint8_t channel = 0;  // 0 to 3, for slots that use one channel
     // uv' = (m00 u + m01 v + m02, m10 u + m11 v + m12), KHR_texture_transform as one matrix

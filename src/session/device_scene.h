@@ -32,6 +32,11 @@ public:
     /// set(); if it throws, there is no tracer until the next call.
     bool set_tracer(const RenderSettings& settings);
 
+    /// Makes mip-maps, by SceneOnDevice::make_mip_maps, if there is a scene.
+    void make_mip_maps() {
+        if (scene_) scene_->make_mip_maps(queue_);
+    }
+
     /// Lets the next calls copy what `other`, which has the same scene, has just uploaded from its device. It must not
     /// change until they have returned, nor is it used after it has changed.
     void take_from(const DeviceScene& other) { has_uploads_ = &other.uploads_; }

@@ -138,10 +138,11 @@ bool FrameSequence::render_rows(const FrameTask& task, RowExchange* others, Sink
     const PictureView light = pictures_.view_of(camera, of_light);
     const PreviousScene before = has_moved_ ? scene.before() : PreviousScene{light.scene.instances, light.scene.meshes};
     if (shared != nullptr) {
-        const PathSettings& path = settings.path;
+        const PathSettings& path = of_light.path;
         sharing_timer_.start();
         const ChangedLight changed = {change.share, change.width, change.height, change.columns, change.rows};
-        shared->add(frame, light, {path.sampler, number, path.seed}, scene.tracer(), before, changed, restir);
+        shared->add(frame, light, {path.sampler, number, path.seed, path.mip_maps == MipMaps::On}, scene.tracer(),
+                    before, changed, restir);
         sharing_timer_.stop();
     }
     if (reconstruction.resolution_scale < 1) {
@@ -200,7 +201,8 @@ void FrameSequence::take_restored(const FrameTask& task, const RenderSettings& o
     }
     const PathSettings& path = of_light.path;
     reconstruction_->begin_after(*sample_, light.view, features, shown);
-    if (restir_ && was.has_reservoirs) restir_->begin_after(light, {path.sampler, was.number, path.seed});
+    if (restir_ && was.has_reservoirs)
+        restir_->begin_after(light, {path.sampler, was.number, path.seed, path.mip_maps == MipMaps::On});
     std::vector<RowArray> rows = rows_of_history();
     const std::size_t first_reservoirs = reconstruction_->rows_of_history().size(), first_light = rows.size();
     light_before_.reset();

@@ -54,6 +54,7 @@ void PictureRenderer::update_other_devices(const PreparedScene& scene, uint32_t 
 }
 
 PictureView PictureRenderer::view_of(const Camera& camera, const RenderSettings& settings) {
+    if (settings.path.mip_maps == MipMaps::On) scene_.make_mip_maps();
     const SceneView& scene = scene_.view();
     PictureView picture = {scene,
                            make_camera_rays(camera, filter_.set(settings.filter, filter_radius_of(settings)),

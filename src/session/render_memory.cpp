@@ -1,5 +1,7 @@
 #include "session/render_memory.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "base/error.h"
@@ -34,7 +36,7 @@ std::string limit_text(std::size_t bytes, const RenderSettings& settings, const 
 }
 
 /// Names what dominates the memory, and the settings that reduce it.
-std::string advice(const RenderSettings& settings, bool is_cuda) {
+std::string advice(const RenderSettings& settings, bool is_cuda, uint64_t textures) {
     const std::vector<std::string> layer_names = light_layers_of(settings);
     const std::size_t layers = layer_names.size();
     const std::size_t film =
@@ -42,6 +44,9 @@ std::string advice(const RenderSettings& settings, bool is_cuda) {
     const WorkSize size = {
         .width = settings.width, .height = settings.height, .samples = settings.samples, .traverses_on_host = !is_cuda};
     const std::size_t own = predicted_bytes(settings, size, is_cuda);
+    if (textures > std::max(own, film)) {
+        return fmt::format("the textures take {}; a smaller `max_texture_size` takes less", amount(textures));
+    }
     if (const auto memory = describe(settings.integrator).memory; memory != nullptr && own > film) {
         const auto [what, less] = memory(settings, size);
         return fmt::format("{} take {}; {} takes less", what, amount(own), less);
@@ -62,12 +67,13 @@ MemoryLimit memory_to_render_in(const Queue& queue, const RenderSettings& settin
     return {all > result ? all - result : 0, false, false};
 }
 
-void check_render_memory(std::size_t bytes, const RenderSettings& settings, const MemoryLimit& limit) {
+void check_render_memory(std::size_t bytes, const RenderSettings& settings, const MemoryLimit& limit,
+                         uint64_t textures) {
     if (bytes <= limit.bytes) return;
     throw Error(ErrorCode::OutOfMemory, limit.is_requested ? "max_memory" : "", "",
                 fmt::format("the render takes {} of {}memory; {}. {}", amount(bytes, limit.bytes),
                             limit.is_cuda ? "the GPU's " : "", limit_text(bytes, settings, limit),
-                            advice(settings, limit.is_cuda)));
+                            advice(settings, limit.is_cuda, textures)));
 }
 
 } // namespace pertev

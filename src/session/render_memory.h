@@ -24,7 +24,8 @@ MemoryLimit memory_to_render_in(const Queue& queue, const RenderSettings& settin
                                 std::optional<std::size_t> requested);
 
 /// Throws Error(OutOfMemory) if a render needs more: `bytes`, the result of predicted_bytes. The message names the
-/// limit and the settings that need less.
-void check_render_memory(std::size_t bytes, const RenderSettings& settings, const MemoryLimit& limit);
+/// limit and the settings that need less. `textures` are the bytes of the scene's textures.
+void check_render_memory(std::size_t bytes, const RenderSettings& settings, const MemoryLimit& limit,
+                         uint64_t textures = 0);
 
 } // namespace pertev

@@ -50,6 +50,7 @@ public:
     /// Completes `size` with values that the scene and its tracers determine.
     Tracing(Queue& queue, const PreparedScene& scene, const RenderSettings& settings, WorkSize size)
         : queue_(queue), scene_(queue, scene) {
+        if (settings.path.mip_maps == MipMaps::On) scene_.make_mip_maps(queue);
         const TracerChoice tracers = tracers_of(settings, queue.is_cuda(), !scene.poses.empty());
         size.width = settings.width, size.height = settings.height;
         for (const Instance& instance : scene.scene->instances) {
@@ -128,7 +129,7 @@ std::size_t predicted_frame_bytes(const PreparedScene& scene, const RenderSettin
     const uint32_t of_light[] = {scaled_side(width, reconstruction), scaled_side(height, reconstruction)};
     const bool splits = splits_light(scene);
     const Buffer<InstanceView> places_before(queue, scene.scene->instances.size(), "instances before");
-    const Tracing tracing(queue, scene, settings,
+    const Tracing tracing(queue, scene, settings_of_frames(settings),
                           {.splits_light = splits, .records_bounce = restir.light == RestirLight::Indirect});
     const NoisyFrame frame(queue, of_light[0], of_light[1], splits);
     const Reconstruction frames(queue, of_light[0], of_light[1]);

@@ -93,6 +93,9 @@ std::vector<Setting> picture_settings() {
         row("clamp", "Quality", "X", FIELD(render.path.clamp),
             "The largest contribution of one path that scatters twice or more. Clamping is biased.", Above{0},
             Otherwise{"off"}, On{kShown}, Recorded::Always, Changes::Picture),
+        row("mip_maps", "Quality", "NAME", FIELD(render.path.mip_maps),
+            "The pictures whose textures are filtered by mip-maps: real-time frames, all (on) or none.",
+            Of{integrators_that(makes_frames)}, On{kLooking}, Recorded::Changed, Changes::Picture),
         row("time_limit", "Quality", "SECONDS", FIELD(render.time_limit_s),
             "The time after which the render stops, at the end of a sample. irradiance_cache makes records first and "
             "may stop before its first sample.",

@@ -35,6 +35,7 @@ std::vector<std::string> light_layers_of(const RenderSettings& settings) {
 RenderSettings settings_of_frames(RenderSettings settings) {
     settings.path.roulette_depth = std::min(settings.path.roulette_depth, 2u);
     if (settings.path.roulette == Roulette::FourthRoot) settings.path.roulette = Roulette::NearCubeRoot;
+    if (settings.path.mip_maps == MipMaps::Frames) settings.path.mip_maps = MipMaps::On;
     if (settings.frame_depth) settings.path.max_depth = std::min(settings.path.max_depth, *settings.frame_depth);
     return settings;
 }

@@ -88,6 +88,7 @@ RenderSettings restir_settings() {
     RenderSettings settings;
     settings.width = kRestirWidth, settings.height = kRestirHeight;
     settings.path.max_depth = 3;
+    settings.path.mip_maps = MipMaps::Off; // the pictures compared have none
     return settings;
 }
 

@@ -184,13 +184,23 @@ TEST_CASE("a material may use any two sets of texture coordinates, whatever thei
     CHECK(coordinate(material.emission_texture) == 3); // set i has coordinates of i
     CHECK(coordinate(material.normal_texture) == 1);
 
-    const Scene third =
-        read(two + R"(,"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":2}})", all, messages);
+    const std::string four = two + R"(,"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":2},)"
+                                   R"("metallicRoughnessTexture":{"index":0}})";
+    const Scene of_four = read(four, all, messages);
+    CHECK(messages.left_out().empty());
+    const Material& with_four = of_four.materials.at(0);
+    const auto set_of = [&](const TextureRef& ref) { return of_four.meshes.at(0).uv.at(ref.uv_set).at(0).x; };
+    CHECK(set_of(with_four.emission_texture) == 3);
+    CHECK(set_of(with_four.normal_texture) == 1);
+    CHECK(set_of(with_four.base_color_texture) == 2);
+    CHECK(set_of(with_four.metallic_texture) == 0);
+    const Scene five = read(four + R"(,"extensions":{"KHR_materials_clearcoat":{"clearcoatFactor":1,)"
+                                   R"("clearcoatTexture":{"index":0,"texCoord":4}}})",
+                            all, messages);
     CHECK(messages.left_out().size() == 1);
-    const Material& of_third = third.materials.at(0);
-    CHECK(of_third.base_color_texture.has_image() + of_third.emission_texture.has_image() +
-              of_third.normal_texture.has_image() ==
-          2);
+    std::size_t left = 0;
+    visit_textures(five.materials.at(0), [&](const TextureRef& ref, const char*) { left += ref.has_image(); });
+    CHECK(left == 5 - 1 + 1); // metal and roughness are one texture in two slots
 
     Messages lacking; // a set that the mesh does not have
     const Scene without = read(two, R"("TEXCOORD_0":1,"TEXCOORD_1":2)", lacking);

@@ -252,9 +252,9 @@ TEST_CASE("faults of materials and images are refused, and numbers out of range 
         with_image(s);
         s.materials[0].base_color_texture.m01 = kNan;
     });
-    check_refused("set 2", E::BadInput, [&](Scene& s) {
+    check_refused("set 4", E::BadInput, [&](Scene& s) {
         with_image(s);
-        s.materials[0].base_color_texture.uv_set = 2;
+        s.materials[0].base_color_texture.uv_set = 4;
     });
 
     const Result clamped = validated([](Scene& s) {

@@ -114,7 +114,7 @@ void Meshes::check_texture_coordinates(const Part& part) {
 
 std::optional<uint32_t> Meshes::mesh_of(const JsonValue& primitive, uint32_t node, const std::string& name,
                                         const TextureSets& sets) {
-    const std::string key = fmt::format("{};{},{}", data_key(primitive, node), sets[0], sets[1]);
+    const std::string key = fmt::format("{};{}", data_key(primitive, node), fmt::join(sets, ","));
     const auto [entry, is_new] = by_data_.try_emplace(key);
     if (!is_new) return entry->second;
     std::optional<Primitive> read = read_primitive({document_, buffers_, primitive, geometry_only_, sets}, sink_);

@@ -104,7 +104,7 @@ void read_attributes(const PrimitiveRequest& request, const JsonValue& attribute
     attempt("TANGENT", {ElementType::Vec4}, [&](const Accessor& tangents) {
         if (!mesh.normals.empty()) mesh.tangents = tangents.read_vec4(); // without normals they mean nothing
     });
-    for (std::size_t i = 0; i < mesh.uv.size(); ++i) {
+    for (std::size_t i = 0; i < request.sets.size(); ++i) {
         attempt(fmt::format("TEXCOORD_{}", request.sets[i]), {ElementType::Vec2},
                 [&](const Accessor& uv) { mesh.uv[i] = uv.read_vec2(); });
     }

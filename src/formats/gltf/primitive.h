@@ -21,7 +21,7 @@ struct PrimitiveRequest {
     Buffers& buffers;
     const JsonValue& primitive;
     bool geometry_only = false; // only positions, normals and indices
-    TextureSets sets = {0, 1};  // numbers of the sets that the mesh has as its first and second
+    TextureSets sets = {0, 1};  // numbers of the sets that the mesh has
 };
 
 struct Primitive {

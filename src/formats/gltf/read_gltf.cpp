@@ -13,7 +13,6 @@
 #include "formats/gltf/meshes.h"
 #include "formats/gltf/node_shapes.h"
 #include "formats/gltf/place_nodes.h"
-#include "formats/gltf/texture_sets.h"
 #include "formats/gltf/textures.h"
 #include "scene/scene_origin.h"
 
@@ -93,8 +92,6 @@ Scene read_gltf(const std::filesystem::path& path, std::vector<std::byte> bytes,
     gltf::read_animations(document, buffers, scene, sink);
     loader.load_into(scene, buffers.file_bytes());
     materials.convert_textures(justified_bytes(kFreeImageBytes, buffers.file_bytes()));
-    gltf::drop_other_sets(scene, path.string(), sink);
-
     return scene;
 }
 

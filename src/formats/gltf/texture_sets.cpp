@@ -16,8 +16,9 @@ TextureSets pack_texture_sets(MaterialParameters& material, const std::string& f
     });
     TextureSets sets = {0, 1};
     if (std::ranges::all_of(used, [](uint8_t set) { return set < 2; })) return sets;
-    for (std::size_t i = 0; i < std::min<std::size_t>(used.size(), 2); ++i) sets[i] = used[i];
-    if (used.size() == 1) sets[1] = sets[0] == 0 ? 1 : 0;
+    if (used.size() > kTextureSets) used.resize(kTextureSets);
+    sets = used;
+    if (used.size() == 1) sets.push_back(sets[0] == 0 ? 1 : 0);
     visit_textures(material, [&](TextureRef& texture, const char* name) {
         if (!texture.has_image()) return;
         const auto set = std::ranges::find(sets, texture.uv_set);
@@ -26,25 +27,12 @@ TextureSets pack_texture_sets(MaterialParameters& material, const std::string& f
             return;
         }
         sink.leave_out(
-            {FileLocation{file}, fmt::format("{}: {} uses TEXCOORD_{}, a third set of texture coordinates of "
-                                             "the material, and is left out",
-                                             origin, name, texture.uv_set)});
+            {FileLocation{file}, fmt::format("{}: {} uses TEXCOORD_{}, and {} sets of texture coordinates are the most "
+                                             "of a material; it is left out",
+                                             origin, name, texture.uv_set, kTextureSets)});
         texture = {};
     });
     return sets;
-}
-
-void drop_other_sets(Scene& scene, const std::string& file, Sink& sink) {
-    for (Material& material : scene.materials) {
-        visit_textures(material, [&](TextureRef& texture, const char* name) {
-            if (texture.uv_set < 2) return;
-            if (texture.has_image()) {
-                sink.leave_out({FileLocation{file}, fmt::format("{}: {} uses TEXCOORD_{} and is left out",
-                                                                material.origin, name, texture.uv_set)});
-            }
-            texture = {};
-        });
-    }
 }
 
 } // namespace pertev::gltf

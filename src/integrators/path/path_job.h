@@ -24,12 +24,13 @@ struct PathJob {
 /// Features that a scene and a request use. Code for absent features would cost registers.
 using Features = uint32_t;
 enum Feature : Features {
-    kTextured = 1, // textured colours, emission or normals
-    kAlpha = 2,    // surfaces that a ray may pass, including emitters
-    kLayered = 4,  // surfaces other than diffuse ones
-    kMoving = 8,   // paths have a time
-    kBatched = 16, // several pictures (PictureView::batch); code without it renders one
-    kStacked = 32, // coats, fuzz, thin walls and weighted reflections
+    kTextured = 1,   // textured colours, emission or normals
+    kAlpha = 2,      // surfaces that a ray may pass, including emitters
+    kLayered = 4,    // surfaces other than diffuse ones
+    kMoving = 8,     // paths have a time
+    kBatched = 16,   // several pictures (PictureView::batch); code without it renders one
+    kStacked = 32,   // coats, fuzz, thin walls and weighted reflections
+    kMipMapped = 64, // textures are filtered; code with it filters where the settings say so
 };
 inline constexpr Features kPlainDiffuse = 0, kDiffuse = kTextured | kAlpha, kUnstacked = kDiffuse | kLayered,
                           kAllMaterials = kUnstacked | kStacked;
@@ -63,8 +64,9 @@ inline Features features_for(const PathJob& job) {
     const PictureView& picture = job.picture;
     const bool has_times = picture.scene.motions.is_there() ||
                            (picture.camera.is_open && !job.film.frame.is_there() && (job.film.aovs & kAovDepth) != 0);
+    const bool filters = job.settings.mip_maps == MipMaps::On && has_textures(picture.scene.variant);
     return features_of(picture.scene.variant) | (has_times ? Features{kMoving} : 0) |
-           (picture.batch.is_there() ? Features{kBatched} : 0);
+           (picture.batch.is_there() ? Features{kBatched} : 0) | (filters ? Features{kMipMapped} : 0);
 }
 
 /// Returns the key of the random numbers of a path.
@@ -92,8 +94,9 @@ struct CompiledFor {
 using FilmFeatures =
     CompiledFor<kPlainDiffuse, kDiffuse, kUnstacked, kAllMaterials, kPlainDiffuse | kMoving, kDiffuse | kMoving,
                 kUnstacked | kMoving, kPlainDiffuse | kBatched, kDiffuse | kBatched, kUnstacked | kBatched,
-                kUnstacked | kMoving | kBatched, kAllMaterials | kMoving | kBatched>;
-using FrameFeatures = CompiledFor<kPlainDiffuse, kDiffuse, kUnstacked, kAllMaterials>;
-using LayerFeatures = CompiledFor<kUnstacked, kUnstacked | kMoving, kAllMaterials | kMoving>;
+                kUnstacked | kMoving | kBatched, kAllMaterials | kMoving | kBatched | kMipMapped>;
+using FrameFeatures =
+    CompiledFor<kPlainDiffuse, kDiffuse | kMipMapped, kUnstacked | kMipMapped, kAllMaterials | kMipMapped>;
+using LayerFeatures = CompiledFor<kUnstacked, kUnstacked | kMoving, kAllMaterials | kMoving | kMipMapped>;
 
 } // namespace pertev

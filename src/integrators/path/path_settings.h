@@ -26,6 +26,10 @@ enum class Roulette : uint8_t { Throughput, NearCubeRoot, FourthRoot };
 /// (SceneTracer::host_trees); otherwise Wavefront is used.
 enum class PathBody : uint8_t { Loop, Wavefront };
 
+/// The pictures that use coarser levels of textures, by the width of what a ray stands for: real-time frames
+/// (settings_of_frames), all or none.
+enum class MipMaps : uint8_t { Frames, On, Off };
+
 /// Optional parts of a path in flight in the queues of a wavefront, which take memory there.
 struct PathParts {
     bool has_times = false;      // something moves while the shutter is open
@@ -44,6 +48,7 @@ struct PathSettings {
                      // 0: off
     SamplerKind sampler = SamplerKind::Sobol;
     uint32_t seed = 0;
+    MipMaps mip_maps = MipMaps::Frames;
 
     bool operator==(const PathSettings&) const = default;
 };

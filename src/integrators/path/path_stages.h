@@ -109,7 +109,8 @@ struct Shade {
                 Listener::load(listened, slot, kept);
                 listener.restore(kept);
             }
-            const DrawOnDemand numbers = {(kFeatures & kBatched) != 0 ? &job.picture.batch : nullptr};
+            const bool is_tall = (kFeatures & kBatched) != 0 && job.picture.batch.is_there();
+            const DrawOnDemand numbers = {is_tall ? &job.picture.batch : nullptr};
             goes_on = shade_vertex<kFeatures>(job, path, hit, numbers, shadow, has_shadow_ray, listener);
         }
         const RoundSlots slots = append_to_round(lists, *round, last, goes_on, has_shadow_ray);

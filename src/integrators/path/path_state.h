@@ -17,7 +17,8 @@ struct PathState {
     Vec3 origin, direction; // ray to trace next; unit direction
     Rgb throughput = {1, 1, 1};
     Rgb radiance = {0, 0, 0}; // sum so far
-    float bsdf_pdf = 0;       // density with which `direction` was sampled, 1/sr; 0 after the camera or a delta lobe
+    float bsdf_pdf = 0;       // density with which `direction` was sampled, 1/sr; 0 after the camera or a delta lobe,
+                              // or minus the width of the ray's cone there, metres (cone_width)
     uint32_t pixel = 0, sample = 0;
     TriangleId start;         // triangle that the ray leaves
     Vec3 normal = {0, 0, 0};  // normal of the context that selected a light there, if LightChoice reads it; else zero

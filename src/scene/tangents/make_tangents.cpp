@@ -157,18 +157,20 @@ void add_tangents(Mesh& mesh, MeshShape* shape, uint8_t uv_set) {
 
 constexpr uint32_t kNone = 0xffffffffu;
 
-/// The meshes that replace an instance's mesh if its normal map uses the one or the other set of coordinates; kNone
-/// if there is none.
-using MeshBySet = std::array<uint32_t, 2>;
+/// The meshes that replace an instance's mesh, by the set of coordinates that its normal map uses; kNone if there is
+/// none.
+using MeshBySet = std::array<uint32_t, kTextureSets>;
 
 /// Returns whether only its anisotropy needs tangents, with or without a texture.
 bool is_stretched(const Material& material) {
     return material.has_anisotropy() && !material.normal_texture.has_image();
 }
 
-/// Adds copies of meshes that need tangents for both sets, and redirects instances to theirs.
+/// Adds copies of meshes that need tangents for several sets, and redirects instances to theirs.
 std::vector<MeshBySet> choose_meshes(Scene& scene) {
-    std::vector<MeshBySet> chosen(scene.meshes.size(), {kNone, kNone});
+    MeshBySet none;
+    none.fill(kNone);
+    std::vector<MeshBySet> chosen(scene.meshes.size(), none);
     for (Instance& instance : scene.instances) {
         const Material& material = scene.materials[instance.material];
         const bool is_of_coat =
@@ -181,7 +183,7 @@ std::vector<MeshBySet> choose_meshes(Scene& scene) {
             continue;
         MeshBySet& by_set = chosen[instance.mesh];
         if (by_set[map.uv_set] == kNone) {
-            if (by_set[1 - map.uv_set] == kNone) {
+            if (by_set == none) {
                 by_set[map.uv_set] = instance.mesh;
             } else {
                 by_set[map.uv_set] = static_cast<uint32_t>(scene.meshes.size());
@@ -208,7 +210,7 @@ void make_tangents(Scene& scene, Sink& sink) {
     };
     std::vector<Task> tasks;
     for (const MeshBySet& by_set : choose_meshes(scene)) {
-        for (uint8_t set = 0; set < 2; ++set) {
+        for (uint8_t set = 0; set < kTextureSets; ++set) {
             if (by_set[set] != kNone) tasks.push_back({by_set[set], set});
         }
     }

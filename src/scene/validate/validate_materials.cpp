@@ -103,9 +103,9 @@ private:
             throw bad(fmt::format("{}: {}: image {} is out of range; there are {}", of_, name, ref.image,
                                   scene_.images.size()));
         }
-        if (ref.uv_set > 1)
-            throw bad(fmt::format("{}: {}: set {} of texture coordinates; only 0 and 1 are supported", of_, name,
-                                  ref.uv_set));
+        if (ref.uv_set >= kTextureSets)
+            throw bad(fmt::format("{}: {}: set {} of texture coordinates; expected less than {}", of_, name, ref.uv_set,
+                                  kTextureSets));
         if (ref.channel > 3) throw bad(fmt::format("{}: {}: channel {}; expected 0 to 3", of_, name, ref.channel));
         for (const float m : {ref.m00, ref.m01, ref.m02, ref.m10, ref.m11, ref.m12}) {
             if (!(abs(m) <= kMaxUvScale)) throw bad(fmt::format("{}: {}: its transform is not finite", of_, name));

@@ -43,8 +43,7 @@ void check_sizes(const Mesh& mesh, const MeshName& of) {
     };
     check(mesh.normals.size(), "normals");
     check(mesh.tangents.size(), "tangents");
-    check(mesh.uv[0].size(), "texture coordinates");
-    check(mesh.uv[1].size(), "texture coordinates (second set)");
+    for (const std::vector<Vec2>& uv : mesh.uv) check(uv.size(), "texture coordinates");
     check(mesh.colors.size(), "colours");
     if (mesh.indices.size() % 3 != 0) {
         throw of.error(ErrorCode::BadInput, fmt::format("{} indices; expected a multiple of 3", mesh.indices.size()));

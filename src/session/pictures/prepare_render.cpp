@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/message_text.h"
 #include "base/stopwatch.h"
+#include "device_scene/pack_texels.h"
 #include "formats/read_camera_path.h"
 #include "session/check_integrator.h"
 #include "session/devices/device_names.h"
@@ -276,7 +277,8 @@ std::size_t bytes_to_render(const PictureOptions& options, const PreparedScene& 
     const std::size_t bytes =
         options.real_time ? predicted_frame_bytes(prepared, settings, frames.used(), frames.sharing, queue.is_cuda())
                           : predicted_bytes(prepared, settings, queue.is_cuda());
-    check_render_memory(bytes, settings, memory_to_render_in(queue, settings, max_memory_bytes(options.radiosity)));
+    check_render_memory(bytes, settings, memory_to_render_in(queue, settings, max_memory_bytes(options.radiosity)),
+                        texture_bytes(*prepared.scene));
     return bytes;
 }
 
