@@ -245,16 +245,19 @@ const Property& property_of(const SceneParameter& parameter) {
 
 /// Returns whether an animation changes what is set.
 bool is_animated(const Scene& scene, const SceneParameter& parameter) {
-    const bool is_still = parameter.owner == ParameterOwner::Material || parameter.owner == ParameterOwner::Environment;
-    if (scene.animations.empty() || is_still) return false;
+    if (scene.animations.empty() || parameter.owner == ParameterOwner::Environment) return false;
     if (parameter.owner == ParameterOwner::Instance) return may_move(scene)[parameter.index];
-    const bool is_light = parameter.owner == ParameterOwner::Light;
-    const uint32_t node = is_light ? scene.lights[parameter.index].node : scene.cameras[parameter.index].node;
+    const bool is_light = parameter.owner == ParameterOwner::Light,
+               is_material = parameter.owner == ParameterOwner::Material;
+    const uint32_t node = is_material ? kNoNode
+                          : is_light  ? scene.lights[parameter.index].node
+                                      : scene.cameras[parameter.index].node;
     if (node != kNoNode && moving_nodes(scene)[node]) return true;
     for (const Animation& animation : scene.animations) {
         for (const AnimationChannel& channel : animation.channels) {
-            const bool is_of_it =
-                is_light ? !is_of_node(channel.part) && !is_of_camera(channel.part) : is_of_camera(channel.part);
+            const bool is_of_it = is_material ? is_of_material(channel.part)
+                                  : is_light  ? is_of_light(channel.part)
+                                              : is_of_camera(channel.part);
             if (is_of_it && channel.target == parameter.index) return true;
         }
     }

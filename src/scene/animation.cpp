@@ -54,4 +54,18 @@ std::vector<bool> may_move(const Scene& scene) {
     return moving;
 }
 
+std::vector<bool> may_emit(const Scene& scene) {
+    std::vector<bool> emits(scene.materials.size());
+    for (const Animation& animation : scene.animations) {
+        for (const AnimationChannel& channel : animation.channels) {
+            if (!is_of_material(channel.part)) continue;
+            const bool is_emission = std::ranges::any_of(channel.numbers, [](uint8_t number) {
+                return std::ranges::count(material_numbers("emission"), number) > 0;
+            });
+            if (is_emission) emits[channel.target] = true;
+        }
+    }
+    return emits;
+}
+
 } // namespace pertev

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/host_device.h"
@@ -210,6 +211,21 @@ void visit_parameters(Parameters& m, const Number& number, const Texture& textur
     texture(m.thin_film_thickness_texture, "thin_film_thickness_texture");
     texture(m.diffuse_transmission_texture, "diffuse_transmission_texture");
     texture(m.diffuse_transmission_color_texture, "diffuse_transmission_color_texture");
+}
+
+/// Returns the places of the numbers named `name` in the order of visit_parameters: one, or three of a colour.
+inline std::vector<uint8_t> material_numbers(std::string_view name) {
+    std::vector<uint8_t> found;
+    uint8_t place = 0;
+    MaterialParameters material;
+    visit_parameters(
+        material,
+        [&](float&, const char* known, float, float) {
+            if (name == known) found.push_back(place);
+            ++place;
+        },
+        [](auto&&...) {});
+    return found;
 }
 
 /// Calls texture(reference, name) for each texture slot, with or without an image.

@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "base/error.h"
+#include "scene/pose/posed_scene.h"
 #include "scene/validate/validate_parts.h"
 #include "tests/support/gltf_builder.h"
 
@@ -216,6 +217,72 @@ TEST_CASE("KHR_animation_pointer animates nodes, views and lights, and other tar
     CHECK(colored.animations.at(0).channels.at(0).values == std::vector<float>{0, 0, 0, 2, 4, 6, 8, 10, 12});
     test::read_gltf_text(document(pointer(light + "color", 0) + "," + pointer(light + "intensity", 1)), messages);
     CHECK(test::has_warning(messages, {"colour and intensity of one light"}));
+}
+
+TEST_CASE("KHR_animation_pointer animates numbers of materials, within their ranges, and emission with its strength") {
+    GltfBuilder builder;
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});     // 0
+    builder.add("SCALAR", std::vector<float>{0, 1});                        // 1
+    builder.add("SCALAR", std::vector<float>{0.25f, 2});                    // 2
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 0.5f, 0.25f, 1});       // 3
+    builder.add("VEC4", std::vector<float>{1, 1, 1, 1, 0, 0.5f, 1, 0.25f}); // 4
+    const auto channel = [](const std::string& to, int number) {
+        return R"({"sampler":)" + std::to_string(number) +
+               R"(,"target":{"path":"pointer","extensions":{"KHR_animation_pointer":{"pointer":"/materials/)" + to +
+               R"("}}}})";
+    };
+    const auto document = [&](const std::string& channels) {
+        return builder.json(
+            R"("extensionsUsed":["KHR_animation_pointer"],"materials":[{},{"emissiveFactor":[1,0.5,0],"extensions":)"
+            R"({"KHR_materials_emissive_strength":{"emissiveStrength":4},"KHR_materials_ior":{"ior":1.5}}}],)"
+            R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":1}]}],"nodes":[{"mesh":0}],)"
+            R"("animations":[{"samplers":[)" +
+            sampler(1, 2) + "," + sampler(1, 3) + "," + sampler(1, 4) + R"(],"channels":[)" + channels + "]}]");
+    };
+    Messages messages;
+    const std::string emission = "1/emissiveFactor",
+                      strength = "1/extensions/KHR_materials_emissive_strength/emissiveStrength";
+    PosedScene posed(test::read_gltf_text(document(channel("1/pbrMetallicRoughness/roughnessFactor", 0) + "," +
+                                                   channel("1/pbrMetallicRoughness/baseColorFactor", 2) + "," +
+                                                   channel(emission, 1)),
+                                          messages));
+    CHECK(messages.left_out().empty());
+    const Material& material = posed.scene().materials.at(0);
+    CHECK(material.emission == Rgb{4, 2, 0});
+    const SceneUpdate update = posed.set_time(1);
+    CHECK(update.materials_changed);
+    CHECK(update.lights_changed);
+    CHECK(update.keeps_surfaces());
+    CHECK(material.roughness == 1); // 2 is outside its range
+    CHECK(material.base_color == Rgb{0, 0.5f, 1});
+    CHECK(material.alpha == 0.25f);
+    CHECK(material.emission == Rgb{2, 1, 4});
+    CHECK(material.metallic == 1);
+    CHECK(posed.set_time(1).is_empty());
+    posed.set_time(0.5);
+    CHECK(material.base_color == Rgb{0.5f, 0.75f, 1});
+    CHECK(material.roughness == 1);
+    posed.edit([](Scene& scene) {
+        scene.materials[0].metallic = 0.5f;
+        SceneUpdate edited;
+        edited.materials_changed = true;
+        return edited;
+    });
+    posed.set_time(0);
+    CHECK(material.metallic == 0.5f);
+    CHECK(material.roughness == 0.25f);
+    CHECK(material.emission == Rgb{0, 0, 0});
+    CHECK(may_emit(posed.scene()) == std::vector<bool>{true});
+
+    const Scene by_strength =
+        test::read_gltf_text(document(channel(strength, 0) + "," + channel(emission, 1)), messages);
+    REQUIRE(by_strength.animations.at(0).channels.size() == 1);
+    CHECK(by_strength.animations[0].channels[0].values == std::vector<float>{0.25f, 0.125f, 0, 2, 1, 0});
+    CHECK(test::has_warning(messages, {"/animations/0/channels/1"}));
+    Messages unused, unknown; // a material that nothing has is not read
+    CHECK(test::read_gltf_text(document(channel("0/alphaCutoff", 0)), unused).animations.at(0).channels.empty());
+    test::read_gltf_text(document(channel("1/doubleSided", 0) + "," + channel("7/alphaCutoff", 0)), unknown);
+    CHECK(unknown.left_out().size() == 2);
 }
 
 TEST_CASE("nodes with one mesh share it, except those with animated weights") {

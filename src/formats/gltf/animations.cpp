@@ -1,5 +1,6 @@
 #include "formats/gltf/animations.h"
 
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 #include "base/sink.h"
 #include "formats/files/parse_number.h"
 #include "formats/gltf/leave_out.h"
+#include "formats/gltf/material_pointers.h"
 #include "formats/gltf/repair_keys.h"
 #include "scene/validate/validate_parts.h"
 
@@ -35,22 +37,23 @@ Interpolation interpolation_of(const JsonValue& sampler) {
     throw sampler.at("interpolation").error(fmt::format("\"{}\"; expected STEP, LINEAR or CUBICSPLINE", name));
 }
 
-ElementType element_of(AnimatedPart part) {
-    const std::size_t numbers = numbers_of(part);
-    return numbers == 4 ? ElementType::Vec4 : numbers == 3 ? ElementType::Vec3 : ElementType::Scalar;
-}
-
 bool takes_integers(AnimatedPart part) { return part == AnimatedPart::Rotation || part == AnimatedPart::Weights; }
 
 /// The target of a channel: one object, except for a camera or light that several nodes hold.
 struct Target {
     AnimatedPart part;
-    std::vector<uint32_t> indices; // AnimationChannel::target
-    std::optional<Rgb> factor;     // factor of a light, by which the values are multiplied; the accessor then
-                                   // holds...
-    bool is_scalar = false;        // ...one number per value and not a colour
-    float scale = 1;               // factor of the values
+    std::vector<uint32_t> indices;     // AnimationChannel::target
+    std::optional<Rgb> factor;         // factor of a light, by which the values are multiplied; the accessor then
+                                       // holds...
+    bool is_scalar = false;            // ...one number per value and not a colour
+    float scale = 1;                   // factor of the values
+    std::vector<uint8_t> numbers = {}; // AnimationChannel::numbers
 };
+
+ElementType element_of(const Target& target) {
+    const std::size_t numbers = is_of_material(target.part) ? target.numbers.size() : numbers_of(target.part);
+    return numbers == 4 ? ElementType::Vec4 : numbers == 3 ? ElementType::Vec3 : ElementType::Scalar;
+}
 
 /// Single-number properties of cameras and lights, which are copied or multiplied by `scale`.
 struct NumberPart {
@@ -105,8 +108,17 @@ std::optional<uint32_t> node_of_pointer(const Document& document, std::string_vi
 }
 
 /// Returns the target of a JSON pointer; nothing for a property whose animation is not supported.
-std::optional<Target> pointed_at(const Document& document, const JsonValue& json, const Scene& scene) {
+std::optional<Target> pointed_at(const Document& document, const JsonValue& json, const Materials& materials,
+                                 const Scene& scene) {
     const std::string_view pointer = json.to_string();
+    if (const auto material = find_material_pointer(document, pointer)) {
+        const std::optional<uint32_t> index = materials.index_of(material->material);
+        Target target = {.part = AnimatedPart::MaterialNumbers, .scale = material->scale, .numbers = material->numbers};
+        target.is_scalar = material->components == 1;
+        if (material->components < material->numbers.size()) target.factor = material->factor;
+        if (index) target.indices = {*index};
+        return target;
+    }
     for (const std::string_view path : kNodePaths) {
         if (const auto node = node_of_pointer(document, pointer, path)) {
             return node_target(document, json, *node, *part_named(path), scene);
@@ -145,16 +157,17 @@ std::optional<Target> pointed_at(const Document& document, const JsonValue& json
 }
 
 /// Returns the target of a channel; nothing, with a message, for a property whose animation is not supported.
-std::optional<Target> read_target(const Document& document, const JsonValue& target, const Scene& scene, Sink& sink) {
+std::optional<Target> read_target(const Document& document, const JsonValue& target, const Materials& materials,
+                                  const Scene& scene, Sink& sink) {
     if (const auto extension = target.extension("KHR_animation_pointer")) {
         const JsonValue pointer = extension->at("pointer");
-        std::optional<Target> found = pointed_at(document, pointer, scene);
+        std::optional<Target> found = pointed_at(document, pointer, materials, scene);
         if (!found) {
             sink.leave_out(
                 {pointer.location(),
                  fmt::format("\"{}\" is not animated; expected a node's translation, rotation, scale or "
-                             "weights, a camera's /perspective/yfov or /orthographic/ymag, or a light's color, "
-                             "intensity, range, /spot/innerConeAngle or /spot/outerConeAngle",
+                             "weights, a camera's /perspective/yfov or /orthographic/ymag, a light's color, "
+                             "intensity, range, /spot/innerConeAngle or /spot/outerConeAngle, or a material's factor",
                              shortened(pointer.to_string()))});
         }
         return found;
@@ -173,6 +186,7 @@ AnimationChannel read_keys(const Document& document, Buffers& buffers, const Jso
                            const std::vector<JsonValue>& samplers, const Target& target, const Scene& scene) {
     AnimationChannel channel;
     channel.part = target.part;
+    channel.numbers = target.numbers;
     const uint64_t number = reference.to_unsigned();
     if (number >= samplers.size()) {
         throw reference.error(fmt::format("{}; expected an index into \"samplers\", which has {}", number,
@@ -183,8 +197,7 @@ AnimationChannel read_keys(const Document& document, Buffers& buffers, const Jso
 
     const JsonValue input = sampler.at("input"), output = sampler.at("output");
     const Accessor times(document, buffers, input, {ElementType::Scalar});
-    const Accessor values(document, buffers, output,
-                          {target.is_scalar ? ElementType::Scalar : element_of(target.part)});
+    const Accessor values(document, buffers, output, {target.is_scalar ? ElementType::Scalar : element_of(target)});
     if (times.component_type() != ComponentType::Float)
         throw input.error("key times are not floats; expected component type 5126");
     if (values.component_type() != ComponentType::Float && !(takes_integers(channel.part) && values.is_normalized())) {
@@ -246,7 +259,8 @@ std::set<uint32_t> nodes_with_animated_weights(const Document& document, std::sp
     return nodes;
 }
 
-void read_animations(const Document& document, Buffers& buffers, Scene& scene, Sink& clip_sink) {
+void read_animations(const Document& document, Buffers& buffers, const Materials& materials, Scene& scene,
+                     Sink& clip_sink) {
     auto clip = scene.clips.begin();
     for (const JsonValue& source : animations_of(document, nobody())) { // errors were reported when clips were chosen
         clip_sink.check();
@@ -257,10 +271,10 @@ void read_animations(const Document& document, Buffers& buffers, Scene& scene, S
         animation.origin = source.pointer();
         buffers.charge(animation.name.size() + animation.origin.size(), source);
         const std::vector<JsonValue> samplers = elements_or_none(source, "samplers", sink);
-        std::set<std::pair<uint32_t, AnimatedPart>> taken;
+        std::set<std::tuple<uint32_t, AnimatedPart, std::vector<uint8_t>>> taken;
         const auto read_channel = [&](const JsonValue& entry) {
             const JsonValue json = entry.at("target");
-            const std::optional<Target> target = read_target(document, json, scene, sink);
+            const std::optional<Target> target = read_target(document, json, materials, scene, sink);
             if (!target || target->indices.empty()) return;
             AnimationChannel channel = read_keys(document, buffers, entry.at("sampler"), samplers, *target, scene);
             channel.target = target->indices[0];
@@ -272,13 +286,14 @@ void read_animations(const Document& document, Buffers& buffers, Scene& scene, S
                 sink.leave_out({entry.location(), fmt::format("{}; the channel is left out", fault)});
                 return;
             }
-            if (!taken.emplace(target->indices[0], target->part).second) {
+            if (!taken.emplace(target->indices[0], target->part, target->numbers).second) {
                 sink.leave_out(
                     {json.location(),
                      fmt::format(
                          "{}; the channel is left out",
                          target->factor
-                             ? "colour and intensity of one light are animated together; only the first is played"
+                             ? "colour and intensity of one light or emission are animated together; only the first "
+                               "is played"
                              : "an earlier channel of the animation has this node and path; that one is played")});
                 return;
             }

@@ -1,13 +1,15 @@
 #pragma once
 
 // Animations as key frames. Source: glTF 2.0 section 3.11; KHR_animation_pointer for the properties of nodes that
-// have a path of their own, the field of view of perspective cameras, and colour or intensity of punctual lights.
+// have a path of their own, the field of view of perspective cameras, colour or intensity of punctual lights, and the
+// numbers of materials (material_pointers.h).
 
 #include <cstdint>
 #include <set>
 #include <span>
 
 #include "formats/gltf/accessor.h"
+#include "formats/gltf/materials.h"
 #include "scene/scene.h"
 
 namespace pertev::gltf {
@@ -21,6 +23,6 @@ std::set<uint32_t> nodes_with_animated_weights(const Document& document, std::sp
 /// unknown path or interpolation, a node that cannot be animated so), contain meaningless numbers (a quaternion of 0,
 /// a number that is not finite), or have the target of an earlier channel of its animation. Keys are repaired
 /// (repair_keys).
-void read_animations(const Document& document, Buffers& buffers, Scene& scene, Sink& sink);
+void read_animations(const Document& document, Buffers& buffers, const Materials& materials, Scene& scene, Sink& sink);
 
 } // namespace pertev::gltf

@@ -10,7 +10,8 @@
 namespace pertev::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 18> kRead = {"EXT_mesh_gpu_instancing",
+constexpr std::array<std::string_view, 20> kRead = {"EXT_lights_image_based",
+                                                    "EXT_mesh_gpu_instancing",
                                                     "EXT_meshopt_compression",
                                                     "KHR_animation_pointer",
                                                     "KHR_materials_anisotropy",
@@ -19,6 +20,7 @@ constexpr std::array<std::string_view, 18> kRead = {"EXT_mesh_gpu_instancing",
                                                     "KHR_materials_emissive_strength",
                                                     "KHR_materials_ior",
                                                     "KHR_materials_iridescence",
+                                                    "KHR_materials_pbrSpecularGlossiness",
                                                     "KHR_materials_sheen",
                                                     "KHR_materials_specular",
                                                     "KHR_materials_transmission",
@@ -28,9 +30,6 @@ constexpr std::array<std::string_view, 18> kRead = {"EXT_mesh_gpu_instancing",
                                                     "KHR_mesh_quantization",
                                                     "KHR_node_visibility",
                                                     "KHR_texture_transform"};
-
-// Some cases of these are read, and materials.cpp warns of the others.
-constexpr std::array<std::string_view, 1> kReadInPart = {"KHR_materials_pbrSpecularGlossiness"};
 
 // These change only the metadata of pictures.
 constexpr std::array<std::string_view, 2> kWithoutEffect = {"KHR_xmp", "KHR_xmp_json_ld"};
@@ -60,8 +59,8 @@ const Conversion* conversion_of(std::string_view extension) {
 } // namespace
 
 bool is_known_extension(std::string_view name) {
-    return holds(kRead, name) || holds(light_extensions(), name) || holds(kReadInPart, name) ||
-           holds(kWithoutEffect, name) || conversion_of(name) != nullptr;
+    return holds(kRead, name) || holds(light_extensions(), name) || holds(kWithoutEffect, name) ||
+           conversion_of(name) != nullptr;
 }
 
 std::string conversion_advice(std::string_view extension, const std::filesystem::path& file) {

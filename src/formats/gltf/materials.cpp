@@ -104,30 +104,17 @@ void Materials::read_specular_glossiness(const JsonValue& source, Material& mate
     attempt_at(*extension, [&] { glossiness = extension->float_or("glossinessFactor", glossiness); });
     const SpecularGlossiness factors = {
         {diffuse[0], diffuse[1], diffuse[2]}, {specular[0], specular[1], specular[2]}, clamp(glossiness, 0.0f, 1.0f)};
-    bool is_exact = false;
-    const MetallicRoughness converted = metallic_roughness_of(factors, is_exact);
-    material.base_color = converted.base_color;
     material.alpha = diffuse[3];
-    material.metallic = converted.metallic;
-    material.roughness = converted.roughness;
-    material.ior = converted.ior;
     material.metallic_texture = material.roughness_texture = {};
-    // Without any reflection at the surface it is Lambert's law.
-    material.kind = converted.ior == 1 ? MaterialKind::Diffuse : MaterialKind::MetallicRoughness;
     material.base_color_texture = read_texture(*extension, "diffuseTexture", true);
-    const TextureRef both = read_texture(*extension, "specularGlossinessTexture", false);
-    if (both.has_image() || (!is_exact && material.base_color_texture.has_image())) {
-        material.roughness_texture = both;
-        pending_.push_back({.material = 0, .factors = factors, .location = extension->location()});
-        is_exact = false;
-    }
-    if (is_exact) return;
-    sink_.leave_out({extension->location(),
-                     "the material is converted to metal and roughness; specular colours that these cannot "
-                     "express, such as coloured reflections of a non-metal, are left out"});
+    const TextureRef both = read_texture(*extension, "specularGlossinessTexture", true);
+    set_specular_glossiness(factors, both.has_image(), material);
+    if (!both.has_image() || material.kind == MaterialKind::Diffuse) return;
+    material.specular_color_texture = material.roughness_texture = both;
+    pending_.push_back({.material = 0, .glossiness = factors.glossiness, .location = extension->location()});
 }
 
-void Materials::convert_textures(uint64_t limit) { gltf::convert_textures(pending_, limit, scene_, sink_); }
+void Materials::convert_textures(uint64_t limit) { convert_gloss(pending_, limit, scene_, sink_); }
 
 void Materials::read_metallic_roughness(const JsonValue& pbr, Material& material) {
     attempt_at(pbr, [&] {

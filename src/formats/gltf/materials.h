@@ -4,7 +4,7 @@
 // unreadable property is left out, and the rest of the material is read.
 //
 // Source: glTF 2.0 section 3.9; KHR_materials_emissive_strength, KHR_materials_ior, KHR_materials_unlit,
-// KHR_materials_pbrSpecularGlossiness by conversion; KHR_materials_variants. material_layers.cpp reads
+// KHR_materials_pbrSpecularGlossiness; KHR_materials_variants. material_layers.cpp reads
 // KHR_materials_clearcoat, _sheen, _specular, _transmission, _volume, _anisotropy, _iridescence and
 // _diffuse_transmission. Occlusion textures are not read, because a path tracer computes what they approximate.
 
@@ -30,6 +30,9 @@ public:
     uint32_t material_of(const JsonValue& primitive);
 
     uint32_t default_material();
+
+    /// Index in scene.materials of a material of the file; nothing if no primitive has it.
+    std::optional<uint32_t> index_of(uint32_t number) const { return by_index_.at(number); }
 
     /// Finishes materials of KHR_materials_pbrSpecularGlossiness after the scene's images have been decoded. `limit`
     /// is the maximum number of bytes of the images that this makes.
@@ -66,7 +69,7 @@ private:
     Scene& scene_;
     Sink& sink_;
     std::vector<std::optional<uint32_t>> by_index_;
-    std::vector<PendingConversion> pending_;
+    std::vector<PendingGloss> pending_;
     std::optional<uint32_t> default_; // glTF's default material, or the grey without materials
 };
 

@@ -8,6 +8,7 @@
 #include "formats/files/load_textures.h"
 #include "formats/gltf/animations.h"
 #include "formats/gltf/credits.h"
+#include "formats/gltf/image_based_light.h"
 #include "formats/gltf/leave_out.h"
 #include "formats/gltf/materials.h"
 #include "formats/gltf/meshes.h"
@@ -89,7 +90,8 @@ Scene read_gltf(const std::filesystem::path& path, std::vector<std::byte> bytes,
     gltf::read_node_shapes(document, buffers, scene, sink);
     gltf::place_nodes(document, buffers, nodes, meshes, scene, sink);
     subtract_centre(scene);
-    gltf::read_animations(document, buffers, scene, sink);
+    gltf::read_animations(document, buffers, materials, scene, sink);
+    if (!options.geometry_only) gltf::read_image_based_light(document, buffers, access, scene, sink);
     loader.load_into(scene, buffers.file_bytes());
     materials.convert_textures(justified_bytes(kFreeImageBytes, buffers.file_bytes()));
     return scene;

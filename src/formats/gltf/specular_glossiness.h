@@ -1,10 +1,12 @@
 #pragma once
 
-// Converts KHR_materials_pbrSpecularGlossiness, which many older files use, to metallic-roughness materials.
+// Converts KHR_materials_pbrSpecularGlossiness, which many older files use, to metallic-roughness materials without
+// metal, whose dielectric reflects the specular colour (Material::specular_color). A grey specular colour of at most
+// 0.16 becomes an index of refraction instead, which is less to compute. The diffuse colour is not darkened by the
+// specular one (the extension's 1 - max(specular)), because light beneath a reflection is what it lets through:
+// glTF 2.0 has dropped that factor from metallic-roughness for the same reason.
 //
-// Source: KHR_materials_pbrSpecularGlossiness; the conversion is that of its examples (convert-between-workflows). If
-// all of the specular colour is grey and at most 0.16, no conversion is needed, because an index of refraction gives
-// the same reflectance.
+// Source: KHR_materials_pbrSpecularGlossiness, appendix.
 
 #include <cstdint>
 #include <vector>
@@ -19,27 +21,20 @@ struct SpecularGlossiness {
     float glossiness = 1;
 };
 
-/// The metallic-roughness values that a conversion from specular-glossiness gives.
-struct MetallicRoughness {
-    Rgb base_color = {1, 1, 1};
-    float metallic = 0, roughness = 0;
-    float ior = 1.5f;
-};
+/// Sets the numbers of a material; `has_texture` says whether the specular colour has one too.
+void set_specular_glossiness(const SpecularGlossiness& from, bool has_texture, Material& material);
 
-/// Converts specular-glossiness values to metallic-roughness ones. `is_exact` is set to whether the conversion is exact
-/// up to rounding.
-MetallicRoughness metallic_roughness_of(const SpecularGlossiness& from, bool& is_exact);
-
-/// A material whose textures must be converted texel by texel after decoding. Until then its base colour texture is
-/// the diffuse one, and its roughness texture the specular-glossiness one.
-struct PendingConversion {
+/// A material with a texture of glossiness, the opposite of roughness. Until convert_gloss its roughness texture is the
+/// specular-glossiness one.
+struct PendingGloss {
     uint32_t material; // index into Scene::materials
-    SpecularGlossiness factors;
+    float glossiness;
     FileLocation location;
 };
 
-/// Gives each material of `pending` its own textures, two images that are appended to the scene's. `limit` is the
-/// maximum number of bytes of all these; further materials get only their factors, with a warning.
-void convert_textures(const std::vector<PendingConversion>& pending, uint64_t limit, Scene& scene, Sink& sink);
+/// Gives each material of `pending` a texture of its roughness, which is appended to the scene's images after they have
+/// been decoded. `limit` is the maximum number of bytes of all these; further materials get only their factor, with a
+/// warning.
+void convert_gloss(const std::vector<PendingGloss>& pending, uint64_t limit, Scene& scene, Sink& sink);
 
 } // namespace pertev::gltf

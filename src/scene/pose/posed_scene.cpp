@@ -40,6 +40,20 @@ bool same_bits(const T& a, const T& b) {
     return std::memcmp(&a, &b, sizeof(T)) == 0;
 }
 
+/// Sets numbers of a material, by their places in the order of visit_parameters.
+void set_numbers(const std::vector<uint8_t>& places, const std::vector<float>& values, MaterialParameters& material) {
+    uint8_t place = 0;
+    visit_parameters(
+        material,
+        [&](float& number, const char*, float least, float most) {
+            const auto found = std::ranges::find(places, place++);
+            if (found != places.end()) {
+                number = clamp(values[static_cast<std::size_t>(found - places.begin())], least, most);
+            }
+        },
+        [](auto&&...) {});
+}
+
 } // namespace
 
 PosedScene::PosedScene(Scene rest, bool leaves_vertices)
@@ -53,6 +67,13 @@ PosedScene::PosedScene(Scene rest, bool leaves_vertices)
         const NodePose* pose = std::get_if<NodePose>(&node.pose);
         node_poses_.push_back(pose == nullptr ? NodePose{} : *pose);
         morph_weights_.push_back(node.morph_weights);
+    }
+    for (const Animation& animation : scene_.animations) {
+        for (const AnimationChannel& channel : animation.channels) {
+            if (!is_of_material(channel.part) || material_at(channel.target) != nullptr) continue;
+            const MaterialParameters& at_rest = scene_.materials[channel.target];
+            materials_.push_back({channel.target, at_rest, at_rest});
+        }
     }
     drop_shapes_at_rest();
     for (std::size_t i = 0; i < scene_.shapes.size(); ++i) at_rest_.push_back(wanted(i));
@@ -75,9 +96,11 @@ void PosedScene::drop_shapes_at_rest() {
 /// tree. At rest the winding of their triangles is that of times without a mirroring joint.
 void PosedScene::find_shapes_to_leave() {
     std::vector<bool> stays(scene_.meshes.size());
+    const std::vector<bool> emits = may_emit(scene_);
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
         const Instance& instance = scene_.instances[i];
-        if (scene_.materials[instance.material].is_emissive() || !instance_moves_[i]) stays[instance.mesh] = true;
+        const bool is_emitter = emits[instance.material] || scene_.materials[instance.material].is_emissive();
+        if (is_emitter || !instance_moves_[i]) stays[instance.mesh] = true;
     }
     may_be_left_.clear();
     for (const MeshShape& shape : scene_.shapes)
@@ -100,6 +123,7 @@ SceneUpdate PosedScene::set_time(double time_s) {
     check_placements(time_s);
     update_cameras();
     update_lights();
+    update_materials();
     return collect_changes();
 }
 
@@ -107,6 +131,8 @@ SceneUpdate PosedScene::edit(const std::function<SceneUpdate(Scene&)>& edit) {
     const auto swap_rest = [&] {
         scene_.lights.swap(lights_at_rest_);
         scene_.cameras.swap(cameras_at_rest_);
+        for (MovingMaterial& material : materials_)
+            std::swap(static_cast<MaterialParameters&>(scene_.materials[material.index]), material.rest);
     };
     swap_rest();
     SceneUpdate update;
@@ -118,6 +144,7 @@ SceneUpdate PosedScene::edit(const std::function<SceneUpdate(Scene&)>& edit) {
     }
     lights_ = lights_at_rest_ = scene_.lights;
     cameras_ = cameras_at_rest_ = scene_.cameras;
+    for (MovingMaterial& material : materials_) material.rest = scene_.materials[material.index];
     if (update.materials_changed) find_shapes_to_leave();
     return update;
 }
@@ -152,6 +179,7 @@ PosedScene::Placements PosedScene::placements_at(double time_s) {
 
 void PosedScene::read_channels(double time_s) {
     const bool is_moved = !(scene_.origin_in_file == DoubleVec3{0, 0, 0});
+    for (MovingMaterial& material : materials_) material.now = material.rest;
     for (const Animation& animation : scene_.animations) {
         for (const AnimationChannel& channel : animation.channels) {
             value_.resize(numbers_in_value(channel, scene_));
@@ -189,8 +217,33 @@ void PosedScene::read_channels(double time_s) {
             case AnimatedPart::LightOuterCone:
                 lights_[channel.target].cos_outer = cos(clamp(v[0], 0.0f, kPi / 2));
                 break;
+            case AnimatedPart::MaterialNumbers:
+                set_numbers(channel.numbers, v, material_at(channel.target)->now);
+                break;
             }
         }
+    }
+}
+
+PosedScene::MovingMaterial* PosedScene::material_at(uint32_t index) {
+    const auto found = std::ranges::find(materials_, index, &MovingMaterial::index);
+    return found == materials_.end() ? nullptr : &*found;
+}
+
+void PosedScene::update_materials() {
+    for (const MovingMaterial& material : materials_) {
+        MaterialParameters& shown = scene_.materials[material.index];
+        if (!same_bits(shown.emission, material.now.emission)) lights_changed_ = true;
+        const auto numbers_in = [](const MaterialParameters& parameters) {
+            std::vector<float> numbers;
+            visit_parameters(
+                parameters, [&](float number, auto&&...) { numbers.push_back(number); }, [](auto&&...) {});
+            return numbers;
+        };
+        const std::vector<float> now = numbers_in(material.now), before = numbers_in(shown);
+        if (std::memcmp(now.data(), before.data(), now.size() * sizeof(float)) == 0) continue;
+        shown = material.now;
+        materials_changed_ = true;
     }
 }
 
@@ -313,9 +366,9 @@ void PosedScene::update_lights() {
 
 SceneUpdate PosedScene::collect_changes() {
     SceneUpdate update = {numbers_of(moved_), numbers_of(deformed_), numbers_of(replaced_),
-                          lights_changed_,    poses_changed_,        false};
+                          lights_changed_,    poses_changed_,        materials_changed_};
     for (std::vector<bool>* flags : {&moved_, &deformed_, &replaced_}) flags->assign(flags->size(), false);
-    lights_changed_ = poses_changed_ = false;
+    lights_changed_ = poses_changed_ = materials_changed_ = false;
     return update;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
 // A scene at a time. All of Scene::animations play at once from time 0 (scene/animation.h), and their results are
-// written into the scene: instances, vertices of meshes, cameras, lights. The result depends only on the scene at
-// rest and the time, to the bit on every machine, not on earlier times.
+// written into the scene: instances, vertices of meshes, cameras, lights, materials. The result depends only on the
+// scene at rest and the time, to the bit on every machine, not on earlier times.
 //
 // Vertices with skins and morph targets are computed here or left to the renderer (device_scene/deforming_meshes.h),
 // which computes the same. If the constructor requests it, the vertices of meshes without emission are left, unless
@@ -61,6 +61,7 @@ private:
     void check_placements(double time_s) const;
     void update_cameras();
     void update_lights();
+    void update_materials();
     SceneUpdate collect_changes();
 
     Scene scene_;
@@ -76,6 +77,13 @@ private:
     std::vector<std::vector<float>> morph_weights_;
     std::vector<Camera> cameras_; // only field of view and height are used
     std::vector<Light> lights_;   // only intensity, range and cone are used
+    /// A material that an animation changes, at rest and at the time.
+    struct MovingMaterial {
+        uint32_t index;
+        MaterialParameters rest, now;
+    };
+    std::vector<MovingMaterial> materials_;
+    MovingMaterial* material_at(uint32_t index);
 
     // Per shape.
     MeshPose wanted(std::size_t shape) const;
@@ -87,7 +95,7 @@ private:
 
     // Changes since the last set_time that succeeded.
     std::vector<bool> moved_, deformed_, replaced_;
-    bool lights_changed_ = false, poses_changed_ = false;
+    bool lights_changed_ = false, poses_changed_ = false, materials_changed_ = false;
 };
 
 } // namespace pertev

@@ -31,12 +31,14 @@ bool is_zero_quaternion(const std::vector<float>& values, std::size_t first) {
 std::pair<const char*, std::size_t> targets_of(AnimatedPart part, const Scene& scene) {
     if (is_of_node(part)) return {"node", scene.nodes.size()};
     if (is_of_camera(part)) return {"camera", scene.cameras.size()};
+    if (is_of_material(part)) return {"material", scene.materials.size()};
     return {"light", scene.lights.size()};
 }
 
 } // namespace
 
 std::size_t numbers_in_value(const AnimationChannel& channel, const Scene& scene) {
+    if (is_of_material(channel.part)) return channel.numbers.size();
     const bool has_weights = channel.part == AnimatedPart::Weights;
     return has_weights ? scene.nodes[channel.target].morph_weights.size() : numbers_of(channel.part);
 }
