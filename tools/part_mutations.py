@@ -88,7 +88,7 @@ MUTATIONS = [
     ("a history's bounces without light are looked at", "consistency/frame_history",
      ("src/restir/restir.cpp", "!(reservoir.weight > 0) || is_triangle(reservoir.instance, reservoir.primitive);", "is_triangle(reservoir.instance, reservoir.primitive);")),
     ("a device keeps the guides of samples that it has handed over", "consistency/oidn",
-     ("src/session/devices/device_worker.cpp", "            steps_->forget_samples();\n        }\n        run.hand_over(", "        }\n        run.hand_over(")),
+     ("src/session/devices/device_worker.cpp", "            steps_->forget_samples();\n        }\n        run.submit(", "        }\n        run.hand_over(")),
     ("a device's guides stay behind", "consistency/oidn",
      ("src/session/devices/device_worker.cpp", "denoiser_target(*held_.film)->set_bytes(std::as_bytes(std::span(state)));", "static_cast<void>(state);")),
     ("a device goes on with the guides of another picture", "consistency/oidn",
