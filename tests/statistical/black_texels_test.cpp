@@ -52,7 +52,7 @@ Camera camera_of_texels() {
 }
 
 /// Returns the mean of frames after some that fill the history.
-double mean_of_frames(Session& session, const ReconstructionSettings& settings) {
+double mean_of_last_frames(Session& session, const ReconstructionSettings& settings) {
     double mean = 0;
     session.cut();
     for (uint32_t k = 0; k < kShownFrames; ++k) {
@@ -71,7 +71,8 @@ TEST_CASE("textures of any contrast keep their light in frames and in denoised p
         CAPTURE(dark[0]);
         CAPTURE(dark[1]);
         Messages messages;
-        const PreparedScene prepared = prepare_scene(scene_of_texels(dark), {}, messages);
+        const Scene scene = scene_of_texels(dark);
+        const PreparedScene prepared = prepare_scene(scene, {}, messages);
         RenderSettings settings;
         settings.width = settings.height = kTexelsSide;
         settings.path.max_depth = 1;
@@ -79,11 +80,11 @@ TEST_CASE("textures of any contrast keep their light in frames and in denoised p
         Session session(queue, prepared, camera_of_texels(), settings);
         session.render(64);
         const double expected = mean_of(session.picture());
-        CHECK(mean_of_frames(session, {}) == doctest::Approx(expected).epsilon(0.01));
-        CHECK(mean_of_frames(session, {.resolution_scale = 0.5f}) == doctest::Approx(expected).epsilon(0.03));
+        CHECK(mean_of_last_frames(session, {}) == doctest::Approx(expected).epsilon(0.01));
+        CHECK(mean_of_last_frames(session, {.resolution_scale = 0.5f}) == doctest::Approx(expected).epsilon(0.03));
         settings.samples = 4;
         settings.denoise = Denoise::Svgf;
-        const RenderResult denoised = render(queue, scene_of_texels(dark), camera_of_texels(), settings);
+        const RenderResult denoised = render(queue, scene, camera_of_texels(), settings);
         CHECK(mean_of(denoised.denoised.value()) == doctest::Approx(expected).epsilon(0.01));
     }
 }
