@@ -39,8 +39,9 @@ struct AccumulateSignals {
         const Vec2 centre = {static_cast<float>(at.x) + 0.5f, static_cast<float>(at.y) + 0.5f};
         if (object == kNoHit) {
             const FrameCameras straight = with_straight_lenses(cameras);
-            if (has_history) was_at[pixel] = reproject_far(straight.now, straight.before, centre);
-            return forget(pixel);
+            if (!has_history) return forget(pixel, 0);
+            was_at[pixel] = reproject_far(straight.now, straight.before, centre);
+            return forget(pixel, frames_of_background(was_at[pixel]));
         }
         Taps taps = {}, mirrored = {};
         LightStep step;
@@ -127,10 +128,27 @@ private:
     /// Minimum cosine of normals of a flat mirror. Curved mirrors do not show objects at their distance.
     static constexpr float kFlat = 0.9999f;
 
-    HD void forget(uint32_t pixel) const {
-        now.diffuse[pixel] = now.recent[pixel] = {0, 0, 0, 0};
+    /// `frames` have seen the background there.
+    HD void forget(uint32_t pixel, float frames) const {
+        now.recent[pixel] = {0, 0, 0, 0};
+        now.diffuse[pixel] = {0, 0, 0, frames};
         if (has_gloss) now.gloss[pixel] = {0, 0, 0, 0};
         now.squares[pixel] = {0, 0};
+    }
+
+    /// Number of frames, with this one, that have seen the background around this pixel of the previous frame. Those
+    /// beside it count too, because an emitter smaller than a pixel hides the background only in some frames.
+    HD float frames_of_background(Vec2 at) const {
+        const int width = static_cast<int>(cameras.width), height = static_cast<int>(cameras.height);
+        if (!(at.x >= 0 && at.y >= 0 && at.x < static_cast<float>(width) && at.y < static_cast<float>(height)))
+            return 1;
+        const int x = to_int(at.x, 0, width - 1), y = to_int(at.y, 0, height - 1);
+        float most = 0;
+        for (int k = 0; k < 9; ++k) {
+            const int tap = held(y, k / 3 - 1, height) * width + held(x, k % 3 - 1, width);
+            if (object_of(before.guide[tap]) == kNoHit) most = max(most, before.diffuse[tap].w);
+        }
+        return min(most + 1.0f, static_cast<float>(longest));
     }
 
     /// Number of frames in which a camera with constant motion passes half a lobe of this width; meanwhile the

@@ -12,16 +12,22 @@
 
 namespace pertev {
 
-/// The temporal means of light, which have as many frames as a pixel's surface has been visible in under the same
-/// light.
+/// The temporal means of light, which have as many frames as a surface has been visible in under the same light.
 struct SteadyLight {
     const Float4* means;    // diffuse of the frame's HistoryView
     uint32_t width, height; // pixels; they may be fewer than the picture's
     float frames;           // number of frames from which on light is steady
 
-    HD bool is_at(PixelPosition at, uint32_t picture_width, uint32_t picture_height) const {
-        const uint32_t x = at.x * width / picture_width, y = at.y * height / picture_height;
-        return means[y * width + x].w >= frames;
+    /// Returns whether the light around a pixel of the picture is steady. A single surface suffices, because an emitter
+    /// smaller than a pixel hides others in some frames.
+    HD bool is_around(PixelPosition at, uint32_t picture_width, uint32_t picture_height) const {
+        const int w = static_cast<int>(width), h = static_cast<int>(height);
+        const int x = static_cast<int>(at.x * width / picture_width),
+                  y = static_cast<int>(at.y * height / picture_height);
+        for (int k = 0; k < 9; ++k) {
+            if (means[held(y, k / 3 - 1, h) * w + held(x, k % 3 - 1, w)].w >= frames) return true;
+        }
+        return false;
     }
 };
 
@@ -29,7 +35,7 @@ struct AntiAlias {
     const Float4* picture; // output of ComposePicture
     const Vec2* was_at;    // output of AccumulateSignals
     const Float4* before;  // `shown` of the previous frame's HistoryView
-    Float4* shown;
+    Float4* shown;         // w: number of frames in which the pixel and those beside it have been at rest
     uint32_t width, height;
     bool has_history;
     SteadyLight steady;
@@ -46,7 +52,9 @@ struct AntiAlias {
         const PixelPosition at = tiled_in_band(i, width, band);
         const uint32_t pixel = at.y * width + at.x;
         const Rgb own = rgb_of(picture[pixel]);
-        shown[pixel] = with_w(has_history ? with_history(at, own) : own, 0);
+        float frames_at_rest = 0;
+        const Rgb color = has_history ? with_history(at, own, frames_at_rest) : own;
+        shown[pixel] = with_w(color, frames_at_rest);
     }
 
 private:
@@ -55,7 +63,7 @@ private:
         PixelPosition nearest; // pixel of least depth, because edges move with the foreground
     };
 
-    HD Rgb with_history(PixelPosition at, Rgb own) const {
+    HD Rgb with_history(PixelPosition at, Rgb own, float& frames_at_rest) const {
         const Colors around = neighbourhood(at);
         const PixelPosition nearest = around.nearest;
         const Vec2 moved = was_at[nearest.y * width + nearest.x];
@@ -68,7 +76,10 @@ private:
                     y_moved = then.y - (static_cast<float>(at.y) + 0.5f);
         const float pixels_moved = sqrt(square(x_moved) + square(y_moved));
         // At rest a history is right, even if this frame's samples have missed what is smaller than a pixel.
-        if (pixels_moved < kAtRest && steady.is_at(at, width, height)) return lerp(old, own, kNew);
+        if (pixels_moved < kAtRest) {
+            frames_at_rest = min(before[at.y * width + at.x].w + 1.0f, steady.frames);
+            if (frames_at_rest >= steady.frames && steady.is_around(at, width, height)) return lerp(old, own, kNew);
+        }
         const float deviations = max(fma(kDeviationsPerPixel, pixels_moved, kDeviations), kDeviationsAtLeast);
         const Rgb limited = {within(old.r, around.mean.r, deviations * around.deviation.r),
                              within(old.g, around.mean.g, deviations * around.deviation.g),

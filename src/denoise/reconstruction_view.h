@@ -24,7 +24,7 @@ struct HistoryView {
     Float4* gloss;   // mean of the gloss signal over the same frames
     Vec2* squares;   // mean square of the luminances of both
     Float4* recent;  // means over few frames: rgb diffuse (r is kUnknownSignal if unknown), luminance of the other
-    Float4* shown;   // the reconstructed picture as shown_color; w is unused
+    Float4* shown;   // the reconstructed picture as shown_color; w: see AntiAlias
 };
 
 /// The surface of a pixel, for filters.

@@ -28,7 +28,7 @@ public:
 
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
-    /// The last picture as shown_color; w is unused.
+    /// The last picture as shown_color; w is that of AntiAlias.
     Float4* shown() const { return shown(frames_); }
     /// [pixels * 4]: memory for the bytes of a display.
     uint8_t* byte_memory() const { return reinterpret_cast<uint8_t*>(picture_); }

@@ -245,6 +245,7 @@ float shown_after(float own, float around, float old, bool is_near_moving, float
     std::vector<Vec2> was_at;
     for (uint32_t i = 0; i < kStagePixels; ++i) {
         was_at.push_back({static_cast<float>(i % kStageSide) + 0.5f, static_cast<float>(i / kStageSide) + 0.5f});
+        before[i].w = frames - 1; // at rest
         if (i % kStageSide < kStageHalf + 2) before[i].x = old;
     }
     picture[kLeftOfBorder].x = own;

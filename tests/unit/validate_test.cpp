@@ -159,8 +159,10 @@ TEST_CASE("an error for a scene without geometry lists its content") {
 
 TEST_CASE("every parameter of a material is visited and thus checked") {
     MaterialParameters parameters;
-    std::size_t bytes = sizeof parameters.kind + sizeof parameters.alpha_mode + sizeof parameters.two_sided_emission +
-                        sizeof parameters.double_sided + alignof(float); // the last for thin_walled and what follows it
+    std::size_t bytes = sizeof parameters.two_sided_emission + sizeof parameters.double_sided;
+    visit_choices(parameters, [&](auto& value, auto&&...) { bytes += sizeof value; });
+    bytes += (alignof(float) - bytes % alignof(float)) % alignof(float); // floats follow
+    bytes += alignof(float);                                             // for thin_walled and what follows it
     visit_parameters(
         parameters, [&](float& value, auto&&...) { bytes += sizeof value; },
         [&](const TextureRef& texture, auto&&...) { bytes += sizeof texture; });
