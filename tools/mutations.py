@@ -2,10 +2,11 @@
 file, text that is there once, and its replacement."""
 
 import format_mutations
+import frame_mutations
 import lobe_mutations
 import part_mutations
 
-MUTATIONS = part_mutations.MUTATIONS + format_mutations.MUTATIONS + lobe_mutations.MUTATIONS + [
+MUTATIONS = part_mutations.MUTATIONS + format_mutations.MUTATIONS + lobe_mutations.MUTATIONS + frame_mutations.MUTATIONS + [
     ("shadow rays without a time", "consistency/shutter", ("src/integrators/path/path_loop.inl", "paths_[shadow_paths_[i]].time}", "kAtRest}")),
     ("weights without the ways that end earlier", "statistical/bidirectional",
      ("src/integrators/subpaths/subpath_memory.h", "last + earlier * squared_density(reverse_pdf)", "last + 0.0f * earlier * squared_density(reverse_pdf)")),
