@@ -3,8 +3,8 @@
 // Last stage: temporal mean of pictures, each sampled at other positions within the pixels. History is clamped to the
 // colours around the pixel.
 //
-// Sources: Karis, "High Quality Temporal Supersampling", SIGGRAPH 2014 (weights by 1 / (1 + luminance), colours in
-// YCoCg); Salvi, "An Excursion in Temporal Supersampling", GDC 2016 (limits by mean and deviation).
+// Sources: Karis, "High Quality Temporal Supersampling", SIGGRAPH 2014 (colours in YCoCg); Salvi, "An Excursion in
+// Temporal Supersampling", GDC 2016 (limits by mean and deviation).
 
 #include "denoise/shown_color.h"
 #include "image/tone_map.h"

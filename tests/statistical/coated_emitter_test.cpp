@@ -3,10 +3,10 @@
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "shading/bsdf.h"
+#include "tests/support/estimate.h"
 #include "tests/support/flat_scenes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
@@ -58,13 +58,9 @@ double radiance_under_coat(bool has_map, bool has_coat = true) {
     return sum * 16 / kCells / kCells * static_cast<double>(kGlowAlbedo) / 3.141592653589793;
 }
 
-struct SeenGlow {
-    double mean, error;
-};
-
 /// The mean of a picture of `size` metres of the floor from beneath the emitter, or of the emitter from `from`.
-SeenGlow glow_seen(const Scene& scene, IntegratorKind integrator, LightStrategy strategy, float size,
-                   const Vec3* from = nullptr) {
+test::Estimate glow_seen(const Scene& scene, IntegratorKind integrator, LightStrategy strategy, float size,
+                         const Vec3* from = nullptr) {
     RenderSettings settings;
     settings.width = settings.height = 16;
     settings.samples = static_cast<uint32_t>(test::effort(256, 4096));
@@ -79,15 +75,7 @@ SeenGlow glow_seen(const Scene& scene, IntegratorKind integrator, LightStrategy 
     camera.projection = Projection::Orthographic;
     camera.ortho_height = size;
     Queue queue = test::requested_queue();
-    const Image picture = test::render(queue, scene, camera, settings).picture;
-    double sum = 0, squares = 0;
-    for (std::size_t i = 0; i < picture.pixels.size(); i += 3) {
-        const auto value = static_cast<double>(picture.pixels[i]);
-        sum += value;
-        squares += value * value;
-    }
-    const double n = 16 * 16, mean = sum / n;
-    return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1))};
+    return test::mean_over_pixels(test::render(queue, scene, camera, settings).picture);
 }
 
 } // namespace
@@ -99,16 +87,16 @@ TEST_CASE("a coat dims the light of what glows beneath it by the angle, for ever
         CHECK(expected < 0.95 * radiance_under_coat(has_map, false));
         CAPTURE(has_map);
         for (const LightStrategy strategy : test::kLightStrategies) {
-            const SeenGlow floor = glow_seen(scene, IntegratorKind::Path, strategy, 0.02f);
+            const test::Estimate floor = glow_seen(scene, IntegratorKind::Path, strategy, 0.02f);
             INFO("strategy " << static_cast<int>(strategy) << ": " << floor.mean << " +- " << floor.error
                              << ", expected " << expected);
             CHECK(std::abs(floor.mean - expected) <= 4.5 * floor.error + 1e-3 * expected);
             CHECK(floor.error < 0.005 * expected);
         }
-        const SeenGlow floor = glow_seen(scene, IntegratorKind::Path, LightStrategy::NeeOnly, 1.5f);
+        const test::Estimate floor = glow_seen(scene, IntegratorKind::Path, LightStrategy::NeeOnly, 1.5f);
         for (const IntegratorKind kind :
              {IntegratorKind::Light, IntegratorKind::Bidirectional, IntegratorKind::PhotonMap}) {
-            const SeenGlow other = glow_seen(scene, kind, LightStrategy::Mis, 1.5f);
+            const test::Estimate other = glow_seen(scene, kind, LightStrategy::Mis, 1.5f);
             INFO("integrator " << static_cast<int>(kind) << ": " << other.mean << " +- " << other.error << ", expected "
                                << floor.mean);
             CHECK(std::abs(other.mean - floor.mean) <= 4.5 * std::hypot(other.error, floor.error) + 2e-3 * expected);

@@ -8,6 +8,7 @@
 
 #include "device_scene/scene_on_device.h"
 #include "integrators/path/path_stages.h"
+#include "tests/support/estimate.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 
@@ -44,13 +45,9 @@ double floor_radiance() {
     return static_cast<double>(kAlbedo * kRadiance) / 3.141592653589793 * 4 * (x / p * std::atan(x / p));
 }
 
-struct SeenFloor {
-    double mean, error;
-};
-
 /// Renders a small part of the scene from between emitter and floor: the floor seen from above, or the emitter seen
 /// from `y`.
-SeenFloor render(const Scene& scene, PathSettings path, bool up = false, float y = 0.5f) {
+test::Estimate render(const Scene& scene, PathSettings path, bool up = false, float y = 0.5f) {
     RenderSettings settings;
     settings.width = settings.height = 32;
     settings.samples = static_cast<uint32_t>(test::effort(64, 1024));
@@ -62,15 +59,7 @@ SeenFloor render(const Scene& scene, PathSettings path, bool up = false, float y
     camera.projection = Projection::Orthographic;
     camera.ortho_height = 1e-3f;
     Queue queue = test::requested_queue();
-    const Image picture = test::render(queue, scene, camera, settings).picture;
-    double sum = 0, squares = 0;
-    for (std::size_t i = 0; i < picture.pixels.size(); i += 3) {
-        const auto value = static_cast<double>(picture.pixels[i]);
-        sum += value;
-        squares += value * value;
-    }
-    const double n = 32 * 32, mean = sum / n;
-    return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1))};
+    return test::mean_over_pixels(test::render(queue, scene, camera, settings).picture);
 }
 
 } // namespace
@@ -86,7 +75,7 @@ TEST_CASE("emitters emit from the front or both faces under every sampling strat
                 const bool is_lit = faces_down || is_two_sided;
                 for (const LightStrategy strategy : test::kLightStrategies) {
                     CAPTURE(static_cast<int>(strategy));
-                    const SeenFloor floor = render(scene, {.strategy = strategy});
+                    const test::Estimate floor = render(scene, {.strategy = strategy});
                     CAPTURE(floor.mean);
                     CAPTURE(floor.error);
                     CHECK(std::abs(floor.mean - (is_lit ? floor_radiance() : 0)) <= 4 * floor.error + 1e-3);
@@ -105,7 +94,7 @@ TEST_CASE("clamping leaves light scattered once unchanged under every sampling s
     const Scene scene = emitter_over_floor(true, false, false);
     for (const LightStrategy strategy : test::kLightStrategies) {
         CAPTURE(static_cast<int>(strategy));
-        const SeenFloor floor = render(scene, {.strategy = strategy, .clamp = 5});
+        const test::Estimate floor = render(scene, {.strategy = strategy, .clamp = 5});
         CAPTURE(floor.mean);
         CAPTURE(floor.error);
         CHECK(std::abs(floor.mean - floor_radiance()) <= 4 * floor.error + 1e-3);

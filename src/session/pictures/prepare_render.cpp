@@ -277,8 +277,9 @@ std::size_t bytes_to_render(const PictureOptions& options, const PreparedScene& 
     const std::size_t bytes =
         options.real_time ? predicted_frame_bytes(prepared, settings, frames.used(), frames.sharing, queue.is_cuda())
                           : predicted_bytes(prepared, settings, queue.is_cuda());
-    check_render_memory(bytes, settings, memory_to_render_in(queue, settings, max_memory_bytes(options.radiosity)),
-                        texture_bytes(*prepared.scene));
+    const MemoryLimit limit = memory_to_render_in(queue, settings, max_memory_bytes(options.radiosity));
+    // Textures are packed to count them, so only the message of an error has their number.
+    check_render_memory(bytes, settings, limit, bytes > limit.bytes ? texture_bytes(*prepared.scene) : 0);
     return bytes;
 }
 

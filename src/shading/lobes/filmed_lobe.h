@@ -73,8 +73,7 @@ struct FilmedLobe {
         } else if (is_smooth()) {
             return draw_mirror(wo, (1.0f / shares.specular) * reflectance(abs(wo.z)), shares.specular);
         } else {
-            const Vec3 o = widths.turned({wo.x, wo.y, abs(wo.z)});
-            wi = normalize(widths.turned_back(reflect(o, widths.sample_visible_normal(o, u))));
+            wi = widths.sample_reflection(wo, u);
             if (!(wi.z > 0)) return {};
         }
         wi.z = copysign(wi.z, wo.z);

@@ -42,8 +42,7 @@ struct MetalLobe {
         if (u_lobe < widths.lost(abs(wo.z))) {
             wi = widths.sample_lost_lobe(u);
         } else {
-            const Vec3 o = widths.turned({wo.x, wo.y, abs(wo.z)});
-            wi = normalize(widths.turned_back(reflect(o, widths.sample_visible_normal(o, u))));
+            wi = widths.sample_reflection(wo, u);
             if (!(wi.z > 0)) return {};
         }
         wi.z = copysign(wi.z, wo.z);

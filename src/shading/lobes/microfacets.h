@@ -25,7 +25,7 @@ struct Microfacets {
     HD Vec3 turned(Vec3 w) const { return {along.x * w.x + along.y * w.y, along.x * w.y - along.y * w.x, w.z}; }
     HD Vec3 turned_back(Vec3 w) const { return {along.x * w.x - along.y * w.y, along.y * w.x + along.x * w.y, w.z}; }
 
-    // The arguments of all functions below are in the turned frame.
+    // The arguments of all functions below but sample_reflection() are in the turned frame.
 
     HD float normals(Vec3 h) const {
         if (is_beckmann) {
@@ -54,6 +54,12 @@ struct Microfacets {
         const float length2 = length_squared(m);
         if (!(length2 > 0)) return {0, 0, 1};
         return (1.0f / sqrt(length2)) * m;
+    }
+    /// Samples the direction of one reflection, in the frame of the BSDF with z upwards on the side of `wo`; z <= 0 if
+    /// it is lost below the surface.
+    HD Vec3 sample_reflection(Vec3 wo, Vec2 u) const {
+        const Vec3 o = turned({wo.x, wo.y, abs(wo.z)});
+        return normalize(turned_back(reflect(o, sample_visible_normal(o, u))));
     }
     HD GgxReflection evaluate_reflection(Vec3 wo, Vec3 wi) const {
         const Vec3 sum = wo + wi;
