@@ -26,11 +26,17 @@ HD inline Rgb base_color_at(const SceneView& scene, const MaterialParameters& ma
 }
 
 /// Returns `factor` times the texture's colour at a point of a triangle.
-HD inline Rgb textured_color(const SceneView& scene, const MeshView& mesh, Rgb factor, const TextureRef& ref,
-                             TriangleIndices i, float u, float v) {
+HD_CALL inline Rgb textured_color(const SceneView& scene, const MeshView& mesh, Rgb factor, const TextureRef& ref,
+                                  TriangleIndices i, float u, float v) {
     if (!ref.has_image()) return factor;
     const Vec4 texel = texel_at(scene, mesh, ref, i, u, v);
     return factor * Rgb{texel.x, texel.y, texel.z};
+}
+
+/// Returns `factor` times the channel of `ref` in [0, 1], at a point of a triangle.
+HD_CALL inline float textured_share(const SceneView& scene, const MeshView& mesh, float factor, const TextureRef& ref,
+                                    TriangleIndices i, float u, float v) {
+    return clamp(textured_factor(scene, mesh, factor, ref, i, u, v), 0.0f, 1.0f);
 }
 
 /// Directions of a material at a point, in the shading frame.
@@ -75,7 +81,7 @@ HD_CALL inline Bsdf make_any_bsdf(const SceneView& scene, const MaterialParamete
     if (!material.is_stacked())
         return make_unstacked_bsdf<ShadingVariant::Unstacked>(scene, material, mesh, i, u, v, base_color);
     const auto number = [&](float factor, const TextureRef& ref) {
-        return clamp(textured_factor(scene, mesh, factor, ref, i, u, v), 0.0f, 1.0f);
+        return textured_share(scene, mesh, factor, ref, i, u, v);
     };
     const float roughness = number(material.roughness, material.roughness_texture);
     ReflectionParameters reflection = {.base_color = base_color,

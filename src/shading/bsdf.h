@@ -30,7 +30,7 @@ struct Bsdf {
     /// Adds the reflection on the base, the innermost layer.
     HD void add(const SchlickLobe& lobe) {
         layers[0] = lobe;
-        layers[0].beneath = base.energy();
+        layers[0].beneath = base.kind == LobeKind::Diffuse ? base.diffuse.energy() : 0.0f;
         layer_count = 1;
     }
     /// Adds a layer on top. There is room for kMaxLayers; further ones are ignored.
@@ -105,10 +105,12 @@ struct Bsdf {
     }
 
 private:
-    HD void stack(const Lobe& layer) {
+    /// The base has number 0. Loops over all lobes contain the code of each kind once.
+    HD const Lobe& lobe(int i) const { return i > 0 ? layers[i - 1] : base; }
+    HD_CALL void stack(const Lobe& layer) {
         if (layer_count == kMaxLayers) return;
-        float beneath = base.energy();
-        for (int i = 0; i < layer_count; ++i) beneath += layers[i].energy();
+        float beneath = 0;
+        for (int i = 0; i <= layer_count; ++i) beneath += lobe(i).energy();
         layers[layer_count] = layer;
         layers[layer_count++].beneath = min(beneath, 1.0f);
         is_stacked = is_called = true;
@@ -128,8 +130,8 @@ private:
                 all.b > 0 ? min(f.b / all.b, 1.0f) : 0.0f};
     }
     HD_CALL static Gloss gloss_of_lobes(Bsdf bsdf, float cos_o) {
-        Gloss gloss = bsdf.base.gloss(cos_o);
-        for (int i = 0; i < bsdf.layer_count; ++i) gloss = gloss + bsdf.layers[i].gloss(cos_o);
+        Gloss gloss = bsdf.lobe(0).gloss(cos_o);
+        for (int i = 1; i <= bsdf.layer_count; ++i) gloss = gloss + bsdf.lobe(i).gloss(cos_o);
         return gloss;
     }
     HD static BsdfValue masked(LobeClass lobe_class, BsdfValue value, LobeClasses classes) {
@@ -168,23 +170,22 @@ private:
         return sample;
     }
 
-    /// Evaluates the layers from `last` inwards; `transmittance` then describes what is beneath them.
-    HD BsdfValue evaluate_layers(int last, Vec3 wo, Vec3 wi, LobeClasses classes,
-                                 LayerTransmittance& transmittance) const {
+    /// Evaluates the lobes from the outermost to number `last`; `transmittance` then describes what is beneath them.
+    HD BsdfValue evaluate_down_to(int last, Vec3 wo, Vec3 wi, LobeClasses classes,
+                                  LayerTransmittance& transmittance) const {
         BsdfValue sum;
-        for (int i = layer_count - 1; i >= last; --i)
-            sum = sum + masked(layers[i].lobe_class(), layers[i].evaluate(wo, wi, transmittance), classes);
+        for (int i = layer_count; i >= last; --i)
+            sum = sum + masked(lobe(i).lobe_class(), lobe(i).evaluate(wo, wi, transmittance), classes);
         return sum;
     }
     HD_CALL static BsdfValue evaluate_stack(Bsdf bsdf, Vec3 wo, Vec3 wi, LobeClasses classes) {
         LayerTransmittance transmittance;
-        const BsdfValue layers = bsdf.evaluate_layers(0, wo, wi, classes, transmittance);
-        return layers + masked(bsdf.base.lobe_class(), bsdf.base.evaluate(wo, wi, transmittance), classes);
+        return bsdf.evaluate_down_to(0, wo, wi, classes, transmittance);
     }
     HD_CALL static SpecularBranches specular_of_lobes(Bsdf bsdf, Vec3 wo) {
         SpecularBranches sum;
-        for (int i = bsdf.layer_count; i >= 0; --i) { // the base has number 0
-            const SpecularBranches one = i > 0 ? bsdf.layers[i - 1].specular(wo) : bsdf.base.specular(wo);
+        for (int i = bsdf.layer_count; i >= 0; --i) {
+            const SpecularBranches one = bsdf.lobe(i).specular(wo);
             sum.mirror += light_through(bsdf, i, wo, {-wo.x, -wo.y, wo.z}) * one.mirror;
             if (is_black(one.refraction)) continue;
             sum.refraction = light_through(bsdf, i, wo, one.refracted) * one.refraction;
@@ -192,14 +193,14 @@ private:
         }
         return sum;
     }
-    /// Transmittance of the layers from `last` inwards for light along wi to wo.
-    HD static float light_through(const Bsdf& bsdf, int last, Vec3 wo, Vec3 wi) {
-        return bsdf.is_called ? light_through_stack(bsdf, last, wo, wi) : 1.0f;
+    /// Transmittance of the layers above lobe number `i` for light along wi to wo.
+    HD static float light_through(const Bsdf& bsdf, int i, Vec3 wo, Vec3 wi) {
+        return bsdf.is_called ? above_in_stack(bsdf, i, wo, wi).light_of_delta() : 1.0f;
     }
-    HD_CALL static float light_through_stack(Bsdf bsdf, int last, Vec3 wo, Vec3 wi) {
+    HD_CALL static LayerTransmittance above_in_stack(const Bsdf& bsdf, int i, Vec3 wo, Vec3 wi) {
         LayerTransmittance transmittance;
-        bsdf.evaluate_layers(last, wo, wi, kAllLobeClasses, transmittance);
-        return transmittance.light_of_delta();
+        bsdf.evaluate_down_to(i + 1, wo, wi, kAllLobeClasses, transmittance);
+        return transmittance;
     }
     HD_CALL static bool has_delta_layers_only(Bsdf bsdf) {
         for (int i = 0; i < bsdf.layer_count; ++i)
@@ -208,18 +209,11 @@ private:
     }
     HD_CALL static BsdfSample sample_stack(Bsdf bsdf, Vec3 wo, float u_lobe, Vec2 u) {
         LobeDraw draw = {.u_lobe = u_lobe, .is_beneath = true};
-        int i = bsdf.layer_count;
-        while (draw.is_beneath && i > 0) draw = bsdf.layers[--i].draw(wo, draw.u_lobe, u);
-        const LobeClass lobe_class = draw.is_beneath ? bsdf.base.lobe_class() : bsdf.layers[i].lobe_class();
-        if (draw.is_beneath) {
-            draw = bsdf.base.draw(wo, draw.u_lobe, u);
-        } else {
-            ++i; // layers from i on are above
-        }
-        BsdfSample sample = bsdf.finish(draw, lobe_class, wo);
+        int i = bsdf.layer_count + 1;
+        while (draw.is_beneath && i > 0) draw = bsdf.lobe(--i).draw(wo, draw.u_lobe, u);
+        BsdfSample sample = bsdf.finish(draw, bsdf.lobe(i).lobe_class(), wo);
         if (!sample.is_delta()) return sample;
-        LayerTransmittance transmittance;
-        bsdf.evaluate_layers(i, wo, sample.wi, kAllLobeClasses, transmittance);
+        const LayerTransmittance transmittance = above_in_stack(bsdf, i, wo, sample.wi);
         sample.weight = (transmittance.light_of_delta() / transmittance.reach) * sample.weight;
         sample.pdf = transmittance.reach * sample.pdf;
         return sample;

@@ -50,7 +50,7 @@ HD inline Bsdf make_metal(Rgb eta, Rgb k, const ReflectionParameters& p) {
 }
 
 /// Adds the reflection of a dielectric and a metal.
-HD inline void add_reflection(Bsdf& bsdf, const ReflectionParameters& p, float metal) {
+HD_CALL inline void add_reflection(Bsdf& bsdf, const ReflectionParameters& p, float metal) {
     if (!(p.weight > 0) && !(metal > 0)) return;
     const Rgb own = f0_from_ior(p.ior) * p.color;
     const Rgb f0 = p.weight * Rgb{min(own.r, 1.0f), min(own.g, 1.0f), min(own.b, 1.0f)};
@@ -61,13 +61,13 @@ HD inline void add_reflection(Bsdf& bsdf, const ReflectionParameters& p, float m
 }
 
 /// Adds glass for `share` of the light; the index is clamped for a rough surface (make_dielectric).
-HD inline void add_glass(Bsdf& bsdf, const ReflectionParameters& p, float share) {
+HD_CALL inline void add_glass(Bsdf& bsdf, const ReflectionParameters& p, float share) {
     const float spread = 0.5f * p.dispersion * max(p.ior - 1.0f, 0.0f);
     bsdf.add(GlassLobe{p.base_color, share, p.microfacets(),
                        DielectricLobe::usable_ior(p.ior, alpha_from_roughness(p.roughness)), p.film, spread});
 }
 
-HD inline Bsdf make_reflection(const ReflectionParameters& p) {
+HD_CALL inline Bsdf make_reflection(const ReflectionParameters& p) {
     const float metal_of_all = clamp(p.metallic, 0.0f, 1.0f), glass = (1.0f - metal_of_all) * p.solid;
     Bsdf bsdf;
     if (!(glass < 1)) {

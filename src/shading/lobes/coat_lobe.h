@@ -24,17 +24,17 @@ struct CoatLobe {
 
     HD LobeClass lobe_class() const { return interface().lobe_class(); }
     HD float energy() const { return strength * interface().energy(); }
-    HD Gloss gloss(float cos_o) const {
+    HD_CALL Gloss gloss(float cos_o) const {
         const Gloss whole = interface().gloss(cos_o);
         return {strength * whole.reflectance, alpha, 1.0f - strength * (1.0f - whole.transmittance)};
     }
-    HD SpecularBranches specular(Vec3 wo) const {
+    HD_CALL SpecularBranches specular(Vec3 wo) const {
         SpecularBranches branches;
         if (interface().is_smooth()) branches.mirror = strength * fresnel_schlick(abs(wo.z), grey(f0));
         return branches;
     }
 
-    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, LayerTransmittance& transmittance) const {
+    HD_CALL BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, LayerTransmittance& transmittance) const {
         Vec3 o = {wo.x, wo.y, abs(wo.z)}, i = {wi.x, wi.y, abs(wi.z)};
         bool reflects = wo.z * wi.z > 0;
         float facing = 1;
@@ -61,7 +61,7 @@ struct CoatLobe {
         return value;
     }
 
-    HD LobeDraw draw(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
+    HD_CALL LobeDraw draw(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
         return is_bent() ? draw_bent(wo, beneath, u_lobe, u) : draw_straight(wo, beneath, u_lobe, u);
     }
 

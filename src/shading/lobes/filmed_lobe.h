@@ -36,19 +36,19 @@ struct FilmedLobe {
     HD bool is_smooth() const { return widths.is_smooth(); }
     HD LobeClass lobe_class() const { return is_smooth() ? LobeClass::Specular : LobeClass::Glossy; }
     HD float energy() const { return max_component(average_reflectance()); }
-    HD Gloss gloss(float cos_o) const {
+    HD_CALL Gloss gloss(float cos_o) const {
         const Average average = make_average();
         const Albedo at_o = albedo_at(cos_o);
         return {(1.0f - at_o.lost) * reflectance(cos_o) + at_o.lost * average.more, widths.energy_width(),
                 1.0f - at_o.coat};
     }
-    HD SpecularBranches specular(Vec3 wo) const {
+    HD_CALL SpecularBranches specular(Vec3 wo) const {
         SpecularBranches branches;
         if (is_smooth()) branches.mirror = reflectance(abs(wo.z));
         return branches;
     }
 
-    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, LayerTransmittance& transmittance) const {
+    HD_CALL BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, LayerTransmittance& transmittance) const {
         const Vec3 o = widths.turned({wo.x, wo.y, abs(wo.z)}), i = widths.turned({wi.x, wi.y, abs(wi.z)});
         const Average average = make_average();
         const Albedo at_o = albedo_at(o.z), at_i = albedo_at(i.z);
@@ -63,7 +63,7 @@ struct FilmedLobe {
         transmittance.pass(at_o.coat, at_i.coat, shares.beneath);
         return value;
     }
-    HD LobeDraw draw(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
+    HD_CALL LobeDraw draw(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
         const Average average = make_average();
         const LayerShares shares = make_shares(average, albedo_at(abs(wo.z)), beneath);
         Vec3 wi;

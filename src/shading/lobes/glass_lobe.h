@@ -27,7 +27,7 @@ struct GlassLobe {
     HD LobeClass lobe_class() const { return is_smooth() ? LobeClass::Specular : LobeClass::Glossy; }
     HD float energy() const { return weight; }
     HD Gloss gloss(float) const { return {grey(weight), widths.energy_width(), 1.0f - weight}; }
-    HD SpecularBranches specular(Vec3 wo) const {
+    HD_CALL SpecularBranches specular(Vec3 wo) const {
         SpecularBranches branches;
         if (!is_smooth()) return branches; // dispersed light is taken to go along green's direction
         const Interface at = interface(wo, min(abs(wo.z), 1.0f));
@@ -38,7 +38,7 @@ struct GlassLobe {
         return branches;
     }
 
-    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, LayerTransmittance& transmittance) const {
+    HD_CALL BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, LayerTransmittance& transmittance) const {
         const float p_beneath = probability_beneath(beneath);
         BsdfValue value;
         if (!is_smooth() && abs(wo.z) > 0 && abs(wi.z) > 0) {
@@ -51,7 +51,7 @@ struct GlassLobe {
         return value;
     }
 
-    HD LobeDraw draw(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
+    HD_CALL LobeDraw draw(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
         const float p_beneath = probability_beneath(beneath);
         if (u_lobe < p_beneath) return draw_beneath(u_lobe, p_beneath);
         const float u_glass = min((u_lobe - p_beneath) / (1.0f - p_beneath), 0x1.fffffep-1f);

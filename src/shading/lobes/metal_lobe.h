@@ -16,13 +16,13 @@ struct MetalLobe {
     HD LobeClass lobe_class() const { return widths.is_smooth() ? LobeClass::Specular : LobeClass::Glossy; }
     HD float energy() const { return max_component(fresnel_conductor_average(eta, k)); }
     HD Gloss gloss(float cos_o) const { return {fresnel_conductor(cos_o, eta, k), widths.energy_width()}; }
-    HD SpecularBranches specular(Vec3 wo) const {
+    HD_CALL SpecularBranches specular(Vec3 wo) const {
         SpecularBranches branches;
         if (widths.is_smooth()) branches.mirror = fresnel_conductor(abs(wo.z), eta, k);
         return branches;
     }
 
-    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, const LayerTransmittance& transmittance) const {
+    HD_CALL BsdfValue evaluate(Vec3 wo, Vec3 wi, const LayerTransmittance& transmittance) const {
         if (widths.is_smooth() || !(wo.z * wi.z > 0)) return {};
         const Vec3 o = widths.turned({wo.x, wo.y, abs(wo.z)}), i = widths.turned({wi.x, wi.y, abs(wi.z)});
         const GgxReflection once = widths.evaluate_reflection(o, i);
@@ -36,7 +36,7 @@ struct MetalLobe {
         }
         return {transmittance.light * f, transmittance.reach * pdf};
     }
-    HD LobeDraw draw(Vec3 wo, float u_lobe, Vec2 u) const {
+    HD_CALL LobeDraw draw(Vec3 wo, float u_lobe, Vec2 u) const {
         if (widths.is_smooth()) return draw_mirror(wo, fresnel_conductor(abs(wo.z), eta, k), 1);
         Vec3 wi;
         if (u_lobe < widths.lost(abs(wo.z))) {

@@ -40,7 +40,7 @@ struct Microfacets {
         const float across2 = square(x * w.x) + square(y * w.y);
         return is_beckmann ? beckmann::slope_length(abs(w.z), sqrt(across2)) : sqrt(w.z * w.z + across2);
     }
-    HD Vec3 sample_visible_normal(Vec3 wo, Vec2 u) const {
+    HD_CALL Vec3 sample_visible_normal(Vec3 wo, Vec2 u) const {
         const Vec3 w = normalize(Vec3{x * wo.x, y * wo.y, wo.z});
         if (is_beckmann) {
             const Vec3 slopes = beckmann::sample_visible_normal(w, u);
@@ -61,7 +61,7 @@ struct Microfacets {
         const Vec3 o = turned({wo.x, wo.y, abs(wo.z)});
         return normalize(turned_back(reflect(o, sample_visible_normal(o, u))));
     }
-    HD GgxReflection evaluate_reflection(Vec3 wo, Vec3 wi) const {
+    HD_CALL GgxReflection evaluate_reflection(Vec3 wo, Vec3 wi) const {
         const Vec3 sum = wo + wi;
         const Vec3 h = (1.0f / sqrt(length_squared(sum))) * sum;
         const float d = normals(h), so = slope_length(wo), si = slope_length(wi);
@@ -78,37 +78,37 @@ struct Microfacets {
 
     /// Fraction of the light that one bounce off a reflector with F = 1 loses and further bounces return, at a cosine,
     /// and its average. Both are 0 for smooth and single scattering.
-    HD float lost(float cosine) const {
+    HD_CALL float lost(float cosine) const {
         if (is_smooth() || is_single) return 0;
         const float width = energy_width();
         return energy_factor(cosine) * (is_beckmann ? beckmann_lost(cosine, width) : metal_lost(cosine, width));
     }
-    HD float average_lost() const {
+    HD_CALL float average_lost() const {
         if (is_smooth() || is_single) return 0;
         return is_beckmann ? beckmann_average_lost(energy_width()) : metal_average_lost(energy_width());
     }
     /// Average of Schlick's weight over the light that it reflects at a cosine, rather too much.
-    HD float schlick(float cosine) const {
+    HD_CALL float schlick(float cosine) const {
         if (is_smooth()) return schlick_weight(cosine);
         if (is_beckmann) return beckmann_schlick(cosine, narrowest()) + grazing_excess(cosine);
         return metal_schlick(cosine, narrowest()) + grazing_excess(cosine);
     }
     /// lost() and average_lost() of glass, without energy_factor().
-    HD float glass_loss(float cosine, float eta) const {
+    HD_CALL float glass_loss(float cosine, float eta) const {
         if (is_smooth() || is_single) return 0;
         const float width = energy_width();
         return is_beckmann ? beckmann_glass_lost(cosine, width, eta) : glass_lost(cosine, width, eta);
     }
-    HD float average_glass_loss(float eta) const {
+    HD_CALL float average_glass_loss(float eta) const {
         const float width = energy_width();
         return is_beckmann ? beckmann_average_glass_lost(width, eta) : glass_average_lost(width, eta);
     }
     /// Samples a direction for that light, u in [0, 1)^2, and the density at a cosine, 1/sr.
-    HD Vec3 sample_lost_lobe(Vec2 u, bool is_glass = false) const {
+    HD_CALL Vec3 sample_lost_lobe(Vec2 u, bool is_glass = false) const {
         const float width = energy_width();
         return has_own_lost_lobe(is_glass) ? beckmann::sample_lost_lobe(width, u) : sample_grazing_lobe(width, u);
     }
-    HD float pdf_lost_lobe(float cosine, bool is_glass = false) const {
+    HD_CALL float pdf_lost_lobe(float cosine, bool is_glass = false) const {
         const float width = energy_width();
         return has_own_lost_lobe(is_glass) ? beckmann::pdf_lost_lobe(cosine, width) : pdf_grazing_lobe(cosine, width);
     }

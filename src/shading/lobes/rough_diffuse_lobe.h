@@ -28,7 +28,7 @@ struct RoughDiffuseLobe {
         return share * (once * albedo + (1.0f - once) * tint_of_more(once));
     }
 
-    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, const LayerTransmittance& transmittance) const {
+    HD_CALL BsdfValue evaluate(Vec3 wo, Vec3 wi, const LayerTransmittance& transmittance) const {
         if (!(wo.z * wi.z > 0)) return {};
         const Vec3 o = {wo.x, wo.y, abs(wo.z)}, i = {wi.x, wi.y, abs(wi.z)};
         const float along = o.x * i.x + o.y * i.y;
@@ -39,7 +39,7 @@ struct RoughDiffuseLobe {
         return {(transmittance.light * light_through(transmittance) * share * (i.z * kInvPi)) * color,
                 transmittance.reach * pdf(o, i)};
     }
-    HD LobeDraw draw(Vec3 wo, float u_lobe, Vec2 u) const {
+    HD_CALL LobeDraw draw(Vec3 wo, float u_lobe, Vec2 u) const {
         const Vec3 o = {wo.x, wo.y, abs(wo.z)};
         Vec3 wi;
         if (u_lobe < uniform_share(o.z)) {

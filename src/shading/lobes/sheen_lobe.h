@@ -25,7 +25,7 @@ struct SheenLobe {
     HD LobeClass lobe_class() const { return LobeClass::Diffuse; }
     HD float energy() const { return max_component(color) * min(albedo_at(0.25f), 1.0f); }
 
-    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, LayerTransmittance& transmittance) const {
+    HD_CALL BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, LayerTransmittance& transmittance) const {
         const float cos_o = abs(wo.z), cos_i = abs(wi.z);
         const float albedo_o = albedo_at(cos_o), albedo_i = albedo_at(cos_i);
         const float strength = max_component(color);
@@ -44,7 +44,7 @@ struct SheenLobe {
         return value;
     }
 
-    HD LobeDraw draw(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
+    HD_CALL LobeDraw draw(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
         const float p_beneath = probability_beneath(max_component(color) * min(albedo_at(abs(wo.z)), 1.0f), beneath);
         if (u_lobe < p_beneath) return draw_beneath(u_lobe, p_beneath);
         Vec3 wi = sample_uniform_hemisphere(u);

@@ -27,18 +27,18 @@ struct SpecularLobe {
     HD bool is_smooth() const { return !(alpha >= kSmoothAlpha); }
     HD LobeClass lobe_class() const { return is_smooth() ? LobeClass::Specular : LobeClass::Glossy; }
     HD float energy() const { return max_component(mixed_f0() + (1.0f / 21.0f) * (grey(mixed_f90()) - mixed_f0())); }
-    HD Gloss gloss(float cos_o) const {
+    HD_CALL Gloss gloss(float cos_o) const {
         const Average average = make_average();
         const Albedo at_o = albedo_at(cos_o, average);
         return {(1.0f - at_o.lost) * once_at(at_o.schlick) + at_o.lost * average.more, alpha, 1.0f - at_o.coat};
     }
-    HD SpecularBranches specular(Vec3 wo) const {
+    HD_CALL SpecularBranches specular(Vec3 wo) const {
         SpecularBranches branches;
         if (is_smooth()) branches.mirror = once_at(schlick_weight(abs(wo.z)));
         return branches;
     }
 
-    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, LayerTransmittance& transmittance) const {
+    HD_CALL BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, LayerTransmittance& transmittance) const {
         const Vec3 o = {wo.x, wo.y, abs(wo.z)}, i = {wi.x, wi.y, abs(wi.z)};
         const Average average = make_average();
         const Albedo at_o = albedo_at(o.z, average), at_i = albedo_at(i.z, average);
@@ -56,7 +56,7 @@ struct SpecularLobe {
         transmittance.reach = transmittance.reach * shares.beneath;
         return value;
     }
-    HD LobeDraw draw(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
+    HD_CALL LobeDraw draw(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
         const Average average = make_average();
         const LayerShares shares = make_shares(average, albedo_at(abs(wo.z), average), beneath);
         return sampler().draw_by(shares, once_at(schlick_weight(abs(wo.z))), wo, u_lobe, u);

@@ -76,7 +76,7 @@ private:
 
 /// Reflectance of the film, regardless of its weight, on a base of index `base` >= 1 per channel. `cos_o` in [0, 1] is
 /// that outside.
-HD inline Rgb film_reflectance(float cos_o, const ThinFilm& film, Rgb base) {
+HD_CALL inline Rgb film_reflectance(float cos_o, const ThinFilm& film, Rgb base) {
     using namespace thin_film;
     if (!(cos_o > 1e-4f)) return {1, 1, 1};
     const float cos_f = safe_sqrt(1.0f - (1.0f - cos_o * cos_o) / (film.ior * film.ior));

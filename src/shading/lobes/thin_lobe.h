@@ -20,7 +20,7 @@ struct ThinLobe {
     HD LobeClass lobe_class() const { return is_smooth() ? LobeClass::Specular : LobeClass::Glossy; }
     HD float energy() const { return share * max_component(tint); }
     HD Gloss gloss(float) const { return {share * tint, alpha}; }
-    HD SpecularBranches specular(Vec3 wo) const {
+    HD_CALL SpecularBranches specular(Vec3 wo) const {
         SpecularBranches branches;
         if (!is_smooth()) return branches;
         branches.refraction = share * tint;
@@ -28,7 +28,7 @@ struct ThinLobe {
         return branches;
     }
 
-    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, LayerTransmittance& transmittance) const {
+    HD_CALL BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, LayerTransmittance& transmittance) const {
         const float p_beneath = probability_beneath(beneath);
         BsdfValue value;
         if (!is_smooth() && wo.z * wi.z < 0) {
@@ -43,7 +43,7 @@ struct ThinLobe {
         transmittance.reach = transmittance.reach * p_beneath;
         return value;
     }
-    HD LobeDraw draw(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
+    HD_CALL LobeDraw draw(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
         const float p_beneath = probability_beneath(beneath);
         if (u_lobe < p_beneath) return draw_beneath(u_lobe, p_beneath);
         if (is_smooth()) {

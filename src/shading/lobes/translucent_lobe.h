@@ -16,7 +16,7 @@ struct TranslucentLobe {
     HD LobeClass lobe_class() const { return LobeClass::Diffuse; }
     HD float energy() const { return share * max_component(color); }
 
-    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, LayerTransmittance& transmittance) const {
+    HD_CALL BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, LayerTransmittance& transmittance) const {
         const float p_beneath = probability_beneath(beneath);
         BsdfValue value;
         if (wo.z * wi.z < 0) {
@@ -27,7 +27,7 @@ struct TranslucentLobe {
         transmittance.reach = transmittance.reach * p_beneath;
         return value;
     }
-    HD LobeDraw draw(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
+    HD_CALL LobeDraw draw(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
         const float p_beneath = probability_beneath(beneath);
         if (u_lobe < p_beneath) return draw_beneath(u_lobe, p_beneath);
         Vec3 wi = sample_cosine_hemisphere(u);
