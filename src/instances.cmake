@@ -236,8 +236,8 @@ pertev_launches(integrators/path/shade_films.cu
 pertev_launches(integrators/path/shade_frames.cu
   integrators/path/path_stages.h
   STAGES "Shade<kPlainDiffuse, PlainFrameListeners>"
-    "Shade<kDiffuse, PlainFrameListeners>"
-    "Shade<kUnstacked, FrameListeners>")
+    "Shade<kDiffuse | kMipMapped, PlainFrameListeners>"
+    "Shade<kUnstacked | kMipMapped, FrameListeners>")
 pertev_launches(integrators/path/shade_layers.cu
   integrators/path/path_stages.h
   STAGES "Shade<kUnstacked, LayerListeners>"
@@ -252,16 +252,16 @@ pertev_launches(integrators/path/shade_moving_films.cu
 pertev_launches(integrators/path/shade_reused_frames.cu
   integrators/path/path_stages.h
   STAGES "Shade<kPlainDiffuse, PlainReuseListeners>"
-    "Shade<kDiffuse, PlainReuseListeners>"
-    "Shade<kUnstacked, ReuseListeners>")
+    "Shade<kDiffuse | kMipMapped, PlainReuseListeners>"
+    "Shade<kUnstacked | kMipMapped, ReuseListeners>")
 # For coats, fuzz, thin walls and weighted reflections.
 pertev_launches(integrators/path/shade_stacks.cu
   integrators/path/path_stages.h
   STAGES "Shade<kAllMaterials, FilmListeners>"
-    "Shade<kAllMaterials | kMoving | kBatched, FilmListeners>"
-    "Shade<kAllMaterials, FrameListeners>"
-    "Shade<kAllMaterials, ReuseListeners>"
-    "Shade<kAllMaterials | kMoving, LayerListeners>")
+    "Shade<kAllMaterials | kMoving | kBatched | kMipMapped, FilmListeners>"
+    "Shade<kAllMaterials | kMipMapped, FrameListeners>"
+    "Shade<kAllMaterials | kMipMapped, ReuseListeners>"
+    "Shade<kAllMaterials | kMoving | kMipMapped, LayerListeners>")
 pertev_launches(integrators/photon_map/photon_stages.cu
   integrators/photon_map/gather_stages.h integrators/photon_map/order_photons.h integrators/photon_map/photon_stages.h
   integrators/photon_map/photon_targets.h
