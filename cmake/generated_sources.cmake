@@ -33,7 +33,7 @@ add_custom_command(OUTPUT ${PERTEV_GENERATED_DIR}/embedded_files.cpp
   COMMAND ${CMAKE_COMMAND} "-DFILES=${embedded_list}" -DOUTPUT=${PERTEV_GENERATED_DIR}/embedded_files.cpp
           -P ${PROJECT_SOURCE_DIR}/cmake/embed_files.cmake
   COMMENT "Embedding the laboratory's page" VERBATIM)
-target_sources(pertev_lab PRIVATE ${PERTEV_GENERATED_DIR}/embedded_files.cpp)
+pertev_embed(pertev_lab ${PERTEV_GENERATED_DIR}/embedded_files.cpp)
 
 # Tables of lobes: 30 s of one core, once. Sums stand side by side for the vectoriser, which divides where masks say no.
 add_executable(pertev_make_lobe_tables ${PROJECT_SOURCE_DIR}/tools/make_lobe_tables.cpp)

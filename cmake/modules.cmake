@@ -29,13 +29,13 @@ function(pertev_unity target batch)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${PERTEV_UNITY} UNITY_BUILD_BATCH_SIZE ${batch})
 endfunction()
 
-# Replaces the files of `list` by files of EXTENSION that include up to 24 of them each (nvcc, which needs a gigabyte for
-# eight: 8), since most of the time that such a file takes goes into headers and into functions that they share.
+# Replaces the files of `list` by files of EXTENSION that include up to 24 of them each (for nvcc 4, because ptxas has one
+# core for a file), since most of the time that such a file takes goes into headers and into functions that they share.
 function(pertev_gather name extension list)
   set(batch 0)
   set(batch_size 24)
   if(extension STREQUAL "cu")
-    set(batch_size 8)
+    set(batch_size 4)
   endif()
   set(files ${${list}})
   set(gathered_files "")
@@ -81,11 +81,8 @@ function(pertev_gather_kernels name list)
     list(FILTER traversals INCLUDE REGEX "/kernels/(lab/)?[^/]*$")
     pertev_gather(${name} ${extension} files)
     pertev_gather(${name}_kernels ${extension} traversals)
-    set(alone ${traversals})
-    if(PERTEV_COMPILES_KERNELS)
-      list(APPEND alone ${files})
-    endif()
-    set_source_files_properties(${alone} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    # Beside a file that launches a stage, any build would instantiate it, and only one with CUDA would lack its row.
+    set_source_files_properties(${files} ${traversals} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     set(${list} ${${list}} ${files} ${traversals} PARENT_SCOPE)
   elseif(NOT PERTEV_COMPILES_KERNELS)
     pertev_compile_cuda_as_cxx(${files})
@@ -140,4 +137,12 @@ function(pertev_module folder)
     target_include_directories(pertev_${name} INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>)
     target_link_libraries(pertev_${name} INTERFACE ${ARGN})
   endif()
+endfunction()
+
+# pertev_embed(TARGET FILE): compiles a generated FILE for TARGET by itself. A target that generates its own files is compiled
+# only after all that it links, so that nothing of it were compiled beside ptxas.
+function(pertev_embed target file)
+  add_library(${target}_embedded OBJECT ${file})
+  target_include_directories(${target}_embedded PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/apps ${PROJECT_SOURCE_DIR})
+  target_sources(${target} PRIVATE $<TARGET_OBJECTS:${target}_embedded>)
 endfunction()

@@ -94,6 +94,7 @@ pertev_launches(denoise/frame_stages.cu
     MotionOfHits
     CompareLight
     SpreadLight
+    FindChangedShare
     "FromPixel<UpsamplePicture>"
     SumBlockRows
     MeanOfBlockRows
