@@ -81,7 +81,7 @@ function(pertev_gather_kernels name list)
     list(FILTER traversals INCLUDE REGEX "/kernels/(lab/)?[^/]*$")
     pertev_gather(${name} ${extension} files)
     pertev_gather(${name}_kernels ${extension} traversals)
-    # Beside a file that launches a stage, any build would instantiate it, and only one with CUDA would lack its row.
+    # A stage that a file launches beside its row would need no row except in builds with CUDA.
     set_source_files_properties(${files} ${traversals} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     set(${list} ${${list}} ${files} ${traversals} PARENT_SCOPE)
   elseif(NOT PERTEV_COMPILES_KERNELS)

@@ -25,4 +25,6 @@ MUTATIONS = [
     ("a coat that does not dim the particles of what glows beneath it", "statistical/coated_emitter",
      ("src/integrators/subpaths/emit_particle.h", "surface.coat_weight > 0 ? coat_transmittance(", "false ? coat_transmittance(")),
     ("a measured metal with the numbers of another", "unit/set_materials", ("src/scene/metals.cpp", "std::ranges::find(kMetals, name, &MeasuredMetal::name)", "std::ranges::find_if(kMetals, [&](auto& m) { return m.name > name; })")),
+    ("a path in the wavefront that forgets which surface it left", "statistical/solid_absorption",
+     ("src/integrators/path/path_stages.h", "if ((kFeatures & kStacked) != 0 && !begins)", "if (false)")),
 ]

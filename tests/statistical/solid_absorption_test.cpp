@@ -61,12 +61,16 @@ void check_all_pixels(const Scene& scene, const Camera& camera, float distance, 
          {IntegratorKind::Path, IntegratorKind::Bidirectional, IntegratorKind::PhotonMap,
           IntegratorKind::IrradianceCache, IntegratorKind::Whitted, IntegratorKind::Distributed}) {
         CAPTURE(describe(integrator).name);
-        const RenderResult result = test::render(queue, scene, camera, settings_of(integrator));
         const double depths = static_cast<double>(distance / kDepth);
-        for (std::size_t i = 0; i < result.picture.pixels.size(); i += 3) {
-            CHECK(result.picture.pixels[i] == doctest::Approx(factor * std::pow(0.2, depths)).epsilon(2e-3));
-            CHECK(result.picture.pixels[i + 1] == doctest::Approx(factor * std::pow(0.5, depths)).epsilon(2e-3));
-            CHECK(result.picture.pixels[i + 2] == doctest::Approx(factor * std::pow(0.9, depths)).epsilon(2e-3));
+        for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
+            RenderSettings settings = settings_of(integrator);
+            settings.body = body;
+            const RenderResult result = test::render(queue, scene, camera, settings);
+            for (std::size_t i = 0; i < result.picture.pixels.size(); i += 3) {
+                CHECK(result.picture.pixels[i] == doctest::Approx(factor * std::pow(0.2, depths)).epsilon(2e-3));
+                CHECK(result.picture.pixels[i + 1] == doctest::Approx(factor * std::pow(0.5, depths)).epsilon(2e-3));
+                CHECK(result.picture.pixels[i + 2] == doctest::Approx(factor * std::pow(0.9, depths)).epsilon(2e-3));
+            }
         }
     }
 }

@@ -64,15 +64,15 @@ void choose_shading(const PathJob& job, const With& with) {
 } // namespace
 
 PathIntegrator::Wavefront::Paths::Paths(Queue& queue, uint32_t capacity)
-    : rays(queue, capacity, "path rays"), throughput(queue, capacity, "paths"), radiance(queue, capacity, "paths") {}
+    : rays(queue, capacity, "path rays"), starts(queue, capacity, "path rays"), throughput(queue, capacity, "paths"),
+      radiance(queue, capacity, "paths") {}
 
 PathIntegrator::Wavefront::Wavefront(Queue& queue, uint32_t paths)
     : capacity(paths), sets{{queue, paths}, {queue, paths}}, shadow_rays(queue, paths, "shadow rays"),
-      path_starts(queue, paths, "path rays"), shadow_starts(queue, paths, "shadow rays"),
-      shadow_targets(queue, paths, "shadow rays"), path_keys(queue, paths, "path rays"),
-      shadow_keys(queue, paths, "shadow rays"), contribution(queue, paths, "shadow rays"),
-      hit_records(queue, paths, "hits"), hit_instances(queue, paths, "hits"), counts(queue, 2, "path counts"),
-      seen(queue) {}
+      shadow_starts(queue, paths, "shadow rays"), shadow_targets(queue, paths, "shadow rays"),
+      path_keys(queue, paths, "path rays"), shadow_keys(queue, paths, "shadow rays"),
+      contribution(queue, paths, "shadow rays"), hit_records(queue, paths, "hits"), hit_instances(queue, paths, "hits"),
+      counts(queue, 2, "path counts"), seen(queue) {}
 
 void PathIntegrator::Wavefront::take(Queue& queue, const PathParts& parts) {
     if (parts.has_times && shadow_times.size() == 0) {
@@ -93,7 +93,7 @@ void PathIntegrator::Wavefront::take(Queue& queue, const PathParts& parts) {
 
 PathQueueView PathIntegrator::Wavefront::paths(uint32_t of_round) const {
     const Paths& set = sets[of_round % 2];
-    return {set.rays.data(),       path_starts.data(),  path_keys.data(),
+    return {set.rays.data(),       set.starts.data(),   path_keys.data(),
             set.throughput.data(), set.radiance.data(), path_times.data()};
 }
 

@@ -84,6 +84,7 @@ private:
         struct Paths {
             Paths(Queue& queue, uint32_t capacity);
             Buffer<Ray> rays;
+            Buffer<Uint2> starts;
             Buffer<Float4> throughput, radiance;
             Buffer<Float4> diffuse; // if frames split light
             Buffer<Uint2> states;   // if there are layers
@@ -92,7 +93,7 @@ private:
         uint32_t in_flight = 0; // maximum for the current call of render()
         Paths sets[2];
         Buffer<Ray> shadow_rays;
-        Buffer<Uint2> path_starts, shadow_starts, shadow_targets;
+        Buffer<Uint2> shadow_starts, shadow_targets;
         Buffer<uint32_t> path_keys, shadow_keys;
         Buffer<Float4> contribution, hit_records;
         Buffer<Float4> shadow_diffuse;          // if frames split light

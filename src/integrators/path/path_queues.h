@@ -19,9 +19,8 @@ namespace pertev {
 
 struct PathQueueView {
     Ray* rays;          // to trace next, endless; pixel and sample are stored in place of t_min and t_max
-    Uint2* starts;      // the starts of RayQueueView; with the keys, one array for both sets, because only the tracer
-                        // reads it
-    uint32_t* keys;     // written if some surface is blended
+    Uint2* starts;      // the starts of RayQueueView
+    uint32_t* keys;     // written if some surface is blended; one array for both sets, because only the tracer reads it
     Float4* throughput; // rgb, bits of (depth | rough_depth << 16)
     Float4* radiance;   // rgb, bsdf_pdf; for an ended path rgb, bits of the pixel
     float* times;       // the times of RayQueueView; null unless something moves while the shutter is open
@@ -49,7 +48,9 @@ struct PathQueueView {
         if (any_alpha) keys[i] = coin_key(key, path.depth, false);
     }
 
-    /// Loads a path that continues, without `start`, which only the tracer needs.
+    /// Returns the triangle that the ray of a path that continues leaves.
+    HD TriangleId start_of(uint32_t i) const { return {starts[i].x, starts[i].y}; }
+    /// Loads a path that continues, without its start and its time, which only some scenes need.
     HD PathState load(uint32_t i) const {
         const Ray ray = load_ray(rays + i);
         const Float4 t = throughput[i], r = radiance[i];

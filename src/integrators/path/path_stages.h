@@ -99,6 +99,7 @@ struct Shade {
             const uint32_t slot = begins ? last - (i - round->going_on) : i;
             path = begins ? paths.load_begun(slot, job.picture.camera) : paths.load(slot);
             const SampleKey of_sample = sample_key<kFeatures>(job, path.pixel, path.sample);
+            if ((kFeatures & kStacked) != 0 && !begins) path.start = paths.start_of(slot);
             if (kMoves) path.time = job.picture.camera.time(job.settings.sampler, of_sample);
             const Hit hit = hits.load(slot);
             key = coin_key(of_sample, path.depth, true);
