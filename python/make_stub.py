@@ -27,11 +27,13 @@ from .errors import MemoryLimitError as MemoryLimitError, WriteError as WriteErr
 _Text: TypeAlias = str | os.PathLike[str]
 _Floats: TypeAlias = NDArray[numpy.float32]
 _Picture: TypeAlias = Result | Any
-_Curve: TypeAlias = Literal["srgb", "agx", "aces", "neutral"]
 _Parts: TypeAlias = Mapping[str, Mapping[str, Any]]
 
 def builtin_scenes() -> list[str]: ...
 '''
+
+# Names of settings' types that functions without settings have, too.
+ALIASES = {"_Curve": "tone_map", "_Convention": "convention", "_Lens": "lens"}
 
 # Types of members and functions by their names, where nothing in the package tells them.
 MEMBERS = {"ids": "NDArray[numpy.uint32]", "layers": "dict[str, NDArray[Any]]", "info": "dict[str, Any]", "hash": "str",
@@ -45,7 +47,7 @@ SIGNATURES = {
              "tone_map: _Curve | None = None, exposure: float | str | None = None) -> Result",
     "read": "(path: _Text) -> _Floats",
     "read_cameras": "(path: _Text, *, size: tuple[int, int] | None = None, "
-                    "convention: Literal['opengl', 'opencv', 'blender'] | None = None) -> Cameras",
+                    "convention: _Convention | None = None) -> Cameras",
     "write": '(path: _Text, picture: _Picture, *, curve: _Curve = "srgb", exposure: float = 0.0) -> None',
     "tone_map": '(picture: _Picture, *, curve: _Curve = "agx", exposure: float = 0.0) -> NDArray[numpy.uint8]',
     "compare": "(picture: _Picture | _Text, reference: _Picture | _Text, *, blocks: int = 1) -> dict[str, float | bool]",
@@ -53,9 +55,9 @@ SIGNATURES = {
     "DeviceArray.__dlpack_device__": "(self) -> tuple[int, int]",
     "DeviceArray.numpy": "(self) -> NDArray[Any]",
     "BatchResult.__len__": "(self) -> int",
-    "Cameras.__init__": "(self, poses: Any, K: Any = None, *, convention: Literal['opengl', 'opencv', 'blender'] | None = None, "
+    "Cameras.__init__": "(self, poses: Any, K: Any = None, *, convention: _Convention | None = None, "
                         "intrinsics_size: tuple[int, int] | str | None = None, "
-                        "lens: Literal['opencv', 'fisheye'] | None = None, distortion: Sequence[float] | None = None) -> None",
+                        "lens: _Lens | None = None, distortion: Sequence[float] | None = None) -> None",
     "Cameras.__len__": "(self) -> int",
     "Cameras.__getitem__": "(self, part: slice) -> Cameras",
     "Params.__init__": "(self, scene: Scene) -> None",
@@ -128,7 +130,8 @@ def main():
     rows = core.settings()
     all_rows, of_parts = rows + core.frame_settings(), rows + core.part_settings()
     scene, session, viewer = package.Scene, package.Session, package.Viewer
-    lines = [HEAD]
+    types = {row["name"]: type_of(row) for row in rows}
+    lines = [HEAD, *(f"{alias}: TypeAlias = {types[name]}" for alias, name in ALIASES.items()), ""]
     lines += class_of("Result", core.Result, "", properties_of(core.Result))
     lines += class_of("DeviceArray", core.DeviceArray, "", properties_of(core.DeviceArray))
     lines += class_of("BatchResult", core.BatchResult, "", properties_of(core.BatchResult, {**MEMBERS, **OF_BATCHES}))

@@ -137,7 +137,10 @@ PythonResult merge(const std::vector<std::string>& files, bool is_partial, const
                    const std::string& tone_map, const std::string& exposure) {
     if (files.empty()) throw Error(ErrorCode::BadInput, "files", "", "there is no film file");
     return result_of([&](PythonSink& sink) {
-        MergedPicture picture = merge_picture(files, {is_partial, "", {tone_map, exposure}}, outputs, sink);
+        PictureOptions options;
+        if (!tone_map.empty()) set_value(options, *find_setting("tone_map"), std::vector{tone_map});
+        if (!exposure.empty()) set_value(options, *find_setting("exposure"), std::vector{exposure});
+        MergedPicture picture = merge_picture(files, is_partial, options, outputs, sink);
         PythonResult made(std::move(picture.result), std::move(picture.facts));
         if (outputs.empty()) return made;
         RenderResult written_result = made.result; // files take the layers out of it

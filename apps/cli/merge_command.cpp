@@ -8,6 +8,7 @@
 #include "apps/cli/commands.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/report_result.h"
+#include "apps/cli/setting_flags.h"
 #include "base/message_text.h"
 #include "base/stopwatch.h"
 #include "session/pictures/merge_picture.h"
@@ -17,7 +18,8 @@ namespace {
 
 struct MergeFlags {
     std::vector<std::string> parts, outputs;
-    MergeOptions options;
+    bool is_partial = false;
+    SettingFlags settings;
     ReportFlags report;
 };
 
@@ -25,8 +27,10 @@ int merge(const MergeFlags& flags) {
     Reporter reporter(flags.report);
     const Stopwatch watch;
     for (const std::string& output : flags.outputs) refuse_list(output);
+    PictureOptions options;
+    flags.settings.read(options, reporter);
     reporter.set_work("merging");
-    MergedPicture picture = merge_picture(flags.parts, flags.options, flags.outputs, reporter);
+    MergedPicture picture = merge_picture(flags.parts, flags.is_partial, options, flags.outputs, reporter);
     RenderResult& result = picture.result;
     reporter.end_progress();
     reporter.set_work("writing");
@@ -59,18 +63,12 @@ void add_merge_command(CLI::App& app, int& status) {
         ->allow_extra_args(false)
         ->check(file_name())
         ->required();
-    verb.add_flag("--partial", flags->options.is_partial,
-                  "Makes a picture of the available samples if some are missing.");
-    verb.add_option("--denoise", flags->options.denoise,
-                    "The denoiser, which must be that of the parts, as by default.")
-        ->type_name("NAME");
-    verb.add_option("--tone-map", flags->options.display.tone_map,
-                    "The tone mapping of PNG and JPEG output, if not that of the parts.")
-        ->type_name("NAME");
-    verb.add_option(
-            "--exposure", flags->options.display.exposure,
-            "The exposure of PNG and JPEG output, if not that of the parts; auto is what a meter found for these.")
-        ->type_name("STOPS|auto");
+    verb.add_flag("--partial", flags->is_partial, "Makes a picture of the available samples if some are missing.");
+    const std::string theirs = "that of the parts";
+    flags->settings.add(verb, kMerge, {}, all_settings(),
+                        {{"denoise", theirs + ", which must not be another"},
+                         {"tone_map", theirs},
+                         {"exposure", theirs + "; auto is what a meter found for them"}});
     add_report_flags(verb, flags->report);
     add_progress_flag(verb, flags->report);
     verb.callback([flags, &status] { status = merge(*flags); });

@@ -32,11 +32,11 @@ std::vector<Setting> picture_settings() {
             Otherwise{"1280x720, or the shape of the scene's camera"}, On{kLooking | kLab | kBenchPictures},
             Mark::Common, Changes::Picture),
         row("tone_map", "Picture", "NAME", FIELD(tone_map), "The tone mapping of PNG and JPEG output.",
-            Otherwise{"agx"}, On{kShown}, In{kToned}, Mark::Common, Recorded::AsUsed,
+            Otherwise{"agx"}, On{kShown | kMerge}, In{kToned}, Mark::Common, Recorded::AsUsed,
             Panel{"Tone map", PanelGroup::Picture}, Changes::Picture),
         row("exposure", "Picture", "STOPS|auto", FIELD(exposure),
             "The exposure of PNG and JPEG output in stops. auto meters a small preview.", Unit{"stops"},
-            Otherwise{"auto"}, On{kShown}, In{kToned}, Excludes{"f_number"}, Mark::Common, Changes::Picture),
+            Otherwise{"auto"}, On{kShown | kMerge}, In{kToned}, Excludes{"f_number"}, Mark::Common, Changes::Picture),
         row("f_number", "Picture", "N", FIELD(f_number),
             "The f-number of a physical exposure of PNG and JPEG output (aperture sets the depth of field).",
             Above{0, 1e4}, On{kShown}, In{kToned}, Needs{"shutter_time"}, Changes::Picture),
@@ -104,7 +104,7 @@ std::vector<Setting> picture_settings() {
         row("denoise", "Quality", "NAME", FIELD(render.denoise),
             "The denoiser of pictures with few samples. It is biased; EXR output also has the picture before denoising "
             "as the layer noisy. oidn is Open Image Denoise, whose bytes differ between devices.",
-            On{kRender | kBenchSequence}, Excludes{"!none:max_depth=0"}, Recorded::Changed, Mark::Common,
+            On{kRender | kBenchSequence | kMerge}, Excludes{"!none:max_depth=0"}, Recorded::Changed, Mark::Common,
             Changes::Picture),
 
         row("rows", "Parts", "A:B", FIELD(rows),

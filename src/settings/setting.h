@@ -82,6 +82,7 @@ enum SettingVerbs : uint32_t {
     kBenchSequence = 4096,
     kBenchCameras = 8192,
     kBenchDevices = 16384,
+    kMerge = 32768,
 };
 /// Names of verbs in the order of documents.
 inline constexpr ValueName<SettingVerbs> kVerbNames[] = {{kRender, "render"},
@@ -98,7 +99,8 @@ inline constexpr ValueName<SettingVerbs> kVerbNames[] = {{kRender, "render"},
                                                          {kBenchFrames, "bench frames"},
                                                          {kBenchSequence, "bench sequence"},
                                                          {kBenchCameras, "bench cameras"},
-                                                         {kBenchDevices, "bench devices"}};
+                                                         {kBenchDevices, "bench devices"},
+                                                         {kMerge, "merge"}};
 
 /// Form in which a picture's file records a setting under its name.
 enum class Recorded : uint8_t {

@@ -23,10 +23,10 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 import check_documents  # pylint: disable=wrong-import-position
 
-PARSED = [r"--thesis", r"--rays record", r"--preset all"]
-SMALL = {"--size": "24x16", "--spp": "1", "--seconds": "0.3", "--depths": "1-2", "--runs": "1", "--repetitions": "2", "--reference-spp": "2",
+PARSED = [r"--rays record"] # which needs a public scene
+SMALL = {"--size": "24x16", "--spp": "1", "--seconds": "0.02", "--depths": "1-2", "--runs": "1", "--repetitions": "2", "--reference-spp": "2",
          "--frames": "0-1", "--turntable": "2"}
-ADDED = {"render": ["--size", "--spp"], "lab": ["--size", "--runs"], "lab --transport": ["--size", "--seconds", "--repetitions", "--reference-spp"],
+ADDED = {"render": ["--size", "--spp"], "lab": ["--size", "--runs"], "lab --thesis": ["--size", "--runs"], "lab --transport": ["--size", "--seconds", "--repetitions", "--reference-spp"],
          "bench": ["--size", "--spp"], "bench noise": ["--size", "--spp"], "measure": ["--spp"]}
 BUILD = pathlib.Path(PROGRAM).resolve().parents[1]
 ALONE = {"tools/make_tables.py": ["--check"]} # it would write files
@@ -47,13 +47,13 @@ def verb_of(words):
 
 
 def made_small(words):
-    verb, given = verb_of(words), {word.split("=")[0] for word in words}
+    verb, given = "lab --thesis" if "--thesis" in words else verb_of(words), {word.split("=")[0] for word in words}
     small = []
     for before, word in zip(["", *words], words):
         small.append(SMALL.get(before, word))
     for flag in ADDED.get(verb, []):
         small += [] if flag in given else [flag, SMALL[flag]]
-    return small + QUICK.get(verb, [])
+    return small + QUICK.get(verb, []) + (["--integrators", "path,radiosity"] if "all" in words else [])
 
 
 class Commands(CliTest):

@@ -203,6 +203,9 @@ class Merge(CliTest):
         self.refuse(2, "merge", "1.pvf", "2.pvf", "-o", "x.png", "--exposure", "auto", says=["1.pvf", "--exposure auto", "meter"])
         for flags, says in ((["--tone-map", "sepia"], "--tone-map sepia"), (["--exposure", "bright"], "--exposure bright")):
             self.refuse(2, "merge", "1.pvf", "2.pvf", "-o", "x.png", *flags, says=[says])
+        for shown in (["--tone-map", "aces"], ["--exposure", "1"]):
+            self.refuse(2, "merge", "1.pvf", "2.pvf", "-o", "x.exr", *shown, says=[shown[0], "PNG"])
+        self.refuse(2, "merge", "1.pvf", "2.pvf", "-o", "x.exr", "--denoise", "smooth", says=["--denoise smooth", "svgf"])
         self.succeed("render", "cornell-box", "-o", "colors.pvf", *SMALL, "--spp", "2", "--false-color", "luminance")
         self.refuse(2, "merge", "colors.pvf", "-o", "x.png", "--tone-map", "agx", says=["--exposure"])
 

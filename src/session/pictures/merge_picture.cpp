@@ -17,29 +17,29 @@ void refuse_film_with_gaps(std::span<const std::string> outputs) {
     throw Error(ErrorCode::BadInput, "output", *film, "a film file holds no samples with gaps between them");
 }
 
-void check_denoiser(const std::string& wanted, const FilmHeader& header, std::span<const std::string> files) {
+void check_denoiser(const PictureOptions& options, const FilmHeader& header, std::span<const std::string> files) {
+    if (!options.is_given("denoise") || options.render.denoise == header.denoise) return;
     const std::string_view there = name_of(header.denoise);
-    if (wanted.empty() || wanted == there) return;
     Remark remark(FileLocation{files.front()},
                   header.denoise == Denoise::None
                       ? "the film lacks what a denoiser gathers; render its parts with `denoise` too, by `rows`"
                       : fmt::format("the film was rendered with `denoise={}`", there));
-    remark.setting = "denoise", remark.value = wanted;
+    remark.setting = "denoise", remark.value = name_of(options.render.denoise);
     throw Error(ErrorCode::BadInput, std::move(remark));
 }
 
 } // namespace
 
-MergedPicture merge_picture(std::span<const std::string> files, const MergeOptions& options,
+MergedPicture merge_picture(std::span<const std::string> files, bool is_partial, const PictureOptions& options,
                             std::span<const std::string> outputs, Sink& sink) {
-    check_outputs({}, outputs, sink);
-    const FilmMerge parts(files, options.is_partial);
-    check_denoiser(options.denoise, parts.header(), files);
+    if (!outputs.empty()) check_outputs(options, outputs, sink); // else the caller shows the picture
+    const FilmMerge parts(files, is_partial);
+    check_denoiser(options, parts.header(), files);
     if (parts.has_gaps()) refuse_film_with_gaps(outputs);
     Queue queue = Queue::make_cpu();
     MergedPicture picture;
     FilmHeader header = parts.header();
-    show_merged(options.display, files.front(), header.facts);
+    show_merged(options, files.front(), header.facts);
     picture.facts = header.facts;
     if (!writes_tone_mapped(outputs)) picture.facts.shown.clear(); // which only film files have
     Film film = parts.film(queue, sink);

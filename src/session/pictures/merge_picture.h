@@ -17,17 +17,12 @@ struct MergedPicture {
     std::vector<WrittenFile> films; // the film files among the outputs, which have been written
 };
 
-/// The caller's choices of a merge.
-struct MergeOptions {
-    bool is_partial = false; // samples may be missing
-    std::string denoise;     // the denoiser of the picture, for which the films must have been rendered; empty: theirs
-    MergedDisplay display = {};
-};
-
 /// Checks the names of the outputs, merges `files`, and writes the film files among the outputs; write_picture() writes
-/// the others. Throws as check_outputs and FilmMerge, and Error(BadInput) for a film file of samples with gaps, and
-/// for films that lack what the denoiser needs.
-MergedPicture merge_picture(std::span<const std::string> files, const MergeOptions& options,
+/// the others. Samples may be missing if it `is_partial`. `options` are those that the caller has given of `denoise`,
+/// which must be the films', `tone_map` and `exposure`; the others are the films'. Throws as check_outputs, FilmMerge
+/// and show_merged, and Error(BadInput) for a film file of samples with gaps, and for films that lack what the denoiser
+/// needs.
+MergedPicture merge_picture(std::span<const std::string> files, bool is_partial, const PictureOptions& options,
                             std::span<const std::string> outputs, Sink& sink);
 
 } // namespace pertev

@@ -35,14 +35,9 @@ void note_given(const std::string& setting, ExrMetadata& origin) {
 
 } // namespace
 
-void show_merged(const MergedDisplay& requested, const std::string& film, PictureFacts& facts) {
-    if (requested.is_empty()) return;
-    PictureOptions options;
-    const auto set = [&](const std::string& name, const std::string& value) {
-        if (!value.empty()) set_value(options, *find_setting(name), std::vector{value});
-    };
-    set("tone_map", requested.tone_map);
-    set("exposure", requested.exposure);
+void show_merged(const PictureOptions& options, const std::string& film, PictureFacts& facts) {
+    const bool has_exposure = options.is_given("exposure");
+    if (!has_exposure && !options.is_given("tone_map")) return;
     const Display before = facts.display.value_or(Display{});
     Display display = {.tone_map =
                            options.tone_map.value_or(before.false_colors ? Display{}.tone_map : before.tone_map),
@@ -53,18 +48,18 @@ void show_merged(const MergedDisplay& requested, const std::string& film, Pictur
         display.metered.clear();
     } else if (const auto metered = before.metered_stops(display.tone_map)) {
         display.exposure_stops = *metered;
-    } else if (requested.exposure.empty() && !before.false_colors && facts.display) {
+    } else if (!has_exposure && !before.false_colors && facts.display) {
         display.exposure_stops = before.exposure_stops; // a fixed one, which holds for every tone map
     } else {
         Remark remark(FileLocation{film}, "the part was rendered without the light meter, which has to see the scene; "
                                           "state a number of stops, or render the parts with `exposure=auto`");
-        remark.setting = "exposure", remark.value = requested.exposure;
+        remark.setting = "exposure", remark.value = options.exposure;
         throw Error(ErrorCode::BadInput, std::move(remark));
     }
     facts.display = display;
     facts.shown = display_metadata(display);
     for (const char* name : {"tone_map", "exposure"}) {
-        if ((name == std::string_view("exposure") ? requested.exposure : requested.tone_map).empty()) continue;
+        if (!options.is_given(name)) continue;
         note_given(name, facts.origin);
         for (auto& [entry, value] : facts.origin) {
             auto* const text = std::get_if<std::string>(&value);

@@ -4,21 +4,14 @@
 
 #include <string>
 
-#include "base/error.h"
 #include "session/writing/picture_metadata.h"
+#include "settings/picture_options.h"
 
 namespace pertev {
 
-/// A requested display, as the settings `tone_map` and `exposure`. Empty texts: that of the parts.
-struct MergedDisplay {
-    std::string tone_map, exposure;
-
-    bool is_empty() const { return tone_map.empty() && exposure.empty(); }
-};
-
-/// Changes the display of a merged picture to what one render with these settings has, and what its files say of it.
-/// `film` is one of its files. Throws Error(BadInput) for values that the settings cannot have, and if the light meter
-/// would have to see the scene.
-void show_merged(const MergedDisplay& requested, const std::string& film, PictureFacts& facts);
+/// Changes the display of a merged picture to what one render with the given of `tone_map` and `exposure` has, and what
+/// its files say of it. `film` is one of its files. Throws Error(BadInput) if the light meter would have to see the
+/// scene.
+void show_merged(const PictureOptions& options, const std::string& film, PictureFacts& facts);
 
 } // namespace pertev
