@@ -1,6 +1,8 @@
 """Mutations of readers of files: meshes, materials, textures. See mutations.py."""
 
 MUTATIONS = [
+    ("a strong dispersion is cut", "unit/read_gltf_layers", ("src/formats/gltf/material_layers.cpp", "max(usual / max(dispersion, 1.0f), 1.0f);", "usual;")),
+    ("an animated dispersion changes Abbe's number", "unit/read_gltf_animations", ("src/formats/gltf/material_pointers.cpp", "found.scale = 1.0f / std::max(", "found.scale = 1.0f * std::max(")),
     ("a level of a mip-map is the mean of encoded colours", "unit/mip_maps", ("src/device_scene/halve_texture.h", "load_texel(from, column, row, is_srgb, linear_from_srgb)", "load_texel(from, column, row, false, linear_from_srgb)")),
     ("a level of a mip-map counts each texel it touches as a whole", "unit/mip_maps",
      ("src/device_scene/halve_texture.h", "rows.weight(row) * columns.weight(column)", "1 + 0 * rows.weight(row) * columns.weight(column)")),

@@ -234,7 +234,7 @@ TEST_CASE("KHR_animation_pointer animates numbers of materials, within their ran
     const auto document = [&](const std::string& channels) {
         return builder.json(
             R"("extensionsUsed":["KHR_animation_pointer"],"materials":[{},{"emissiveFactor":[1,0.5,0],"extensions":)"
-            R"({"KHR_materials_emissive_strength":{"emissiveStrength":4},"KHR_materials_ior":{"ior":1.5}}}],)"
+            R"({"KHR_materials_emissive_strength":{"emissiveStrength":4},"KHR_materials_dispersion":{"dispersion":2}}}],)"
             R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":1}]}],"nodes":[{"mesh":0}],)"
             R"("animations":[{"samplers":[)" +
             sampler(1, 2) + "," + sampler(1, 3) + "," + sampler(1, 4) + R"(],"channels":[)" + channels + "]}]");
@@ -279,6 +279,10 @@ TEST_CASE("KHR_animation_pointer animates numbers of materials, within their ran
     REQUIRE(by_strength.animations.at(0).channels.size() == 1);
     CHECK(by_strength.animations[0].channels[0].values == std::vector<float>{0.25f, 0.125f, 0, 2, 1, 0});
     CHECK(test::has_warning(messages, {"/animations/0/channels/1"}));
+    const Scene dispersing =
+        test::read_gltf_text(document(channel("1/extensions/KHR_materials_dispersion/dispersion", 0)), messages);
+    CHECK(dispersing.animations.at(0).channels.at(0).values == std::vector<float>{0.125f, 1}); // over 20 / 2
+    CHECK(dispersing.materials.at(0).transmission_dispersion_abbe_number == 10.0f);
     Messages unused, unknown; // a material that nothing has is not read
     CHECK(test::read_gltf_text(document(channel("0/alphaCutoff", 0)), unused).animations.at(0).channels.empty());
     test::read_gltf_text(document(channel("1/doubleSided", 0) + "," + channel("7/alphaCutoff", 0)), unknown);

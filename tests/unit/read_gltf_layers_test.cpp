@@ -116,6 +116,22 @@ TEST_CASE("transmission without a volume is a thin wall, and with one a share of
     CHECK(half.transmission_weight == 0.5f);
 }
 
+TEST_CASE("dispersion is read as Abbe's number, of solids alone") {
+    const std::string solid = R"(,"KHR_materials_transmission":{"transmissionFactor":1},)"
+                              R"("KHR_materials_volume":{"thicknessFactor":1})";
+    const Material flint = read_with(R"("KHR_materials_dispersion":{"dispersion":0.5})" + solid);
+    CHECK(flint.transmission_dispersion_scale == 0.5f);
+    CHECK(flint.dispersion() == 0.025f); // the reciprocal of 20 / 0.5
+    CHECK(flint.is_stacked());
+    CHECK(read_with(R"("KHR_materials_dispersion":{"dispersion":4})" + solid).dispersion() == 0.2f);
+    CHECK(read_with(R"("KHR_materials_dispersion":{"dispersion":400})" + solid).dispersion() == 1.0f);
+    CHECK(read_with(R"("KHR_materials_dispersion":{})" + solid).dispersion() == 0.0f);
+    CHECK(!read_with(R"("KHR_materials_dispersion":{"dispersion":1})").is_stacked());
+    Messages messages;
+    CHECK(read_with(R"("KHR_materials_dispersion":{"dispersion":-1})" + solid, messages).dispersion() == 0.0f);
+    CHECK(messages.left_out().size() == 1);
+}
+
 TEST_CASE("anisotropy, a thin film and diffuse transmission are read with their textures") {
     const Material brushed = read_with(R"("KHR_materials_anisotropy":{"anisotropyStrength":0.5,)"
                                        R"("anisotropyRotation":0.25,"anisotropyTexture":{"index":0}})");

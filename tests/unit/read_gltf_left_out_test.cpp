@@ -166,10 +166,10 @@ TEST_CASE("an unsupported and unlisted extension is reported once") {
     const std::vector<std::string> left_out = left_out_of(triangle().json(
         R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],"nodes":[{"mesh":0,"extras":)"
         R"({"extensions":{"EXT_private":{}}}},{"extensions":{"EXT_none":null}}],"materials":[{"extensions":)"
-        R"({"KHR_materials_dispersion":{"dispersion":1},"KHR_materials_ior":{}}},{"extensions":)"
-        R"({"KHR_materials_dispersion":{}}}])"));
+        R"({"KHR_materials_scatter":{"scatter":1},"KHR_materials_ior":{}}},{"extensions":)"
+        R"({"KHR_materials_scatter":{}}}])"));
     REQUIRE(left_out.size() == 1);
-    CHECK(left_out[0].find("model.gltf: /materials/0/extensions/KHR_materials_dispersion: ") != std::string::npos);
+    CHECK(left_out[0].find("model.gltf: /materials/0/extensions/KHR_materials_scatter: ") != std::string::npos);
 }
 
 TEST_CASE("a node keeps the readable parts of its transform") {

@@ -10,13 +10,14 @@
 namespace pertev::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 20> kRead = {"EXT_lights_image_based",
+constexpr std::array<std::string_view, 21> kRead = {"EXT_lights_image_based",
                                                     "EXT_mesh_gpu_instancing",
                                                     "EXT_meshopt_compression",
                                                     "KHR_animation_pointer",
                                                     "KHR_materials_anisotropy",
                                                     "KHR_materials_clearcoat",
                                                     "KHR_materials_diffuse_transmission",
+                                                    "KHR_materials_dispersion",
                                                     "KHR_materials_emissive_strength",
                                                     "KHR_materials_ior",
                                                     "KHR_materials_iridescence",

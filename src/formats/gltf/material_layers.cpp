@@ -1,7 +1,7 @@
 // Extensions of glTF materials that add layers to metallic-roughness or change its reflection, as parameters of OpenPBR
 // (scene/material.h), and the material that a variant gives to a primitive.
 //
-// Source: KHR_materials_clearcoat, _sheen, _specular, _transmission, _volume, _anisotropy, _iridescence,
+// Source: KHR_materials_clearcoat, _sheen, _specular, _transmission, _volume, _dispersion, _anisotropy, _iridescence,
 // _diffuse_transmission and _variants.
 
 #include <algorithm>
@@ -98,6 +98,16 @@ void Materials::read_transmission(const JsonValue& source, Material& material) {
     material.transmission_weight = factor;
     material.transmission_texture = texture;
     material.thin_walled = !is_solid;
+}
+
+void Materials::read_dispersion(const JsonValue& source, Material& material) {
+    const std::optional<JsonValue> extension = source.extension("KHR_materials_dispersion");
+    if (!extension) return;
+    const float dispersion = extension->float_or("dispersion", 0);
+    if (!(dispersion >= 0)) throw extension->at("dispersion").error("expected a number of at least 0");
+    constexpr float usual = 20; // Abbe's number of a dispersion of 1
+    material.transmission_dispersion_scale = min(dispersion, 1.0f);
+    material.transmission_dispersion_abbe_number = max(usual / max(dispersion, 1.0f), 1.0f);
 }
 
 void Materials::read_attenuation(const JsonValue& volume, Material& material) {

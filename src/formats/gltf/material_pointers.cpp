@@ -1,11 +1,14 @@
 #include "formats/gltf/material_pointers.h"
 
+#include <algorithm>
+
 #include "formats/files/parse_number.h"
 
 namespace pertev::gltf {
 namespace {
 
 constexpr std::string_view kMaterials = "/materials/";
+constexpr std::string_view kDispersion = "/extensions/KHR_materials_dispersion/dispersion";
 constexpr std::string_view kEmission = "/emissiveFactor",
                            kStrength = "/extensions/KHR_materials_emissive_strength/emissiveStrength";
 
@@ -25,6 +28,7 @@ constexpr NamedNumber kNumbers[] = {
     {"/extensions/KHR_materials_transmission/transmissionFactor", "transmission_weight"},
     {"/extensions/KHR_materials_volume/attenuationDistance", "transmission_depth"},
     {"/extensions/KHR_materials_volume/attenuationColor", "transmission_color"},
+    {kDispersion, "transmission_dispersion_scale"},
     {"/extensions/KHR_materials_clearcoat/clearcoatFactor", "coat_weight"},
     {"/extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor", "coat_roughness"},
     {"/extensions/KHR_materials_clearcoat/clearcoatNormalTexture/scale", "coat_normal_scale"},
@@ -60,6 +64,9 @@ std::optional<MaterialPointer> find_material_pointer(const Document& document, s
         if (path == kEmission) {
             const auto extension = material.extension("KHR_materials_emissive_strength");
             if (extension) found.scale = extension->float_or("emissiveStrength", 1);
+        } else if (path == kDispersion) { // Abbe's number stays that of the material
+            const auto extension = material.extension("KHR_materials_dispersion");
+            if (extension) found.scale = 1.0f / std::max(extension->float_or("dispersion", 0), 1.0f);
         } else if (path == kStrength) {
             const std::array<float, 3> color = material.floats_or<3>("emissiveFactor", {0, 0, 0});
             found.components = 1;

@@ -57,6 +57,7 @@ Material Materials::read(const JsonValue& source) {
     read_alpha(source, material);
     attempt([&] { material.ior = read_ior(source); });
     attempt([&] { read_transmission(source, material); });
+    attempt([&] { read_dispersion(source, material); });
     attempt([&] { read_anisotropy(source, material); });
     attempt([&] { read_thin_film(source, material); });
     attempt([&] { read_diffuse_transmission(source, material); });
