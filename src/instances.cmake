@@ -259,10 +259,10 @@ pertev_launches(integrators/path/shade_reused_frames.cu
 pertev_launches(integrators/path/shade_stacks.cu
   integrators/path/path_stages.h
   STAGES "Shade<kAllMaterials, FilmListeners>"
-    "Shade<kAllMaterials | kMoving | kBatched | kMipMapped, FilmListeners>"
-    "Shade<kAllMaterials | kMipMapped, FrameListeners>"
-    "Shade<kAllMaterials | kMipMapped, ReuseListeners>"
-    "Shade<kAllMaterials | kMoving | kMipMapped, LayerListeners>")
+    "Shade<kAllMaterials | kMoving | kBatched | kMipMapped | kNested, FilmListeners>"
+    "Shade<kAllMaterials | kMipMapped | kNested, FrameListeners>"
+    "Shade<kAllMaterials | kMipMapped | kNested, ReuseListeners>"
+    "Shade<kAllMaterials | kMoving | kMipMapped | kNested, LayerListeners>")
 pertev_launches(integrators/photon_map/photon_stages.cu
   integrators/photon_map/gather_stages.h integrators/photon_map/order_photons.h integrators/photon_map/photon_stages.h
   integrators/photon_map/photon_targets.h

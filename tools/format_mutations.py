@@ -59,5 +59,5 @@ MUTATIONS = [
     ("a material's parameter has no range", "unit/set_materials",
      ("src/session/set_materials.cpp", "*value >= least && *value <= most", "*value >= -1e30f")),
     ("an opened scene keeps its materials", "unit/set_materials",
-     ("src/session/opening/open_scene.cpp", "    change_materials(options, scene);\n    if (options.animation", "    if (options.animation")),
+     ("src/session/opening/open_scene.cpp", "    change_materials(options, scene);\n    if (const", "    if (const")),
 ]

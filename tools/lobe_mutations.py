@@ -1,6 +1,19 @@
 """Ways to break lobes with parameters of OpenPBR and of other renderers (see mutations.py)."""
 
 MUTATIONS = [
+    ("an inner solid is no more than the outer one", "unit/nest_solids statistical/nested_solids", ("src/device_scene/nest_solids.cpp", "std::tuple(a.priority, a.depth, b.instance) < std::tuple(b.priority, b.depth, a.instance)", "std::tuple(a.priority, b.instance) < std::tuple(b.priority, a.instance)")),
+    ("solids have no priority", "unit/nest_solids statistical/nested_solids", ("src/device_scene/nest_solids.cpp", ".priority = material.priority", ".priority = 0 * material.priority")),
+    ("open meshes are solids", "unit/nest_solids", ("src/device_scene/nest_solids.cpp", "return !forwards.empty() && forwards == backwards;", "return !forwards.empty();")),
+    ("a nested interface is one with a vacuum", "statistical/nested_solids", ("src/device_scene/nested_solids.h", "if (around == nullptr) return;", "if (around != nullptr || around == nullptr) return;")),
+    ("a solid within one that wins refracts", "statistical/nested_solids", ("src/device_scene/nested_solids.h", "if (outside.top() > rank) {", "if (false && outside.top() > rank) {")),
+    ("a path keeps the solids of its camera", "statistical/nested_solids", ("src/integrators/path/path_vertex.h", "path.interior = interior_towards(scene, path, vertex, path.direction);", "static_cast<void>(0);")),
+    ("a queue of paths forgets the solids around them", "statistical/nested_solids", ("src/integrators/path/path_stages.h", "next.interiors[slots.path] = path.interior.words();", "next.interiors[slots.path] = {};")),
+    ("a stack of rays forgets the solids around them", "statistical/nested_solids", ("src/integrators/ray_tree/tree_memory.h", "= interior.words();", "= InteriorList{0 * interior.ranks}.words();")),
+    ("a camera is never inside a nested solid", "statistical/nested_solids", ("src/session/picture_renderer.cpp", "    picture.camera.interior = scene_.interior_of(camera);\n", "")),
+    ("cameras of a batch are never inside a nested solid", "consistency/camera_batch", ("src/session/batch_render.cpp", "        rays.interior = pictures_.scene().interior_of(camera);\n", "")),
+    ("a light in nested solids is not dimmed on the way", "statistical/nested_solids", ("src/integrators/path/path_vertex.h", "if (is_within) light.radiance =", "if (false) light.radiance =")),
+    ("solids that touch leave air between", "unit/nest_solids statistical/nested_solids", ("src/device_scene/close_gaps.cpp", "point + 2 * later.gap * ways[i]", "point + 0 * later.gap * ways[i]")),
+    ("what is near counts as touching", "unit/nest_solids", ("src/device_scene/close_gaps.cpp", "<= gap * gap) return true;", "<= 1e4f * gap * gap) return true;")),
     ("dispersion without the density of two channels", "statistical/openpbr_lobes",
      ("src/shading/lobes/glass_lobe.h", "pdf += (1.0f / 3.0f) * value.pdf;", "pdf = value.pdf;")),
     ("all colours refracted as red", "statistical/openpbr_lobes",

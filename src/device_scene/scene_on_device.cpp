@@ -171,6 +171,7 @@ void SceneOnDevice::update(Queue& queue, const PlacedScene& prepared, uint32_t p
     if ((parts & kPartPoses) != 0) update_poses(prepared);
     if ((parts & kPartInstances) != 0) update_instances(queue, prepared);
     if ((parts & kPartMaterials) != 0) update_materials(queue, *prepared.scene);
+    if ((parts & (kPartGeometry | kPartInstances | kPartMaterials)) != 0) update_nesting(queue, prepared);
     if ((parts & kPartTextures) != 0) update_textures(queue, *prepared.scene);
     if ((parts & kPartLights) != 0) update_lights(queue, prepared); // after the textures, which it reads
     if ((parts & kPartEnvironment) != 0) update_environment(queue, prepared);
@@ -214,6 +215,17 @@ void SceneOnDevice::update_instances(Queue& queue, const PlacedScene& prepared) 
 void SceneOnDevice::update_materials(Queue& queue, const Scene& scene) {
     std::vector<MaterialParameters> materials;
     list_materials(scene, materials, view_).upload(queue, materials_, "materials");
+    variant_ = view_.variant;
+}
+
+void SceneOnDevice::update_nesting(Queue& queue, const PlacedScene& prepared) {
+    nested_ = NestedSolids(*prepared.scene, prepared.centre);
+    view_.nesting = {};
+    view_.variant = nested_.is_empty() ? variant_ : ShadingVariant::General;
+    PartArrays arrays;
+    arrays.add(nested_.ranks(), view_.nesting.ranks);
+    arrays.add(nested_.instances(), view_.nesting.solids);
+    arrays.upload(queue, nesting_, "nested solids");
 }
 
 void SceneOnDevice::update_textures(Queue& queue, const Scene& scene) {

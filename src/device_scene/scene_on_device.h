@@ -9,6 +9,7 @@
 #include "device/buffer.h"
 #include "device_scene/deforming_meshes.h"
 #include "device_scene/mip_map_levels.h"
+#include "device_scene/nest_solids.h"
 #include "device_scene/opacity_micromaps.h"
 #include "device_scene/placed_scene.h"
 #include "device_scene/scene_view.h"
@@ -39,6 +40,7 @@ public:
     SceneOnDevice(Queue& queue, const PlacedScene& prepared);
 
     const SceneView& view() const { return view_; }
+    const NestedSolids& nested_solids() const { return nested_; }
 
     /// Uploads only `parts`; reuses each part's buffer if it is large enough.
     void update(Queue& queue, const PlacedScene& prepared, uint32_t parts);
@@ -63,7 +65,8 @@ private:
     void update_textures(Queue& queue, const Scene& scene);
     void update_lights(Queue& queue, const PlacedScene& prepared);
     void update_environment(Queue& queue, const PlacedScene& prepared);
-    void update_shapes(Queue& queue, const PlacedScene& prepared); // before geometry
+    void update_nesting(Queue& queue, const PlacedScene& prepared); // after instances and materials
+    void update_shapes(Queue& queue, const PlacedScene& prepared);  // before geometry
     void update_poses(const PlacedScene& prepared) { deforming_.set_poses(prepared); }
     void update_micromaps(Queue& queue, const Scene& scene, uint32_t parts); // after all of these
 
@@ -74,7 +77,9 @@ private:
     std::vector<TextureImageView> images_; // on the device, without mip-maps
     std::vector<bool> are_srgb_;           // [images] colours are sRGB-encoded
     std::optional<MipMapLevels> mip_maps_;
-    Buffer<std::byte> geometry_, instances_, materials_, lights_, environment_, textures_;
+    NestedSolids nested_;
+    ShadingVariant variant_ = ShadingVariant::General; // variant of the materials alone
+    Buffer<std::byte> geometry_, instances_, materials_, lights_, environment_, textures_, nesting_;
 };
 
 /// The simplest shading variant that covers the scene.

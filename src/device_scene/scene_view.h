@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "device_scene/interior_list.h"
 #include "device_scene/micro_triangle.h"
 #include "math/rigid_motion.h"
 #include "math/transform.h"
@@ -61,6 +62,7 @@ struct SceneView {
     uint32_t background;     // 1 + the instance that layers show as background (Instance::is_background); 0: none
     uint64_t triangle_count; // total of all instances
     MotionsView motions;     // while the shutter is open
+    NestingView nesting;     // solids that lie in each other; then `variant` is General
 };
 
 /// Returns whether a camera ray that hits this instance shows the background; true for kNoHit too.

@@ -1,9 +1,10 @@
 #pragma once
 
-// Light that solids absorb along a straight segment (KHR_materials_volume). No path knows in which solid it is. A
-// segment is in the solid that it leaves inwards or reaches from inside, by the fronts of the triangles at its two
-// ends. The rule is equal from both ends, so all integrators agree. Where both are solids, it is the one that comes
-// first in the scene. A segment that ends nowhere, and one between two surfaces that are no solids, is in a vacuum.
+// Light that solids absorb along a straight segment (KHR_materials_volume). Unless solids lie in each other
+// (nested_solids.h), no path knows in which solid it is. A segment is in the solid that it leaves inwards or reaches
+// from inside, by the fronts of the triangles at its two ends. The rule is equal from both ends, so all integrators
+// agree. Where both are solids, it is the one that comes first in the scene. A segment that ends nowhere, and one
+// between two surfaces that are no solids, is in a vacuum.
 
 #include "device_scene/moved_surface.h"
 #include "math/portable_pow.h"
@@ -19,6 +20,14 @@ HD inline bool points_inwards(const SceneView& scene, TriangleId triangle, Vec3 
     return dot(normal, MovedHit(scene, at, time).back(direction)) < 0;
 }
 
+/// Returns the transmittance of `distance` metres in a solid that absorbs; 1 if they do not end.
+HD inline Rgb transmittance_of_depth(const MaterialParameters& solid, float distance) {
+    if (!(distance < kInfinity)) return {1, 1, 1};
+    const float depths = distance / solid.transmission_depth;
+    const Rgb color = solid.transmission_color;
+    return {pow(color.r, depths), pow(color.g, depths), pow(color.b, depths)};
+}
+
 /// Returns the transmittance of `distance` metres along `direction` from the triangle `start` to `end`; either may have
 /// kNoHit as its instance.
 HD_CALL inline Rgb transmittance_of_solid(const SceneView& scene, TriangleId start, TriangleId end, Vec3 direction,
@@ -32,10 +41,7 @@ HD_CALL inline Rgb transmittance_of_solid(const SceneView& scene, TriangleId sta
     const bool starts_first = start.instance <= end.instance;
     look_at(starts_first ? end : start, starts_first ? -direction : direction);
     look_at(starts_first ? start : end, starts_first ? direction : -direction);
-    if (solid == nullptr || !(distance < kInfinity)) return {1, 1, 1};
-    const float depths = distance / solid->transmission_depth;
-    const Rgb color = solid->transmission_color;
-    return {pow(color.r, depths), pow(color.g, depths), pow(color.b, depths)};
+    return solid != nullptr ? transmittance_of_depth(*solid, distance) : Rgb{1, 1, 1};
 }
 
 /// Returns that of the ray that found `hit`, with a unit direction. Only scenes of the general variant have solids that

@@ -35,6 +35,7 @@ struct WorkSize {
     bool has_times = false;         // something moves while the shutter is open
     bool splits_light = false;      // a frame (FilmView::frame) separates diffuse light from the rest
     bool records_bounce = false;    // a frame records its first bounce
+    bool has_interiors = false;     // solids lie in each other (SceneView::nesting)
 
     uint64_t pixels() const { return uint64_t(width) * height; }
     uint64_t all() const { return pixels() * samples; }
@@ -45,7 +46,8 @@ inline WorkSize size_of(const PictureView& picture, const SceneTracer& tracer, u
             .samples = samples,
             .triangles = picture.scene.triangle_count,
             .traverses_on_host = tracer.host_trees() != nullptr,
-            .has_times = picture.scene.motions.is_there()};
+            .has_times = picture.scene.motions.is_there(),
+            .has_interiors = picture.scene.nesting.is_there()};
 }
 
 class Integrator {

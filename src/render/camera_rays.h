@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "device_scene/interior_list.h"
 #include "math/sampler.h"
 #include "render/camera_view.h"
 #include "render/pixel_filter.h"
@@ -23,6 +24,7 @@ struct CameraRays {
     uint32_t width, height; // pixels
     bool is_open = false;   // whether the shutter is open and something moves
     MotionTrack motion;     // motion of the camera
+    InteriorList interior;  // nested solids that hold the camera at rest
 
     /// Upper left corner of a pixel, in pixels.
     HD Vec2 corner_of(uint32_t pixel) const {
@@ -81,7 +83,7 @@ private:
 inline CameraRays make_camera_rays(const Camera& camera, const PixelFilterView& filter, uint32_t width, uint32_t height,
                                    Vec3 centre) {
     const Vec3 axis = normalize(transform_vector(camera.world_from_camera, {0, 0, -1}));
-    return {make_camera_view(camera, width, height, centre), filter, axis, width, height, false, {}};
+    return {make_camera_view(camera, width, height, centre), filter, axis, width, height, false, {}, {}};
 }
 
 } // namespace pertev

@@ -60,6 +60,7 @@ struct MaterialParameters {
     float roughness = 1; // [0, 1], perceptual: alpha_ggx = roughness^2; multiplied by roughness_texture's channel
     float ior = 1.5f;    // for Dielectric and MetallicRoughness: inside over outside, >= 1
     float normal_scale = 1;
+    float priority = 0; // the solid of the greatest one fills what several enclose (device_scene/nest_solids.h)
 
     TextureRef base_color_texture;
     TextureRef alpha_texture; // one channel, for OBJ map_d; not used by glTF
@@ -192,6 +193,7 @@ void visit_parameters(Parameters& m, const Number& number, const Texture& textur
     number(m.thin_film_least_nm, "thin_film_least_nm", 0, 0x1p20f);
     number(m.diffuse_transmission_weight, "diffuse_transmission_weight", 0, 1);
     color(m.diffuse_transmission_color, "diffuse_transmission_color", 0, 1);
+    number(m.priority, "priority", -0x1p10f, 0x1p10f);
     texture(m.base_color_texture, "base_color_texture");
     texture(m.alpha_texture, "alpha_texture");
     texture(m.metallic_texture, "metallic_texture");

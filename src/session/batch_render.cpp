@@ -48,6 +48,7 @@ PictureView BatchRender::view_of_chunk(uint32_t count) {
     for (uint32_t k = done_; k < done_ + count; ++k) {
         const Camera& camera = batch_.cameras[k];
         CameraRays rays = make_camera_rays(camera, picture.camera.filter, settings_.width, settings_.height, centre);
+        rays.interior = pictures_.scene().interior_of(camera);
         if (!camera.motion.empty()) {
             rays.motion = {memory_.motions.data() + motions.size(), camera.world_from_camera.translation - centre,
                            static_cast<uint32_t>(camera.motion.size() - 1)};

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "denoise/oidn/oidn_library.h"
+#include "device_scene/nest_solids.h"
 #include "render/lens_distortion.h"
 #include "render/raster/pinhole.h"
 #include "settings/value_names.h"
@@ -135,6 +136,11 @@ std::optional<Remark> why_dark(const RenderSettings& settings, const Scene& scen
 }
 
 void check_light(const RenderSettings& settings, const Scene& scene, Sink& sink) {
+    if (describe(settings.integrator).ignores_nesting && NestedSolids(scene, {}).is_nested()) {
+        sink.leave_out({"integrator", std::string(integrator_name(settings)),
+                        "solids lie in each other, and it refracts at each as in a vacuum (`integrator=path`, "
+                        "whitted and distributed do not)"});
+    }
     if (const auto why = why_dark(settings, scene)) throw Error(ErrorCode::BadInput, *why);
     const bool is_ambient = needs_punctual_lights(settings.integrator) && settings.ambient;
     if (!is_ambient && !has_any_light(scene) && !has_unlit(scene)) {

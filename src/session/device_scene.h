@@ -49,6 +49,10 @@ public:
     bool is_there() const { return scene_.has_value(); }
     /// Numbers of triangles of all instances.
     const std::vector<uint32_t>& triangle_counts() const { return triangle_counts_; }
+    /// Returns the nested solids that hold a camera, for CameraRays.
+    InteriorList interior_of(const Camera& camera) const {
+        return scene_->nested_solids().at(camera.world_from_camera.translation - view().centre);
+    }
     /// Returns the view of the scene; there must be a scene and a tracer.
     const SceneView& view() const;
     SceneTracer& tracer() { return tracer_.value(); }

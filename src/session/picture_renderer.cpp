@@ -60,6 +60,7 @@ PictureView PictureRenderer::view_of(const Camera& camera, const RenderSettings&
                            make_camera_rays(camera, filter_.set(settings.filter, filter_radius_of(settings)),
                                             settings.width, settings.height, scene.centre),
                            settings.transparent};
+    picture.camera.interior = scene_.interior_of(camera);
     picture.camera.motion = motion_of(camera, scene.centre);
     picture.camera.is_open = picture.camera.motion.moves() || scene.motions.is_there();
     return picture;

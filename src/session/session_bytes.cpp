@@ -58,6 +58,7 @@ public:
         }
         size.traverses_on_host = can_traverse_on_host(tracers, queue.is_cuda());
         size.has_times = scene.motions != nullptr;
+        size.has_interiors = !scene_.nested_solids().is_empty();
         if (size.samples > 0) integrator_ = make_integrator(queue, settings);
         if (integrator_) integrator_->reserve(size);
         take_deforming_trees(scene, tracers);

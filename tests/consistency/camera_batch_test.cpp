@@ -13,6 +13,7 @@
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 #include "tests/support/rushing_scene.h"
+#include "tests/support/solid_scenes.h"
 #include "tests/support/stop_after.h"
 #include "tests/support/thrown_error.h"
 
@@ -137,6 +138,31 @@ TEST_CASE("each picture of a batch has the hash of a single render, for any chun
                 }
             }
         }
+    }
+}
+
+TEST_CASE("each camera of a batch knows the nested solids that hold it") {
+    Messages messages;
+    Scene scene;
+    scene.environment = test::make_mixed_scene().environment;
+    Material amber = test::glass(1.5f);
+    amber.transmission_color = {0.9f, 0.5f, 0.1f};
+    amber.transmission_depth = 0.5f;
+    test::add(scene, test::ball({0, 0, 0}, 1), amber);
+    test::add(scene, test::ball({0.3f, 0, 0}, 0.4f), test::glass(1));
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    CameraBatch batch;
+    for (const Vec3 eye : {Vec3{-0.5f, 0, 0}, Vec3{0.3f, 0, 0}, Vec3{0, 1, 3}}) {
+        Camera camera;
+        camera.world_from_camera = look_at(eye, {0.2f, 0.1f, -0.3f}, {0, 1, 0});
+        batch.cameras.push_back(camera);
+    }
+    batch.seeds = {1, 2, 3};
+    RenderSettings settings = batch_settings(LayersAt::Samples);
+    Queue queue = test::requested_queue();
+    for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
+        settings.body = body;
+        CHECK(hashes_of(queue, prepared, batch, settings, 2) == hashes_alone(queue, prepared, batch, settings));
     }
 }
 

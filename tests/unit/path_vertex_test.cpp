@@ -178,12 +178,12 @@ TEST_CASE("path vertex: the variant of a mask of features is the smallest that c
     CHECK(chosen(films, kAlpha) == kDiffuse);
     CHECK(chosen(films, kLayered) == kUnstacked);
     CHECK(chosen(films, kStacked) == kAllMaterials);
-    CHECK(chosen(films, kStacked | kMoving) == (kAllMaterials | kMoving | kBatched | kMipMapped));
+    CHECK(chosen(films, kStacked | kMoving) == (kAllMaterials | kMoving | kBatched | kMipMapped | kNested));
     CHECK(chosen(films, kMoving) == kMoving);
     CHECK(chosen(films, kTextured | kMoving) == (kDiffuse | kMoving));
     CHECK(chosen(FrameFeatures(), kMoving) == ~0u);
     CHECK(chosen(LayerFeatures(), 0) == kUnstacked);
-    CHECK(chosen(LayerFeatures(), kStacked) == (kAllMaterials | kMoving | kMipMapped));
+    CHECK(chosen(LayerFeatures(), kStacked) == (kAllMaterials | kMoving | kMipMapped | kNested));
     for (const ShadingVariant variant :
          {ShadingVariant::General, ShadingVariant::Unstacked, ShadingVariant::Diffuse, ShadingVariant::PlainDiffuse}) {
         CHECK(variant_of(features_of(variant)) == variant);

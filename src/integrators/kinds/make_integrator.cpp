@@ -170,7 +170,10 @@ constexpr std::array kIntegrators = {
                                           .has_mean_ambient = true,
                                           .samples_at_once = ReyesIntegrator::samples_at_once}),
     row<SubpathIntegrator<ParticlesAlone>, subpath_settings>(
-        {.value = Kind::Light, .name = "light", .light = "L((D|G|S)*(D|G))?E: nothing in mirrors or clear glass"}),
+        {.value = Kind::Light,
+         .name = "light",
+         .light = "L((D|G|S)*(D|G))?E: nothing in mirrors or clear glass",
+         .ignores_nesting = true}),
     row<SubpathIntegrator<BothDirections>, subpath_settings>(
         {.value = Kind::Bidirectional,
          .name = "bidirectional",
@@ -179,6 +182,7 @@ constexpr std::array kIntegrators = {
          .lacks = "light of point, spot and directional lights that mirrors or clear glass send on to other surfaces, "
                   "as mirrors and clear glass show it",
          .finds_all_light = true,
+         .ignores_nesting = true,
          .max_depth = kMaxConnectedDepth}),
     row<PhotonMapIntegrator, photon_map_request>({.value = Kind::PhotonMap,
                                                   .name = "photon_map",
@@ -187,6 +191,7 @@ constexpr std::array kIntegrators = {
                                                   .settings = "photons gather radius caustic_radius nearest",
                                                   .finds_all_light = true,
                                                   .needs_any_light = true,
+                                                  .ignores_nesting = true,
                                                   .max_depth = kMaxPhotonDepth,
                                                   .check = check_photons,
                                                   .memory = memory_of_photons}),
@@ -197,6 +202,7 @@ constexpr std::array kIntegrators = {
          .light_with_caustics = "as path, interpolated between records",
          .settings = "accuracy hemisphere_rays show_records records",
          .finds_all_light = true,
+         .ignores_nesting = true,
          .memory = memory_of_records}),
     row<RadiosityIntegrator, radiosity_settings>(
         {.value = Kind::Radiosity,

@@ -105,6 +105,8 @@ struct IntegratorDescriptor {
     bool has_mean_ambient = false;
     /// True if it renders nothing in a scene without any light.
     bool needs_any_light = false;
+    /// True if it refracts at each solid as in a vacuum, although solids lie in each other (SceneView::nesting).
+    bool ignores_nesting = false;
     /// True if the scene's light is solved before the first sample (radiosity/).
     bool is_solved = false;
     /// The largest PathSettings::max_depth.

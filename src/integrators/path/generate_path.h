@@ -16,6 +16,7 @@ HD inline PathState begin_path(const CameraRays& camera, uint32_t pixel, uint32_
     path.pixel = pixel;
     path.sample = sample;
     path.time = time;
+    path.interior = camera.interior;
     path.bsdf_pdf = camera.pdf_of_surface(ray.direction);
     return path;
 }

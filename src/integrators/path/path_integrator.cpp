@@ -79,6 +79,9 @@ void PathIntegrator::Wavefront::take(Queue& queue, const PathParts& parts) {
         path_times = {queue, capacity, "path rays"};
         shadow_times = {queue, capacity, "shadow rays"};
     }
+    if (parts.has_interiors && sets[0].interiors.size() == 0) {
+        for (Paths& set : sets) set.interiors = {queue, capacity, "paths"};
+    }
     if (parts.has_layers && layer_parts.size() == 0) {
         for (Paths& set : sets) set.states = {queue, capacity, "paths"};
         layer_diffuse = {queue, capacity, "shadow rays"};
@@ -93,8 +96,8 @@ void PathIntegrator::Wavefront::take(Queue& queue, const PathParts& parts) {
 
 PathQueueView PathIntegrator::Wavefront::paths(uint32_t of_round) const {
     const Paths& set = sets[of_round % 2];
-    return {set.rays.data(),       set.starts.data(),   path_keys.data(),
-            set.throughput.data(), set.radiance.data(), path_times.data()};
+    return {set.rays.data(),     set.starts.data(), path_keys.data(),    set.throughput.data(),
+            set.radiance.data(), path_times.data(), set.interiors.data()};
 }
 
 ShadowQueueView PathIntegrator::Wavefront::shadows() const {
@@ -137,7 +140,8 @@ void PathIntegrator::reserve(const WorkSize& size) {
     allocate_wavefronts(size.all(), {.has_times = size.has_times,
                                      .has_layers = settings_.layers != nullptr,
                                      .splits_light = size.splits_light,
-                                     .records_bounce = size.records_bounce});
+                                     .records_bounce = size.records_bounce,
+                                     .has_interiors = size.has_interiors});
 }
 
 void PathIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) {
@@ -157,6 +161,7 @@ void PathIntegrator::allocate_wavefronts(uint64_t samples, const PathParts& part
     parts_.has_layers |= parts.has_layers;
     parts_.splits_light |= parts.splits_light;
     parts_.records_bounce |= parts.records_bounce;
+    parts_.has_interiors |= parts.has_interiors;
     const Size size = size_for(samples, batch_, queue_.is_cuda(), settings_.path.max_depth, parts_);
     // Two wavefronts can serve as one, so that passes of few samples and of many use the same memory.
     const uint64_t held = wavefronts_.empty() ? 0 : wavefronts_.size() * uint64_t(wavefronts_.front().capacity);

@@ -86,8 +86,9 @@ private:
             Buffer<Ray> rays;
             Buffer<Uint2> starts;
             Buffer<Float4> throughput, radiance;
-            Buffer<Float4> diffuse; // if frames split light
-            Buffer<Uint2> states;   // if there are layers
+            Buffer<Float4> diffuse;  // if frames split light
+            Buffer<Uint2> states;    // if there are layers
+            Buffer<Uint2> interiors; // if solids are nested
         };
         uint32_t capacity;
         uint32_t in_flight = 0; // maximum for the current call of render()

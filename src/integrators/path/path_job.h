@@ -31,6 +31,7 @@ enum Feature : Features {
     kBatched = 16,   // several pictures (PictureView::batch); code without it renders one
     kStacked = 32,   // coats, fuzz, thin walls and weighted reflections
     kMipMapped = 64, // textures are filtered; code with it filters where the settings say so
+    kNested = 128,   // solids lie in each other; code with it also serves scenes without
 };
 inline constexpr Features kPlainDiffuse = 0, kDiffuse = kTextured | kAlpha, kUnstacked = kDiffuse | kLayered,
                           kAllMaterials = kUnstacked | kStacked;
@@ -66,7 +67,8 @@ inline Features features_for(const PathJob& job) {
                            (picture.camera.is_open && !job.film.frame.is_there() && (job.film.aovs & kAovDepth) != 0);
     const bool filters = job.settings.mip_maps == MipMaps::On && has_textures(picture.scene.variant);
     return features_of(picture.scene.variant) | (has_times ? Features{kMoving} : 0) |
-           (picture.batch.is_there() ? Features{kBatched} : 0) | (filters ? Features{kMipMapped} : 0);
+           (picture.batch.is_there() ? Features{kBatched} : 0) | (filters ? Features{kMipMapped} : 0) |
+           (picture.scene.nesting.is_there() ? Features{kNested} : 0);
 }
 
 /// Returns the key of the random numbers of a path.
@@ -94,9 +96,9 @@ struct CompiledFor {
 using FilmFeatures =
     CompiledFor<kPlainDiffuse, kDiffuse, kUnstacked, kAllMaterials, kPlainDiffuse | kMoving, kDiffuse | kMoving,
                 kUnstacked | kMoving, kPlainDiffuse | kBatched, kDiffuse | kBatched, kUnstacked | kBatched,
-                kUnstacked | kMoving | kBatched, kAllMaterials | kMoving | kBatched | kMipMapped>;
+                kUnstacked | kMoving | kBatched, kAllMaterials | kMoving | kBatched | kMipMapped | kNested>;
 using FrameFeatures =
-    CompiledFor<kPlainDiffuse, kDiffuse | kMipMapped, kUnstacked | kMipMapped, kAllMaterials | kMipMapped>;
-using LayerFeatures = CompiledFor<kUnstacked, kUnstacked | kMoving, kAllMaterials | kMoving | kMipMapped>;
+    CompiledFor<kPlainDiffuse, kDiffuse | kMipMapped, kUnstacked | kMipMapped, kAllMaterials | kMipMapped | kNested>;
+using LayerFeatures = CompiledFor<kUnstacked, kUnstacked | kMoving, kAllMaterials | kMoving | kMipMapped | kNested>;
 
 } // namespace pertev

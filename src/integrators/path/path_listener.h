@@ -46,6 +46,8 @@ struct SurfaceVertex {
     HD Ray ray_to(const LightSample& light, float emitter_error) const {
         return ray_to_light(light, surface.position, surface.error, surface.geometric_normal, emitter_error);
     }
+    /// Returns whether a ray along `wi` stays on the surface's side of `wo`.
+    HD bool stays(Vec3 wi) const { return surface.same_side(wo, wi); }
     /// Returns the triangle that its rays leave.
     HD TriangleId triangle() const { return surface.triangle; }
 };

@@ -24,6 +24,7 @@ struct PathQueueView {
     Float4* throughput; // rgb, bits of (depth | rough_depth << 16)
     Float4* radiance;   // rgb, bsdf_pdf; for an ended path rgb, bits of the pixel
     float* times;       // the times of RayQueueView; null unless something moves while the shutter is open
+    Uint2* interiors;   // PathState::interior; null unless solids are nested
 
     /// Query of the rays at slots 0, 1, ..., or of those from the camera, backwards from `last`.
     RayQueueView query() const {

@@ -36,6 +36,7 @@ struct PathParts {
     bool has_layers = false;     // the film has layers of light paths
     bool splits_light = false;   // a frame of samples separates kinds of light (FilmView::frame)
     bool records_bounce = false; // a frame stores its first bounce
+    bool has_interiors = false;  // solids lie in each other
 };
 
 struct PathSettings {

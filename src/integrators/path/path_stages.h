@@ -100,6 +100,7 @@ struct Shade {
             path = begins ? paths.load_begun(slot, job.picture.camera) : paths.load(slot);
             const SampleKey of_sample = sample_key<kFeatures>(job, path.pixel, path.sample);
             if ((kFeatures & kStacked) != 0 && !begins) path.start = paths.start_of(slot);
+            if constexpr ((kFeatures & kNested) != 0) path.interior = interior_of(path.pixel, slot, begins);
             if (kMoves) path.time = job.picture.camera.time(job.settings.sampler, of_sample);
             const Hit hit = hits.load(slot);
             key = coin_key(of_sample, path.depth, true);
@@ -123,6 +124,9 @@ struct Shade {
             next.store(slots.path, path, sample_key<kFeatures>(job, path.pixel, path.sample),
                        job.picture.scene.any_alpha != 0);
             if (kMoves && next.times != nullptr) next.times[slots.path] = path.time;
+            if ((kFeatures & kNested) != 0 && next.interiors != nullptr) {
+                next.interiors[slots.path] = path.interior.words();
+            }
         } else {
             next.store_ended(slots.path, path);
         }
@@ -133,6 +137,13 @@ struct Shade {
         typename Listener::ShadowData shadow_data{};
         listener.save_shadow_data(shadow_data);
         Listener::store_shadow_data(listened, slots.shadow, shadow_data);
+    }
+
+private:
+    HD InteriorList interior_of(uint32_t pixel, uint32_t slot, bool begins) const {
+        if (!begins) return paths.interiors != nullptr ? InteriorList::of_words(paths.interiors[slot]) : InteriorList{};
+        const bool has_batch = (kFeatures & kBatched) != 0 && job.picture.batch.is_there();
+        return has_batch ? job.picture.batch.camera_of(pixel).interior : job.picture.camera.interior;
     }
 };
 

@@ -25,6 +25,7 @@ struct PathState {
     uint32_t depth = 0;       // scattering vertices so far
     uint32_t rough_depth = 0; // scatterings so far that were not delta
     float time = kAtRest;     // time of all its rays while the shutter is open
+    InteriorList interior;    // nested solids that hold the ray, if any are nested
 };
 
 /// A shadow ray of sample_direct: `contribution` counts if nothing is hit between origin and origin + direction *

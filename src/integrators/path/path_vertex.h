@@ -8,7 +8,7 @@
 // sampling, power heuristic) and 10.4 (Russian roulette).
 
 #include "device_scene/moved_surface.h"
-#include "device_scene/solid_absorption.h"
+#include "device_scene/nested_solids.h"
 #include "device_scene/surface.h"
 #include "integrators/path/medium.h"
 #include "integrators/path/path_listener.h"
@@ -93,6 +93,13 @@ HD INLINE_ON_DEVICE void add_surface_emission(const PathJob& job, PathState& pat
     add_emitted(path, light, listener);
 }
 
+/// Returns the nested solids that hold a ray from the path's vertex along `wi`.
+template <class Vertex>
+HD inline InteriorList interior_towards(const SceneView& scene, const PathState& path, const Vertex& vertex, Vec3 wi) {
+    if (!scene.nesting.is_there() || vertex.stays(wi)) return path.interior;
+    return solids_behind(scene, path.interior, vertex.triangle().instance);
+}
+
 /// Samples one point of one light for the vertex, by its `context`. Returns whether `shadow` must be traced.
 template <Features kFeatures, class Vertex, class Numbers, class Listener>
 HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path, const Vertex& vertex,
@@ -120,9 +127,17 @@ HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path
     if (!light.is_delta && settings.strategy == LightStrategy::Mis) {
         weight = power_heuristic(light.pdf, scattered.pdf);
     }
+    bool is_within = false; // nested solids, by which light is then absorbed
+    if constexpr ((kFeatures & kNested) != 0) {
+        const InteriorList around = interior_towards(scene, path, vertex, light.wi);
+        is_within = around.top() != 0;
+        if (is_within) light.radiance = light.radiance * transmittance_within(scene, around, light.distance);
+    }
     if constexpr ((kFeatures & kStacked) != 0) {
-        light.radiance =
-            light.radiance * transmittance_to_light<variant_of(kFeatures)>(scene, vertex.triangle(), light, path.time);
+        if (!is_within) {
+            light.radiance = light.radiance *
+                             transmittance_to_light<variant_of(kFeatures)>(scene, vertex.triangle(), light, path.time);
+        }
     }
     shadow.contribution = clamp_contribution(settings, path.depth + 1, weight,
                                              path.throughput * scattered.f * ((weight / light.pdf) * light.radiance));
@@ -224,6 +239,18 @@ HD INLINE_ON_DEVICE bool shade_in_medium(const PathJob& job, PathState& path, co
     return sample_scattering(job.settings, path, vertex, numbers, listener);
 }
 
+/// Follows the path to a surface among nested solids: which of them hold it there, what they absorb on the way, and
+/// the surface's interface. Returns whether solids are nested.
+HD_CALL inline bool reach_nested_solid(const SceneView& scene, PathState& path, const Hit& hit, Surface& surface) {
+    if (!scene.nesting.is_there()) return false;
+    const bool enters = dot(path.direction, surface.geometric_normal) < 0;
+    path.interior = solids_before(scene, path.interior, hit.instance, enters);
+    nest_surface(scene, path.interior, surface);
+    const Rgb passed = transmittance_to_surface(scene, path.interior, path.start, path.direction, hit, path.time);
+    path.throughput = path.throughput * passed;
+    return true;
+}
+
 /// Shades the result of the path's ray: `hit`, or a miss if hit.instance is kNoHit. Returns whether the path
 /// continues; `has_shadow_ray` says whether `shadow` was written. `numbers` is DrawOnDemand or DrawnNumbers.
 template <Features kFeatures, class Numbers, class Listener>
@@ -245,9 +272,13 @@ HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const
     }
     const float width = cone_width<kFeatures>(job, path, hit.t);
     Surface surface = make_vertex<kFeatures>(scene, path, hit, width);
+    bool is_within = false;
+    if constexpr ((kFeatures & kNested) != 0) is_within = reach_nested_solid(scene, path, hit, surface);
     if constexpr ((kFeatures & kStacked) != 0) {
-        path.throughput = path.throughput * transmittance_to_hit<variant_of(kFeatures)>(scene, path.start,
-                                                                                        path.direction, hit, path.time);
+        if (!is_within) {
+            path.throughput = path.throughput * transmittance_to_hit<variant_of(kFeatures)>(
+                                                    scene, path.start, path.direction, hit, path.time);
+        }
     }
     listener.vertex(path, hit, surface);
     add_surface_emission<kFeatures>(job, path, hit, surface, listener);
@@ -258,6 +289,7 @@ HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const
                      sample_direct<kFeatures>(job, path, vertex, context, numbers, shadow, listener);
     if constexpr (LightChoice<kFeatures>::kReadsNormal) path.normal = context.normal;
     const bool goes_on = sample_scattering(job.settings, path, vertex, numbers, listener);
+    if constexpr ((kFeatures & kNested) != 0) path.interior = interior_towards(scene, path, vertex, path.direction);
     if ((kFeatures & kMipMapped) != 0 && !(path.bsdf_pdf > 0)) path.bsdf_pdf = -width;
     return goes_on;
 }

@@ -25,20 +25,23 @@ public:
     void render(uint32_t first, uint32_t count, const FilmView& film) override;
 
 private:
-    static TreeCapacity capacity_for(const RayTreeSettings& settings, bool has_times, std::size_t bytes,
-                                     uint64_t most) {
+    static TreeCapacity capacity_for(const RayTreeSettings& settings, bool has_times, bool has_interiors,
+                                     std::size_t bytes, uint64_t most) {
         // A stack holds the current ray and, for each vertex above it, all branches but the current one.
         const uint32_t entries =
             Algorithm::kMaxBranches > 1 ? 1 + (Algorithm::kMaxBranches - 1) * settings.max_depth : 1;
-        return capacity_within(bytes, most, [&](uint32_t trees) { return TreeCapacity{trees, entries, has_times}; });
+        return capacity_within(bytes, most, [&](uint32_t trees) {
+            return TreeCapacity{trees, entries, has_times, has_interiors};
+        });
     }
 };
 
 template <class Algorithm>
 void RayTreeIntegrator<Algorithm>::reserve(const WorkSize& size) {
     if (uses_loop(size)) return;
-    allocate_capacity(capacity_for(settings_, size.has_times, kMaxBytes, std::min<uint64_t>(size.all(), batch_)),
-                      "ray trees");
+    allocate_capacity(
+        capacity_for(settings_, size.has_times, size.has_interiors, kMaxBytes, std::min<uint64_t>(size.all(), batch_)),
+        "ray trees");
 }
 
 template <class Algorithm>
@@ -55,10 +58,11 @@ void RayTreeIntegrator<Algorithm>::render(uint32_t first, uint32_t count, const 
     constexpr std::size_t kLoopBytes = std::size_t(1) << 19; // per thread, so that it fits the cache
     constexpr uint64_t kMaxInLoop = 128;
     const bool has_times = picture_.scene.motions.is_there();
+    const bool has_interiors = picture_.scene.nesting.is_there();
     const BeginOrder samples = {film.window, first, count};
     run_stages({.picture = picture_, .settings = picture_settings_, .film = film, .samples = samples}, 0,
-               samples.count(), capacity_for(picture_settings_, has_times, kLoopBytes, kMaxInLoop), count,
-               [this](auto& schedule, const TreeJob& part) {
+               samples.count(), capacity_for(picture_settings_, has_times, has_interiors, kLoopBytes, kMaxInLoop),
+               count, [this](auto& schedule, const TreeJob& part) {
                    if (!is_abandoned()) run_trees<Algorithm>(schedule, part);
                });
     rays_.camera += samples.count();

@@ -29,6 +29,7 @@ struct PendingRay {
                             // direction
     uint32_t depth = 0;     // scatterings between it and the camera
     TriangleId start;       // triangle that it leaves
+    InteriorList interior;  // nested solids that hold it, if any are nested
 };
 
 /// A shadow ray; `contribution` counts if it is unoccluded.
@@ -64,6 +65,7 @@ struct TreesView {
     Float4* directions;   // direction, bsdf_pdf
     Float4* weights;      // weight, bits of the start's instance
     uint32_t* primitives; // primitive of the start
+    Uint2* interiors;     // null unless solids are nested
 
     // The current rays, contiguous. Rounds alternate between two arrays for their owners, the trees.
     Ray* rays;
@@ -114,6 +116,13 @@ struct TreesView {
         weights[at] = {ray.weight.r, ray.weight.g, ray.weight.b, float_of(ray.start.instance)};
         primitives[at] = ray.start.primitive;
     }
+    /// load_ray and store_ray leave this out; code for solids calls it.
+    HD InteriorList load_interior(uint32_t tree, uint32_t slot) const {
+        return interiors != nullptr ? InteriorList::of_words(interiors[entry(tree, slot)]) : InteriorList{};
+    }
+    HD void store_interior(uint32_t tree, uint32_t slot, InteriorList interior) const {
+        if (interiors != nullptr) interiors[entry(tree, slot)] = interior.words();
+    }
     /// Stores `ray` of `tree` at `slot` of the current rays. `key` is its key for blended surfaces, and `time` that of
     /// all rays of the tree.
     HD void queue_ray(uint32_t slot, uint32_t tree, const PendingRay& ray, uint32_t key, float time,
@@ -136,9 +145,10 @@ struct TreesView {
 
 /// The sizes of the arrays.
 struct TreeCapacity {
-    uint32_t count;   // trees
-    uint32_t entries; // rays per stack
-    bool has_times;   // rays have a time
+    uint32_t count;     // trees
+    uint32_t entries;   // rays per stack
+    bool has_times;     // rays have a time
+    bool has_interiors; // solids are nested
 };
 
 /// Places the arrays in one piece of memory (lay_out_arrays).
@@ -151,6 +161,7 @@ inline std::size_t lay_out(TreesView& view, std::byte* memory, const TreeCapacit
         add_array(view.directions, stacked);
         add_array(view.weights, stacked);
         add_array(view.primitives, stacked);
+        add_array(view.interiors, capacity.has_interiors ? stacked : 0);
         add_array(view.rays, trees);
         add_array(view.starts, trees);
         add_array(view.keys, trees);

@@ -4,7 +4,7 @@
 // over a few trees of its own.
 
 #include "device/atomics.h"
-#include "device_scene/solid_absorption.h"
+#include "device_scene/nested_solids.h"
 #include "integrators/ray_tree/tree_vertex.h"
 #include "render/begin_order.h"
 #include "render/film_view.h"
@@ -32,9 +32,21 @@ struct BeginTrees {
         ray.direction = line.direction;
         trees.states[i] = state;
         trees.store_ray(i, 0, ray);
+        trees.store_interior(i, 0, camera.interior);
         trees.queue_ray(i, i, ray, tree_key(state, settings.seed, 0, false), camera.time(settings.sampler, key), 0);
     }
 };
+
+/// Follows a ray of a tree to a surface among nested solids, as paths do (integrators/path/path_vertex.h).
+HD_CALL inline void reach_nested_solid(const SceneView& scene, PendingRay& ray, const Hit& hit, Surface& surface,
+                                       float time) {
+    if (!scene.nesting.is_there()) return;
+    const bool enters = dot(ray.direction, surface.geometric_normal) < 0;
+    ray.interior = solids_before(scene, ray.interior, hit.instance, enters);
+    nest_surface(scene, ray.interior, surface);
+    const Rgb passed = transmittance_to_surface(scene, ray.interior, ray.start, ray.direction, hit, time);
+    ray.weight = ray.weight * passed;
+}
 
 /// The stage that shades hits of the current rays. The vertex's shadow rays from `first_shadow` on are queued, at most
 /// kShadowsAtOnce; the stage runs again until all have been. The first run adds emission; the last one (`is_last`)
@@ -56,7 +68,8 @@ struct ShadeTrees {
         PendingRay ray = trees.load_ray(tree, state.pending);
         const Hit hit = trees.hits().load(i);
         if constexpr (kVariant == ShadingVariant::General) {
-            if (hit.instance != kNoHit) {
+            ray.interior = trees.load_interior(tree, state.pending);
+            if (hit.instance != kNoHit && !picture.scene.nesting.is_there()) {
                 ray.weight = ray.weight * transmittance_to_hit<kVariant>(picture.scene, ray.start, ray.direction, hit,
                                                                          time_in_code(state));
             }
@@ -86,7 +99,7 @@ private:
         const float weight = ray.bsdf_pdf > 0 && light_pdf > 0 ? power_heuristic(ray.bsdf_pdf, light_pdf) : 1.0f;
         state.radiance += ray.weight * (weight * emission);
     }
-    HD void shade(uint32_t tree, TreeState& state, const PendingRay& ray, const Hit& hit) const {
+    HD void shade(uint32_t tree, TreeState& state, PendingRay& ray, const Hit& hit) const {
         const SceneView& scene = picture.scene;
         constexpr bool kMayMove = kMotion != MotionVariant::None;
         const float time = time_in_code(state);
@@ -94,6 +107,7 @@ private:
         const MovedHit moved(scene, hit, time);
         Surface surface = make_surface<kVariant>(scene, hit, kMayMove ? moved.back(ray.direction) : ray.direction);
         if (kMayMove) moved.move(surface);
+        if constexpr (kVariant == ShadingVariant::General) reach_nested_solid(picture.scene, ray, hit, surface, time);
         if (first_shadow == 0) {
             if (ray.depth == 0) {
                 add_first_hit(film, state.pixel, state.sample, {ray.origin, ray.direction}, hit, surface, picture,
@@ -121,9 +135,12 @@ private:
             if constexpr (kVariant == ShadingVariant::General) {
                 const Ray& line = shadow.ray;
                 const float distance = line.t_max < kInfinity ? length(line.direction) : kInfinity;
-                shadow.contribution =
-                    shadow.contribution * transmittance_of_solid(picture.scene, vertex.surface.triangle, shadow.target,
-                                                                 line.direction, distance, vertex.time);
+                const InteriorList around = vertex.interior_towards(line.direction);
+                const Rgb passed = around.top() != 0
+                                       ? transmittance_within(picture.scene, around, distance)
+                                       : transmittance_of_solid(picture.scene, vertex.surface.triangle, shadow.target,
+                                                                line.direction, distance, vertex.time);
+                shadow.contribution = shadow.contribution * passed;
             }
             const uint32_t slot = atomic_add(&trees.counts->shadows, 1u);
             trees.queue_shadow(slot, shadow, vertex.surface.triangle, key, vertex.time);

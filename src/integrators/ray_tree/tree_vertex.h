@@ -4,6 +4,7 @@
 // (integrators/cast/cast.h, whitted/whitted.h, distributed/distributed.h) is a few lines on top of these.
 
 #include "device_scene/moved_surface.h"
+#include "device_scene/nested_solids.h"
 #include "device_scene/ray_origin.h"
 #include "integrators/ray_tree/ray_tree_settings.h"
 #include "integrators/ray_tree/tree_memory.h"
@@ -55,6 +56,12 @@ struct TreeVertex {
     Vec2 uv;    // on the triangle: weights of its second and third corner
 
     HD Vec3 wo() const { return -ray.direction; }
+    /// Returns the nested solids that hold a ray from here along `wi`.
+    HD InteriorList interior_towards(Vec3 wi) const {
+        const SceneView& scene = picture.scene;
+        if (!scene.nesting.is_there() || surface.same_side(wo(), wi)) return ray.interior;
+        return solids_behind(scene, ray.interior, surface.triangle.instance);
+    }
     HD uint32_t number() const { return state.rays - 1; }
     HD SampleKey key() const { return sample_key(settings, state.pixel, state.sample); }
     HD uint32_t group(TreeGroup of) const { return kCameraGroups + number() * kTreeGroups + of; }
@@ -154,6 +161,9 @@ private:
         child.bsdf_pdf = bsdf_pdf;
         child.depth = ray.depth + 1;
         child.start = surface.triangle;
+        if constexpr (kVariant == ShadingVariant::General) {
+            trees.store_interior(tree, state.pending, interior_towards(wi));
+        }
         trees.store_ray(tree, state.pending++, child);
     }
 };

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/message_text.h"
+#include "device_scene/close_gaps.h"
 #include "formats/files/file_choices.h"
 #include "formats/read_environment.h"
 #include "math/scalar.h"
@@ -177,6 +178,11 @@ Scene open_scene(const SceneOptions& options, Sink& sink, SceneUse use, Ground g
     for (const std::string& text : options.emitters) emitters.push_back(parse_emitter(text));
     Scene scene = read ? read(sink) : read_scene_and_emitters(options.scene, read_options(options), sink);
     change_materials(options, scene);
+    if (const uint32_t count = close_gaps(scene); count > 0) {
+        sink.note(fmt::format("{} of glass or water {} another one and {} by {} of its size, so that no air is between",
+                              count == 1 ? "a solid" : fmt::format("{} solids", count),
+                              count == 1 ? "touches" : "touch", count == 1 ? "grows" : "grow", 2 * kTouching));
+    }
     if (options.animation.empty()) report_animation(scene, options.scene, sink);
     if (options.two_sided_lights && std::ranges::none_of(scene.materials, &Material::is_emissive)) {
         sink.warn({"two_sided_lights", "", "no surface of the scene emits light"});

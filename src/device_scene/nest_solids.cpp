@@ -1,0 +1,199 @@
+#include "device_scene/nest_solids.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <tuple>
+#include <unordered_map>
+
+#include "base/parallel_for.h"
+#include "math/double_vec3.h"
+#include "math/transform.h"
+
+namespace pertev {
+namespace {
+
+constexpr std::size_t kMostRanks = 0xffff;
+constexpr std::size_t kLookedAt = 64; // corners of a solid
+
+/// Returns a number for each corner of the mesh; corners at equal positions have equal ones.
+std::vector<uint32_t> numbered_corners(const Mesh& mesh) {
+    std::vector<uint32_t> order(mesh.indices.size());
+    std::iota(order.begin(), order.end(), 0u);
+    const auto position = [&](uint32_t corner) { return mesh.positions[mesh.indices[corner]]; };
+    const auto key = [&](uint32_t corner) {
+        const Vec3 p = position(corner);
+        return std::tuple(p.x, p.y, p.z);
+    };
+    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
+    std::vector<uint32_t> numbers(order.size());
+    for (std::size_t i = 1; i < order.size(); ++i) {
+        numbers[order[i]] = numbers[order[i - 1]] + (key(order[i]) == key(order[i - 1]) ? 0 : 1);
+    }
+    return numbers;
+}
+
+Bounds3 world_bounds(const Mesh& mesh, const Transform& world_from_local) {
+    Bounds3 bounds;
+    for (const uint32_t vertex : mesh.indices) {
+        bounds.extend(transform_point(world_from_local, mesh.positions[vertex]));
+    }
+    return bounds;
+}
+
+/// Returns whether the boxes share a volume.
+bool overlap(const Bounds3& a, const Bounds3& b) {
+    const Vec3 lo = max(a.lo, b.lo), hi = min(a.hi, b.hi);
+    return lo.x < hi.x && lo.y < hi.y && lo.z < hi.z;
+}
+bool contains(const Bounds3& bounds, Vec3 p) {
+    return p.x >= bounds.lo.x && p.x <= bounds.hi.x && p.y >= bounds.lo.y && p.y <= bounds.hi.y && p.z >= bounds.lo.z &&
+           p.z <= bounds.hi.z;
+}
+
+/// Returns +1 or -1 if a line from `from` along `way` meets the triangle, by the side that it meets; else 0.
+int crossing(DoubleVec3 from, DoubleVec3 way, DoubleVec3 a, DoubleVec3 b, DoubleVec3 c) {
+    const DoubleVec3 ab = b - a, ac = c - a, p = cross(way, ac);
+    const double det = dot(ab, p);
+    if (det == 0) return 0;
+    const DoubleVec3 to = from - a, q = cross(to, ab);
+    const double u = dot(to, p) / det, v = dot(way, q) / det, t = dot(ac, q) / det;
+    if (!(u >= 0 && v >= 0 && u + v <= 1 && t > 0)) return 0;
+    return det > 0 ? 1 : -1;
+}
+
+} // namespace
+
+bool is_solid(const MaterialParameters& material) {
+    return material.kind == MaterialKind::Dielectric || (material.transmits() && !material.thin_walled);
+}
+
+bool is_closed(const Mesh& mesh) {
+    const std::vector<uint32_t> corners = numbered_corners(mesh);
+    std::vector<uint64_t> forwards, backwards;
+    forwards.reserve(corners.size()), backwards.reserve(corners.size());
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const uint64_t from = corners[i], to = corners[i % 3 == 2 ? i - 2 : i + 1];
+        if (from == to) continue;
+        forwards.push_back(from << 32 | to);
+        backwards.push_back(to << 32 | from);
+    }
+    std::sort(forwards.begin(), forwards.end());
+    std::sort(backwards.begin(), backwards.end());
+    return !forwards.empty() && forwards == backwards;
+}
+
+NestedSolids::NestedSolids(const Scene& scene, Vec3 centre) : centre_(centre) {
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
+        const Material& material = scene.materials[instance.material];
+        if (instance.is_hidden || instance.is_background || !is_solid(material)) continue;
+        solids_.push_back({.instance = static_cast<uint32_t>(i),
+                           .world_from_local = instance.world_from_local,
+                           .local_from_world = inverse(instance.world_from_local),
+                           .bounds = world_bounds(scene.meshes[instance.mesh], instance.world_from_local),
+                           .priority = material.priority});
+    }
+    const auto keep_overlapping = [&] {
+        std::sort(solids_.begin(), solids_.end(),
+                  [](const Solid& a, const Solid& b) { return a.bounds.lo.x < b.bounds.lo.x; });
+        std::vector<bool> is_kept(solids_.size());
+        for (std::size_t i = 0; i < solids_.size(); ++i) {
+            for (std::size_t k = i + 1; k < solids_.size() && solids_[k].bounds.lo.x < solids_[i].bounds.hi.x; ++k) {
+                if (overlap(solids_[i].bounds, solids_[k].bounds)) is_kept[i] = is_kept[k] = true;
+            }
+        }
+        std::size_t at = 0;
+        std::erase_if(solids_, [&](const Solid&) { return !is_kept[at++]; });
+    };
+    keep_overlapping(); // before meshes are looked at, which takes longer
+    std::map<uint32_t, bool> closed;
+    std::erase_if(solids_, [&](const Solid& solid) {
+        const uint32_t mesh = scene.instances[solid.instance].mesh;
+        const auto [found, is_new] = closed.try_emplace(mesh);
+        if (is_new) found->second = is_closed(scene.meshes[mesh]);
+        return !found->second;
+    });
+    keep_overlapping();
+    if (solids_.empty()) return;
+
+    std::map<uint32_t, std::size_t> shape_of;
+    for (Solid& solid : solids_) {
+        const uint32_t mesh = scene.instances[solid.instance].mesh;
+        const auto [found, is_new] = shape_of.try_emplace(mesh, shapes_.size());
+        if (is_new) shapes_.push_back({scene.meshes[mesh].positions, scene.meshes[mesh].indices});
+        solid.shape = found->second;
+    }
+    parallel_for(solids_.size(), 1, [&](uint64_t i) {
+        for (const Solid& outer : solids_) {
+            if (&outer != &solids_[i] && holds(outer, solids_[i])) ++solids_[i].depth;
+        }
+    });
+    std::sort(solids_.begin(), solids_.end(), [](const Solid& a, const Solid& b) {
+        return std::tuple(a.priority, a.depth, b.instance) < std::tuple(b.priority, b.depth, a.instance);
+    });
+    if (solids_.size() > kMostRanks) solids_.resize(kMostRanks); // others are in a vacuum
+    ranks_.resize(scene.instances.size());
+    instances_.resize(1);
+    for (const Solid& solid : solids_) {
+        ranks_[solid.instance] = static_cast<uint16_t>(instances_.size());
+        instances_.push_back(solid.instance);
+    }
+}
+
+/// Returns whether the line from a point meets the mesh more often from inside than from outside, or the other way.
+bool NestedSolids::holds(const Solid& solid, Vec3 point) const {
+    if (!contains(solid.bounds, point)) return false;
+    const Shape& shape = shapes_[solid.shape];
+    const DoubleVec3 from = to_double(transform_point(solid.local_from_world, point));
+    // Two of three lines decide, because one may meet an edge.
+    constexpr DoubleVec3 kWays[] = {{0.5773, 0.5221, 0.6279}, {-0.3117, 0.8891, -0.3353}, {0.1213, -0.4391, 0.8903}};
+    int votes = 0;
+    for (const DoubleVec3& way : kWays) {
+        int count = 0;
+        for (std::size_t i = 0; i < shape.indices.size(); i += 3) {
+            count += crossing(from, way, to_double(shape.positions[shape.indices[i]]),
+                              to_double(shape.positions[shape.indices[i + 1]]),
+                              to_double(shape.positions[shape.indices[i + 2]]));
+        }
+        votes += count != 0 ? 1 : 0;
+        if (votes == 2) break;
+    }
+    return votes >= 2;
+}
+
+/// Returns whether two of three of its vertices are inside another solid whose box holds the whole of it.
+bool NestedSolids::holds(const Solid& outer, const Solid& inner) const {
+    if (!contains(outer.bounds, inner.bounds.lo) || !contains(outer.bounds, inner.bounds.hi)) return false;
+    const Shape& shape = shapes_[inner.shape];
+    const std::size_t count = shape.indices.size();
+    int votes = 0;
+    for (const std::size_t corner : {std::size_t(0), count / 3, 2 * count / 3}) {
+        votes += holds(outer, transform_point(inner.world_from_local, shape.positions[shape.indices[corner]])) ? 1 : 0;
+    }
+    return votes >= 2;
+}
+
+InteriorList NestedSolids::at(Vec3 point) const {
+    InteriorList list;
+    for (std::size_t i = 0; i < solids_.size(); ++i) {
+        if (holds(solids_[i], point + centre_)) list = list.with(static_cast<uint32_t>(i + 1));
+    }
+    return list;
+}
+
+bool NestedSolids::is_nested() const {
+    return std::ranges::any_of(solids_, [&](const Solid& inner) {
+        const Shape& shape = shapes_[inner.shape];
+        const std::size_t step = std::max<std::size_t>(shape.indices.size() / kLookedAt, 1);
+        for (std::size_t corner = 0; corner < shape.indices.size(); corner += step) {
+            const Vec3 point = transform_point(inner.world_from_local, shape.positions[shape.indices[corner]]);
+            for (const Solid& outer : solids_) {
+                if (outer.instance != inner.instance && holds(outer, point)) return true;
+            }
+        }
+        return false;
+    });
+}
+
+} // namespace pertev

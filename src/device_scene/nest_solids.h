@@ -1,0 +1,61 @@
+#pragma once
+
+// Finds the solids of glass or water that lie in each other, and ranks them. A solid is an instance of a closed mesh
+// whose material light enters; it counts here if its box overlaps that of another one. Where several hold a point, the
+// one of the greatest priority fills it, of equal ones that in the most others, then the first of the scene.
+
+#include <cstdint>
+#include <vector>
+
+#include "device_scene/interior_list.h"
+#include "math/bounds3.h"
+#include "scene/scene.h"
+
+namespace pertev {
+
+class NestedSolids {
+public:
+    NestedSolids() = default;
+    /// Meshes whose vertices move have those at rest. `centre` is the origin of the translated world.
+    NestedSolids(const Scene& scene, Vec3 centre);
+
+    bool is_empty() const { return ranks_.empty(); }
+    /// [instance] its rank; 0: none. Empty without such solids.
+    const std::vector<uint16_t>& ranks() const { return ranks_; }
+    /// [rank] its instance; the first is none.
+    const std::vector<uint32_t>& instances() const { return instances_; }
+    /// Returns whether any of some corners of each solid is inside another one, not only in its box.
+    bool is_nested() const;
+    /// Returns the solids that hold a point of the translated world.
+    InteriorList at(Vec3 point) const;
+
+private:
+    /// The mesh of a solid.
+    struct Shape {
+        std::vector<Vec3> positions;
+        std::vector<uint32_t> indices;
+    };
+    struct Solid {
+        uint32_t instance = 0;
+        std::size_t shape = 0;
+        Transform world_from_local, local_from_world; // the scene's coordinates
+        Bounds3 bounds;
+        float priority = 0;
+        uint32_t depth = 0; // solids that hold it
+    };
+    bool holds(const Solid& solid, Vec3 point) const;
+    bool holds(const Solid& outer, const Solid& inner) const;
+
+    std::vector<uint16_t> ranks_;
+    std::vector<uint32_t> instances_;
+    std::vector<Solid> solids_; // [rank - 1]
+    std::vector<Shape> shapes_;
+    Vec3 centre_;
+};
+
+/// Returns whether a material is that of a solid, which light enters.
+bool is_solid(const MaterialParameters& material);
+/// Returns whether each edge of the mesh has two triangles of opposite direction, of corners at equal positions.
+bool is_closed(const Mesh& mesh);
+
+} // namespace pertev

@@ -1,0 +1,150 @@
+// Which solids lie in each other, and their ranks (device_scene/nest_solids.h).
+
+#include <doctest/doctest.h>
+
+#include "device_scene/close_gaps.h"
+#include "device_scene/nest_solids.h"
+#include "session/check_integrator.h"
+#include "tests/support/solid_scenes.h"
+
+using namespace pertev;
+
+namespace {
+
+std::vector<uint16_t> ranks_of(const Scene& scene) { return NestedSolids(scene, {}).ranks(); }
+using Ranks = std::vector<uint16_t>;
+
+} // namespace
+
+TEST_CASE("a list of solids holds the four greatest ranks, each once") {
+    InteriorList list;
+    CHECK(list.top() == 0);
+    list = list.with(3).with(9).with(1);
+    CHECK(list.top() == 9);
+    CHECK(list.with(3).ranks == list.ranks);
+    CHECK(list.without(5).ranks == list.ranks);
+    CHECK(list.without(9).top() == 3);
+    CHECK(list.without(3).top() == 9);
+    CHECK(!list.without(3).has(3));
+    // 1 had no room, and is there no more.
+    CHECK(list.with(0xffff).with(2).without(0xffff).ranks == InteriorList{}.with(2).with(3).with(9).ranks);
+    CHECK(InteriorList::of_words(list.words()).ranks == list.ranks);
+    CHECK(list.without(1).without(3).without(9).ranks == 0);
+}
+
+TEST_CASE("of solids in each other the innermost has the greatest rank, of equal ones the first") {
+    Scene scene;
+    test::add(scene, test::box({0, 0, 0}, {1, 1, 1}), test::glass(1.5f));
+    CHECK(ranks_of(scene).empty());
+    test::add(scene, test::box({0, 0, 0}, {0.5f, 0.5f, 0.5f}), test::glass(1));
+    CHECK(ranks_of(scene) == Ranks{1, 2});
+    test::add(scene, test::box({0.1f, 0, 0}, {0.2f, 0.2f, 0.2f}), test::glass(1.3f));
+    CHECK(ranks_of(scene) == Ranks{1, 2, 3});
+    CHECK(NestedSolids(scene, {}).instances() == std::vector<uint32_t>{0, 0, 1, 2});
+    test::add(scene, test::box({5, 0, 0}, {1, 1, 1}), test::glass(1.5f)); // nothing is near it
+    test::add(scene, test::box({0, 1, 0}, {0.9f, 0.5f, 0.9f}), test::glass(1.2f));
+    CHECK(ranks_of(scene) == Ranks{2, 3, 4, 0, 1}); // the last one overlaps the first and is in none
+    scene.materials[4].priority = 1;
+    CHECK(ranks_of(scene) == Ranks{1, 2, 3, 0, 4});
+    scene.instances[2].world_from_local = make_translation({0, 20, 0});
+    CHECK(ranks_of(scene) == Ranks{1, 2, 0, 0, 3});
+}
+
+TEST_CASE("only closed meshes of glass that light enters are solids, and boxes that touch do not overlap") {
+    Scene scene;
+    test::add(scene, test::box({0, 0, 0}, {1, 1, 1}), test::glass(1.5f));
+    Material pane = test::glass(1.5f);
+    pane.kind = MaterialKind::MetallicRoughness;
+    pane.transmission_weight = 1;
+    test::add(scene, test::box({0, 0, 0}, {0.5f, 0.5f, 0.5f}), pane); // a thin wall
+    test::add(scene, test::box({0, 0, 0}, {0.4f, 0.4f, 0.4f}), test::white());
+    Mesh open = test::box({0, 0, 0}, {0.3f, 0.3f, 0.3f});
+    CHECK(is_closed(open));
+    open.indices.resize(open.indices.size() - 3);
+    CHECK(!is_closed(open));
+    test::add(scene, open, test::glass(1.5f));
+    test::add(scene, test::box({2, 0, 0}, {1, 1, 1}), test::glass(1.5f));
+    CHECK(ranks_of(scene).empty());
+    scene.materials[1].thin_walled = false;
+    CHECK(ranks_of(scene) == Ranks{1, 2, 0, 0, 0});
+    scene.instances[1].is_hidden = true;
+    CHECK(ranks_of(scene).empty());
+}
+
+TEST_CASE("a triangle without its neighbour's direction, or a corner at another place, opens a mesh") {
+    Mesh mesh = test::box({0, 0, 0}, {1, 1, 1});
+    std::swap(mesh.indices[1], mesh.indices[2]);
+    CHECK(!is_closed(mesh));
+    std::swap(mesh.indices[1], mesh.indices[2]);
+    mesh.positions.push_back(mesh.positions[mesh.indices[0]]); // split, as for texture coordinates
+    mesh.indices[0] = static_cast<uint32_t>(mesh.positions.size() - 1);
+    CHECK(is_closed(mesh));
+    mesh.positions.back().x += 0.1f;
+    CHECK(!is_closed(mesh));
+}
+
+TEST_CASE("the solids at a point are those that hold it, also in a world that was moved") {
+    Scene scene;
+    test::add(scene, test::ball({0, 0, 0}, 1), test::glass(1.5f));
+    test::add(scene, test::ball({0, 0, 0}, 0.5f), test::glass(1));
+    scene.instances[1].world_from_local = make_translation({0.25f, 0, 0});
+    const Vec3 centre = {100, 0, -7};
+    for (Instance& instance : scene.instances) instance.world_from_local.translation += centre;
+    const NestedSolids nested(scene, centre);
+    CHECK(nested.is_nested());
+    CHECK(nested.at({0.25f, 0, 0}).ranks == InteriorList{}.with(1).with(2).ranks);
+    CHECK(nested.at({-0.5f, 0, 0}).ranks == InteriorList{}.with(1).ranks);
+    CHECK(nested.at({0, 0, 2}).ranks == 0);
+    CHECK(nested.at({0.99f, 0.99f, 0}).ranks == 0); // in the box alone
+}
+
+TEST_CASE("a solid that touches an earlier one grows into it where it is near, and no farther") {
+    Scene scene;
+    test::add(scene, test::box({0, 0, 0}, {1, 1, 1}), test::glass(1.5f));
+    test::add(scene, test::box({2.00005f, 0, 0}, {1, 1, 1}), test::glass(1.33f)); // a gap of 0.25e-4 of its size
+    test::add(scene, test::box({0, 0, 4}, {1, 1, 1}), test::glass(1.33f));        // nothing is near it
+    const Scene before = scene;
+    CHECK(NestedSolids(scene, {}).is_empty());
+    CHECK(close_gaps(scene) == 1);
+    CHECK(NestedSolids(scene, {}).ranks() == Ranks{2, 1, 0});
+    CHECK(scene.meshes[0].positions == before.meshes[0].positions);
+    CHECK(scene.meshes[2].positions == before.meshes[2].positions);
+    for (std::size_t i = 0; i < 8; ++i) {
+        const Vec3 moved = scene.meshes[1].positions[i] - before.meshes[1].positions[i];
+        CHECK(length(moved) == doctest::Approx(before.meshes[1].positions[i].x < 2 ? 4e-4 : 0).epsilon(0.05));
+        CHECK(moved.x <= 0);
+    }
+    CHECK(is_closed(scene.meshes[1]));
+    scene = before;
+    scene.meshes[1] = test::box({2.001f, 0, 0}, {1, 1, 1}); // a gap of 5e-4
+    CHECK(close_gaps(scene) == 0);
+    // An instance of a mesh that others have gets one of its own.
+    scene = before;
+    scene.instances[2].mesh = 1;
+    scene.instances[2].world_from_local = make_translation({0, 0, 5});
+    CHECK(close_gaps(scene) == 1);
+    CHECK(scene.meshes.size() == 4);
+    CHECK(scene.instances[1].mesh == 3);
+    CHECK(scene.meshes[1].positions == before.meshes[1].positions);
+}
+
+TEST_CASE("integrators that take each solid as in a vacuum say so where solids lie in each other") {
+    const auto left_out = [](const Scene& scene, IntegratorKind integrator) {
+        RenderSettings settings;
+        settings.integrator = integrator;
+        Messages messages;
+        check_light(settings, scene, messages);
+        return messages.left_out().size();
+    };
+    Scene scene = test::under_sky();
+    test::add(scene, test::ball({0, 0, 0}, 1), test::glass(1.5f));
+    test::add(scene, test::ball({1.2f, 1.2f, 1.2f}, 1), test::glass(1.5f)); // boxes overlap, balls do not
+    CHECK(left_out(scene, IntegratorKind::Bidirectional) == 0);
+    test::add(scene, test::ball({0, 0, 0}, 0.5f), test::glass(1.3f));
+    for (const IntegratorKind integrator : {IntegratorKind::Bidirectional, IntegratorKind::Light,
+                                            IntegratorKind::PhotonMap, IntegratorKind::IrradianceCache}) {
+        CHECK(left_out(scene, integrator) == 1);
+    }
+    CHECK(left_out(scene, IntegratorKind::Path) == 0);
+    CHECK(left_out(scene, IntegratorKind::Whitted) == 0);
+}
