@@ -1,6 +1,8 @@
 """Ways to break lobes with parameters of OpenPBR and of other renderers (see mutations.py)."""
 
 MUTATIONS = [
+    ("retroreflection is sampled forwards", "statistical/bsdf_sampling statistical/openpbr_lobes", ("src/shading/lobes/retro_lobe.h", "lobe.draw(is_back ? mirrored(wo) : wo,", "lobe.draw(wo,")),
+    ("retroreflection goes back into the other half plane", "statistical/openpbr_lobes", ("src/shading/lobes/retro_lobe.h", "return {-wo.x, -wo.y, wo.z};", "return {-wo.x, wo.y, wo.z};")),
     ("an inner solid is no more than the outer one", "unit/nest_solids statistical/nested_solids", ("src/device_scene/nest_solids.cpp", "std::tuple(a.priority, a.depth, b.instance) < std::tuple(b.priority, b.depth, a.instance)", "std::tuple(a.priority, b.instance) < std::tuple(b.priority, a.instance)")),
     ("solids have no priority", "unit/nest_solids statistical/nested_solids", ("src/device_scene/nest_solids.cpp", ".priority = material.priority", ".priority = 0 * material.priority")),
     ("open meshes are solids", "unit/nest_solids", ("src/device_scene/nest_solids.cpp", "return !forwards.empty() && forwards == backwards;", "return !forwards.empty();")),

@@ -118,6 +118,10 @@ HD_CALL inline Bsdf make_any_bsdf(const SceneView& scene, const MaterialParamete
         reflection.weight = number(material.specular_weight, material.specular_texture);
         reflection.color =
             textured_color(scene, mesh, material.specular_color, material.specular_color_texture, i, u, v);
+        if (material.has_retroreflection()) {
+            reflection.retroreflectivity =
+                number(material.specular_retroreflectivity, material.retroreflectivity_texture);
+        }
         if (material.metal_fresnel == MetalFresnel::F82) {
             const Rgb tint = reflection.color;
             reflection.metal_tint = {min(tint.r, 1.0f), min(tint.g, 1.0f), min(tint.b, 1.0f)};

@@ -83,6 +83,7 @@ struct MaterialParameters {
     // The indices of red and blue differ by (ior - 1) scale / number (KHR_materials_dispersion: 20 / its dispersion).
     float transmission_dispersion_scale = 0, transmission_dispersion_abbe_number = 20;
     float specular_roughness_anisotropy = 0; // [0, 1], multiplied by the third channel of anisotropy_texture
+    float specular_retroreflectivity = 0;    // [0, 1], of the reflection, goes back where it came from
     float anisotropy_rotation = 0;           // radians, from the tangent towards the bitangent; the texture's first two
                                              // channels turn it further (KHR_materials_anisotropy)
     float thin_film_weight = 0, thin_film_ior = 1.3f;
@@ -93,7 +94,7 @@ struct MaterialParameters {
     TextureRef coat_texture, coat_roughness_texture, coat_normal_texture; // without the last the coat is not bent
     TextureRef fuzz_color_texture, fuzz_roughness_texture;
     TextureRef anisotropy_texture, thin_film_texture, thin_film_thickness_texture;
-    TextureRef diffuse_transmission_texture, diffuse_transmission_color_texture;
+    TextureRef diffuse_transmission_texture, diffuse_transmission_color_texture, retroreflectivity_texture;
 
     HD bool has_coat() const { return coat_weight > 0; }
     HD bool has_fuzz() const { return fuzz_weight > 0 && max_component(fuzz_color) > 0; }
@@ -129,12 +130,15 @@ struct MaterialParameters {
     HD bool has_diffuse_transmission() const {
         return kind == MaterialKind::MetallicRoughness && diffuse_transmission_weight > 0;
     }
+    HD bool has_retroreflection() const {
+        return kind == MaterialKind::MetallicRoughness && specular_retroreflectivity > 0;
+    }
     /// Returns whether its BSDF needs more than one reflection on a base, or it absorbs by distance.
     HD bool is_stacked() const {
         return kind != MaterialKind::Unlit &&
                (has_coat() || has_fuzz() || transmits() || has_own_reflection() || absorbs() || has_anisotropy() ||
                 has_thin_film() || has_diffuse_transmission() || has_rough_diffuse() || has_other_microfacets() ||
-                dispersion() > 0);
+                dispersion() > 0 || has_retroreflection());
     }
     bool is_emissive() const { return max_component(emission) > 0; }
     /// Returns whether it is sampled as an emitter. An unlit one is not: rays from the camera or a surface that hit it
@@ -193,6 +197,7 @@ void visit_parameters(Parameters& m, const Number& number, const Texture& textur
     number(m.thin_film_least_nm, "thin_film_least_nm", 0, 0x1p20f);
     number(m.diffuse_transmission_weight, "diffuse_transmission_weight", 0, 1);
     color(m.diffuse_transmission_color, "diffuse_transmission_color", 0, 1);
+    number(m.specular_retroreflectivity, "specular_retroreflectivity", 0, 1);
     number(m.priority, "priority", -0x1p10f, 0x1p10f);
     texture(m.base_color_texture, "base_color_texture");
     texture(m.alpha_texture, "alpha_texture");
@@ -213,6 +218,7 @@ void visit_parameters(Parameters& m, const Number& number, const Texture& textur
     texture(m.thin_film_thickness_texture, "thin_film_thickness_texture");
     texture(m.diffuse_transmission_texture, "diffuse_transmission_texture");
     texture(m.diffuse_transmission_color_texture, "diffuse_transmission_color_texture");
+    texture(m.retroreflectivity_texture, "retroreflectivity_texture");
 }
 
 /// Returns the places of the numbers named `name` in the order of visit_parameters: one, or three of a colour.

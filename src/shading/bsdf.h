@@ -38,6 +38,7 @@ struct Bsdf {
     HD void add(const SheenLobe& lobe) { stack(lobe); }
     HD void add(const SpecularLobe& lobe) { stack(lobe); }
     HD void add(const FilmedLobe& lobe) { stack(lobe); }
+    HD void add(const RetroLobe& lobe) { stack(lobe); }
     HD void add(const ThinLobe& lobe) { stack_far(lobe); }
     HD void add(const TranslucentLobe& lobe) { stack_far(lobe); }
     HD void add(const GlassLobe& lobe) { stack_far(lobe); }

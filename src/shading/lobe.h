@@ -12,6 +12,7 @@
 #include "shading/lobes/dielectric_lobe.h"
 #include "shading/lobes/diffuse_lobe.h"
 #include "shading/lobes/packed_lobes.h"
+#include "shading/lobes/retro_lobe.h"
 #include "shading/lobes/rough_diffuse_lobe.h"
 #include "shading/lobes/schlick_lobe.h"
 #include "shading/lobes/sheen_lobe.h"
@@ -31,6 +32,7 @@ enum class LobeKind : uint8_t {
     Schlick,      // layer on a base that is diffuse or None
     Specular,     // layer on a base that is diffuse or None, and on Thin and Translucent
     Filmed,       // layer as Specular, with a film or stretched
+    Retro,        // layer as Specular, sends a share back
     Thin,         // layer on a base that is diffuse or None
     Translucent,  // layer on a base that is diffuse or None, and on Thin
     Glass,        // layer on anything
@@ -51,6 +53,7 @@ struct Lobe {
         SchlickLobe schlick;
         SpecularLobe reflection;
         PackedFilmedLobe filmed;
+        PackedRetroLobe retro;
         ThinLobe thin;
         TranslucentLobe translucent;
         PackedGlassLobe glass;
@@ -67,6 +70,7 @@ struct Lobe {
     HD Lobe(const SchlickLobe& lobe) : kind(LobeKind::Schlick), beneath(0), schlick(lobe) {}
     HD Lobe(const SpecularLobe& lobe) : kind(LobeKind::Specular), beneath(0), reflection(lobe) {}
     HD Lobe(const FilmedLobe& lobe) : kind(LobeKind::Filmed), beneath(0), filmed(lobe) {}
+    HD Lobe(const RetroLobe& lobe) : kind(LobeKind::Retro), beneath(0), retro(lobe) {}
     HD Lobe(const ThinLobe& lobe) : kind(LobeKind::Thin), beneath(0), thin(lobe) {}
     HD Lobe(const TranslucentLobe& lobe) : kind(LobeKind::Translucent), beneath(0), translucent(lobe) {}
     HD Lobe(const GlassLobe& lobe) : kind(LobeKind::Glass), beneath(0), glass(lobe) {}
@@ -93,6 +97,8 @@ struct Lobe {
             return reflection.lobe_class();
         case LobeKind::Filmed:
             return filmed.unpacked().lobe_class();
+        case LobeKind::Retro:
+            return LobeClass::Glossy;
         case LobeKind::Thin:
             return thin.lobe_class();
         case LobeKind::Translucent:
@@ -126,6 +132,8 @@ struct Lobe {
             return reflection.energy();
         case LobeKind::Filmed:
             return filmed.unpacked().energy();
+        case LobeKind::Retro:
+            return retro.unpacked().energy();
         case LobeKind::Thin:
             return thin.energy();
         case LobeKind::Translucent:
@@ -159,6 +167,8 @@ struct Lobe {
             return reflection.gloss(cos_o);
         case LobeKind::Filmed:
             return filmed.unpacked().gloss(cos_o);
+        case LobeKind::Retro:
+            return retro.unpacked().gloss(cos_o);
         case LobeKind::Thin:
             return thin.gloss(cos_o);
         case LobeKind::Glass:
@@ -173,6 +183,7 @@ struct Lobe {
         case LobeKind::None:
         case LobeKind::Diffuse:
         case LobeKind::RoughDiffuse:
+        case LobeKind::Retro:
         case LobeKind::Translucent:
         case LobeKind::Sheen:
             break;
@@ -218,6 +229,8 @@ struct Lobe {
             return reflection.evaluate(wo, wi, beneath, transmittance);
         case LobeKind::Filmed:
             return filmed.unpacked().evaluate(wo, wi, beneath, transmittance);
+        case LobeKind::Retro:
+            return retro.unpacked().evaluate(wo, wi, beneath, transmittance);
         case LobeKind::Thin:
             return thin.evaluate(wo, wi, beneath, transmittance);
         case LobeKind::Translucent:
@@ -251,6 +264,8 @@ struct Lobe {
             return reflection.draw(wo, beneath, u_lobe, u);
         case LobeKind::Filmed:
             return filmed.unpacked().draw(wo, beneath, u_lobe, u);
+        case LobeKind::Retro:
+            return retro.unpacked().draw(wo, beneath, u_lobe, u);
         case LobeKind::Thin:
             return thin.draw(wo, beneath, u_lobe, u);
         case LobeKind::Translucent:

@@ -24,6 +24,7 @@ struct ReflectionParameters {
     float diffuse_roughness = 0; // [0, 1]
     float dispersion = 0;        // reciprocal of Abbe's number, >= 0
     Rgb metal_tint = {1, 1, 1};  // [0, 1], F82 tint of the metal
+    float retroreflectivity = 0; // [0, 1], of the reflection; then it is of GGX, even, and without a film or tint
     bool is_beckmann = false, is_single = false;
 
     HD bool has_plain_microfacets() const { return !(anisotropy > 0) && !is_beckmann && !is_single; }
@@ -54,6 +55,10 @@ HD_CALL inline void add_reflection(Bsdf& bsdf, const ReflectionParameters& p, fl
     if (!(p.weight > 0) && !(metal > 0)) return;
     const Rgb own = f0_from_ior(p.ior) * p.color;
     const Rgb f0 = p.weight * Rgb{min(own.r, 1.0f), min(own.g, 1.0f), min(own.b, 1.0f)};
+    if (p.retroreflectivity > 0) {
+        const float alpha = max(alpha_from_roughness(p.roughness), kSmoothAlpha);
+        return bsdf.add(RetroLobe{{p.base_color, metal, alpha, f0, p.weight}, p.retroreflectivity});
+    }
     if (p.is_plain() && !p.is_tinted()) {
         return bsdf.add(SpecularLobe{p.base_color, metal, alpha_from_roughness(p.roughness), f0, p.weight});
     }

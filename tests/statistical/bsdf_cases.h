@@ -31,6 +31,7 @@ inline float narrowest_alpha(const Bsdf& bsdf) {
         if (bsdf.layers[i].kind == LobeKind::Coat) add(bsdf.layers[i].coat.alpha);
         if (bsdf.layers[i].kind == LobeKind::Specular) add(bsdf.layers[i].reflection.alpha);
         if (bsdf.layers[i].kind == LobeKind::Thin) add(bsdf.layers[i].thin.alpha);
+        if (bsdf.layers[i].kind == LobeKind::Retro) add(bsdf.layers[i].retro.alpha);
         if (bsdf.layers[i].kind == LobeKind::Filmed) add(bsdf.layers[i].filmed.unpacked().widths.narrowest());
         if (bsdf.layers[i].kind == LobeKind::Glass) add(bsdf.layers[i].glass.unpacked().widths.narrowest());
     }
@@ -60,6 +61,20 @@ inline std::vector<BsdfCase> openpbr_bsdf_cases() {
         {"half an F82 metal",
          make_reflection(
              {.base_color = {0.9f, 0.5f, 0.1f}, .metallic = 0.5f, .roughness = 0.5f, .metal_tint = {0.2f, 0.6f, 1}})},
+        {"a sign of glass beads",
+         make_reflection({.base_color = {0.2f, 0.5f, 0.8f}, .roughness = 0.4f, .retroreflectivity = 1})},
+        {"half a metal that sends half of the light back, with panes",
+         make_reflection({.base_color = {0.9f, 0.5f, 0.1f},
+                          .metallic = 0.5f,
+                          .roughness = 0.6f,
+                          .color = {1, 0.5f, 2},
+                          .through = 0.3f,
+                          .retroreflectivity = 0.5f})},
+        {"a varnished mirror that sends light back",
+         make_coated(
+             make_reflection(
+                 {.base_color = {0.9f, 0.5f, 0.1f}, .metallic = 1, .roughness = 0.2f, .retroreflectivity = 0.75f}),
+             0.5f, 0.3f, 1.5f)},
         {"gold of Beckmann and roughness 0.3", metal(0.3f, {.base_color = {}, .is_beckmann = true})},
         {"gold of Beckmann and roughness 1", metal(1, {.base_color = {}, .is_beckmann = true})},
         {"gold of GGX and one bounce", metal(0.6f, {.base_color = {}, .is_single = true})},

@@ -210,6 +210,36 @@ TEST_CASE("no sample of rough diffuse or metal has a weight above 1.5, and none 
     }
 }
 
+TEST_CASE("retroreflection sends light back along its way, as much as the mirror would forwards") {
+    const auto sign = [](float roughness, float share, Rgb color = grey(1), float metallic = 1) {
+        return make_reflection(
+            {.base_color = color, .metallic = metallic, .roughness = roughness, .retroreflectivity = share});
+    };
+    const Rgb color = {0.9f, 0.5f, 0.1f};
+    const Bsdf usual = make_reflection({.base_color = color, .metallic = 0.5f, .roughness = 0.4f});
+    const Bsdf all = sign(0.4f, 1, color, 0.5f), part = sign(0.4f, 0.25f, color, 0.5f);
+    for (uint32_t i = 0; i < 200; ++i) {
+        const SamplePoint p = random_point(i, 15), q = random_point(i, 16);
+        const Vec3 wo = direction_at(2.0f * p.u.x - 1.0f, p.u.y), wi = direction_at(2.0f * q.u.x - 1.0f, q.u.y);
+        const Rgb forwards = usual.eval(wo, wi), back = usual.eval({-wo.x, -wo.y, wo.z}, wi);
+        CHECK(all.eval(wo, wi).g == doctest::Approx(back.g).epsilon(2e-3).scale(1e-3));
+        CHECK(part.eval(wo, wi).r == doctest::Approx(0.75f * forwards.r + 0.25f * back.r).epsilon(2e-3).scale(1e-3));
+    }
+    const Vec3 wo = direction_at(0.6f, 0.1f);
+    CHECK(sign(0.2f, 1).eval(wo, wo).g > 100 * sign(0.2f, 1).eval(wo, {-wo.x, -wo.y, wo.z}).g);
+    for (const float share : {0.3f, 1.0f})
+        for (const float metallic : {0.0f, 1.0f}) {
+            const MeanWeight white = light_range([&](float r) { return sign(r, share, grey(1), metallic); });
+            INFO("share " << share << ": from " << white.least() << " to " << white.largest());
+            CHECK(white.r > 0.99);
+            CHECK(white.b < 1.001);
+        }
+    for (const float r : kLobeRoughnesses) { // no more than forwards
+        CHECK(largest_weight(sign(r, 0.5f)) < 1.01f * largest_weight(sign(r, 0)));
+    }
+    CHECK(!sign(0, 1).has_delta());
+}
+
 TEST_CASE("dispersed glass refracts each channel by its own index, keeps all light, and is sampled by its density") {
     const auto glass = [](float roughness, Rgb tint = grey(1)) {
         return make_reflection(

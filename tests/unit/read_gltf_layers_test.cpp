@@ -116,6 +116,24 @@ TEST_CASE("transmission without a volume is a thin wall, and with one a share of
     CHECK(half.transmission_weight == 0.5f);
 }
 
+TEST_CASE("retroreflection is read with its texture, and solid glass has none") {
+    const Material sign = read_with(R"("KHR_materials_retroreflection":{"retroreflectionFactor":0.75,)"
+                                    R"("retroreflectionTexture":{"index":0}})");
+    CHECK(sign.specular_retroreflectivity == 0.75f);
+    CHECK(sign.retroreflectivity_texture.has_image());
+    CHECK(sign.retroreflectivity_texture.channel == 0);
+    CHECK(!sign.retroreflectivity_texture.is_srgb);
+    CHECK(sign.is_stacked());
+    CHECK(!read_with(R"("KHR_materials_retroreflection":{})").is_stacked());
+    Messages messages;
+    const Material bead = read_with(R"("KHR_materials_retroreflection":{"retroreflectionFactor":1},)"
+                                    R"("KHR_materials_transmission":{"transmissionFactor":1},)"
+                                    R"("KHR_materials_volume":{"thicknessFactor":1})",
+                                    messages);
+    CHECK(bead.specular_retroreflectivity == 0.0f);
+    CHECK(messages.left_out().size() == 1);
+}
+
 TEST_CASE("dispersion is read as Abbe's number, of solids alone") {
     const std::string solid = R"(,"KHR_materials_transmission":{"transmissionFactor":1},)"
                               R"("KHR_materials_volume":{"thicknessFactor":1})";

@@ -10,7 +10,7 @@
 namespace pertev::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 21> kRead = {"EXT_lights_image_based",
+constexpr std::array<std::string_view, 22> kRead = {"EXT_lights_image_based",
                                                     "EXT_mesh_gpu_instancing",
                                                     "EXT_meshopt_compression",
                                                     "KHR_animation_pointer",
@@ -22,6 +22,7 @@ constexpr std::array<std::string_view, 21> kRead = {"EXT_lights_image_based",
                                                     "KHR_materials_ior",
                                                     "KHR_materials_iridescence",
                                                     "KHR_materials_pbrSpecularGlossiness",
+                                                    "KHR_materials_retroreflection",
                                                     "KHR_materials_sheen",
                                                     "KHR_materials_specular",
                                                     "KHR_materials_transmission",

@@ -2,7 +2,7 @@
 // (scene/material.h), and the material that a variant gives to a primitive.
 //
 // Source: KHR_materials_clearcoat, _sheen, _specular, _transmission, _volume, _dispersion, _anisotropy, _iridescence,
-// _diffuse_transmission and _variants.
+// _diffuse_transmission, _retroreflection (draft) and _variants.
 
 #include <algorithm>
 
@@ -128,6 +128,19 @@ void Materials::read_anisotropy(const JsonValue& source, Material& material) {
     if (strength == 0) return;
     attempt_at(*extension, [&] { material.anisotropy_rotation = extension->float_or("anisotropyRotation", 0); });
     material.anisotropy_texture = read_texture(*extension, "anisotropyTexture", false);
+}
+
+void Materials::read_retroreflection(const JsonValue& source, Material& material) {
+    const std::optional<JsonValue> extension = source.extension("KHR_materials_retroreflection");
+    if (!extension) return;
+    if (material.kind == MaterialKind::Dielectric) {
+        sink_.leave_out({extension->location(), "KHR_materials_retroreflection is left out, because solid glass has no "
+                                                "reflection but that of its index"});
+        return;
+    }
+    material.specular_retroreflectivity = extension->float_or("retroreflectionFactor", 0);
+    if (material.specular_retroreflectivity == 0) return;
+    material.retroreflectivity_texture = read_channel(*extension, "retroreflectionTexture", 0);
 }
 
 void Materials::read_thin_film(const JsonValue& source, Material& material) {

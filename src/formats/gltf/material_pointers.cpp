@@ -42,6 +42,7 @@ constexpr NamedNumber kNumbers[] = {
     {"/extensions/KHR_materials_iridescence/iridescenceIor", "thin_film_ior"},
     {"/extensions/KHR_materials_iridescence/iridescenceThicknessMinimum", "thin_film_least_nm"},
     {"/extensions/KHR_materials_iridescence/iridescenceThicknessMaximum", "thin_film_thickness_nm"},
+    {"/extensions/KHR_materials_retroreflection/retroreflectionFactor", "specular_retroreflectivity"},
     {"/extensions/KHR_materials_diffuse_transmission/diffuseTransmissionFactor", "diffuse_transmission_weight"},
     {"/extensions/KHR_materials_diffuse_transmission/diffuseTransmissionColorFactor", "diffuse_transmission_color"}};
 

@@ -59,6 +59,7 @@ Material Materials::read(const JsonValue& source) {
     attempt([&] { read_transmission(source, material); });
     attempt([&] { read_dispersion(source, material); });
     attempt([&] { read_anisotropy(source, material); });
+    attempt([&] { read_retroreflection(source, material); });
     attempt([&] { read_thin_film(source, material); });
     attempt([&] { read_diffuse_transmission(source, material); });
     attempt([&] { read_specular(source, material); });

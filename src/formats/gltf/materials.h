@@ -5,8 +5,9 @@
 //
 // Source: glTF 2.0 section 3.9; KHR_materials_emissive_strength, KHR_materials_ior, KHR_materials_unlit,
 // KHR_materials_pbrSpecularGlossiness; KHR_materials_variants. material_layers.cpp reads
-// KHR_materials_clearcoat, _sheen, _specular, _transmission, _volume, _dispersion, _anisotropy, _iridescence and
-// _diffuse_transmission. Occlusion textures are not read, because a path tracer computes what they approximate.
+// KHR_materials_clearcoat, _sheen, _specular, _transmission, _volume, _dispersion, _anisotropy, _iridescence,
+// _diffuse_transmission and _retroreflection. Occlusion textures are not read, because a path tracer computes what they
+// approximate.
 
 #include <optional>
 #include <vector>
@@ -56,6 +57,7 @@ private:
     static void read_attenuation(const JsonValue& volume, Material& material);
     static void read_dispersion(const JsonValue& source, Material& material);
     void read_anisotropy(const JsonValue& source, Material& material);
+    void read_retroreflection(const JsonValue& source, Material& material);
     void read_thin_film(const JsonValue& source, Material& material);
     void read_diffuse_transmission(const JsonValue& source, Material& material);
     void read_coat(const JsonValue& source, Material& material);
