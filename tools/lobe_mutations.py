@@ -1,6 +1,7 @@
 """Ways to break lobes with parameters of OpenPBR and of other renderers (see mutations.py)."""
 
 MUTATIONS = [
+    ("light of one colour takes green's way", "statistical/openpbr_lobes", ("src/shading/follow_channel.h", "of_channel(r ? 0 : g ? 1 : 2)", "of_channel(1)")),
     ("retroreflection is sampled forwards", "statistical/bsdf_sampling statistical/openpbr_lobes", ("src/shading/lobes/retro_lobe.h", "lobe.draw(is_back ? mirrored(wo) : wo,", "lobe.draw(wo,")),
     ("retroreflection goes back into the other half plane", "statistical/openpbr_lobes", ("src/shading/lobes/retro_lobe.h", "return {-wo.x, -wo.y, wo.z};", "return {-wo.x, wo.y, wo.z};")),
     ("an inner solid is no more than the outer one", "unit/nest_solids statistical/nested_solids", ("src/device_scene/nest_solids.cpp", "std::tuple(a.priority, a.depth, b.instance) < std::tuple(b.priority, b.depth, a.instance)", "std::tuple(a.priority, b.instance) < std::tuple(b.priority, a.instance)")),

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "shading/follow_channel.h"
 #include "tests/statistical/bsdf_cases.h"
 #include "tests/support/options.h"
 
@@ -295,4 +296,30 @@ TEST_CASE("dispersed glass refracts each channel by its own index, keeps all lig
         CHECK(density == doctest::Approx(drawn).epsilon(3e-3));
     }
     CHECK(largest_weight(rough) < 1.5f);
+}
+
+TEST_CASE("light of one colour is refracted by its own index, with a weight that does not grow") {
+    const auto glass = [](float roughness) {
+        return make_reflection(
+            {.base_color = grey(1), .roughness = roughness, .ior = 1.5f, .solid = 1, .dispersion = 0.2f});
+    };
+    for (const float roughness : {0.0f, 0.5f})
+        for (int channel = 0; channel < 3; ++channel) {
+            const Rgb alone = {channel == 0 ? 0.5f : 0.0f, channel == 1 ? 0.5f : 0.0f, channel == 2 ? 0.5f : 0.0f};
+            Bsdf bsdf = glass(roughness);
+            follow_channel(alone, bsdf);
+            CHECK(bsdf.layers[0].glass.ior == doctest::Approx(1.45 + 0.05 * channel).epsilon(1e-5));
+            CHECK(bsdf.layers[0].glass.spread == 0.0f);
+            CHECK(largest_weight(bsdf) < (roughness > 0 ? 2.0f : 1.001f));
+            Bsdf white = glass(roughness);
+            follow_channel({0.5f, 0, 0.1f}, white);
+            CHECK(white.layers[0].glass.spread > 0.0f);
+            // The channel has the value that all three together give it.
+            const Vec3 wo = direction_at(0.7f), wi = direction_at(-0.8f, 0.5f);
+            const auto of = [&](Rgb color) { return channel == 0 ? color.r : channel == 1 ? color.g : color.b; };
+            CHECK(of(bsdf.eval(wo, wi)) == doctest::Approx(of(white.eval(wo, wi))).epsilon(1e-5));
+        }
+    Bsdf plain = make_dielectric(1.5f, 0, grey(1));
+    follow_channel({1, 0, 0}, plain);
+    CHECK(plain.base.dielectric.ior == 1.5f);
 }

@@ -13,6 +13,7 @@
 #include "integrators/path/medium.h"
 #include "integrators/path/path_listener.h"
 #include "integrators/path/vertex_numbers.h"
+#include "shading/follow_channel.h"
 #include "shading/power_heuristic.h"
 
 namespace pertev {
@@ -280,6 +281,7 @@ HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const
                                                     scene, path.start, path.direction, hit, path.time);
         }
     }
+    if constexpr ((kFeatures & kStacked) != 0) follow_channel(path.throughput, surface.bsdf);
     listener.vertex(path, hit, surface);
     add_surface_emission<kFeatures>(job, path, hit, surface, listener);
     if (surface.is_unlit || path.depth >= job.settings.max_depth) return false;

@@ -65,6 +65,14 @@ struct GlassLobe {
         return draw_glass(wo, u_glass, 1.0f - p_beneath, u);
     }
 
+    /// The glass of one channel's index, without dispersion.
+    HD GlassLobe of_channel(int channel) const {
+        GlassLobe one = *this;
+        one.ior = DielectricLobe::usable_ior(ior + static_cast<float>(channel - 1) * spread, widths.y);
+        one.spread = 0;
+        return one;
+    }
+
 private:
     /// Draws from the glass alone, without dispersion.
     HD LobeDraw draw_glass(Vec3 wo, float u_glass, float reach, Vec2 u) const {
@@ -98,13 +106,6 @@ private:
         float chance;   // probability that a sample is reflected
         bool is_passed; // there is refraction
     };
-    /// The glass of one channel's index, without dispersion.
-    HD GlassLobe of_channel(int channel) const {
-        GlassLobe one = *this;
-        one.ior = DielectricLobe::usable_ior(ior + static_cast<float>(channel - 1) * spread, widths.y);
-        one.spread = 0;
-        return one;
-    }
     HD BsdfValue evaluate_channels(Vec3 wo, Vec3 wi) const {
         const bool is_refracted = wo.z * wi.z < 0;
         if (!(spread > 0)) return is_refracted ? evaluate_refraction(wo, wi) : evaluate_reflection(wo, wi);
