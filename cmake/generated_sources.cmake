@@ -35,7 +35,7 @@ add_custom_command(OUTPUT ${PERTEV_GENERATED_DIR}/embedded_files.cpp
   COMMENT "Embedding the laboratory's page" VERBATIM)
 pertev_embed(pertev_lab ${PERTEV_GENERATED_DIR}/embedded_files.cpp)
 
-# Tables of lobes: 30 s of one core, once. Sums stand side by side for the vectoriser, which divides where masks say no.
+# Tables of lobes: a minute of one core, once. Sums stand side by side for the vectoriser, which divides where masks say no.
 add_executable(pertev_make_lobe_tables ${PROJECT_SOURCE_DIR}/tools/make_lobe_tables.cpp)
 target_link_libraries(pertev_make_lobe_tables PRIVATE fmt::fmt TBB::tbb)
 target_compile_options(pertev_make_lobe_tables PRIVATE -O3 -fno-trapping-math -fno-sanitize=all)
@@ -48,6 +48,6 @@ set(lobe_files energy_table_data.h sheen_table_data.h beckmann_table_data.h lobe
     beckmann_glass_lost.inl beckmann_average_glass_lost.inl)
 list(TRANSFORM lobe_files PREPEND ${lobes}/)
 add_custom_command(OUTPUT ${lobe_files}
-  COMMAND pertev_make_lobe_tables ${lobes} COMMENT "Integrating the tables of lobes" VERBATIM)
+  DEPENDS pertev_make_lobe_tables COMMAND pertev_make_lobe_tables ${lobes} COMMENT "Integrating the tables of lobes" VERBATIM)
 target_sources(pertev_shading PRIVATE ${lobe_files})
 target_include_directories(pertev_shading PUBLIC $<BUILD_INTERFACE:${PERTEV_GENERATED_DIR}>)

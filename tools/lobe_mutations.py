@@ -1,6 +1,7 @@
 """Ways to break lobes with parameters of OpenPBR and of other renderers (see mutations.py)."""
 
 MUTATIONS = [
+    ("what glass of Beckmann loses is drawn near the horizon alone", "statistical/openpbr_lobes", ("src/shading/lobes/microfacets.h", "energy_width() > 0.5f ? 0.0f : 0.5f;", "energy_width() > 0.5f ? 0.0f : 1.0f;")),
     ("light of one colour takes green's way", "statistical/openpbr_lobes", ("src/shading/follow_channel.h", "of_channel(r ? 0 : g ? 1 : 2)", "of_channel(1)")),
     ("retroreflection is sampled forwards", "statistical/bsdf_sampling statistical/openpbr_lobes", ("src/shading/lobes/retro_lobe.h", "lobe.draw(is_back ? mirrored(wo) : wo,", "lobe.draw(wo,")),
     ("retroreflection goes back into the other half plane", "statistical/openpbr_lobes", ("src/shading/lobes/retro_lobe.h", "return {-wo.x, -wo.y, wo.z};", "return {-wo.x, wo.y, wo.z};")),

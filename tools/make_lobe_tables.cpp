@@ -32,11 +32,11 @@
 namespace {
 
 constexpr int kMuNodes = 36, kRoughnessNodes = 20, kIorNodes = 14, kAverageNodes = 64;
-constexpr int kBeckmannRoughnessNodes = 10, kBeckmannIorNodes = 7;
+constexpr int kBeckmannRoughnessNodes = 20, kBeckmannIorNodes = 14;
 constexpr double kAlphaMin = 1e-3, kIorMin = 1.1, kIorMax = 3, kOvershoot = 2e-4;
 constexpr int kSheenMuNodes = 24, kSheenRoughnessNodes = 16;
 constexpr double kSheenRoughnessMin = 0.2;
-constexpr uint64_t kHash = 0xc661878e4bd84096; // hash of the numbers of all tables
+constexpr uint64_t kHash = 0x20633fa19d94591; // hash of the numbers of all tables
 
 constexpr int kHeights = 96, kAngles = 48; // sizes of the rule over the cap of visible normals
 

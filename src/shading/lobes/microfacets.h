@@ -105,17 +105,25 @@ struct Microfacets {
     }
     /// Samples a direction for that light, u in [0, 1)^2, and the density at a cosine, 1/sr.
     HD_CALL Vec3 sample_lost_lobe(Vec2 u, bool is_glass = false) const {
-        const float width = energy_width();
-        return has_own_lost_lobe(is_glass) ? beckmann::sample_lost_lobe(width, u) : sample_grazing_lobe(width, u);
+        const float width = energy_width(), own = share_of_own_lobe(is_glass);
+        if (!(own < 1) || u.x < own) return beckmann::sample_lost_lobe(width, {u.x / own, u.y});
+        return sample_grazing_lobe(width, {min((u.x - own) / (1.0f - own), 0x1.fffffep-1f), u.y});
     }
     HD_CALL float pdf_lost_lobe(float cosine, bool is_glass = false) const {
-        const float width = energy_width();
-        return has_own_lost_lobe(is_glass) ? beckmann::pdf_lost_lobe(cosine, width) : pdf_grazing_lobe(cosine, width);
+        const float width = energy_width(), own = share_of_own_lobe(is_glass);
+        float pdf = 0;
+        if (own > 0) pdf += own * beckmann::pdf_lost_lobe(cosine, width);
+        if (own < 1) pdf += (1.0f - own) * pdf_grazing_lobe(cosine, width);
+        return pdf;
     }
 
 private:
-    /// Very rough glass loses light at all angles, as GGX's.
-    HD bool has_own_lost_lobe(bool is_glass) const { return is_beckmann && !(is_glass && energy_width() > 0.5f); }
+    /// Returns how often Beckmann's own lobe is drawn for that light, else GGX's. Glass loses light at more angles.
+    HD float share_of_own_lobe(bool is_glass) const {
+        if (!is_beckmann) return 0;
+        if (!is_glass) return 1;
+        return energy_width() > 0.5f ? 0.0f : 0.5f;
+    }
     HD float unevenness() const { return min(2.5f * (1.0f - narrowest() / widest()), 1.0f); }
 };
 
