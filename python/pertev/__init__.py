@@ -11,7 +11,7 @@ import importlib
 import operator
 import os
 
-from ._cameras import BatchResult, Cameras, DeviceArray, cameras_of, chunk_size, read_cameras, render_batch
+from ._cameras import BatchResult, Cameras, DeviceArray, cameras_of, chunk_size, read_cameras, render_batch, seeds_of
 from ._core import Result, builtin_scenes
 from ._images import compare, read, tone_map, write
 from ._process import check_process
@@ -88,13 +88,10 @@ def render_chunks(scene, cameras, *, chunk=None, seeds=None, color=True, layers=
     values, settings = with_layers(values, layers), os.fspath(settings or "")
     if chunk is None:
         chunk = chunk_size(used, cameras, color, settings, values)
-    elif operator.index(chunk) < 1:
+    elif (chunk := operator.index(chunk)) < 1:
         raise ValueError(f"chunk: expected at least 1, not {chunk}")
-    if hasattr(seeds, "__index__") and not hasattr(seeds, "__len__"):
-        seeds = operator.index(seeds)
-    one_for_all = seeds is None or isinstance(seeds, int) or len(seeds) == 1
-    if not one_for_all and len(seeds) != len(cameras):
-        raise ValueError(f"seeds: expected 1 or {len(cameras)}, one per camera, not {len(seeds)}")
+    seeds = seeds_of(seeds, len(cameras))
+    one_for_all = seeds is None or len(seeds) == 1
     for first in range(0, len(cameras), chunk):
         part = slice(first, first + chunk)
         yield render_batch(used, cameras[part], seeds if one_for_all else seeds[part], color, settings, values, None)

@@ -1,5 +1,6 @@
 """Many cameras in one call."""
 
+import operator
 import os
 
 from . import _core
@@ -78,7 +79,7 @@ def read_cameras(path, *, size=None, convention=None):
     """
     import numpy
 
-    rows = _core.read_cameras(os.fspath(path), *(size or (0, 0)))
+    rows = _core.read_cameras(os.fspath(path), *((0, 0) if size is None else size))
     others = {name for _, settings in rows for name in settings} - {"camera_pose", "intrinsics", "size", *Cameras([]).settings}
     if others:
         raise InputError(f"{path}: {', '.join(sorted(others))}: use `pertev render --cameras` for these settings")
@@ -114,10 +115,26 @@ def cameras_of(cameras, values):
     return Cameras(cameras)
 
 
+def seeds_of(seeds, count):
+    """Returns a list of one seed for what stands for all pictures, and None or an array for each of `count` as it is.
+    Raises InputError."""
+    if seeds is None:
+        return None
+    if not hasattr(seeds, "__len__") or getattr(seeds, "ndim", 1) == 0:
+        try:
+            return [operator.index(seeds)]
+        except TypeError:
+            raise input_error("seeds", f"expected whole numbers, not {type(seeds).__name__}") from None
+    if len(seeds) not in (1, count):
+        raise input_error("seeds", f"expected one, or one for each of {count} cameras, not {len(seeds)}")
+    return seeds
+
+
 def render_batch(scene, cameras, seeds, color, settings, values, out):
-    seeds = [seeds] if isinstance(seeds, int) else seeds
+    seeds = seeds_of(seeds, 1 if cameras is None else len(cameras))
     if cameras is None:
-        return scene._render_batch(settings, texts_of(values), None, None, seeds, color, out)
+        own = values if seeds is None else {**values, "seed": seeds[0]}
+        return scene._render_batch(settings, texts_of(own), None, None, None, color, out)
     K, texts = cameras._arguments(values)
     return scene._render_batch(settings, texts, cameras.poses, K, seeds, color, out)
 

@@ -2,6 +2,7 @@
 
 import difflib
 import math
+import operator
 import os
 
 from . import _core
@@ -23,10 +24,11 @@ def _text(row, value):
     if isinstance(value, bool) or type(value).__name__ in ("bool", "bool_"):  # names in Python, NumPy 2 and 1
         if row["type"] == "bool":
             return "true" if value else "false"
-    elif isinstance(value, int):
-        return str(value)
     elif hasattr(value, "__float__") and getattr(value, "ndim", 0) == 0:
-        number = float(value)
+        try:
+            return str(operator.index(value))  # exact: integers of Python, NumPy or PyTorch
+        except TypeError:
+            number = float(value)
         if not math.isfinite(number):
             raise input_error(row["name"], f"expected finite numbers, not {number}", str(value))
         return str(int(number)) if number.is_integer() and abs(number) < 2**53 else repr(number)

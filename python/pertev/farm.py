@@ -7,6 +7,7 @@ A part is a range of samples. A part whose worker dies is rendered again by the 
 one render. Workers import pertev and read the scene by its name: each must find the same file.
 """
 
+import operator
 import os
 import shutil
 import tempfile
@@ -27,14 +28,14 @@ def _render_part(scene, part, count, values):
 
 
 def _source_of(scene, parts, values):
-    """Checks what no machine could render, before work is distributed. Returns what workers render."""
+    """Checks what no machine could render, before work is distributed. Returns what workers render, and the number of parts."""
     check_process()
-    if not isinstance(parts, int) or parts < 1:
+    if not hasattr(parts, "__index__") or operator.index(parts) < 1:
         raise ValueError(f"parts: expected a number of parts, not {parts!r}")
     for name in ("part", "part_base", "samples", "rows", "checkpoint", "out", "cameras", "on_device"):
         if values.get(name) is not None:
             raise TypeError(f"{name} is not for pictures in parts")
-    return scene if scene_of(scene) is scene else os.fspath(scene)
+    return scene if scene_of(scene) is scene else os.fspath(scene), operator.index(parts)
 
 
 def _merged(films, output):
@@ -70,11 +71,11 @@ def ray(scene, *, parts, output=(), retries=3, options=None, **values):
 
     Ray is started if it is not. Raises as render(); the other parts are then cancelled.
     """
-    scene = _source_of(scene, parts, values)
+    scene, parts = _source_of(scene, parts, values)
     import ray as engine  # pylint: disable=import-outside-toplevel
     if not engine.is_initialized():
         engine.init()
-    task = engine.remote(max_retries=retries, **(options or {}))(_render_part)
+    task = engine.remote(max_retries=operator.index(retries), **(options or {}))(_render_part)
     waiting = [task.remote(scene, i, parts, values) for i in range(1, parts + 1)]
 
     def films():
@@ -97,7 +98,7 @@ def dask(client, scene, *, parts, output=(), **values):
     The others are those of ray(). A part whose worker is lost is rendered again as often as Dask's setting
     distributed.scheduler.allowed-failures says. Raises as render(); the other parts are then cancelled.
     """
-    scene = _source_of(scene, parts, values)
+    scene, parts = _source_of(scene, parts, values)
     from distributed import as_completed  # pylint: disable=import-outside-toplevel
     waiting = client.map(lambda part: _render_part(scene, part, parts, values), range(1, parts + 1), pure=False)
     try:

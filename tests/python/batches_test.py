@@ -50,6 +50,37 @@ class Batches(unittest.TestCase):
                          {name: value for name, value in picture.info.items() if not name.endswith("_seconds")})
         self.assertIn("instances", on_device.info)
 
+    def test_seeds_and_chunks_are_integers_of_any_kind(self):
+        def render(**values):
+            return pertev.render(self.scene, cameras=POSES, **values, **SMALL).hash
+
+        expected = render(seeds=[3])
+        self.assertNotEqual(render(), expected)
+        for one in (3, numpy.int64(3), numpy.uint8(3), numpy.array(3), numpy.array([3])):
+            with self.subTest(repr(one)):
+                self.assertEqual(render(seeds=one), expected)
+                for chunk in (2, numpy.int32(2), numpy.array(2)):
+                    parts = list(pertev.render_chunks(self.scene, POSES, chunk=chunk, seeds=one, **SMALL))
+                    self.assertEqual([len(part) for part in parts], [2, 1])
+                    self.assertEqual([hash for part in parts for hash in part.hash], expected)
+                self.assertEqual(pertev.render(self.scene, on_device=True, seeds=one, **SMALL).hash,
+                                 pertev.render(self.scene, seed=3, **SMALL).hash)
+        for wrong in (3.5, numpy.float32(3), numpy.array(3.0), [1, 2], -1, 2**32):
+            with self.subTest(repr(wrong)):
+                for call in (lambda: render(seeds=wrong), lambda: list(pertev.render_chunks(self.scene, POSES, seeds=wrong, **SMALL)),
+                             lambda: pertev.render(self.scene, on_device=True, seeds=wrong, **SMALL)):
+                    with self.assertRaises(pertev.InputError) as caught:
+                        call()
+                    self.assertIn(caught.exception.setting, ("seed", "seeds"))
+
+    def test_sizes_of_cameras_are_integers_of_any_kind(self):
+        folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+        frames = [{"file_path": "a", "transform_matrix": POSES[0].tolist()}]
+        (folder / "transforms.json").write_text(json.dumps({"frames": frames, "camera_angle_x": 0.8}))
+        K = [pertev.read_cameras(folder / "transforms.json", size=size).K.tolist()
+             for size in ((20, 16), numpy.array([20, 16]), (numpy.int64(20), numpy.uint16(16)))]
+        self.assertEqual(K, K[:1] * 3)
+
     def test_a_hash_is_that_of_the_array_as_it_is(self):
         batch = pertev.render(self.scene, cameras=POSES, **SMALL)
         before = batch.hash

@@ -19,6 +19,8 @@ if FARM_PYTHON and os.path.realpath(sys.prefix) != os.path.realpath(pathlib.Path
 
 os.environ.update(RAY_USAGE_STATS_ENABLED="0", RAY_DEDUP_LOGS="0")
 
+import numpy
+
 import pertev
 import pertev.farm
 
@@ -121,6 +123,14 @@ class Farm(unittest.TestCase):
                              ({"parts": 2, "checkpoint": "c.pvf"}, TypeError)]:
             with self.subTest(values), self.assertRaises(kind):
                 pertev.farm.dask(None, "cornell-box", **values)
+
+    def test_the_number_of_parts_is_an_integer_of_any_kind(self):
+        from pertev import farm
+        numbers = [farm._source_of("cornell-box", parts, {})[1] for parts in (2, numpy.int64(2), numpy.array(2))]
+        self.assertEqual(numbers, [2, 2, 2])
+        for wrong in (numpy.int64(0), 2.0, "2", None):
+            with self.subTest(repr(wrong)), self.assertRaises(ValueError):
+                farm._source_of("cornell-box", wrong, {})
 
     def test_parts_that_cannot_be_merged_are_kept(self):
         from pertev import farm
