@@ -7,6 +7,7 @@ import os
 import pathlib
 import shutil
 import signal
+import subprocess
 import sys
 import tempfile
 import threading
@@ -98,6 +99,17 @@ class Farm(unittest.TestCase):
         with self.assertRaises(pertev.InputError) as caught:
             pertev.farm.ray("cornell-box", parts=2, **{**JOB, "max_depth": -1})
         self.assertEqual(caught.exception.setting, "max_depth")
+
+    @unittest.skipUnless(has("ray"), "ray is not installed")
+    def test_the_example_of_ray_has_the_bytes_of_one_render(self):
+        example = pathlib.Path(__file__).parents[2] / "examples/ray_farm.py"
+        done = subprocess.run([sys.executable, example, "cornell-box", self.folder / "a.exr", self.folder / "a.png", "--parts", "3", "--spp", "8", "--size",
+                               "24x18"], capture_output=True, text=True, timeout=300, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        whole = pertev.render("cornell-box", size=(24, 18), spp=8, device="cpu", output=self.folder / "b.png")
+        self.assertEqual(done.stdout.splitlines()[-1], f"8 spp, {whole.hash}")
+        self.assertTrue(pertev.compare(whole, self.folder / "a.exr")["equal"])
+        self.assertEqual((self.folder / "a.png").read_bytes(), (self.folder / "b.png").read_bytes())
 
     @unittest.skipUnless(has("distributed"), "dask[distributed] is not installed")
     def test_dask_renders_the_part_of_a_killed_worker_again(self):
