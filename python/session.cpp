@@ -38,6 +38,7 @@ std::optional<PythonResult> PythonSession::next(Sink& sink) {
     RenderSetup& setup = *opened_.setup();
     if (!frame_) frame_ = setup.sequence.first;
     if (*frame_ > setup.sequence.last) return std::nullopt;
+    if (setup.sequence.is_cut(*frame_)) cut_.reset();
     Session& session = opened_.session(*record_);
     if (!cut_) session.cut();
     if (!cut_ || session.history().cuts != cuts_) cut_ = frame_; // other settings may have ended the history

@@ -279,7 +279,7 @@ MUTATIONS = part_mutations.MUTATIONS + format_mutations.MUTATIONS + lobe_mutatio
     ("films add up whatever samples they hold", "unit/film_add",
      ("src/render/film.cpp", "if (a.samples.end != b.samples.first && b.samples.end != a.samples.first)", "if (false)")),
     ("parts by number leave the last samples out", "robust/cli_merge",
-     ("src/session/sample_range.cpp", "all * (index + 1) / count", "all / count * (index + 1)")),
+     ("src/session/sample_range.h", "all * (index + 1) / count", "all / count * (index + 1)")),
     ("films add up without the targets that they were given", "seams/ranked_coverage seams/film_parts unit/film_add",
      ("src/render/film.cpp", "i < targets_.size(); ++i) targets_[i]->add(", "i < 2; ++i) targets_[i]->add(")),
     ("samples of a window are drawn by their place in the film", "seams/crop_window",

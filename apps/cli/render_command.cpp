@@ -31,6 +31,7 @@
 #include "session/pictures/render_with_checkpoint.h"
 #include "session/pictures/share_records.h"
 #include "session/pictures/write_sequence.h"
+#include "session/sample_range.h"
 #include "session/survey/ground.h"
 #include "session/writing/check_outputs.h"
 
@@ -173,7 +174,7 @@ std::unique_ptr<Ranks> join_ranks(RenderFlags& flags) {
     std::unique_ptr<Ranks> ranks = is_part ? nullptr : Ranks::join();
     if (!ranks) return ranks;
     ranks->divide(flags.outputs.front(), flags);
-    if (ranks->rank() > 0) flags.outputs.clear();
+    if (ranks->rank() > 0 && !has_frames(flags)) flags.outputs.clear();
     return ranks;
 }
 

@@ -1,5 +1,6 @@
 #include "session/frame_range.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -21,7 +22,36 @@ std::optional<double> seconds_in(std::string_view text) {
     return value && !std::isnan(*value) ? value : std::nullopt;
 }
 
+/// Returns the frames before which there is a cut. Throws Error(BadInput).
+std::vector<uint32_t> parse_cuts(const std::string& text) {
+    std::vector<uint32_t> cuts;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t comma = std::min(text.find(',', at), text.size());
+        const auto cut = parse_whole_number(text.substr(at, comma - at));
+        const bool is_later = cut && *cut <= kMaxFrames && (cuts.empty() || *cut > cuts.back());
+        if (!is_later || comma + 1 == text.size()) {
+            throw Error(ErrorCode::BadInput, "cuts", text,
+                        fmt::format("expected K,K,..., increasing whole numbers up to {}", kMaxFrames));
+        }
+        cuts.push_back(static_cast<uint32_t>(*cut));
+        at = comma + 1;
+    }
+    return cuts;
+}
+
 } // namespace
+
+std::pair<uint32_t, uint32_t> FrameRange::of_part() const {
+    const auto [from, to] = part.value_or(PartNumber()).of(uint64_t{last} - first + 1);
+    return {static_cast<uint32_t>(first + from), static_cast<uint32_t>(first + to)};
+}
+
+bool FrameRange::is_cut(uint32_t frame) const { return frame == first || std::ranges::binary_search(cuts, frame); }
+
+uint32_t FrameRange::cut_before(uint32_t frame) const {
+    const auto later = std::ranges::upper_bound(cuts, frame);
+    return later == cuts.begin() ? first : std::max(first, *std::prev(later));
+}
 
 bool names_frames(const std::string& pattern) {
     const std::size_t name = pattern.rfind('/') + 1; // npos + 1: 0
@@ -74,6 +104,8 @@ std::optional<FrameRange> frame_range(const PictureOptions& options) {
     sequence.shutter = shutter(options);
     sequence.turntable = options.turntable;
     sequence.time_s = options.time_s;
+    sequence.part = part_number(options);
+    sequence.cuts = parse_cuts(options.cuts);
     if (options.camera_list) {
         for (const CameraOfFile& camera : *options.camera_list) sequence.names.push_back(camera.name);
         sequence.last = static_cast<uint32_t>(sequence.names.size() - 1);

@@ -6,9 +6,11 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/limits.h"
+#include "session/sample_range.h"
 #include "session/shutter.h"
 #include "settings/picture_options.h"
 
@@ -21,8 +23,16 @@ struct FrameRange {
     uint32_t turntable = 0;         // frames per revolution of the camera; 0: it does not revolve
     std::vector<std::string> names; // name of each frame's camera; empty: all frames have the same
     std::optional<Shutter> shutter; // around each frame's time; without it a frame shows one moment
+    std::vector<uint32_t> cuts;     // frames in real time whose history begins anew, in order; the first frame's does
+    std::optional<PartNumber> part; // the frames that this process writes; none: all
 
     uint32_t count() const { return last - first + 1; }
+    /// Returns the frames [first, end) of the part.
+    std::pair<uint32_t, uint32_t> of_part() const;
+    /// Returns whether the history of a frame in real time begins with it.
+    bool is_cut(uint32_t frame) const;
+    /// Returns the frame in real time with which the history of `frame` begins.
+    uint32_t cut_before(uint32_t frame) const;
     /// Time of a frame of a moving scene: k / fps seconds for frame k.
     std::optional<double> time_of(uint32_t frame) const { return fps ? std::optional(frame / *fps) : time_s; }
     /// Index of the sample per pixel that a real-time frame takes: the frame's number, modulo the maximum.

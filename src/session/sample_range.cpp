@@ -42,10 +42,8 @@ std::pair<uint32_t, uint32_t> row_range(const PictureOptions& options) {
                 fmt::format("expected A:B with 0 <= A < B <= {}, as 0:540", kMaxImageSide));
 }
 
-SampleRange sample_range(const PictureOptions& options) {
-    if (!options.samples.empty()) return parse_samples(options.samples);
-    const uint64_t all = options.render.samples;
-    if (options.part.empty()) return {0, static_cast<uint32_t>(all)};
+std::optional<PartNumber> part_number(const PictureOptions& options) {
+    if (options.part.empty()) return std::nullopt;
     const auto part = two_numbers(options.part, '/');
     if (!part || part->second == 0) {
         throw Error(ErrorCode::BadInput, "part", options.part, "expected I/N with N parts, as 1/4");
@@ -55,8 +53,19 @@ SampleRange sample_range(const PictureOptions& options) {
         throw Error(ErrorCode::BadInput, "part", options.part,
                     fmt::format("expected a part from {} to {}", base, base + count - 1));
     }
-    const uint64_t index = part->first - base;
-    return {static_cast<uint32_t>(all * index / count), static_cast<uint32_t>(all * (index + 1) / count)};
+    return PartNumber{part->first - base, count};
+}
+
+bool has_frames(const PictureOptions& options) {
+    return !options.frames.empty() || options.turntable > 0 || !options.cameras.empty() || options.camera_list;
+}
+
+SampleRange sample_range(const PictureOptions& options) {
+    if (!options.samples.empty()) return parse_samples(options.samples);
+    const std::optional<PartNumber> part = part_number(options);
+    if (!part || has_frames(options)) return {0, options.render.samples};
+    const auto [first, end] = part->of(options.render.samples);
+    return {static_cast<uint32_t>(first), static_cast<uint32_t>(end)};
 }
 
 } // namespace pertev

@@ -96,6 +96,7 @@ struct PictureOptions {
     std::string false_color_range;                                // A,B
     std::optional<double> time_s;                                 // none: the scene is at rest
     std::string frames, camera_path, shutter;                     // A-B; a file; [OPEN,]SECONDS
+    std::string cuts;                                             // K,K,...
     std::string cameras;                                          // a file or folder of many cameras
     std::shared_ptr<const std::vector<CameraOfFile>> camera_list; // cameras of that file, once it is read
     double fps = 0;

@@ -11,9 +11,11 @@ import unittest
 
 import pertev
 
+from device_argument import DEVICE
+
 PROGRAM = sys.argv.pop(1)
-SMALL = {"size": (24, 16), "device": "cpu"}
-FLAGS = ["--size", "24x16", "--device", "cpu"]
+SMALL = {"size": (24, 16), "device": DEVICE}
+FLAGS = ["--size", "24x16", "--device", DEVICE]
 
 
 def moving_scene(folder):
@@ -55,6 +57,12 @@ class Sessions(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.moves = moving_scene(folder.name)
+
+    def test_a_cut_begins_the_history_anew(self):
+        frames = [frame.hash for frame in pertev.Session(self.moves, frames="0-4", fps=4, cuts=[2], **SMALL)]
+        self.assertEqual(frames, frames_of_program(self.moves, "--real-time", "--frames", "0-4", "--fps", "4", "--cuts", "2"))
+        self.assertEqual(frames[2:], [frame.hash for frame in pertev.Session(self.moves, frames="2-4", fps=4, **SMALL)])
+        self.assertNotEqual(frames[3], [frame.hash for frame in pertev.Session(self.moves, frames="0-4", fps=4, **SMALL)][3])
 
     def test_several_devices_make_frames_together(self):
         for flags in ({"real_time": False, "spp": 3}, {}, {"restir": "gi"}):

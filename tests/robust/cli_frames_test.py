@@ -225,6 +225,57 @@ class MovingPictures(CliTest):
         for k in range(40):
             self.assertEqual(self.read(f"f-{k:02}.png"), self.read(f"again/f-{k:02}.png"), k)
 
+    def test_parts_of_a_sequence_have_the_files_of_one_run(self):
+        metered = ["--size", "24x16", "--spp", "2", "--device", "cpu", "--json"]
+
+        def render(folder, *arguments, scene="m.gltf"):
+            os.makedirs(self.path(folder), exist_ok=True)
+            return self.succeed("render", scene, "-o", f"{folder}/f-##.png", *metered, *arguments)
+
+        def pictures(folder):
+            return {name: self.read(f"{folder}/{name}") for name in os.listdir(self.path(folder)) if name.endswith(".png")}
+
+        for number, (scene, motion) in enumerate([("m.gltf", ["--frames", "2-8", "--fps", "5"]), ("cornell-box", ["--turntable", "3"])]):
+            whole, parts = f"whole{number}", f"parts{number}"
+            count = len(render(whole, *motion, scene=scene).events("frame"))
+            for part in ("3/4", "1/4", "4/4", "2/4"):
+                said = render(parts, *motion, "--part", part, scene=scene)
+                self.assertEqual(len(said.events("exposure")), 1)
+                end = said.events("sequence")[0]
+                index = int(part[0])
+                own = [event["frame"] for event in said.events("frame")]
+                begin = int(motion[1].split("-")[0]) if "--frames" in motion else 0
+                self.assertEqual(own, list(range(begin + count * (index - 1) // 4, begin + count * index // 4)))
+                self.assertEqual((end["frames"], end["written"], end["interrupted"]), (len(own), len(own), False))
+            self.assertEqual(pictures(parts), pictures(whole))
+            records = [f"f-##.part-{i}-of-4.json" for i in range(1, 5) if count * (i - 1) // 4 < count * i // 4]
+            self.assertEqual(sorted(name for name in os.listdir(self.path(parts)) if name.endswith(".json")), records)
+            os.remove(self.path(f"{parts}/f-02.png"))  # one run of all frames keeps those of all parts
+            end = render(parts, *motion, "--continue", scene=scene).events("sequence")[0]
+            self.assertEqual((end["written"], end["kept"]), (1, count - 1))
+            end = render(parts, *motion, "--part", "1/1", "--continue", scene=scene).events("sequence")[0]
+            self.assertEqual((end["written"], end["kept"]), (0, count))
+            self.assertEqual(pictures(parts), pictures(whole))
+
+    def test_a_part_refuses_its_own_record_alone_if_that_has_other_settings(self):
+        motion = ["--frames", "0-3", "--fps", "2"]
+        self.frames(*motion, "--part", "1/2")
+        self.frames(*motion, "--part", "2/2", "--seed", "4")
+        self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, *motion, "--part", "1/2", "--seed", "4", "--continue",
+                    says=["f-###.part-1-of-2.json: ", "--seed"])
+        write(self.path("f-###.part-9-of-9.json"), "{")  # is no record, and no part's own
+        end = self.frames(*motion, "--part", "1/2", "--continue").events("sequence")[0]
+        self.assertEqual((end["written"], end["kept"]), (0, 2))
+        end = self.frames(*motion, "--continue").events("sequence")[0]  # frames of the other seed are rendered again
+        self.assertEqual((end["written"], end["kept"]), (2, 2))
+
+    def test_invalid_parts_of_sequences_are_refused(self):
+        for part in ("0/2", "3/2", "1/0", "x"):
+            self.refuse(2, "render", "m.gltf", "-o", "f-#.png", *TINY, "--frames", "0-1", "--part", part, says=[f"--part {part}"])
+        self.refuse(2, "render", "m.gltf", "-o", "f-#.png", *TINY, "--frames", "0-1", "--samples", "0:1", says=["--samples"])
+        self.frames("--frames", "0-1", "--part", "0/2", "--part-base", "0", output="b-#.png")
+        self.assertEqual([name for name in self.files() if name.startswith("b-")], ["b-#.part-1-of-2.json", "b-0.png"])
+
     def run_on_a_full_disk(self, limit, *arguments):
         """Returns the last object and that of the sequence if no file may exceed `limit` bytes."""
         outcome = self.run_pertev("render", "m.gltf", *arguments, "--json",

@@ -71,6 +71,18 @@ class Ranks(CliTest):
                 self.check(4, "--spp", 7, *picture)
 
     @unittest.skipUnless(has_mpi(), "no mpirun, or a build without MPI")
+    def test_ranks_divide_the_frames_of_a_sequence(self):
+        line = ["--size", "24x18", "--device", "cpu", "--threads", "1", "--turntable", "5"]
+        for folder, more in (("still", ["--spp", "2"]), ("real", ["--real-time", "--cuts", "3"])):
+            os.makedirs(self.path(folder + "/whole"))
+            self.succeed("render", "cornell-box", "-o", f"{folder}/whole/f#.png", *line, *more)
+            done = subprocess.run([*MPIRUN, "-n", "3", PROGRAM, "render", "cornell-box", "-o", f"{folder}/f#.png", *line, *more], cwd=self.folder,
+                                  env=self.environment, stdin=subprocess.DEVNULL, check=False, timeout=PATIENCE_S, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            for frame in range(5):
+                self.assertEqual(self.read(f"{folder}/f{frame}.png"), self.read(f"{folder}/whole/f{frame}.png"))
+
+    @unittest.skipUnless(has_mpi(), "no mpirun, or a build without MPI")
     def test_there_may_be_more_ranks_than_samples(self):
         self.check(3, "--spp", 2)
 

@@ -124,6 +124,69 @@ class RealTime(CliTest):
                 self.assertEqual((end["written"], end["kept"], end["rendered_again"]), (1, 6, 1))
                 self.assertEqual(self.pictures(f"parts{number}"), self.pictures(f"whole{number}"))
 
+    def test_parts_render_the_history_before_them_and_begin_at_cuts(self):
+        for number, (cuts, devices, rendered) in enumerate([("", "cpu", [0, 3, 6]), ("2,5", "cpu", [0, 1, 1]), ("6", "cpu,cpu", [0, 3, 1])]):
+            with self.subTest(cuts=cuts):
+                motion = ["--frames", "1-9", "--fps", "4", "--restir", "gi", *(["--cuts", cuts] if cuts else [])]
+                said = self.render(f"whole{number}", *motion)
+                hashes = {event["frame"]: event["hash"] for event in said.events("frame")}
+                expected = self.pictures(f"whole{number}")
+                for part in (2, 3, 1):
+                    said = self.render(f"parts{number}", *motion, "--part", f"{part}/3", "--device", devices)
+                    own = {event["frame"]: event["hash"] for event in said.events("frame")}
+                    self.assertEqual(own, {frame: hashes[frame] for frame in range(3 * part - 2, 3 * part + 1)})
+                    end = said.events("sequence")[0]
+                    self.assertEqual((end["frames"], end["written"], end["kept"], end["rendered_again"]), (3, 3, 0, 0))
+                    notices = [event["text"] for event in said.events("notice") if "for the history" in event["text"]]
+                    self.assertEqual(len(notices), rendered[part - 1] > 0)
+                self.assertEqual(self.pictures(f"parts{number}"), expected)
+
+    def test_frames_after_a_cut_are_those_of_a_sequence_that_begins_there(self):
+        motion = ["--fps", "4", "--restir", "di", "--aov", "albedo"]
+        frames = self.render("cut", "--frames", "0-5", "--cuts", "0,3,9", *motion, output="f-#.exr").events("frame")
+        later = self.render("later", "--frames", "3-5", *motion, output="f-#.exr").events("frame")
+        self.assertEqual([event["hash"] for event in frames[3:]], [event["hash"] for event in later])
+        self.assertNotEqual(frames[4]["hash"], self.render("x", "--frames", "0-4", *motion, output="f-#.exr").events("frame")[4]["hash"])
+        info = self.info("cut/f-5.exr")
+        self.assertEqual((info["pertev.frame"], info["pertev.first_frame"]), (5, 3))
+        write(self.path("s.json"), self.succeed("info", "cut/f-5.exr", "--settings").stdout)
+        again = self.succeed("render", "m.gltf", "-o", "y-#.exr", "--settings", "s.json", "--device", "cpu", "--json").events("frame")
+        self.assertEqual([(event["frame"], event["hash"]) for event in again][-1], (5, frames[5]["hash"]))
+        self.assertEqual(len(again), 3)
+        self.refuse_to_render("cut", "--frames", "0-5", "--cuts", "3,3", says=["--cuts 3,3"])
+        self.refuse(2, "render", "m.gltf", "-o", "f-#.exr", *SMALL, "--spp", "1", "--frames", "0-5", "--cuts", "3", says=["--cuts", "--real-time"])
+
+    def test_continuing_a_part_renders_runs_that_lack_frames_alone(self):
+        motion = ["--frames", "0-11", "--fps", "4", "--cuts", "4,8"]
+        self.render("whole", *motion)
+        expected = self.pictures("whole")
+        self.render("parts", *motion, "--part", "2/2")  # frames 6 to 11, of which 6 and 7 have the history 4 and 5
+        for missing, rendered in (("09", 1), ("06", 0), ("11", 3)):
+            os.remove(self.path(f"parts/f-{missing}.png"))
+            end = self.render("parts", *motion, "--part", "2/2", "--continue").events("sequence")[0]
+            self.assertEqual((end["frames"], end["written"], end["kept"], end["rendered_again"]), (6, 1, 5, rendered))
+        for name in ("f-07.png", "f-08.png"):
+            os.remove(self.path(f"parts/{name}"))
+        end = self.render("parts", *motion, "--continue").events("sequence")[0]  # all parts' frames are kept
+        self.assertEqual((end["frames"], end["written"], end["kept"], end["rendered_again"]), (12, 8, 4, 1))
+        self.assertEqual(self.pictures("parts"), expected)
+        self.refuse_to_render("parts", *motion[:-1], "4,9", "--continue", says=["--cuts"])
+
+    def test_a_part_goes_on_from_the_checkpoint_of_the_part_before(self):
+        motion = ["--frames", "0-5", "--fps", "4", "--restir", "di"]
+        self.render("whole", *motion)
+        kept = [*motion, "--checkpoint", "c.pvf", "--continue"]
+        for part in ("1/3", "2/3", "3/3"):
+            said = self.render("parts", *kept, "--part", part)
+            self.assertEqual(sum("for the history" in event["text"] for event in said.events("notice")), 0)
+            self.assertEqual(sum("resumes after frame" in event["text"] for event in said.events("notice")), part != "1/3")
+        self.assertEqual(self.pictures("parts"), self.pictures("whole"))
+        for name in ("f-02.png", "f-03.png"):
+            os.remove(self.path(f"parts/{name}"))  # before the checkpoint's frame, which does not help
+        said = self.render("parts", *kept, "--part", "2/3")
+        self.assertEqual(sum("for the history" in event["text"] for event in said.events("notice")), 1)
+        self.assertEqual(self.pictures("parts"), self.pictures("whole"))
+
     def flip(self, name):
         data = bytearray(self.read(name))
         data[len(data) // 2] ^= 4

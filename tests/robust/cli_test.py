@@ -19,7 +19,7 @@ FLAGS = {
               "--two-sided-lights --show-back-faces --size --tone-map --exposure --transparent --aov --spp --time-limit --denoise "
               "--integrator --max-depth --ambient --shading --wireframe --seed --sampler --filter --filter-radius --clamp --mip-maps --device --threads "
               "--no-bvh-cache --build --structure --traversal --rta --order --distribution --time --frames --fps --camera-path "
-              "--turntable --continue --lpe --lamp --efficacy --false-color --false-color-range --f-number --shutter-time --iso "
+              "--turntable --continue --cuts --lpe --lamp --efficacy --false-color --false-color-range --f-number --shutter-time --iso "
               "--shutter --shading-rate --displacement --photons --gather --radius --caustic-radius --nearest "
               "--accuracy --hemisphere-rays --show-records --patch-size --subdivisions --contrast --form-factors --patch-rays --hemicube "
               "--solver --tolerance --steps --link-error --max-memory --solution --flat-patches --real-time --restir --restir-history --resolution-scale --history --passes --no-anti-alias "

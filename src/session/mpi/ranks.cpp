@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "device/backend.h"
+#include "session/sample_range.h"
 #include "settings/setting_table.h"
 
 #if defined(PERTEV_MPI)
@@ -60,6 +61,7 @@ void Ranks::divide(const std::string& output, PictureOptions& options) const {
     const std::string gpu = gpu_of_rank(number_on_machine(), gpus);
     if (!options.is_given("device") && !gpu.empty()) options.machine.device = gpu;
     set_option(options, "part", fmt::format("{}/{}", rank_ + 1, count_));
+    if (has_frames(options)) return; // each writes the files of its own
     set_option(options, "checkpoint", fmt::format("{}.part-{}-of-{}.pvf", output, rank_ + 1, count_));
 }
 

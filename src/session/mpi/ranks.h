@@ -1,8 +1,8 @@
 #pragma once
 
 // The processes that mpirun starts together to render one picture. Each renders its part into a film file of its own
-// (session/film_file/checkpoint.h) and the first one sums the films. A build without MPI (PERTEV_MPI) has the same
-// functions, and refuses to be one of several ranks.
+// (session/film_file/checkpoint.h) and the first one sums the films. Of a sequence each writes its part of the frames.
+// A build without MPI (PERTEV_MPI) has the same functions, and refuses to be one of several ranks.
 //
 // Source: MPI: A Message-Passing Interface Standard 3.1, section 5.9.5 (operations of the user).
 
@@ -31,8 +31,9 @@ public:
     uint32_t rank() const { return rank_; } // from 0
     uint32_t count() const { return count_; }
 
-    /// Sets the part and the checkpoint of this rank, a film file beside `output`, and, if several GPUs are there and
-    /// no device was given, a GPU for each rank of this machine. Throws Error(BadInput) if a checkpoint was given.
+    /// Sets the part of this rank, of a single picture its checkpoint, a film file beside `output`, and, if several
+    /// GPUs are there and no device was given, a GPU for each rank of this machine. Throws Error(BadInput) if a
+    /// checkpoint was given.
     void divide(const std::string& output, PictureOptions& options) const;
     /// Returns whether all ranks call it with true. Each rank calls it, and waits for the others.
     bool all(bool here) const;

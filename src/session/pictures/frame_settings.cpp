@@ -21,6 +21,8 @@ void set(PictureOptions& options, const char* name, const std::string& text) {
 void keep_frame(PictureOptions& options, const PictureRecord& record, uint32_t frame) {
     const bool has_motion = (record.settings.aovs & kAovMotion) != 0;
     if (options.real_time || options.turntable > 0 || has_motion) {
+        options.given.erase("cuts");
+        options.cuts.clear(); // no later one than the frame with which its history begins
         const uint32_t first = record.frame ? record.frame->cut : frame;
         return set(options, "frames", fmt::format("{}-{}", first, frame));
     }

@@ -12,16 +12,15 @@ SequenceHistory::SequenceHistory(const SequenceOfFrames& frames, const PictureOp
                                  DecidingSettings settings)
     : frames_(frames), every_s_(options.checkpoint_every_s), file_(options.checkpoint, std::move(settings)) {}
 
-uint32_t SequenceHistory::restore(uint32_t whole, Sink& sink) {
+uint32_t SequenceHistory::restore(uint32_t first, uint32_t end, Sink& sink) {
     std::optional<KeptFrame> kept = file_.read(sink);
-    const uint32_t first = frames_.camera.sequence.first;
-    if (!kept || kept->frame < first || kept->frame - first >= whole) return 0;
+    if (!kept || kept->frame < first || kept->frame >= end) return first;
     seek_frame(kept->frame, frames_.camera, frames_.moving, frames_.session, frames_.record, sink);
     kept->history.camera = frames_.session.camera();
     frames_.session.frames().restore(std::move(kept->history), frames_.session.settings(), sink);
     kept_ = kept->frame;
     sink.note(fmt::format("resumes after frame {} in {}", kept->frame, file_.file()));
-    return kept->frame - first + 1;
+    return kept->frame + 1;
 }
 
 void SequenceHistory::add(uint32_t frame, Sink& sink) {

@@ -16,9 +16,9 @@ public:
     /// Makes an object for the checkpoint of the options; `settings` decide all frames, and `frames` outlives it.
     SequenceHistory(const SequenceOfFrames& frames, const PictureOptions& options, DecidingSettings settings);
 
-    /// Goes on after the checkpoint's frame if that is one of the first `whole` ones, whose files are all there.
-    /// Returns how many frames, from the first on, thus need not be rendered again. Throws as HistoryFile::read.
-    uint32_t restore(uint32_t whole, Sink& sink);
+    /// Goes on after the checkpoint's frame if that is in [first, end), and returns the next one; else `first`. Throws
+    /// as HistoryFile::read.
+    uint32_t restore(uint32_t first, uint32_t end, Sink& sink);
     /// Takes note that a frame was rendered, whose files are there. If the checkpoint is due, it is written; a failure
     /// is a warning.
     void add(uint32_t frame, Sink& sink);

@@ -40,62 +40,89 @@ public:
     SequenceWriter(const SequenceOfFrames& frames, const PictureOptions& options,
                    const std::vector<std::string>& outputs, Sink& sink)
         : frames_(frames), options_(options), outputs_(outputs), sink_(sink), sequence_(frames.camera.sequence),
-          done_(outputs, settings_of(options, sequence_, frames.record), sequence_.names) {
+          own_(sequence_.of_part()),
+          done_(outputs, settings_of(options, sequence_, frames.record), sequence_.names, sequence_.part) {
         if (options.goes_on) {
             remove_leftovers(done_.path());
             done_.load();
         }
         if (!frames.record.frame) return;
-        with_history_ = count_frames_to_render();
+        find_runs();
         if (!options.checkpoint.empty())
             history_.emplace(frames, options, settings_of(options, sequence_, frames.record));
     }
 
     void run(const std::function<void(const FrameReport&)>& report, SequenceTally& tally) {
-        tally.frames = sequence_.count();
-        if (frames_.record.frame) frames_.session.cut();
-        if (history_ && options_.goes_on && with_history_ > 0) restored_ = history_->restore(count_whole(0), sink_);
-        report_history();
+        tally.frames = own_.second - own_.first;
+        if (!runs_.empty()) begin_run(runs_.front());
+        if (history_ && options_.goes_on && !runs_.empty()) {
+            Run& run = runs_.front();
+            run.first = history_->restore(run.first, first_missing(run), sink_);
+        }
+        std::ranges::for_each(runs_, [&](const Run& run) { report_history(run); });
         sink_.set_work("rendering");
-        for (uint32_t number = 0; number < sequence_.count() && !sink_.should_stop(); ++number) {
-            if (!make(sequence_.first + number, report, tally)) break;
+        for (uint32_t frame = first(); frame < own_.second && !sink_.should_stop(); ++frame) {
+            if (!make(frame, report, tally)) break;
         }
         if (history_) history_->finish();
     }
 
 private:
-    bool is_there(uint32_t frame) const { return options_.goes_on && done_.has(frame); }
+    /// Frames [first, end) in real time that are rendered one after the other, since they are missing or the history of
+    /// missing ones, which begins at a cut.
+    struct Run {
+        uint32_t cut, first, end;
+    };
 
-    /// Number of frames in real time that must be rendered: all up to the last one that is missing.
-    uint32_t count_frames_to_render() const {
-        uint32_t count = sequence_.count();
-        while (count > 0 && is_there(sequence_.first + count - 1)) --count;
-        return count;
+    bool is_own(uint32_t frame) const { return frame >= own_.first; }
+    bool is_there(uint32_t frame) const { return options_.goes_on && is_own(frame) && done_.has(frame); }
+    /// Returns the first frame that is rendered, written or kept.
+    uint32_t first() const { return runs_.empty() ? own_.first : std::min(own_.first, runs_.front().first); }
+
+    /// Finds the runs from cut to cut; each ends with the last frame that is missing.
+    void find_runs() {
+        for (uint32_t end = own_.second; end > own_.first;) {
+            const uint32_t cut = sequence_.cut_before(end - 1), least = std::max(cut, own_.first);
+            while (end > least && is_there(end - 1)) --end;
+            if (end > least) runs_.insert(runs_.begin(), Run{cut, cut, end});
+            end = least;
+        }
     }
 
-    /// Number of frames from number `first` on that are there, before the first one that is missing.
-    uint32_t count_whole(uint32_t first) const {
-        uint32_t there = first;
-        while (there < with_history_ && is_there(sequence_.first + there)) ++there;
-        return there - first;
+    uint32_t first_missing(const Run& run) const {
+        uint32_t frame = std::max(run.first, own_.first);
+        while (is_there(frame)) ++frame;
+        return frame;
     }
 
-    void report_history() {
-        const uint32_t there = count_whole(restored_), first = sequence_.first + restored_;
-        if (there == 0) return;
-        sink_.note(there == 1 ? fmt::format("renders frame {} again for the history of those after it", first)
-                              : fmt::format("renders frames {} to {} again for the history of those after "
-                                            "them",
-                                            first, first + there - 1));
+    bool is_in_run(uint32_t frame) const {
+        return std::ranges::any_of(runs_, [&](const Run& run) { return frame >= run.first && frame < run.end; });
+    }
+
+    void begin_run(const Run& run) {
+        frames_.session.cut();
+        frames_.record.frame->cut = run.cut;
+    }
+
+    void report_history(const Run& run) {
+        const uint32_t end = first_missing(run);
+        if (run.first == end) return;
+        const char* const again = is_own(run.first) ? " again" : "";
+        sink_.note(end - run.first == 1
+                       ? fmt::format("renders frame {}{} for the history of those after it", run.first, again)
+                       : fmt::format("renders frames {} to {}{} for the history of those after them", run.first,
+                                     end - 1, again));
         sink_.report_messages();
     }
 
     /// `share` of the frame is finished.
     void report_progress(const FrameReport& made, double share) {
-        const uint32_t number = made.frame - sequence_.first;
-        sink_.progress({.doing = fmt::format("frame {} ({} of {}){}", made.frame, number + 1, sequence_.count(),
-                                             made.is_kept ? " again" : ""),
-                        .share = (number + share) / sequence_.count(),
+        const uint32_t number = made.frame - first(), count = own_.second - first();
+        sink_.progress({.doing = fmt::format("frame {} ({} of {}){}", made.frame, number + 1, count,
+                                             made.is_kept          ? " again"
+                                             : !is_own(made.frame) ? " for the history"
+                                                                   : ""),
+                        .share = (number + share) / count,
                         .seconds = watch_.seconds(),
                         .share_of_step = share});
     }
@@ -107,10 +134,11 @@ private:
         made.time_s = sequence_.time_of(frame);
         if (!sequence_.names.empty()) made.camera = sequence_.names[frame];
         made.is_kept = is_there(frame);
-        const uint32_t number = frame - sequence_.first;
-        const bool is_rendered = !made.is_kept || (number >= restored_ && number < with_history_);
+        const bool is_rendered = frames_.record.frame ? is_in_run(frame) : !made.is_kept;
         if (is_rendered) {
             if (frames_.record.frame) report_progress(made, 0);
+            const auto begun = std::ranges::find(runs_, frame, &Run::cut);
+            if (begun != runs_.end() && begun != runs_.begin()) begin_run(*begun);
             auto [result, update_s] = render(made);
             if (result.samples < frames_.record.settings.samples) return false;
             tally.has_begun = true;
@@ -119,7 +147,7 @@ private:
             made.samples = result.samples;
             made.update_s = update_s;
             made.render_s = result.render_seconds;
-            if (!made.is_kept) write(result, report, made, tally);
+            if (!made.is_kept && is_own(frame)) write(result, report, made, tally);
             if (history_) history_->add(frame, sink_);
         }
         tally.kept += made.is_kept;
@@ -163,10 +191,10 @@ private:
     const std::vector<std::string>& outputs_;
     Sink& sink_;
     const FrameRange& sequence_;
+    const std::pair<uint32_t, uint32_t> own_; // the frames [first, end) of this part
     SequenceRecord done_;
     const Stopwatch watch_;
-    uint32_t with_history_ = 0; // in real time: the number of first frames that are all rendered, for the history
-    uint32_t restored_ = 0;     // number of first frames that need not be, because the checkpoint has their history
+    std::vector<Run> runs_;                  // in real time, in order
     std::optional<SequenceHistory> history_; // with a checkpoint
     WholeFrame whole_{sink_};
 };

@@ -28,7 +28,7 @@ struct FrameReport {
 };
 
 struct SequenceTally {
-    uint32_t frames = 0;            // requested
+    uint32_t frames = 0;            // requested of this part
     bool has_begun = false;         // a frame was rendered, written or not
     uint32_t written = 0, kept = 0; // frames whose files are all there
     uint32_t again = 0;             // kept frames that were rendered for the history of others
@@ -40,7 +40,7 @@ struct SequenceTally {
 
 /// Renders and writes the frames in order, or with `continue` those that are not there yet, until the sink is
 /// cancelled, and counts in `tally` as it goes on. `frames` are at the first frame and have the exposure of all; frames
-/// in real time (PictureRecord::frame) begin with a cut. `outputs` are names with #. Calls `report` for each frame,
+/// in real time (PictureRecord::frame) begin with a cut, and those from the last one before a part are rendered, too. `outputs` are names with #. Calls `report` for each frame,
 /// also for one whose files could not all be written. Throws Error if a frame cannot be rendered or written, or if the
 /// frames that are there have other settings: those before it are whole.
 void write_sequence(const SequenceOfFrames& frames, const PictureOptions& options,
