@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/stopwatch.h"
+#include "device/wait_for_device.h"
 #include "image/picture_hash.h"
 #include "session/batch_render.h"
 #include "session/devices/batch_on_devices.h"
@@ -114,6 +115,7 @@ void PythonBatch::render(OpenedScene& opened, Session& session, const CamerasArg
         throw Error(ErrorCode::BadInput, "out", "",
                     "the arrays belong to other pictures: number, size, layers and scene must be the same");
     }
+    if (!is_empty()) wait_for_device(queue); // others may still read the arrays
     const uint32_t at_once = size_of_chunk(opened, settings, cameras, options);
     if (is_empty()) {
         const std::size_t bytes = predicted_batch_bytes(setup.prepared(), batch, settings, at_once, queue.is_cuda()) +
@@ -187,8 +189,9 @@ std::vector<PythonBatch::Array> PythonBatch::arrays() const {
 
 std::vector<std::byte> PythonBatch::download(const Array& array) const { return download(array, 0, arrays_.pictures); }
 
-/// Returns the bytes of `count` pictures from number `first` on.
+/// Returns the bytes of `count` pictures from number `first` on, as others have left them.
 std::vector<std::byte> PythonBatch::download(const Array& array, std::size_t first, std::size_t count) const {
+    wait_for_device(*queue_);
     const std::size_t each = sizeof(float) * array.channels * height_ * width_;
     std::vector<std::byte> bytes(each * count);
     queue_->copy_to_host(bytes.data(), static_cast<const std::byte*>(array.values) + first * each, bytes.size());

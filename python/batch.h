@@ -33,7 +33,8 @@ struct CamerasArgument {
 class PythonBatch {
 public:
     /// Renders with the settings and the device of `session`, which is that of `opened`. `record` and `options` are
-    /// those of the call. The arrays are complete on return. Those of an earlier call are filled again. Throws
+    /// those of the call. The arrays are complete on return. Those of an earlier call are filled again, after all
+    /// work on the device that may use them. Throws
     /// Error(BadInput) if they do not fit, and Error(OutOfMemory, Interrupted, ...).
     void render(OpenedScene& opened, Session& session, const CamerasArgument& cameras,
                 std::shared_ptr<const PictureRecord> record, const PictureOptions& options, Sink& sink);

@@ -59,6 +59,12 @@ nb::object array_named(nb::handle self, const std::string& name) {
     throw nb::attribute_error(fmt::format("there is no array '{}'; request it by layers=['{}']", name, name).c_str());
 }
 
+/// Returns what `work` gives without the interpreter's lock, which work that it waits for may need.
+auto unlocked(const auto& work) {
+    const nb::gil_scoped_release released;
+    return work();
+}
+
 /// Returns what `of` gives for the single picture, or a list of it for all pictures.
 template <class Of>
 nb::object of_pictures(const PythonBatch& batch, const Of& of) {
@@ -70,14 +76,16 @@ nb::object of_pictures(const PythonBatch& batch, const Of& of) {
 
 nb::object hashes_of(const PythonBatch& batch) {
     return of_pictures(batch, [&](std::size_t k) -> nb::object {
-        const std::optional<std::string> hash = batch.hash(k);
+        const std::optional<std::string> hash = unlocked([&] { return batch.hash(k); });
         if (!hash) throw nb::attribute_error("a hash is that of `color`, which was not requested");
         return nb::str(hash->c_str());
     });
 }
 
 nb::object infos_of(const PythonBatch& batch) {
-    return of_pictures(batch, [&](std::size_t k) -> nb::object { return info_of_metadata(batch.metadata(k)); });
+    return of_pictures(batch, [&](std::size_t k) -> nb::object {
+        return info_of_metadata(unlocked([&] { return batch.metadata(k); }));
+    });
 }
 
 nb::dict arrays_of(nb::handle self) {
@@ -90,7 +98,8 @@ nb::dict arrays_of(nb::handle self) {
 
 /// Returns a copy of an array in the memory of the host, as NumPy's.
 nb::object host_copy(const DeviceArray& self) {
-    auto* bytes = new std::vector<std::byte>(nb::cast<const PythonBatch&>(self.batch).download(self.array));
+    const PythonBatch& batch = nb::cast<const PythonBatch&>(self.batch);
+    auto* bytes = new std::vector<std::byte>(unlocked([&] { return batch.download(self.array); }));
     const nb::capsule owner(bytes, [](void* p) noexcept { delete static_cast<std::vector<std::byte>*>(p); });
     const auto type = self.array.is_float ? nb::dtype<float>() : nb::dtype<uint32_t>();
     return nb::cast(nb::ndarray<nb::numpy>(bytes->data(), self.shape.size(), self.shape.data(), owner, nullptr, type));
@@ -114,7 +123,8 @@ void define_batch(nb::module_& module) {
                             R"(An array in a GPU's memory, for PyTorch, JAX, CuPy or Warp.
 
 It has DLPack (`torch.from_dlpack(array)`) and `__cuda_array_interface__`, shares the memory of its BatchResult and keeps
-it. Its contents are complete, so any stream may use it.)")
+it. Its contents are complete, so any stream may use it. Before `out=` fills it again, and before numpy(), work that is
+queued on any stream of the device ends.)")
         .def("__dlpack__",
              [](const DeviceArray& self, const nb::kwargs& how) { return self.exported().attr("__dlpack__")(**how); })
         .def("__dlpack_device__",

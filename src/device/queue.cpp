@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "device/wait_for_device.h"
 
 namespace pertev {
 namespace {
@@ -157,6 +158,8 @@ std::vector<CudaDevice> cuda_devices() { return {}; }
 std::unique_ptr<DeviceBackend> make_cuda_backend(int index) {
     throw Error(ErrorCode::BadInput, "device", fmt::format("cuda:{}", index), why_no_cuda(index));
 }
+
+void wait_for_device(const Queue&) {}
 
 #endif
 

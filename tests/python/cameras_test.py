@@ -1,20 +1,21 @@
 """Tests many cameras in one call: pictures have the bytes of single renders, in chunks and in reused arrays, and errors."""
 
+import ctypes
 import gc
 import importlib
 import json
 import pathlib
 import sys
 import tempfile
+import time
 import unittest
 
 import numpy
 import pertev
 
+from device_argument import DEVICE
+
 PROGRAM = sys.argv.pop(1)
-DEVICE = sys.argv[sys.argv.index("--device") + 1] if "--device" in sys.argv else "cpu"
-if DEVICE != "cpu":
-    del sys.argv[sys.argv.index("--device"):sys.argv.index("--device") + 2]
 SMALL = {"size": (24, 16), "spp": 2}
 LAYERS = ["depth", "normal", "ids"]
 
@@ -288,6 +289,42 @@ class Cameras(unittest.TestCase):
         self.assertEqual(again.color.numpy().tobytes(), batch.color.numpy().tobytes())
         with torch.cuda.stream(torch.cuda.Stream()):  # a consumer's stream of its own
             self.assertEqual(torch.from_dlpack(again.depth).sum().item(), tensor.new_tensor(batch.depth.numpy()).sum().item())
+
+    @unittest.skipIf(DEVICE == "cpu", "arrays on a GPU are those of CUDA")
+    def test_arrays_are_filled_again_after_what_still_reads_them(self):
+        driver, stream, kept = ctypes.CDLL("libcuda.so.1"), ctypes.c_void_p(), ctypes.c_uint64()
+        work = ctypes.CFUNCTYPE(None, ctypes.c_void_p)(lambda _: time.sleep(1))  # such as the kernels before one that reads
+
+        def call(name, *arguments):
+            self.assertEqual(getattr(driver, name)(*arguments), 0, name)
+
+        batch = pertev.render(self.scene, cameras=poses(2), **SMALL)
+        before, size = batch.color.numpy(), ctypes.c_size_t(batch.color.numpy().nbytes)
+        address = ctypes.c_uint64(batch.color.__cuda_array_interface__["data"][0])
+        call("cuStreamCreate", ctypes.byref(stream), 1)  # which waits for no other one
+        call("cuMemAlloc_v2", ctypes.byref(kept), size)
+        call("cuLaunchHostFunc", stream, work, None)
+        call("cuMemcpyDtoDAsync_v2", kept, address, size, stream)
+        pertev.render(self.scene, cameras=poses(4)[2:], out=batch, **SMALL)
+        call("cuStreamSynchronize", stream)
+        read = numpy.empty_like(before)
+        call("cuMemcpyDtoH_v2", read.ctypes.data_as(ctypes.c_void_p), kept, size)
+        self.assertEqual(read.tobytes(), before.tobytes())
+        self.assertNotEqual(batch.color.numpy().tobytes(), before.tobytes())
+        # The host also waits for what others write.
+        call("cuLaunchHostFunc", stream, work, None)
+        call("cuMemcpyDtoDAsync_v2", address, kept, size, stream)
+        self.assertEqual(batch.color.numpy().tobytes(), before.tobytes())
+        call("cuMemFree_v2", kept)
+
+    def test_views_of_arrays_show_what_they_are_filled_with_again(self):
+        batch = pertev.render(self.scene, cameras=poses(2), layers=LAYERS, **SMALL)
+        arrays, kept = batch.arrays, {name: host(array).copy() for name, array in batch.arrays.items()}
+        other = pertev.render(self.scene, cameras=poses(4)[2:], layers=LAYERS, **SMALL)
+        self.assertIs(pertev.render(self.scene, cameras=poses(4)[2:], layers=LAYERS, out=batch, **SMALL), batch)
+        for name, array in arrays.items():
+            self.assertEqual(host(array).tobytes(), host(other.arrays[name]).tobytes())
+            self.assertNotEqual(host(array).tobytes(), kept[name].tobytes())
 
     @unittest.skipIf(DEVICE == "cpu", "arrays on a GPU are those of CUDA")
     def test_other_packages_read_arrays_on_a_gpu(self):

@@ -8,6 +8,7 @@
 #include "device/buffer.h"
 #include "device/launch.h"
 #include "device/readback.h"
+#include "device/wait_for_device.h"
 #include "integrators/ray_tree/tree_stages.h"
 #include "tests/support/device_stages.h"
 #include "tests/support/render_scenes.h"
@@ -48,6 +49,11 @@ TEST_CASE("a dry run counts the bytes of a device and allocates none") {
         CHECK(dry.allocated_bytes() == std::size_t(1) << 50);
         launch(dry, "nothing", 1u << 31, BeginRounds{nullptr, 1}); // a dry run runs no stage
     }
+}
+
+TEST_CASE("a queue without a device has nothing to wait for") {
+    wait_for_device(Queue::make_cpu());
+    wait_for_device(Queue::make_dry_run(true));
 }
 
 TEST_CASE("streams run after the work before the fork, and work after the join runs after all streams") {
