@@ -151,9 +151,14 @@ void PythonBatch::render(OpenedScene& opened, Session& session, const CamerasArg
         arrays_.noisy_hashes.assign(settings.denoise != Denoise::None ? count : 0, {});
         for (BatchArrays part; render.next(part, sink);) {
             std::ranges::copy(part.noisy_hashes, arrays_.noisy_hashes.begin() + part.first);
+            arrays_.denoiser = part.denoiser;
             const uint64_t first = part.first * pixels, pixel_count = part.pictures * pixels;
             if (color_channels_ > 0) {
                 copy_part(queue, arrays_.color.data(), part.color.data(), first, pixel_count,
+                          color_channels_ * sizeof(float));
+            }
+            if (!part.noisy_hashes.empty()) {
+                copy_part(queue, arrays_.noisy.data(), part.noisy.data(), first, pixel_count,
                           color_channels_ * sizeof(float));
             }
             for (std::size_t i = 0; i < part.layers.size(); ++i) {
@@ -180,6 +185,7 @@ std::vector<std::size_t> PythonBatch::shape() const {
 std::vector<PythonBatch::Array> PythonBatch::arrays() const {
     std::vector<Array> all;
     if (color_channels_ > 0) all.push_back({"color", arrays_.color.data(), color_channels_, true});
+    if (is_denoised()) all.push_back({"noisy", arrays_.noisy.data(), color_channels_, true});
     for (const BatchArrays::Layer& layer : arrays_.layers) {
         all.push_back({aov_group(layer.group).name, layer.values.data(), layer.channels, true});
     }
@@ -201,13 +207,13 @@ std::vector<std::byte> PythonBatch::download(const Array& array, std::size_t fir
 
 std::optional<std::string> PythonBatch::hash(std::size_t picture) const {
     if (color_channels_ == 0) return std::nullopt;
-    if (!arrays_.noisy_hashes.empty()) return arrays_.noisy_hashes[picture].hex();
+    if (is_denoised()) return arrays_.noisy_hashes[picture].hex();
     const std::vector<std::byte> bytes = download(arrays().front(), picture, 1);
     return picture_hash(width_, height_, {reinterpret_cast<const float*>(bytes.data()), bytes.size() / sizeof(float)})
         .hex();
 }
 
-ExrMetadata PythonBatch::metadata(std::size_t picture) const {
+PictureRecord PythonBatch::record_of(std::size_t picture) const {
     PictureRecord record = *record_;
     PictureOptions options = options_;
     record.settings = made_by_.settings_of(record.settings);
@@ -226,16 +232,53 @@ ExrMetadata PythonBatch::metadata(std::size_t picture) const {
         record.camera = source_of(choice, batch_.cameras[picture], record.camera.origin);
     }
     record.scene.settings = settings_of_frame(options, record, 0);
+    return record;
+}
+
+std::vector<PixelIds> PythonBatch::ids_of(std::size_t picture) const {
     std::vector<PixelIds> ids(arrays_.ids.size() > 0 ? std::size_t(width_) * height_ : 0);
     if (!ids.empty()) {
         const std::vector<std::byte> bytes = download(arrays().back(), picture, 1);
         std::memcpy(ids.data(), bytes.data(), bytes.size());
     }
+    return ids;
+}
+
+RenderStats PythonBatch::stats() const {
     RenderStats stats;
-    stats.samples = record.settings.samples, stats.invalid_samples = invalid_samples_;
+    stats.samples = samples(), stats.invalid_samples = invalid_samples_;
     stats.render_seconds = seconds_, stats.rays = rays_;
+    return stats;
+}
+
+PythonResult PythonBatch::picture(std::size_t picture) const {
+    RenderResult result;
+    static_cast<RenderStats&>(result) = stats();
+    for (const Array& array : arrays()) {
+        if (!array.is_float) continue;
+        const std::vector<std::byte> bytes = download(array, picture, 1);
+        Image image = {width_, height_, static_cast<uint32_t>(array.channels),
+                       std::vector<float>(bytes.size() / sizeof(float))};
+        std::memcpy(image.pixels.data(), bytes.data(), bytes.size());
+        if (array.name == "color" && is_denoised()) {
+            result.denoised = std::move(image);
+        } else if (array.name == "color" || array.name == "noisy") {
+            result.picture = std::move(image);
+        } else {
+            const AovGroup& group = *std::ranges::find(kAovTable, array.name, &AovGroup::name);
+            result.layers.push_back({group.layer, channel_names(group), std::move(image)});
+        }
+    }
+    result.ids = ids_of(picture);
+    result.denoiser = arrays_.denoiser;
+    PythonResult made(std::move(result), std::make_shared<const PictureRecord>(record_of(picture)));
+    if (is_denoised()) made.hash = arrays_.noisy_hashes[picture].hex();
+    return made;
+}
+
+ExrMetadata PythonBatch::metadata(std::size_t picture) const {
     const std::optional<std::string> known = hash(picture);
-    ExrMetadata metadata = picture_metadata(facts_of(record, ids), stats, known.value_or(""));
+    ExrMetadata metadata = picture_metadata(facts_of(record_of(picture), ids_of(picture)), stats(), known.value_or(""));
     if (!known) leave_out("pertev.hash", metadata);
     if (made_by_.is_single) return metadata;
     for (const char* of_all : {"pertev.rays", "pertev.invalid_samples", "pertev.render_seconds"})

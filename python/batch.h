@@ -11,6 +11,7 @@
 #include <nanobind/nanobind.h>
 
 #include "python/opened_scene.h"
+#include "python/result.h"
 #include "session/camera_batch.h"
 
 namespace pertev {
@@ -46,6 +47,13 @@ public:
     std::optional<std::string> hash(std::size_t picture) const;
     /// Returns the metadata of a picture, as an EXR has them.
     ExrMetadata metadata(std::size_t picture) const;
+    /// Returns what is known of a picture before its samples.
+    PictureRecord record_of(std::size_t picture) const;
+    /// Returns a copy of a picture in the memory of the host. It has no colour if there is none.
+    PythonResult picture(std::size_t picture) const;
+    bool has_color() const { return color_channels_ > 0; }
+    uint32_t samples() const { return made_by_.settings_of(record_->settings).samples; }
+    bool is_denoised() const { return !arrays_.noisy_hashes.empty(); }
 
     uint64_t invalid_samples() const { return invalid_samples_; }
     double seconds() const { return seconds_; }
@@ -55,7 +63,7 @@ public:
     const Queue& queue() const { return *queue_; }
 
     struct Array {
-        std::string name; // a group of layers, or "color"
+        std::string name; // a group of layers, "color" or "noisy"
         void* values;
         std::size_t channels;
         bool is_float; // otherwise uint32
@@ -66,6 +74,8 @@ public:
 
 private:
     std::vector<std::byte> download(const Array& array, std::size_t first, std::size_t count) const;
+    std::vector<PixelIds> ids_of(std::size_t picture) const;
+    RenderStats stats() const;
     bool fits(const RenderSettings& settings, const CamerasArgument& cameras, const Queue& queue) const;
 
     std::shared_ptr<Queue> queue_; // outlives the buffers

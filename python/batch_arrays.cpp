@@ -2,6 +2,7 @@
 // __cuda_array_interface__.
 
 #include <algorithm>
+#include <cmath>
 
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
@@ -11,6 +12,7 @@
 
 #include "base/error.h"
 #include "python/batch.h"
+#include "python/owned_array.h"
 #include "python/result.h"
 
 namespace nb = nanobind;
@@ -86,6 +88,41 @@ nb::object infos_of(const PythonBatch& batch) {
     return of_pictures(batch, [&](std::size_t k) -> nb::object {
         return info_of_metadata(unlocked([&] { return batch.metadata(k); }));
     });
+}
+
+/// Returns an array of float64 of what `of` gives for the record of each picture, with `rows` rows.
+nb::object of_records(const PythonBatch& batch, std::size_t rows, const auto& of) {
+    std::vector<double> values;
+    for (std::size_t k = 0; k < batch.count(); ++k) {
+        const std::vector<double> own = of(batch.record_of(k));
+        values.insert(values.end(), own.begin(), own.end());
+    }
+    if (batch.is_single()) return owned_array(std::move(values), {rows, rows});
+    return owned_array(std::move(values), {batch.count(), rows, rows});
+}
+
+/// Returns the first pictures as PNG for notebooks, at most 16; none without colour.
+nb::object png_of_batch(const PythonBatch& batch) {
+    if (!batch.has_color()) return nb::none();
+    std::vector<Image> pictures;
+    for (std::size_t k = 0; k < std::min<std::size_t>(batch.count(), 16); ++k) {
+        RenderResult result = unlocked([&] { return batch.picture(k).result; });
+        pictures.push_back(std::move(result.denoised ? *result.denoised : result.picture));
+    }
+    const auto columns = static_cast<uint32_t>(std::ceil(std::sqrt(static_cast<double>(pictures.size()))));
+    return png_of(pictures, columns);
+}
+
+/// Returns the array of means of samples, denoised or not.
+nb::object noisy_of(nb::handle self) {
+    return array_named(self, nb::cast<const PythonBatch&>(self).is_denoised() ? "noisy" : "color");
+}
+
+PythonResult picture_of(const PythonBatch& batch, int64_t number) {
+    const auto count = static_cast<int64_t>(batch.count());
+    if (number < -count || number >= count) throw nb::index_error(fmt::format("there are {} pictures", count).c_str());
+    if (!batch.has_color()) throw nb::attribute_error("a batch without colour has arrays alone");
+    return unlocked([&] { return batch.picture(static_cast<std::size_t>(number < 0 ? number + count : number)); });
 }
 
 nb::dict arrays_of(nb::handle self) {
@@ -172,6 +209,16 @@ of them does. The first axis counts the cameras (a single picture has no such ax
             "hash", &hashes_of,
             "The hash of each picture as `color` holds it now, or as it was before it was denoised: a list, or "
             "a text of a single picture")
+        .def_prop_ro("noisy", &noisy_of, "The means of the samples, whether or not the pictures were denoised")
+        .def_prop_ro(
+            "pose", [](const PythonBatch& self) { return of_records(self, 4, &pose_of); },
+            "float64 (N, 4, 4): positions and axes of the cameras, world from camera; they look along -z, and y is up")
+        .def_prop_ro(
+            "K", [](const PythonBatch& self) { return of_records(self, 3, &intrinsics_of); },
+            "float64 (N, 3, 3): focal lengths and principal points in pixels from the upper left corner")
+        .def_prop_ro("samples", &PythonBatch::samples, "Samples of each pixel")
+        .def("picture", &picture_of, nb::arg("number") = 0, "A copy of one picture as a Result, in the host's memory")
+        .def("_repr_png_", &png_of_batch)
         .def_prop_ro("seconds", &PythonBatch::seconds, "Seconds of rendering alone")
         .def("__len__", &PythonBatch::count)
         .def("__repr__", [](const PythonBatch& self) {

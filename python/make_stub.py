@@ -40,7 +40,7 @@ MEMBERS = {"ids": "NDArray[numpy.uint32]", "layers": "dict[str, NDArray[Any]]", 
            "samples": "int", "seconds": "float", "name": "str", "params": "Params", "frame": "int | None",
            "pose": "NDArray[numpy.float64]", "K": "NDArray[numpy.float64]", "bounds": "NDArray[numpy.float64]",
            "instance_names": "list[str]", "material_names": "list[str]", "arrays": "dict[str, Any]", "shape": "tuple[int, ...]", "__cuda_array_interface__": "dict[str, Any]"}
-OF_BATCHES = {"color": "Any", "albedo": "Any", "normal": "Any", "depth": "Any", "distance": "Any", "position": "Any", "ids": "Any",
+OF_BATCHES = {"color": "Any", "noisy": "Any", "albedo": "Any", "normal": "Any", "depth": "Any", "distance": "Any", "position": "Any", "ids": "Any",
               "info": "dict[str, Any] | list[dict[str, Any]]", "hash": "str | list[str]"}
 SIGNATURES = {
     "merge": "(files: _Text | Sequence[_Text], *, output: _Text | Sequence[_Text] = (), partial: bool = False, "
@@ -55,6 +55,7 @@ SIGNATURES = {
     "DeviceArray.__dlpack_device__": "(self) -> tuple[int, int]",
     "DeviceArray.numpy": "(self) -> NDArray[Any]",
     "BatchResult.__len__": "(self) -> int",
+    "BatchResult.picture": "(self, number: int = 0) -> Result",
     "Cameras.__init__": "(self, poses: Any, K: Any = None, *, convention: _Convention | None = None, "
                         "intrinsics_size: tuple[int, int] | str | None = None, "
                         "lens: _Lens | None = None, distortion: Sequence[float] | None = None) -> None",

@@ -91,30 +91,10 @@ const PictureRecord& record_of(const PythonResult& self) {
     return *self.record;
 }
 
-nb::object pose_of(const PythonResult& self) {
-    const CameraSource& source = record_of(self).camera;
-    return owned_array(values_of(source.camera.world_from_camera, source.origin), {4, 4});
-}
-
-nb::object intrinsics_of(const PythonResult& self) {
-    const PictureRecord& record = record_of(self);
-    const Camera& camera = record.camera.camera;
-    if (has_parallel_rays(camera.projection)) throw nb::attribute_error("an orthographic camera has no K");
-    const auto width = static_cast<double>(record.settings.width), height = static_cast<double>(record.settings.height);
-    const double focal = 0.5 * height / static_cast<double>(half_view_height(camera));
-    const Intrinsics k = camera.intrinsics.value_or(
-        Intrinsics{focal, focal, 0.5 * width, 0.5 * height, record.settings.width, record.settings.height});
-    const double x = width / k.width, y = height / k.height;
-    return owned_array<double>({x * k.focal_x, 0, x * k.centre_x, 0, y * k.focal_y, y * k.centre_y, 0, 0, 1}, {3, 3});
-}
-
 /// Returns the picture as PNG for notebooks, at the exposure that fits it.
-nb::bytes png_of(const PythonResult& self) {
+nb::bytes png_of_result(const PythonResult& self) {
     const RenderResult whole = self.whole();
-    const Image& image = whole.denoised ? *whole.denoised : whole.picture;
-    const float stops = auto_exposure_stops(image, ToneMap::Agx);
-    const std::vector<std::byte> png = encode_png(tone_map_image(image, ToneMap::Agx, stops), image.channels == 4);
-    return nb::bytes(reinterpret_cast<const char*>(png.data()), png.size());
+    return png_of({whole.denoised ? &*whole.denoised : &whole.picture, 1}, 1);
 }
 
 /// Metadata that are texts of JSON.
@@ -122,6 +102,38 @@ constexpr std::string_view kJsonTexts[] = {"pertev.settings",  "pertev.made_up",
                                            "pertev.instances", "pertev.materials", "pertev.reconstruction"};
 
 } // namespace
+
+std::vector<double> pose_of(const PictureRecord& record) {
+    return values_of(record.camera.camera.world_from_camera, record.camera.origin);
+}
+
+std::vector<double> intrinsics_of(const PictureRecord& record) {
+    const Camera& camera = record.camera.camera;
+    if (has_parallel_rays(camera.projection)) throw nb::attribute_error("an orthographic camera has no K");
+    const auto width = static_cast<double>(record.settings.width), height = static_cast<double>(record.settings.height);
+    const double focal = 0.5 * height / static_cast<double>(half_view_height(camera));
+    const Intrinsics k = camera.intrinsics.value_or(
+        Intrinsics{focal, focal, 0.5 * width, 0.5 * height, record.settings.width, record.settings.height});
+    const double x = width / k.width, y = height / k.height;
+    return {x * k.focal_x, 0, x * k.centre_x, 0, y * k.focal_y, y * k.centre_y, 0, 0, 1};
+}
+
+nb::bytes png_of(std::span<const Image> pictures, uint32_t columns) {
+    const Image& first = pictures.front();
+    const auto rows = static_cast<uint32_t>((pictures.size() + columns - 1) / columns);
+    Image image = {first.width * columns, first.height * rows, first.channels, {}};
+    image.pixels.resize(std::size_t(image.width) * image.height * image.channels);
+    const std::size_t length = std::size_t(first.width) * first.channels; // numbers in a picture's row
+    for (std::size_t k = 0; k < pictures.size(); ++k) {
+        for (uint32_t row = 0; row < first.height; ++row) {
+            const std::size_t line = (k / columns * first.height + row) * columns + k % columns;
+            std::copy_n(pictures[k].pixels.data() + row * length, length, image.pixels.data() + line * length);
+        }
+    }
+    const float stops = auto_exposure_stops(image, ToneMap::Agx);
+    const std::vector<std::byte> png = encode_png(tone_map_image(image, ToneMap::Agx, stops), image.channels == 4);
+    return nb::bytes(reinterpret_cast<const char*>(png.data()), png.size());
+}
 
 nb::dict info_of_metadata(const ExrMetadata& metadata) {
     nb::dict info;
@@ -184,11 +196,18 @@ Arrays share the memory of the result, which lives as long as one of them does, 
     result.def_prop_ro("hash", &PythonResult::known_hash,
                        "The picture's hash, as `pertev render` and `pertev info` print it");
     result.def_prop_ro(
-        "pose", &pose_of,
+        "pose",
+        [](const PythonResult& self) {
+            return owned_array(pose_of(record_of(self)), {4, 4});
+        },
         "float64 (4, 4): the camera's position and axes, world from camera; it looks along -z, and y is up");
-    result.def_prop_ro("K", &intrinsics_of,
-                       "float64 (3, 3): focal lengths and principal point in pixels from the upper left corner");
-    result.def("_repr_png_", &png_of);
+    result.def_prop_ro(
+        "K",
+        [](const PythonResult& self) {
+            return owned_array(intrinsics_of(record_of(self)), {3, 3});
+        },
+        "float64 (3, 3): focal lengths and principal point in pixels from the upper left corner");
+    result.def("_repr_png_", &png_of_result);
     result.def_prop_ro(
         "_first_pixel_seconds", [](const PythonResult& self) { return self.result.first_pixel_seconds; },
         "Seconds that Session::render took until each pixel had its first sample, for tests");

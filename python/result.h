@@ -31,6 +31,14 @@ struct PythonResult {
     RenderResult whole() const;
 };
 
+/// Returns the camera's place, 16 numbers of a matrix, and its 9 of focal lengths and principal point. Throws
+/// AttributeError for an orthographic camera, which has none of these.
+std::vector<double> pose_of(const PictureRecord& record);
+std::vector<double> intrinsics_of(const PictureRecord& record);
+
+/// Returns pictures of one size, in rows of `columns`, as PNG for notebooks, at the exposure that fits all.
+nanobind::bytes png_of(std::span<const Image> pictures, uint32_t columns);
+
 /// Returns metadata by their names, without their prefix; texts of JSON as what they hold.
 nanobind::dict info_of_metadata(const ExrMetadata& metadata);
 

@@ -204,4 +204,11 @@ MUTATIONS = [
       "if (const auto different = first_difference(before, settings_); different && record == path_) {")),
     ("each rank renders all frames", "robust/cli_ranks",
      ("src/session/mpi/ranks.cpp", 'fmt::format("{}/{}", rank_ + 1, count_)', 'fmt::format("{}/{}", rank_ + 1 - rank_, has_frames(options) ? 1 : count_)')),
+    ("the hashes of a denoised batch stay those of the next one", "python/batches",
+     ("src/session/batch_render.cpp", "arrays.noisy_hashes.assign(settings_.denoise", "if (in_turn_) arrays.noisy_hashes.assign(settings_.denoise")),
+    ("the samples' means of a batch are denoised", "python/batches",
+     ("src/session/batch_render.cpp", "!= Denoise::None ? arrays.noisy : arrays.color;", "!= Denoise::None ? arrays.color : arrays.color;")),
+    ("pictures of a batch are all its first", "python/batches", ("python/batch.cpp", "download(array, picture, 1);\n        Image", "download(array, 0, 1);\n        Image")),
+    ("the seed of a single picture on the device is lost", "python/batches",
+     ("python/pertev/_cameras.py", 'values if seeds is None else {**values, "seed": seeds[0]}', "values")),
 ]

@@ -3,9 +3,20 @@
 import os
 
 from . import _core
+from .errors import input_error
 
 
-def _array(picture):
+def _one(picture, name="picture"):
+    """Returns the Result of a BatchResult of one picture, and anything else as it is. Raises InputError."""
+    if not isinstance(picture, _core.BatchResult):
+        return picture
+    if len(picture) != 1:
+        raise input_error(name, f"a BatchResult of {len(picture)} pictures; choose one, as {name}.picture(0)")
+    return picture.picture()
+
+
+def _array(picture, name="picture"):
+    picture = _one(picture, name)
     return picture.color if isinstance(picture, _core.Result) else picture
 
 
@@ -15,11 +26,12 @@ def read(path):
 
 
 def write(path, picture, *, curve="srgb", exposure=0.0):
-    """Writes a Result, or an array of (height, width) or with 1 to 4 channels, linear Rec. 709.
+    """Writes a Result, a BatchResult of one picture, or an array of (height, width) or with 1 to 4 channels, linear Rec. 709.
 
     .exr and .hdr hold its values, .exr also a Result's layers and metadata; .png and .jpg show it by `curve` (as
     tone_map()) at `exposure` in stops.
     """
+    picture = _one(picture)
     writer = _core.write_result if isinstance(picture, _core.Result) else _core.write
     writer(os.fspath(path), picture, curve, exposure)
 
@@ -32,7 +44,8 @@ def tone_map(picture, *, curve="agx", exposure=0.0):
 def compare(picture, reference, *, blocks=1):
     """Returns what `pertev compare` prints: rel_mse, rel_mse_98, mse, flip, hdr_flip and equal, as a dictionary.
 
-    Each is a file, a Result or an array of 3 or 4 channels; `blocks` compares means over blocks of pixels.
+    Each is a file, a Result, a BatchResult of one picture or an array of 3 or 4 channels; `blocks` compares means over blocks of pixels.
     """
-    a, b = (read(one) if isinstance(one, (str, os.PathLike)) else _array(one) for one in (picture, reference))
+    a, b = (read(one) if isinstance(one, (str, os.PathLike)) else _array(one, name)
+            for one, name in ((picture, "picture"), (reference, "reference")))
     return _core.compare(a, b, blocks)

@@ -31,6 +31,7 @@ bool BatchRender::next(BatchArrays& arrays, Sink& sink) {
     const uint32_t count = std::min(at_once_, batch_.count() - done_);
     arrays.fit(pictures_.queue(), settings_, at_once_);
     arrays.first = done_, arrays.pictures = count;
+    arrays.noisy_hashes.assign(settings_.denoise != Denoise::None ? count : 0, {});
     if (!(in_turn_ ? render_in_turn(arrays, sink) : render_together(arrays, sink))) return false;
     done_ += count;
     return true;
@@ -117,7 +118,6 @@ bool BatchRender::add_samples(const PictureView& picture, Sink& sink) {
 }
 
 bool BatchRender::render_in_turn(BatchArrays& arrays, Sink& sink) {
-    arrays.noisy_hashes.assign(settings_.denoise != Denoise::None ? arrays.pictures : 0, {});
     for (uint32_t k = 0; k < arrays.pictures; ++k) {
         RenderSettings settings = settings_;
         settings.path.seed = batch_.seed_of(done_ + k, settings_);
@@ -132,6 +132,7 @@ bool BatchRender::render_in_turn(BatchArrays& arrays, Sink& sink) {
         resolve(in_turn_->film(), 1, k, arrays);
         if (const std::optional<Image> denoised = in_turn_->denoised()) {
             arrays.noisy_hashes[k] = picture_hash(in_turn_->picture());
+            arrays.denoiser = in_turn_->denoiser();
             pictures_.queue().copy_to_device(arrays.color.data() + k * denoised->pixels.size(), denoised->pixels.data(),
                                              denoised->pixels.size() * sizeof(float));
             pictures_.queue().wait(); // the image ends here
@@ -144,7 +145,8 @@ bool BatchRender::render_in_turn(BatchArrays& arrays, Sink& sink) {
 void BatchRender::resolve(Film& film, uint32_t pictures, uint32_t at, BatchArrays& arrays) {
     const uint32_t each = settings_.width * settings_.height, pixels = each * pictures;
     const std::size_t first = std::size_t(each) * at;
-    film.picture_into(arrays.color.data() + first * (settings_.transparent ? 4 : 3), pixels, settings_.transparent);
+    const Buffer<float>& into = settings_.denoise != Denoise::None ? arrays.noisy : arrays.color;
+    film.picture_into(into.data() + first * (settings_.transparent ? 4 : 3), pixels, settings_.transparent);
     if (!in_turn_ && has_centres(settings_)) return; // they are there
     for (BatchArrays::Layer& layer : arrays.layers) {
         film.layer_into(layer.values.data() + first * layer.channels, pixels, layer.group);

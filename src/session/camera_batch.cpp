@@ -43,6 +43,7 @@ bool is_one_job(const RenderSettings& settings) {
 void BatchArrays::fit(Queue& queue, const RenderSettings& settings, uint32_t count) {
     const std::size_t pixels = std::size_t(settings.width) * settings.height * count;
     if (settings.samples > 0) color.grow(queue, pixels * (settings.transparent ? 4 : 3), "pictures of a batch");
+    if (settings.denoise != Denoise::None) noisy.grow(queue, color.size(), "pictures of a batch");
     if ((settings.aovs & kAovIds) != 0) ids.grow(queue, pixels, "ids of a batch");
     std::size_t number = 0;
     for (const AovGroup& group : kAovTable) {

@@ -4,6 +4,7 @@
 // its camera gives alone with the same settings and its seed.
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "base/hash.h"
@@ -45,9 +46,11 @@ struct BatchArrays {
 
     uint32_t first = 0, pictures = 0;
     Buffer<float> color; // RGB, or RGBA if the settings are transparent, denoised if they say so; empty without samples
+    Buffer<float> noisy; // `color` before it was denoised; empty if it is not
     std::vector<Layer> layers;
     Buffer<PixelIds> ids;
-    std::vector<Hash128> noisy_hashes; // picture_hash() of each picture before it was denoised; else empty
+    std::vector<Hash128> noisy_hashes; // picture_hash() of each picture in `noisy`; else empty
+    std::string denoiser;              // Denoiser::name of what made `color`
 
     /// Allocates what is missing for `count` pictures; a caller may have taken buffers. Throws Error(OutOfMemory).
     void fit(Queue& queue, const RenderSettings& settings, uint32_t count);

@@ -2,6 +2,8 @@
 
 import json
 import pathlib
+import struct
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -10,7 +12,9 @@ import numpy
 
 import pertev
 
-sys.argv.pop(1)
+from device_argument import DEVICE
+
+PROGRAM = sys.argv.pop(1)
 SMALL = {"size": (20, 16), "spp": 2}
 POSES = numpy.tile(numpy.eye(4), (3, 1, 1))
 POSES[:, :3, :3] = numpy.diag([-1, 1, -1])
@@ -26,7 +30,7 @@ def host(array):
 class Batches(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.scene = pertev.load("cornell-box", device="cpu")
+        cls.scene = pertev.load("cornell-box", device=DEVICE)
 
     def test_each_picture_has_the_hash_and_the_metadata_of_a_single_render(self):
         for more in ({}, {"integrator": "photon_map"}, {"denoise": "svgf"}, {"layers": ["ids"], "layers_at": "centre"}, {"transparent": True}):
@@ -91,11 +95,79 @@ class Batches(unittest.TestCase):
         pertev.render(self.scene, cameras=POSES[::-1], out=batch, **SMALL)
         self.assertEqual(batch.hash, before[::-1])
 
+    def test_a_single_picture_on_the_device_is_used_as_a_result(self):
+        folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+        for more in ({"layers": ["ids", "depth"]}, {"denoise": "svgf"}, {"transparent": True}):
+            with self.subTest(more):
+                picture = pertev.render(self.scene, **SMALL, **more)
+                on_device = pertev.render(self.scene, on_device=True, **SMALL, **more)
+                self.assertEqual(on_device._repr_png_(), picture._repr_png_())
+                for name in ("pose", "K", "samples", "hash"):
+                    self.assertTrue(numpy.array_equal(getattr(on_device, name), getattr(picture, name)), name)
+                for name in ("color", "noisy"):
+                    self.assertEqual(host(getattr(on_device, name)).tobytes(), getattr(picture, name).tobytes())
+                self.assertEqual(pertev.tone_map(on_device).tobytes(), pertev.tone_map(picture).tobytes())
+                self.assertTrue(pertev.compare(on_device, picture)["equal"])
+                pertev.write(folder / "a.exr", on_device)
+                pertev.write(folder / "b.exr", picture)
+                info = [self.of_file(folder / name) for name in ("a.exr", "b.exr")]
+                self.assertEqual(info[0], info[1])
+                pertev.write(folder / "a.png", on_device)
+                pertev.write(folder / "b.png", picture)
+                self.assertEqual((folder / "a.png").read_bytes(), (folder / "b.png").read_bytes())
+                copy = on_device.picture()
+                self.assertIsInstance(copy, pertev.Result)
+                self.assertEqual((copy.hash, copy.noisy.tobytes(), set(copy.layers)), (picture.hash, picture.noisy.tobytes(), set(picture.layers)))
+                for name, layer in picture.layers.items():
+                    self.assertEqual(copy.layers[name].tobytes(), layer.tobytes())
+
+    def of_file(self, file):
+        """Returns what the program says of an EXR, without seconds and its name."""
+        line = subprocess.run([PROGRAM, "info", file, "--json"], check=True, capture_output=True, text=True).stdout
+        return {name: value for name, value in json.loads(line).items() if not name.endswith("_seconds") and name != "file"}
+
+    def test_pictures_of_a_batch_are_taken_out_as_results(self):
+        batch = pertev.render(self.scene, cameras=pertev.Cameras(POSES, K), seeds=[4, 5, 6], layers="depth", denoise="svgf", **SMALL)
+        self.assertTrue(numpy.allclose(batch.pose, POSES, atol=1e-6))
+        self.assertTrue(numpy.allclose(batch.K, [K] * 3))
+        self.assertEqual(batch.samples, 2)
+        self.assertNotEqual(host(batch.color).tobytes(), host(batch.noisy).tobytes())
+        for number, of in ((0, 0), (2, 2), (-1, 2)):
+            alone = pertev.render(self.scene, camera_pose=POSES[of].ravel(), intrinsics=numpy.ravel(K), seed=4 + of, layers="depth", denoise="svgf", **SMALL)
+            picture = batch.picture(number)
+            for name in ("color", "noisy", "depth", "pose", "K", "hash", "samples"):
+                self.assertTrue(numpy.array_equal(getattr(picture, name), getattr(alone, name)), name)
+            self.assertEqual({name: value for name, value in picture.info.items() if name not in OF_A_RUN},
+                             {name: value for name, value in alone.info.items() if name not in OF_A_RUN})
+        for number in (3, -4):
+            with self.assertRaises(IndexError):
+                batch.picture(number)
+        self.assertTrue(batch._repr_png_().startswith(b"\x89PNG"))
+        self.assertEqual(struct.unpack(">II", batch._repr_png_()[16:24]), (40, 32))  # two rows of two
+        for call in (lambda: pertev.write("x.png", batch), lambda: pertev.tone_map(batch), lambda: pertev.compare(batch, batch)):
+            with self.assertRaises(pertev.InputError) as caught:
+                call()
+            self.assertEqual(caught.exception.setting, "picture")
+
+    def test_arrays_that_are_filled_again_without_denoising_have_their_own_hashes(self):
+        batch = pertev.render(self.scene, cameras=POSES, denoise="svgf", **SMALL)
+        noisy = host(batch.noisy).copy()
+        pertev.render(self.scene, cameras=POSES, seeds=8, out=batch, **SMALL)
+        self.assertEqual(batch.hash, pertev.render(self.scene, cameras=POSES, seeds=8, **SMALL).hash)
+        self.assertEqual(host(batch.noisy).tobytes(), host(batch.color).tobytes())
+        self.assertNotIn("noisy", batch.arrays)
+        pertev.render(self.scene, cameras=POSES, denoise="svgf", out=batch, **SMALL)
+        self.assertEqual(host(batch.noisy).tobytes(), noisy.tobytes())
+
     def test_without_colour_there_is_no_hash(self):
         batch = pertev.render(self.scene, cameras=POSES, color=False, layers="depth", layers_at="centre", size=(20, 16))
         with self.assertRaises(AttributeError):
             batch.hash
         self.assertNotIn("hash", batch.info[0])
+        self.assertIsNone(batch._repr_png_())
+        with self.assertRaises(AttributeError):
+            batch.picture(0)
+        self.assertEqual((batch.samples, batch.pose.shape), (0, (3, 4, 4)))
 
     def test_cameras_of_a_file_are_rendered(self):
         folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))

@@ -85,11 +85,14 @@ void copy_chunk(Queue& to, BatchArrays& all, Queue& from, const BatchArrays& par
     const auto copy = [&]<class T>(const Buffer<T>& into, const Buffer<T>& source, std::size_t channels) {
         copy_between(to, into.data() + first * channels, from, source.data(), pixels * channels * sizeof(T));
     };
-    if (part.color.size() > 0) copy(all.color, part.color, all.color.size() / (all.pictures * pixels_of_picture));
+    const std::size_t channels = all.color.size() / (all.pictures * pixels_of_picture);
+    if (part.color.size() > 0) copy(all.color, part.color, channels);
+    if (!part.noisy_hashes.empty()) copy(all.noisy, part.noisy, channels);
     for (std::size_t i = 0; i < part.layers.size(); ++i) {
         copy(all.layers[i].values, part.layers[i].values, part.layers[i].channels);
     }
     if (part.ids.size() > 0) copy(all.ids, part.ids, 1);
+    if (!part.denoiser.empty()) all.denoiser = part.denoiser;
     std::ranges::copy(part.noisy_hashes, all.noisy_hashes.begin() + part.first);
 }
 
