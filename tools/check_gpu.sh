@@ -32,7 +32,9 @@ for part in "${parts[@]}"; do
         ;;
     python) # the package of the build folder; a bundle has none
         if [ -d "$bin/../python/pertev" ]; then
-            run env PYTHONPATH="$bin/../python" python3 "$here/../tests/python/cameras_test.py" "$bin/pertev" --device cuda
+            for test in cameras batches params arrays scene session parts overhead; do
+                run env PYTHONPATH="$bin/../python" python3 "$here/../tests/python/${test}_test.py" "$bin/pertev" --device cuda
+            done
         fi
         ;;
     long)

@@ -10,8 +10,10 @@ import numpy
 
 import pertev
 
+from device_argument import DEVICE
+
 sys.argv.pop(1)
-SMALL = {"size": (24, 16), "spp": 2, "device": "cpu"}
+SMALL = {"size": (24, 16), "spp": 2, "device": DEVICE}
 VERTICES = numpy.float32([(-1, 0, -1), (1, 0, -1), (1, 0, 1), (-1, 0, 1)])
 FACES = numpy.int64([(0, 2, 1), (0, 3, 2)])
 UV = numpy.float32([(0, 0), (1, 0), (1, 1), (0, 1)])

@@ -10,12 +10,14 @@ import numpy
 
 import pertev
 
+from device_argument import DEVICE
+
 sys.argv.pop(1)
 
 
 def seconds_of(size, **values):
     """Returns a call's time minus that of Session::render in C++. It is the minimum of many, because other processes may run."""
-    scene = pertev.load("cornell-box", device="cpu")
+    scene = pertev.load("cornell-box", device=DEVICE)
     least = 1.0
     for _ in range(200):
         start = time.perf_counter()
@@ -63,6 +65,7 @@ print(tracemalloc.get_traced_memory()[1] - before)
 """
 
 
+@unittest.skipUnless(DEVICE == "cpu", "a GPU's driver allocates")
 class Memory(unittest.TestCase):
     @staticmethod
     def allocations(size, out="overhead_test.arrays_of(width, height)"):

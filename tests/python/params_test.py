@@ -14,8 +14,10 @@ import numpy
 
 import pertev
 
+from device_argument import DEVICE
+
 sys.argv.pop(1)
-SMALL = {"size": (24, 16), "spp": 2, "device": "cpu"}
+SMALL = {"size": (24, 16), "spp": 2, "device": DEVICE}
 
 
 def gltf(roughness=0.5, emission=(3, 3, 3), matrix=None, lamp=5.0, fov=0.8, base=(0.8, 0.4, 0.2)):

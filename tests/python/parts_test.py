@@ -15,14 +15,16 @@ import numpy
 
 import pertev
 
+from device_argument import DEVICE
+
 PROGRAM = sys.argv.pop(1)
-SMALL = {"size": (20, 16), "device": "cpu", "exposure": 0}
+SMALL = {"size": (20, 16), "device": DEVICE, "exposure": 0}
 
 
 class Parts(unittest.TestCase):
     def setUp(self):
         self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
-        self.scene = pertev.load("cornell-box", device="cpu")
+        self.scene = pertev.load("cornell-box", device=DEVICE)
 
     def parts(self, count, **values):
         """Renders the parts, and returns their files."""
@@ -82,7 +84,7 @@ class Parts(unittest.TestCase):
     def test_the_programs_parts_and_those_of_a_call_are_parts_of_one_picture(self):
         whole = pertev.render(self.scene, spp=6, **SMALL)
         pertev.render(self.scene, spp=6, part=(0, 2), part_base=0, output=self.folder / "0.pvf", **SMALL)
-        subprocess.run([PROGRAM, "render", "cornell-box", "--size", "20x16", "--device", "cpu", "--exposure", "0", "--spp", "6", "--part", "2/2",
+        subprocess.run([PROGRAM, "render", "cornell-box", "--size", "20x16", "--device", DEVICE, "--exposure", "0", "--spp", "6", "--part", "2/2",
                         "-o", self.folder / "1.pvf", "-q"], check=True)
         self.assertEqual(pertev.merge([self.folder / "0.pvf", self.folder / "1.pvf"]).hash, whole.hash)
 

@@ -11,6 +11,8 @@ import numpy
 
 import pertev
 
+from device_argument import DEVICE
+
 sys.argv.pop(1)
 
 # Each differs from the previous one in another setting.
@@ -31,7 +33,7 @@ PICTURES = [
     {"denoise": "svgf"},
     {"environment": (1, 0, 0)},
     {"environment": (0, 1, 0)},
-    {"device": "cpu", "threads": 1},
+    {"device": DEVICE, "threads": 1},
     {"integrator": "radiosity", "patch_size": 0.2},
     {},
 ]
@@ -59,7 +61,7 @@ class KeptScene(unittest.TestCase):
         self.assertNotEqual(first.info["load_seconds"], again.info["load_seconds"])
 
     def test_a_call_costs_less_than_a_millisecond(self):
-        scene = pertev.load("cornell-box", size=(8, 8), spp=1, integrator="direct", device="cpu")
+        scene = pertev.load("cornell-box", size=(8, 8), spp=1, integrator="direct", device=DEVICE)
         out = {"color": numpy.empty((8, 8, 3), numpy.float32)}
         for values in ({}, {"out": out}, {"eye": True}):
             costs = []
