@@ -2,12 +2,14 @@
 """`render --part` and `--samples`, film files, and `merge`: merged parts are the files of one run, and other files are refused."""
 
 import json
+import os
 import signal
 import struct
 import subprocess
+import unittest
 import zlib
 
-from cli_run import PATIENCE_S, PROGRAM, CliTest, main
+from cli_run import PATIENCE_S, PROGRAM, SANITIZED, CliTest, main
 
 SMALL = ["--size", "20x16", "--device", "cpu"]
 UNMETERED = ["--exposure", "0"]
@@ -65,6 +67,16 @@ def sums_of(data):
         assert at == end, (at, end)
         at, left = at + 16, left - count
     return header, channels
+
+
+def peak_of(*arguments, cwd):
+    """Returns the most memory, in bytes, that a run of the program had."""
+    program = subprocess.Popen([PROGRAM, *arguments], cwd=cwd, stdin=subprocess.DEVNULL)
+    _, status, usage = os.wait4(program.pid, 0)
+    program.returncode = os.waitstatus_to_exitcode(status)
+    if program.returncode != 0:
+        raise AssertionError(f"status {program.returncode}")
+    return usage.ru_maxrss << 10
 
 
 class Merge(CliTest):
@@ -299,6 +311,22 @@ class Merge(CliTest):
             with self.subTest(flags=flags):
                 self.refuse(2, "render", "cornell-box", "-o", "x.pvf", *SMALL, *flags.split(), says=[flags.split()[0]])
         self.refuse(2, "render", "cornell-box", "-o", "x-#.pvf", *SMALL, "--turntable", "4", says=["x-#.pvf"])
+
+    @unittest.skipIf(SANITIZED, "sanitizers take memory of their own")
+    def test_memory_does_not_grow_with_the_number_of_parts(self):
+        width, height, count = 320, 180, 24
+        line = ["render", "cornell-box", "--size", f"{width}x{height}", "--device", "cpu", *UNMETERED, "--spp", str(count), "--max-depth", "1"]
+        for i in range(1, count + 1):
+            self.succeed(*line, "--part", f"{i}/{count}", "-o", f"{i}.pvf")
+        self.succeed(*line, "-o", "whole.exr", "-o", "whole.png")
+        of = {}
+        for parts in (2, count):
+            files = [f"{i}.pvf" for i in range(1, parts + 1)]
+            of[parts] = min(peak_of("merge", *files, "--partial", "-o", f"{parts}.exr", "-q", cwd=self.folder) for _ in range(3))
+        self.assertEqual(self.info(f"{count}.exr")["pertev.hash"], self.info("whole.exr")["pertev.hash"])
+        print(f"peak of 2 parts {of[2]}, of {count} {of[count]}")
+        film = width * height * 4 * 16  # bytes of red, green, blue and hits
+        self.assertLess(of[count], of[2] + count // 3 * film)
 
 
 if __name__ == "__main__":
