@@ -144,6 +144,16 @@ class ManyCameras(CliTest):
         moved = dict(SIDE, intrinsics=[10, 12, 7, 8])
         self.refuse(2, *self.many("--continue", output="v-##-{name}.exr", cameras=[FRONT, moved]), says=["--cameras"])
 
+    def test_parts_of_a_list_have_the_files_of_one_run(self):
+        cameras = [FRONT, SIDE, dict(FRONT, name="again", fov=50)]
+        whole = self.succeed(*self.many(output="w-{name}.png", cameras=cameras)).events("frame")
+        for part, own in (("3/3", [2]), ("1/3", [0]), ("2/3", [1])):
+            frames = self.succeed(*self.many("--part", part, output="v-{name}.png", cameras=cameras)).events("frame")
+            self.assertEqual([(frame["frame"], frame["hash"]) for frame in frames], [(whole[k]["frame"], whole[k]["hash"]) for k in own])
+        for name in ("front", "side", "again"):
+            self.assertEqual(read_png(self.path(f"v-{name}.png")), read_png(self.path(f"w-{name}.png")))
+        self.refuse(2, *self.many("--part", "4/3", output="v-{name}.png", cameras=cameras), says=["--part 4/3"])
+
     def test_an_invalid_file_of_cameras_is_refused_with_the_location(self):
         for camera, says in [({"name": "front"}, "/cameras/1"), ({"spp": 4}, "spp"), ({"fov": 400}, "/cameras/1"),
                              ({"eye": [0, 0, 1], "camera_pose": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]}, "/cameras/1")]:

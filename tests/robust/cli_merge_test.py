@@ -305,7 +305,7 @@ class Merge(CliTest):
     def test_impossible_parts_are_refused(self):
         for flags in ["--part 0/2", "--part 3/2", "--part 1", "--part 1/0", "--part -1/2", "--part 1/2x", "--part 2/2 --part-base 0",
                       "--part-base 1", "--samples 4", "--samples 4:4", "--samples 5:4", "--samples 0:9000000", "--samples 1:2 --spp 4",
-                      "--samples 1:2 --part 1/2", "--part 1/2 --time-limit 1", "--samples 0:1 --time-limit 1", "--part 1/2 --turntable 4",
+                      "--samples 1:2 --part 1/2", "--part 1/2 --time-limit 1", "--samples 0:1 --time-limit 1", "--samples 0:1 --turntable 4",
                       "--denoise svgf --part 1/2", "--denoise svgf --samples 1:2", "--aov motion", "--rows 4", "--rows 4:4", "--rows 0:17", "--rows 0:8 --integrator light",
                       "--rows 0:8 --integrator bidirectional", "--rows 0:8 --time-limit 1", "--rows 0:8 --turntable 4"]:
             with self.subTest(flags=flags):
