@@ -211,4 +211,8 @@ MUTATIONS = [
     ("pictures of a batch are all its first", "python/batches", ("python/batch.cpp", "download(array, picture, 1);\n        Image", "download(array, 0, 1);\n        Image")),
     ("the seed of a single picture on the device is lost", "python/batches",
      ("python/pertev/_cameras.py", 'values if seeds is None else {**values, "seed": seeds[0]}', "values")),
+    ("movable instances are baked", "python/params", ("src/device_scene/place_meshes.cpp", "!may_be_moved;", "!moves[i];")),
+    ("an update bakes movable instances", "python/params", ("src/render/update_scene.cpp", "place_meshes(scene, before.centre, before.apart);", "place_meshes(scene, before.centre);")),
+    ("a movable instance is baked after the scene's centre has moved", "python/params", ("src/render/prepare_scene.cpp", "prepared.apart = options.apart;", "")),
+    ("a name of no movable instance is no error", "python/params", ("src/session/opening/movable_instances.cpp", "if (!is_there) {", "if (false) {")),
 ]

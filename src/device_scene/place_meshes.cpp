@@ -40,7 +40,7 @@ Vec3 world_centre(const Scene& scene) {
     return box.is_empty() ? Vec3{} : to_float(centre_of({to_double(box.lo), to_double(box.hi)}));
 }
 
-MeshPlacement place_meshes(const Scene& scene, Vec3 centre) {
+MeshPlacement place_meshes(const Scene& scene, Vec3 centre, const std::vector<bool>& apart) {
     MeshPlacement placement;
     placement.centre = centre;
     std::vector<uint32_t> uses(scene.meshes.size());
@@ -52,7 +52,8 @@ MeshPlacement place_meshes(const Scene& scene, Vec3 centre) {
     placement.blas_of_mesh.assign(scene.meshes.size(), kBakedMesh);
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
-        const bool stays_alone = uses[instance.mesh] == 1 && !moves[i];
+        const bool may_be_moved = moves[i] || (i < apart.size() && apart[i]);
+        const bool stays_alone = uses[instance.mesh] == 1 && !may_be_moved;
         const bool baked = !instance.is_hidden && (stays_alone || is_skewed(instance.world_from_local));
         placement.is_baked.push_back(baked);
         if (baked && uses[instance.mesh] > 1) {

@@ -30,12 +30,13 @@ struct MeshPlacement {
 /// instances (scene/scene_origin.h). It is 0 if a reader has already moved the scene of a file.
 Vec3 world_centre(const Scene& scene);
 
-/// Places the meshes. An instance is baked if its mesh is used once and it may not move (scene/animation.h), or,
-/// moving or not, if its transform's condition number is over 2^12, because such a skewed local space would enlarge
+/// Places the meshes. An instance is baked if its mesh is used once and it may not move (scene/animation.h, `apart`),
+/// or, moving or not, if its transform's condition number is over 2^12, because such a skewed local space would enlarge
 /// the boxes of a top level more than the triangles cost memory. Hidden instances are not baked. Throws
 /// Error(OverLimit) that names the instance with which such copies exceed a multiple of the scene's own triangles.
-/// `centre` is the origin of the world in which they are placed.
-MeshPlacement place_meshes(const Scene& scene, Vec3 centre = {0, 0, 0});
+/// `centre` is the origin of the world in which they are placed, and `apart` says of each instance whether a caller may
+/// move it; empty: of none.
+MeshPlacement place_meshes(const Scene& scene, Vec3 centre = {0, 0, 0}, const std::vector<bool>& apart = {});
 
 // Triangles for builders, which `sink` may end.
 

@@ -49,7 +49,8 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, S
     prepared.scene = &scene;
     warn_of_indices(scene, sink);
     if (!options.keep_coordinates) prepared.centre = options.centre.value_or(world_centre(scene));
-    const MeshPlacement placement = place_meshes(scene, prepared.centre);
+    const MeshPlacement placement = place_meshes(scene, prepared.centre, options.apart);
+    prepared.apart = options.apart;
     prepared.is_baked = placement.is_baked;
     if (placement.copied_triangles > kManyCopiedTriangles) {
         sink.warn(fmt::format("{} of shared meshes squeezed too much for a tree in their own space are copied into "

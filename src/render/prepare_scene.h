@@ -29,6 +29,7 @@ struct PrepareOptions {
     std::optional<Vec3> centre;                // origin of the translated world, in place of the scene's own
                                                // (world_centre)
     std::shared_ptr<const MotionKeys> motions; // becomes PreparedScene::motions
+    std::vector<bool> apart;                   // becomes PreparedScene::apart
 };
 
 struct PreparedScene : PlacedScene {
@@ -39,6 +40,8 @@ struct PreparedScene : PlacedScene {
                                                  // request
     uint64_t triangles = 0;                      // in all trees
     std::vector<PlacedBvh> placed;               // contents of tlas
+    std::vector<bool> apart;                     // [instance] those that keep trees of their own, so that moving them
+                                                 // rebuilds none; empty: none
     double build_seconds = 0; // seconds for placement, trees (built or read from the cache) and the requested
                               // structures
 };

@@ -65,12 +65,13 @@ PreparedScene update_scene(const PreparedScene& before, const Scene& scene, cons
         after.build_seconds = watch.seconds();
         return after;
     }
-    const MeshPlacement placement = place_meshes(scene, before.centre);
+    const MeshPlacement placement = place_meshes(scene, before.centre, before.apart);
     if (placement.is_baked != before.is_baked || 1 + placement.mesh_tree_count != before.trees.parts.size()) {
         PrepareOptions options;
         options.centre = before.centre;
         options.builder = before.structures->builder();
         options.motions = std::move(motions);
+        options.apart = before.apart;
         return prepare_scene(scene, options, sink);
     }
     PreparedScene after = before;

@@ -149,7 +149,7 @@ std::vector<Setting> frame_settings() {
     rows.insert(rows.begin(),
                 row("real_time", "Frames", "", FIELD(real_time),
                     "Frames are rendered as the viewer does in motion: one sample per pixel each, "
-                    "reconstructed with earlier frames. The settings below apply only to such frames.",
+                    "reconstructed with earlier frames.",
                     Of{integrators_that(makes_frames)}, Needs{"frames turntable"},
                     Excludes{"denoise!=none transparent shutter lpe false_color=illuminance aov=motion"}));
     return rows;

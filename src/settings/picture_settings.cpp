@@ -108,9 +108,7 @@ std::vector<Setting> picture_settings() {
             Changes::Picture),
 
         row("rows", "Parts", "A:B", FIELD(rows),
-            "The rows of pixels from number A, where the top one is 0, to before B. light and bidirectional light "
-            "pixels "
-            "of all rows.",
+            "The rows of pixels from number A, where the top one is 0, to before B.",
             Excludes{"integrator=light integrator=bidirectional time_limit frames turntable cameras"}, Mark::NotKept,
             Changes::Picture),
         row("samples", "Parts", "A:B", FIELD(samples),
@@ -122,9 +120,8 @@ std::vector<Setting> picture_settings() {
         row("part_base", "Parts", "B", FIELD(part_base), "The number of the first part.", Range{0, 1u << 31},
             Needs{"part"}, Mark::NotKept, Changes::Picture),
         row("checkpoint", "Parts", "FILE", FIELD(checkpoint),
-            "A film file (.pvf) that keeps the samples so far, and from which the render goes on if it is there. In "
-            "real "
-            "time it keeps the frames' history, for continue.",
+            "A film file (.pvf) that keeps the samples so far, from which the render goes on; in real time the frames' "
+            "history, for continue.",
             Mark::NotKept, Changes::Picture),
         row("checkpoint_every", "Parts", "SECONDS", FIELD(checkpoint_every_s),
             "The time between two writings of the checkpoint.", Above{0}, Unit{"s"}, Needs{"checkpoint"}, Mark::NotKept,

@@ -59,6 +59,14 @@ def gltf(roughness=0.5, emission=(3, 3, 3), matrix=None, lamp=5.0, fov=0.8, base
                      base64.b64encode(data + indices).decode()}]}
 
 
+def hills(n=400):
+    """A mesh of 2 (n - 1)^2 triangles."""
+    x, y = numpy.meshgrid(numpy.arange(n), numpy.arange(n))
+    vertices = numpy.stack([x.ravel(), numpy.sin(x * y).ravel(), y.ravel()], 1).astype(numpy.float32)
+    at = (y[:-1, :-1] * n + x[:-1, :-1]).ravel()
+    return {"vertices": vertices, "faces": numpy.concatenate([numpy.stack([at, at + n, at + 1], 1), numpy.stack([at + 1, at + n, at + n + 1], 1)])}
+
+
 MOVED = [[0.8, 0, 0.6, 0.3], [0, 1, 0, 0.5], [-0.6, 0, 0.8, 0.25], [0, 0, 0, 1]]
 FAR = [[1, 0, 0, 40], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
 CHANGES = [("materials/gold/roughness", 0.25, {"roughness": 0.25}),
@@ -202,15 +210,59 @@ class Params(unittest.TestCase):
                 self.assertEqual(caught.exception.setting, path)
         self.assertEqual(pertev.render(scene, **SMALL).hash, before)
 
+    def test_movable_instances_have_the_bytes_of_a_fresh_scene(self):
+        for movable in ("thing", ["th?ng", "glow"], ["*"]):
+            for matrix in (MOVED, FAR):
+                with self.subTest(movable=movable, matrix=matrix):
+                    scene = pertev.load(self.file(), movable=movable)
+                    before = pertev.render(scene, **SMALL)
+                    scene.params["instances/thing/transform"] = matrix
+                    changed = pertev.render(scene, **SMALL)
+                    fresh = pertev.render(pertev.load(self.file("b.gltf", matrix=matrix), movable=movable), **SMALL)
+                    self.assertEqual(changed.hash, fresh.hash)
+                    self.assertNotEqual(changed.hash, before.hash)
+                    self.assertEqual(changed.info["settings"]["settings"]["movable"], [movable] if movable == "thing" else movable)
+                    scene.params["instances/thing/transform"] = numpy.eye(4)
+                    self.assertEqual(pertev.render(scene, **SMALL).hash, before.hash)
+        with self.assertRaises(pertev.InputError) as caught:
+            pertev.load(self.file(), movable=["thing", "thin"])
+        self.assertEqual((caught.exception.setting, caught.exception.value), ("movable", "thin"))
+
+    @unittest.skipUnless(DEVICE == "cpu", "devices of one kind")
+    def test_movable_instances_move_on_all_devices(self):
+        hashes = []
+        for device in ("cpu", "cpu,cpu"):
+            scene = pertev.load(self.file(), movable="thing", device=device)
+            pertev.render(scene, size=(24, 16), spp=2)
+            scene.params["instances/thing/transform"] = MOVED
+            hashes.append(pertev.render(scene, size=(24, 16), spp=2).hash)
+        self.assertEqual(hashes[0], hashes[1])
+
+    def test_a_movable_instance_rebuilds_no_tree_but_the_top_level(self):
+        seconds = {}
+        robot = {"vertices": [[0, 3, 0], [4, 3, 0], [0, 3, 4]], "faces": [[0, 1, 2]]}
+        for movable in ((), ["robot"]):
+            begun = time.perf_counter()
+            scene = pertev.Scene(meshes={"hills": hills(), "robot": robot}, materials={"a": {}}, environment=(1, 1, 1), no_bvh_cache=True,
+                                 instances={"hills": {"mesh": "hills", "material": "a"}, "robot": {"mesh": "robot"}}, movable=movable)
+            pertev.render(scene, **SMALL)
+            opening, times = time.perf_counter() - begun, []
+            for step in range(1, 6):
+                begun = time.perf_counter()
+                matrix = numpy.eye(4)
+                matrix[:3, 3] = step, 0, step
+                scene.params["instances/robot/transform"] = matrix
+                pertev.render(scene, **SMALL)
+                times.append(time.perf_counter() - begun)
+            seconds[bool(movable)] = min(times)
+            print(f"movable {movable}: opened in {opening:.3f} s, moved in {min(times):.4f} s")
+        self.assertLess(seconds[True], 0.4 * seconds[False])
+        self.assertLess(seconds[True], 0.1 * opening)
+
     def test_a_changed_material_rebuilds_no_tree(self):
         """In a scene of many triangles a changed roughness takes less than a tenth of the time to open it."""
-        n = 400
-        x, y = numpy.meshgrid(numpy.arange(n), numpy.arange(n))
-        vertices = numpy.stack([x.ravel(), numpy.sin(x * y).ravel(), y.ravel()], 1).astype(numpy.float32)
-        at = (y[:-1, :-1] * n + x[:-1, :-1]).ravel()
-        faces = numpy.concatenate([numpy.stack([at, at + n, at + 1], 1), numpy.stack([at + 1, at + n, at + n + 1], 1)])
         begun = time.perf_counter()
-        scene = pertev.Scene(meshes={"hills": {"vertices": vertices, "faces": faces}}, materials={"a": {}},
+        scene = pertev.Scene(meshes={"hills": hills()}, materials={"a": {}},
                              instances={"hills": {"mesh": "hills", "material": "a"}}, environment=(1, 1, 1), no_bvh_cache=True)
         pertev.render(scene, **SMALL)
         opening = time.perf_counter() - begun

@@ -15,6 +15,7 @@
 #include "session/devices/machine.h"
 #include "session/opening/calibrated_camera.h"
 #include "session/opening/camera_list.h"
+#include "session/opening/movable_instances.h"
 #include "session/opening/open_scene.h"
 #include "session/opening/picture_settings.h"
 #include "session/opening/strictness.h"
@@ -221,6 +222,7 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     // If it turns out not to be a GPU, the session makes what is missing.
     PrepareOptions prepare = prepare_options(settings, machine.may_be_cuda());
     prepare.may_be_better = may_be_better(options.tracer);
+    prepare.apart = movable_instances(options.scene.movable, scene);
     if (!options.no_cache) prepare.bvh_cache = bvh_cache_folder();
     sink.set_work("building trees");
     ready->sequence = frame_range(options).value_or(FrameRange{.time_s = options.time_s, .shutter = shutter(options)});

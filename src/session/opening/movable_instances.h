@@ -1,0 +1,18 @@
+#pragma once
+
+// Instances that a caller wants to move often. Each keeps a tree of its own, also if its mesh is used once, so that
+// moving it rebuilds only the top level.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace pertev {
+
+/// Returns whether each instance has one of these names (scene/names.h); empty without names. Throws Error(BadInput)
+/// for a name that none has.
+std::vector<bool> movable_instances(std::span<const std::string> names, const Scene& scene);
+
+} // namespace pertev
