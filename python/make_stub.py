@@ -54,8 +54,8 @@ SIGNATURES = {
     "DeviceArray.__dlpack__": "(self, **how: Any) -> Any",
     "DeviceArray.__dlpack_device__": "(self) -> tuple[int, int]",
     "DeviceArray.numpy": "(self) -> NDArray[Any]",
-    "BatchResult.__len__": "(self) -> int",
     "BatchResult.picture": "(self, number: int = 0) -> Result",
+    "BatchResult.__len__": "(self) -> int",
     "Cameras.__init__": "(self, poses: Any, K: Any = None, *, convention: _Convention | None = None, "
                         "intrinsics_size: tuple[int, int] | str | None = None, "
                         "lens: _Lens | None = None, distortion: Sequence[float] | None = None) -> None",
