@@ -31,6 +31,12 @@ public:
     virtual uint32_t feature_samples() const = 0;
     /// Adds the hits of a sample's camera rays. `frame` may have no light.
     virtual void add_features(const NoisyFrame& frame, const SceneView& scene) = 0;
+    /// Returns the arrays in which frames store mirrors (render/mirror_chain_view.h); empty if it does not need them.
+    virtual MirrorChainView mirrors() const { return {}; }
+    /// Adds the mirrors of the rays that begin() got, or of a sample's camera rays after add_features(), with the lobe
+    /// that the frame's view states. Each is called for 0 and then for the largest number below 1.
+    virtual void guide_mirrors(const NoisyFrame&) {}
+    virtual void add_mirrors(const NoisyFrame&, const SceneView&) {}
     /// Adds the next sample of each pixel, with light; `sample` is its number.
     virtual void add(const NoisyFrame& frame, const SceneView& scene, uint32_t sample) = 0;
     /// Returns what it has gathered of the window's pixels; those of others are missing.

@@ -2,7 +2,7 @@
 
 // First stages of a single picture: guides, and sums over samples.
 
-#include "denoise/picture_sums.h"
+#include "denoise/mirror_sums.h"
 #include "denoise/reproject.h"
 #include "denoise/split_light.h"
 #include "shading/shading_frame.h"
@@ -98,6 +98,18 @@ struct SampledSurfaces {
     }
 };
 
+/// Step number `k` of 24 to the pixels around one: rings of a square, 8 pixels, then 16.
+struct PixelStep {
+    int x, y;
+};
+HD inline PixelStep step_around(int k) {
+    const int ring = k < 8 ? 1 : 2, at = k < 8 ? k : k - 8;
+    const int side = at / (2 * ring), along = at % (2 * ring) - ring;
+    const int dx = side == 0 ? along : side == 1 ? ring : side == 2 ? -along : -ring;
+    const int dy = side == 0 ? -ring : side == 1 ? along : side == 2 ? ring : -along;
+    return {dx, dy};
+}
+
 /// The stage that sums the hits of a pixel's camera rays.
 struct GatherFeatures {
     SampledSurfaces samples;
@@ -135,13 +147,10 @@ private:
     HD uint32_t neighbour_pixel(uint32_t pixel, const SampledSurfaces::Found& found) const {
         const int w = static_cast<int>(samples.width), h = static_cast<int>(samples.height);
         const int x = static_cast<int>(pixel % samples.width), y = static_cast<int>(pixel / samples.width);
-        for (int k = 0; k < 24; ++k) { // rings of a square: 8 pixels, then 16
-            const int ring = k < 8 ? 1 : 2, at = k < 8 ? k : k - 8;
-            const int side = at / (2 * ring), along = at % (2 * ring) - ring;
-            const int dx = side == 0 ? along : side == 1 ? ring : side == 2 ? -along : -ring;
-            const int dy = side == 0 ? -ring : side == 1 ? along : side == 2 ? ring : -along;
-            if (x + dx < 0 || y + dy < 0 || x + dx >= w || y + dy >= h) continue;
-            const uint32_t there = static_cast<uint32_t>((y + dy) * w + x + dx);
+        for (int k = 0; k < 24; ++k) {
+            const PixelStep step = step_around(k);
+            if (x + step.x < 0 || y + step.y < 0 || x + step.x >= w || y + step.y >= h) continue;
+            const uint32_t there = static_cast<uint32_t>((y + step.y) * w + x + step.x);
             if (samples.shows(there, found)) return there;
         }
         return kNoHit;
@@ -151,6 +160,7 @@ private:
 /// The stage that sums the light of a pixel's samples, whose features have been gathered.
 struct GatherLight {
     SampledSurfaces samples;
+    MirrorSums mirrors; // may be empty
 
     HD void operator()(uint32_t pixel) const {
         const NoisyFrameView& frame = samples.frame;
@@ -158,7 +168,8 @@ struct GatherLight {
         const SampledSurfaces::Found found = samples.found(pixel);
         if (found.object == kNoHit) return;
         if (samples.shows_own(pixel, found)) {
-            const SplitLight light = split_light(frame, pixel);
+            SplitLight light = split_light(frame, pixel);
+            light.gloss = take_mirrored(mirrors, frame.mirrors, pixel, light.gloss);
             const float diffuse = luminance(rgb_of(diffuse_signal(light.diffuse, light.diffuse_divisor))),
                         gloss = luminance(light.gloss / light.gloss_divisor);
             SampledSurfaces::add(sums.diffuse[pixel], light.diffuse, 1);

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "denoise/compose_samples.h"
 #include "denoise/estimate_variance.h"
+#include "denoise/gather_mirrors.h"
 #include "denoise/wavelet_pass.h"
 #include "device/launch.h"
 
@@ -13,15 +14,15 @@ constexpr int kPicturePasses = 5;
 // Parameters of WaveletPass. Bumps are trusted like everything else, because with more samples their noise is less
 // than their effect.
 constexpr float kPictureTolerance = 4, kPictureMinTrust = 1;
-constexpr std::size_t kOfGuide = 4, kOfSums = 10 + 2 * kNeighbourSurfaces,
-                      kOfPictureSignals = 4; // numbers of arrays of Float4
-constexpr std::size_t kWidePictureArrays = kOfGuide + kOfSums + kOfPictureSignals;
+constexpr std::size_t kOfGuide = 4, kOfSums = 10 + 2 * kNeighbourSurfaces, kOfPictureSignals = 6,
+                      kOfChain = 4; // numbers of arrays of Float4
+constexpr std::size_t kWidePictureArrays = kOfGuide + kOfSums + kOfPictureSignals + kOfChain;
 
 } // namespace
 
 PictureDenoiser::PictureDenoiser(Queue& queue, uint32_t width, uint32_t height)
     : queue_(&queue), width_(width), height_(height),
-      wide_(queue, kWidePictureArrays * width * height, "denoised picture"),
+      wide_(queue, (kWidePictureArrays + kOfMirrors) * width * height, "denoised picture"),
       squares_(queue, std::size_t(width) * height, "denoised picture"),
       objects_(queue, std::size_t(width) * height, "denoised picture") {
     Float4* next = wide_.data();
@@ -30,10 +31,15 @@ PictureDenoiser::PictureDenoiser(Queue& queue, uint32_t width, uint32_t height)
         next += std::size_t(width) * height;
     };
     for (Float4** array :
-         {&guide_.normal, &guide_.albedo, &smooth_, &packed_, &sums_.diffuse, &sums_.gloss, &sums_.diffuse_share,
-          &sums_.gloss_share, &sums_.normal, &sums_.diffuse_color, &sums_.gloss_color, &sums_.neighbour, &sums_.loose,
-          &sums_.met, &from_.diffuse, &from_.gloss, &to_.diffuse, &to_.gloss}) {
+         {&guide_.normal,     &guide_.albedo,       &smooth_,           &packed_,           &sums_.diffuse,
+          &sums_.gloss,       &sums_.diffuse_share, &sums_.gloss_share, &sums_.normal,      &sums_.diffuse_color,
+          &sums_.gloss_color, &sums_.neighbour,     &sums_.loose,       &sums_.met,         &from_.diffuse,
+          &from_.gloss,       &to_.diffuse,         &to_.gloss,         &mirrored_.diffuse, &mirrored_.gloss,
+          &mirrors_.seen,     &chain_.end,          &chain_.normal,     &chain_.color,      &chain_.seen}) {
         take(*array);
+    }
+    for (MirrorBranch& branch : mirrors_.branches) {
+        for (Float4** array : {&branch.end, &branch.normal, &branch.light, &branch.color, &branch.edge}) take(*array);
     }
     for (int slot = 0; slot < kNeighbourSurfaces; ++slot) {
         take(sums_.neighbour_diffuse[slot]);
@@ -46,6 +52,7 @@ PictureDenoiser::PictureDenoiser(Queue& queue, uint32_t width, uint32_t height)
 void PictureDenoiser::begin(const NoisyFrame& centres, const CameraView& camera, const PixelWindow& window) {
     PERTEV_CHECK(centres.width() == width_ && centres.height() == height_);
     launch(*queue_, "begin_sums", width_ * height_, BeginSums{centres.view(), guide_, sums_});
+    launch(*queue_, "begin_mirrors", width_ * height_, BeginMirrors{mirrors_});
     camera_ = camera;
     window_ = window;
     has_gloss_ = centres.splits_light();
@@ -62,10 +69,18 @@ void PictureDenoiser::add_features(const NoisyFrame& frame, const SceneView& sce
     ++features_;
 }
 
+void PictureDenoiser::guide_mirrors(const NoisyFrame& frame) {
+    launch(*queue_, "guide_mirrors", width_ * height_, GuideMirrors{frame.view().mirrors, mirrors_});
+}
+
+void PictureDenoiser::add_mirrors(const NoisyFrame& frame, const SceneView& scene) {
+    launch_in(*queue_, "gather_mirrors", window_, GatherMirrors{surfaces_of(frame, scene), mirrors_});
+}
+
 void PictureDenoiser::add(const NoisyFrame& frame, const SceneView& scene, uint32_t) {
     PERTEV_CHECK(features_ >= kFeatures);
     if (samples_ >= features_) add_features(frame, scene);
-    launch_in(*queue_, "gather_light", window_, GatherLight{surfaces_of(frame, scene)});
+    launch_in(*queue_, "gather_light", window_, GatherLight{surfaces_of(frame, scene), mirrors_if_gloss()});
     ++samples_;
 }
 
@@ -81,6 +96,11 @@ std::vector<PixelWords> PictureDenoiser::gathered() const {
         arrays.push_back({sums_.neighbour_diffuse[slot], 4});
         arrays.push_back({sums_.neighbour_gloss[slot], 4});
     }
+    for (const MirrorBranch& branch : mirrors_.branches) {
+        for (Float4* const array : {branch.end, branch.normal, branch.light, branch.color, branch.edge})
+            arrays.push_back({array, 4});
+    }
+    arrays.push_back({mirrors_.seen, 4});
     arrays.push_back({sums_.squares, 2});
     arrays.push_back({guide_.object, 1});
     return arrays;
@@ -99,12 +119,15 @@ void PictureDenoiser::restore(const DenoiserState& state) {
     const std::size_t pixels = std::size_t(width_) * height_;
     const DenoiserHead head = DenoiserHead::read(state);
     bool is_sound = state.size() == state_words(pixels) && head.features >= kFeatures;
-    for (std::size_t slot = 0; is_sound && slot < kNeighbourSurfaces; ++slot) { // pixels that are looked up
-        const std::size_t array = DenoiserHead::kWords + pixels * 4 * (12 + 2 * slot);
-        for (std::size_t i = 0; i < pixels; ++i) {
-            const uint32_t neighbour = state[array + 4 * i + 3];
-            is_sound = is_sound && (neighbour == kNoHit || neighbour < pixels);
+    const auto check = [&](std::size_t array) { // the array has numbers of pixels that are looked up
+        for (std::size_t i = 0; is_sound && i < pixels; ++i) {
+            const uint32_t there = state[DenoiserHead::kWords + 4 * (pixels * array + i) + 3];
+            is_sound = there == kNoHit || there < pixels;
         }
+    };
+    for (std::size_t slot = 0; slot < kNeighbourSurfaces; ++slot) check(12 + 2 * slot);
+    for (std::size_t k = 1; k <= MirrorSums::kBranches; ++k) {
+        check(12 + 2 * kNeighbourSurfaces + k * MirrorSums::kArrays - 1);
     }
     if (!is_sound) throw Error(ErrorCode::BadInput, "what the denoiser has gathered is damaged");
     restore_pixels(*queue_, gathered(), pixels, std::span(state).subspan(DenoiserHead::kWords));
@@ -112,6 +135,20 @@ void PictureDenoiser::restore(const DenoiserState& state) {
     const LensView lens = camera_.lens; // is not in the head
     camera_ = head.camera;
     camera_.lens = lens;
+}
+
+/// Filters the signals of mirrors into mirrored_; `other` is free.
+void PictureDenoiser::filter_mirrors(SignalsView other) {
+    const uint32_t pixels = width_ * height_;
+    launch(*queue_, "estimate_mirror_variance", pixels,
+           EstimateMirrorVariance{guide_, sums_, mirrors_, other, width_, height_});
+    SignalsView from = other, to = mirrored_;
+    for (int pass = 0; pass < kPicturePasses; ++pass) {
+        launch(*queue_, "mirror_pass", pixels,
+               MirrorPass{guide_, mirrors_, from, to, camera_, width_, height_, 1 << pass, kPictureTolerance});
+        std::swap(from, to);
+    }
+    static_assert(kPicturePasses % 2 == 1, "the last pass writes mirrored_");
 }
 
 Image PictureDenoiser::apply(Image picture) {
@@ -136,8 +173,10 @@ Image PictureDenoiser::apply(Image picture) {
                            {0, height_}});
         std::swap(from, to);
     }
+    if (has_gloss_) filter_mirrors(to);
     launch(*queue_, "compose_samples", pixels,
-           ComposeSamples{sums_, from, static_cast<float>(features_), has_gloss_, to.diffuse});
+           ComposeSamples{sums_, from, mirrors_if_gloss(), mirrored_, static_cast<float>(features_), has_gloss_,
+                          to.diffuse});
     std::vector<Float4> shown(pixels);
     queue_->copy_to_host(shown.data(), to.diffuse, pixels * sizeof(Float4));
     return with_colors(std::move(picture), shown);

@@ -26,6 +26,9 @@ public:
     /// smooth even with few samples.
     uint32_t feature_samples() const override { return kFeatures; }
     void add_features(const NoisyFrame& frame, const SceneView& scene) override;
+    MirrorChainView mirrors() const override { return chain_; }
+    void guide_mirrors(const NoisyFrame& frame) override;
+    void add_mirrors(const NoisyFrame& frame, const SceneView& scene) override;
     void add(const NoisyFrame& frame, const SceneView& scene, uint32_t sample) override;
     DenoiserState state() const override;
     void restore(const DenoiserState& state) override;
@@ -34,9 +37,11 @@ public:
     Image apply(Image picture) override;
 
 private:
-    static constexpr std::size_t kPixelWords = 4 * (12 + 2 * kNeighbourSurfaces) + 3;
+    static constexpr std::size_t kOfMirrors = MirrorSums::kArrays * MirrorSums::kBranches + 1; // arrays of Float4
+    static constexpr std::size_t kPixelWords = 4 * (12 + 2 * kNeighbourSurfaces + kOfMirrors) + 3;
 
     std::vector<PixelWords> gathered() const;
+    void filter_mirrors(SignalsView other);
     SampledSurfaces surfaces_of(const NoisyFrame& frame, const SceneView& scene) const;
 
     Queue* queue_;
@@ -50,7 +55,11 @@ private:
     PictureGuide guide_ = {};
     Float4 *smooth_ = nullptr, *packed_ = nullptr;
     PictureSums sums_ = {};
-    SignalsView from_ = {}, to_ = {};
+    SignalsView from_ = {}, to_ = {}, mirrored_ = {};
+    MirrorSums mirrors_ = {};
+    MirrorChainView chain_ = {};
+
+    MirrorSums mirrors_if_gloss() const { return has_gloss_ ? mirrors_ : MirrorSums{}; }
 };
 
 } // namespace pertev

@@ -19,6 +19,8 @@ public:
     static constexpr std::size_t arrays(bool splits_light) { return splits_light ? 7 : 6; }
     /// Sets the arrays in which samples leave their first bounce for ReSTIR from now on.
     void leave(const FirstBounceView& first_bounce) { view_.first_bounce = first_bounce; }
+    /// Sets the arrays in which samples store their mirrors from now on. The frame splits its light.
+    void follow(const MirrorChainView& mirrors) { view_.mirrors = mirrors; }
 
     const char* name() const override { return "noisy frame"; }
     /// Clears the frame, which is necessary only for parts of a frame; in a whole frame the next sample overwrites each

@@ -10,6 +10,7 @@
 #include "math/float4.h"
 #include "math/rgb.h"
 #include "math/vec3.h"
+#include "render/mirror_chain_view.h"
 #include "shading/emitter_point.h"
 
 namespace pertev {
@@ -56,6 +57,7 @@ struct NoisyFrameView : GBufferView {
                                 // all of `light` but `emission`, in scenes without other lobes
     Float4* emission = nullptr; // rgb, the part of `light` that the camera ray hits directly; Gloss::transmittance
     FirstBounceView first_bounce;
+    MirrorChainView mirrors;
 
     HD bool is_there() const { return light != nullptr; }
     HD bool splits_light() const { return diffuse != nullptr; }

@@ -1,5 +1,7 @@
 #include "session/post_steps.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "denoise/oidn/oidn_denoiser.h"
 #include "denoise/picture_denoiser.h"
@@ -7,6 +9,12 @@
 #include "render/add_frame_to_film.h"
 
 namespace pertev {
+
+namespace {
+
+constexpr float kLastLobe = 0x1.fffffep-1f; // the largest number below 1
+
+} // namespace
 
 std::vector<std::unique_ptr<Denoiser>> make_denoisers(Queue& queue, const RenderSettings& settings) {
     std::vector<std::unique_ptr<Denoiser>> denoisers;
@@ -65,8 +73,11 @@ bool PostSteps::begin(const Camera& camera, const RenderSettings& settings, Sink
         denoisers_ = make_denoisers(pictures_.queue(), settings);
         made_for_ = {settings.denoise, settings.width, settings.height};
     }
+    MirrorChainView mirrors = frame.splits_light() ? denoisers_.front()->mirrors() : MirrorChainView{};
     RenderSettings of_features = settings;
-    of_features.path.max_depth = 0;
+    of_features.path.max_depth = mirrors.is_there() ? std::min(settings.path.max_depth, kMostMirrors) : 0;
+    of_features.path.strategy = LightStrategy::BsdfOnly;
+    of_features.path.roulette_depth = kMostMirrors + 1;
     RenderSettings of_centres = of_features;
     of_centres.filter = PixelFilter::Box;
     of_centres.filter_radius = 0x1p-20f; // pixels
@@ -75,6 +86,11 @@ bool PostSteps::begin(const Camera& camera, const RenderSettings& settings, Sink
     Integrator& of_pinhole = pictures_.begin(pinhole, of_centres, 1);
     frame.begin();
     of_pinhole.stop_with(sink);
+    const auto follow = [&](float lobe) {
+        mirrors.lobe = lobe;
+        frame.follow(mirrors);
+    };
+    follow(0);
     of_pinhole.render(0, 1, frame.film_view());
     const CameraView centres = pictures_.view_of(pinhole, of_centres).camera.view;
     const FilmPart part = settings.part();
@@ -82,18 +98,33 @@ bool PostSteps::begin(const Camera& camera, const RenderSettings& settings, Sink
     window_ = {.width = settings.width, .height = rows};
     if (rows < settings.height) window_.picture_width = settings.width, window_.y = part.first_row;
     for (const auto& denoiser : denoisers_) denoiser->begin(frame, centres, window_);
+    if (mirrors.is_there()) {
+        denoisers_.front()->guide_mirrors(frame);
+        follow(kLastLobe);
+        of_pinhole.render(0, 1, frame.film_view());
+        denoisers_.front()->guide_mirrors(frame);
+    }
     Integrator& integrator = pictures_.begin(camera, of_features, 1);
     integrator.stop_with(sink);
-    FilmView rows_of_frame = frame.film_view();
-    rows_of_frame.window = window_;
+    const auto render = [&](uint32_t sample, float lobe) {
+        follow(lobe);
+        FilmView rows_of_frame = frame.film_view();
+        rows_of_frame.window = window_;
+        integrator.render(sample, 1, rows_of_frame);
+        return sink == nullptr || !sink->should_stop();
+    };
     const SceneView& scene = pictures_.scene().view();
     for (const auto& denoiser : denoisers_) {
         for (uint32_t sample = 0; sample < denoiser->feature_samples(); ++sample) {
-            integrator.render(sample, 1, rows_of_frame);
-            if (sink != nullptr && sink->should_stop()) return false;
+            if (!render(sample, 0)) return false;
             denoiser->add_features(frame, scene);
+            if (!mirrors.is_there()) continue;
+            denoiser->add_mirrors(frame, scene);
+            if (!render(sample, kLastLobe)) return false;
+            denoiser->add_mirrors(frame, scene);
         }
     }
+    follow(-1);
     return true;
 }
 

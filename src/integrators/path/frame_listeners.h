@@ -3,7 +3,7 @@
 // Listeners for a frame of samples (render/noisy_frame_view.h): the G-buffer of the first hit, the part of the light
 // that its diffuse lobes scatter, and the data of the path's first bounce for ReSTIR.
 
-#include "integrators/path/path_listener.h"
+#include "integrators/path/mirror_chain.h"
 
 namespace pertev {
 
@@ -221,9 +221,9 @@ private:
 };
 
 /// Plain is for scenes with diffuse lobes only. Reuse leaves light to ReSTIR.
-using FrameListeners = Listeners<FrameSurface, LightSplit>;
+using FrameListeners = Listeners<FrameSurface, LightSplit, MirrorChain>;
 using PlainFrameListeners = Listeners<FrameSurface>;
-using ReuseListeners = Listeners<FrameSurface, LightSplit, FirstBounce>;
+using ReuseListeners = Listeners<FrameSurface, LightSplit, MirrorChain, FirstBounce>;
 using PlainReuseListeners = Listeners<FrameSurface, FirstBounce>;
 
 } // namespace pertev

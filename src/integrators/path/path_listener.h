@@ -87,6 +87,10 @@ struct PathListener {
     /// Called when the path continues along `sample` and has left the vertex.
     template <class Vertex>
     HD void scattered(const PathState&, const Vertex&, const BsdfSample&) {}
+    /// Returns the number that chooses the lobe which scatters the path; `drawn` is the sample's.
+    HD float chosen_lobe(const PathState&, float drawn) const { return drawn; }
+    /// Returns whether the path continues after scattered().
+    HD bool goes_on(const PathState&) const { return true; }
     /// Called after the vertex to store the listener's data.
     template <class K>
     HD void save(K&) const {}
@@ -150,6 +154,11 @@ struct Listeners : Ls... {
     HD INLINE_ON_DEVICE void scattered(const PathState& path, const Vertex& at, const BsdfSample& sample) {
         (Ls::scattered(path, at, sample), ...);
     }
+    HD float chosen_lobe(const PathState& path, float drawn) const {
+        ((drawn = Ls::chosen_lobe(path, drawn)), ...);
+        return drawn;
+    }
+    HD bool goes_on([[maybe_unused]] const PathState& path) const { return (Ls::goes_on(path) && ...); }
     HD void save(PathData& kept) const { (Ls::save(static_cast<typename Ls::PathData&>(kept)), ...); }
     HD void save_shadow_data(ShadowData& shadow_data) const {
         (Ls::save_shadow_data(static_cast<typename Ls::ShadowData&>(shadow_data)), ...);

@@ -172,7 +172,7 @@ HD inline T survival_probability(Roulette roulette, T throughput) {
 template <class Vertex, class Numbers, class Listener>
 HD INLINE_ON_DEVICE bool sample_scattering(const PathSettings& settings, PathState& path, const Vertex& vertex,
                                            const Numbers& numbers, Listener& listener) {
-    const float lobe = vertex.draws_lobe() ? numbers.lobe(settings, path) : 0.5f;
+    const float lobe = vertex.draws_lobe() ? listener.chosen_lobe(path, numbers.lobe(settings, path)) : 0.5f;
     const BsdfSample sample = vertex.sample(lobe, numbers.direction(settings, path));
     if (!(sample.pdf > 0)) return false;
     const Vec3 wi = sample.wi;
@@ -193,7 +193,7 @@ HD INLINE_ON_DEVICE bool sample_scattering(const PathSettings& settings, PathSta
     }
     path.depth = depth;
     listener.scattered(path, vertex, sample);
-    return true;
+    return listener.goes_on(path);
 }
 
 /// Width in metres of what the path's ray stands for at the hit; 0 if textures are not filtered. A sampled direction

@@ -1,0 +1,154 @@
+#pragma once
+
+// Variance and filter of what mirrors show: as denoise/estimate_variance.h and denoise/wavelet_pass.h, but taps
+// are compared where their chains end. Distances there are in the world, because a curved mirror has no virtual image
+// of one depth.
+
+#include "denoise/mirror_sums.h"
+#include "render/camera_view.h"
+
+namespace pertev {
+
+/// The stage that makes both signals, of reflection and of transmission, from the sums.
+struct EstimateMirrorVariance {
+    PictureGuide guide;
+    PictureSums sums;
+    MirrorSums mirrors;
+    SignalsView out;
+    uint32_t width, height;
+
+    HD void operator()(uint32_t pixel) const {
+        out.diffuse[pixel] = estimate(0, pixel);
+        out.gloss[pixel] = estimate(1, pixel);
+    }
+
+private:
+    static constexpr int kReach = 2;                      // pixels
+    static constexpr float kFreedoms = 12, kScale = 1.5f; // EstimateVariance has kFreedoms and, for kScale, kOfDiffuse
+    static constexpr float kUnknownVariance = 1e6f;
+
+    HD Float4 estimate(int k, uint32_t pixel) const {
+        constexpr Float4 kUnknown = {0, 0, 0, kUnknownSignal};
+        const MirrorBranch& branch = mirrors.branches[k];
+        const uint32_t turns = branch.turns(pixel), object = bits_of(branch.end[pixel].w);
+        const float samples = sums.diffuse[pixel].w;
+        if (turns < 2 || !(samples > 0)) return kUnknown;
+        const int w = static_cast<int>(width), h = static_cast<int>(height);
+        const int x = static_cast<int>(pixel % width), y = static_cast<int>(pixel / width);
+        float within = 0, freedoms = 0, signal = 0, squares = 0, all = 0;
+        for (int j = -kReach; j <= kReach; ++j) {
+            for (int i = -kReach; i <= kReach; ++i) {
+                if (x + i < 0 || y + j < 0 || x + i >= w || y + j >= h) continue;
+                const uint32_t at = static_cast<uint32_t>((y + j) * w + x + i);
+                const float count = sums.diffuse[at].w;
+                if (branch.turns(at) != turns || bits_of(branch.end[at].w) != object || !(count > 0) ||
+                    guide.object[at] != guide.object[pixel]) {
+                    continue;
+                }
+                signal += branch.light[at].w;
+                squares += branch.color[at].w;
+                all += count;
+                within += spread(k, at);
+                freedoms += count - 1;
+            }
+        }
+        const float inv = 1.0f / samples;
+        const Float4 mean = diffuse_signal(inv * rgb_of(branch.light[pixel]), mirrors.color(k, pixel));
+        if (mean.w < 0) return kUnknown;
+        float variance = kUnknownVariance;
+        if (freedoms >= kFreedoms) {
+            variance = within / freedoms;
+        } else if (all > 4) {
+            variance = max(squares - square(signal) / all, 0.0f) / (all - 1);
+        }
+        if (samples > 1) variance = max(variance, spread(k, pixel) / (samples - 1));
+        return with_w(rgb_of(mean), kScale * inv * variance);
+    }
+    HD float spread(int k, uint32_t at) const {
+        const MirrorBranch& branch = mirrors.branches[k];
+        return max(branch.color[at].w - square(branch.light[at].w) / sums.diffuse[at].w, 0.0f);
+    }
+};
+
+/// A pass of the filter of both signals.
+struct MirrorPass {
+    PictureGuide guide;
+    MirrorSums mirrors;
+    SignalsView from, to;
+    CameraView camera;
+    uint32_t width, height;
+    int step;        // pixels between taps
+    float tolerance; // WaveletPass has the same
+
+    HD void operator()(uint32_t pixel) const {
+        to.diffuse[pixel] = filtered(mirrors.branches[0], from.diffuse, pixel);
+        to.gloss[pixel] = filtered(mirrors.branches[1], from.gloss, pixel);
+    }
+
+private:
+    static constexpr float kBend = 64; // WaveletPass bends diffuse light by it
+    /// Steps of a pixel, as a straight view would have them, that a plane's points may be off: mirrors make pictures
+    /// smaller.
+    static constexpr float kPlane = 0.25f;
+
+    HD Float4 filtered(const MirrorBranch& branch, const Float4* signal, uint32_t pixel) const {
+        const Float4 own = signal[pixel], end = branch.end[pixel], normal = branch.normal[pixel];
+        if (bits_of(normal.w) < 2 || bits_of(end.w) == kNoHit) return own;
+        const int w = static_cast<int>(width), h = static_cast<int>(height);
+        const int x = static_cast<int>(pixel % width), y = static_cast<int>(pixel / width);
+        const float away = length(vec3_of(end) - camera.world_from_camera.translation);
+        const float off_scale = kPlane / (pixel_size(camera, away) * static_cast<float>(step));
+        const float centre = fused_luminance(rgb_of(own));
+        float known = 0, variance_here = 0;
+        for (int k = 0; k < 9; ++k) {
+            const Float4 tap = signal[held(y, k / 3 - 1, h) * w + held(x, k % 3 - 1, w)];
+            if (tap.w < 0) continue;
+            const float kernel = k == 4 ? 4.0f : k % 2 == 1 ? 2.0f : 1.0f;
+            variance_here = fma(kernel, tap.w, variance_here);
+            known += kernel;
+        }
+        const bool is_known = !(own.w < 0);
+        const float inv_deviation =
+            is_known ? 1.0f / (tolerance * safe_sqrt(variance_here / max(known, 1.0f)) + 1e-4f) : 0.0f;
+        Rgb light = is_known ? rgb_of(own) : Rgb{0, 0, 0};
+        float weight = is_known ? 1.0f : 0.0f, variance = is_known ? own.w : 0.0f;
+        for (int k = 0; k < 9; ++k) {
+            if (k == 4) continue;
+            const int tap = held(y, (k / 3 - 1) * step, h) * w + held(x, (k % 3 - 1) * step, w);
+            const Float4 there = signal[tap], to_end = branch.end[tap], to_normal = branch.normal[tap];
+            if (there.w < 0 || guide.object[tap] != guide.object[pixel] || bits_of(to_end.w) != bits_of(end.w) ||
+                bits_of(to_normal.w) != bits_of(normal.w)) {
+                continue;
+            }
+            const float bend = max(1.0f - fused_dot(vec3_of(to_normal), vec3_of(normal)), 0.0f);
+            const float off = abs(fused_dot(vec3_of(normal), vec3_of(to_end) - vec3_of(end))) * off_scale;
+            const float unlike = abs(fused_luminance(rgb_of(there)) - centre) * inv_deviation;
+            const float x4 = max(fma(-0.25f, fma(kBend, bend, off + unlike), 1.0f), 0.0f);
+            const float share = (k % 2 == 1 ? 0.5f : 0.25f) * square(square(x4));
+            light = add_scaled(light, share, rgb_of(there));
+            variance = fma(share * share, there.w, variance);
+            weight += share;
+        }
+        if (!(weight > 0)) return {0, 0, 0, kUnknownSignal};
+        const float inv = 1.0f / weight;
+        return with_w(inv * light, inv * inv * variance);
+    }
+};
+
+/// Light that a pixel's guide shows by mirrors, from the filtered signals.
+HD inline Rgb mirrored_light(const MirrorSums& mirrors, const SignalsView& signals, uint32_t pixel) {
+    const float count = mirrors.is_there() ? mirrors.seen[pixel].w : 0.0f;
+    if (!(count > 0)) return {0, 0, 0};
+    const auto light = [&](const MirrorBranch& branch, const Float4* signal) {
+        const auto times = [](Float4 color, Float4 there) {
+            return there.w < 0 ? Rgb{0, 0, 0} : rgb_of(color) * rgb_of(there);
+        };
+        const Float4 edge = branch.edge[pixel];
+        const Rgb own = times(branch.color[pixel], signal[pixel]);
+        return bits_of(edge.w) == kNoHit ? own : own + times(edge, signal[bits_of(edge.w)]);
+    };
+    return (1.0f / count) * (rgb_of(mirrors.seen[pixel]) + light(mirrors.branches[0], signals.diffuse) +
+                             light(mirrors.branches[1], signals.gloss));
+}
+
+} // namespace pertev
