@@ -109,13 +109,14 @@ pertev_launches(denoise/oidn/oidn_stages.cu
     ReadShownFrame
     ShowColor)
 pertev_launches(denoise/picture_denoiser_stages.cu
-  denoise/compose_samples.h denoise/estimate_variance.h denoise/gather_mirrors.h render/pixel_window.h
+  denoise/compose_samples.h denoise/estimate_variance.h denoise/even_pass.h denoise/gather_mirrors.h render/pixel_window.h
   STAGES BeginSums
     BeginMirrors
     GuideMirrors
     GatherMirrors
     InWindow<GatherMirrors>
     EstimateMirrorVariance
+    EvenPass
     MirrorPass
     GatherFeatures
     InWindow<GatherFeatures>

@@ -24,4 +24,8 @@ MUTATIONS = [
      ("src/denoise/gather_mirrors.h", "SampledSurfaces::add(mirrors.seen[pixel], seen);", "")),
     ("each feature of a mirror with one lobe counts twice", "statistical/mirrored_light",
      ("src/integrators/path/mirror_chain.h", "color.w = is_again ? 0.0f :", "color.w =")),
+    ("a pixel compares by its own variance alone", "unit/even_pass",
+     ("src/denoise/even_pass.h", "(max(own_.w, 0.0f) + tap.w)", "(2 * max(own_.w, 0.0f))")),
+    ("a pass of pictures divides by the sum of weights", "statistical/denoised_light",
+     ("src/denoise/even_pass.h", "if (own_.w < 0) { // unknown", "weight_ += kAll, light_ = add_scaled(light_, kAll, rgb_of(own_));\n        if (true) { // unknown")),
 ]

@@ -1,9 +1,10 @@
 #pragma once
 
-// Variance and filter of what mirrors show: as denoise/estimate_variance.h and denoise/wavelet_pass.h, but taps
+// Variance and filter of what mirrors show: as denoise/estimate_variance.h and denoise/even_pass.h, but taps
 // are compared where their chains end. Distances there are in the world, because a curved mirror has no virtual image
 // of one depth.
 
+#include "denoise/even_pass.h"
 #include "denoise/mirror_sums.h"
 #include "render/camera_view.h"
 
@@ -96,42 +97,28 @@ private:
         if (bits_of(normal.w) < 2 || bits_of(end.w) == kNoHit) return own;
         const int w = static_cast<int>(width), h = static_cast<int>(height);
         const int x = static_cast<int>(pixel % width), y = static_cast<int>(pixel / width);
-        const float away = length(vec3_of(end) - camera.world_from_camera.translation);
-        const float off_scale = kPlane / (pixel_size(camera, away) * static_cast<float>(step));
-        const float centre = fused_luminance(rgb_of(own));
-        float known = 0, variance_here = 0;
+        const float size = size_at(end);
+        EvenSum sum(own, tolerance);
         for (int k = 0; k < 9; ++k) {
-            const Float4 tap = signal[held(y, k / 3 - 1, h) * w + held(x, k % 3 - 1, w)];
-            if (tap.w < 0) continue;
-            const float kernel = k == 4 ? 4.0f : k % 2 == 1 ? 2.0f : 1.0f;
-            variance_here = fma(kernel, tap.w, variance_here);
-            known += kernel;
-        }
-        const bool is_known = !(own.w < 0);
-        const float inv_deviation =
-            is_known ? 1.0f / (tolerance * safe_sqrt(variance_here / max(known, 1.0f)) + 1e-4f) : 0.0f;
-        Rgb light = is_known ? rgb_of(own) : Rgb{0, 0, 0};
-        float weight = is_known ? 1.0f : 0.0f, variance = is_known ? own.w : 0.0f;
-        for (int k = 0; k < 9; ++k) {
-            if (k == 4) continue;
-            const int tap = held(y, (k / 3 - 1) * step, h) * w + held(x, (k % 3 - 1) * step, w);
-            const Float4 there = signal[tap], to_end = branch.end[tap], to_normal = branch.normal[tap];
-            if (there.w < 0 || guide.object[tap] != guide.object[pixel] || bits_of(to_end.w) != bits_of(end.w) ||
+            const int column = x + (k % 3 - 1) * step, row = y + (k / 3 - 1) * step;
+            if (k == 4 || column < 0 || row < 0 || column >= w || row >= h) continue;
+            const int tap = row * w + column;
+            const Float4 to_end = branch.end[tap], to_normal = branch.normal[tap];
+            if (guide.object[tap] != guide.object[pixel] || bits_of(to_end.w) != bits_of(end.w) ||
                 bits_of(to_normal.w) != bits_of(normal.w)) {
                 continue;
             }
             const float bend = max(1.0f - fused_dot(vec3_of(to_normal), vec3_of(normal)), 0.0f);
-            const float off = abs(fused_dot(vec3_of(normal), vec3_of(to_end) - vec3_of(end))) * off_scale;
-            const float unlike = abs(fused_luminance(rgb_of(there)) - centre) * inv_deviation;
-            const float x4 = max(fma(-0.25f, fma(kBend, bend, off + unlike), 1.0f), 0.0f);
-            const float share = (k % 2 == 1 ? 0.5f : 0.25f) * square(square(x4));
-            light = add_scaled(light, share, rgb_of(there));
-            variance = fma(share * share, there.w, variance);
-            weight += share;
+            const Vec3 both = vec3_of(to_normal) + vec3_of(normal), apart = vec3_of(to_end) - vec3_of(end);
+            const float off =
+                kPlane * abs(fused_dot(both, apart)) / ((size + size_at(to_end)) * static_cast<float>(step));
+            sum.add(signal[tap], tent_weight(k), fma(kBend, bend, off));
         }
-        if (!(weight > 0)) return {0, 0, 0, kUnknownSignal};
-        const float inv = 1.0f / weight;
-        return with_w(inv * light, inv * inv * variance);
+        return sum.result();
+    }
+    /// Width of a pixel in a straight view of the chain's end.
+    HD float size_at(Float4 end) const {
+        return pixel_size(camera, length(vec3_of(end) - camera.world_from_camera.translation));
     }
 };
 

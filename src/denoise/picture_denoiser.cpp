@@ -1,19 +1,21 @@
 #include "denoise/picture_denoiser.h"
 
+#include <iterator>
+
 #include "base/error.h"
 #include "denoise/compose_samples.h"
 #include "denoise/estimate_variance.h"
+#include "denoise/even_pass.h"
 #include "denoise/gather_mirrors.h"
-#include "denoise/wavelet_pass.h"
 #include "device/launch.h"
 
 namespace pertev {
 namespace {
 
-constexpr int kPicturePasses = 5;
-// Parameters of WaveletPass. Bumps are trusted like everything else, because with more samples their noise is less
-// than their effect.
-constexpr float kPictureTolerance = 4, kPictureMinTrust = 1;
+// Pixels between taps. The last passes smooth the lattice that distant taps leave.
+constexpr int kSteps[] = {1, 2, 4, 8, 16, 32, 4, 2, 1};
+constexpr int kPicturePasses = static_cast<int>(std::size(kSteps));
+constexpr float kPictureTolerance = 4; // EvenPass explains it
 constexpr std::size_t kOfGuide = 4, kOfSums = 10 + 2 * kNeighbourSurfaces, kOfPictureSignals = 6,
                       kOfChain = 4; // numbers of arrays of Float4
 constexpr std::size_t kWidePictureArrays = kOfGuide + kOfSums + kOfPictureSignals + kOfChain;
@@ -145,7 +147,7 @@ void PictureDenoiser::filter_mirrors(SignalsView other) {
     SignalsView from = other, to = mirrored_;
     for (int pass = 0; pass < kPicturePasses; ++pass) {
         launch(*queue_, "mirror_pass", pixels,
-               MirrorPass{guide_, mirrors_, from, to, camera_, width_, height_, 1 << pass, kPictureTolerance});
+               MirrorPass{guide_, mirrors_, from, to, camera_, width_, height_, kSteps[pass], kPictureTolerance});
         std::swap(from, to);
     }
     static_assert(kPicturePasses % 2 == 1, "the last pass writes mirrored_");
@@ -159,18 +161,8 @@ Image PictureDenoiser::apply(Image picture) {
     launch(*queue_, "smooth_guide", pixels, SmoothGuide{guide_, sums_, smooth_, packed_});
     launch(*queue_, "estimate_variance", pixels, EstimateVariance{smooth, sums_, from, width_, height_, has_gloss_});
     for (int pass = 0; pass < kPicturePasses; ++pass) {
-        launch(*queue_, "wavelet_pass", pixels,
-               WaveletPass{packed_,
-                           from,
-                           to,
-                           camera_,
-                           width_,
-                           height_,
-                           1 << pass,
-                           kPictureTolerance,
-                           kPictureMinTrust,
-                           has_gloss_,
-                           {0, height_}});
+        launch(*queue_, "even_pass", pixels,
+               EvenPass{packed_, from, to, camera_, width_, height_, kSteps[pass], kPictureTolerance, has_gloss_});
         std::swap(from, to);
     }
     if (has_gloss_) filter_mirrors(to);
