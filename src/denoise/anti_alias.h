@@ -17,10 +17,12 @@ struct SteadyLight {
     const Float4* means;    // diffuse of the frame's HistoryView
     uint32_t width, height; // pixels; they may be fewer than the picture's
     float frames;           // number of frames from which on light is steady
+    bool may_change = true; // false: the scene is that of the previous frame, so the light is, too
 
     /// Returns whether the light around a pixel of the picture is steady. A single surface suffices, because an emitter
     /// smaller than a pixel hides others in some frames.
     HD bool is_around(PixelPosition at, uint32_t picture_width, uint32_t picture_height) const {
+        if (!may_change) return true;
         const int w = static_cast<int>(width), h = static_cast<int>(height);
         const int x = static_cast<int>(at.x * width / picture_width),
                   y = static_cast<int>(at.y * height / picture_height);
@@ -35,7 +37,7 @@ struct AntiAlias {
     const Float4* picture; // output of ComposePicture
     const Vec2* was_at;    // output of AccumulateSignals
     const Float4* before;  // `shown` of the previous frame's HistoryView
-    Float4* shown;         // w: number of frames in which the pixel and those beside it have been at rest
+    Float4* shown; // w: number of frames in which the pixel and those beside it have been at rest under steady light
     uint32_t width, height;
     bool has_history;
     SteadyLight steady;
@@ -77,8 +79,10 @@ private:
         const float pixels_moved = sqrt(square(x_moved) + square(y_moved));
         // At rest a history is right, even if this frame's samples have missed what is smaller than a pixel.
         if (pixels_moved < kAtRest) {
-            frames_at_rest = min(before[at.y * width + at.x].w + 1.0f, steady.frames);
-            if (frames_at_rest >= steady.frames && steady.is_around(at, width, height)) return lerp(old, own, kNew);
+            if (steady.is_around(at, width, height)) {
+                frames_at_rest = min(before[at.y * width + at.x].w + 1.0f, steady.frames);
+            }
+            if (frames_at_rest >= steady.frames) return lerp(old, own, kNew);
         }
         const float deviations = max(fma(kDeviationsPerPixel, pixels_moved, kDeviations), kDeviationsAtLeast);
         const Rgb limited = {within(old.r, around.mean.r, deviations * around.deviation.r),

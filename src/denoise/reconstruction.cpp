@@ -38,6 +38,11 @@ std::size_t narrow_count(uint32_t width, uint32_t height) {
 
 constexpr float kTolerance = 8, kMinTrust = 0.125f; // parameters of WaveletPass
 
+/// Returns whether the light of a point may be another than in the previous frame.
+bool may_change(const SceneView& scene, const PreviousScene& before, const TemporalGradientsView& change) {
+    return change.guide != nullptr || before.instances != scene.instances || before.meshes != scene.meshes;
+}
+
 } // namespace
 
 Reconstruction::Reconstruction(Queue& queue, uint32_t width, uint32_t height)
@@ -111,9 +116,11 @@ SignalsView Reconstruction::filter(const NoisyFrame& frame, const CameraView& ca
     return b;
 }
 
-SteadyLight Reconstruction::steady_light(const HistoryView& now, const ReconstructionSettings& settings) const {
+SteadyLight Reconstruction::steady_light(const HistoryView& now, bool may_change,
+                                         const ReconstructionSettings& settings) const {
     constexpr uint32_t kLeast = 8; // frames in which emitters smaller than a pixel have been seen
-    return {now.diffuse, width_, height_, static_cast<float>(std::max(settings.history * 3 / 4, kLeast))};
+    const uint32_t frames = may_change ? std::max(settings.history * 3 / 4, kLeast) : kLeast;
+    return {now.diffuse, width_, height_, static_cast<float>(frames), may_change};
 }
 
 void Reconstruction::add(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,
@@ -132,7 +139,7 @@ void Reconstruction::add(const NoisyFrame& frame, const CameraView& camera, cons
     if (settings.anti_alias) {
         launch(*queue_, "anti_alias", own.count() * width_,
                AntiAlias{picture, positions_before(), history(frames_).shown, now.shown, width_, height_, frames_ > 0,
-                         steady_light(now, settings), own});
+                         steady_light(now, may_change(scene, scene_before, change), settings), own});
     }
     timer_.stop();
     last_camera_ = camera;
@@ -153,7 +160,8 @@ void Reconstruction::add_upsampled(const NoisyFrame& frame, const CameraView& li
     const SignalsView light = filter(frame, light_camera, scene, scene_before, change, settings,
                                      upsampled_->rows_of_light(others_, height_), memory);
     upsampled_->add(features, camera, {light, now.guide, light_camera, width_, height_, frame.splits_light()},
-                    steady_light(now, settings), scene, scene_before, settings, frames_ > 0, others_);
+                    steady_light(now, may_change(scene, scene_before, change), settings), scene, scene_before, settings,
+                    frames_ > 0, others_);
     timer_.stop();
     last_camera_ = light_camera;
     ++frames_;

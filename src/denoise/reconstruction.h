@@ -100,7 +100,7 @@ public:
 private:
     HistoryView history(uint32_t frame) const;
     std::vector<Float4> kept_layers() const;
-    SteadyLight steady_light(const HistoryView& now, const ReconstructionSettings& settings) const;
+    SteadyLight steady_light(const HistoryView& now, bool may_change, const ReconstructionSettings& settings) const;
     SignalsView filter(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,
                        const PreviousScene& before, const TemporalGradientsView& change,
                        const ReconstructionSettings& settings, RowBand rows, Float4*& memory);
