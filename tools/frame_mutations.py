@@ -27,7 +27,8 @@ MUTATIONS = [
     ("a pixel compares by its own variance alone", "unit/even_pass",
      ("src/denoise/even_pass.h", "(max(own_.w, 0.0f) + tap.w)", "(2 * max(own_.w, 0.0f))")),
     ("a pass of pictures divides by the sum of weights", "statistical/denoised_light",
-     ("src/denoise/even_pass.h", "if (own_.w < 0) { // unknown", "weight_ += kAll, light_ = add_scaled(light_, kAll, rgb_of(own_));\n        if (true) { // unknown")),
+     ("src/denoise/even_pass.h", "add_scaled(light_, rest, rgb_of(own_))",
+      "(1.0f / (weight_ + kAll)) * add_scaled(light_, kAll, rgb_of(own_))")),
     ("a scene at rest waits for long histories", "statistical/black_texels",
      ("src/denoise/anti_alias.h", "if (!may_change) return true;", "")),
 ]

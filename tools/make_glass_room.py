@@ -19,23 +19,21 @@ SIDES = 96
 
 class Obj:
     def __init__(self):
-        self.lines, self.corners, self.normals = [], 0, 0
+        self.lines, self.corners = [], 0
 
-    def face(self, material, corners, normals=None):
+    def face(self, material, corners, normals):
         self.lines.append(f"usemtl {material}")
         self.lines += ["v " + " ".join(f"{c:.7g}" for c in corner) for corner in corners]
-        self.lines += ["vn " + " ".join(f"{c:.7g}" for c in normal) for normal in normals or []]
-        at = [str(self.corners + 1 + i) for i in range(len(corners))]
-        if normals:
-            at = [f"{v}//{self.normals + 1 + i}" for i, v in enumerate(at)]
-            self.normals += len(normals)
-        self.lines.append("f " + " ".join(at))
+        self.lines += ["vn " + " ".join(f"{c:.7g}" for c in normal) for normal in normals]
+        self.lines.append("f " + " ".join(f"{self.corners + 1 + i}//{self.corners + 1 + i}" for i in range(len(corners))))
         self.corners += len(corners)
 
     def sheet(self, material, corner, x, y):
         """A parallelogram, whose front is where x cross y points."""
         add = lambda *vectors: [sum(values) for values in zip(*vectors)]  # noqa: E731
-        self.face(material, [corner, add(corner, x), add(corner, x, y), add(corner, y)])
+        cross = [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]]
+        normal = [c / math.hypot(*cross) for c in cross]
+        self.face(material, [corner, add(corner, x), add(corner, x, y), add(corner, y)], [normal] * 4)
 
     def box(self, material, centre, half, turn_deg):
         c, s = math.cos(math.radians(turn_deg)), math.sin(math.radians(turn_deg))
