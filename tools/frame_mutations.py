@@ -26,7 +26,7 @@ MUTATIONS = [
      ("src/integrators/path/mirror_chain.h", "color.w = is_again ? 0.0f :", "color.w =")),
     ("a pixel compares by its own variance alone", "unit/even_pass",
      ("src/denoise/even_pass.h", "(max(own_.w, 0.0f) + tap.w)", "(2 * max(own_.w, 0.0f))")),
-    ("a pass of pictures divides by the sum of weights", "statistical/denoised_light",
+    ("a pass of pictures divides by the sum of weights", "unit/even_pass",
      ("src/denoise/even_pass.h", "add_scaled(light_, rest, rgb_of(own_))",
       "(1.0f / (weight_ + kAll)) * add_scaled(light_, kAll, rgb_of(own_))")),
     ("a scene at rest waits for long histories", "statistical/black_texels",
