@@ -59,8 +59,9 @@ HD inline bool is_guided(const MirrorBranch& guide, uint32_t by, const MirrorCha
 /// Takes light of a sample on the guide's surface, which was not scattered by diffuse lobes there, to its branch.
 /// Returns the rest.
 HD inline Rgb take_mirrored(const MirrorSums& sums, const MirrorChainView& chain, uint32_t pixel, Rgb gloss) {
+    if (!sums.is_there() || !chain.is_there()) return gloss;
     const uint32_t turns = bits_of(chain.normal[pixel].w);
-    if (!sums.is_there() || !chain.is_there() || turns < 2) return gloss;
+    if (turns < 2) return gloss;
     const int k = branch_of(turns);
     const MirrorBranch& branch = sums.branches[k];
     if (!is_guided(branch, pixel, chain, pixel)) {
