@@ -65,10 +65,12 @@ void save_pixels(Queue& queue, std::span<const PixelWords> arrays, std::size_t p
     }
 }
 
-void restore_pixels(Queue& queue, std::span<const PixelWords> arrays, std::size_t pixels,
-                    std::span<const uint32_t> from) {
+void restore_pixels(Queue& queue, std::span<const PixelWords> arrays, std::size_t pixels, std::size_t first,
+                    std::size_t count, std::span<const uint32_t> from) {
     for (const PixelWords& array : arrays) {
-        queue.copy_to_device(array.data, from.data(), pixels * array.words * sizeof(uint32_t));
+        const std::size_t before = first * array.words;
+        queue.copy_to_device(static_cast<uint32_t*>(array.data) + before, from.data() + before,
+                             count * array.words * sizeof(uint32_t));
         from = from.subspan(pixels * array.words);
     }
 }

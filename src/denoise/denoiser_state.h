@@ -50,9 +50,9 @@ struct PixelWords {
 /// `to`.
 void save_pixels(Queue& queue, std::span<const PixelWords> arrays, std::size_t pixels, std::size_t first,
                  std::size_t count, std::span<uint32_t> to);
-/// Copies all pixels of these arrays from `from`.
-void restore_pixels(Queue& queue, std::span<const PixelWords> arrays, std::size_t pixels,
-                    std::span<const uint32_t> from);
+/// Copies these pixels back from their places in `from`.
+void restore_pixels(Queue& queue, std::span<const PixelWords> arrays, std::size_t pixels, std::size_t first,
+                    std::size_t count, std::span<const uint32_t> from);
 
 /// The target of a denoised film: the state of its denoiser, on the host.
 class DenoiserTarget final : public FilmTarget {

@@ -44,6 +44,7 @@ struct GatherMirrors {
         const SampledSurfaces::Found found = samples.found(pixel);
         if (found.object == kNoHit || !samples.shows_own(pixel, found)) return;
         if (!(chain.lobe > 0)) mirrors.seen[pixel].w += 1; // once for both lobes
+        if (!(samples.frame.light[pixel].w != 0)) return;  // the sample is not finite
         const uint32_t turns = bits_of(chain.normal[pixel].w);
         if (turns < 2) return;
         const MirrorBranch& branch = mirrors.branches[branch_of(turns)];

@@ -72,10 +72,12 @@ void PictureDenoiser::add_features(const NoisyFrame& frame, const SceneView& sce
 }
 
 void PictureDenoiser::guide_mirrors(const NoisyFrame& frame) {
+    PERTEV_CHECK(frame.view().mirrors.is_there());
     launch(*queue_, "guide_mirrors", width_ * height_, GuideMirrors{frame.view().mirrors, mirrors_});
 }
 
 void PictureDenoiser::add_mirrors(const NoisyFrame& frame, const SceneView& scene) {
+    PERTEV_CHECK(frame.view().mirrors.is_there());
     launch_in(*queue_, "gather_mirrors", window_, GatherMirrors{surfaces_of(frame, scene), mirrors_});
 }
 
@@ -132,7 +134,10 @@ void PictureDenoiser::restore(const DenoiserState& state) {
         check(12 + 2 * kNeighbourSurfaces + k * MirrorSums::kArrays - 1);
     }
     if (!is_sound) throw Error(ErrorCode::BadInput, "what the denoiser has gathered is damaged");
-    restore_pixels(*queue_, gathered(), pixels, std::span(state).subspan(DenoiserHead::kWords));
+    // Between begin() and here other rows have guides, which the window's border needs.
+    const bool is_part = window_.count() > 0;
+    restore_pixels(*queue_, gathered(), pixels, is_part ? std::size_t(window_.y) * width_ : 0,
+                   is_part ? window_.count() : pixels, std::span(state).subspan(DenoiserHead::kWords));
     samples_ = head.samples, features_ = head.features, has_gloss_ = head.has_gloss;
     const LensView lens = camera_.lens; // is not in the head
     camera_ = head.camera;

@@ -28,7 +28,7 @@ struct MirrorChainView {
     float lobe = -1;
 
     HD bool is_there() const { return end != nullptr; }
-    HD bool is_guide() const { return lobe >= 0; }
+    HD bool is_guide() const { return is_there() && lobe >= 0; }
 };
 
 } // namespace pertev

@@ -7,6 +7,7 @@ import random
 import resource
 import signal
 import subprocess
+import sys
 import threading
 import unittest
 
@@ -151,6 +152,17 @@ class Checkpoints(CliTest):
         done = self.succeed("merge", "1.pvf", "3.pvf", "-o", "all.exr", "--json").events("done")[0]
         self.assertEqual(done["hash"], self.whole("--spp", "9")["hash"])
         self.assertEqual(self.succeed("merge", "1.pvf", "c.pvf", "-o", "all.exr", "--json").events("done")[0]["hash"], done["hash"])
+
+    def test_denoised_rows_resume_beside_glass_that_the_part_cuts(self):
+        room = self.path("room.obj")
+        subprocess.run([sys.executable, os.path.join(os.path.dirname(__file__), "../../tools/make_glass_room.py"), room], check=True)
+        view = [room, "--size", "48x36", "--device", "cpu", "--eye", "0,1.15,3.4", "--target", "0,0.85,-0.5", "--fov", "42", "--denoise", "svgf"]
+        for samples in ("2", "4"):
+            self.succeed("render", *view, "--rows", "0:21", "--spp", samples, "-o", "1.pvf", *FILE)
+        self.succeed("render", *view, "--rows", "21:36", "--spp", "4", "-o", "2.pvf")
+        whole = self.succeed("render", *view, "--spp", "4", "-o", "whole.exr", "--json").events("done")[0]
+        merged = self.succeed("merge", "1.pvf", "2.pvf", "-o", "all.exr", "--json").events("done")[0]
+        self.assertEqual((merged["hash"], merged["denoised_hash"]), (whole["hash"], whole["denoised_hash"]))
 
     def test_a_time_limit_applies_to_each_run(self):
         first = self.done("--spp", "8000000", "--time-limit", "0.2")["samples"]

@@ -43,7 +43,7 @@ void OidnDenoiser::restore(const DenoiserState& state) {
     const DenoiserHead head = DenoiserHead::read(state);
     if (state.size() != state_size(pixels_).words || head.features != kFeatures)
         throw Error(ErrorCode::BadInput, "what the denoiser has gathered is damaged");
-    restore_pixels(queue_, gathered(), pixels_, std::span(state).subspan(DenoiserHead::kWords));
+    restore_pixels(queue_, gathered(), pixels_, 0, pixels_, std::span(state).subspan(DenoiserHead::kWords));
     samples_ = head.samples, features_ = head.features;
 }
 

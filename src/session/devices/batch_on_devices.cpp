@@ -92,7 +92,6 @@ void copy_chunk(Queue& to, BatchArrays& all, Queue& from, const BatchArrays& par
         copy(all.layers[i].values, part.layers[i].values, part.layers[i].channels);
     }
     if (part.ids.size() > 0) copy(all.ids, part.ids, 1);
-    if (!part.denoiser.empty()) all.denoiser = part.denoiser;
     std::ranges::copy(part.noisy_hashes, all.noisy_hashes.begin() + part.first);
 }
 
@@ -128,6 +127,10 @@ SharedBatch render_batch(RenderOnDevices& together, PictureRenderer& pictures, c
                 if (together.hooks().after_slice)
                     together.hooks().after_slice(worker.number(), {part.first, part.first + part.pictures});
                 copy_chunk(landing, arrays, worker.queue(), part, std::size_t(settings.width) * settings.height);
+                if (!part.denoiser.empty()) {
+                    const std::lock_guard lock(result_mutex);
+                    arrays.denoiser = part.denoiser;
+                }
                 run.add_done(part.pictures);
             }
             const std::lock_guard lock(result_mutex);
