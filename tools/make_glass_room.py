@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""Writes a room with a ball of glass, a block of glass, a mirror and a ball of metal, for measuring denoisers: make_glass_room.py OUT.obj
+"""Writes a room with a ball of glass, a block of glass, a mirror and a ball of metal, for measuring denoisers:
+make_glass_room.py OUT.obj [--nested]
 
 Stripes on the back wall and squares on the floor show through the glass and in the mirror; the emitter is below the ceiling.
+With --nested the ball holds a bubble of air, and the block a ball of denser glass.
 OBJ and MTL in metres, +y up. Camera: --eye 0,1.15,3.4 --target 0,0.85,-0.5 --fov 42.
 """
 
@@ -12,6 +14,7 @@ import sys
 MATERIALS = {
     "white": "Kd 0.72 0.71 0.68", "red": "Kd 0.6 0.12 0.1", "green": "Kd 0.12 0.42 0.16", "grey": "Kd 0.3 0.3 0.32",
     "dark": "Kd 0.08 0.1 0.3", "glass": "Kd 0 0 0\nillum 6\nNi 1.5\nTf 1 1 1",
+    "air": "Kd 0 0 0\nillum 6\nNi 1.0003\nTf 1 1 1", "dense": "Kd 0 0 0\nillum 6\nNi 1.8\nTf 1 1 1",
     "mirror": "Kd 0.9 0.9 0.9\nPm 1\nPr 0", "lamp": "Kd 0 0 0\nKe 14 13 11"}
 HALF, HEIGHT, DEPTH = 1.5, 2.4, 1.6 # half of the room's width; the back wall is at z = -DEPTH
 SIDES = 96
@@ -59,7 +62,7 @@ class Obj:
                 self.face(material, [[c + radius * d for c, d in zip(centre, n)] for n in normals], normals)
 
 
-def main(out):
+def main(out, is_nested):
     obj = Obj()
     tiles, bars = 12, 10
     for i in range(tiles):
@@ -75,6 +78,9 @@ def main(out):
     obj.sheet("mirror", [HALF - 0.02, 0.5, -1.3], [0, 0, 1.6], [0, 1.3, 0])
     obj.ball("glass", [-0.35, 0.45, 0.1], 0.44)
     obj.box("glass", [0.75, 0.45, -0.3], [0.25, 0.44, 0.2], 25)
+    if is_nested:
+        obj.ball("air", [-0.35, 0.5, 0.1], 0.2)
+        obj.ball("dense", [0.75, 0.5, -0.3], 0.15)
     obj.ball("mirror", [-0.95, 0.36, -0.85], 0.35)
     obj.box("white", [0.25, 0.3, -1.1], [0.22, 0.3, 0.22], -15)
     out = pathlib.Path(out)
@@ -83,6 +89,6 @@ def main(out):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
+    if len(sys.argv) not in (2, 3) or sys.argv[2:] not in ([], ["--nested"]):
         sys.exit(__doc__)
-    main(sys.argv[1])
+    main(sys.argv[1], len(sys.argv) == 3)
