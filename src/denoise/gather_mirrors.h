@@ -64,15 +64,8 @@ struct GatherMirrors {
 private:
     /// The nearest pixel around whose guide shows where the sample's chain ends.
     HD uint32_t pixel_beside(const MirrorBranch& branch, uint32_t pixel) const {
-        const int w = static_cast<int>(samples.width), h = static_cast<int>(samples.height);
-        const int x = static_cast<int>(pixel % samples.width), y = static_cast<int>(pixel / samples.width);
-        for (int k = 0; k < 24; ++k) {
-            const PixelStep step = step_around(k);
-            if (x + step.x < 0 || y + step.y < 0 || x + step.x >= w || y + step.y >= h) continue;
-            const uint32_t there = static_cast<uint32_t>((y + step.y) * w + x + step.x);
-            if (is_guided(branch, there, samples.frame.mirrors, pixel)) return there;
-        }
-        return kNoHit;
+        return nearest_around(pixel, samples.width, samples.height,
+                              [&](uint32_t there) { return is_guided(branch, there, samples.frame.mirrors, pixel); });
     }
 };
 

@@ -109,6 +109,19 @@ HD inline PixelStep step_around(int k) {
     const int dy = side == 0 ? -ring : side == 1 ? along : side == 2 ? ring : -along;
     return {dx, dy};
 }
+/// Returns the first of these pixels within the picture for which `is_wanted` is true; kNoHit: none.
+template <class IsWanted>
+HD inline uint32_t nearest_around(uint32_t pixel, uint32_t width, uint32_t height, const IsWanted& is_wanted) {
+    const int w = static_cast<int>(width), h = static_cast<int>(height);
+    const int x = static_cast<int>(pixel % width), y = static_cast<int>(pixel / width);
+    for (int k = 0; k < 24; ++k) {
+        const PixelStep step = step_around(k);
+        if (x + step.x < 0 || y + step.y < 0 || x + step.x >= w || y + step.y >= h) continue;
+        const uint32_t there = static_cast<uint32_t>((y + step.y) * w + x + step.x);
+        if (is_wanted(there)) return there;
+    }
+    return kNoHit;
+}
 
 /// The stage that sums the hits of a pixel's camera rays.
 struct GatherFeatures {
@@ -145,15 +158,8 @@ struct GatherFeatures {
 private:
     /// The nearest surrounding pixel whose guide shows the surface.
     HD uint32_t neighbour_pixel(uint32_t pixel, const SampledSurfaces::Found& found) const {
-        const int w = static_cast<int>(samples.width), h = static_cast<int>(samples.height);
-        const int x = static_cast<int>(pixel % samples.width), y = static_cast<int>(pixel / samples.width);
-        for (int k = 0; k < 24; ++k) {
-            const PixelStep step = step_around(k);
-            if (x + step.x < 0 || y + step.y < 0 || x + step.x >= w || y + step.y >= h) continue;
-            const uint32_t there = static_cast<uint32_t>((y + step.y) * w + x + step.x);
-            if (samples.shows(there, found)) return there;
-        }
-        return kNoHit;
+        return nearest_around(pixel, samples.width, samples.height,
+                              [&](uint32_t there) { return samples.shows(there, found); });
     }
 };
 

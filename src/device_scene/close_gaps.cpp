@@ -127,22 +127,25 @@ std::optional<std::vector<Vec3>> grown_towards(const Scene& scene, const Touchin
     return positions;
 }
 
+/// Closed solids whose boxes are near another solid's. Whether a mesh is closed takes long to find out.
 std::vector<TouchingSolid> closed_solids(const Scene& scene) {
-    std::vector<TouchingSolid> solids;
-    std::map<uint32_t, bool> closed;
+    std::vector<TouchingSolid> all, solids;
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         if (instance.is_hidden || !is_solid(scene.materials[instance.material])) continue;
-        const Mesh& mesh = scene.meshes[instance.mesh];
-        const auto [found, is_new] = closed.try_emplace(instance.mesh);
-        if (is_new) found->second = is_closed(mesh);
-        if (!found->second) continue;
-        TouchingSolid solid = {.instance = static_cast<uint32_t>(i), .bounds = {}, .gap = 0};
-        for (const uint32_t vertex : mesh.indices) {
-            solid.bounds.extend(transform_point(instance.world_from_local, mesh.positions[vertex]));
-        }
-        solid.gap = kTouching * max_component(solid.bounds.size());
-        solids.push_back(solid);
+        const Bounds3 bounds = world_bounds(scene.meshes[instance.mesh], instance.world_from_local);
+        all.push_back({static_cast<uint32_t>(i), bounds, kTouching * max_component(bounds.size())});
+    }
+    std::map<uint32_t, bool> closed;
+    for (const TouchingSolid& solid : all) {
+        const bool has_neighbour = std::ranges::any_of(all, [&](const TouchingSolid& other) {
+            return &other != &solid && may_touch(grown(solid.bounds, solid.gap), grown(other.bounds, other.gap));
+        });
+        if (!has_neighbour) continue;
+        const uint32_t mesh = scene.instances[solid.instance].mesh;
+        const auto [found, is_new] = closed.try_emplace(mesh);
+        if (is_new) found->second = is_closed(scene.meshes[mesh]);
+        if (found->second) solids.push_back(solid);
     }
     return solids;
 }

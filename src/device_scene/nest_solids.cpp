@@ -33,14 +33,6 @@ std::vector<uint32_t> numbered_corners(const Mesh& mesh) {
     return numbers;
 }
 
-Bounds3 world_bounds(const Mesh& mesh, const Transform& world_from_local) {
-    Bounds3 bounds;
-    for (const uint32_t vertex : mesh.indices) {
-        bounds.extend(transform_point(world_from_local, mesh.positions[vertex]));
-    }
-    return bounds;
-}
-
 /// Returns whether the boxes share a volume.
 bool overlap(const Bounds3& a, const Bounds3& b) {
     const Vec3 lo = max(a.lo, b.lo), hi = min(a.hi, b.hi);
@@ -66,6 +58,14 @@ int crossing(DoubleVec3 from, DoubleVec3 way, DoubleVec3 a, DoubleVec3 b, Double
 
 bool is_solid(const MaterialParameters& material) {
     return material.kind == MaterialKind::Dielectric || (material.transmits() && !material.thin_walled);
+}
+
+Bounds3 world_bounds(const Mesh& mesh, const Transform& world_from_local) {
+    Bounds3 bounds;
+    for (const uint32_t vertex : mesh.indices) {
+        bounds.extend(transform_point(world_from_local, mesh.positions[vertex]));
+    }
+    return bounds;
 }
 
 bool is_closed(const Mesh& mesh) {

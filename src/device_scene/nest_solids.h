@@ -55,6 +55,8 @@ private:
 
 /// Returns whether a material is that of a solid, which light enters.
 bool is_solid(const MaterialParameters& material);
+/// Returns the box of the mesh's triangles.
+Bounds3 world_bounds(const Mesh& mesh, const Transform& world_from_local);
 /// Returns whether each edge of the mesh has two triangles of opposite direction, of corners at equal positions.
 bool is_closed(const Mesh& mesh);
 
