@@ -159,6 +159,33 @@ HD inline ConnectedEnd connect_end(const SceneView& scene, const SubpathVertex& 
     return end;
 }
 
+/// connect_end(), not inlined in device code.
+template <ShadingVariant kVariant>
+HD_CALL inline ConnectedEnd connect_end_by_call(const SceneView& scene, const SubpathVertex& vertex, Vec3 along,
+                                                bool is_camera) {
+    return connect_end<kVariant>(scene, vertex, along, is_camera);
+}
+
+/// Makes both ends of a connection along a direction from the first, the camera's; false if an end scatters no light.
+template <ShadingVariant kVariant>
+HD inline bool connect_ends(const SceneView& scene, const SubpathVertex (&vertices)[2], Vec3 along,
+                            ConnectedEnd (&ends)[2]) {
+    if constexpr (kVariant == ShadingVariant::General) {
+        // Compiled by CUDA 13.0 with any material inlined, the loop below has accessed memory illegally: it counts in a
+        // register of the warp, whose threads part in such a body.
+        ends[0] = connect_end_by_call<kVariant>(scene, vertices[0], along, true);
+        if (is_black(ends[0].f)) return false;
+        ends[1] = connect_end_by_call<kVariant>(scene, vertices[1], -along, false);
+        return !is_black(ends[1].f);
+    } else {
+        for (int k = 0; k < 2; ++k) { // one after the other, because a kernel has room for one surface
+            ends[k] = connect_end<kVariant>(scene, vertices[k], k == 0 ? along : -along, k == 0);
+            if (is_black(ends[k].f)) return false;
+        }
+        return true;
+    }
+}
+
 HD inline Vec3 position_of(const SceneView& scene, const Hit& hit) {
     const InstanceView& instance = scene.instances[hit.instance];
     return world_triangle(instance, scene.meshes[instance.mesh], hit).position;
@@ -185,10 +212,7 @@ struct ConnectSubpaths {
         if (!(distance_squared > 0)) return;
         const Vec3 along = way / sqrt(distance_squared);
         ConnectedEnd connected[2];
-        for (int k = 0; k < 2; ++k) { // one after the other, because a kernel has room for one surface
-            connected[k] = connect_end<kVariant>(view, ends[k], k == 0 ? along : -along, k == 0);
-            if (is_black(connected[k].f)) return;
-        }
+        if (!connect_ends<kVariant>(view, ends, along, connected)) return;
         const ConnectedEnd &camera = connected[0], &particle = connected[1];
         const float inverse = 1.0f / distance_squared;
         const float by_camera = camera.onwards_density * particle.cosine * inverse;
