@@ -1,6 +1,7 @@
 // pertev bench devices: times one picture of the record, a batch of pictures, and frames in real time, by one device,
 // two, and so on to all that are named, and expects from the picture's times what more would take.
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <span>
@@ -13,6 +14,7 @@
 #include "apps/cli/bench_parts.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
+#include "apps/cli/report_result.h"
 #include "base/stopwatch.h"
 #include "image/picture_hash.h"
 #include "lab/record_scenes.h"
@@ -38,6 +40,7 @@ struct DevicesFlags {
     uint32_t runs = 5;
     uint32_t pictures = 0; // 0: by the device
     uint32_t frames = 60;
+    std::vector<std::size_t> numbers; // numbers of devices to measure; empty: each
 };
 
 /// Times of some devices for a picture.
@@ -139,6 +142,17 @@ void check_hash(const TimesTaken& taken, const TimesTaken& alone, const std::str
                 fmt::format("the picture of {} is {} and not {}, that of one device", devices, taken.hash, alone.hash));
 }
 
+/// Returns the numbers of devices to be measured: 1 first, with which all others are compared. Throws Error(BadInput).
+std::vector<std::size_t> numbers_measured(const DevicesFlags& flags, std::size_t devices) {
+    std::vector<std::size_t> numbers = {1};
+    for (std::size_t count = 2; flags.numbers.empty() && count <= devices; ++count) numbers.push_back(count);
+    numbers.insert(numbers.end(), flags.numbers.begin(), flags.numbers.end());
+    std::ranges::sort(numbers);
+    numbers.erase(std::ranges::unique(numbers).begin(), numbers.end());
+    if (numbers.back() <= devices) return numbers;
+    throw Error(ErrorCode::BadInput, fmt::format("--numbers {}: there are {} devices", numbers.back(), devices));
+}
+
 /// Reports the times of a batch of small pictures by each number of devices.
 void report_batches(const DevicesFlags& flags, std::span<const std::shared_ptr<Queue>> queues, const PictureJob& job,
                     const std::string& name, float scene_size, BenchReport& report) {
@@ -147,7 +161,7 @@ void report_batches(const DevicesFlags& flags, std::span<const std::shared_ptr<Q
     const uint32_t pictures = flags.pictures > 0 ? flags.pictures : (queues.front()->is_cuda() ? 4096 : 32);
     const CameraBatch batch = cameras_about(job.camera, pictures, scene_size);
     TimesTaken alone;
-    for (std::size_t count = 1; count <= queues.size(); ++count) {
+    for (const std::size_t count : flags.numbers) {
         const auto some = queues.first(count);
         const TimesTaken taken = time_batch(some, {job.prepared, job.camera, settings}, batch, flags.runs);
         if (count == 1) alone = taken;
@@ -204,7 +218,7 @@ void report_frames(const DevicesFlags& flags, std::span<const std::shared_ptr<Qu
     settings.samples = 1;
     settings.path.max_depth = kDepthOfFrames;
     TimesTaken alone;
-    for (std::size_t count = 1; count <= queues.size(); ++count) {
+    for (const std::size_t count : flags.numbers) {
         const auto some = queues.first(count);
         double reconstruction_s = 0, copy_s = 0;
         const TimesTaken taken =
@@ -241,6 +255,8 @@ int bench_devices(DevicesFlags& flags) {
     std::vector<std::shared_ptr<Queue>> queues;
     for (auto& queue : open_queues(flags.picture.machine, reporter)) queues.push_back(std::move(queue));
     const double start_s = watch.seconds();
+    flags.numbers = numbers_measured(flags, queues.size());
+    const std::size_t greatest = flags.numbers.back();
     const UseThreads threads(queues.front()->threads());
     settings.tracers = tracer_choice(flags.picture.tracer, queues.front()->is_cuda());
     BenchReport report(reporter, flags.picture.report, *queues.front(), "One picture by several devices");
@@ -255,7 +271,7 @@ int bench_devices(DevicesFlags& flags) {
     for (const uint32_t samples : jobs) {
         settings.samples = samples;
         TimesTaken alone, most;
-        for (std::size_t count = 1; count <= queues.size(); ++count) {
+        for (const std::size_t count : flags.numbers) {
             reporter.set_work(fmt::format("measuring {} samples by {} of {} devices", samples, count, queues.size()));
             const std::span some = std::span(queues).first(count);
             most = time_devices(some, {prepared, camera, settings}, samples, flags.runs);
@@ -274,12 +290,13 @@ int bench_devices(DevicesFlags& flags) {
             fields.push_back({"sum_seconds", "films", most.sum_s, "s", "{:.4f}"});
             fields.push_back({"upload_seconds", "upload", most.upload_s, "s", "{:.3f}"});
             fields.push_back({"start_seconds", "start of all", start_s, "s", "{:.3f}"});
+            fields.push_back({"peak_bytes", "peak memory of the host", peak_memory_bytes()});
             fields.push_back({"hash", "picture", most.hash});
             report.add("devices", fields);
         }
         for (const std::size_t count : {4u, 8u}) {
-            if (count <= queues.size() || queues.size() < 2) continue;
-            const double seconds = expected_seconds(count, alone, most, queues.size());
+            if (count <= greatest || greatest < 2) continue;
+            const double seconds = expected_seconds(count, alone, most, greatest);
             report.add("devices_expected", {{"job", "job", record.name},
                                             {"devices", "devices, not measured", count},
                                             {"samples", "samples", samples},
@@ -318,6 +335,10 @@ void add_bench_devices_command(CLI::App& bench, int& status) {
               10000000);
     add_whole(verb, "--frames", flags->frames, "frames in real time (3840x2160 in CUDA, 192x108 on the CPU)", 1, 100000)
         ->capture_default_str();
+    verb.add_option("--numbers", flags->numbers, "numbers of devices, compared with one alone (each up to all)")
+        ->type_name("N,...")
+        ->delimiter(',')
+        ->check(CLI::Range(1, 1000));
     add_picture_flags(verb, kBenchDevices, flags->picture, "the job's", "8192, and 256");
 }
 

@@ -165,7 +165,8 @@ void add_bench_render_command(CLI::App& bench, int& status) {
     verb.add_option(
             "--job", flags->job,
             "S5 or S8: grey geometry under a constant sky, at most 5 or 8\nscatterings, Russian roulette from the "
-            "second; bunny: the same\nwith the default roulette; cornell-box-65 or cornell-box-8: the\nfile as it is, "
+            "second; sponza-textured: the\nsame view with the file's materials, bunny: grey, both with the\ndefault "
+            "roulette; cornell-box-65 or cornell-box-8: the\nfile as it is, "
             "at most 65 or 8 edges from the camera to a light;\ncorridor: the file as it is, direct light")
         ->type_name("NAME")
         ->check(one_of(std::move(names)))

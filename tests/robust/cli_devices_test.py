@@ -155,6 +155,11 @@ class Devices(CliTest):
         for row in frames:
             self.assertAlmostEqual(row["ratio_to_one"], frames[0]["median_seconds"] / row["median_seconds"], 4)
             self.assertLess(row["reconstruction_seconds"], row["greatest_seconds"])
+        some = self.succeed(*line, *THREE, "--spp", "2", "--numbers", "3", "--json")
+        for event in ("devices", "devices_cameras", "devices_frames"):
+            self.assertEqual([row["devices"] for row in some.events(event)], [1, 3])
+        self.assertGreater(some.events("devices")[0]["peak_bytes"], 1 << 20)
+        self.refuse(2, *line, *TWO, "--numbers", "1,3", says=["--numbers 3"])
         single = self.succeed(*line, *ONE, "--spp", "2", "--json")
         self.assertEqual((len(single.events("devices")), single.events("devices_expected")), (1, []))
         self.assertRegex(self.succeed(*line, *TWO, "--spp", "2").stdout, r"(?s)^job +devices .*\ncornell-box-8 +1 .*\ncornell-box-8 +2 ")
