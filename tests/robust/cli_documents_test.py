@@ -53,7 +53,7 @@ def made_small(words):
         small.append(SMALL.get(before, word))
     for flag in ADDED.get(verb, []):
         small += [] if flag in given else [flag, SMALL[flag]]
-    return small + QUICK.get(verb, []) + (["--integrators", "path,radiosity"] if "all" in words else [])
+    return small + QUICK.get(verb, []) + (["--integrators", "path,light"] if "all" in words else [])
 
 
 class Commands(CliTest):

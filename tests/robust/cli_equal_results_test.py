@@ -13,7 +13,7 @@ SMALL = ["--size", "24x18", "--device", "cpu", *UNMETERED, "--json"]
 PICTURES = {
     "path": [],
     "bidirectional": ["--integrator", "bidirectional"],
-    "photon map": ["--integrator", "photon_map"],
+    "photon map": ["--integrator", "photon_map", "--photons", "4000"],
     "layers and ids": ["--aov", "albedo,normal,depth,position,ids", "--lpe", "diffuse=LD+E", "--transparent"],
 }
 HASHES = ["hash", "layers_hash", "samples", "invalid_samples"]

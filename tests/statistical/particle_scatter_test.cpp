@@ -76,18 +76,18 @@ std::vector<BsdfCase> cases_with_deltas() {
 
 TEST_CASE("particles carry the power of paths for every BSDF, with geometric and interpolated normals") {
     const std::vector<BsdfCase> cases = cases_with_deltas();
-    constexpr float tilts[] = {0, 0.1f, 0.3f};
+    const auto tilts = effort(0, 1) != 0 ? std::vector<float>{0, 0.1f, 0.3f} : std::vector<float>{0, 0.3f};
     const auto count = static_cast<uint32_t>(effort(60'000, 10'000'000));
-    std::vector<Estimate> by_path(cases.size() * std::size(tilts)), by_particle(by_path.size());
+    std::vector<Estimate> by_path(cases.size() * tilts.size()), by_particle(by_path.size());
     parallel_for(by_path.size(), 1, [&](uint64_t i) {
-        const Surface surface = tilted_surface(cases[i / std::size(tilts)].bsdf, tilts[i % std::size(tilts)]);
+        const Surface surface = tilted_surface(cases[i / tilts.size()].bsdf, tilts[i % tilts.size()]);
         by_path[i] = transported(surface, false, count);
         by_particle[i] = transported(surface, true, count);
     });
     for (std::size_t i = 0; i < by_path.size(); ++i) {
         const Estimate &a = by_path[i], &b = by_particle[i];
-        INFO(cases[i / std::size(tilts)].name << ", tilt " << tilts[i % std::size(tilts)] << ": " << a.mean << " +- "
-                                              << a.error << " by paths, " << b.mean << " +- " << b.error);
+        INFO(cases[i / tilts.size()].name << ", tilt " << tilts[i % tilts.size()] << ": " << a.mean << " +- " << a.error
+                                          << " by paths, " << b.mean << " +- " << b.error);
         CHECK(a.mean > 0);
         CHECK(std::fabs(a.mean - b.mean) < 4.5 * std::sqrt(a.error * a.error + b.error * b.error));
         CHECK(a.error < 0.02 * a.mean);

@@ -44,7 +44,7 @@ inline TiltedSampling test_tilted_sampling(const std::function<BsdfSample(float 
     const auto pdf = [&](Vec3 w) { return static_cast<double>(evaluate(w).pdf); };
     const ChiSquareResult directions =
         chi_square_of_directions(direction, pdf,
-                                 {.samples = static_cast<uint32_t>(effort(40'000, 400'000)),
+                                 {.samples = static_cast<uint32_t>(effort(25'000, 400'000)),
                                   .cells_x = 12,
                                   .cells_y = 20,
                                   .min_quarterings = 1});
