@@ -32,8 +32,8 @@ struct MtlStatements {
     uint32_t line = 0; // line of newmtl
     std::optional<Rgb> kd;
     Rgb ks = {}, ke = {}, tf = {};
-    float illum = 0, ns = 1, ni = 1, pr = 0, pm = 0, ps = 0, pc = 0, pcr = 0;
-    float aniso = 0, anisor = 0; // anisor in turns
+    float illum = 0, ns = 1, ni = 0, pr = 0, pm = 0, ps = 0, pc = 0, pcr = 0;
+    float aniso = 0, anisor = 0; // anisor in turns; ni is 0 if it is not given
     float d = 1;
     bool has_d = false; // d itself was given, which overrides Tr, its complement
     MtlTexture map_kd, map_ke, map_d, map_pr, map_pm, map_ps, map_pc, map_pcr, norm, bump;

@@ -17,6 +17,10 @@ namespace {
 /// GGX roughness (perceptual: alpha is its square) of a Phong exponent.
 float roughness_of(float exponent) { return sqrt(sqrt(2.0f / (max(exponent, 0.0f) + 2.0f))); }
 
+/// The stated index, 1 too, which bends no light; without one, or with one below 1, that of Blender's importer for
+/// glass.
+float index_of(const MtlStatements& from) { return from.ni >= 1 ? from.ni : 1.5f; }
+
 class Converter {
 public:
     Converter(const fs::path& path, TextureLoader& loader, Sink& sink) : path_(path), loader_(loader), sink_(sink) {}
@@ -76,7 +80,7 @@ private:
             // A map without its number, or with 0, which exporters write unasked.
             to.roughness = to.roughness_texture.has_image() && from.pr == 0 ? 1 : from.pr;
             to.metallic = to.metallic_texture.has_image() && from.pm == 0 ? 1 : from.pm;
-            if (from.ni > 1) to.ior = from.ni;
+            to.ior = index_of(from);
             return;
         }
         const bool is_glass = from.illum == 6 || from.illum == 7 || ((from.illum == 4 || from.illum == 9) && is_dark) ||
@@ -84,7 +88,7 @@ private:
         if (is_glass && !has_map_d) {
             to.kind = MaterialKind::Dielectric;
             to.roughness = 0;
-            to.ior = from.ni > 1 ? from.ni : 1.5f;
+            to.ior = index_of(from);
             to.base_color_texture = {};
             const Rgb tf = from.tf;
             to.base_color = is_black(tf) ? grey(1) : Rgb{safe_sqrt(tf.r), safe_sqrt(tf.g), safe_sqrt(tf.b)};
