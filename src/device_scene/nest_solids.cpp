@@ -1,7 +1,6 @@
 #include "device_scene/nest_solids.h"
 
 #include <algorithm>
-#include <map>
 #include <numeric>
 #include <tuple>
 #include <unordered_map>
@@ -83,12 +82,26 @@ bool is_closed(const Mesh& mesh) {
     return !forwards.empty() && forwards == backwards;
 }
 
-NestedSolids::NestedSolids(const Scene& scene, Vec3 centre) : centre_(centre) {
+std::shared_ptr<const ClosedMeshes::Shape> ClosedMeshes::shape_of(const Scene& scene, uint32_t mesh) {
+    const auto [found, is_new] = found_.try_emplace(mesh);
+    if (is_new && is_closed(scene.meshes[mesh])) {
+        found->second = std::make_shared<const Shape>(Shape{scene.meshes[mesh].positions, scene.meshes[mesh].indices});
+    }
+    return found->second;
+}
+
+NestedSolids::NestedSolids(const Scene& scene, Vec3 centre) {
+    ClosedMeshes closed;
+    *this = NestedSolids(scene, centre, closed);
+}
+
+NestedSolids::NestedSolids(const Scene& scene, Vec3 centre, ClosedMeshes& closed) : centre_(centre) {
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         const Material& material = scene.materials[instance.material];
         if (instance.is_hidden || instance.is_background || !is_solid(material)) continue;
         solids_.push_back({.instance = static_cast<uint32_t>(i),
+                           .shape = nullptr,
                            .world_from_local = instance.world_from_local,
                            .local_from_world = inverse(instance.world_from_local),
                            .bounds = world_bounds(scene.meshes[instance.mesh], instance.world_from_local),
@@ -107,23 +120,10 @@ NestedSolids::NestedSolids(const Scene& scene, Vec3 centre) : centre_(centre) {
         std::erase_if(solids_, [&](const Solid&) { return !is_kept[at++]; });
     };
     keep_overlapping(); // before meshes are looked at, which takes longer
-    std::map<uint32_t, bool> closed;
-    std::erase_if(solids_, [&](const Solid& solid) {
-        const uint32_t mesh = scene.instances[solid.instance].mesh;
-        const auto [found, is_new] = closed.try_emplace(mesh);
-        if (is_new) found->second = is_closed(scene.meshes[mesh]);
-        return !found->second;
-    });
+    for (Solid& solid : solids_) solid.shape = closed.shape_of(scene, scene.instances[solid.instance].mesh);
+    std::erase_if(solids_, [](const Solid& solid) { return solid.shape == nullptr; });
     keep_overlapping();
     if (solids_.empty()) return;
-
-    std::map<uint32_t, std::size_t> shape_of;
-    for (Solid& solid : solids_) {
-        const uint32_t mesh = scene.instances[solid.instance].mesh;
-        const auto [found, is_new] = shape_of.try_emplace(mesh, shapes_.size());
-        if (is_new) shapes_.push_back({scene.meshes[mesh].positions, scene.meshes[mesh].indices});
-        solid.shape = found->second;
-    }
     parallel_for(solids_.size(), 1, [&](uint64_t i) {
         for (const Solid& outer : solids_) {
             if (&outer != &solids_[i] && holds(outer, solids_[i])) ++solids_[i].depth;
@@ -144,7 +144,7 @@ NestedSolids::NestedSolids(const Scene& scene, Vec3 centre) : centre_(centre) {
 /// Returns whether the line from a point meets the mesh more often from inside than from outside, or the other way.
 bool NestedSolids::holds(const Solid& solid, Vec3 point) const {
     if (!contains(solid.bounds, point)) return false;
-    const Shape& shape = shapes_[solid.shape];
+    const ClosedMeshes::Shape& shape = *solid.shape;
     const DoubleVec3 from = to_double(transform_point(solid.local_from_world, point));
     // Two of three lines decide, because one may meet an edge.
     constexpr DoubleVec3 kWays[] = {{0.5773, 0.5221, 0.6279}, {-0.3117, 0.8891, -0.3353}, {0.1213, -0.4391, 0.8903}};
@@ -165,7 +165,7 @@ bool NestedSolids::holds(const Solid& solid, Vec3 point) const {
 /// Returns whether two of three of its vertices are inside another solid whose box holds the whole of it.
 bool NestedSolids::holds(const Solid& outer, const Solid& inner) const {
     if (!contains(outer.bounds, inner.bounds.lo) || !contains(outer.bounds, inner.bounds.hi)) return false;
-    const Shape& shape = shapes_[inner.shape];
+    const ClosedMeshes::Shape& shape = *inner.shape;
     const std::size_t count = shape.indices.size();
     int votes = 0;
     for (const std::size_t corner : {std::size_t(0), count / 3, 2 * count / 3}) {
@@ -184,7 +184,7 @@ InteriorList NestedSolids::at(Vec3 point) const {
 
 bool NestedSolids::is_nested() const {
     return std::ranges::any_of(solids_, [&](const Solid& inner) {
-        const Shape& shape = shapes_[inner.shape];
+        const ClosedMeshes::Shape& shape = *inner.shape;
         const std::size_t step = std::max<std::size_t>(shape.indices.size() / kLookedAt, 1);
         for (std::size_t corner = 0; corner < shape.indices.size(); corner += step) {
             const Vec3 point = transform_point(inner.world_from_local, shape.positions[shape.indices[corner]]);

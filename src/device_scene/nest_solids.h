@@ -5,6 +5,8 @@
 // one of the greatest priority fills it, of equal ones that in the most others, then the first of the scene.
 
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <vector>
 
 #include "device_scene/interior_list.h"
@@ -13,10 +15,27 @@
 
 namespace pertev {
 
+/// The closed meshes of a scene. Each is found and copied once, until clear(), which must follow a change of meshes.
+class ClosedMeshes {
+public:
+    struct Shape {
+        std::vector<Vec3> positions;
+        std::vector<uint32_t> indices;
+    };
+    /// Returns the scene's mesh of this number, or null if it is open.
+    std::shared_ptr<const Shape> shape_of(const Scene& scene, uint32_t mesh);
+    void clear() { found_.clear(); }
+
+private:
+    std::map<uint32_t, std::shared_ptr<const Shape>> found_;
+};
+
 class NestedSolids {
 public:
     NestedSolids() = default;
-    /// Meshes whose vertices move have those at rest. `centre` is the origin of the translated world.
+    /// Meshes whose vertices move have those at rest. `centre` is the origin of the translated world. `closed` may have
+    /// meshes of the scene from before.
+    NestedSolids(const Scene& scene, Vec3 centre, ClosedMeshes& closed);
     NestedSolids(const Scene& scene, Vec3 centre);
 
     bool is_empty() const { return ranks_.empty(); }
@@ -30,14 +49,9 @@ public:
     InteriorList at(Vec3 point) const;
 
 private:
-    /// The mesh of a solid.
-    struct Shape {
-        std::vector<Vec3> positions;
-        std::vector<uint32_t> indices;
-    };
     struct Solid {
         uint32_t instance = 0;
-        std::size_t shape = 0;
+        std::shared_ptr<const ClosedMeshes::Shape> shape;
         Transform world_from_local, local_from_world; // the scene's coordinates
         Bounds3 bounds;
         float priority = 0;
@@ -49,7 +63,6 @@ private:
     std::vector<uint16_t> ranks_;
     std::vector<uint32_t> instances_;
     std::vector<Solid> solids_; // [rank - 1]
-    std::vector<Shape> shapes_;
     Vec3 centre_;
 };
 

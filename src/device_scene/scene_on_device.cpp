@@ -171,6 +171,7 @@ void SceneOnDevice::update(Queue& queue, const PlacedScene& prepared, uint32_t p
     if ((parts & kPartPoses) != 0) update_poses(prepared);
     if ((parts & kPartInstances) != 0) update_instances(queue, prepared);
     if ((parts & kPartMaterials) != 0) update_materials(queue, *prepared.scene);
+    if ((parts & kPartGeometry) != 0) closed_meshes_.clear();
     if ((parts & (kPartGeometry | kPartInstances | kPartMaterials)) != 0) update_nesting(queue, prepared);
     if ((parts & kPartTextures) != 0) update_textures(queue, *prepared.scene);
     if ((parts & kPartLights) != 0) update_lights(queue, prepared); // after the textures, which it reads
@@ -219,7 +220,7 @@ void SceneOnDevice::update_materials(Queue& queue, const Scene& scene) {
 }
 
 void SceneOnDevice::update_nesting(Queue& queue, const PlacedScene& prepared) {
-    nested_ = NestedSolids(*prepared.scene, prepared.centre);
+    nested_ = NestedSolids(*prepared.scene, prepared.centre, closed_meshes_);
     view_.nesting = {};
     view_.variant = nested_.is_empty() ? variant_ : ShadingVariant::General;
     PartArrays arrays;

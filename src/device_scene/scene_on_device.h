@@ -77,6 +77,7 @@ private:
     std::vector<TextureImageView> images_; // on the device, without mip-maps
     std::vector<bool> are_srgb_;           // [images] colours are sRGB-encoded
     std::optional<MipMapLevels> mip_maps_;
+    ClosedMeshes closed_meshes_; // cleared where the geometry changes
     NestedSolids nested_;
     ShadingVariant variant_ = ShadingVariant::General; // variant of the materials alone
     Buffer<std::byte> geometry_, instances_, materials_, lights_, environment_, textures_, nesting_;

@@ -10,6 +10,7 @@
 #include "integrators/kinds/make_integrator.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
+#include "tests/support/solid_scenes.h"
 
 using namespace pertev;
 
@@ -146,4 +147,31 @@ TEST_CASE("a scene updated in parts gives the picture of a fresh upload and allo
     };
     CHECK(queue.allocated_bytes() ==
           bytes + micromaps(new_scene) - micromaps(old_scene)); // finer where textures repeat
+}
+
+TEST_CASE("closed meshes are found once for moving solids, and again after the geometry has changed") {
+    Scene scene;
+    test::add(scene, test::box({0, 0, 0}, {1, 1, 1}), test::glass(1.5f));
+    test::add(scene, test::box({0, 0, 0}, {0.5f, 0.5f, 0.5f}), test::glass(1.2f));
+    Queue queue = Queue::make_cpu();
+    SceneOnDevice on_device(queue, prepare(scene));
+    CHECK(on_device.nested_solids().ranks() == std::vector<uint16_t>{1, 2});
+    scene.instances[1].world_from_local = make_translation({5, 0, 0});
+    on_device.update(queue, prepare(scene), kPartInstances);
+    CHECK(on_device.nested_solids().is_empty());
+    scene.instances[1].world_from_local = {};
+    on_device.update(queue, prepare(scene), kPartInstances);
+    CHECK(on_device.nested_solids().ranks() == std::vector<uint16_t>{1, 2});
+    scene.meshes[1].indices.resize(scene.meshes[1].indices.size() - 3); // It is open now.
+    on_device.update(queue, prepare(scene), kPartGeometry | kPartInstances);
+    CHECK(on_device.nested_solids().is_empty());
+
+    ClosedMeshes closed;
+    scene.meshes[1] = test::box({0, 0, 0}, {0.5f, 0.5f, 0.5f});
+    const auto shape = closed.shape_of(scene, 1);
+    REQUIRE(shape != nullptr);
+    CHECK(NestedSolids(scene, {}, closed).ranks() == std::vector<uint16_t>{1, 2});
+    CHECK(closed.shape_of(scene, 1) == shape);
+    closed.clear();
+    CHECK(closed.shape_of(scene, 1) != shape);
 }
