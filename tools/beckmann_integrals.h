@@ -38,10 +38,38 @@ std::vector<Node> gauss_legendre(int count) {
     return nodes;
 }
 
+/// a erf(a) + exp(-a^2) / sqrt(pi), whose derivative is erf(a), by cubics of both; off by at most 1e-13.
+class SlopeLengths {
+public:
+    SlopeLengths() {
+        for (size_t i = 0; i < nodes_.size(); ++i) {
+            const double a = double(i) / kPerUnit;
+            nodes_[i] = {a * std::erf(a) + std::exp(-a * a) / std::sqrt(pi), std::erf(a) / kPerUnit};
+        }
+    }
+    double at(double a) const {
+        const double place = a * kPerUnit;
+        if (!(place < kMost * kPerUnit)) return a; // nothing is masked
+        const int i = int(place);
+        const double t = place - i, u = 1 - t;
+        const Ends &p = nodes_[i], &q = nodes_[i + 1];
+        return u * u * ((1 + 2 * t) * p.value + t * p.slope) + t * t * ((1 + 2 * u) * q.value - u * q.slope);
+    }
+
+private:
+    static constexpr int kPerUnit = 512, kMost = 6;
+    struct Ends {
+        double value, slope;
+    };
+    std::array<Ends, kPerUnit * kMost + 1> nodes_;
+};
+
+const SlopeLengths slope_lengths;
+
 /// z (1 + 2 Lambda) of Beckmann's microfacets.
 double beckmann_slope_length(double z, double alpha) {
-    const double across = alpha * std::sqrt(std::max(0.0, 1 - z * z)), a = z / std::max(across, 1e-12);
-    return z * std::erf(a) + across * std::exp(-a * a) / std::sqrt(pi);
+    const double across = std::max(alpha * std::sqrt(std::max(0.0, 1 - z * z)), 1e-12);
+    return across * slope_lengths.at(z / across);
 }
 
 /// Light that one bounce off Beckmann's microfacets with F = 1 reflects, as it is and weighted by Schlick's (1 -
@@ -75,7 +103,11 @@ std::array<double, 2> reflected_by_beckmann(double mu, double alpha) {
 Values lost_by_beckmann_glass(double mu, double alpha, const Values& etas) {
     static const std::vector<Node> lengths = gauss_legendre(96), angles = gauss_legendre(40);
     const double across = std::sqrt(std::max(0.0, 1 - mu * mu)), s_o = beckmann_slope_length(mu, alpha);
-    Values lost(etas.size(), 1.0);
+    Values lost(etas.size(), 1.0), passed(etas.size()), down(passed), sines(passed), slopes(passed), inverse, inverse2;
+    for (const double eta : etas) {
+        inverse.push_back(1 / eta);
+        inverse2.push_back(1 / (eta * eta));
+    }
     for (const Node& node : lengths) {
         const double u = node.x * node.x * (3 - 2 * node.x), r = alpha * std::sqrt(-std::log1p(-u));
         const double weight = node.weight * 6 * node.x * (1 - node.x), z = 1 / std::sqrt(1 + r * r);
@@ -84,16 +116,21 @@ Values lost_by_beckmann_glass(double mu, double alpha, const Values& etas) {
             const double facing = std::min((across * r * std::cos(angle.x * end) + mu) * z, 1.0);
             if (!(facing > 0)) continue;
             const double part = weight * angle.weight * end / pi * facing / z;
-            const auto masked = [&](double i) {
-                return i > 0 ? 2 * i / (s_o * i + beckmann_slope_length(i, alpha) * mu) : 0;
+            const auto masked = [&](double i, double slope_length) {
+                return i > 0 ? 2 * i / (s_o * i + slope_length * mu) : 0;
             };
-            const double reflected = masked(2 * facing * z - mu);
+            const double up = 2 * facing * z - mu, reflected = up > 0 ? masked(up, beckmann_slope_length(up, alpha)) : 0;
+            for (size_t q = 0; q < etas.size(); ++q) { // side by side, for the vectoriser
+                const double eta = etas[q], t2 = std::max(0.0, 1 - (1 - facing * facing) * inverse2[q]);
+                const double t = std::sqrt(t2), s = facing + eta * t, p = eta * facing + t, sp = s * p;
+                passed[q] = 2 * eta * facing * t * (s * s + p * p) / (sp * sp);
+                down[q] = std::min((mu - facing * z) * inverse[q] + t * z, 1.0);
+                sines[q] = std::max(alpha * std::sqrt(1 - down[q] * down[q]), 1e-12);
+                slopes[q] = down[q] / sines[q];
+            }
             for (size_t q = 0; q < etas.size(); ++q) {
-                const double eta = etas[q], t2 = 1 - (1 - facing * facing) / (eta * eta);
-                const double t = std::sqrt(std::max(0.0, t2));
-                const double rs = (facing - eta * t) / (facing + eta * t), rp = (eta * facing - t) / (eta * facing + t);
-                const double f = t2 <= 0 ? 1.0 : 0.5 * (rs * rs + rp * rp);
-                lost[q] -= part * (f * reflected + (f < 1 ? (1 - f) * masked(mu / eta - (facing / eta - t) * z) : 0));
+                const double length = down[q] > 0 ? sines[q] * slope_lengths.at(slopes[q]) : 1;
+                lost[q] -= part * ((1 - passed[q]) * reflected + passed[q] * masked(down[q], length));
             }
         }
     }

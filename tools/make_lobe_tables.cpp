@@ -85,7 +85,10 @@ struct View {
         }
     }
 
-    double masking(double z) const { return z > 0 ? (1 + lambda) / (1 + lambda + smith_lambda(z, alpha)) : 0; }
+    double masking(double z) const {
+        const double length = std::sqrt(z * z + alpha * alpha * std::max(0.0, 1 - z * z)); // z (1 + 2 Lambda)
+        return z > 0 ? (2 + 2 * lambda) * z / ((1 + 2 * lambda) * z + length) : 0;
+    }
 
     /// Returns the integral of `of(cosine, z, masking of reflection)` over the visible normals.
     template <class Function>
@@ -108,11 +111,12 @@ struct View {
     }
     /// The energy of reflection and refraction; `eta` is the far side's index over the near side's.
     double scattered(double eta) const {
+        const double inverse = 1 / eta, inverse2 = inverse * inverse;
         return integrate([&](double c, double z, double masked) {
-            const double t2 = 1 - (1 - c * c) / (eta * eta), t = std::sqrt(std::max(0.0, t2));
-            const double rs = (c - eta * t) / (c + eta * t), rp = (eta * c - t) / (eta * c + t);
-            const double f = t2 <= 0 ? 1.0 : 0.5 * (rs * rs + rp * rp);
-            return f * masked + (1 - f) * masking(-((c / eta - t) * z - mu / eta));
+            const double t = std::sqrt(std::max(0.0, 1 - (1 - c * c) * inverse2));
+            const double s = c + eta * t, p = eta * c + t, sp = s * p;
+            const double passed = 2 * eta * c * t * (s * s + p * p) / (sp * sp); // by Fresnel's formulas
+            return masked + passed * (masking(t * z - (c * z - mu) * inverse) - masked);
         });
     }
 };

@@ -54,12 +54,12 @@ TEST_CASE("white diffuse and smooth glTF materials, a perfect mirror and smooth 
             }
 }
 
-TEST_CASE("a rough conductor that absorbs nothing returns all light to 0.5 %") {
+TEST_CASE("a rough conductor that absorbs nothing returns all light to 0.2 %") {
     const MeanWeight range =
         furnace_range([](float r) { return make_conductor(grey(0), grey(2), r); }, 1, furnace_points());
     INFO("mean weight from " << range.least() << " to " << range.largest());
-    CHECK(range.r > 0.995);
-    CHECK(range.b < 1.005);
+    CHECK(range.r > 0.998);
+    CHECK(range.b < 1.001);
 }
 
 TEST_CASE("the furnace test detects a rough conductor without its second lobe") {
@@ -76,26 +76,25 @@ TEST_CASE("the furnace test detects a rough conductor without its second lobe") 
     CHECK(mean < 0.5);
 }
 
-TEST_CASE("rough glass returns all light to 1 %, from outside and from inside") {
+TEST_CASE("rough glass returns all light to 0.3 % from outside and to 0.5 % from inside") {
     for (const float ior : {1.1f, 1.33f, 1.5f, 2.4f})
         for (const float side : {1.0f, -1.0f}) {
             const MeanWeight range =
                 furnace_range([ior](float r) { return make_dielectric(ior, r, grey(1)); }, side, furnace_points());
             INFO("ior " << ior << " side " << side << ": mean weight from " << range.least() << " to "
                         << range.largest());
-            CHECK(range.r > 0.99);
-            CHECK(range.b < 1.01);
+            CHECK(range.r > (side > 0 ? 0.997 : 0.995)); // from inside the tables miss the critical angle's kink
+            CHECK(range.b < 1.002);
         }
 }
 
-TEST_CASE("white glTF materials return all light to 1 %, metals to 0.5 %") {
+TEST_CASE("white glTF materials return all light to 0.4 %, metals to 0.2 %") {
     for (const float metallic : {0.0f, 0.5f, 1.0f}) {
         const MeanWeight range = furnace_range(
             [metallic](float r) { return make_metallic_roughness(grey(1), metallic, r, 1.5f); }, 1, furnace_points());
         INFO("metallic " << metallic << ": mean weight from " << range.least() << " to " << range.largest());
-        const double error = metallic == 1 ? 0.005 : 0.01;
-        CHECK(range.r > 1 - error);
-        CHECK(range.b < 1 + error);
+        CHECK(range.r > (metallic > 0 ? 0.998 : 0.996));
+        CHECK(range.b < 1.001);
     }
 }
 
@@ -122,8 +121,8 @@ TEST_CASE("a weighted reflection equals that of the index at weight 1, and white
                 },
                 side, furnace_points());
             INFO("through " << through << ": mean weight from " << range.least() << " to " << range.largest());
-            CHECK(range.r > (through > 0 ? 0.9 : 0.99));
-            CHECK(range.b < 1.01);
+            CHECK(range.r > (through > 0 ? 0.9 : 0.997));
+            CHECK(range.b < 1.001);
         }
     // A smooth pane shows what is straight behind it, less the reflection.
     const Bsdf pane = make_reflection({.base_color = {1, 0.5f, 0.25f}, .roughness = 0, .through = 1});

@@ -132,7 +132,7 @@ TEST_CASE("F82 metal has its colours at 0 and 82 degrees, Schlick's without a ti
     // The tint is stored in 16 bits, so this one takes the lobe of tints.
     const MeanWeight white = light_range([&](float r) { return metal(grey(1), {1, 1, 0.99999f}, r); });
     INFO("white: from " << white.least() << " to " << white.largest());
-    CHECK(white.r > 0.995);
+    CHECK(white.r > 0.998);
     CHECK(white.b < 1.001);
     const Bsdf smooth = metal(f0, tint, 0), rough = metal(f0, tint, 0.1f);
     CHECK(smooth.specular(direction_at(1.0f / 7)).mirror.r == doctest::Approx(tinted.r).epsilon(1e-3));
@@ -152,7 +152,7 @@ TEST_CASE("Beckmann's metal, plastic and glass return all light if compensated, 
         const MeanWeight all = metal(false), single = metal(true);
         INFO("Beckmann " << is_beckmann << ": from " << all.least() << " to " << all.largest() << ", single from "
                          << single.least());
-        CHECK(all.r > 0.995);
+        CHECK(all.r > (is_beckmann ? 0.9975 : 0.998));
         CHECK(all.b < 1.001);
         CHECK(single.r < (is_beckmann ? 0.6 : 0.5));
         CHECK(single.b < 1.001);
@@ -177,7 +177,7 @@ TEST_CASE("Beckmann's metal, plastic and glass return all light if compensated, 
                 CAPTURE(once.r);
                 CAPTURE(compensated.r);
                 CAPTURE(compensated.b);
-                CHECK(compensated.r > (is_beckmann ? 0.975 : 0.985));
+                CHECK(compensated.r > (side > 0 ? 0.997 : is_beckmann ? 0.98 : 0.995));
                 CHECK(compensated.b < 1.001);
                 CHECK(once.r < compensated.r - 0.01);
                 CHECK(once.b < 1.001);
