@@ -140,12 +140,18 @@ HD_CALL inline Bsdf make_any_bsdf(const SceneView& scene, const MaterialParamete
     if (material.fuzz_weight > 0) {
         const Rgb color = textured_color(scene, mesh, material.fuzz_color, material.fuzz_color_texture, i, u, v);
         const float fuzz_roughness = number(material.fuzz_roughness, material.fuzz_roughness_texture);
-        if (!is_black(color)) bsdf = make_sheen(bsdf, material.fuzz_weight * color, fuzz_roughness);
+        if (!is_black(color)) {
+            const Rgb strength = material.fuzz_weight * color;
+            bsdf = material.fuzz_model == FuzzModel::Zeltner ? make_fuzz(bsdf, strength, fuzz_roughness)
+                                                             : make_sheen(bsdf, strength, fuzz_roughness);
+        }
     }
     if (material.coat_weight > 0) {
         const float weight = number(material.coat_weight, material.coat_texture);
         const float coat_roughness = number(material.coat_roughness, material.coat_roughness_texture);
-        if (weight > 0) bsdf = make_coated(bsdf, weight, coat_roughness, material.coat_ior, axes.coat_normal);
+        if (weight > 0) {
+            bsdf = make_coated(bsdf, weight, coat_roughness, material.coat_ior, axes.coat_normal, material.coat_color);
+        }
     }
     return bsdf;
 }

@@ -61,6 +61,7 @@ public:
         if (material.is_emitter() && material.has_coat()) {
             for (const float value : {material.coat_weight, material.coat_roughness, material.coat_ior})
                 hasher_.add_value(value);
+            if (!(material.coat_color == Rgb{1, 1, 1})) add_bytes(hasher_, material.coat_color);
             add(material.coat_texture);
             add(material.coat_roughness_texture);
         }

@@ -29,6 +29,10 @@ enum class MetalFresnel : uint8_t {
     F82,     // OpenPBR: the same, times specular_color at 82 degrees
 };
 enum class MicrofacetDistribution : uint8_t { Ggx, Beckmann };
+enum class FuzzModel : uint8_t {
+    Charlie, // glTF: KHR_materials_sheen
+    Zeltner, // OpenPBR: fibres that scatter light many times
+};
 enum class MicrofacetEnergy : uint8_t {
     Compensated, // a second lobe returns what one bounce off rough microfacets loses
     Single,      // it stays lost, as in many other renderers
@@ -42,6 +46,7 @@ struct MaterialParameters {
     MetalFresnel metal_fresnel = MetalFresnel::Schlick; // for MetallicRoughness
     MicrofacetDistribution microfacet_distribution = MicrofacetDistribution::Ggx;
     MicrofacetEnergy energy = MicrofacetEnergy::Compensated; // this and the one above: not of coats and thin walls
+    FuzzModel fuzz_model = FuzzModel::Charlie;
 
     // The front of a triangle is the side from which its corners run counter-clockwise in the mesh's own space,
     // whatever its vertex normals are. Thus a node that mirrors a mesh keeps its front.
@@ -76,6 +81,7 @@ struct MaterialParameters {
     Rgb specular_color = {1, 1, 1};   // factor on that at normal incidence, >= 0; multiplied by the texture; with F82
                                       // also the metal's tint, at most 1
     float coat_weight = 0, coat_roughness = 0, coat_ior = 1.5f, coat_normal_scale = 1;
+    Rgb coat_color = {1, 1, 1}; // [0, 1], what both ways through the coat leave at normal incidence
     float fuzz_weight = 0, fuzz_roughness = 0.5f;
     Rgb fuzz_color = {1, 1, 1};         // [0, 1], multiplied by the texture
     Rgb transmission_color = {1, 1, 1}; // [0, 1], what a solid transmits over transmission_depth
@@ -155,6 +161,7 @@ void visit_choices(Parameters& m, const Choice& choice) {
     choice(m.metal_fresnel, "metal_fresnel", Names{"schlick", "f82"});
     choice(m.microfacet_distribution, "microfacet_distribution", Names{"ggx", "beckmann"});
     choice(m.energy, "energy", Names{"compensated", "single"});
+    choice(m.fuzz_model, "fuzz_model", Names{"charlie", "zeltner"});
 }
 
 /// Calls number(value, name, least, most) for each number of a material and each channel of its colours, and
@@ -181,6 +188,7 @@ void visit_parameters(Parameters& m, const Number& number, const Texture& textur
     number(m.coat_weight, "coat_weight", 0, 1);
     number(m.coat_roughness, "coat_roughness", 0, 1);
     number(m.coat_ior, "coat_ior", 1, 0x1p10f);
+    color(m.coat_color, "coat_color", 0, 1);
     number(m.coat_normal_scale, "coat_normal_scale", -0x1p10f, 0x1p10f);
     number(m.fuzz_weight, "fuzz_weight", 0, 1);
     number(m.fuzz_roughness, "fuzz_roughness", 0, 1);

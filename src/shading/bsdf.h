@@ -36,6 +36,7 @@ struct Bsdf {
     /// Adds a layer on top. There is room for kMaxLayers; further ones are ignored.
     HD void add(const CoatLobe& lobe) { stack(lobe); }
     HD void add(const SheenLobe& lobe) { stack(lobe); }
+    HD void add(const FuzzLobe& lobe) { stack(lobe); }
     HD void add(const SpecularLobe& lobe) { stack(lobe); }
     HD void add(const FilmedLobe& lobe) { stack(lobe); }
     HD void add(const RetroLobe& lobe) { stack(lobe); }
@@ -175,8 +176,12 @@ private:
     HD BsdfValue evaluate_down_to(int last, Vec3 wo, Vec3 wi, LobeClasses classes,
                                   LayerTransmittance& transmittance) const {
         BsdfValue sum;
-        for (int i = layer_count; i >= last; --i)
-            sum = sum + masked(lobe(i).lobe_class(), lobe(i).evaluate(wo, wi, transmittance), classes);
+        for (int i = layer_count; i >= last; --i) {
+            const Rgb tint = transmittance.tint;
+            BsdfValue value = masked(lobe(i).lobe_class(), lobe(i).evaluate(wo, wi, transmittance), classes);
+            value.f = tint * value.f;
+            sum = sum + value;
+        }
         return sum;
     }
     HD_CALL static BsdfValue evaluate_stack(Bsdf bsdf, Vec3 wo, Vec3 wi, LobeClasses classes) {
@@ -195,8 +200,10 @@ private:
         return sum;
     }
     /// Transmittance of the layers above lobe number `i` for light along wi to wo.
-    HD static float light_through(const Bsdf& bsdf, int i, Vec3 wo, Vec3 wi) {
-        return bsdf.is_called ? above_in_stack(bsdf, i, wo, wi).light_of_delta() : 1.0f;
+    HD static Rgb light_through(const Bsdf& bsdf, int i, Vec3 wo, Vec3 wi) {
+        if (!bsdf.is_called) return {1, 1, 1};
+        const LayerTransmittance above = above_in_stack(bsdf, i, wo, wi);
+        return above.light_of_delta() * above.tint;
     }
     HD_CALL static LayerTransmittance above_in_stack(const Bsdf& bsdf, int i, Vec3 wo, Vec3 wi) {
         LayerTransmittance transmittance;
@@ -215,7 +222,7 @@ private:
         BsdfSample sample = bsdf.finish(draw, bsdf.lobe(i).lobe_class(), wo);
         if (!sample.is_delta()) return sample;
         const LayerTransmittance transmittance = above_in_stack(bsdf, i, wo, sample.wi);
-        sample.weight = (transmittance.light_of_delta() / transmittance.reach) * sample.weight;
+        sample.weight = ((transmittance.light_of_delta() / transmittance.reach) * sample.weight) * transmittance.tint;
         sample.pdf = transmittance.reach * sample.pdf;
         return sample;
     }
@@ -251,15 +258,27 @@ HD inline Bsdf make_metallic_roughness(Rgb base_color, float metallic, float rou
 }
 
 /// Adds a clear coat to `bsdf`, which has at most kMaxLayers - 1 layers: `strength` and `roughness` in [0, 1], `ior`
-/// >= 1 (1.5 in KHR_materials_clearcoat), `normal` unit with z > 0 in the frame of `bsdf`.
-HD inline Bsdf make_coated(Bsdf bsdf, float strength, float roughness, float ior, Vec3 normal = {0, 0, 1}) {
-    bsdf.add(CoatLobe{strength, alpha_from_roughness(roughness), f0_from_ior(ior), normal});
+/// >= 1 (1.5 in KHR_materials_clearcoat), `normal` unit with z > 0 in the frame of `bsdf`, `color` in [0, 1]: the share
+/// of light that both ways through the coat leave at normal incidence.
+HD inline Bsdf make_coated(Bsdf bsdf, float strength, float roughness, float ior, Vec3 normal = {0, 0, 1},
+                           Rgb color = {1, 1, 1}) {
+    CoatLobe coat = {strength, alpha_from_roughness(roughness), f0_from_ior(ior), normal};
+    if (!(color == Rgb{1, 1, 1})) {
+        coat.color_rg = UnitPair(color.r, color.g);
+        coat.color_b_and_solid = UnitPair(color.b, bsdf.inner_ior() != 1 ? 1.0f : 0.0f);
+    }
+    bsdf.add(coat);
     return bsdf;
 }
 /// Adds sheen (KHR_materials_sheen) to `bsdf`, which has at most kMaxLayers - 1 layers: `color` and `roughness` in
 /// [0, 1].
 HD inline Bsdf make_sheen(Bsdf bsdf, Rgb color, float roughness) {
     bsdf.add(SheenLobe{color, SheenLobe::usable_alpha(roughness)});
+    return bsdf;
+}
+/// Adds OpenPBR's fuzz to `bsdf`, as make_sheen.
+HD inline Bsdf make_fuzz(Bsdf bsdf, Rgb color, float roughness) {
+    bsdf.add(FuzzLobe{color, FuzzLobe::usable_roughness(roughness)});
     return bsdf;
 }
 

@@ -236,6 +236,7 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
         if (!material.has_coat() || !material.is_emitter()) continue;
         surface.coat_weight = material.coat_weight;
         surface.coat_roughness = material.coat_roughness;
+        surface.coat_color = material.coat_color;
         surface.coat_f0 = f0_from_ior(material.coat_ior);
         const uint8_t set = material.emission_texture.uv_set; // triangles of emitters have no other
         if (material.coat_texture.uv_set == set) surface.coat_texture = material.coat_texture;

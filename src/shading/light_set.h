@@ -31,6 +31,7 @@
 #include "scene/texture.h"
 #include "shading/environment_light.h"
 #include "shading/guided_cdf.h"
+#include "shading/lobes/coat_absorption.h"
 #include "shading/lobes/schlick_lobe.h"
 #include "shading/punctual_light.h"
 #include "shading/shading_variant.h"
@@ -67,6 +68,7 @@ struct SurfaceEmission {
     Rgb emission; // W/(sr m2); 0 for materials that are no lights
     TextureRef texture;
     float coat_weight = 0, coat_roughness = 0, coat_f0 = 0;
+    Rgb coat_color = {1, 1, 1};
     TextureRef coat_texture = {},
                coat_roughness_texture = {}; // kNoImage if their coordinates differ from those of `texture`
 };
@@ -144,16 +146,18 @@ HD inline Rgb surface_emission(const LightSetView& view, uint32_t material, Vec2
 }
 
 /// Transmittance of an emitter's coat at `cosine` to the geometric normal, which every sampling of emitters knows.
-HD_CALL inline float coat_transmittance(const LightSetView& view, const SurfaceEmission& surface, Vec2 uv,
-                                        float cosine) {
+HD_CALL inline Rgb coat_transmittance(const LightSetView& view, const SurfaceEmission& surface, Vec2 uv, float cosine) {
     const auto textured = [&](float factor, const TextureRef& ref) {
         if (ref.image == kNoImage) return factor;
         return clamp(factor * lookup_texture_channel(view.images, ref, uv, view.linear_from_srgb), 0.0f, 1.0f);
     };
     const float roughness = textured(surface.coat_roughness, surface.coat_roughness_texture);
     const SchlickLobe coat = {grey(0), 0, square(roughness), surface.coat_f0};
-    return 1.0f - textured(surface.coat_weight, surface.coat_texture) *
-                      coat.albedo_at(min(cosine, 1.0f), coat.make_average()).coat;
+    const float albedo = coat.albedo_at(min(cosine, 1.0f), coat.make_average()).coat;
+    const float weight = textured(surface.coat_weight, surface.coat_texture), passed = 1.0f - weight * albedo;
+    if (surface.coat_color == Rgb{1, 1, 1}) return grey(passed);
+    const float length = length_in_coat(min(cosine, 1.0f), surface.coat_f0);
+    return passed * coat_tint(surface.coat_color, weight, 0.5f * length, albedo);
 }
 
 /// Radiance that leaves it at `uv` along or against the unit `direction`; `normal` is the geometric one, of any length.

@@ -11,6 +11,7 @@
 #include "shading/lobes/conductor_lobe.h"
 #include "shading/lobes/dielectric_lobe.h"
 #include "shading/lobes/diffuse_lobe.h"
+#include "shading/lobes/fuzz_lobe.h"
 #include "shading/lobes/packed_lobes.h"
 #include "shading/lobes/retro_lobe.h"
 #include "shading/lobes/rough_diffuse_lobe.h"
@@ -38,6 +39,7 @@ enum class LobeKind : uint8_t {
     Glass,        // layer on anything
     Coat,         // layer on anything
     Sheen,        // layer on anything
+    Fuzz,         // layer on anything
 };
 
 /// A lobe of any kind.
@@ -59,6 +61,7 @@ struct Lobe {
         PackedGlassLobe glass;
         CoatLobe coat;
         SheenLobe sheen;
+        FuzzLobe fuzz;
     };
 
     HD Lobe() : kind(LobeKind::None) {} // NOLINT(cppcoreguidelines-pro-type-member-init): nothing else is read
@@ -76,6 +79,7 @@ struct Lobe {
     HD Lobe(const GlassLobe& lobe) : kind(LobeKind::Glass), beneath(0), glass(lobe) {}
     HD Lobe(const CoatLobe& lobe) : kind(LobeKind::Coat), beneath(0), coat(lobe) {}
     HD Lobe(const SheenLobe& lobe) : kind(LobeKind::Sheen), beneath(0), sheen(lobe) {}
+    HD Lobe(const FuzzLobe& lobe) : kind(LobeKind::Fuzz), beneath(0), fuzz(lobe) {}
 
     HD LobeClass lobe_class() const {
         switch (kind) {
@@ -109,6 +113,8 @@ struct Lobe {
             return coat.lobe_class();
         case LobeKind::Sheen:
             return sheen.lobe_class();
+        case LobeKind::Fuzz:
+            return fuzz.lobe_class();
         }
         return LobeClass::Diffuse;
     }
@@ -144,6 +150,8 @@ struct Lobe {
             return coat.energy();
         case LobeKind::Sheen:
             return sheen.energy();
+        case LobeKind::Fuzz:
+            return fuzz.energy();
         }
         return 0;
     }
@@ -154,6 +162,7 @@ struct Lobe {
         case LobeKind::RoughDiffuse:
         case LobeKind::Translucent:
         case LobeKind::Sheen:
+        case LobeKind::Fuzz:
             break;
         case LobeKind::Conductor:
             return conductor.gloss(cos_o);
@@ -186,6 +195,7 @@ struct Lobe {
         case LobeKind::Retro:
         case LobeKind::Translucent:
         case LobeKind::Sheen:
+        case LobeKind::Fuzz:
             break;
         case LobeKind::Conductor:
             return conductor.specular(wo);
@@ -241,6 +251,8 @@ struct Lobe {
             return coat.evaluate(wo, wi, beneath, transmittance);
         case LobeKind::Sheen:
             return sheen.evaluate(wo, wi, beneath, transmittance);
+        case LobeKind::Fuzz:
+            return fuzz.evaluate(wo, wi, beneath, transmittance);
         }
         return {};
     }
@@ -276,6 +288,8 @@ struct Lobe {
             return coat.draw(wo, beneath, u_lobe, u);
         case LobeKind::Sheen:
             return sheen.draw(wo, beneath, u_lobe, u);
+        case LobeKind::Fuzz:
+            return fuzz.draw(wo, beneath, u_lobe, u);
         }
         return {};
     }

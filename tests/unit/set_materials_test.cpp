@@ -56,6 +56,9 @@ TEST_CASE("materials are changed by name, by wildcards, or by number where they 
     CHECK(scene.materials[1].eta == Rgb{1, 2, 3});
     CHECK(scene.materials[1].k == grey(4));
     change(scene, "gold leaf kind=metallic_roughness metal_fresnel=f82 microfacet_distribution=beckmann energy=single");
+    change(scene, "gold leaf fuzz_weight=0.5 fuzz_model=zeltner coat_color=1,0.5,0.25");
+    CHECK(scene.materials[0].fuzz_model == FuzzModel::Zeltner);
+    CHECK(scene.materials[0].coat_color == Rgb{1, 0.5f, 0.25f});
     CHECK(scene.materials[0].metal_fresnel == MetalFresnel::F82);
     CHECK(scene.materials[0].microfacet_distribution == MicrofacetDistribution::Beckmann);
     CHECK(scene.materials[0].energy == MicrofacetEnergy::Single);

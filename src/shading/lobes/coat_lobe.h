@@ -1,8 +1,8 @@
 #pragma once
 
-// A clear coat on anything: a second, colourless dielectric interface with its own roughness and its own normal. It is
-// a layer; what lies beneath gets at most the light that the coat transmits, from either side
-// (LayerTransmittance::pass).
+// A coat on anything: a second, colourless dielectric interface with its own roughness and its own normal over a layer
+// that may absorb. What lies beneath gets at most the light that the coat transmits, from either side
+// (LayerTransmittance::pass), tinted by the refracted way in and out (coat_absorption.h).
 //
 // Source: KHR_materials_clearcoat, whose layering by Fresnel's term of the view direction alone is not reciprocal;
 // here the coat's directional albedo for both directions replaces it. A bent normal's value is 0 where that and the
@@ -10,16 +10,21 @@
 // surface does, so that the value is reciprocal and, times either cosine, no larger than about the coat's normal.
 
 #include "math/frame.h"
+#include "shading/lobes/coat_absorption.h"
 #include "shading/lobes/schlick_lobe.h"
+#include "shading/lobes/unit_pair.h"
 
 namespace pertev {
 
 struct CoatLobe {
-    float strength;          // [0, 1]: clearcoatFactor
-    float alpha;             // GGX width = roughness^2, [0, 1]
-    float f0;                // reflectance at normal incidence, [0, 1]: 0.04 in glTF
-    Vec3 normal = {0, 0, 1}; // unit, in the frame of the BSDF, z > 0
+    float strength;                                         // [0, 1]: clearcoatFactor
+    float alpha;                                            // GGX width = roughness^2, [0, 1]
+    float f0;                                               // reflectance at normal incidence, [0, 1]: 0.04 in glTF
+    Vec3 normal = {0, 0, 1};                                // unit, in the frame of the BSDF, z > 0
+    UnitPair color_rg = {1, 1}, color_b_and_solid = {1, 0}; // its colour (coat_absorption.h), and 1 on a solid
 
+    HD Rgb color() const { return {color_rg.low(), color_rg.high(), color_b_and_solid.low()}; }
+    HD bool is_tinted() const { return color_rg.bits != ~0u || (color_b_and_solid.bits & 0xffffu) != 0xffffu; }
     HD SchlickLobe interface() const { return {grey(0), 0, alpha, f0}; }
 
     HD LobeClass lobe_class() const { return interface().lobe_class(); }
@@ -57,6 +62,7 @@ struct CoatLobe {
             value = {(transmittance.light * strength * facing) * lobe.value_of(once, i.z, average, at_o, at_i),
                      transmittance.reach * lobe.pdf_of(once, i.z, shares.specular, shares.more)};
         }
+        if (is_tinted()) transmittance.tint = transmittance.tint * tint_of(wo, wi, o.z, i.z, max(at_o.coat, at_i.coat));
         transmittance.pass(strength * at_o.coat, strength * at_i.coat, shares.beneath);
         return value;
     }
@@ -66,6 +72,14 @@ struct CoatLobe {
     }
 
 private:
+    /// Light that passes through a solid crosses the coat once, outside; through a thin wall it crosses two.
+    HD_CALL Rgb tint_of(Vec3 wo, Vec3 wi, float coat_o, float coat_i, float albedo) const {
+        const bool is_once = color_b_and_solid.high() > 0 && wo.z * wi.z < 0;
+        float length = 0;
+        if (!is_once || wo.z > 0) length += length_in_coat(coat_o, f0);
+        if (!is_once || wi.z > 0) length += length_in_coat(coat_i, f0);
+        return coat_tint(color(), strength, 0.5f * length, albedo);
+    }
     /// Factor on value times cosine about the coat's normal, for the cosines of both directions there (`coat_o`,
     /// `coat_i`) and about the surface's normal.
     HD static float factor_of_bend(float cos_o, float coat_o, float cos_i, float coat_i) {

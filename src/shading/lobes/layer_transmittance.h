@@ -12,6 +12,7 @@
 // A layer also takes `beneath`, the energy of everything beneath it.
 
 #include "base/host_device.h"
+#include "math/rgb.h"
 #include "math/scalar.h"
 #include "shading/lobes/bsdf_sample.h"
 #include "shading/lobes/gloss.h"
@@ -20,8 +21,9 @@ namespace pertev {
 
 /// Transmittance of the layers above a lobe, for one pair of directions.
 struct LayerTransmittance {
-    float light = 1; // factor on values, [0, 1], from layers that may lie on anything
-    float reach = 1; // probability that sample() gets this deep
+    float light = 1;      // factor on values, [0, 1], from layers that may lie on anything
+    float reach = 1;      // probability that sample() gets this deep
+    Rgb tint = {1, 1, 1}; // factor on values of all lobes beneath, which their stack multiplies, [0, 1]
 
     // From a layer that lies only on a diffuse base: the base is scaled by near far / average, so that all light that
     // the layer transmits is scattered (Kelemen & Szirmay-Kalos 2001).

@@ -1,29 +1,16 @@
 #pragma once
 
 // The lobes with most parameters in 36 bytes, the size of the others, because each kernel's BSDF has room for any lobe:
-// colours and weights in [0, 1] have 16 bits. 0 and 1 are exact.
+// colours and weights in [0, 1] have 16 bits.
 
 #include <cstdint>
 
 #include "shading/lobes/filmed_lobe.h"
 #include "shading/lobes/glass_lobe.h"
 #include "shading/lobes/metal_lobe.h"
+#include "shading/lobes/unit_pair.h"
 
 namespace pertev {
-
-/// Two numbers in [0, 1].
-struct UnitPair {
-    uint32_t bits;
-
-    HD explicit UnitPair(uint32_t both) : bits(both) {}
-    HD UnitPair(float low, float high) : bits(word_of(low) | word_of(high) << 16) {}
-    HD float low() const { return number_of(bits & 0xffffu); }
-    HD float high() const { return number_of(bits >> 16); }
-    HD static uint32_t word_of(float x) { return static_cast<uint32_t>(to_int(65535.0f * x + 0.5f, 0, 65535)); }
-
-private:
-    HD static float number_of(uint32_t word) { return static_cast<float>(word) * (1.0f / 65535.0f); }
-};
 
 /// Microfacets and a number in [0, 1].
 struct PackedMicrofacets {
