@@ -119,7 +119,8 @@ Values lost_by_beckmann_glass(double mu, double alpha, const Values& etas) {
             const auto masked = [&](double i, double slope_length) {
                 return i > 0 ? 2 * i / (s_o * i + slope_length * mu) : 0;
             };
-            const double up = 2 * facing * z - mu, reflected = up > 0 ? masked(up, beckmann_slope_length(up, alpha)) : 0;
+            const double up = 2 * facing * z - mu,
+                         reflected = up > 0 ? masked(up, beckmann_slope_length(up, alpha)) : 0;
             for (size_t q = 0; q < etas.size(); ++q) { // side by side, for the vectoriser
                 const double eta = etas[q], t2 = std::max(0.0, 1 - (1 - facing * facing) * inverse2[q]);
                 const double t = std::sqrt(t2), s = facing + eta * t, p = eta * facing + t, sp = s * p;

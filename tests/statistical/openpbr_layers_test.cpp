@@ -23,7 +23,7 @@ struct ScatteredLight {
     double all = 0, back = 0, cosine = 0;
 };
 
-ScatteredLight scattered_light(const Bsdf& bsdf, Vec3 wo) {
+ScatteredLight light_scattered_by(const Bsdf& bsdf, Vec3 wo) {
     constexpr int kSteps = 300, kTurns = 200;
     ScatteredLight light;
     for (int i = 0; i < kSteps; ++i)
@@ -66,7 +66,7 @@ LeastAndMost range_of(const Make& make) {
 }
 
 /// Length of a way through a coat of thickness 1.
-double way(float cosine, float ior) {
+double length_of_way(float cosine, float ior) {
     const double sine = std::sqrt(1 - static_cast<double>(cosine * cosine)) / static_cast<double>(ior);
     return 1 / std::sqrt(1 - sine * sine);
 }
@@ -105,7 +105,8 @@ TEST_CASE("fuzz scatters the light of fibres that were followed one by one") {
                     {0.7f, 0.8f, 0.1662, 0.5264, 0.5690},  {1.0f, 0.05f, 0.7245, 0.5006, 0.5692},
                     {1.0f, 0.3f, 0.5940, 0.5000, 0.6099},  {1.0f, 0.8f, 0.3915, 0.5016, 0.6257}};
     for (const auto& f : followed) {
-        const ScatteredLight light = scattered_light(make_fuzz(Bsdf{}, grey(1), f.roughness), direction_at(f.cosine));
+        const ScatteredLight light =
+            light_scattered_by(make_fuzz(Bsdf{}, grey(1), f.roughness), direction_at(f.cosine));
         INFO("roughness " << f.roughness << ", cosine " << f.cosine << ": " << light.all << " " << light.back << " "
                           << light.cosine);
         CHECK(light.all == doctest::Approx(f.all).epsilon(0.015).scale(0.01));
@@ -140,7 +141,7 @@ TEST_CASE("a coat tints what is beneath by both refracted ways, by its weight, a
         const SamplePoint p = random_point(i, 51), q = random_point(i, 52);
         const Vec3 wo = direction_at(p.u.x, p.u.y), wi = direction_at(-q.u.x, q.u.y);
         const Vec3 up = {wi.x, wi.y, -wi.z};
-        const double passes = 0.5 * (way(wo.z, 1.6f) + way(up.z, 1.6f));
+        const double passes = 0.5 * (length_of_way(wo.z, 1.6f) + length_of_way(up.z, 1.6f));
         const LobeClasses diffuse = only(LobeClass::Diffuse), glossy = only(LobeClass::Glossy);
         const Rgb clear = coated(grey(1), 1).evaluate(wo, up, diffuse).f,
                   dim = coated(color, 1).evaluate(wo, up, diffuse).f;
@@ -159,7 +160,7 @@ TEST_CASE("a coat tints what is beneath by both refracted ways, by its weight, a
     };
     const Bsdf glass = make_dielectric(1.5f, 0, grey(1)),
                pane = make_reflection({.base_color = grey(1), .roughness = 0, .through = 1});
-    const double once = 0.5 * way(0.6f, 1.5f);
+    const double once = 0.5 * length_of_way(0.6f, 1.5f);
     CHECK(straight(glass, color).r ==
           doctest::Approx(static_cast<double>(straight(glass, grey(1)).r) * std::pow(0.25, once)).epsilon(1e-3));
     CHECK(straight(pane, color).g ==
@@ -186,12 +187,12 @@ TEST_CASE("pictures have the fuzz and the coat's colour that their materials ask
     Material velvet = white(0.2f);
     velvet.fuzz_weight = 0.8f;
     velvet.fuzz_color = {1, 0.5f, 0.25f};
-    velvet.fuzz_roughness = 0.6f;
+    velvet.fuzz_roughness = 0.9f;
     for (const FuzzModel model : {FuzzModel::Charlie, FuzzModel::Zeltner}) {
         velvet.fuzz_model = model;
         const Rgb strength = 0.8f * velvet.fuzz_color;
-        const Bsdf bsdf = model == FuzzModel::Charlie ? make_sheen(make_diffuse(grey(0.2f)), strength, 0.6f)
-                                                      : make_fuzz(make_diffuse(grey(0.2f)), strength, 0.6f);
+        const Bsdf bsdf = model == FuzzModel::Charlie ? make_sheen(make_diffuse(grey(0.2f)), strength, 0.9f)
+                                                      : make_fuzz(make_diffuse(grey(0.2f)), strength, 0.9f);
         const MeanWeight expected = mean_weight(bsdf, direction_at(0.5f), 1 << 16);
         const Rgb seen = seen_in_furnace(velvet, towards);
         CAPTURE(static_cast<int>(model));

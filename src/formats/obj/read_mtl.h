@@ -4,7 +4,8 @@
 // colours. The rules are tried in this order:
 //   PBR keys (Pr, Pm, map_Pr, map_Pm)           MetallicRoughness with them
 //   illum 6 or 7; illum 4 or 9 with Kd near black; d < 1 with Ni > 1 and Tf
-//                                               smooth Dielectric of index Ni (1.5 without), tinted by sqrt(Tf) at each surface
+//                                               smooth Dielectric of index Ni or 1.5, tinted by sqrt(Tf) at each
+//                                               surface
 //   Ks above 0.1 with Kd near black, or illum 3, 5 or 8 with Ks above Kd
 //                                               metal of colour Ks; a mirror for illum 3, 5, 8, else rough by Ns
 //   Ks above 0.02 and not (0.5, 0.5, 0.5), which exporters write by default, Ns above 1 and illum not 1
