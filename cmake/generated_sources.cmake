@@ -35,7 +35,7 @@ add_custom_command(OUTPUT ${PERTEV_GENERATED_DIR}/embedded_files.cpp
   COMMENT "Embedding the laboratory's page" VERBATIM)
 pertev_embed(pertev_lab ${PERTEV_GENERATED_DIR}/embedded_files.cpp)
 
-# Tables of lobes: half a minute of one core, once. Sums stand side by side for the vectoriser, which divides where masks say no.
+# Tables of lobes: a quarter of a minute of one core, once. Sums stand side by side for the vectoriser, which divides where masks say no.
 add_executable(pertev_make_lobe_tables ${PROJECT_SOURCE_DIR}/tools/make_lobe_tables.cpp)
 target_link_libraries(pertev_make_lobe_tables PRIVATE fmt::fmt TBB::tbb)
 target_compile_options(pertev_make_lobe_tables PRIVATE -O3 -fno-trapping-math -fno-sanitize=all)

@@ -103,7 +103,8 @@ std::array<double, 2> reflected_by_beckmann(double mu, double alpha) {
 Values lost_by_beckmann_glass(double mu, double alpha, const Values& etas) {
     static const std::vector<Node> lengths = gauss_legendre(96), angles = gauss_legendre(40);
     const double across = std::sqrt(std::max(0.0, 1 - mu * mu)), s_o = beckmann_slope_length(mu, alpha);
-    Values lost(etas.size(), 1.0), passed(etas.size()), down(passed), sines(passed), slopes(passed), inverse, inverse2;
+    Values lost(etas.size(), 1.0), passed(etas.size()), of(passed), down(passed), sines(passed), slopes(passed),
+        inverse, inverse2;
     for (const double eta : etas) {
         inverse.push_back(1 / eta);
         inverse2.push_back(1 / (eta * eta));
@@ -123,15 +124,20 @@ Values lost_by_beckmann_glass(double mu, double alpha, const Values& etas) {
                          reflected = up > 0 ? masked(up, beckmann_slope_length(up, alpha)) : 0;
             for (size_t q = 0; q < etas.size(); ++q) { // side by side, for the vectoriser
                 const double eta = etas[q], t2 = std::max(0.0, 1 - (1 - facing * facing) * inverse2[q]);
-                const double t = std::sqrt(t2), s = facing + eta * t, p = eta * facing + t, sp = s * p;
-                passed[q] = 2 * eta * facing * t * (s * s + p * p) / (sp * sp);
+                const double t = std::sqrt(t2), s = facing + eta * t, p = eta * facing + t;
+                passed[q] = 2 * eta * facing * t * (s * s + p * p); // Fresnel's transmittance, times of[q]
+                of[q] = s * s * p * p;
                 down[q] = std::min((mu - facing * z) * inverse[q] + t * z, 1.0);
                 sines[q] = std::max(alpha * std::sqrt(1 - down[q] * down[q]), 1e-12);
                 slopes[q] = down[q] / sines[q];
             }
             for (size_t q = 0; q < etas.size(); ++q) {
-                const double length = down[q] > 0 ? sines[q] * slope_lengths.at(slopes[q]) : 1;
-                lost[q] -= part * ((1 - passed[q]) * reflected + passed[q] * masked(down[q], length));
+                if (down[q] > 0) {
+                    const double length = s_o * down[q] + sines[q] * slope_lengths.at(slopes[q]) * mu;
+                    lost[q] -= part * (reflected + passed[q] * (2 * down[q] - reflected * length) / (of[q] * length));
+                } else {
+                    lost[q] -= part * (1 - passed[q] / of[q]) * reflected;
+                }
             }
         }
     }

@@ -36,7 +36,7 @@ constexpr int kBeckmannRoughnessNodes = 20, kBeckmannIorNodes = 14;
 constexpr double kAlphaMin = 1e-3, kIorMin = 1.1, kIorMax = 3, kOvershoot = 2e-4;
 constexpr int kSheenMuNodes = 24, kSheenRoughnessNodes = 16;
 constexpr double kSheenRoughnessMin = 0.2;
-constexpr uint64_t kHash = 0x20633fa19d94591; // hash of the numbers of all tables
+constexpr uint64_t kHash = 0x48939f502f48e6e2; // hash of the numbers of all tables
 
 constexpr int kHeights = 96, kAngles = 48; // sizes of the rule over the cap of visible normals
 
@@ -111,12 +111,16 @@ struct View {
     }
     /// The energy of reflection and refraction; `eta` is the far side's index over the near side's.
     double scattered(double eta) const {
-        const double inverse = 1 / eta, inverse2 = inverse * inverse;
+        const double inverse = 1 / eta, inverse2 = inverse * inverse, both = 1 + 2 * lambda, most = 2 + 2 * lambda;
         return integrate([&](double c, double z, double masked) {
             const double t = std::sqrt(std::max(0.0, 1 - (1 - c * c) * inverse2));
             const double s = c + eta * t, p = eta * c + t, sp = s * p;
-            const double passed = 2 * eta * c * t * (s * s + p * p) / (sp * sp); // by Fresnel's formulas
-            return masked + passed * (masking(t * z - (c * z - mu) * inverse) - masked);
+            const double passed = 2 * eta * c * t * (s * s + p * p),
+                         of = sp * sp; // Fresnel's transmittance is passed / of
+            const double down = std::max(0.0, t * z - (c * z - mu) * inverse);
+            const double length = both * down + std::sqrt(down * down + alpha * alpha * std::max(0.0, 1 - down * down));
+            return masked +
+                   passed * (most * down - masked * length) / (of * length); // with masking(down), in one division
         });
     }
 };
@@ -146,10 +150,10 @@ double eta_at(double q) {
 
 /// A table over three axes, the first of which may have one node. Cells are looked at in places between the nodes too.
 struct Grid {
-    static constexpr int kFine[] = {2, 2, 4}; // places a cell: curves bend most along the last axis
     std::array<int, 3> nodes;
+    int fine_mu = 4; // places a cell along the last axis, where curves bend most; 2 along the others
 
-    int size(int axis) const { return (nodes[axis] - 1) * kFine[axis] + 1; }
+    int size(int axis) const { return (nodes[axis] - 1) * (axis == 2 ? fine_mu : 2) + 1; }
     double at(int axis, int place) const { return nodes[axis] == 1 ? 0 : double(place) / (size(axis) - 1); }
     size_t index(int q, int r, int x) const { return (size_t(q) * nodes[1] + r) * nodes[2] + x; }
     size_t fine_index(int q, int r, int x) const { return (size_t(q) * size(1) + r) * size(2) + x; }
@@ -179,7 +183,7 @@ struct Grid {
         Values table;
         for (int q = 0; q < nodes[0]; ++q)
             for (int r = 0; r < nodes[1]; ++r)
-                for (int x = 0; x < nodes[2]; ++x) table.push_back(fine[fine_index(2 * q, 2 * r, 4 * x)]);
+                for (int x = 0; x < nodes[2]; ++x) table.push_back(fine[fine_index(2 * q, 2 * r, fine_mu * x)]);
         for (int pass = 0; pass < 4; ++pass) { // a node that would fall below 0 leaves the rest to its neighbours
             Values drop(table.size());
             for_each_cell([&](int q, int r, int x) {
@@ -187,12 +191,13 @@ struct Grid {
                 double excess = 0;
                 for (int a = 0; a <= q_end; ++a)
                     for (int b = 0; b <= 2; ++b)
-                        for (int c = 0; c <= 4; ++c) {
-                            double error = -fine[fine_index(2 * q + a, 2 * r + b, 4 * x + c)];
+                        for (int c = 0; c <= fine_mu; ++c) {
+                            const double at_mu = double(c) / fine_mu;
+                            double error = -fine[fine_index(2 * q + a, 2 * r + b, fine_mu * x + c)];
                             for (int corner = 0; corner < 8; ++corner) {
                                 const int i = corner >> 2, j = corner >> 1 & 1, k = corner & 1;
                                 const double weight =
-                                    std::abs(1 - i - a / 2.0) * std::abs(1 - j - b / 2.0) * std::abs(1 - k - c / 4.0);
+                                    std::abs(1 - i - a / 2.0) * std::abs(1 - j - b / 2.0) * std::abs(1 - k - at_mu);
                                 if (weight > 0) error += weight * table[index(q + i, r + j, x + k)];
                             }
                             excess = std::max(excess, error - kOvershoot);
@@ -379,7 +384,7 @@ TableGroup beckmann_table() {
     for (double& v : schlick) v = 1 - v;
     Values average_lost;
     add_average_lost(lost.data(), average_lost);
-    const Grid glass{{kBeckmannIorNodes, kBeckmannRoughnessNodes, kMuNodes}};
+    const Grid glass{{kBeckmannIorNodes, kBeckmannRoughnessNodes, kMuNodes}, 2}; // an error function each: half as many
     Values glass_lost, average_glass;
     for (const bool inside : {false, true}) {
         Values etas;
