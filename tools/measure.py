@@ -34,6 +34,7 @@ def make_scenes(scenes, work):
     run(OWN / "tools/make_sky.py", work / "sky.exr")
     run(OWN / "tools/make_moving_box.py", work / "box.gltf")
     run(OWN / "tools/make_moving_box.py", work / "mirror_box.gltf", "--mirror")
+    run(OWN / "tools/make_crossing_box.py", work / "crossing.gltf")
     run(OWN / "tools/make_glass_room.py", work / "room.obj")
     run(OWN / "tools/make_glass_room.py", work / "nested.obj", "--nested")
     veach, box = (scenes / f"bitterli/{name}/scene_mitsuba3.xml" for name in ("veach-mis", "cornell-box"))

@@ -15,21 +15,30 @@ namespace pertev {
 /// The temporal means of light, which have as many frames as a surface has been visible in under the same light.
 struct SteadyLight {
     const Float4* means;    // diffuse of the frame's HistoryView
+    const Float4* guide;    // guide of that
     uint32_t width, height; // pixels; they may be fewer than the picture's
     float frames;           // number of frames from which on light is steady
     bool may_change = true; // false: the scene is that of the previous frame, so the light is, too
 
     /// Returns whether the light around a pixel of the picture is steady. A single surface suffices, because an emitter
-    /// smaller than a pixel hides others in some frames.
+    /// smaller than a pixel hides others in some frames, but not one with another contact.
     HD bool is_around(PixelPosition at, uint32_t picture_width, uint32_t picture_height) const {
         if (!may_change) return true;
         const int w = static_cast<int>(width), h = static_cast<int>(height);
         const int x = static_cast<int>(at.x * width / picture_width),
                   y = static_cast<int>(at.y * height / picture_height);
+        const uint32_t own = object_of(guide[y * w + x]);
         for (int k = 0; k < 9; ++k) {
-            if (means[held(y, k / 3 - 1, h) * w + held(x, k % 3 - 1, w)].w >= frames) return true;
+            const int tap = held(y, k / 3 - 1, h) * w + held(x, k % 3 - 1, w);
+            if (means[tap].w >= frames && !differ_in_contact(own, object_of(guide[tap]))) return true;
         }
         return false;
+    }
+
+    /// Number of frames of the mean at a pixel of the picture; 0 if the contact there is unknown.
+    HD float frames_of_contact(PixelPosition at, uint32_t picture_width, uint32_t picture_height) const {
+        const uint32_t pixel = at.y * height / picture_height * width + at.x * width / picture_width;
+        return knows_contact(object_of(guide[pixel])) ? max(means[pixel].w, 1.0f) : 0.0f;
     }
 };
 
@@ -85,10 +94,15 @@ private:
             if (frames_at_rest >= steady.frames) return lerp(old, own, kNew);
         }
         const float deviations = max(fma(kDeviationsPerPixel, pixels_moved, kDeviations), kDeviationsAtLeast);
-        const Rgb limited = {within(old.r, around.mean.r, deviations * around.deviation.r),
-                             within(old.g, around.mean.g, deviations * around.deviation.g),
-                             within(old.b, around.mean.b, deviations * around.deviation.b)};
-        return lerp(limited, own, min(fma(kNewPerPixel, pixels_moved, kNew), kNewAtMost));
+        // Where contacts are known, a gap as thin as a pixel must not fade: its colour is within the limits, and no
+        // mean has more frames than that of its light.
+        const float frames_of_light = steady.frames_of_contact(at, width, height);
+        const Rgb kept = frames_of_light > 0 ? own : around.mean;
+        const Rgb limited = {within(old.r, kept.r, around.mean.r, deviations * around.deviation.r),
+                             within(old.g, kept.g, around.mean.g, deviations * around.deviation.g),
+                             within(old.b, kept.b, around.mean.b, deviations * around.deviation.b)};
+        const float weight = min(fma(kNewPerPixel, pixels_moved, kNew), kNewAtMost);
+        return lerp(limited, own, max(weight, frames_of_light > 0 ? 1.0f / (frames_of_light + 1.0f) : 0.0f));
     }
 
     HD Colors neighbourhood(PixelPosition at) const {
@@ -140,8 +154,8 @@ private:
                  0.5f * (t3 - t2)}};
     }
 
-    HD static float within(float x, float mean, float deviation) {
-        return clamp(x, mean - deviation, mean + deviation);
+    HD static float within(float x, float kept, float mean, float deviation) {
+        return clamp(x, min(kept, mean - deviation), max(kept, mean + deviation));
     }
 };
 

@@ -10,7 +10,8 @@
 namespace pertev {
 
 /// The stage that compares the light of both pictures where they show the same surface; elsewhere the gradient is
-/// unknown. The guide has the changed share of the pixel's light in place of a lobe's width.
+/// unknown. `after` has contacts (contacts.h). The guide has the changed share of the pixel's light in place of a
+/// lobe's width.
 struct CompareLight {
     NoisyFrameView before, after; // scene as it was, and as it is
     Float4 *guide, *was, *is;
@@ -23,8 +24,8 @@ struct CompareLight {
         const Float4 then = signals_of(before, i), now = signals_of(after, i);
         was[i] = then;
         is[i] = now;
-        guide[i] =
-            pack({vec3_of(normal), changed_share(light_of(then), light_of(now)), normal.w, is_same ? object : kNoHit});
+        guide[i] = pack({vec3_of(normal), changed_share(light_of(then), light_of(now)), normal.w,
+                         is_same ? object_with(object, contact_of(after, i)) : kNoHit});
     }
 
 private:

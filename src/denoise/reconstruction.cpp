@@ -85,7 +85,7 @@ SignalsView Reconstruction::filter(const NoisyFrame& frame, const CameraView& ca
 
     instead_ = nullptr;
     has_gloss_ = has_gloss;
-    launch_in_band(*queue_, "split_signals", of_samples, width_, SplitSignals{noisy, a, now});
+    launch_in_band(*queue_, "split_signals", of_samples, width_, SplitSignals{noisy, a, now, change.guide != nullptr});
     const auto accumulate = [&]<bool kFollows>() {
         launch(*queue_, "accumulate_signals", of_means.count() * width_,
                AccumulateSignals<kFollows>{noisy, a, scene, scene_before, cameras, now, before, change,
@@ -120,7 +120,7 @@ SteadyLight Reconstruction::steady_light(const HistoryView& now, bool may_change
                                          const ReconstructionSettings& settings) const {
     constexpr uint32_t kLeast = 8; // frames in which emitters smaller than a pixel have been seen
     const uint32_t frames = may_change ? std::max(settings.history * 3 / 4, kLeast) : kLeast;
-    return {now.diffuse, width_, height_, static_cast<float>(frames), may_change};
+    return {now.diffuse, now.guide, width_, height_, static_cast<float>(frames), may_change};
 }
 
 void Reconstruction::add(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 
+#include "base/limits.h"
 #include "math/float4.h"
 #include "math/rgb.h"
 #include "math/vec2.h"
@@ -32,8 +33,38 @@ struct Guide {
     Vec3 normal;     // unit up to 2^-15, on the camera's side; 0 without a hit
     float alpha;     // GGX width of the sharpest non-diffuse lobe, 1 without one
     float depth;     // along the camera's axis, metres
-    uint32_t object; // instance; kNoHit: no hit
+    uint32_t object; // object_with; kNoHit: no hit
 };
+
+/// A contact tells whether something is close above a surface (contacts.h).
+enum class Contact : uint32_t { Unknown = 0, Open = 1, Covered = 2 };
+
+// Contacts of a frame are kept where the G-buffer has the width of a lobe, as its sign.
+
+HD inline void store_contact(const GBufferView& frame, uint32_t pixel, bool is_covered) {
+    const float alpha = abs(frame.albedo[pixel].w);
+    frame.albedo[pixel].w = is_covered ? -alpha : alpha;
+}
+HD inline Contact contact_of(const GBufferView& frame, uint32_t pixel) {
+    return bits_of(frame.albedo[pixel].w) >> 31 != 0 ? Contact::Covered : Contact::Open;
+}
+
+// The object of a guide is the instance, and in the highest two bits the contact. Thus filters, which compare objects,
+// separate contacts, too.
+
+static_assert(kMaxInstances <= 1u << 30);
+HD inline uint32_t object_with(uint32_t instance, Contact contact) {
+    return instance == kNoHit ? kNoHit : instance | static_cast<uint32_t>(contact) << 30;
+}
+HD inline uint32_t instance_of(uint32_t object) { return object == kNoHit ? kNoHit : object & 0x3fffffffu; }
+HD inline bool knows_contact(uint32_t object) { return object != kNoHit && object >> 30 != 0; }
+/// Returns whether one of two objects is open and the other covered.
+HD inline bool differ_in_contact(uint32_t a, uint32_t b) { return a != kNoHit && b != kNoHit && (a ^ b) >> 30 == 3; }
+/// Returns whether objects of different frames may be the same: the contact of one may be unknown.
+HD inline bool may_be_same(uint32_t a, uint32_t b) {
+    const uint32_t difference = a ^ b;
+    return (difference & 0x3fffffffu) == 0 && difference >> 30 != 3;
+}
 
 /// Packs a guide into sixteen bytes, because it is read for each tap of each filter.
 HD inline Float4 pack(const Guide& g) {

@@ -42,7 +42,7 @@ HD inline Taps find_taps(const HistoryView& before, const FrameCameras& cameras,
     const auto fits = [&](int px, int py) {
         if (px < 0 || py < 0 || px >= w || py >= h) return false;
         const Float4 then = before.guide[py * w + px];
-        if (object_of(then) != object) return false;
+        if (!may_be_same(object_of(then), object)) return false;
         if (!(dot(normal_of(then), normal) > min_cosine)) return false;
         return !(depth > 0) || is_similar_depth(depth_of(then), depth);
     };

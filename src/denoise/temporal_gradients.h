@@ -8,7 +8,7 @@
 
 namespace pertev {
 
-/// Memory of the small pictures, which have one pixel per 4x4 of the frame.
+/// Memory of the small pictures, which have one pixel per 4x4 (kSide) of the frame.
 struct TemporalGradientsMemory {
     Float4* before;  // used from one frame to the next
     Float4* after;   // used until they are compared
@@ -16,8 +16,9 @@ struct TemporalGradientsMemory {
 
     /// Number of Float4 of each per pixel of the small pictures. `kNumbers`: guide; light as it was and as it is,
     /// twice.
+    static constexpr uint32_t kSide = 4; // pixels of the frame per one of a small picture, on each side
     static constexpr std::size_t kPicture = NoisyFrame::arrays(true), kNumbers = 5;
-    static constexpr uint32_t side(uint32_t of_frame) { return (of_frame + 3) / 4; }
+    static constexpr uint32_t side(uint32_t of_frame) { return (of_frame + kSide - 1) / kSide; }
     static std::size_t pixels(uint32_t frame_width, uint32_t frame_height) {
         return std::size_t(side(frame_width)) * side(frame_height);
     }

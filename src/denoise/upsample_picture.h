@@ -81,7 +81,7 @@ private:
             const Vec2 there = {static_cast<float>(px), static_cast<float>(py)};
             const float near = fade(abs(there.x - x)) * fade(abs(there.y - y));
             add(any, of_any, tap, near);
-            if (object_of(its) != own) continue;
+            if (instance_of(object_of(its)) != own) continue;
             const Vec3 at = unproject_point(coarse.camera, {there.x + 0.5f, there.y + 0.5f}, depth_of(its));
             const float off = abs(dot(n, at - point)) * inv_size;
             const float bend = max(dot(normal_of(its), vec3_of(normal)), 0.0f);

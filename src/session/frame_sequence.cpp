@@ -112,10 +112,14 @@ bool FrameSequence::render_rows(const FrameTask& task, RowExchange* others, Sink
     if (!reconstruction_ || !temporal_gradients_ ||
         !temporal_gradients_->fits(frame)) { // another size, or other signals
         temporal_gradients_.reset();
+        contacts_.reset();
         reconstruction_.reset(); // freed before the new one, so that two need not fit
         reconstruction_.emplace(pictures_.queue(), of_light.width, of_light.height);
         temporal_gradients_.emplace(pictures_.queue(), of_light.width, of_light.height, frame.splits_light(),
                                     reconstruction_->gradients_memory());
+    }
+    if (reconstruction.follow_light && !contacts_) {
+        contacts_.emplace(pictures_.queue(), of_light.width, of_light.height);
     }
     Restir* const shared = restir_for(restir, of_light);
     reconstruction_->share(others);
@@ -144,6 +148,9 @@ bool FrameSequence::render_rows(const FrameTask& task, RowExchange* others, Sink
         shared->add(frame, light, {path.sampler, number, path.seed, path.mip_maps == MipMaps::On}, scene.tracer(),
                     before, changed, restir);
         sharing_timer_.stop();
+    }
+    if (change.guide != nullptr) {
+        contacts_->find(frame, light.camera.view, light.scene, scene.tracer(), own_rows(others, of_light.height));
     }
     if (reconstruction.resolution_scale < 1) {
         const RenderSettings of_features = settings_of_features(settings, of_light);
@@ -271,7 +278,13 @@ TemporalGradientsView FrameSequence::measure_gradients(const RenderSettings& of_
     const bool is_known = settings.follow_light && scene_has_changed_ && before && reconstruction_->frames() > 0 &&
                           before->path == of_light.path;
     if (!is_known) return {};
-    render_small(before->number, before->camera, of_light, temporal_gradients_->after());
+    NoisyFrame& small = temporal_gradients_->after();
+    render_small(before->number, before->camera, of_light, small);
+    RenderSettings of_small = of_light;
+    of_small.width = small.width(), of_small.height = small.height();
+    const PictureView picture = pictures_.view_of(before->camera, of_small);
+    contacts_->find(small, picture.camera.view, picture.scene, pictures_.scene().tracer(), {0, small.height()},
+                    TemporalGradientsMemory::kSide);
     return temporal_gradients_->compare();
 }
 

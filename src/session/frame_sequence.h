@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "denoise/contacts.h"
 #include "denoise/oidn/oidn_frames.h"
 #include "denoise/reconstruction.h"
 #include "denoise/temporal_gradients.h"
@@ -103,7 +104,8 @@ private:
     std::optional<NoisyFrame> sample_;
     std::optional<NoisyFrame> features_; // if light is found at a lower resolution
     std::optional<Reconstruction> reconstruction_;
-    std::optional<OidnFrames> oidn_; // if it denoises frames
+    std::optional<OidnFrames> oidn_;        // if it denoises frames
+    std::optional<ContactFinder> contacts_; // if frames follow the change of light
     std::optional<Restir> restir_;
     RestirSettings restir_settings_;      // settings of the last frame
     DeviceTimer sharing_timer_;           // time of the last frame's reservoirs

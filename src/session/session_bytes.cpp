@@ -7,6 +7,7 @@
 #include <set>
 #include <vector>
 
+#include "denoise/contacts.h"
 #include "denoise/motion_vectors.h"
 #include "denoise/oidn/oidn_frames.h"
 #include "denoise/reconstruction.h"
@@ -134,6 +135,8 @@ std::size_t predicted_frame_bytes(const PreparedScene& scene, const RenderSettin
                           {.splits_light = splits, .records_bounce = restir.light == RestirLight::Indirect});
     const NoisyFrame frame(queue, of_light[0], of_light[1], splits);
     const Reconstruction frames(queue, of_light[0], of_light[1]);
+    std::optional<ContactFinder> contacts;
+    if (reconstruction.follow_light) contacts.emplace(queue, of_light[0], of_light[1]);
     std::optional<Restir> sharing;
     if (restir.light != RestirLight::Off) sharing.emplace(queue, of_light[0], of_light[1], restir.light);
     std::optional<NoisyFrame> features;

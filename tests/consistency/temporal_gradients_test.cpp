@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "denoise/contacts.h"
 #include "denoise/reconstruction.h"
 #include "denoise/temporal_gradients_view.h"
 #include "image/picture_hash.h"
@@ -34,10 +35,11 @@ constexpr uint32_t kStill = 16, kDimming = 6;
 constexpr float kStep = 0.8f; // factor of the emitter's light from frame to frame
 
 /// Renders frames under an emitter that is constant, then dims by kStep per frame. The scene is updated before each
-/// frame.
-Image last_frame(Queue& queue, bool follows, bool dims, Hash128* before_dimming = nullptr) {
+/// frame. `has_contacts`: otherwise nothing is above the floor, and pictures are no means of shown ones.
+Image last_frame(Queue& queue, bool follows, bool dims, bool has_contacts = true, Hash128* before_dimming = nullptr) {
     Messages messages;
     Scene scene = emitter_scene();
+    if (!has_contacts) scene.instances.resize(1);
     PreparedScene prepared = prepare_scene(scene, {}, messages);
     RenderSettings settings;
     settings.width = 64, settings.height = 48;
@@ -49,7 +51,7 @@ Image last_frame(Queue& queue, bool follows, bool dims, Hash128* before_dimming 
         if (dims && k >= kStill) scene.lights[0].intensity = kStep * scene.lights[0].intensity;
         prepared = update_scene(prepared, scene, update, messages);
         session.update_scene(prepared, parts_of(update));
-        session.render_frame(k, {.follow_light = follows});
+        session.render_frame(k, {.follow_light = follows, .anti_alias = has_contacts});
         if (before_dimming != nullptr && k + 1 == kStill) *before_dimming = picture_hash(session.frame().picture());
     }
     return session.frame().picture();
@@ -194,7 +196,9 @@ TEST_CASE("temporal gradients reuse the reconstruction's memory") {
         dimming_frames(queue, 64, 48, {.follow_light = follows}, [&](Session&) { held = queue.allocated_bytes(); });
         return held;
     };
-    CHECK(held_by_frames(true) == held_by_frames(false));
+    Queue dry = Queue::make_dry_run(false);
+    const ContactFinder contacts(dry, 64, 48); // has memory of its own, because its rays are traced beside the frame
+    CHECK(held_by_frames(true) == held_by_frames(false) + dry.allocated_bytes());
 }
 
 TEST_CASE("a frame rendered separately does not change the following frames") {
@@ -211,11 +215,11 @@ TEST_CASE("a frame rendered separately does not change the following frames") {
     for (const float scale : {1.0f, 0.5f}) CHECK(frames(scale, true) == frames(scale, false));
 }
 
-TEST_CASE("temporal gradients do not change frames of constant light") {
+TEST_CASE("temporal gradients do not change frames of constant light where there are no contacts") {
     Queue queue = requested_queue();
     Hash128 with, without;
-    last_frame(queue, true, false, &with);
-    last_frame(queue, false, false, &without);
+    CHECK(mean_of(last_frame(queue, true, false, false, &with)) > 0);
+    last_frame(queue, false, false, false, &without);
     CHECK(with == without);
 }
 

@@ -253,9 +253,10 @@ float shown_after(float own, float around, float old, bool is_near_moving, float
         picture[kLeftOfBorder + 1].w = 2;
         was_at[kLeftOfBorder + 1].x += 6;
     }
-    const std::vector<Float4> means(kStagePixels, Float4{0, 0, 0, frames});
-    const AntiAlias stage = {picture.data(), was_at.data(), before.data(), shown.data(),
-                             kStageSide,     kStageSide,    true,          {means.data(), kStageSide, kStageSide, 8}};
+    const std::vector<Float4> means(kStagePixels, Float4{0, 0, 0, frames}), guide(kStagePixels);
+    const AntiAlias stage = {
+        picture.data(), was_at.data(), before.data(), shown.data(),
+        kStageSide,     kStageSide,    true,          {means.data(), guide.data(), kStageSide, kStageSide, 8}};
     for (uint32_t i = 0; i < kStagePixels; ++i) stage(i);
     return shown[kLeftOfBorder].x;
 }
@@ -274,6 +275,54 @@ TEST_CASE(
     // The history where the nearest pixel came from is black. It has moved by six pixels, so old colours are clamped
     // to half a deviation, and current ones have a weight of 0.4.
     CHECK(shown_after(0.9f, 0.5f, 0.5f, true) == doctest::Approx(0.4816 + 0.4 * (0.9 - 0.4816)).epsilon(0.001));
+}
+
+namespace {
+
+/// Returns the tested pixel, on a line of `own` as thin as a pixel through a picture of 0.5, whose history of `old` has
+/// `frames` frames.
+float shown_on_line(float own, float old, float frames, Contact contact) {
+    std::vector<Float4> picture(kStagePixels, Float4{0.5f, 0, 0, 5}), before(kStagePixels, Float4{0.5f, 0, 0, 0}),
+        shown(kStagePixels);
+    std::vector<Vec2> was_at;
+    for (uint32_t i = 0; i < kStagePixels; ++i) {
+        was_at.push_back({static_cast<float>(i % kStageSide) + 0.5f, static_cast<float>(i / kStageSide) + 0.5f});
+        if (i / kStageSide == kLeftOfBorder / kStageSide) picture[i].x = own, before[i].x = old;
+    }
+    const std::vector<Float4> means(kStagePixels, Float4{0, 0, 0, frames}),
+        guide(kStagePixels, pack({{0, 0, 1}, 1, 5, object_with(7, contact)}));
+    const AntiAlias stage = {
+        picture.data(), was_at.data(), before.data(), shown.data(),
+        kStageSide,     kStageSide,    true,          {means.data(), guide.data(), kStageSide, kStageSide, 99}};
+    for (uint32_t i = 0; i < kStagePixels; ++i) stage(i);
+    return shown[kLeftOfBorder].x;
+}
+
+} // namespace
+
+TEST_CASE("where contacts are known, thin gaps do not fade, and no shown mean is longer than that of its light") {
+    for (const Contact contact : {Contact::Open, Contact::Covered}) {
+        CHECK(shown_on_line(0.1f, 0.1f, 7, contact) == doctest::Approx(0.1));
+        CHECK(shown_on_line(0.1f, 0.3f, 1, contact) == doctest::Approx(0.2));
+        CHECK(shown_on_line(0.1f, 0.3f, 30, contact) == doctest::Approx(0.28));
+    }
+    // Three values of 0.1 and six of 0.5 have the mean 0.3667 and the deviation 0.1886.
+    CHECK(shown_on_line(0.1f, 0.1f, 7, Contact::Unknown) == doctest::Approx(0.1703).epsilon(0.001));
+    CHECK(shown_on_line(0.1f, 0.3f, 1, Contact::Unknown) == doctest::Approx(0.28));
+}
+
+TEST_CASE("objects differ from frame to frame by instance and by contact, as far as both are known") {
+    const auto of = [](Contact contact, uint32_t instance = 7) { return object_with(instance, contact); };
+    CHECK(instance_of(of(Contact::Covered)) == 7);
+    CHECK(object_with(kNoHit, Contact::Covered) == kNoHit);
+    CHECK(may_be_same(of(Contact::Open), of(Contact::Open)));
+    CHECK(may_be_same(of(Contact::Open), of(Contact::Unknown)));
+    CHECK(may_be_same(of(Contact::Unknown), of(Contact::Covered)));
+    CHECK_FALSE(may_be_same(of(Contact::Open), of(Contact::Covered)));
+    CHECK_FALSE(may_be_same(of(Contact::Open), of(Contact::Open, 8)));
+    CHECK_FALSE(may_be_same(of(Contact::Unknown), kNoHit));
+    CHECK(differ_in_contact(of(Contact::Open), of(Contact::Covered, 8)));
+    CHECK_FALSE(differ_in_contact(of(Contact::Unknown), kNoHit));
 }
 
 namespace {
@@ -333,7 +382,7 @@ TEST_CASE("temporal gradients exist where both pictures show the same surface an
     before.hit = other_place.data(), before.normal = other_normal.data();
     const CompareLight compare = {before, after, guide.data(), was.data(), is.data()};
     for (uint32_t i = 0; i < 4; ++i) compare(i);
-    CHECK(object_of(guide[0]) == 7);
+    CHECK(instance_of(object_of(guide[0])) == 7);
     CHECK(object_of(guide[1]) == kNoHit);
     CHECK(object_of(guide[2]) == kNoHit);
     CHECK(is[0].x == 2);
