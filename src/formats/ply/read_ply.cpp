@@ -395,8 +395,12 @@ private:
 } // namespace
 
 Scene read_ply(const fs::path& path, const FileAccess& access, const ReadOptions& options, Sink& sink) {
+    return read_ply(path, read_file(path), access, options, sink);
+}
+
+Scene read_ply(const fs::path& path, std::span<const std::byte> bytes, const FileAccess& access,
+               const ReadOptions& options, Sink& sink) {
     const std::string file = path.string();
-    const std::vector<std::byte> bytes = read_file(path);
     PlyHeader header = parse_ply_header(bytes, file);
     for (const Remark& repair : header.repairs) sink.warn(repair);
     if (options.geometry_only) header.textures.clear();

@@ -1,0 +1,75 @@
+#include "formats/files/gunzip.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include "base/error.h"
+#include "base/limits.h"
+#include "base/read_file.h"
+
+namespace pertev {
+namespace {
+
+/// A stream of zlib that ends with its scope.
+struct Inflating {
+    z_stream stream = {};
+    explicit Inflating(const std::string& file) {
+        constexpr int kGzip = 16 + MAX_WBITS;
+        if (inflateInit2(&stream, kGzip) != Z_OK)
+            throw Error(ErrorCode::OutOfMemory, FileLocation{file}, "zlib cannot begin to decompress");
+    }
+    Inflating(const Inflating&) = delete;
+    Inflating& operator=(const Inflating&) = delete;
+    ~Inflating() { inflateEnd(&stream); }
+};
+
+} // namespace
+
+bool is_gzip(std::span<const std::byte> bytes) {
+    return bytes.size() >= 18 && bytes[0] == std::byte{0x1f} && bytes[1] == std::byte{0x8b} && bytes[2] == std::byte{8};
+}
+
+std::vector<std::byte> gunzip(std::span<const std::byte> bytes, const std::string& file) {
+    constexpr std::size_t kPiece = std::size_t(1) << 20;
+    const uint64_t limit = justified_bytes(kFreeMeshBytes, bytes.size());
+    Inflating inflating(file);
+    z_stream& stream = inflating.stream;
+    std::vector<std::byte> content;
+    std::size_t size = 0;
+    const auto* in = reinterpret_cast<const Bytef*>(bytes.data());
+    std::size_t left = bytes.size();
+    int state = Z_OK;
+    while (state != Z_STREAM_END || (left > 0 && is_gzip(bytes.last(left)))) {
+        if (state == Z_STREAM_END) inflateReset(&stream); // a further member
+        if (size > limit) {
+            throw Error(ErrorCode::OverLimit, FileLocation{file},
+                        fmt::format("the file unfolds to over {} MiB, more than its size justifies", limit >> 20));
+        }
+        if (content.size() < size + kPiece) content.resize(std::max(2 * content.size(), kPiece));
+        stream.next_in = const_cast<Bytef*>(in + (bytes.size() - left)); // zlib does not write to it
+        const auto given = static_cast<uInt>(std::min(left, kPiece));
+        stream.avail_in = given;
+        stream.next_out = reinterpret_cast<Bytef*>(content.data() + size);
+        const auto room = static_cast<uInt>(std::min(content.size() - size, kPiece));
+        stream.avail_out = room;
+        state = inflate(&stream, Z_NO_FLUSH);
+        left -= given - stream.avail_in;
+        size += room - stream.avail_out;
+        const bool is_stuck = given == stream.avail_in && room == stream.avail_out;
+        if ((state != Z_OK && state != Z_STREAM_END) || (state == Z_OK && is_stuck)) {
+            throw Error(ErrorCode::BadInput, FileLocation{file},
+                        fmt::format("the gzip'd file is damaged or cut off after {} bytes of its content", size));
+        }
+    }
+    content.resize(size);
+    return content;
+}
+
+std::vector<std::byte> read_unzipped(const std::filesystem::path& path) {
+    std::vector<std::byte> bytes = read_file(path);
+    return is_gzip(bytes) ? gunzip(bytes, path.string()) : bytes;
+}
+
+} // namespace pertev

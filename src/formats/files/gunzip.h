@@ -1,0 +1,23 @@
+#pragma once
+
+// Decompresses gzip (RFC 1952) by zlib.
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace pertev {
+
+/// Returns whether bytes begin like a gzip'd file.
+bool is_gzip(std::span<const std::byte> bytes);
+
+/// Returns the content of a gzip'd file, of all its members. `file` is for messages. Throws Error(BadInput) if it is
+/// damaged or cut off, and Error(OverLimit) if it unfolds to more than its size justifies (base/limits.h).
+std::vector<std::byte> gunzip(std::span<const std::byte> bytes, const std::string& file);
+
+/// Reads a file, and decompresses it if it is gzip'd. Throws as read_file() and gunzip().
+std::vector<std::byte> read_unzipped(const std::filesystem::path& path);
+
+} // namespace pertev
