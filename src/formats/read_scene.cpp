@@ -14,6 +14,7 @@
 #include "formats/files/file_choices.h"
 #include "formats/gltf/read_gltf.h"
 #include "formats/obj/read_obj.h"
+#include "formats/pbrt/read_pbrt.h"
 #include "formats/ply/read_ply.h"
 #include "formats/stl/read_stl.h"
 #include "scene/invisible_materials.h"
@@ -30,14 +31,16 @@ struct FormatReader {
 };
 
 const std::array kReaders = {
-    FormatReader{".obj", read_obj, false, false}, FormatReader{".ply", read_ply, false, false},
-    FormatReader{".stl", read_stl, false, false}, FormatReader{".gltf", read_gltf, true, true},
-    FormatReader{".glb", read_gltf, true, true},
+    FormatReader{".obj", read_obj, false, false},    FormatReader{".ply", read_ply, false, false},
+    FormatReader{".stl", read_stl, false, false},    FormatReader{".gltf", read_gltf, true, true},
+    FormatReader{".glb", read_gltf, true, true},     FormatReader{".pbrt", read_pbrt, true, true},
+    FormatReader{".pbrt.gz", read_pbrt, true, true},
 };
 
-/// Returns the reader for a file's extension; null if there is none.
+/// Returns the reader for a file's extension, in front of .gz if it is gzip'd; null if there is none.
 const FormatReader* find_reader(const std::filesystem::path& path) {
-    const std::string extension = lower_case_extension(path);
+    std::string extension = lower_case_extension(path);
+    if (extension == ".gz") extension = lower_case_extension(path.stem()) + extension;
     const auto found = std::ranges::find(kReaders, extension, &FormatReader::extension);
     return found == kReaders.end() ? nullptr : &*found;
 }

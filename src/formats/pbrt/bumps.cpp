@@ -1,0 +1,79 @@
+#include "formats/pbrt/bumps.h"
+
+#include <cmath>
+
+#include "formats/obj/bump_normals.h"
+#include "formats/obj/texel_values.h"
+#include "image/srgb.h"
+#include "math/portable_math.h"
+
+namespace pertev::pbrt {
+namespace {
+
+/// Returns the picture with linear values.
+TextureImage linear_image(const TextureImage& from, bool is_srgb, float exponent) {
+    if (from.rgba8.pixels.empty()) return from;
+    TextureImage to;
+    to.name = from.name;
+    to.rgba_float = {.width = from.rgba8.width, .height = from.rgba8.height, .channels = 4, .pixels = {}};
+    to.rgba_float.pixels.resize(from.rgba8.pixels.size());
+    for (std::size_t i = 0; i < pixel_count(from); ++i) {
+        for (std::size_t c = 0; c < 4; ++c) {
+            float value = texel_value(from, i, c);
+            if (c < 3 && is_srgb) value = srgb_decode(value);
+            if (c < 3 && exponent != 1) value = pow(value, exponent);
+            to.rgba_float.pixels[4 * i + c] = value;
+        }
+    }
+    return to;
+}
+
+/// Returns the area that the triangles cover in texture coordinates.
+double texture_area(const Mesh& mesh) {
+    double sum = 0;
+    for (std::size_t i = 0; i + 2 < mesh.indices.size() && !mesh.uv[0].empty(); i += 3) {
+        const Vec2 a = mesh.uv[0][mesh.indices[i]], b = mesh.uv[0][mesh.indices[i + 1]] - a,
+                   c = mesh.uv[0][mesh.indices[i + 2]] - a;
+        sum += 0.5 * std::abs(static_cast<double>(b.x * c.y - b.y * c.x));
+    }
+    return sum;
+}
+
+} // namespace
+
+double world_area(const Mesh& mesh, const DoubleTransform& world_from_mesh) {
+    double sum = 0;
+    const auto corner = [&](std::size_t i) {
+        return transform_point(world_from_mesh, to_double(mesh.positions[mesh.indices[i]]));
+    };
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        const DoubleVec3 a = corner(i), across = cross(corner(i + 1) - a, corner(i + 2) - a);
+        sum += 0.5 * std::sqrt(dot(across, across));
+    }
+    return sum;
+}
+
+void set_bumps(const TextureValue& heights, const Mesh& mesh, const DoubleTransform& world_from_mesh,
+               Material& material, Scene& scene) {
+    TextureRef& ref = material.normal_texture;
+    if (!ref.has_image()) return;
+    const TextureImage linear =
+        linear_image(scene.images[static_cast<std::size_t>(ref.image)], ref.is_srgb, heights.exponent);
+    const double width = linear.rgba_float.width, height = linear.rgba_float.height;
+    const double repeats = static_cast<double>(abs(ref.m00 * ref.m11));
+    const double covered = texture_area(mesh) * repeats, area = world_area(mesh, world_from_mesh);
+    if (!(covered > 0 && area > 0)) {
+        ref = {};
+        return;
+    }
+    // Metres of the whole picture; normals_of_heights() takes white as kBumpHeight of its longer side.
+    const double side = std::sqrt(area / covered);
+    const double slope = static_cast<double>(heights.factor.r) * std::sqrt(width * height) / side;
+    const double usual = static_cast<double>(kBumpHeight) * std::max(width, height);
+    material.normal_scale = clamp(static_cast<float>(slope / usual), -0x1p10f, 0x1p10f);
+    ref.image = static_cast<int32_t>(scene.images.size());
+    ref.is_srgb = false;
+    scene.images.push_back(normals_of_heights(linear, 'm', ref.wrap_s));
+}
+
+} // namespace pertev::pbrt

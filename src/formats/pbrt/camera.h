@@ -1,0 +1,40 @@
+#pragma once
+
+// The camera of a pbrt file, and what its other statements before the world suggest for settings.
+//
+// pbrt's camera looks along +z with +x to the right and +y up, which is left-handed. A file whose camera transform
+// mirrors (as exporters of right-handed scenes write it) is in a right-handed world; any other world is mirrored in x
+// here, so that pictures are those of pbrt.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/pbrt/context.h"
+#include "formats/pbrt/parameters.h"
+#include "math/double_transform.h"
+#include "scene/scene.h"
+
+namespace pertev::pbrt {
+
+/// A statement before the world that has a type.
+struct ViewStatement {
+    std::string type;
+    Parameters parameters;
+};
+
+/// The statements that describe the picture.
+struct View {
+    std::optional<ViewStatement> camera, film, sampler, integrator, filter;
+    DoubleTransform camera_from_world;
+};
+
+/// Returns whether the world has to be mirrored.
+bool is_left_handed(const View& view);
+/// The map from the file's world to that of the scene.
+DoubleTransform scene_from_world(const View& view);
+
+/// Adds the camera, if the file has one, and the suggested settings to `scene`.
+void add_view(View& view, const Context& context, Scene& scene);
+
+} // namespace pertev::pbrt

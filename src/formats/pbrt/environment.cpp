@@ -1,0 +1,126 @@
+#include "formats/pbrt/environment.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "base/limits.h"
+#include "base/parallel_for.h"
+#include "image/read_image.h"
+#include "math/portable_math.h"
+
+namespace pertev::pbrt {
+namespace {
+
+/// Returns where a panorama around +z has the unit direction d.
+Vec2 latlong_place(Vec3 d) {
+    const float angle = atan2(d.y, d.x), turn = angle / (2 * kPi);
+    return {turn < 0 ? turn + 1 : turn, acos(clamp(d.z, -1.0f, 1.0f)) / kPi};
+}
+
+Rgb pixel(const Image& image, uint32_t x, uint32_t y) {
+    const float* const p = image.pixels.data() + std::size_t(image.channels) * (std::size_t(y) * image.width + x);
+    return {p[0], p[1], p[2]};
+}
+
+/// Returns the picture at a place, bilinear; columns go round if `wraps`.
+Rgb look_up(const Image& image, Vec2 place, bool wraps) {
+    const auto width = static_cast<float>(image.width), height = static_cast<float>(image.height);
+    const float x = place.x * width - 0.5f, y = clamp(place.y * height - 0.5f, 0.0f, height - 1);
+    const float left = floor(x), top = floor(y);
+    const auto column = [&](float at) {
+        const float turned = wraps ? (at < 0 ? at + width : (at >= width ? at - width : at)) : at;
+        return static_cast<uint32_t>(clamp(turned, 0.0f, width - 1));
+    };
+    const auto row = [&](float at) { return static_cast<uint32_t>(min(at, height - 1)); };
+    const Rgb above = lerp(pixel(image, column(left), row(top)), pixel(image, column(left + 1), row(top)), x - left);
+    const Rgb below =
+        lerp(pixel(image, column(left), row(top + 1)), pixel(image, column(left + 1), row(top + 1)), x - left);
+    return lerp(above, below, y - top);
+}
+
+/// The direction of the middle of a panorama's pixel (scene/light.h).
+Vec3 direction_at(uint32_t x, uint32_t y, uint32_t width, uint32_t height) {
+    const float angle = 2 * kPi * ((static_cast<float>(x) + 0.5f) / static_cast<float>(width) - 0.5f);
+    const float down = kPi * (static_cast<float>(y) + 0.5f) / static_cast<float>(height);
+    return {sin(down) * sin(angle), cos(down), -sin(down) * cos(angle)};
+}
+
+/// Sums luminance times the cosine to +z over the upper hemisphere of the light, by the panorama's rows.
+double illuminance_of(const Image& panorama, const DoubleTransform& local_from_scene) {
+    double sum = 0;
+    for (uint32_t y = 0; y < panorama.height; ++y) {
+        const double down = 3.14159265358979323846 * (y + 0.5) / panorama.height;
+        const auto height = static_cast<double>(sin(static_cast<float>(down)));
+        const double area =
+            height * (2 * 3.14159265358979323846 / panorama.width) * (3.14159265358979323846 / panorama.height);
+        for (uint32_t x = 0; x < panorama.width; ++x) {
+            const double cosine =
+                dot(local_from_scene.row2, to_double(direction_at(x, y, panorama.width, panorama.height)));
+            if (cosine > 0) sum += cosine * area * static_cast<double>(luminance(pixel(panorama, x, y)));
+        }
+    }
+    return sum;
+}
+
+} // namespace
+
+Vec2 octahedral_place(Vec3 d) {
+    const float x = abs(d.x), y = abs(d.y), root = sqrt(max(1 - abs(d.z), 0.0f));
+    const float share = x == 0 && y == 0 ? 0.0f : atan2(y, x) * (2 / kPi);
+    float v = share * root, u = root - v;
+    if (d.z < 0) {
+        std::swap(u, v);
+        u = 1 - u;
+        v = 1 - v;
+    }
+    return {0.5f + (d.x < 0 ? -0.5f : 0.5f) * u, 0.5f + (d.y < 0 ? -0.5f : 0.5f) * v};
+}
+
+std::optional<Environment> make_environment(const InfiniteLight& light, const std::filesystem::path& picture,
+                                            const DoubleTransform& local_from_scene, Sink& sink) {
+    Environment environment;
+    environment.scale = light.scale;
+    if (light.picture.empty()) {
+        if (light.illuminance > 0)
+            environment.scale = static_cast<float>(light.illuminance / 3.14159265358979323846) * light.scale;
+        return environment;
+    }
+    Image from;
+    try {
+        from = read_image(picture, sink);
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::BadInput) throw;
+        sink.leave_out(error.remark().and_then("; the infinite light is left out"));
+        return std::nullopt;
+    }
+    if (!light.is_latlong && from.width != from.height) {
+        sink.leave_out(
+            {light.location,
+             "the picture of an infinite light is not square, as the equal-area octahedron is; the light is left out"});
+        return std::nullopt;
+    }
+    Image& to = environment.image;
+    to.height = from.height;
+    to.width = std::max(light.is_latlong ? from.width : 2 * from.width, 1u);
+    to.channels = 3;
+    to.pixels.resize(std::size_t(3) * to.width * to.height);
+    parallel_for(to.height, 4, [&](uint64_t y) {
+        for (uint32_t x = 0; x < to.width; ++x) {
+            const DoubleVec3 d = to_double(direction_at(x, static_cast<uint32_t>(y), to.width, to.height));
+            const Vec3 local = normalize(to_float(DoubleVec3{
+                dot(local_from_scene.row0, d), dot(local_from_scene.row1, d), dot(local_from_scene.row2, d)}));
+            const Vec2 place = light.is_latlong ? latlong_place(local) : octahedral_place(local);
+            const Rgb color = look_up(from, place, light.is_latlong);
+            float* const pixel = to.pixels.data() + 3 * (static_cast<std::size_t>(y) * to.width + x);
+            pixel[0] = color.r, pixel[1] = color.g, pixel[2] = color.b;
+        }
+    });
+    if (light.illuminance > 0) {
+        const double own = illuminance_of(to, local_from_scene);
+        if (own > 0) environment.scale = static_cast<float>(light.illuminance / own) * light.scale;
+    }
+    return environment;
+}
+
+} // namespace pertev::pbrt

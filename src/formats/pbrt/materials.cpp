@@ -1,0 +1,414 @@
+#include "formats/pbrt/materials.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "base/message_text.h"
+#include "formats/files/closest_name.h"
+#include "formats/pbrt/colors.h"
+#include "math/portable_math.h"
+
+namespace pertev::pbrt {
+namespace {
+
+using M = MaterialParameters;
+
+constexpr float kLeastIor = 1, kMostIor = 0x1p10f;
+
+float usable_ior(float ior, const MaterialSource& source) {
+    if (ior >= kLeastIor && ior <= kMostIor) return ior;
+    source.context.sink.warn({source.parameters.location(),
+                              fmt::format("the index of refraction of {} is {}; the nearest from 1 to 1024 is used",
+                                          source.parameters.what(), ior)});
+    return ior >= kLeastIor ? kMostIor : kLeastIor;
+}
+
+void set_ior(const MaterialSource& source, std::string_view name, float Material::*to, Surface& surface) {
+    const std::optional<GlassIndex> index = glass_index(source.parameters, name, source.context);
+    surface.material.*to = usable_ior(index ? index->ior : 1.5f, source);
+    if (index && index->abbe_number > 0 && to == static_cast<float Material::*>(&M::ior)) {
+        surface.material.transmission_dispersion_scale = 1;
+        surface.material.transmission_dispersion_abbe_number = index->abbe_number;
+    }
+}
+
+Rgb usable_index(Rgb index, float least) {
+    const auto usable = [&](float x) { return clamp(x, least, 0x1p10f); };
+    return {usable(index.r), usable(index.g), usable(index.b)};
+}
+
+/// Sets the complex index of a conductor from eta and k, or from its reflectance at 0 degrees, as pbrt does.
+void set_conductor(const MaterialSource& source, std::string_view prefix, Surface& surface) {
+    const std::string eta_name = std::string(prefix) + "eta", k_name = std::string(prefix) + "k";
+    Material& material = surface.material;
+    material.kind = MaterialKind::Conductor;
+    const bool is_conductor = prefix.empty();
+    const char* const eta_text = is_conductor ? "eta" : "conductor.eta";
+    const char* const k_text = is_conductor ? "k" : "conductor.k";
+    if (source.parameters.has("reflectance")) {
+        source.parameters.leave_out({"eta", "k", "conductor.eta", "conductor.k"}, "its reflectance decides",
+                                    source.context.sink);
+        const TextureValue color = source.textures.color(source.parameters, "reflectance", grey(0.5f));
+        if (color.has_image()) {
+            material.kind = MaterialKind::MetallicRoughness;
+            material.metallic = 1;
+            set_color(surface, &M::base_color, &M::base_color_texture, color);
+            warn_of_nearest(source, "a metal of this colour by Schlick's formula");
+            return;
+        }
+        const auto k_of = [](float r) {
+            r = clamp(r, 0.0f, 0.9999f);
+            return 2 * sqrt(r / (1 - r));
+        };
+        material.eta = {1, 1, 1};
+        material.k = {k_of(color.factor.r), k_of(color.factor.g), k_of(color.factor.b)};
+        return;
+    }
+    const ComplexIndex copper = find_metal_index("Cu").value_or(ComplexIndex{});
+    for (const char* const name : {eta_text, k_text}) {
+        const Parameter* const found = source.parameters.find(name);
+        if (found != nullptr && found->type == ParameterType::Texture) {
+            source.parameters.leave_out({name}, "textures of it are not supported; that of copper is used",
+                                        source.context.sink);
+            material.eta = copper.eta, material.k = copper.k;
+            return;
+        }
+    }
+    material.eta =
+        usable_index(index_of_channels(source.parameters, eta_text, source.context).value_or(copper.eta), 0x1p-10f);
+    material.k = usable_index(index_of_channels(source.parameters, k_text, source.context).value_or(copper.k), 0);
+}
+
+Surface diffuse(const MaterialSource& source) {
+    Surface surface = make_surface(MaterialKind::Diffuse);
+    set_color(surface, &M::base_color, &M::base_color_texture,
+              source.textures.color(source.parameters, "reflectance", grey(0.5f)));
+    return surface;
+}
+
+/// Leaves out what Pertev's coats do not have.
+void leave_out_coat_parts(const MaterialSource& source) {
+    Parameters& parameters = source.parameters;
+    parameters.ignore({"maxdepth", "nsamples", "thickness", "interface.thickness"});
+    if (const auto albedo = plain_color(parameters, "albedo", source.context); albedo && !is_black(*albedo))
+        parameters.leave_out({"albedo"}, "coats scatter nothing inside", source.context.sink);
+    parameters.ignore({"g"});
+}
+
+Surface coated_diffuse(const MaterialSource& source) {
+    Surface surface = make_surface(MaterialKind::MetallicRoughness);
+    set_ior(source, "eta", &Material::ior, surface);
+    surface.material.transmission_dispersion_scale = 0;
+    read_roughness(source, 0, "", surface);
+    set_color(surface, &M::base_color, &M::base_color_texture,
+              source.textures.color(source.parameters, "reflectance", grey(0.5f)), Curve::BeneathCoat,
+              reflected_inside(surface.material.ior));
+    leave_out_coat_parts(source);
+    return surface;
+}
+
+Surface coated_conductor(const MaterialSource& source) {
+    Surface surface = make_surface(MaterialKind::Conductor);
+    set_conductor(source, "conductor.", surface);
+    read_roughness(source, 0, "interface.", surface);
+    Material& material = surface.material;
+    const float coat_roughness = material.roughness;
+    if (material.roughness_texture.has_image())
+        source.parameters.leave_out({"interface.roughness"}, "a coat's roughness has no texture", source.context.sink);
+    surface.material.roughness_texture = {};
+    std::erase_if(surface.images, [](const SlotImage& use) { return use.slot == &M::roughness_texture; });
+    read_roughness(source, 0, "conductor.", surface);
+    material.coat_weight = 1;
+    material.coat_roughness = coat_roughness;
+    set_ior(source, "interface.eta", &Material::coat_ior, surface);
+    leave_out_coat_parts(source);
+    return surface;
+}
+
+Surface dielectric(const MaterialSource& source) {
+    Surface surface = make_surface(MaterialKind::Dielectric);
+    surface.material.base_color = grey(1);
+    set_ior(source, "eta", &Material::ior, surface);
+    read_roughness(source, 0, "", surface);
+    return surface;
+}
+
+/// Two surfaces of a pane, between which light bounces, reflect 2 F / (1 + F); an index of one has that at 0 degrees.
+Surface thin_dielectric(const MaterialSource& source) {
+    Surface surface = make_surface(MaterialKind::MetallicRoughness);
+    Material& material = surface.material;
+    set_ior(source, "eta", &Material::ior, surface);
+    material.transmission_dispersion_scale = 0;
+    const float root = (material.ior - 1) / (material.ior + 1), once = root * root;
+    const float amplitude = sqrt(2 * once / (1 + once));
+    material.ior = (1 + amplitude) / (1 - amplitude);
+    material.base_color = grey(1);
+    material.roughness = 0;
+    material.transmission_weight = 1;
+    material.thin_walled = true;
+    source.parameters.ignore({"roughness", "remaproughness"});
+    warn_of_nearest(source, "a thin wall with the same reflectance at 0 degrees");
+    return surface;
+}
+
+Surface diffuse_transmission(const MaterialSource& source) {
+    Surface surface = make_surface(MaterialKind::MetallicRoughness);
+    Material& material = surface.material;
+    const auto scale = static_cast<float>(source.parameters.number("scale", 1, source.context.sink));
+    const TextureValue here = source.textures.color(source.parameters, "reflectance", grey(0.25f)).scaled(grey(scale));
+    const TextureValue far = source.textures.color(source.parameters, "transmittance", grey(0.25f)).scaled(grey(scale));
+    const float reflected = here.has_image() ? 0.5f : max_component(here.factor);
+    const float transmitted = far.has_image() ? 0.5f : max_component(far.factor);
+    const float weight = reflected + transmitted > 0 ? transmitted / (reflected + transmitted) : 0.0f;
+    material.metallic = 0;
+    material.specular_weight = 0;
+    material.diffuse_transmission_weight = weight;
+    const auto over = [](float share) { return grey(share > 0 ? 1 / share : 0.0f); };
+    set_color(surface, &M::base_color, &M::base_color_texture, here.scaled(over(1 - weight)));
+    set_color(surface, &M::diffuse_transmission_color, &M::diffuse_transmission_color_texture,
+              far.scaled(over(weight)));
+    return surface;
+}
+
+Surface nothing() {
+    Surface surface;
+    surface.is_nothing = true;
+    return surface;
+}
+
+Rgb faded(Rgb a, Rgb b, float share) { return lerp(a, b, share); }
+
+/// Mixes two materials: exactly if one is no surface or both are diffuse, else as the one with the larger share.
+Surface mixture(const MaterialSource& source) {
+    const Parameter* const names = source.parameters.find("materials");
+    std::vector<std::string> parts;
+    if (names != nullptr) parts = names->texts;
+    for (const char* const name : {"namedmaterial1", "namedmaterial2"}) { // pbrt-v3
+        if (source.parameters.has(name)) parts.push_back(source.parameters.text(name, "", source.context.sink));
+    }
+    const TextureValue amount = source.textures.number(source.parameters, "amount", 0.5f);
+    if (parts.size() != 2) throw source.parameters.error("a mix needs two materials");
+    const FileLocation& place = source.parameters.location();
+    const Surface* first = source.find(parts[0], place);
+    const Surface* second = source.find(parts[1], place);
+    if (first == nullptr || second == nullptr) {
+        const Surface* const left = first != nullptr ? first : second;
+        if (left == nullptr) throw source.parameters.error("a mix of two materials that do not exist");
+        return *left;
+    }
+    // In pbrt-v4 `amount` is the share of the second; in v3 it is that of the first.
+    TextureValue of_second = amount;
+    if (names == nullptr) {
+        of_second = amount.scaled(grey(-1));
+        of_second.offset += amount.has_image() ? grey(1) : grey(0);
+        if (!amount.has_image()) of_second.factor = grey(1 - amount.factor.r);
+    }
+    if (first->is_nothing || second->is_nothing) {
+        if (first->is_nothing && second->is_nothing) return nothing();
+        Surface surface = first->is_nothing ? *second : *first;
+        TextureValue alpha = of_second;
+        if (second->is_nothing) {
+            alpha = of_second.scaled(grey(-1));
+            alpha.offset += grey(1);
+            if (!alpha.has_image()) alpha = constant(grey(1 - of_second.factor.r));
+        }
+        set_alpha(surface, alpha);
+        return surface;
+    }
+    const float share = of_second.has_image() ? 0.5f : clamp(of_second.factor.r, 0.0f, 1.0f);
+    const bool is_diffuse = first->material.kind == MaterialKind::Diffuse &&
+                            second->material.kind == MaterialKind::Diffuse && first->images.empty() &&
+                            second->images.empty();
+    if (is_diffuse && !of_second.has_image()) {
+        Surface surface = *first;
+        surface.material.base_color = faded(first->material.base_color, second->material.base_color, share);
+        return surface;
+    }
+    if (is_diffuse) {
+        Surface surface = *first;
+        TextureValue color = of_second.scaled(second->material.base_color - first->material.base_color);
+        color.offset += first->material.base_color;
+        set_color(surface, &M::base_color, &M::base_color_texture, color);
+        return surface;
+    }
+    if (share > 0 && share < 1)
+        source.context.sink.leave_out(
+            {place, fmt::format("of the mix the material {} is left out", shortened(parts[share < 0.5f ? 1 : 0]))});
+    return share < 0.5f ? *first : *second;
+}
+
+/// A measured or subsurface material as a diffuse one under a smooth coat.
+Surface nearest_coated(const MaterialSource& source, bool has_coat) {
+    Surface surface = make_surface(has_coat ? MaterialKind::MetallicRoughness : MaterialKind::Diffuse);
+    if (has_coat) {
+        set_ior(source, "eta", &Material::ior, surface);
+        surface.material.transmission_dispersion_scale = 0;
+        read_roughness(source, 0, "", surface);
+    }
+    const TextureValue color = source.textures.color(source.parameters, "reflectance", grey(0.5f));
+    set_color(surface, &M::base_color, &M::base_color_texture, color);
+    warn_of_nearest(source, has_coat ? "a diffuse surface beneath a coat" : "a diffuse surface");
+    for (const std::string_view name : {"name", "sigma_a", "sigma_s", "mfp", "scale", "g", "filename", "fname"})
+        source.parameters.ignore({name});
+    return surface;
+}
+
+constexpr std::array<std::string_view, 12> kMaterialTypes = {
+    "diffuse", "coateddiffuse", "coatedconductor", "conductor",  "dielectric", "thindielectric", "diffusetransmission",
+    "mix",     "interface",     "measured",        "subsurface", "hair"};
+
+std::optional<Surface> read_version_4_material(const MaterialSource& source) {
+    const std::string& type = source.type;
+    if (type == "diffuse") return diffuse(source);
+    if (type == "coateddiffuse") return coated_diffuse(source);
+    if (type == "coatedconductor") return coated_conductor(source);
+    if (type == "conductor") {
+        Surface surface = make_surface(MaterialKind::Conductor);
+        set_conductor(source, "", surface);
+        read_roughness(source, 0, "", surface);
+        return surface;
+    }
+    if (type == "dielectric") return dielectric(source);
+    if (type == "thindielectric") return thin_dielectric(source);
+    if (type == "diffusetransmission") return diffuse_transmission(source);
+    if (type == "mix") return mixture(source);
+    if (type == "interface" || type == "none" || type.empty()) return nothing();
+    if (type == "measured") return nearest_coated(source, false);
+    if (type == "subsurface" && !source.context.is_version_3) return nearest_coated(source, true);
+    return std::nullopt;
+}
+
+} // namespace
+
+Surface make_surface(MaterialKind kind) {
+    Surface surface;
+    surface.material.kind = kind;
+    surface.material.roughness = 0;
+    surface.material.energy = MicrofacetEnergy::Single;
+    surface.material.microfacet_distribution = MicrofacetDistribution::Ggx;
+    return surface;
+}
+
+void warn_of_nearest(const MaterialSource& source, std::string_view nearest) {
+    source.context.sink.warn({FileLocation{source.parameters.location().file},
+                              fmt::format("materials of the type {} are drawn as {}", source.type, nearest)});
+}
+
+void read_roughness(const MaterialSource& source, double missing, std::string_view prefix, Surface& surface) {
+    struct Names {
+        const char *both, *u, *v;
+    };
+    const Names names =
+        prefix == "interface."   ? Names{"interface.roughness", "interface.uroughness", "interface.vroughness"}
+        : prefix == "conductor." ? Names{"conductor.roughness", "conductor.uroughness", "conductor.vroughness"}
+                                 : Names{"roughness", "uroughness", "vroughness"};
+    Sink& sink = source.context.sink;
+    const auto fallback = static_cast<float>(missing);
+    const TextureValue both = source.textures.number(source.parameters, names.both, fallback);
+    const auto part = [&](const char* name) {
+        return source.parameters.has(name) ? source.textures.number(source.parameters, name, fallback) : both;
+    };
+    const TextureValue u = part(names.u), v = part(names.v);
+    const bool is_remapped = source.parameters.truth("remaproughness", true, sink);
+    const Curve curve = !is_remapped                  ? Curve::RoughnessOfWidth
+                        : source.context.is_version_3 ? Curve::RoughnessOfVersion3
+                                                      : Curve::RoughnessOfRoot;
+    Material& material = surface.material;
+    if (u.has_image() || v.has_image()) {
+        if (source.parameters.has(names.u) && source.parameters.has(names.v))
+            source.parameters.leave_out({names.v}, "a stretched reflection with textures is even", sink);
+        set_number(surface, &M::roughness, &M::roughness_texture, u.has_image() ? u : v, curve);
+        return;
+    }
+    const float along = converted(curve, 0, u.factor.r), across = converted(curve, 0, v.factor.r);
+    const float wide = max(along, across) * max(along, across), narrow = min(along, across) * min(along, across);
+    material.roughness = min(along, across);
+    if (!(wide > narrow) || narrow >= 1) return;
+    material.specular_roughness_anisotropy = sqrt((wide - narrow) / (1 - narrow));
+    material.anisotropy_rotation = along > across ? 0.0f : 0.5f * kPi;
+}
+
+void read_bumps(const MaterialSource& source, Surface& surface) {
+    Sink& sink = source.context.sink;
+    for (const char* const name : {"displacement", "bumpmap"}) {
+        if (!source.parameters.has(name)) continue;
+        const TextureValue heights = source.textures.number(source.parameters, name, 0);
+        if (!heights.has_image()) continue; // a constant height changes nothing
+        if (heights.made >= 0) {
+            source.parameters.leave_out({name}, "bumps need an image", sink);
+            continue;
+        }
+        surface.heights = heights;
+        surface.has_heights = true;
+    }
+    const std::string map = source.parameters.text("normalmap", "", sink);
+    if (map.empty()) return;
+    TextureValue normals = source.textures.image_file(source.parameters.location(), map);
+    normals.ref.is_srgb = false;
+    if (normals.has_image()) surface.material.normal_texture = normals.ref;
+}
+
+void set_mirror(Surface& surface, const TextureValue& color) {
+    Material& material = surface.material;
+    material.kind = MaterialKind::MetallicRoughness;
+    material.metallic = 1;
+    set_color(surface, &M::base_color, &M::base_color_texture, color);
+    if (color.has_image()) return;
+    // Schlick's colour rises towards grazing angles; the tint of F82 takes that off again.
+    constexpr float kOneLessCosine = 1 - 1.0f / 7,
+                    kRise = kOneLessCosine * kOneLessCosine * kOneLessCosine * kOneLessCosine * kOneLessCosine;
+    const auto tint = [](float r) { return r / (r + (1 - r) * kRise); };
+    material.metal_fresnel = MetalFresnel::F82;
+    const Rgb c = material.base_color;
+    material.specular_color = {tint(c.r), tint(c.g), tint(c.b)};
+}
+
+float reflected_inside(float ior) {
+    constexpr int kSteps = 256;
+    float sum = 0; // the integral of F(cosine) 2 cosine, by the middles of equal steps
+    for (int i = 0; i < kSteps; ++i) {
+        const float cosine = (static_cast<float>(i) + 0.5f) / kSteps;
+        const float square = 1 - ior * ior * (1 - cosine * cosine);
+        float reflected = 1;
+        if (square > 0) {
+            const float out = sqrt(square);
+            const float s = (ior * cosine - out) / (ior * cosine + out),
+                        p = (cosine - ior * out) / (cosine + ior * out);
+            reflected = 0.5f * (s * s + p * p);
+        }
+        sum += reflected * 2 * cosine / kSteps;
+    }
+    return sum;
+}
+
+Surface read_material(const MaterialSource& source) {
+    const std::string& type = source.type;
+    Sink& sink = source.context.sink;
+    try {
+        std::optional<Surface> surface = read_version_4_material(source);
+        if (!surface) {
+            Context of_version_3 = source.context;
+            of_version_3.is_version_3 = true;
+            surface = read_version_3_material({type, source.parameters, source.textures, of_version_3, source.find});
+        }
+        if (surface) {
+            read_bumps(source, *surface);
+            source.parameters.leave_out_unknown(sink);
+            return *std::move(surface);
+        }
+        std::vector<std::string_view> known(kMaterialTypes.begin(), kMaterialTypes.end());
+        known.insert(known.end(), version_3_materials().begin(), version_3_materials().end());
+        const bool is_known = std::ranges::find(known, type) != known.end();
+        sink.leave_out(
+            {source.parameters.location(), fmt::format("materials of the type {} are left out; the surface is grey{}",
+                                                       shortened(type), is_known ? "" : did_you_mean(type, known))});
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::BadInput) throw;
+        sink.leave_out(error.remark().and_then("; the surface is grey"));
+    }
+    return make_surface(MaterialKind::Diffuse);
+}
+
+} // namespace pertev::pbrt

@@ -1,0 +1,47 @@
+#pragma once
+
+// Materials of pbrt-v4 and v3 as those of Pertev. All have microfacets of GGX and lose what one bounce loses, as there.
+// A material that Pertev has only nearly is the nearest one, with a warning.
+
+#include <functional>
+#include <string>
+
+#include "formats/pbrt/surface.h"
+
+namespace pertev::pbrt {
+
+/// Finds a named material for a mixture, with its location for messages; null after a warning if there is none.
+using FindMaterial = std::function<const Surface*(const std::string& name, const FileLocation& from)>;
+
+/// The parts that materials are made from.
+struct MaterialSource {
+    const std::string& type;
+    Parameters& parameters;
+    Textures& textures;
+    const Context& context;
+    const FindMaterial& find;
+};
+
+/// Reads a material. One whose type is unknown, or that is unreadable, is grey, with a warning.
+Surface read_material(const MaterialSource& source);
+
+/// Reads a type that only pbrt-v3 has; nothing if it has none of this name.
+std::optional<Surface> read_version_3_material(const MaterialSource& source);
+/// Returns the types of pbrt-v3.
+std::span<const std::string_view> version_3_materials();
+
+/// Returns a surface of a kind with pbrt's microfacets.
+Surface make_surface(MaterialKind kind);
+/// Reads roughness, uroughness, vroughness and remaproughness.
+void read_roughness(const MaterialSource& source, double missing, std::string_view prefix, Surface& surface);
+/// Reads the bump map or normal map that all materials may have.
+void read_bumps(const MaterialSource& source, Surface& surface);
+/// Warns once that materials of a type are drawn as the nearest one.
+void warn_of_nearest(const MaterialSource& source, std::string_view nearest);
+/// Makes a metal of the colour that it reflects at every angle.
+void set_mirror(Surface& surface, const TextureValue& color);
+
+/// The share of diffuse light inside a smooth dielectric of this index that its surface reflects back.
+float reflected_inside(float ior);
+
+} // namespace pertev::pbrt

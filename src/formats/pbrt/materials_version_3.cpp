@@ -1,0 +1,203 @@
+#include <array>
+
+#include "formats/pbrt/colors.h"
+#include "formats/pbrt/materials.h"
+#include "math/portable_math.h"
+
+namespace pertev::pbrt {
+namespace {
+
+using M = MaterialParameters;
+
+constexpr std::array<std::string_view, 13> kVersion3Types = {
+    "matte",       "plastic", "glass",   "metal",        "mirror",     "substrate", "uber",
+    "translucent", "disney",  "fourier", "kdsubsurface", "subsurface", "hair"};
+
+constexpr float kReflectanceOf15 = 0.04f; // at 0 degrees, for an index of 1.5
+
+Surface matte(const MaterialSource& source) {
+    Surface surface = make_surface(MaterialKind::Diffuse);
+    set_color(surface, &M::base_color, &M::base_color_texture,
+              source.textures.color(source.parameters, "Kd", grey(0.5f)));
+    const TextureValue sigma = source.textures.number(source.parameters, "sigma", 0);
+    if (sigma.has_image()) {
+        source.parameters.leave_out({"sigma"}, "it has no texture", source.context.sink);
+    } else if (sigma.factor.r > 0) {
+        surface.material.base_diffuse_roughness = clamp(sigma.factor.r / 90, 0.0f, 1.0f);
+        warn_of_nearest(source, "a rough diffuse surface of EON");
+    }
+    return surface;
+}
+
+/// Reads Kd, and sets a reflection of Fresnel's reflectance times `ks`.
+void set_plastic(const MaterialSource& source, float missing, const TextureValue& ks, Surface& surface) {
+    set_color(surface, &M::base_color, &M::base_color_texture,
+              source.textures.color(source.parameters, "Kd", grey(missing)));
+    const float most = ks.has_image() ? 1.0f : max_component(ks.factor);
+    surface.material.specular_weight = most;
+    if (most > 0) set_color(surface, &M::specular_color, &M::specular_color_texture, ks.scaled(grey(1 / most)));
+}
+
+Surface plastic(const MaterialSource& source) {
+    Surface surface = make_surface(MaterialKind::MetallicRoughness);
+    read_roughness(source, 0.1, "", surface);
+    set_plastic(source, 0.25f, source.textures.color(source.parameters, "Ks", grey(0.25f)), surface);
+    warn_of_nearest(source, "a diffuse surface beneath a reflection");
+    return surface;
+}
+
+Surface substrate(const MaterialSource& source) {
+    Surface surface = make_surface(MaterialKind::MetallicRoughness);
+    read_roughness(source, 0.1, "", surface);
+    // Ks is the reflectance at 0 degrees; at grazing angles all is reflected.
+    const TextureValue ks =
+        source.textures.color(source.parameters, "Ks", grey(0.5f)).scaled(grey(1 / kReflectanceOf15));
+    set_color(surface, &M::base_color, &M::base_color_texture,
+              source.textures.color(source.parameters, "Kd", grey(0.5f)));
+    set_color(surface, &M::specular_color, &M::specular_color_texture, ks);
+    warn_of_nearest(source, "a diffuse surface beneath a reflection");
+    return surface;
+}
+
+void set_index(const MaterialSource& source, Surface& surface) {
+    const char* const name = source.parameters.contains("eta") ? "eta" : "index";
+    source.parameters.ignore({"eta", "index"});
+    const TextureValue index = source.textures.number(source.parameters, name, 1.5f);
+    if (index.has_image()) source.parameters.leave_out({name}, "it has no texture; 1.5 is used", source.context.sink);
+    surface.material.ior = index.has_image() ? 1.5f : clamp(index.factor.r, 1.0f, 0x1p10f);
+}
+
+Surface glass(const MaterialSource& source) {
+    Surface surface = make_surface(MaterialKind::Dielectric);
+    set_index(source, surface);
+    read_roughness(source, 0, "", surface);
+    set_color(surface, &M::base_color, &M::base_color_texture, source.textures.color(source.parameters, "Kt", grey(1)));
+    const TextureValue kr = source.textures.color(source.parameters, "Kr", grey(1));
+    if (kr.has_image() || !(kr.factor == grey(1)))
+        source.parameters.leave_out({"Kr"}, "glass reflects as its index says", source.context.sink);
+    return surface;
+}
+
+Surface metal(const MaterialSource& source) {
+    Surface surface = make_surface(MaterialKind::Conductor);
+    const ComplexIndex copper = find_metal_index("Cu").value_or(ComplexIndex{});
+    const auto usable = [](Rgb index, float least) {
+        return Rgb{clamp(index.r, least, 0x1p10f), clamp(index.g, least, 0x1p10f), clamp(index.b, least, 0x1p10f)};
+    };
+    surface.material.eta =
+        usable(index_of_channels(source.parameters, "eta", source.context).value_or(copper.eta), 0x1p-10f);
+    surface.material.k = usable(index_of_channels(source.parameters, "k", source.context).value_or(copper.k), 0);
+    read_roughness(source, 0.01, "", surface);
+    return surface;
+}
+
+Surface mirror(const MaterialSource& source) {
+    Surface surface = make_surface(MaterialKind::MetallicRoughness);
+    set_mirror(surface, source.textures.color(source.parameters, "Kr", grey(0.9f)));
+    return surface;
+}
+
+/// Kd with a reflection Ks, mirrored Kr, straight transmission Kt and an opacity, of which a surface has most.
+Surface uber(const MaterialSource& source) {
+    Surface surface = make_surface(MaterialKind::MetallicRoughness);
+    Parameters& parameters = source.parameters;
+    set_index(source, surface);
+    read_roughness(source, 0.1, "", surface);
+    const TextureValue ks = source.textures.color(parameters, "Ks", grey(0.25f));
+    set_plastic(source, 0.25f, ks, surface);
+    const TextureValue kr = source.textures.color(parameters, "Kr", grey(0)),
+                       kt = source.textures.color(parameters, "Kt", grey(0));
+    if (kr.has_image() || !is_black(kr.factor))
+        parameters.leave_out({"Kr"}, "uber has one reflection, Ks", source.context.sink);
+    if (kt.has_image() || !is_black(kt.factor))
+        parameters.leave_out({"Kt"}, "uber transmits by its opacity alone", source.context.sink);
+    const TextureValue opacity = source.textures.color(parameters, "opacity", grey(1));
+    if (!opacity.has_image()) {
+        set_alpha(surface, constant(grey((opacity.factor.r + opacity.factor.g + opacity.factor.b) / 3)));
+    } else {
+        set_alpha(surface, opacity);
+    }
+    const bool has_reflection = ks.has_image() || !is_black(ks.factor);
+    if (surface.material.alpha == 0) surface.is_nothing = true; // light passes unchanged
+    if (has_reflection && !surface.is_nothing) warn_of_nearest(source, "a diffuse surface beneath a reflection");
+    if (!has_reflection && !surface.material.base_color_texture.has_image())
+        surface.material.kind = MaterialKind::Diffuse;
+    return surface;
+}
+
+Surface translucent(const MaterialSource& source) {
+    Surface surface = make_surface(MaterialKind::MetallicRoughness);
+    Parameters& parameters = source.parameters;
+    const TextureValue kd = source.textures.color(parameters, "Kd", grey(0.25f));
+    const TextureValue ks = source.textures.color(parameters, "Ks", grey(0.25f));
+    const TextureValue reflect = source.textures.color(parameters, "reflect", grey(0.5f));
+    const TextureValue transmit = source.textures.color(parameters, "transmit", grey(0.5f));
+    read_roughness(source, 0.1, "", surface);
+    const Rgb here = reflect.has_image() ? grey(0.5f) : reflect.factor,
+              far = transmit.has_image() ? grey(0.5f) : transmit.factor;
+    const float sum = max_component(here) + max_component(far), weight = sum > 0 ? max_component(far) / sum : 0.0f;
+    Material& material = surface.material;
+    material.diffuse_transmission_weight = weight;
+    const auto over = [](float share) { return share > 0 ? 1 / share : 0.0f; };
+    set_color(surface, &M::base_color, &M::base_color_texture, kd.scaled(over(1 - weight) * here));
+    set_color(surface, &M::diffuse_transmission_color, &M::diffuse_transmission_color_texture,
+              kd.scaled(over(weight) * far));
+    set_color(surface, &M::specular_color, &M::specular_color_texture, ks.scaled(here));
+    warn_of_nearest(source, "a sheet that transmits diffuse light alone");
+    return surface;
+}
+
+Surface disney(const MaterialSource& source) {
+    Surface surface = make_surface(MaterialKind::MetallicRoughness);
+    Parameters& parameters = source.parameters;
+    Material& material = surface.material;
+    set_color(surface, &M::base_color, &M::base_color_texture, source.textures.color(parameters, "color", grey(0.5f)));
+    set_number(surface, &M::metallic, &M::metallic_texture, source.textures.number(parameters, "metallic", 0));
+    set_number(surface, &M::roughness, &M::roughness_texture, source.textures.number(parameters, "roughness", 0.5f));
+    set_index(source, surface);
+    const auto number = [&](const char* name, double missing) {
+        return clamp(static_cast<float>(parameters.number(name, missing, source.context.sink)), 0.0f, 1.0f);
+    };
+    material.coat_weight = 0.25f * number("clearcoat", 0);
+    material.coat_roughness = 1 - number("clearcoatgloss", 1);
+    material.transmission_weight = number("spectrans", 0);
+    material.thin_walled = parameters.truth("thin", false, source.context.sink);
+    material.fuzz_weight = number("sheen", 0);
+    for (const char* const name :
+         {"speculartint", "anisotropic", "sheentint", "scatterdistance", "flatness", "difftrans"})
+        parameters.leave_out({name}, "the nearest material has none", source.context.sink);
+    warn_of_nearest(source, "glTF's material of these parameters");
+    return surface;
+}
+
+Surface scattering(const MaterialSource& source) {
+    Surface surface = make_surface(MaterialKind::MetallicRoughness);
+    set_index(source, surface);
+    read_roughness(source, 0, "", surface);
+    set_color(surface, &M::base_color, &M::base_color_texture,
+              source.textures.color(source.parameters, "Kd", grey(0.5f)));
+    warn_of_nearest(source, "a diffuse surface beneath a reflection");
+    source.parameters.ignore({"name", "sigma_a", "sigma_s", "sigma_prime_s", "mfp", "scale", "g", "Kr", "Kt"});
+    return surface;
+}
+
+} // namespace
+
+std::span<const std::string_view> version_3_materials() { return kVersion3Types; }
+
+std::optional<Surface> read_version_3_material(const MaterialSource& source) {
+    const std::string& type = source.type;
+    if (type == "matte") return matte(source);
+    if (type == "plastic") return plastic(source);
+    if (type == "glass") return glass(source);
+    if (type == "metal") return metal(source);
+    if (type == "mirror") return mirror(source);
+    if (type == "substrate") return substrate(source);
+    if (type == "uber") return uber(source);
+    if (type == "translucent") return translucent(source);
+    if (type == "disney") return disney(source);
+    if (type == "kdsubsurface" || type == "subsurface") return scattering(source);
+    return std::nullopt;
+}
+
+} // namespace pertev::pbrt

@@ -1,0 +1,164 @@
+#include "formats/pbrt/surface.h"
+
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "base/parallel_for.h"
+#include "formats/obj/texel_values.h"
+#include "image/srgb.h"
+#include "math/portable_math.h"
+
+namespace pertev::pbrt {
+namespace {
+
+bool is_unit(Rgb c) {
+    const auto is_within = [](float x) { return x >= 0 && x <= 1; };
+    return is_within(c.r) && is_within(c.g) && is_within(c.b);
+}
+
+std::array<float, 3> numbers_of(Rgb c) { return {c.r, c.g, c.b}; }
+
+Rgb converted(Curve curve, float amount, Rgb c) {
+    return {converted(curve, amount, c.r), converted(curve, amount, c.g), converted(curve, amount, c.b)};
+}
+
+/// Sets the texture of a slot. Returns the factor that the slot's number keeps.
+Rgb put_image(Surface& surface, TextureSlot slot, const TextureValue& value, Curve curve, float amount) {
+    surface.material.*slot = value.ref;
+    SlotImage image{.slot = slot, .made = value.made, .change = {}};
+    image.change.exponent = value.exponent;
+    image.change.curve = curve;
+    image.change.amount = amount;
+    const bool keeps_factor = curve == Curve::None && is_black(value.offset) && is_unit(value.factor);
+    if (!keeps_factor) {
+        image.change.factor = numbers_of(value.factor);
+        image.change.offset = numbers_of(value.offset);
+    }
+    surface.images.push_back(image);
+    return keeps_factor ? value.factor : Rgb{1, 1, 1};
+}
+
+/// Returns whether the alpha of some texel is below 1.
+bool has_alpha(const TextureImage& image) {
+    for (std::size_t i = 0; i < pixel_count(image); ++i) {
+        if (texel_value(image, i, 3) < 1) return true;
+    }
+    return false;
+}
+
+/// Returns `from` with its colours changed: in 8 bits if it has them and no number of the change leaves [0, 1].
+TextureImage changed_image(const TextureImage& from, const ImageChange& change, bool is_srgb) {
+    TextureImage to;
+    to.name = from.name;
+    const bool is_bytes = !from.rgba8.pixels.empty();
+    const uint32_t width = is_bytes ? from.rgba8.width : from.rgba_float.width,
+                   height = is_bytes ? from.rgba8.height : from.rgba_float.height;
+    to.rgba_float = {
+        .width = width, .height = height, .channels = 4, .pixels = std::vector<float>(4 * pixel_count(from))};
+    parallel_for(pixel_count(from), 4096, [&](uint64_t i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            float value = texel_value(from, i, c);
+            if (is_bytes && is_srgb) value = srgb_decode(value);
+            if (change.exponent != 1) value = pow(max(value, 0.0f), change.exponent);
+            value = converted(change.curve, change.amount, change.offset[c] + change.factor[c] * value);
+            to.rgba_float.pixels[4 * i + c] = max(value, 0.0f);
+        }
+        to.rgba_float.pixels[4 * i + 3] = texel_value(from, i, 3);
+    });
+    return to;
+}
+
+/// Removes images without a use and renumbers the textures.
+void remove_unused(Scene& scene) {
+    std::vector<int32_t> renumbered(scene.images.size(), kNoImage);
+    std::vector<TextureImage> kept;
+    for (Material& material : scene.materials) {
+        visit_textures(material, [&](TextureRef& ref, const char*) {
+            if (!ref.has_image()) return;
+            int32_t& number = renumbered[static_cast<std::size_t>(ref.image)];
+            if (number == kNoImage) {
+                number = static_cast<int32_t>(kept.size());
+                kept.push_back(std::move(scene.images[static_cast<std::size_t>(ref.image)]));
+            }
+            ref.image = number;
+        });
+    }
+    scene.images = std::move(kept);
+}
+
+} // namespace
+
+float converted(Curve curve, float amount, float value) {
+    switch (curve) {
+    case Curve::None:
+        return value;
+    case Curve::RoughnessOfWidth:
+        return sqrt(clamp(value, 0.0f, 1.0f));
+    case Curve::RoughnessOfRoot:
+        return sqrt(sqrt(clamp(value, 0.0f, 1.0f)));
+    case Curve::RoughnessOfVersion3: {
+        const float x = log(max(value, 1e-3f)); // the polynomial of pbrt-v3's documentation
+        const float width = 1.62142f + x * (0.819955f + x * (0.1734f + x * (0.0171201f + x * 0.000640711f)));
+        return sqrt(clamp(width, 0.0f, 1.0f));
+    }
+    case Curve::BeneathCoat: {
+        const float albedo = clamp(value, 0.0f, 1.0f);
+        return albedo * (1 - amount) / (1 - albedo * amount);
+    }
+    }
+    return value;
+}
+
+void set_color(Surface& surface, Rgb MaterialParameters::*color, TextureSlot slot, const TextureValue& value,
+               Curve curve, float amount) {
+    surface.material.*color =
+        value.has_image() ? put_image(surface, slot, value, curve, amount) : converted(curve, amount, value.factor);
+}
+
+void set_number(Surface& surface, float MaterialParameters::*number, TextureSlot slot, const TextureValue& value,
+                Curve curve) {
+    surface.material.*number =
+        value.has_image() ? put_image(surface, slot, value, curve, 0).r : converted(curve, 0.0f, value.factor.r);
+}
+
+void set_alpha(Surface& surface, const TextureValue& value) {
+    Material& material = surface.material;
+    if (!value.has_image()) {
+        material.alpha *= clamp(value.factor.r, 0.0f, 1.0f);
+        if (material.alpha < 1) material.alpha_mode = AlphaMode::Blend;
+        return;
+    }
+    material.alpha *= put_image(surface, &MaterialParameters::alpha_texture, value, Curve::None, 0).r;
+    surface.images.back().change.is_alpha = true;
+    material.alpha_mode = AlphaMode::Blend;
+}
+
+void finish_images(const std::vector<const Surface*>& surfaces, std::vector<TextureImage>& made, Scene& scene) {
+    const auto first_made = static_cast<int32_t>(scene.images.size());
+    for (TextureImage& image : made) scene.images.push_back(std::move(image));
+    std::map<std::tuple<int32_t, bool, ImageChange>, int32_t> numbers;
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        for (const SlotImage& use : surfaces[i]->images) {
+            TextureRef& ref = scene.materials[i].*use.slot;
+            if (use.made >= 0) ref.image = first_made + use.made;
+            if (!ref.has_image()) continue;
+            ImageChange change = use.change;
+            if (std::exchange(change.is_alpha, false) && has_alpha(scene.images[static_cast<std::size_t>(ref.image)])) {
+                ref.channel = 3;
+                continue;
+            }
+            if (change.is_identity()) continue;
+            const auto [number, is_new] = numbers.try_emplace({ref.image, ref.is_srgb, change}, kNoImage);
+            if (is_new) {
+                number->second = static_cast<int32_t>(scene.images.size());
+                scene.images.push_back(
+                    changed_image(scene.images[static_cast<std::size_t>(ref.image)], change, ref.is_srgb));
+            }
+            ref.image = number->second;
+        }
+    }
+    remove_unused(scene);
+}
+
+} // namespace pertev::pbrt

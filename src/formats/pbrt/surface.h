@@ -1,0 +1,68 @@
+#pragma once
+
+// A material of pbrt as one of Pertev, with what its textures still need once their images are decoded.
+
+#include <array>
+#include <compare>
+#include <optional>
+#include <vector>
+
+#include "formats/pbrt/textures.h"
+#include "scene/material.h"
+#include "scene/scene.h"
+
+namespace pertev::pbrt {
+
+/// The conversion of a value after factor and offset.
+enum class Curve {
+    None,
+    RoughnessOfWidth,    // a microfacet width: roughness is its root
+    RoughnessOfRoot,     // pbrt-v4's remapped roughness, of which the width is the root
+    RoughnessOfVersion3, // pbrt-v3's remapped roughness
+    BeneathCoat,         // the albedo of a diffuse surface beneath a smooth coat that reflects `amount` from inside
+};
+
+/// Returns `value` converted; those of roughness are Pertev's, the root of the width.
+float converted(Curve curve, float amount, float value);
+
+/// The changes of an image's texels before a material uses it.
+struct ImageChange {
+    float exponent = 1;
+    std::array<float, 3> factor = {1, 1, 1}, offset = {0, 0, 0};
+    Curve curve = Curve::None;
+    float amount = 0;
+    bool is_alpha = false; // the alpha channel counts if it varies, else the first
+    auto operator<=>(const ImageChange&) const = default;
+    bool is_identity() const { return *this == ImageChange(); }
+};
+
+using TextureSlot = TextureRef MaterialParameters::*;
+
+struct SlotImage {
+    TextureSlot slot = nullptr;
+    int32_t made = -1; // index into Textures::made(); else the slot has an image of the loader
+    ImageChange change;
+};
+
+struct Surface {
+    Material material;
+    bool is_nothing = false; // an interface between media: light passes
+    std::vector<SlotImage> images;
+    TextureValue heights; // metres along the normal, if it has an image
+    bool has_heights = false;
+};
+
+/// Sets a colour and its texture.
+void set_color(Surface& surface, Rgb MaterialParameters::*color, TextureSlot slot, const TextureValue& value,
+               Curve curve = Curve::None, float amount = 0);
+/// Sets a number and its texture, of which the first channel counts.
+void set_number(Surface& surface, float MaterialParameters::*number, TextureSlot slot, const TextureValue& value,
+                Curve curve = Curve::None);
+/// Multiplies the alpha of a surface by a number or a texture. Surfaces of alpha 1 stay opaque.
+void set_alpha(Surface& surface, const TextureValue& value);
+
+/// Applies the changes to the images of `scene`, whose materials `surfaces` belong to, one to one. The loader has put
+/// its images there. Images that no material uses any more are removed.
+void finish_images(const std::vector<const Surface*>& surfaces, std::vector<TextureImage>& made, Scene& scene);
+
+} // namespace pertev::pbrt

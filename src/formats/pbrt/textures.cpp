@@ -1,0 +1,229 @@
+#include "formats/pbrt/textures.h"
+
+#include <array>
+
+#include <fmt/format.h>
+
+#include "base/message_text.h"
+#include "formats/files/closest_name.h"
+#include "formats/files/parse_number.h"
+#include "formats/pbrt/colors.h"
+#include "math/scalar.h"
+
+namespace pertev::pbrt {
+namespace {
+
+/// Returns a * b. If both have images, only that of `a` counts.
+TextureValue product(const TextureValue& a, const TextureValue& b) {
+    if (!a.has_image()) return b.scaled(a.factor);
+    return a.scaled(b.has_image() ? b.factor + b.offset : b.factor);
+}
+
+/// Returns an image of 2 x 2 pixels, in 8 bits if they hold the colours.
+TextureImage checks_of(Rgb even, Rgb odd) {
+    TextureImage image;
+    image.name = "checkerboard";
+    image.rgba_float = {.width = 2, .height = 2, .channels = 4, .pixels = {}};
+    for (const Rgb color : {odd, even, even, odd}) {
+        for (const float channel : {color.r, color.g, color.b, 1.0f}) image.rgba_float.pixels.push_back(channel);
+    }
+    return image;
+}
+
+} // namespace
+
+void Textures::define(const std::string& name, const std::string& kind, const std::string& type,
+                      Parameters& parameters) {
+    const bool is_color = kind == "spectrum" || kind == "color";
+    if (!is_color && kind != "float") {
+        context_.sink.leave_out(
+            {parameters.location(), fmt::format("the texture {} of {} is left out; expected float or spectrum",
+                                                shortened(name), shortened(kind))});
+        return;
+    }
+    textures_.insert_or_assign(name, value_of(type, is_color, parameters));
+    parameters.leave_out_unknown(context_.sink);
+}
+
+TextureValue Textures::value_of(const std::string& type, bool is_color, Parameters& parameters) {
+    if (type == "imagemap") return image_map(parameters);
+    if (type == "constant") return part(parameters, "value", is_color, 1);
+    if (type == "checkerboard") return checkerboard(is_color, parameters);
+    if (type == "scale") {
+        const bool is_version_3 = parameters.contains("tex1") || parameters.contains("tex2");
+        const TextureValue a = part(parameters, is_version_3 ? "tex1" : "tex", is_color, 1);
+        const TextureValue b = part(parameters, is_version_3 ? "tex2" : "scale", is_color, 1);
+        if (a.has_image() && b.has_image())
+            context_.sink.leave_out(
+                {parameters.location(), "the second image of a product of two textures is left out"});
+        return product(a, b);
+    }
+    if (type == "mix" || type == "directionmix") {
+        if (type == "directionmix") {
+            parameters.leave_out({"dir"}, "both textures are mixed evenly", context_.sink);
+            if (!parameters.contains("dir"))
+                context_.sink.leave_out({parameters.location(),
+                                         "the direction of directionmix is left out; both textures are mixed evenly"});
+        }
+        const TextureValue a = part(parameters, "tex1", is_color, 0), b = part(parameters, "tex2", is_color, 1);
+        const TextureValue amount = type == "mix" ? part(parameters, "amount", false, 0.5f) : constant(grey(0.5f));
+        return mixture(a, b, amount, parameters);
+    }
+    constexpr std::array<std::string_view, 6> kKnown = {"imagemap", "constant", "checkerboard",
+                                                        "scale",    "mix",      "directionmix"};
+    constexpr std::array<std::string_view, 9> kOthers = {"bilerp", "dots",  "fbm",      "marble", "ptex",
+                                                         "uv",     "windy", "wrinkled", "brick"};
+    const bool is_known = std::ranges::find(kOthers, type) != kOthers.end();
+    context_.sink.leave_out(
+        {parameters.location(), fmt::format("textures of the type {} are left out; the value is 0.5{}", shortened(type),
+                                            is_known ? "" : did_you_mean(type, kKnown))});
+    parameters = Parameters(parameters.location(), parameters.what()); // nothing of it is unknown
+    return constant(grey(0.5f));
+}
+
+TextureValue Textures::part(Parameters& parameters, std::string_view name, bool is_color, float missing) {
+    return is_color ? color(parameters, name, grey(missing)) : number(parameters, name, missing);
+}
+
+void Textures::read_mapping(Parameters& parameters, TextureRef& ref) {
+    Sink& sink = context_.sink;
+    if (const std::string mapping = parameters.text("mapping", "uv", sink); mapping != "uv") {
+        sink.leave_out(
+            {parameters.location(), fmt::format("the mapping {} is left out; uv is used", shortened(mapping))});
+        parameters.ignore({"v1", "v2"});
+    }
+    const auto u_scale = static_cast<float>(parameters.number("uscale", 1, sink));
+    const auto v_scale = static_cast<float>(parameters.number("vscale", 1, sink));
+    const auto u_delta = static_cast<float>(parameters.number("udelta", 0, sink));
+    const auto v_delta = static_cast<float>(parameters.number("vdelta", 0, sink));
+    // pbrt's v points up and the scene's down: 1 - (v_scale (1 - v) + v_delta).
+    ref.m00 = u_scale, ref.m02 = u_delta;
+    ref.m11 = v_scale, ref.m12 = 1 - v_scale - v_delta;
+}
+
+TextureValue Textures::image_file(const FileLocation& from, const std::string& name) {
+    TextureValue value;
+    try {
+        value.ref.image = context_.loader.add_file(base_of(context_, from, name), name);
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::BadInput) throw;
+        context_.sink.leave_out(error.remark().and_then("; only its factor is used"));
+    }
+    value.ref.is_srgb = true;
+    return value;
+}
+
+TextureValue Textures::image_map(Parameters& parameters) {
+    Sink& sink = context_.sink;
+    const std::string name = parameters.text("filename", "", sink);
+    if (name.empty()) {
+        sink.leave_out({parameters.location(), "an imagemap has no \"string filename\""});
+        return constant(grey(0.5f));
+    }
+    TextureValue value = image_file(parameters.location(), name);
+    if (!value.has_image()) value.factor = grey(0.5f);
+    const std::string wrap = parameters.text("wrap", "repeat", sink);
+    if (wrap == "black" || wrap == "clamp") {
+        value.ref.wrap_s = value.ref.wrap_t = Wrap::ClampToEdge;
+        if (wrap == "black")
+            sink.leave_out({parameters.location(), "the black around an imagemap is left out; its edge continues"});
+    } else if (wrap != "repeat") {
+        sink.leave_out({parameters.location(),
+                        fmt::format("the wrap {} is left out; expected repeat, black or clamp", shortened(wrap))});
+    }
+    if (parameters.text("filter", "", sink) == "point") value.ref.filter = TextureFilter::Nearest;
+    std::string encoding = parameters.text("encoding", "sRGB", sink);
+    if (!parameters.truth("gamma", true, sink)) encoding = "linear"; // pbrt-v3
+    if (encoding == "linear") {
+        value.ref.is_srgb = false;
+    } else if (encoding.starts_with("gamma ")) {
+        const auto exponent = parse_whole_float(std::string_view(encoding).substr(6));
+        value.ref.is_srgb = false;
+        value.exponent = exponent && *exponent > 0 ? *exponent : 1.0f;
+    } else if (encoding != "sRGB") {
+        sink.leave_out(
+            {parameters.location(),
+             fmt::format("the encoding {} is left out; expected sRGB, linear or gamma NUMBER", shortened(encoding))});
+    }
+    read_mapping(parameters, value.ref);
+    const auto scale = static_cast<float>(parameters.number("scale", 1, sink));
+    value = value.scaled(grey(scale));
+    if (parameters.truth("invert", false, sink)) value.factor = -1.0f * value.factor, value.offset = grey(1);
+    parameters.ignore({"maxanisotropy", "trilinear"});
+    return value;
+}
+
+TextureValue Textures::checkerboard(bool is_color, Parameters& parameters) {
+    const TextureValue even = part(parameters, "tex1", is_color, 1), odd = part(parameters, "tex2", is_color, 0);
+    parameters.ignore({"aamode"});
+    TextureValue value;
+    read_mapping(parameters, value.ref);
+    if (parameters.integer("dimension", 2, context_.sink) != 2) {
+        context_.sink.leave_out(
+            {parameters.location(), "a checkerboard of three dimensions is left out; its mean is used"});
+        return mixture(even, odd, constant(grey(0.5f)), parameters);
+    }
+    if (even.has_image() || odd.has_image()) {
+        context_.sink.leave_out({parameters.location(), "a checkerboard of images is left out; its mean is used"});
+        return mixture(even, odd, constant(grey(0.5f)), parameters);
+    }
+    // The image covers two checks each way: half the coordinates, which begin at the lower left corner.
+    TextureRef& ref = value.ref;
+    ref.m00 *= 0.5f, ref.m02 *= 0.5f;
+    ref.m11 *= 0.5f, ref.m12 = 0.5f + 0.5f * ref.m12;
+    ref.filter = TextureFilter::Nearest;
+    value.made = static_cast<int32_t>(made_.size());
+    made_.push_back(checks_of(even.factor, odd.factor));
+    return value;
+}
+
+TextureValue Textures::mixture(const TextureValue& a, const TextureValue& b, const TextureValue& amount,
+                               const Parameters& parameters) {
+    const int images = int(a.has_image()) + int(b.has_image()) + int(amount.has_image());
+    if (images == 0) return constant(lerp(a.factor, b.factor, amount.factor.g));
+    const auto left_out = [&](const char* what) { context_.sink.leave_out({parameters.location(), what}); };
+    if (amount.has_image() && images == 1) {
+        TextureValue value = amount.scaled(b.factor - a.factor);
+        value.offset += a.factor;
+        return value;
+    }
+    const float share = amount.has_image() ? 0.5f : clamp(amount.factor.g, 0.0f, 1.0f);
+    if (amount.has_image())
+        left_out("the image that mixes two textures is left out beside theirs; they are mixed evenly");
+    if (a.has_image() && b.has_image()) {
+        if (share > 0 && share < 1) left_out("of a mixture of two images the one with the smaller share is left out");
+        return share < 0.5f ? a : b;
+    }
+    const TextureValue& image = a.has_image() ? a : b;
+    const float of_image = a.has_image() ? 1 - share : share;
+    TextureValue value = image.scaled(grey(of_image));
+    value.offset += (1 - of_image) * (a.has_image() ? b.factor : a.factor);
+    return value;
+}
+
+TextureValue Textures::look_up(const Parameters& parameters, const Parameter& parameter, Rgb missing) {
+    const std::string& name = parameter.texts.front();
+    if (const auto found = textures_.find(name); found != textures_.end()) return found->second;
+    if (!context_.options.geometry_only) {
+        std::vector<std::string_view> known;
+        for (const auto& [other, value] : textures_) known.push_back(other);
+        context_.sink.leave_out({parameters.location_of(parameter),
+                                 fmt::format("there is no texture {} for \"{}\" of {}{}", shortened(name),
+                                             parameter.name, parameters.what(), did_you_mean(name, known))});
+    }
+    return constant(missing);
+}
+
+TextureValue Textures::color(Parameters& parameters, std::string_view name, Rgb missing) {
+    const Parameter* const found = parameters.find(name);
+    if (found != nullptr && found->type == ParameterType::Texture) return look_up(parameters, *found, missing);
+    return constant(reflectance(parameters, name, context_).value_or(missing));
+}
+
+TextureValue Textures::number(Parameters& parameters, std::string_view name, float missing) {
+    const Parameter* const found = parameters.find(name);
+    if (found != nullptr && found->type == ParameterType::Texture) return look_up(parameters, *found, grey(missing));
+    return constant(grey(static_cast<float>(parameters.number(name, static_cast<double>(missing), context_.sink))));
+}
+
+} // namespace pertev::pbrt

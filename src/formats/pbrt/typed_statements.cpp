@@ -1,0 +1,146 @@
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "base/message_text.h"
+#include "formats/files/closest_name.h"
+#include "formats/pbrt/statements.h"
+#include "formats/pbrt/transforms.h"
+
+namespace pertev::pbrt {
+namespace {
+
+struct NamedSpace {
+    std::string_view name;
+    ColorPrimaries primaries;
+};
+constexpr std::array<NamedSpace, 4> kSpaces = {
+    {{"srgb", kRec709},
+     {"dci-p3", {{0.68, 0.32}, {0.265, 0.69}, {0.15, 0.06}, {0.31271, 0.32902}}},
+     {"rec2020", {{0.708, 0.292}, {0.17, 0.797}, {0.131, 0.046}, {0.3127, 0.329}}},
+     {"aces2065-1", {{0.7347, 0.2653}, {0, 1}, {0.0001, -0.077}, {0.32168, 0.33767}}}}};
+
+} // namespace
+
+void Statements::camera(Tokens& tokens, const FileLocation& place) {
+    std::string type = take_text(tokens, place);
+    Parameters parameters = take_parameters(tokens, place, fmt::format("the camera {}", shortened(type)));
+    world_.view.camera = ViewStatement{std::move(type), std::move(parameters)};
+    world_.view.camera_from_world = world_.state.transforms[0];
+    if (!(world_.state.transforms[0] == world_.state.transforms[1]))
+        context_.sink.leave_out({place, "the motion of the camera is left out"});
+    world_.coordinate_systems["camera"] = {inverse(world_.state.transforms[0]), inverse(world_.state.transforms[1])};
+}
+
+void Statements::film(Tokens& tokens, const FileLocation& place) {
+    std::string type = take_text(tokens, place);
+    Parameters parameters = take_parameters(tokens, place, fmt::format("the film {}", shortened(type)));
+    world_.view.film = ViewStatement{std::move(type), std::move(parameters)};
+}
+
+void Statements::sampler(Tokens& tokens, const FileLocation& place) {
+    std::string type = take_text(tokens, place);
+    Parameters parameters = take_parameters(tokens, place, fmt::format("the sampler {}", shortened(type)));
+    world_.view.sampler = ViewStatement{std::move(type), std::move(parameters)};
+}
+
+void Statements::integrator(Tokens& tokens, const FileLocation& place) {
+    std::string type = take_text(tokens, place);
+    Parameters parameters = take_parameters(tokens, place, fmt::format("the integrator {}", shortened(type)));
+    world_.view.integrator = ViewStatement{std::move(type), std::move(parameters)};
+}
+
+void Statements::pixel_filter(Tokens& tokens, const FileLocation& place) {
+    std::string type = take_text(tokens, place);
+    Parameters parameters = take_parameters(tokens, place, fmt::format("the filter {}", shortened(type)));
+    world_.view.filter = ViewStatement{std::move(type), std::move(parameters)};
+}
+
+void Statements::ignored(Tokens& tokens, const FileLocation& place) {
+    const std::string type = take_text(tokens, place);
+    (void)take_parameters(tokens, place, shortened(type));
+}
+
+void Statements::option(Tokens& tokens, const FileLocation& place) { // about how pbrt renders
+    (void)take_parameters(tokens, place, "an option");
+}
+
+void Statements::color_space(Tokens& tokens, const FileLocation& place) {
+    const std::string name = take_text(tokens, place);
+    const auto* const found = std::ranges::find(kSpaces, name, &NamedSpace::name);
+    if (found == kSpaces.end()) {
+        std::vector<std::string_view> known;
+        for (const NamedSpace& space : kSpaces) known.push_back(space.name);
+        throw Error(ErrorCode::BadInput, place,
+                    fmt::format("there is no colour space {}{}", shortened(name), did_you_mean(name, known)));
+    }
+    world_.state.color_space = is_rec709(found->primaries) ? std::nullopt : rec709_from(found->primaries);
+}
+
+void Statements::attribute(Tokens& tokens, const FileLocation& place) {
+    const std::string target = take_text(tokens, place);
+    constexpr std::array<std::string_view, 5> kTargets = {"shape", "light", "material", "medium", "texture"};
+    Parameters parameters = take_parameters(tokens, place, fmt::format("the attribute of {}", shortened(target)));
+    if (std::ranges::find(kTargets, target) == kTargets.end())
+        throw Error(ErrorCode::BadInput, place,
+                    fmt::format("there are no attributes of {}{}", shortened(target), did_you_mean(target, kTargets)));
+    std::map<std::string, Parameters> all;
+    if (world_.state.attributes) all = *world_.state.attributes;
+    if (const auto before = all.find(target); before != all.end()) parameters.add_missing(before->second);
+    all.insert_or_assign(target, std::move(parameters));
+    world_.state.attributes = std::make_shared<const std::map<std::string, Parameters>>(std::move(all));
+}
+
+void Statements::texture(Tokens& tokens, const FileLocation& place) {
+    const std::string name = take_text(tokens, place), kind = take_text(tokens, place), type = take_text(tokens, place);
+    Parameters parameters = take_parameters(tokens, place, fmt::format("the texture {}", shortened(name)), "texture");
+    world_.add_texture(name, kind, type, parameters);
+}
+
+void Statements::material(Tokens& tokens, const FileLocation& place) {
+    const std::string type = take_text(tokens, place);
+    Parameters parameters = take_parameters(tokens, place, fmt::format("the material {}", shortened(type)), "material");
+    world_.set_material(type, parameters);
+}
+
+void Statements::make_named_material(Tokens& tokens, const FileLocation& place) {
+    const std::string name = take_text(tokens, place);
+    Parameters parameters = take_parameters(tokens, place, fmt::format("the material {}", shortened(name)), "material");
+    world_.make_named_material(name, parameters);
+}
+
+void Statements::named_material(Tokens& tokens, const FileLocation& place) {
+    world_.set_named_material(take_text(tokens, place), place);
+}
+
+void Statements::medium(Tokens& tokens, const FileLocation& place) {
+    const std::string name = take_text(tokens, place);
+    (void)take_parameters(tokens, place, fmt::format("the medium {}", shortened(name)));
+    context_.sink.leave_out({place, fmt::format("the medium {} is left out, as all media are", shortened(name))});
+}
+
+void Statements::medium_interface(Tokens& tokens, const FileLocation& place) {
+    (void)take_text(tokens, place); // the medium has its own message
+    if (tokens.peek().kind == TokenKind::Quoted) (void)take_text(tokens, place);
+}
+
+void Statements::light(Tokens& tokens, const FileLocation& place) {
+    const std::string type = take_text(tokens, place);
+    Parameters parameters = take_parameters(tokens, place, fmt::format("the light {}", shortened(type)), "light");
+    world_.add_light(type, parameters);
+}
+
+void Statements::area_light(Tokens& tokens, const FileLocation& place) {
+    const std::string type = take_text(tokens, place);
+    Parameters parameters = take_parameters(tokens, place, fmt::format("the area light {}", shortened(type)), "light");
+    world_.set_area_light(type, parameters);
+}
+
+void Statements::shape(Tokens& tokens, const FileLocation& place) {
+    const std::string type = take_text(tokens, place);
+    Parameters parameters = take_parameters(tokens, place, fmt::format("the shape {}", shortened(type)), "shape");
+    world_.add_shape(type, parameters);
+}
+
+} // namespace pertev::pbrt

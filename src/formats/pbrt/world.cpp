@@ -1,0 +1,173 @@
+#include "formats/pbrt/world.h"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "base/limits.h"
+#include "base/message_text.h"
+#include "formats/files/closest_name.h"
+#include "formats/pbrt/transforms.h"
+
+namespace pertev::pbrt {
+
+World::World(const Context& context) : context_(context), textures_(context), shapes_(context) {
+    Surface grey_surface = make_surface(MaterialKind::Diffuse);
+    grey_surface.material.name = "default";
+    surfaces_.push_back(std::move(grey_surface));
+}
+
+/// Returns the present transform; that at the end of the shutter's time is left out.
+DoubleTransform World::place(const FileLocation& from) {
+    if (!(state.transforms[0] == state.transforms[1])) {
+        context_.sink.leave_out(
+            {FileLocation{from.file}, "the motion between the transforms of StartTime and EndTime is left out"});
+    }
+    return state.transforms[0];
+}
+
+void World::add_texture(const std::string& name, const std::string& kind, const std::string& type,
+                        Parameters& parameters) {
+    if (!context_.options.geometry_only) textures_.define(name, kind, type, parameters);
+}
+
+const Surface* World::find_surface(const std::string& name, const FileLocation& from) {
+    if (const auto found = named_surfaces_.find(name); found != named_surfaces_.end()) return &surfaces_[found->second];
+    if (name == "interface" || name.empty()) {
+        static const Surface nothing{.material = {}, .is_nothing = true, .images = {}, .heights = {}};
+        return &nothing;
+    }
+    std::vector<std::string_view> known;
+    for (const auto& [other, number] : named_surfaces_) known.push_back(other);
+    context_.sink.leave_out(
+        {from, fmt::format("there is no material {}{}", shortened(name), did_you_mean(name, known))});
+    return nullptr;
+}
+
+uint32_t World::add_surface(const std::string& type, const std::string& name, Parameters& parameters) {
+    if (context_.options.geometry_only) return 0;
+    const FindMaterial find = [this](const std::string& other, const FileLocation& from) {
+        return find_surface(other, from);
+    };
+    Surface surface = read_material({type, parameters, textures_, context_, find});
+    surface.material.name = name;
+    surface.material.origin = fmt::format("{}:{}", parameters.location().file, parameters.location().line);
+    surfaces_.push_back(std::move(surface));
+    return static_cast<uint32_t>(surfaces_.size() - 1);
+}
+
+void World::set_material(const std::string& type, Parameters& parameters) {
+    state.surface = add_surface(type, type.empty() ? "interface" : type, parameters);
+}
+
+void World::make_named_material(const std::string& name, Parameters& parameters) {
+    const std::string type = parameters.text("type", "", context_.sink);
+    if (type.empty()) throw parameters.error(fmt::format("the material {} has no \"string type\"", shortened(name)));
+    named_surfaces_.insert_or_assign(name, add_surface(type, name, parameters));
+}
+
+void World::set_named_material(const std::string& name, const FileLocation& from) {
+    if (context_.options.geometry_only) return;
+    state.surface = 0;
+    if (const Surface* const found = find_surface(name, from)) {
+        const auto number = named_surfaces_.find(name);
+        if (number != named_surfaces_.end()) {
+            state.surface = number->second;
+        } else {
+            surfaces_.push_back(*found);
+            state.surface = static_cast<uint32_t>(surfaces_.size() - 1);
+        }
+    }
+}
+
+void World::set_area_light(const std::string& type, Parameters& parameters) {
+    state.area_light.reset();
+    if (context_.options.geometry_only) return;
+    if (auto light = read_area_light(type, parameters, textures_, context_)) {
+        state.area_light = static_cast<uint32_t>(area_lights_.size());
+        area_lights_.push_back(*std::move(light));
+    }
+}
+
+void World::add_light(const std::string& type, Parameters& parameters) {
+    const DoubleTransform world_from_light = place(parameters.location());
+    if (type == "infinite") {
+        if (auto light = read_infinite_light(parameters, world_from_light, context_))
+            infinite_lights_.push_back(*std::move(light));
+        return;
+    }
+    const DoubleVec3 from = parameters.vector("from", context_.sink).value_or(DoubleVec3{0, 0, 0});
+    if (auto light = read_light(type, parameters, world_from_light, context_))
+        lights_.push_back({*std::move(light), transform_point(world_from_light, from)});
+}
+
+std::optional<uint32_t> World::alpha_of(Parameters& parameters) {
+    const Parameter* const found = parameters.find("alpha");
+    parameters.ignore({"shadowalpha"}); // pbrt-v3's
+    if (found == nullptr || context_.options.geometry_only) return std::nullopt;
+    const std::string key =
+        found->texts.empty() ? fmt::format("{}", found->numbers.front()) : "texture " + found->texts.front();
+    const TextureValue value = textures_.number(parameters, "alpha", 1);
+    if (!value.has_image() && value.factor.r >= 1) return std::nullopt;
+    const auto [number, is_new] = alpha_numbers_.try_emplace(key, static_cast<uint32_t>(alphas_.size()));
+    if (is_new) alphas_.push_back(value);
+    return number->second;
+}
+
+void World::add_shape(const std::string& type, Parameters& parameters) {
+    if (surfaces_[state.surface].is_nothing) return;
+    const auto read = shapes_.read(type, state.is_reversed, parameters);
+    if (!read) return;
+    Placed placed;
+    placed.mesh = read->mesh;
+    placed.surface = state.surface;
+    placed.alpha = alpha_of(parameters);
+    placed.area_light = state.area_light;
+    parameters.leave_out_unknown(context_.sink);
+    const std::string& file = shapes_.meshes()[read->mesh].ply;
+    placed.name = file.empty() ? type : std::filesystem::path(file).stem().string();
+    if (placed.name.ends_with(".ply")) placed.name.resize(placed.name.size() - 4);
+    placed.world_from_mesh = compose(place(parameters.location()), read->from_mesh);
+    if (open_object_ && placed.area_light) {
+        context_.sink.leave_out({parameters.location(), "the light of a shape in an object is left out, as pbrt does"});
+        placed.area_light.reset();
+    }
+    (open_object_ ? objects_[*open_object_] : placed_).push_back(std::move(placed));
+}
+
+void World::begin_object(const std::string& name, const FileLocation& from) {
+    if (open_object_)
+        throw Error(ErrorCode::BadInput, from,
+                    fmt::format("the object {} begins inside of {}", shortened(name), shortened(*open_object_)));
+    open_object_ = name;
+    objects_[name].clear();
+}
+
+void World::end_object(const FileLocation& from) {
+    if (!open_object_) throw Error(ErrorCode::BadInput, from, "ObjectEnd without ObjectBegin");
+    open_object_.reset();
+}
+
+void World::add_instance(const std::string& name, const FileLocation& from, uint64_t file_bytes) {
+    if (open_object_) throw Error(ErrorCode::BadInput, from, "an ObjectInstance within an object is left out");
+    const auto object = objects_.find(name);
+    if (object == objects_.end()) {
+        std::vector<std::string_view> known;
+        for (const auto& [other, shapes] : objects_) known.push_back(other);
+        throw Error(ErrorCode::BadInput, from,
+                    fmt::format("there is no object {}{}", shortened(name), did_you_mean(name, known)));
+    }
+    const uint64_t most = std::min<uint64_t>(kMaxInstances, justified_bytes(kFreeMeshBytes, file_bytes) /
+                                                                (sizeof(Instance) + sizeof(Placed)));
+    if (placed_.size() + object->second.size() > most) {
+        throw Error(ErrorCode::OverLimit, from,
+                    fmt::format("more than {} instances, the limit for files of this size", most));
+    }
+    const DoubleTransform world_from_object = place(from);
+    for (const Placed& shape : object->second) {
+        placed_.push_back(shape);
+        placed_.back().world_from_mesh = compose(world_from_object, shape.world_from_mesh);
+    }
+}
+
+} // namespace pertev::pbrt

@@ -1,0 +1,326 @@
+#include <doctest/doctest.h>
+
+#include <cstring>
+
+#include <zlib.h>
+
+#include "formats/files/closest_name.h"
+#include "formats/files/gunzip.h"
+#include "formats/pbrt/tokens.h"
+#include "formats/read_scene.h"
+#include "scene/scene_origin.h"
+#include "tests/support/options.h"
+#include "tests/support/thrown_error.h"
+#include "tests/support/write_text.h"
+
+namespace fs = std::filesystem;
+using namespace pertev;
+
+namespace {
+
+const std::string kFlat = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2]\n";
+
+Scene load_pbrt(const std::string& text, Messages& messages, const ReadOptions& options = {}) {
+    return read_scene(test::write_text(test::scratch_folder() / "scene.pbrt", text), options, messages);
+}
+
+/// Reads a text that is right: nothing is left out.
+Scene load_whole(const std::string& text) {
+    Messages messages;
+    Scene scene = load_pbrt(text, messages);
+    CHECK(messages.left_out() == std::vector<std::string>{});
+    return scene;
+}
+
+void check_at(Vec3 p, Vec3 wanted) {
+    CAPTURE(p.x);
+    CAPTURE(p.y);
+    CAPTURE(p.z);
+    CHECK(length(p - wanted) < 1e-5f);
+}
+
+std::string gzipped(const std::string& text) {
+    z_stream stream = {};
+    REQUIRE(deflateInit2(&stream, 9, Z_DEFLATED, 16 + MAX_WBITS, 8, Z_DEFAULT_STRATEGY) == Z_OK);
+    std::string packed(deflateBound(&stream, static_cast<uLong>(text.size())), '\0');
+    std::string in = text;
+    stream.next_in = reinterpret_cast<Bytef*>(in.data()), stream.avail_in = static_cast<uInt>(in.size());
+    stream.next_out = reinterpret_cast<Bytef*>(packed.data()), stream.avail_out = static_cast<uInt>(packed.size());
+    REQUIRE(deflate(&stream, Z_FINISH) == Z_STREAM_END);
+    packed.resize(stream.total_out);
+    deflateEnd(&stream);
+    return packed;
+}
+
+/// Returns the left-out message at a line of scene.pbrt; empty if there is none.
+std::string left_out_at(const Messages& messages, std::size_t line) {
+    for (const Message& message : messages.all()) {
+        if (message.is_left_out && message.remark.location && message.remark.location->line == line)
+            return message.remark.reason;
+    }
+    return "";
+}
+
+} // namespace
+
+TEST_CASE("pbrt: tokens are words, quoted texts and brackets with their lines, without comments") {
+    pbrt::Tokens tokens("Shape \"a \\\"b\" # no \"word\"\n[ -1.5e3]\n\"open\nnext");
+    using pbrt::TokenKind;
+    CHECK(tokens.next().is_word("Shape"));
+    CHECK(pbrt::unescaped(tokens.next().text) == "a \"b");
+    CHECK(tokens.next().kind == TokenKind::Open);
+    CHECK(tokens.peek().line == 2);
+    CHECK(tokens.next().text == "-1.5e3");
+    CHECK(tokens.next().kind == TokenKind::Close);
+    const pbrt::Token open = tokens.next();
+    CHECK(open.text == "open");
+    CHECK(open.is_open_ended);
+    CHECK(open.line == 3);
+    CHECK(tokens.next().is_word("next"));
+    CHECK(tokens.next().kind == TokenKind::End);
+    CHECK(pbrt::unescaped("C:\\textures\\a.png") == "C:\\textures\\a.png");
+}
+
+TEST_CASE("the closest name is the one with the fewest changed letters, and far ones are none") {
+    constexpr std::string_view kNames[] = {"roughness", "uroughness", "eta"};
+    CHECK(closest_name("rougness", kNames) == "roughness");
+    CHECK(closest_name("UROUGHNES", kNames) == "uroughness");
+    CHECK(closest_name("ets", kNames) == "eta");
+    CHECK(closest_name("reflectance", kNames).empty());
+    CHECK(closest_name("", kNames).empty());
+}
+
+TEST_CASE("pbrt: transforms multiply from the right, and states are restored") {
+    const Scene scene = load_whole("WorldBegin\nTranslate 1 2 3 Rotate 90 0 0 1 Scale 2 2 2\n" + kFlat +
+                                   "AttributeBegin Material \"diffuse\" Translate 1 0 0\n" + kFlat +
+                                   "AttributeEnd CoordinateSystem \"here\" TransformBegin Identity\n"
+                                   "Material \"diffuse\" \"rgb reflectance\" [.1 .2 .3]\n" +
+                                   kFlat + "TransformEnd\n" + kFlat + "Transform [1 0 0 0 0 1 0 0 0 0 1 0 5 6 7 1]\n" +
+                                   kFlat + "ConcatTransform [1 0 0 0 0 1 0 0 0 0 1 0 1 0 0 1]\n" + kFlat +
+                                   "CoordSysTransform \"here\"\n" + kFlat);
+    REQUIRE(scene.instances.size() == 7);
+    const auto x_axis = [&](std::size_t i) {
+        return transform_point(scene.instances[i].world_from_local, Vec3{1, 0, 0});
+    };
+    check_at(x_axis(0), {1, 4, 3});
+    check_at(x_axis(1), {1, 6, 3});
+    check_at(x_axis(2), {1, 0, 0});
+    check_at(x_axis(3), {1, 4, 3});
+    check_at(x_axis(4), {6, 6, 7});
+    check_at(x_axis(5), {7, 6, 7});
+    check_at(x_axis(6), {1, 4, 3});
+    // TransformEnd keeps the material, AttributeEnd does not.
+    CHECK(scene.materials[scene.instances[0].material].name == "default");
+    CHECK(scene.materials[scene.instances[3].material].base_color == Rgb{0.1f, 0.2f, 0.3f});
+}
+
+TEST_CASE("pbrt: ActiveTransform changes one end of the shutter's time, and motion is left out") {
+    Messages messages;
+    const Scene scene =
+        load_pbrt("WorldBegin ActiveTransform EndTime Translate 5 0 0 ActiveTransform All Translate 0 1 0\n" + kFlat +
+                      "Identity\n" + kFlat,
+                  messages);
+    REQUIRE(scene.instances.size() == 2);
+    check_at(scene.instances[0].world_from_local.translation, {0, 1, 0});
+    CHECK(messages.left_out().size() == 1);
+}
+
+TEST_CASE("pbrt: instances of an object share its meshes") {
+    const Scene scene = load_whole("WorldBegin ObjectBegin \"tree\" Translate 1 0 0 " + kFlat +
+                                   "Shape \"sphere\" \"float radius\" 2 ObjectEnd\n" + kFlat +
+                                   "Translate 0 0 5 ObjectInstance \"tree\" Scale 2 2 2 ObjectInstance \"tree\"\n"
+                                   "Shape \"sphere\" \"float radius\" 3\n");
+    CHECK(scene.meshes.size() == 3); // both triangles, and the sphere of radius 1
+    REQUIRE(scene.instances.size() == 6);
+    CHECK(scene.instances[1].mesh == scene.instances[3].mesh);
+    CHECK(scene.instances[2].mesh == scene.instances[5].mesh);
+    check_at(transform_point(scene.instances[3].world_from_local, {1, 0, 0}), {4, 0, 5});
+    check_at(transform_point(scene.instances[4].world_from_local, {0, 0, 1}), {2, 0, 9});
+}
+
+TEST_CASE("pbrt: an object of nobody, nested objects and stray ends are left out with their lines") {
+    Messages messages;
+    const Scene scene =
+        load_pbrt("WorldBegin\nObjectInstance \"tre\"\nObjectBegin \"tree\"\nObjectBegin \"inner\"\n" + kFlat +
+                      "ObjectInstance \"tree\"\nObjectEnd\nObjectEnd\nAttributeEnd\nTransformEnd\n" + kFlat,
+                  messages);
+    CHECK(scene.instances.size() == 1);
+    for (const std::size_t line : {2, 4, 6, 8, 9, 10}) CHECK_FALSE(left_out_at(messages, line).empty());
+    CHECK(messages.left_out().size() == 6);
+}
+
+TEST_CASE("pbrt: what is unknown is left out with its line, and the right word is suggested") {
+    Messages messages;
+    const Scene scene = load_pbrt(
+        "WorldBegin\nShap \"sphere\" \"float radius\" 1\nShape \"spere\"\nMaterial \"diffus\"\n"
+        "Material \"dielectric\" \"float rougness\" 0.1 \"flot eta\" 2\nShape \"sphere\" \"float radius\" [x]\n" +
+            kFlat,
+        messages);
+    CHECK(scene.instances.size() == 2);
+    CHECK(left_out_at(messages, 2).find("\"Shape\"") != std::string::npos);
+    CHECK(left_out_at(messages, 3).find("\"sphere\"") != std::string::npos);
+    CHECK(left_out_at(messages, 4).find("\"diffuse\"") != std::string::npos);
+    std::size_t of_line_5 = 0;
+    for (const Message& message : messages.all()) {
+        if (!message.remark.location || message.remark.location->line != 5) continue;
+        ++of_line_5;
+        const bool is_name = message.remark.reason.find("\"roughness\"") != std::string::npos;
+        const bool is_type = message.remark.reason.find("\"float\"") != std::string::npos;
+        CHECK((is_name || is_type));
+    }
+    CHECK(of_line_5 == 2);
+    CHECK_FALSE(left_out_at(messages, 6).empty());
+    CHECK(messages.left_out().size() == 6);
+}
+
+TEST_CASE("pbrt: faults of syntax cost their statement or parameter alone") {
+    for (const std::string fault :
+         {"Translate 1 2",
+          "Translate 1 2 [3]",
+          "Rotate 1 0 0 0",
+          "LookAt 0 0 0 0 0 0 0 1 0",
+          "Transform [1 2 3]",
+          "Shape",
+          "Shape sphere",
+          "Shape \"sphere",
+          "Shape \"sphere\" \"float radius\" [1",
+          "Shape \"sphere\" \"float radius\"",
+          "Shape \"sphere\" \"float radius\" -1",
+          "Shape \"sphere\" \"radius\" 1",
+          "Shape \"sphere\" \"float radius\" \"a\"",
+          "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 3]",
+          "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 -2]",
+          "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1] \"integer indices\" [0 1 2]",
+          "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2 3]",
+          "Shape \"plymesh\" \"string filename\" \"none.ply\"",
+          "Include \"none.pbrt\"",
+          "CoordSysTransform \"none\"",
+          "NamedMaterial \"none\"",
+          "ActiveTransform Never",
+          "ColorSpace \"none\"",
+          "LightSource \"goniometric\"",
+          "] [ 1 \"x\""}) {
+        CAPTURE(fault);
+        Messages messages;
+        const Scene scene = load_pbrt("WorldBegin\nIdentity\n" + fault + "\nIdentity\n" + kFlat, messages);
+        CHECK_FALSE(messages.left_out().empty());
+        CHECK_FALSE(scene.instances.empty());
+        for (const Message& message : messages.all()) {
+            if (message.is_left_out && message.remark.location) CHECK(message.remark.location->line <= 4);
+        }
+    }
+}
+
+TEST_CASE("pbrt: a file without shapes is refused with what is right") {
+    Messages messages;
+    CHECK(test::thrown_error([&] { (void)load_pbrt("WorldBegin\n", messages); })->code() == ErrorCode::BadInput);
+    const fs::path folder = test::scratch_folder();
+    CHECK(test::thrown_error([&] { (void)read_scene(folder / "none.pbrt", {}, messages); })->code() ==
+          ErrorCode::BadInput);
+}
+
+TEST_CASE("pbrt: included files are found from the scene's folder or their own, also gzip'd, and only Import keeps the "
+          "state") {
+    const fs::path folder = test::scratch_folder();
+    fs::create_directory(folder / "parts");
+    test::write_text(folder / "parts" / "a.pbrt", "Translate 1 0 0 Include \"parts/b.pbrt\" Include \"c.pbrt.gz\"");
+    test::write_text(folder / "parts" / "b.pbrt", kFlat);
+    test::write_text(folder / "parts" / "c.pbrt.gz", gzipped(kFlat + "Translate 0 1 0 "));
+    Messages messages;
+    const Scene scene =
+        read_scene(test::write_text(folder / "scene.pbrt", "WorldBegin Import \"parts/a.pbrt\"\n" + kFlat +
+                                                               "Include \"parts/a.pbrt\"\n" + kFlat),
+                   {}, messages);
+    CHECK(messages.all().empty());
+    REQUIRE(scene.instances.size() == 6);
+    check_at(scene.instances[1].world_from_local.translation, {1, 0, 0});
+    check_at(scene.instances[2].world_from_local.translation, {0, 0, 0});
+    check_at(scene.instances[5].world_from_local.translation, {1, 1, 0});
+    // The whole file may be gzip'd, whatever its name.
+    const std::string text = "WorldBegin\n" + kFlat;
+    for (const char* name : {"whole.pbrt.gz", "whole.pbrt"}) {
+        const fs::path packed = test::write_text(folder / name, gzipped(text));
+        CHECK(is_scene_name(packed));
+        CHECK(read_scene(packed, {}, messages).instances.size() == 1);
+    }
+    CHECK_FALSE(is_scene_name("scene.gz"));
+    CHECK_FALSE(is_scene_name("scene.obj.gz"));
+}
+
+TEST_CASE("pbrt: files that include themselves, or grow without reason, end") {
+    const fs::path folder = test::scratch_folder();
+    Messages messages;
+    const fs::path self = test::write_text(folder / "self.pbrt", "WorldBegin\n" + kFlat + "Include \"self.pbrt\"\n");
+    CHECK(read_scene(self, {}, messages).instances.size() == 64);
+    CHECK(messages.left_out().size() == 1);
+    // Doubling at each of 64 levels.
+    const fs::path twice = test::write_text(
+        folder / "twice.pbrt", std::string(1 << 16, '#') + "\nInclude \"twice.pbrt\" Include \"twice.pbrt\"\n");
+    CHECK(test::thrown_error([&] { (void)read_scene(twice, {}, messages); })->code() == ErrorCode::OverLimit);
+    std::string crowd = "WorldBegin ObjectBegin \"a\"\n";
+    for (int i = 0; i < 1000; ++i) crowd += "Shape \"sphere\"\n";
+    crowd += "ObjectEnd\n";
+    for (int i = 0; i < 3000; ++i) crowd += "ObjectInstance \"a\"\n";
+    CHECK(test::thrown_error([&] { (void)load_pbrt(crowd, messages); })->code() == ErrorCode::OverLimit);
+}
+
+TEST_CASE("pbrt: files outside of the allowed folders are not read") {
+    const fs::path folder = test::scratch_folder();
+    fs::create_directory(folder / "inside");
+    test::write_text(folder / "outside.pbrt", kFlat);
+    const std::string text = "WorldBegin\n" + kFlat + "Include \"../outside.pbrt\"\n";
+    const fs::path scene = test::write_text(folder / "inside" / "scene.pbrt", text);
+    Messages messages;
+    CHECK(read_scene(scene, {}, messages).instances.size() == 1);
+    CHECK(messages.left_out().size() == 1);
+    ReadOptions options;
+    options.allowed_paths = {folder};
+    Messages none;
+    CHECK(read_scene(scene, options, none).instances.size() == 2);
+    CHECK(none.left_out().empty());
+}
+
+TEST_CASE("gzip: all members are read, and a damaged or multiplied file is refused") {
+    const auto bytes_of = [](const std::string& text) {
+        std::vector<std::byte> bytes(text.size());
+        std::memcpy(bytes.data(), text.data(), text.size());
+        return bytes;
+    };
+    const std::string one = gzipped("one "), two = gzipped(std::string(3'000'000, 'x'));
+    const std::vector<std::byte> both = gunzip(bytes_of(one + two), "a.gz");
+    CHECK(both.size() == 3'000'004);
+    CHECK(static_cast<char>(both[0]) == 'o');
+    for (const std::string& bad :
+         {one.substr(0, one.size() - 1), two.substr(0, two.size() / 2), one.substr(0, 12) + "????????????"}) {
+        CHECK(test::is_at(test::thrown_error([&] { (void)gunzip(bytes_of(bad), "a.gz"); }), ErrorCode::BadInput,
+                          {"a.gz"}));
+    }
+}
+
+TEST_CASE("pbrt: a scene far from its origin keeps its precision") {
+    std::string text = "Scale -1 1 1 Translate -10000000.25 0 -9 Camera \"perspective\" WorldBegin Shape "
+                       "\"trianglemesh\" \"point3 P\" [10000000.125 0 0 10000001 0 0 10000000.125 1 "
+                       "0] \"integer indices\" [0 1 2]\n"
+                       "LightSource \"point\" \"point3 from\" [10000000.625 0 1]\n";
+    const Scene scene = load_whole(text);
+    CHECK(scene.is_far);
+    const auto is_at = [&](Vec3 p, DoubleVec3 wanted) { CHECK(in_file(scene, p) == wanted); };
+    is_at(transform_point(scene.instances[0].world_from_local, scene.meshes[0].positions[0]), {10000000.125, 0, 0});
+    is_at(scene.lights[0].position, {10000000.625, 0, 1});
+    is_at(scene.cameras[0].world_from_camera.translation, {10000000.25, 0, 9});
+}
+
+TEST_CASE("pbrt: geometry alone is grey and dark") {
+    Messages messages;
+    ReadOptions options;
+    options.geometry_only = true;
+    const Scene scene =
+        load_pbrt("WorldBegin Texture \"a\" \"spectrum\" \"imagemap\" \"string filename\" \"none.png\"\n"
+                  "Material \"conductor\" AreaLightSource \"diffuse\" \"rgb L\" [1 1 1]\n" +
+                      kFlat,
+                  messages, options);
+    CHECK(messages.left_out().empty());
+    REQUIRE(scene.materials.size() == 1);
+    CHECK(scene.materials[0].kind == MaterialKind::Diffuse);
+    CHECK(is_black(scene.materials[0].emission));
+}
