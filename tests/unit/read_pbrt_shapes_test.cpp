@@ -112,7 +112,7 @@ TEST_CASE("shapes: Loop's rules give the limits that theory has") {
     CHECK(triangle.positions[0].y == doctest::Approx(1.0 / 6));
     for (const Vec3& p : triangle.positions) CHECK(p.z == 0);
     Mesh many = octahedron;
-    CHECK(subdivide_loop(31, many) == 9); // 8 * 4^9 triangles are the last below the limit
+    CHECK(subdivide_loop(31, many) == 8); // 8 * 4^8 triangles are the last below the limit
 }
 
 TEST_CASE("pbrt: shapes are placed and sized by their parameters") {

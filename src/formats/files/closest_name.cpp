@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <vector>
 
 #include <fmt/format.h>
 
@@ -35,7 +34,7 @@ std::string_view closest_name(std::string_view word, std::span<const std::string
     if (word.size() > kLongestWord) return {};
     std::string_view best;
     std::size_t least = std::max<std::size_t>(word.size() / 3, 1) + 1;
-    for (const std::string_view name : known) {
+    for (const std::string_view name : known.first(std::min(known.size(), kMostSuggestions))) {
         const std::size_t changes = distance(word, name);
         if (changes >= least) continue;
         least = changes;

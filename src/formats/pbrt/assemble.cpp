@@ -91,6 +91,12 @@ void World::set_lights(const DoubleTransform& scene_from_file, Scene& scene) {
 void World::set_environment(const DoubleTransform& scene_from_file, Scene& scene) {
     Sink& sink = context_.sink;
     for (const InfiniteLight& light : infinite_lights_) {
+        const bool has_pictures =
+            !light.picture.empty() || (scene.environment && !scene.environment->image.pixels.empty());
+        if (scene.environment && has_pictures) {
+            sink.leave_out({light.location, "a second infinite light is left out, because one of them has a picture"});
+            continue;
+        }
         std::filesystem::path picture;
         if (!light.picture.empty()) {
             std::optional<std::filesystem::path> found;
@@ -117,10 +123,8 @@ void World::set_environment(const DoubleTransform& scene_from_file, Scene& scene
         if (!made) continue;
         if (!scene.environment) {
             scene.environment = *std::move(made);
-        } else if (scene.environment->image.pixels.empty() && made->image.pixels.empty()) {
-            scene.environment->scale += made->scale;
         } else {
-            sink.leave_out({light.location, "a second infinite light is left out beside one with a picture"});
+            scene.environment->scale += made->scale;
         }
     }
     // A file of pbrt states all its light. Black is a light from outside too, so that none is made up.
@@ -177,16 +181,18 @@ Scene World::finish(uint64_t file_bytes) {
         if (!left_out.empty()) scene.no_instances += fmt::format("; left out: {}", left_out.front());
     }
     context_.loader.load_into(scene, file_bytes);
+    ImageBudget budget(justified_bytes(4 * kFreeImageBytes, file_bytes));
+    Bumps bumps(budget, scene);
     std::vector<const Surface*> surfaces;
     for (const Surface& surface : assembly.surfaces) surfaces.push_back(&surface);
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         if (!surfaces[i]->has_heights) continue;
         const Placed& shape = placed_[bumpy[i]];
         const ShapeMesh& mesh = shapes_.meshes()[shape.mesh];
-        set_bumps(surfaces[i]->heights, scene.meshes[*numbers[shape.mesh]],
-                  compose(shape.world_from_mesh, mesh.shape_from_mesh), scene.materials[i], scene);
+        bumps.set(surfaces[i]->heights, scene.meshes[*numbers[shape.mesh]],
+                  compose(shape.world_from_mesh, mesh.shape_from_mesh), scene.materials[i]);
     }
-    finish_images(surfaces, textures_.made(), scene);
+    finish_images(surfaces, textures_.made(), budget, scene);
     set_lights(scene_from_file, scene);
     set_environment(scene_from_file, scene);
     add_view(view, context_, scene);

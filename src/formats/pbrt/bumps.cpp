@@ -53,27 +53,37 @@ double world_area(const Mesh& mesh, const DoubleTransform& world_from_mesh) {
     return sum;
 }
 
-void set_bumps(const TextureValue& heights, const Mesh& mesh, const DoubleTransform& world_from_mesh,
-               Material& material, Scene& scene) {
+int32_t Bumps::normals_of(const TextureRef& heights, float exponent) {
+    const auto [number, is_new] =
+        numbers_.try_emplace({heights.image, heights.is_srgb, exponent, heights.wrap_s}, kNoImage);
+    if (!is_new) return number->second;
+    const TextureImage& from = scene_.images[static_cast<std::size_t>(heights.image)];
+    budget_.charge(from);
+    TextureImage normals = normals_of_heights(linear_image(from, heights.is_srgb, exponent), 'm', heights.wrap_s);
+    number->second = static_cast<int32_t>(scene_.images.size());
+    scene_.images.push_back(std::move(normals));
+    return number->second;
+}
+
+void Bumps::set(const TextureValue& heights, const Mesh& mesh, const DoubleTransform& world_from_mesh,
+                Material& material) {
     TextureRef& ref = material.normal_texture;
     if (!ref.has_image()) return;
-    const TextureImage linear =
-        linear_image(scene.images[static_cast<std::size_t>(ref.image)], ref.is_srgb, heights.exponent);
-    const double width = linear.rgba_float.width, height = linear.rgba_float.height;
     const double repeats = static_cast<double>(abs(ref.m00 * ref.m11));
     const double covered = texture_area(mesh) * repeats, area = world_area(mesh, world_from_mesh);
     if (!(covered > 0 && area > 0)) {
         ref = {};
         return;
     }
+    ref.image = normals_of(ref, heights.exponent);
+    ref.is_srgb = false;
+    const Image& normals = scene_.images[static_cast<std::size_t>(ref.image)].rgba_float;
+    const double width = normals.width, height = normals.height;
     // Metres of the whole picture; normals_of_heights() takes white as kBumpHeight of its longer side.
     const double side = std::sqrt(area / covered);
     const double slope = static_cast<double>(heights.factor.r) * std::sqrt(width * height) / side;
     const double usual = static_cast<double>(kBumpHeight) * std::max(width, height);
     material.normal_scale = clamp(static_cast<float>(slope / usual), -0x1p10f, 0x1p10f);
-    ref.image = static_cast<int32_t>(scene.images.size());
-    ref.is_srgb = false;
-    scene.images.push_back(normals_of_heights(linear, 'm', ref.wrap_s));
 }
 
 } // namespace pertev::pbrt

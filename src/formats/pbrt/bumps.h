@@ -3,6 +3,11 @@
 // Heights of pbrt as normal maps. pbrt's heights are metres, and its texture coordinates follow the mesh; a normal map
 // here has one strength, that of the mesh's mean size of the texture.
 
+#include <cstdint>
+#include <map>
+#include <tuple>
+
+#include "formats/pbrt/image_budget.h"
 #include "formats/pbrt/textures.h"
 #include "math/double_transform.h"
 #include "scene/scene.h"
@@ -12,9 +17,22 @@ namespace pertev::pbrt {
 /// Returns the area of a mesh after a transform.
 double world_area(const Mesh& mesh, const DoubleTransform& world_from_mesh);
 
-/// Replaces the image of material.normal_texture, which has the heights, by their normals, and sets the strength that
-/// they have on `mesh`. The image of `heights` is decoded there.
-void set_bumps(const TextureValue& heights, const Mesh& mesh, const DoubleTransform& world_from_mesh,
-               Material& material, Scene& scene);
+/// Normals of height maps, each made once.
+class Bumps {
+public:
+    /// Both outlive it.
+    Bumps(ImageBudget& budget, Scene& scene) : budget_(budget), scene_(scene) {}
+
+    /// Replaces the image of material.normal_texture, which has the heights, by their normals, and sets the strength
+    /// that they have on `mesh`. The image of `heights` is decoded there.
+    void set(const TextureValue& heights, const Mesh& mesh, const DoubleTransform& world_from_mesh, Material& material);
+
+private:
+    int32_t normals_of(const TextureRef& heights, float exponent);
+
+    ImageBudget& budget_;
+    Scene& scene_;
+    std::map<std::tuple<int32_t, bool, float, Wrap>, int32_t> numbers_; // by image, encoding and wrap
+};
 
 } // namespace pertev::pbrt

@@ -188,7 +188,7 @@ Surface mixture(const MaterialSource& source) {
     for (const char* const name : {"namedmaterial1", "namedmaterial2"}) { // pbrt-v3
         if (source.parameters.has(name)) parts.push_back(source.parameters.text(name, "", source.context.sink));
     }
-    const TextureValue amount = source.textures.number(source.parameters, "amount", 0.5f);
+    const TextureValue amount = source.textures.color(source.parameters, "amount", grey(0.5f));
     if (parts.size() != 2) throw source.parameters.error("a mix needs two materials");
     const FileLocation& place = source.parameters.location();
     const Surface* first = source.find(parts[0], place);

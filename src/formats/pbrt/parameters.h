@@ -72,6 +72,7 @@ public:
     bool has(std::string_view name) { return find(name) != nullptr; }
     /// Returns whether there is one, without looking it up.
     bool contains(std::string_view name) const;
+    std::size_t size() const { return all_.size(); }
 
     // Values by name; `missing` if there is none. One of another type is left out with a warning.
     double number(std::string_view name, double missing, Sink& sink);

@@ -22,6 +22,8 @@
 namespace pertev::pbrt {
 namespace {
 
+constexpr uint64_t kMostTessellated = uint64_t(1) << 23;
+
 constexpr std::array<std::string_view, 7> kShapeTypes = {"trianglemesh", "plymesh",      "sphere",    "disk",
                                                          "cylinder",     "bilinearmesh", "loopsubdiv"};
 
@@ -78,7 +80,14 @@ std::vector<uint32_t> indices_of(std::span<const double> numbers) {
 
 } // namespace
 
-ReadShape Shapes::add_mesh(ShapeMesh mesh) {
+/// Adds a mesh. Tessellated ones, which are larger than their statements, have a limit together.
+ReadShape Shapes::add_mesh(ShapeMesh mesh, bool is_tessellated) {
+    if (is_tessellated) tessellated_ += mesh.mesh.triangle_count();
+    if (tessellated_ > kMostTessellated) {
+        throw Error(ErrorCode::OverLimit, mesh.location,
+                    fmt::format("spheres, patches and subdivided meshes have more than {} triangles together",
+                                kMostTessellated));
+    }
     meshes_.push_back(std::move(mesh));
     return {static_cast<uint32_t>(meshes_.size() - 1), {}};
 }
@@ -140,7 +149,7 @@ ReadShape Shapes::triangle_mesh(bool is_subdivision, bool is_reversed, Parameter
         shape.exact.clear();
         for (const Vec3& p : mesh.positions) shape.exact.push_back(to_double(p));
     }
-    return add_mesh(std::move(shape));
+    return add_mesh(std::move(shape), is_subdivision);
 }
 
 ReadShape Shapes::bilinear_mesh(bool is_reversed, Parameters& parameters) {
@@ -162,7 +171,7 @@ ReadShape Shapes::bilinear_mesh(bool is_reversed, Parameters& parameters) {
     triangulate_patches(patches, shape.mesh);
     shape.exact.clear();
     for (const Vec3& p : shape.mesh.positions) shape.exact.push_back(to_double(p));
-    return add_mesh(std::move(shape));
+    return add_mesh(std::move(shape), true);
 }
 
 ReadShape Shapes::ply_mesh(bool is_reversed, Parameters& parameters) {
@@ -178,7 +187,7 @@ ReadShape Shapes::ply_mesh(bool is_reversed, Parameters& parameters) {
     shape.location = parameters.location();
     shape.is_reversed = is_reversed;
     shape.ply = path->string();
-    const ReadShape read = add_mesh(std::move(shape));
+    const ReadShape read = add_mesh(std::move(shape), false);
     known->second = read.mesh;
     return read;
 }
@@ -220,7 +229,7 @@ ReadShape Shapes::quadric(const std::string& type, bool is_reversed, Parameters&
         shape.mesh = type == "sphere" ? make_sphere(first, second, sweep)
                      : type == "disk" ? make_disk(first, sweep)
                                       : make_cylinder(first, second, sweep);
-        known->second = add_mesh(std::move(shape)).mesh;
+        known->second = add_mesh(std::move(shape), true).mesh;
     }
     return {known->second, from_mesh};
 }

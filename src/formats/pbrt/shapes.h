@@ -48,7 +48,7 @@ public:
     std::vector<ShapeMesh>& meshes() { return meshes_; }
 
 private:
-    ReadShape add_mesh(ShapeMesh mesh);
+    ReadShape add_mesh(ShapeMesh mesh, bool is_tessellated);
     ReadShape triangle_mesh(bool is_subdivision, bool is_reversed, Parameters& parameters);
     ReadShape bilinear_mesh(bool is_reversed, Parameters& parameters);
     ReadShape ply_mesh(bool is_reversed, Parameters& parameters);
@@ -59,6 +59,7 @@ private:
     const Context& context_;
     std::vector<ShapeMesh> meshes_;
     std::map<std::string, uint32_t, std::less<>> shared_; // by what makes them
+    uint64_t tessellated_ = 0;                            // triangles
 };
 
 } // namespace pertev::pbrt

@@ -134,7 +134,8 @@ void set_alpha(Surface& surface, const TextureValue& value) {
     material.alpha_mode = AlphaMode::Blend;
 }
 
-void finish_images(const std::vector<const Surface*>& surfaces, std::vector<TextureImage>& made, Scene& scene) {
+void finish_images(const std::vector<const Surface*>& surfaces, std::vector<TextureImage>& made, ImageBudget& budget,
+                   Scene& scene) {
     const auto first_made = static_cast<int32_t>(scene.images.size());
     for (TextureImage& image : made) scene.images.push_back(std::move(image));
     std::map<std::tuple<int32_t, bool, ImageChange>, int32_t> numbers;
@@ -151,6 +152,7 @@ void finish_images(const std::vector<const Surface*>& surfaces, std::vector<Text
             if (change.is_identity()) continue;
             const auto [number, is_new] = numbers.try_emplace({ref.image, ref.is_srgb, change}, kNoImage);
             if (is_new) {
+                budget.charge(scene.images[static_cast<std::size_t>(ref.image)]);
                 number->second = static_cast<int32_t>(scene.images.size());
                 scene.images.push_back(
                     changed_image(scene.images[static_cast<std::size_t>(ref.image)], change, ref.is_srgb));

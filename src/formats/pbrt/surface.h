@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "formats/pbrt/image_budget.h"
 #include "formats/pbrt/textures.h"
 #include "scene/material.h"
 #include "scene/scene.h"
@@ -63,6 +64,7 @@ void set_alpha(Surface& surface, const TextureValue& value);
 
 /// Applies the changes to the images of `scene`, whose materials `surfaces` belong to, one to one. The loader has put
 /// its images there. Images that no material uses any more are removed.
-void finish_images(const std::vector<const Surface*>& surfaces, std::vector<TextureImage>& made, Scene& scene);
+void finish_images(const std::vector<const Surface*>& surfaces, std::vector<TextureImage>& made, ImageBudget& budget,
+                   Scene& scene);
 
 } // namespace pertev::pbrt

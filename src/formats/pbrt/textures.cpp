@@ -82,7 +82,13 @@ TextureValue Textures::value_of(const std::string& type, bool is_color, Paramete
 }
 
 TextureValue Textures::part(Parameters& parameters, std::string_view name, bool is_color, float missing) {
-    return is_color ? color(parameters, name, grey(missing)) : number(parameters, name, missing);
+    const Parameter* const found = parameters.find(name);
+    if (!is_color || found == nullptr) return number(parameters, name, missing);
+    if (found->type == ParameterType::Texture) return look_up(parameters, *found, grey(missing));
+    // A product may have a factor above 1.
+    const bool is_plain = found->type == ParameterType::Rgb || found->type == ParameterType::Float;
+    return constant((is_plain ? plain_color(parameters, name, context_) : reflectance(parameters, name, context_))
+                        .value_or(grey(missing)));
 }
 
 void Textures::read_mapping(Parameters& parameters, TextureRef& ref) {
@@ -205,19 +211,22 @@ TextureValue Textures::look_up(const Parameters& parameters, const Parameter& pa
     const std::string& name = parameter.texts.front();
     if (const auto found = textures_.find(name); found != textures_.end()) return found->second;
     if (!context_.options.geometry_only) {
-        std::vector<std::string_view> known;
-        for (const auto& [other, value] : textures_) known.push_back(other);
-        context_.sink.leave_out({parameters.location_of(parameter),
-                                 fmt::format("there is no texture {} for \"{}\" of {}{}", shortened(name),
-                                             parameter.name, parameters.what(), did_you_mean(name, known))});
+        context_.sink.leave_out(
+            {parameters.location_of(parameter),
+             fmt::format("there is no texture {} for \"{}\" of {}{}", shortened(name), parameter.name,
+                         parameters.what(), did_you_mean(name, first_names(textures_)))});
     }
     return constant(missing);
 }
 
 TextureValue Textures::color(Parameters& parameters, std::string_view name, Rgb missing) {
     const Parameter* const found = parameters.find(name);
-    if (found != nullptr && found->type == ParameterType::Texture) return look_up(parameters, *found, missing);
-    return constant(reflectance(parameters, name, context_).value_or(missing));
+    if (found == nullptr || found->type != ParameterType::Texture)
+        return constant(reflectance(parameters, name, context_).value_or(missing));
+    TextureValue value = look_up(parameters, *found, missing);
+    const Rgb c = value.factor;
+    if (!value.has_image()) value.factor = {clamp(c.r, 0.0f, 1.0f), clamp(c.g, 0.0f, 1.0f), clamp(c.b, 0.0f, 1.0f)};
+    return value;
 }
 
 TextureValue Textures::number(Parameters& parameters, std::string_view name, float missing) {

@@ -37,10 +37,8 @@ const Surface* World::find_surface(const std::string& name, const FileLocation& 
         static const Surface nothing{.material = {}, .is_nothing = true, .images = {}, .heights = {}};
         return &nothing;
     }
-    std::vector<std::string_view> known;
-    for (const auto& [other, number] : named_surfaces_) known.push_back(other);
-    context_.sink.leave_out(
-        {from, fmt::format("there is no material {}{}", shortened(name), did_you_mean(name, known))});
+    context_.sink.leave_out({from, fmt::format("there is no material {}{}", shortened(name),
+                                               did_you_mean(name, first_names(named_surfaces_)))});
     return nullptr;
 }
 
@@ -152,10 +150,8 @@ void World::add_instance(const std::string& name, const FileLocation& from, uint
     if (open_object_) throw Error(ErrorCode::BadInput, from, "an ObjectInstance within an object is left out");
     const auto object = objects_.find(name);
     if (object == objects_.end()) {
-        std::vector<std::string_view> known;
-        for (const auto& [other, shapes] : objects_) known.push_back(other);
         throw Error(ErrorCode::BadInput, from,
-                    fmt::format("there is no object {}{}", shortened(name), did_you_mean(name, known)));
+                    fmt::format("there is no object {}{}", shortened(name), did_you_mean(name, first_names(objects_))));
     }
     const uint64_t most = std::min<uint64_t>(kMaxInstances, justified_bytes(kFreeMeshBytes, file_bytes) /
                                                                 (sizeof(Instance) + sizeof(Placed)));

@@ -8,6 +8,7 @@ namespace {
 
 constexpr float kShareOfDiagonal = 1e-3f;
 constexpr uint32_t kMostPieces = 32;
+constexpr uint64_t kMostTriangles = uint64_t(1) << 20;
 
 struct Patch {
     Vec3 p00, p10, p01, p11;
@@ -47,6 +48,7 @@ T bilinear(const std::vector<T>& values, const PatchCorners& c, float u, float v
 void triangulate_patches(const std::vector<PatchCorners>& patches, Mesh& mesh) {
     uint32_t pieces = 1;
     for (const PatchCorners& corners : patches) pieces = std::max(pieces, pieces_of(patch_of(mesh, corners)));
+    while (pieces > 1 && 2 * uint64_t(pieces) * pieces * patches.size() > kMostTriangles) --pieces;
     const bool has_uv = !mesh.uv[0].empty(), has_normals = !mesh.normals.empty();
     if (pieces == 1 && has_uv) {
         for (const PatchCorners& c : patches)

@@ -2,7 +2,7 @@
 
 // Bilinear patches as triangles. Flat patches become two triangles each; if a patch of the mesh is curved, all are cut
 // into equal squares of parameters, so many that no point is further from the surface than a thousandth of the curved
-// patch's diagonal (at most 32 x 32).
+// patch's diagonal (at most 32 x 32, and no more than 2^20 triangles of a mesh that has fewer patches).
 
 #include <array>
 #include <cstdint>

@@ -14,7 +14,7 @@
 namespace pertev {
 
 /// The most triangles that a subdivided mesh may have, unless it has more before.
-inline constexpr uint64_t kMostSubdivided = uint64_t(1) << 22;
+inline constexpr uint64_t kMostSubdivided = uint64_t(1) << 20;
 
 /// Subdivides positions and triangles of `mesh`, whose indices are in range, `levels` times, or less often if it would
 /// have more than kMostSubdivided triangles. Returns the number of steps. Texture coordinates, normals and colours of
