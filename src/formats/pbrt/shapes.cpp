@@ -10,7 +10,6 @@
 #include "base/message_text.h"
 #include "base/parallel_for.h"
 #include "formats/files/closest_name.h"
-#include "formats/files/gunzip.h"
 #include "formats/mesh/move_positions.h"
 #include "formats/pbrt/transforms.h"
 #include "formats/ply/read_ply.h"
@@ -252,7 +251,7 @@ void Shapes::read_ply_file(ShapeMesh& to, Sink& sink) const {
     ReadOptions options = context_.options;
     options.geometry_only = true; // pbrt takes neither colours nor textures from it
     const std::filesystem::path path = to.ply;
-    Scene scene = read_ply(path, read_unzipped(path), context_.access, options, sink);
+    Scene scene = read_ply(path, context_.access, options, sink);
     if (scene.meshes.size() != 1) throw Error(ErrorCode::BadInput, FileLocation{to.ply}, "the file has no mesh");
     to.mesh = std::move(scene.meshes.front());
     to.shape_from_mesh = make_translation(scene.origin_in_file);

@@ -12,7 +12,7 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/message_text.h"
-#include "base/read_file.h"
+#include "formats/files/gunzip.h"
 #include "formats/files/load_textures.h"
 #include "formats/mesh/move_positions.h"
 #include "formats/mesh/triangulate_polygon.h"
@@ -395,12 +395,8 @@ private:
 } // namespace
 
 Scene read_ply(const fs::path& path, const FileAccess& access, const ReadOptions& options, Sink& sink) {
-    return read_ply(path, read_file(path), access, options, sink);
-}
-
-Scene read_ply(const fs::path& path, std::span<const std::byte> bytes, const FileAccess& access,
-               const ReadOptions& options, Sink& sink) {
     const std::string file = path.string();
+    const std::vector<std::byte> bytes = read_unzipped(path);
     PlyHeader header = parse_ply_header(bytes, file);
     for (const Remark& repair : header.repairs) sink.warn(repair);
     if (options.geometry_only) header.textures.clear();

@@ -4,9 +4,7 @@
 // positions, normals, colours and texture coordinates, faces, triangle strips and textures
 // (formats/ply/ply_textures.h); everything else is skipped. Every count is checked against the remaining bytes.
 
-#include <cstddef>
 #include <filesystem>
-#include <span>
 
 #include "base/sink.h"
 #include "formats/files/file_access.h"
@@ -20,8 +18,5 @@ namespace pertev {
 /// Error(BadInput) that names the file and the header line, or the element, its number and the line (binary: the
 /// byte).
 Scene read_ply(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options, Sink& sink);
-/// Reads the file of this name from its bytes, which a caller has decompressed.
-Scene read_ply(const std::filesystem::path& path, std::span<const std::byte> bytes, const FileAccess& access,
-               const ReadOptions& options, Sink& sink);
 
 } // namespace pertev
