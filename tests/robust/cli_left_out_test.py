@@ -45,6 +45,24 @@ class LeftOut(CliTest):
         self.refuse(2, "render", scene, "-o", "y.png", "--strict", "--json", *SMALL,
                     says=["EXT_new, ", " 2 "])
 
+    def test_a_pbrt_scene_is_rendered_as_it_says_and_gets_no_light(self):
+        text = ('Film "rgb" "integer xresolution" 12 "integer yresolution" 8\nSampler "sobol" "integer pixelsamples" 2\n'
+                'LookAt 0 0 -3 0 0 0 0 1 0\nCamera "perspective" "float fov" 60\nWorldBegin\nShape "sphere"\n')
+        write(self.path("dark.pbrt"), text)
+        outcome = self.succeed("render", "dark.pbrt", "-o", "x.exr", "--json", "--strict", "--device", "cpu")
+        done, picture = outcome.events("done")[0], outcome.events("picture")[0]
+        self.assertEqual((done["left_out"], done["made_up"]), ([], []))
+        self.assertEqual((picture["width"], picture["height"], picture["spp"]), (12, 8, 2))
+        channels = read_exr(self.path("x.exr"))[2]
+        self.assertEqual({value for rows in channels.values() for row in rows for value in row}, {0.0})
+        info = self.succeed("info", "dark.pbrt", "--json").events("info")[0]
+        self.assertEqual(info["makes_up"], [])
+        self.assertIn("max_depth=5", info["suggests"])
+        write(self.path("fault.pbrt"), text + 'Shap "sphere"\n')
+        done = self.succeed("render", "fault.pbrt", "-o", "x.exr", "--json", "--device", "cpu").events("done")[0]
+        self.assertRegex(done["left_out"][0], r'^fault\.pbrt:7: "Shap" .*"Shape"')
+        self.refuse(2, "render", "fault.pbrt", "-o", "y.exr", "--strict", "--device", "cpu", says=["--strict: ", "fault.pbrt:7: "])
+
     def test_the_error_for_a_scene_without_triangles_lists_the_skipped_parts(self):
         accessors = [{"componentType": 5126, "count": 3, "type": "VEC3"}]
         meshes = [{"primitives": [{"attributes": {"POSITION": 0},

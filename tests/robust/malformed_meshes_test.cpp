@@ -46,6 +46,13 @@ const std::string kSmallPly = "ply\nformat ascii 1.0\nelement vertex 4\nproperty
 const std::string kSmallStl = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e0 0\n"
                               "endloop\nendfacet\nendsolid a\n";
 
+const std::string kSmallPbrt =
+    "LookAt 0 0 -5 0 0 0 0 1 0 Camera \"perspective\" \"float fov\" 40 WorldBegin\n"
+    "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"t.png\" Material \"matte\" \"texture Kd\" \"t\"\n"
+    "AttributeBegin Rotate 30 0 1 0 AreaLightSource \"diffuse\" \"rgb L\" [1 2 3] Shape \"disk\" AttributeEnd\n"
+    "ObjectBegin \"o\" Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2]\n"
+    "Shape \"plymesh\" \"string filename\" \"a.ply\" ObjectEnd ObjectInstance \"o\" Include \"a.pbrt\"\n";
+
 /// Changes, doubles or removes a few bytes, like a fuzzer.
 std::string damaged(std::string text, std::mt19937& random) {
     const auto below = [&](std::size_t n) { return random() % std::max<std::size_t>(n, 1); };
@@ -80,7 +87,7 @@ TEST_CASE("every malformed public mesh causes an error or a scene") {
     }
 }
 
-TEST_CASE("damaged OBJ, MTL, PLY and STL files cause an error or a scene") {
+TEST_CASE("damaged OBJ, MTL, PLY, STL and pbrt files cause an error or a scene") {
     std::mt19937 random(7);
     const fs::path folder = test::scratch_folder();
     const uint64_t rounds = test::effort(1500, 60'000);
@@ -92,6 +99,7 @@ TEST_CASE("damaged OBJ, MTL, PLY and STL files cause an error or a scene") {
         check_survives(test::write_text(folder / "a.ply", damaged(kSmallPly, random)));
         check_survives(test::write_text(folder / "a.stl", damaged(kSmallStl, random)));
         check_survives(test::write_text(folder / "b.stl", damaged(binary_stl, random)));
+        if (round % 4 == 0) check_survives(test::write_text(folder / "b.pbrt", damaged(kSmallPbrt, random)));
     }
 }
 
