@@ -2,8 +2,7 @@
 """Renders Bitterli's Cornell box from its pbrt form, as the file says, and compares it with his reference picture.
 
 Size, filter and depth are those that the file suggests. The bounds are those of bitterli_cornell_box.py, which renders the
-Mitsuba form. His other pbrt forms cannot be compared: veach-ajar's lacks the checks of the floor, and kitchen's has another
-plastic.
+Mitsuba form. His other pbrt forms are not compared: veach-ajar's lacks the checks of the floor, and kitchen's meshes are in an archive.
 """
 
 import pathlib

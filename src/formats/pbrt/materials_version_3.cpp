@@ -29,11 +29,19 @@ Surface matte(const MaterialSource& source) {
     return surface;
 }
 
-/// Reads Kd, and sets a reflection of Fresnel's reflectance times `ks`.
-void set_plastic(const MaterialSource& source, float missing, const TextureValue& ks, Surface& surface) {
+/// Reads Kd, the albedo of a diffuse surface beneath a coat that reflects `share` of what its index says. pbrt-v4's own
+/// upgrade of such materials makes coateddiffuse of them, which is darker and more saturated by the light that the coat
+/// sends back.
+void set_diffuse_beneath(const MaterialSource& source, float missing, float share, Surface& surface) {
     set_color(surface, &M::base_color, &M::base_color_texture,
-              source.textures.color(source.parameters, "Kd", grey(missing)));
+              source.textures.color(source.parameters, "Kd", grey(missing)), Curve::BeneathCoat,
+              share * reflected_inside(surface.material.ior));
+}
+
+/// Sets a diffuse surface and a reflection of Fresnel's reflectance times `ks`.
+void set_plastic(const MaterialSource& source, const TextureValue& ks, Surface& surface) {
     const float most = ks.has_image() ? 1.0f : max_component(ks.factor);
+    set_diffuse_beneath(source, 0.25f, ks.has_image() ? 0.5f : most, surface);
     surface.material.specular_weight = most;
     if (most > 0) set_color(surface, &M::specular_color, &M::specular_color_texture, ks.scaled(grey(1 / most)));
 }
@@ -41,21 +49,22 @@ void set_plastic(const MaterialSource& source, float missing, const TextureValue
 Surface plastic(const MaterialSource& source) {
     Surface surface = make_surface(MaterialKind::MetallicRoughness);
     read_roughness(source, 0.1, "", surface);
-    set_plastic(source, 0.25f, source.textures.color(source.parameters, "Ks", grey(0.25f)), surface);
-    warn_of_nearest(source, "a diffuse surface beneath a reflection");
+    set_plastic(source, source.textures.color(source.parameters, "Ks", grey(0.25f)), surface);
+    warn_of_nearest(source, "a diffuse surface beneath a coat");
     return surface;
 }
 
 Surface substrate(const MaterialSource& source) {
     Surface surface = make_surface(MaterialKind::MetallicRoughness);
     read_roughness(source, 0.1, "", surface);
-    // Ks is the reflectance at 0 degrees; at grazing angles all is reflected.
-    const TextureValue ks =
-        source.textures.color(source.parameters, "Ks", grey(0.5f)).scaled(grey(1 / kReflectanceOf15));
-    set_color(surface, &M::base_color, &M::base_color_texture,
-              source.textures.color(source.parameters, "Kd", grey(0.5f)));
-    set_color(surface, &M::specular_color, &M::specular_color_texture, ks);
-    warn_of_nearest(source, "a diffuse surface beneath a reflection");
+    // Ks is the reflectance at 0 degrees; the coat has the index of its mean.
+    const TextureValue ks = source.textures.color(source.parameters, "Ks", grey(0.5f));
+    const float mean =
+        ks.has_image() ? kReflectanceOf15 : clamp((ks.factor.r + ks.factor.g + ks.factor.b) / 3, 1e-4f, 0.9f);
+    surface.material.ior = (1 + sqrt(mean)) / (1 - sqrt(mean));
+    set_color(surface, &M::specular_color, &M::specular_color_texture, ks.scaled(grey(1 / mean)));
+    set_diffuse_beneath(source, 0.5f, 1, surface);
+    warn_of_nearest(source, "a diffuse surface beneath a coat");
     return surface;
 }
 
@@ -104,7 +113,7 @@ Surface uber(const MaterialSource& source) {
     set_index(source, surface);
     read_roughness(source, 0.1, "", surface);
     const TextureValue ks = source.textures.color(parameters, "Ks", grey(0.25f));
-    set_plastic(source, 0.25f, ks, surface);
+    set_plastic(source, ks, surface);
     const TextureValue kr = source.textures.color(parameters, "Kr", grey(0)),
                        kt = source.textures.color(parameters, "Kt", grey(0));
     if (kr.has_image() || !is_black(kr.factor))
@@ -119,7 +128,7 @@ Surface uber(const MaterialSource& source) {
     }
     const bool has_reflection = ks.has_image() || !is_black(ks.factor);
     if (surface.material.alpha == 0) surface.is_nothing = true; // light passes unchanged
-    if (has_reflection && !surface.is_nothing) warn_of_nearest(source, "a diffuse surface beneath a reflection");
+    if (has_reflection && !surface.is_nothing) warn_of_nearest(source, "a diffuse surface beneath a coat");
     if (!has_reflection && !surface.material.base_color_texture.has_image())
         surface.material.kind = MaterialKind::Diffuse;
     return surface;
