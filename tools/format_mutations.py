@@ -87,6 +87,7 @@ MUTATIONS = [
     ("a sphere is half as fine", "unit/read_pbrt_shapes", ("src/formats/shapes/quadrics.h", "kCircleSegments = 128", "kCircleSegments = 64")),
     ("a curved patch has a flat normal", "unit/read_pbrt_shapes", ("src/formats/shapes/bilinear_patches.cpp", "patch.normal(u, v)", "patch.normal(0, 0)")),
     ("a subdivided vertex stays where it was", "unit/read_pbrt_shapes", ("src/formats/shapes/loop_subdivision.cpp", "limits.push_back(last.limit(i));", "limits.push_back(now.positions[i]);")),
+    ("a gzip'd file is read as it is", "unit/read_pbrt", ("src/formats/files/gunzip.cpp", "return is_gzip(bytes) ? gunzip(bytes, path.string()) : bytes;", "return bytes;")),
     ("a gzip'd file ends with its first member", "unit/read_pbrt", ("src/formats/files/gunzip.cpp", "while (state != Z_STREAM_END || (left > 0 && is_gzip(bytes.last(left))))", "while (state != Z_STREAM_END)")),
     ("a misspelt name suggests the first one", "unit/read_pbrt", ("src/formats/files/closest_name.cpp", "if (changes >= least) continue;", "")),
     ("a black body is brightest elsewhere", "unit/read_pbrt_lights", ("src/formats/spectra/spectrum.cpp", "return square * square * inverse /", "return square * square /")),

@@ -247,6 +247,26 @@ TEST_CASE("pbrt: included files are found from the scene's folder or their own, 
     CHECK_FALSE(is_scene_name("scene.obj.gz"));
 }
 
+TEST_CASE("pbrt: a gzip'd PLY file is read, and a damaged one costs its shape alone") {
+    const fs::path folder = test::scratch_folder();
+    const std::string ply = gzipped("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                                    "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+                                    "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    test::write_text(folder / "a.ply.gz", ply);
+    test::write_text(folder / "b.ply.gz", ply.substr(0, ply.size() - 9));
+    Messages messages;
+    const Scene scene =
+        read_scene(test::write_text(folder / "scene.pbrt", "WorldBegin\n"
+                                                           "Shape \"plymesh\" \"string filename\" \"a.ply.gz\"\n"
+                                                           "Shape \"plymesh\" \"string filename\" \"b.ply.gz\"\n"),
+                   {}, messages);
+    REQUIRE(scene.instances.size() == 1);
+    CHECK(scene.instances[0].name == "a");
+    CHECK(scene.meshes[0].triangle_count() == 1);
+    REQUIRE(messages.left_out().size() == 1);
+    CHECK(messages.left_out()[0].find("b.ply.gz") != std::string::npos);
+}
+
 TEST_CASE("pbrt: files that include themselves, or grow without reason, end") {
     const fs::path folder = test::scratch_folder();
     Messages messages;

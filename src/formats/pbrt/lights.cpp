@@ -98,6 +98,9 @@ std::optional<Light> read_light(const std::string& type, Parameters& parameters,
         light.direction = direction_of(parameters, world_from_light, {0, 0, 0}, {0, 0, 1}, sink);
         const auto cone = static_cast<float>(std::clamp(parameters.number("coneangle", 30, sink), 0.1, 89.9));
         const auto edge = static_cast<float>(std::clamp(parameters.number("conedeltaangle", 5, sink), 0.0, 89.9));
+        if (edge > 0)
+            sink.warn({FileLocation{parameters.location().file},
+                       "the edges of spots fall off as those of glTF, darker than pbrt's"});
         light.cos_inner = cos(max(cone - edge, 0.0f) * (kPi / 180));
         light.cos_outer = min(cos(cone * (kPi / 180)), light.cos_inner - kSharpestEdge);
         const double inner = static_cast<double>(light.cos_inner), outer = static_cast<double>(light.cos_outer);

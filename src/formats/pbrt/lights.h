@@ -1,6 +1,6 @@
 #pragma once
 
-// Lights of pbrt. Strengths follow colors.h. A spot's edge falls off as that of KHR_lights_punctual, which is softer
+// Lights of pbrt. Strengths follow colors.h. A spot's edge falls off as that of KHR_lights_punctual, which is darker
 // than pbrt's.
 
 #include <optional>
