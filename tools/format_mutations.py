@@ -82,6 +82,7 @@ MUTATIONS = [
     ("pbrt: a checkerboard begins with the other colour", "unit/read_pbrt_materials", ("src/formats/pbrt/textures.cpp", "{odd, even, even, odd}", "{even, odd, odd, even}")),
     ("pbrt: an inverted image is not inverted", "unit/read_pbrt_materials", ("src/formats/pbrt/textures.cpp", "value.offset = grey(1);", "value.offset = grey(0);")),
     ("pbrt: bumps have the strength of another size", "unit/read_pbrt_materials", ("src/formats/pbrt/bumps.cpp", "std::sqrt(width * height) / side;", "std::sqrt(width * height);")),
+    ("pbrt: textures without coordinates show one texel", "unit/read_pbrt_materials", ("src/formats/pbrt/assemble.cpp", "if (has_textures[i] && mesh.uv[0].empty()) give_coordinates(mesh);", "if (false) give_coordinates(mesh);")),
     ("pbrt: ReverseOrientation does nothing", "unit/read_pbrt_shapes", ("src/formats/pbrt/shapes.cpp", "bool turns = is_reversed;", "bool turns = false;")),
     ("pbrt: the front is where the corners say beside normals", "unit/read_pbrt_shapes", ("src/formats/pbrt/shapes.cpp", "if (side != 0) turns = side < 0;", "")),
     ("a sphere is half as fine", "unit/read_pbrt_shapes", ("src/formats/shapes/quadrics.h", "kCircleSegments = 128", "kCircleSegments = 64")),

@@ -305,6 +305,20 @@ TEST_CASE("pbrt: alpha of a shape, bumps and normal maps") {
     CHECK_FALSE(of(4).normal_texture.is_srgb);
 }
 
+TEST_CASE("pbrt: triangles without texture coordinates have those of pbrt under a texture") {
+    const std::string flat =
+        "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 1 1 0 0 1 0] \"integer indices\" [0 1 2 0 2 3]\n";
+    const Scene scene = load_material("Texture \"t\" \"spectrum\" \"checkerboard\"\n" + flat +
+                                      "Material \"diffuse\" \"texture reflectance\" \"t\"\n" + flat)
+                            .scene;
+    CHECK(scene.meshes[0].uv[0].empty());
+    CHECK(scene.meshes[0].positions.size() == 4);
+    REQUIRE(scene.meshes[1].uv[0].size() == 6);
+    CHECK(scene.meshes[1].uv[0][4] == Vec2{1, 1});
+    CHECK(scene.meshes[1].uv[0][5] == Vec2{1, 0});
+    CHECK(scene.meshes[1].positions[5] == Vec3{0, 1, 0});
+}
+
 TEST_CASE("pbrt: colours of another colour space are converted") {
     const Rgb green =
         material_of("ColorSpace \"rec2020\" Material \"diffuse\" \"rgb reflectance\" [.5 .5 .5]").base_color;

@@ -32,6 +32,21 @@ DoubleBounds3 box_of(const Mesh& mesh, const DoubleTransform& transform) {
     return box;
 }
 
+/// Gives a mesh without texture coordinates those of pbrt: each triangle has (0, 0), (1, 0) and (1, 1), v upwards.
+void give_coordinates(Mesh& mesh) {
+    constexpr Vec2 kCorners[3] = {{0, 1}, {1, 1}, {1, 0}};
+    Mesh split;
+    split.name = std::move(mesh.name);
+    split.origin = std::move(mesh.origin);
+    for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
+        split.positions.push_back(mesh.positions[mesh.indices[i]]);
+        if (!mesh.normals.empty()) split.normals.push_back(mesh.normals[mesh.indices[i]]);
+        split.uv[0].push_back(kCorners[i % 3]);
+        split.indices.push_back(static_cast<uint32_t>(i));
+    }
+    mesh = std::move(split);
+}
+
 } // namespace
 
 /// The materials of the scene, each made once.
@@ -145,6 +160,19 @@ Scene World::finish(uint64_t file_bytes) {
     set_origin(box, scene);
     const DoubleTransform scene_from_file =
         compose(make_translation(DoubleVec3{0, 0, 0} - scene.origin_in_file), scene_from_world);
+
+    std::vector<bool> has_textures(shapes_.meshes().size());
+    for (const Placed& shape : placed_) {
+        const Surface& surface = surfaces_[shape.surface];
+        if (!surface.images.empty() || surface.has_heights || surface.material.normal_texture.has_image() ||
+            (shape.alpha && alphas_[*shape.alpha].has_image()) ||
+            (shape.area_light && area_lights_[*shape.area_light].image.has_image()))
+            has_textures[shape.mesh] = true;
+    }
+    for (std::size_t i = 0; i < has_textures.size(); ++i) {
+        Mesh& mesh = shapes_.meshes()[i].mesh;
+        if (has_textures[i] && mesh.uv[0].empty()) give_coordinates(mesh);
+    }
 
     Assembly assembly{.world = *this, .scene = scene, .numbers = {}, .surfaces = {}};
     std::vector<std::optional<uint32_t>> numbers(shapes_.meshes().size()); // meshes in the scene
