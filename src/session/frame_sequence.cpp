@@ -165,7 +165,9 @@ bool FrameSequence::render_rows(const FrameTask& task, RowExchange* others, Sink
     }
     has_moved_ = false; // the frame is complete, whatever follows
     const bool has_changed = std::exchange(scene_has_changed_, false);
-    store_light(number, camera, of_light, reconstruction.follow_light && has_changed);
+    // Before the first frame after a cut nothing can have changed, whatever the sequence has shown before.
+    const bool goes_on = reconstruction.follow_light && has_changed && reconstruction_->frames() > 1;
+    store_light(number, camera, of_light, goes_on);
     return true;
 }
 
