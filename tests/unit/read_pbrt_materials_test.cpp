@@ -24,7 +24,7 @@ struct OneMaterial {
 };
 
 /// Reads a file of one face, in a folder with the pictures a.exr (two pixels of 0.25 and 0.5) and a.png.
-OneMaterial load_material(const std::string& text, const std::string& end = "") {
+OneMaterial load_pbrt_material(const std::string& text, const std::string& end = "") {
     const fs::path folder = test::scratch_folder();
     write_image(folder / "a.exr",
                 Image{.width = 2, .height = 1, .channels = 3, .pixels = {0.25f, 0.25f, 0.25f, 0.5f, 0.5f, 0.5f}});
@@ -35,14 +35,14 @@ OneMaterial load_material(const std::string& text, const std::string& end = "") 
     return read;
 }
 
-Material material_of(const std::string& text, const std::string& end = "") {
-    const OneMaterial read = load_material(text, end);
+Material pbrt_material(const std::string& text, const std::string& end = "") {
+    const OneMaterial read = load_pbrt_material(text, end);
     CHECK(read.messages.left_out() == std::vector<std::string>{});
     return read.material;
 }
 
 /// The colour of a texture's image at texture coordinates with v upwards, from the nearest pixel.
-float texel_at(const Scene& scene, const TextureRef& ref, float u, float v) {
+float pbrt_texel(const Scene& scene, const TextureRef& ref, float u, float v) {
     const Image& image = scene.images.at(static_cast<std::size_t>(ref.image)).rgba_float;
     const float x = ref.m00 * u + ref.m01 * (1 - v) + ref.m02, y = ref.m10 * u + ref.m11 * (1 - v) + ref.m12;
     const auto column = static_cast<uint32_t>((x - floor(x)) * float(image.width)),
@@ -53,49 +53,49 @@ float texel_at(const Scene& scene, const TextureRef& ref, float u, float v) {
 } // namespace
 
 TEST_CASE("pbrt: diffuse, conductor and dielectric have their numbers, and microfacets of one bounce") {
-    const Material diffuse = material_of("Material \"diffuse\" \"rgb reflectance\" [.1 .2 .3]");
+    const Material diffuse = pbrt_material("Material \"diffuse\" \"rgb reflectance\" [.1 .2 .3]");
     CHECK(diffuse.kind == MaterialKind::Diffuse);
     CHECK(diffuse.base_color == Rgb{0.1f, 0.2f, 0.3f});
-    CHECK(material_of("").base_color == grey(0.5f));
-    const Material gold = material_of("Material \"conductor\" \"spectrum eta\" \"metal-Au-eta\" \"spectrum k\" "
-                                      "\"metal-Au-k\" \"float roughness\" .0625");
+    CHECK(pbrt_material("").base_color == grey(0.5f));
+    const Material gold = pbrt_material("Material \"conductor\" \"spectrum eta\" \"metal-Au-eta\" \"spectrum k\" "
+                                        "\"metal-Au-k\" \"float roughness\" .0625");
     CHECK(gold.kind == MaterialKind::Conductor);
     CHECK(gold.eta == find_metal("gold")->eta);
     CHECK(gold.k == find_metal("gold")->k);
     CHECK(gold.roughness == doctest::Approx(0.5)); // the width is the root, and its root the roughness
     CHECK(gold.energy == MicrofacetEnergy::Single);
     CHECK(gold.microfacet_distribution == MicrofacetDistribution::Ggx);
-    CHECK(material_of("Material \"conductor\"").eta == find_metal("copper")->eta);
-    const Material half = material_of("Material \"conductor\" \"rgb reflectance\" [.5 .5 .5]");
+    CHECK(pbrt_material("Material \"conductor\"").eta == find_metal("copper")->eta);
+    const Material half = pbrt_material("Material \"conductor\" \"rgb reflectance\" [.5 .5 .5]");
     CHECK(half.eta == grey(1));
     CHECK(square(half.k.r) / (4 + square(half.k.r)) == doctest::Approx(0.5)); // Fresnel at 0 degrees
-    const Material water = material_of("Material \"dielectric\" \"float eta\" 1.33");
+    const Material water = pbrt_material("Material \"dielectric\" \"float eta\" 1.33");
     CHECK(water.kind == MaterialKind::Dielectric);
     CHECK(water.ior == 1.33f);
     CHECK(water.roughness == 0);
     CHECK(water.base_color == grey(1));
     CHECK(water.dispersion() == 0);
-    const Material glass = material_of("Material \"dielectric\" \"spectrum eta\" \"glass-BK7\"");
+    const Material glass = pbrt_material("Material \"dielectric\" \"spectrum eta\" \"glass-BK7\"");
     CHECK(glass.ior == doctest::Approx(1.5168));
     CHECK(glass.transmission_dispersion_abbe_number == doctest::Approx(64.17));
     CHECK(glass.dispersion() > 0);
 }
 
 TEST_CASE("pbrt: roughness is remapped as each version does, and may differ along u and v") {
-    CHECK(material_of("Material \"dielectric\" \"float roughness\" .25 \"bool remaproughness\" false").roughness ==
+    CHECK(pbrt_material("Material \"dielectric\" \"float roughness\" .25 \"bool remaproughness\" false").roughness ==
           doctest::Approx(0.5));
-    CHECK(material_of("Material \"dielectric\" \"float roughness\" .0625 \"bool remaproughness\" true").roughness ==
+    CHECK(pbrt_material("Material \"dielectric\" \"float roughness\" .0625 \"bool remaproughness\" true").roughness ==
           doctest::Approx(0.5));
     // pbrt-v3: log 1 = 0, so that a roughness of 1 has the width 1.62142.
     CHECK(pbrt::converted(pbrt::Curve::RoughnessOfVersion3, 0, 1) == 1);
     CHECK(square(pbrt::converted(pbrt::Curve::RoughnessOfVersion3, 0, 0.1f)) == doctest::Approx(0.46176).epsilon(1e-4));
-    const Material along = material_of(
+    const Material along = pbrt_material(
         "Material \"conductor\" \"float uroughness\" .5 \"float vroughness\" .1 \"bool remaproughness\" false");
     CHECK(square(along.roughness) == doctest::Approx(0.1));
     const float strength = square(along.specular_roughness_anisotropy);
     CHECK(0.1f + 0.9f * strength == doctest::Approx(0.5));
     CHECK(along.anisotropy_rotation == 0);
-    const Material across = material_of(
+    const Material across = pbrt_material(
         "Material \"conductor\" \"float uroughness\" .1 \"float vroughness\" .5 \"bool remaproughness\" false");
     CHECK(across.anisotropy_rotation == doctest::Approx(kPi / 2));
     CHECK(across.specular_roughness_anisotropy == along.specular_roughness_anisotropy);
@@ -105,25 +105,25 @@ TEST_CASE("pbrt: coats, panes and sheets are the nearest materials") {
     // 59.6 % of diffuse light inside glass of 1.5 is reflected back.
     CHECK(pbrt::reflected_inside(1.5f) == doctest::Approx(0.5963).epsilon(2e-3));
     CHECK(pbrt::reflected_inside(1) == doctest::Approx(0).epsilon(1e-3));
-    const Material coated = material_of("Material \"coateddiffuse\" \"rgb reflectance\" [1 .5 0]");
+    const Material coated = pbrt_material("Material \"coateddiffuse\" \"rgb reflectance\" [1 .5 0]");
     CHECK(coated.kind == MaterialKind::MetallicRoughness);
     CHECK(coated.base_color.r == doctest::Approx(1));
     CHECK(coated.base_color.g == doctest::Approx(0.5 * 0.4037 / (1 - 0.5 * 0.5963)).epsilon(2e-3));
     CHECK(coated.base_color.b == 0);
     CHECK(coated.metallic == 0);
-    const Material lacquer = material_of("Material \"coatedconductor\" \"float interface.roughness\" .0625 \"float "
-                                         "conductor.roughness\" 0 \"float interface.eta\" 1.6");
+    const Material lacquer = pbrt_material("Material \"coatedconductor\" \"float interface.roughness\" .0625 \"float "
+                                           "conductor.roughness\" 0 \"float interface.eta\" 1.6");
     CHECK(lacquer.kind == MaterialKind::Conductor);
     CHECK(lacquer.coat_weight == 1);
     CHECK(lacquer.coat_ior == 1.6f);
     CHECK(lacquer.coat_roughness == doctest::Approx(0.5));
     CHECK(lacquer.roughness == 0);
-    const Material pane = material_of("Material \"thindielectric\" \"float eta\" 1.5");
+    const Material pane = pbrt_material("Material \"thindielectric\" \"float eta\" 1.5");
     CHECK(pane.transmission_weight == 1);
     CHECK(pane.thin_walled);
     CHECK(square((pane.ior - 1) / (pane.ior + 1)) == doctest::Approx(2 * 0.04 / 1.04)); // both sides reflect
-    const Material sheet =
-        material_of("Material \"diffusetransmission\" \"rgb reflectance\" [.3 .2 .1] \"rgb transmittance\" [.6 .4 .2]");
+    const Material sheet = pbrt_material(
+        "Material \"diffusetransmission\" \"rgb reflectance\" [.3 .2 .1] \"rgb transmittance\" [.6 .4 .2]");
     const float far = sheet.diffuse_transmission_weight;
     CHECK((1 - far) * sheet.base_color.r == doctest::Approx(0.3));
     CHECK((1 - far) * sheet.base_color.b == doctest::Approx(0.1));
@@ -136,86 +136,89 @@ TEST_CASE("pbrt: mixtures are exact where one material can be both") {
     const std::string two = "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" \"rgb reflectance\" [.2 .2 .2]\n"
                             "MakeNamedMaterial \"b\" \"string type\" \"diffuse\" \"rgb reflectance\" [.6 .6 .6]\n"
                             "MakeNamedMaterial \"c\" \"string type\" \"conductor\"\n";
-    CHECK(material_of(two + "Material \"mix\" \"string materials\" [\"a\" \"b\"] \"float amount\" .25").base_color.r ==
-          doctest::Approx(0.3));
+    CHECK(
+        pbrt_material(two + "Material \"mix\" \"string materials\" [\"a\" \"b\"] \"float amount\" .25").base_color.r ==
+        doctest::Approx(0.3));
     // The amount is that of the first in pbrt-v3.
     CHECK(
-        material_of(
+        pbrt_material(
             two +
                 "Material \"mix\" \"string namedmaterial1\" \"a\" \"string namedmaterial2\" \"b\" \"float amount\" .25",
             "WorldEnd\n")
             .base_color.r == doctest::Approx(0.5));
     const Material hole =
-        material_of(two + "Material \"mix\" \"string materials\" [\"interface\" \"b\"] \"float amount\" .75");
+        pbrt_material(two + "Material \"mix\" \"string materials\" [\"interface\" \"b\"] \"float amount\" .75");
     CHECK(hole.alpha == 0.75f);
     CHECK(hole.alpha_mode == AlphaMode::Blend);
-    CHECK(material_of(two + "Material \"mix\" \"string materials\" [\"b\" \"interface\"] \"float amount\" .75").alpha ==
-          0.25f);
+    CHECK(
+        pbrt_material(two + "Material \"mix\" \"string materials\" [\"b\" \"interface\"] \"float amount\" .75").alpha ==
+        0.25f);
     const OneMaterial other =
-        load_material(two + "Material \"mix\" \"string materials\" [\"a\" \"c\"] \"float amount\" .75");
+        load_pbrt_material(two + "Material \"mix\" \"string materials\" [\"a\" \"c\"] \"float amount\" .75");
     CHECK(other.messages.left_out().size() == 1);
     CHECK(other.material.kind == MaterialKind::Conductor);
-    const OneMaterial none = load_material("Material \"mix\" \"string materials\" [\"a\"]");
+    const OneMaterial none = load_pbrt_material("Material \"mix\" \"string materials\" [\"a\"]");
     CHECK(none.messages.left_out().size() == 1);
     CHECK(none.material.base_color == grey(0.5f));
     const OneMaterial masked =
-        load_material(two + "Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"a.exr\"\n"
-                            "Material \"mix\" \"string materials\" [\"a\" \"b\"] \"texture amount\" \"t\"");
-    CHECK(texel_at(masked.scene, masked.material.base_color_texture, 0.2f, 0.5f) == doctest::Approx(0.3));
-    CHECK(texel_at(masked.scene, masked.material.base_color_texture, 0.8f, 0.5f) == doctest::Approx(0.4));
+        load_pbrt_material(two + "Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"a.exr\"\n"
+                                 "Material \"mix\" \"string materials\" [\"a\" \"b\"] \"texture amount\" \"t\"");
+    CHECK(pbrt_texel(masked.scene, masked.material.base_color_texture, 0.2f, 0.5f) == doctest::Approx(0.3));
+    CHECK(pbrt_texel(masked.scene, masked.material.base_color_texture, 0.8f, 0.5f) == doctest::Approx(0.4));
 }
 
 TEST_CASE("pbrt: materials of version 3") {
-    CHECK(material_of("Material \"matte\" \"rgb Kd\" [.1 .2 .3]", "WorldEnd\n").base_color == Rgb{0.1f, 0.2f, 0.3f});
-    CHECK(material_of("Material \"matte\" \"color Kd\" [.1 .2 .3] \"float sigma\" 20").base_diffuse_roughness > 0);
-    const Material metal = material_of("Material \"metal\" \"rgb eta\" [1.1 1.2 1.3] \"rgb k\" [3 4 5] \"float "
-                                       "uroughness\" .25 \"float vroughness\" .25 \"bool remaproughness\" false");
+    CHECK(pbrt_material("Material \"matte\" \"rgb Kd\" [.1 .2 .3]", "WorldEnd\n").base_color == Rgb{0.1f, 0.2f, 0.3f});
+    CHECK(pbrt_material("Material \"matte\" \"color Kd\" [.1 .2 .3] \"float sigma\" 20").base_diffuse_roughness > 0);
+    const Material metal = pbrt_material("Material \"metal\" \"rgb eta\" [1.1 1.2 1.3] \"rgb k\" [3 4 5] \"float "
+                                         "uroughness\" .25 \"float vroughness\" .25 \"bool remaproughness\" false");
     CHECK(metal.kind == MaterialKind::Conductor);
     CHECK(metal.eta == Rgb{1.1f, 1.2f, 1.3f});
     CHECK(metal.k == Rgb{3, 4, 5});
     CHECK(metal.roughness == doctest::Approx(0.5));
-    const Material glass = material_of("Material \"glass\" \"float index\" 1.7 \"rgb Kt\" [0 0 0]");
+    const Material glass = pbrt_material("Material \"glass\" \"float index\" 1.7 \"rgb Kt\" [0 0 0]");
     CHECK(glass.kind == MaterialKind::Dielectric);
     CHECK(glass.ior == 1.7f);
     CHECK(glass.base_color == grey(0));
-    const Material plastic = material_of("Material \"plastic\" \"rgb Kd\" [.1 .1 .1] \"rgb Ks\" [.4 .2 .2]");
+    const Material plastic = pbrt_material("Material \"plastic\" \"rgb Kd\" [.1 .1 .1] \"rgb Ks\" [.4 .2 .2]");
     // A coat of 0.4 of glass sends 0.4 of 59.6 % back inside.
     CHECK(plastic.base_color.r == doctest::Approx(0.1 * (1 - 0.4 * 0.5963) / (1 - 0.1 * 0.4 * 0.5963)).epsilon(2e-3));
     CHECK(plastic.specular_weight * plastic.specular_color.r == doctest::Approx(0.4));
     CHECK(plastic.specular_weight * plastic.specular_color.g == doctest::Approx(0.2));
-    const Material substrate = material_of("Material \"substrate\" \"rgb Ks\" [.04 .08 .04]");
+    const Material substrate = pbrt_material("Material \"substrate\" \"rgb Ks\" [.04 .08 .04]");
     // At 0 degrees Ks is reflected.
     CHECK(square((substrate.ior - 1) / (substrate.ior + 1)) * substrate.specular_color.g == doctest::Approx(0.08));
-    CHECK(material_of("Material \"substrate\" \"rgb Ks\" [.04 .04 .04] \"rgb Kd\" [.5 .5 .5]").base_color.g ==
+    CHECK(pbrt_material("Material \"substrate\" \"rgb Ks\" [.04 .04 .04] \"rgb Kd\" [.5 .5 .5]").base_color.g ==
           doctest::Approx(0.5 * 0.4037 / (1 - 0.5 * 0.5963)).epsilon(2e-3)); // coateddiffuse of pbrt-v4
-    const Material mirror = material_of("Material \"mirror\" \"rgb Kr\" [.8 .8 .8]");
+    const Material mirror = pbrt_material("Material \"mirror\" \"rgb Kr\" [.8 .8 .8]");
     CHECK(mirror.metallic == 1);
     CHECK(mirror.base_color == grey(0.8f));
     // F82 is Kr at 82 degrees too.
     CHECK(mirror.specular_color.r * (0.8f + 0.2f * pow(6.0f / 7, 5)) == doctest::Approx(0.8));
     const Material blind =
-        material_of("Material \"uber\" \"rgb Kd\" [.6 .5 .4] \"rgb Ks\" [0 0 0] \"rgb opacity\" [.7 .7 .7]");
+        pbrt_material("Material \"uber\" \"rgb Kd\" [.6 .5 .4] \"rgb Ks\" [0 0 0] \"rgb opacity\" [.7 .7 .7]");
     CHECK(blind.kind == MaterialKind::Diffuse);
     CHECK(blind.alpha == doctest::Approx(0.7));
-    const Material leaf = material_of("Material \"translucent\" \"rgb Kd\" [.8 .8 .8] \"rgb Ks\" [0 0 0]");
+    const Material leaf = pbrt_material("Material \"translucent\" \"rgb Kd\" [.8 .8 .8] \"rgb Ks\" [0 0 0]");
     CHECK((1 - leaf.diffuse_transmission_weight) * leaf.base_color.r == doctest::Approx(0.4));
     CHECK(leaf.diffuse_transmission_weight * leaf.diffuse_transmission_color.r == doctest::Approx(0.4));
-    CHECK(load_material("Material \"fourier\" \"string bsdffile\" \"a.bsdf\"").messages.left_out().size() == 1);
+    CHECK(load_pbrt_material("Material \"fourier\" \"string bsdffile\" \"a.bsdf\"").messages.left_out().size() == 1);
 }
 
 TEST_CASE("pbrt: images have their encoding, mapping and v upwards") {
     const std::string head = "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"a.exr\" ";
     const std::string use = "\nMaterial \"diffuse\" \"texture reflectance\" \"t\"";
-    const OneMaterial plain = load_material(head + use);
+    const OneMaterial plain = load_pbrt_material(head + use);
     CHECK(plain.messages.left_out().empty());
     CHECK(plain.material.base_color == grey(1));
     CHECK(plain.material.base_color_texture.is_srgb);
-    CHECK(texel_at(plain.scene, plain.material.base_color_texture, 0.2f, 0.5f) == 0.25f);
-    const Material mapped = load_material(head +
-                                          "\"float uscale\" 2 \"float vscale\" 3 \"float udelta\" .25 \"float vdelta\" "
-                                          ".5 \"string wrap\" \"clamp\" \"string encoding\" \"linear\"" +
-                                          use)
-                                .material;
+    CHECK(pbrt_texel(plain.scene, plain.material.base_color_texture, 0.2f, 0.5f) == 0.25f);
+    const Material mapped =
+        load_pbrt_material(head +
+                           "\"float uscale\" 2 \"float vscale\" 3 \"float udelta\" .25 \"float vdelta\" "
+                           ".5 \"string wrap\" \"clamp\" \"string encoding\" \"linear\"" +
+                           use)
+            .material;
     const TextureRef& ref = mapped.base_color_texture;
     CHECK_FALSE(ref.is_srgb);
     CHECK(ref.wrap_s == Wrap::ClampToEdge);
@@ -223,19 +226,19 @@ TEST_CASE("pbrt: images have their encoding, mapping and v upwards") {
     CHECK(ref.m02 == 0.25f);
     // A point at v = 0.1 has 1 - 0.1 in the mesh, and is 1 - (3 * 0.1 + 0.5) below the picture's upper edge.
     CHECK(ref.m11 * (1 - 0.1f) + ref.m12 == doctest::Approx(0.2));
-    CHECK(load_material(head + "\"float scale\" .5" + use).material.base_color == grey(0.5f));
-    const OneMaterial bright = load_material(head + "\"float scale\" 1.5" + use);
-    CHECK(texel_at(bright.scene, bright.material.base_color_texture, 0.8f, 0.5f) == doctest::Approx(0.75));
-    const OneMaterial inverted = load_material(head + "\"bool invert\" true" + use);
-    CHECK(texel_at(inverted.scene, inverted.material.base_color_texture, 0.2f, 0.5f) == doctest::Approx(0.75));
+    CHECK(load_pbrt_material(head + "\"float scale\" .5" + use).material.base_color == grey(0.5f));
+    const OneMaterial bright = load_pbrt_material(head + "\"float scale\" 1.5" + use);
+    CHECK(pbrt_texel(bright.scene, bright.material.base_color_texture, 0.8f, 0.5f) == doctest::Approx(0.75));
+    const OneMaterial inverted = load_pbrt_material(head + "\"bool invert\" true" + use);
+    CHECK(pbrt_texel(inverted.scene, inverted.material.base_color_texture, 0.2f, 0.5f) == doctest::Approx(0.75));
     CHECK(inverted.scene.images.size() == 1);
-    const OneMaterial gamma = load_material(head + "\"string encoding\" \"gamma 2\"" + use);
-    CHECK(texel_at(gamma.scene, gamma.material.base_color_texture, 0.8f, 0.5f) == doctest::Approx(0.25));
+    const OneMaterial gamma = load_pbrt_material(head + "\"string encoding\" \"gamma 2\"" + use);
+    CHECK(pbrt_texel(gamma.scene, gamma.material.base_color_texture, 0.8f, 0.5f) == doctest::Approx(0.25));
     const OneMaterial missing =
-        load_material("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"none.png\"" + use);
+        load_pbrt_material("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"none.png\"" + use);
     CHECK(missing.messages.left_out().size() == 1);
     CHECK(missing.material.base_color == grey(0.5f));
-    const OneMaterial unknown = load_material(
+    const OneMaterial unknown = load_pbrt_material(
         "Texture \"wood\" \"spectrum\" \"constant\"\nMaterial \"diffuse\" \"texture reflectance\" \"wod\"");
     REQUIRE(unknown.messages.left_out().size() == 1);
     CHECK(unknown.messages.left_out()[0].find("\"wood\"") != std::string::npos);
@@ -243,34 +246,35 @@ TEST_CASE("pbrt: images have their encoding, mapping and v upwards") {
 
 TEST_CASE("pbrt: roughness from an image is converted texel by texel") {
     const OneMaterial read =
-        load_material("Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"a.exr\"\n"
-                      "Material \"conductor\" \"texture roughness\" \"t\" \"bool remaproughness\" false");
+        load_pbrt_material("Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"a.exr\"\n"
+                           "Material \"conductor\" \"texture roughness\" \"t\" \"bool remaproughness\" false");
     CHECK(read.material.roughness == 1);
-    CHECK(texel_at(read.scene, read.material.roughness_texture, 0.2f, 0.5f) == doctest::Approx(0.5));
+    CHECK(pbrt_texel(read.scene, read.material.roughness_texture, 0.2f, 0.5f) == doctest::Approx(0.5));
 }
 
 TEST_CASE("pbrt: constants, products, mixtures and checkerboards") {
     const auto color = [](const std::string& textures) {
-        return material_of(textures + "\nMaterial \"diffuse\" \"texture reflectance\" \"t\"").base_color;
+        return pbrt_material(textures + "\nMaterial \"diffuse\" \"texture reflectance\" \"t\"").base_color;
     };
     CHECK(color("Texture \"t\" \"spectrum\" \"constant\" \"rgb value\" [.1 .2 .3]") == Rgb{0.1f, 0.2f, 0.3f});
     CHECK(color("Texture \"t\" \"spectrum\" \"scale\" \"rgb tex\" [.5 .5 .5] \"float scale\" .5") == grey(0.25f));
     CHECK(color("Texture \"t\" \"color\" \"scale\" \"rgb tex1\" [.5 .5 .5] \"rgb tex2\" [.5 .5 .5]") == grey(0.25f));
     CHECK(color("Texture \"t\" \"spectrum\" \"mix\" \"rgb tex1\" [0 0 0] \"rgb tex2\" [1 1 1] \"float amount\" .25") ==
           grey(0.25f));
-    const OneMaterial board = load_material("Texture \"t\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [.8 .8 .8] \"rgb "
-                                            "tex2\" [.2 .2 .2] \"float uscale\" 4 \"float vscale\" 2\n"
-                                            "Material \"diffuse\" \"texture reflectance\" \"t\"");
+    const OneMaterial board =
+        load_pbrt_material("Texture \"t\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [.8 .8 .8] \"rgb "
+                           "tex2\" [.2 .2 .2] \"float uscale\" 4 \"float vscale\" 2\n"
+                           "Material \"diffuse\" \"texture reflectance\" \"t\"");
     CHECK(board.messages.left_out().empty());
     const TextureRef& ref = board.material.base_color_texture;
     CHECK(ref.filter == TextureFilter::Nearest);
     for (int row = 0; row < 2; ++row) {
         for (int column = 0; column < 4; ++column) {
             const float u = (float(column) + 0.3f) / 4, v = (float(row) + 0.3f) / 2;
-            CHECK(texel_at(board.scene, ref, u, v) == ((row + column) % 2 == 0 ? 0.8f : 0.2f));
+            CHECK(pbrt_texel(board.scene, ref, u, v) == ((row + column) % 2 == 0 ? 0.8f : 0.2f));
         }
     }
-    const OneMaterial noise = load_material(
+    const OneMaterial noise = load_pbrt_material(
         "Texture \"t\" \"spectrum\" \"fbm\" \"integer octaves\" 4\nMaterial \"diffuse\" \"texture reflectance\" \"t\"");
     CHECK(noise.messages.left_out().size() == 1);
     CHECK(noise.material.base_color == grey(0.5f));
@@ -308,8 +312,8 @@ TEST_CASE("pbrt: alpha of a shape, bumps and normal maps") {
 TEST_CASE("pbrt: triangles without texture coordinates have those of pbrt under a texture") {
     const std::string flat =
         "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 1 1 0 0 1 0] \"integer indices\" [0 1 2 0 2 3]\n";
-    const Scene scene = load_material("Texture \"t\" \"spectrum\" \"checkerboard\"\n" + flat +
-                                      "Material \"diffuse\" \"texture reflectance\" \"t\"\n" + flat)
+    const Scene scene = load_pbrt_material("Texture \"t\" \"spectrum\" \"checkerboard\"\n" + flat +
+                                           "Material \"diffuse\" \"texture reflectance\" \"t\"\n" + flat)
                             .scene;
     CHECK(scene.meshes[0].uv[0].empty());
     CHECK(scene.meshes[0].positions.size() == 4);
@@ -321,10 +325,10 @@ TEST_CASE("pbrt: triangles without texture coordinates have those of pbrt under 
 
 TEST_CASE("pbrt: colours of another colour space are converted") {
     const Rgb green =
-        material_of("ColorSpace \"rec2020\" Material \"diffuse\" \"rgb reflectance\" [.5 .5 .5]").base_color;
+        pbrt_material("ColorSpace \"rec2020\" Material \"diffuse\" \"rgb reflectance\" [.5 .5 .5]").base_color;
     CHECK(green.g == doctest::Approx(0.5).epsilon(1e-3));
     const Rgb pure =
-        material_of("ColorSpace \"dci-p3\" Material \"diffuse\" \"rgb reflectance\" [.2 .5 .2]").base_color;
+        pbrt_material("ColorSpace \"dci-p3\" Material \"diffuse\" \"rgb reflectance\" [.2 .5 .2]").base_color;
     CHECK(pure.r < 0.19f);
     CHECK(pure.g > 0.5f);
 }

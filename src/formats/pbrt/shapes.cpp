@@ -156,7 +156,7 @@ ReadShape Shapes::bilinear_mesh(bool is_reversed, Parameters& parameters) {
     std::vector<uint32_t> indices = indices_of(parameters.numbers("indices", 4, context_.sink));
     if (indices.empty() && shape.mesh.positions.size() == 4) indices = {0, 1, 2, 3};
     if (indices.empty()) throw parameters.error(fmt::format("{} has no \"integer indices\"", parameters.what()));
-    std::vector<PatchCorners> patches;
+    std::vector<BilinearCorners> patches;
     for (std::size_t i = 0; i + 3 < indices.size(); i += 4) {
         patches.push_back({indices[i], indices[i + 1], indices[i + 2], indices[i + 3]});
         for (const uint32_t corner : patches.back()) {

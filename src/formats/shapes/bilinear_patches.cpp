@@ -25,7 +25,7 @@ struct Patch {
     }
 };
 
-Patch patch_of(const Mesh& mesh, const PatchCorners& c) {
+Patch patch_of(const Mesh& mesh, const BilinearCorners& c) {
     return {mesh.positions[c[0]], mesh.positions[c[1]], mesh.positions[c[2]], mesh.positions[c[3]]};
 }
 
@@ -38,20 +38,20 @@ uint32_t pieces_of(const Patch& patch) {
 }
 
 template <class T>
-T bilinear(const std::vector<T>& values, const PatchCorners& c, float u, float v) {
+T bilinear(const std::vector<T>& values, const BilinearCorners& c, float u, float v) {
     const auto between = [](T a, T b, float t) { return a + t * (b - a); };
     return between(between(values[c[0]], values[c[1]], u), between(values[c[2]], values[c[3]], u), v);
 }
 
 } // namespace
 
-void triangulate_patches(const std::vector<PatchCorners>& patches, Mesh& mesh) {
+void triangulate_patches(const std::vector<BilinearCorners>& patches, Mesh& mesh) {
     uint32_t pieces = 1;
-    for (const PatchCorners& corners : patches) pieces = std::max(pieces, pieces_of(patch_of(mesh, corners)));
+    for (const BilinearCorners& corners : patches) pieces = std::max(pieces, pieces_of(patch_of(mesh, corners)));
     while (pieces > 1 && 2 * uint64_t(pieces) * pieces * patches.size() > kMostTriangles) --pieces;
     const bool has_uv = !mesh.uv[0].empty(), has_normals = !mesh.normals.empty();
     if (pieces == 1 && has_uv) {
-        for (const PatchCorners& c : patches)
+        for (const BilinearCorners& c : patches)
             mesh.indices.insert(mesh.indices.end(), {c[0], c[1], c[3], c[0], c[3], c[2]});
         return;
     }
@@ -59,7 +59,7 @@ void triangulate_patches(const std::vector<PatchCorners>& patches, Mesh& mesh) {
     cut.name = std::move(mesh.name);
     cut.origin = std::move(mesh.origin);
     const uint32_t side = pieces + 1;
-    for (const PatchCorners& corners : patches) {
+    for (const BilinearCorners& corners : patches) {
         const Patch patch = patch_of(mesh, corners);
         const auto first = static_cast<uint32_t>(cut.positions.size());
         for (uint32_t row = 0; row < side; ++row) {

@@ -13,10 +13,10 @@
 namespace pertev {
 
 /// The corners of a patch at (u, v) = (0, 0), (1, 0), (0, 1) and (1, 1); its front is where du x dv points.
-using PatchCorners = std::array<uint32_t, 4>;
+using BilinearCorners = std::array<uint32_t, 4>;
 
 /// Replaces `patches`, whose corners are vertices of `mesh`, all in range, by its triangles. Without normals curved
 /// patches get their own. Without texture coordinates those of each patch are (u, 1 - v).
-void triangulate_patches(const std::vector<PatchCorners>& patches, Mesh& mesh);
+void triangulate_patches(const std::vector<BilinearCorners>& patches, Mesh& mesh);
 
 } // namespace pertev
