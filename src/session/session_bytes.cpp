@@ -136,7 +136,8 @@ std::size_t predicted_frame_bytes(const PreparedScene& scene, const RenderSettin
     const NoisyFrame frame(queue, of_light[0], of_light[1], splits);
     const Reconstruction frames(queue, of_light[0], of_light[1]);
     std::optional<ContactFinder> contacts;
-    if (reconstruction.follow_light) contacts.emplace(queue, of_light[0], of_light[1]);
+    if (reconstruction.follow_light && reconstruction.denoiser != FrameDenoiser::Oidn) // that takes samples alone
+        contacts.emplace(queue, of_light[0], of_light[1]);
     std::optional<Restir> sharing;
     if (restir.light != RestirLight::Off) sharing.emplace(queue, of_light[0], of_light[1], restir.light);
     std::optional<NoisyFrame> features;

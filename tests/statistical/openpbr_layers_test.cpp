@@ -165,6 +165,11 @@ TEST_CASE("a coat tints what is beneath by both refracted ways, by its weight, a
           doctest::Approx(static_cast<double>(straight(glass, grey(1)).r) * std::pow(0.25, once)).epsilon(1e-3));
     CHECK(straight(pane, color).g ==
           doctest::Approx(static_cast<double>(straight(pane, grey(1)).g) * std::pow(0.5, 2 * once)).epsilon(1e-3));
+    const auto inside = [&](Rgb tint) { // light that glass reflects back inside crosses no coat
+        return make_coated(glass, 1, 0.3f, 1.5f, {0, 0, 1}, tint).specular(direction_at(-0.8f)).mirror;
+    };
+    CHECK(inside(color) == inside(grey(1)));
+    CHECK(inside(color).g > 0);
     const Bsdf lacquered[] = {make_coated(glass, 0.8f, 0, 1.5f, {0, 0, 1}, color),
                               make_coated(make_conductor(grey(0), grey(2), 0), 0.8f, 0, 1.5f, {0, 0, 1}, color)};
     for (const Bsdf& smooth : lacquered) { // samples return what specular() does

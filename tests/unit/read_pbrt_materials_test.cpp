@@ -1,4 +1,5 @@
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include "formats/pbrt/materials.h"
 #include "formats/read_scene.h"
@@ -313,7 +314,8 @@ TEST_CASE("pbrt: triangles without texture coordinates have those of pbrt under 
     const std::string flat =
         "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 1 1 0 0 1 0] \"integer indices\" [0 1 2 0 2 3]\n";
     const Scene scene = load_pbrt_material("Texture \"t\" \"spectrum\" \"checkerboard\"\n" + flat +
-                                           "Material \"diffuse\" \"texture reflectance\" \"t\"\n" + flat)
+                                           "Material \"diffuse\" \"texture reflectance\" \"t\"\n" + flat +
+                                           "ReverseOrientation\n" + flat)
                             .scene;
     CHECK(scene.meshes[0].uv[0].empty());
     CHECK(scene.meshes[0].positions.size() == 4);
@@ -321,6 +323,26 @@ TEST_CASE("pbrt: triangles without texture coordinates have those of pbrt under 
     CHECK(scene.meshes[1].uv[0][4] == Vec2{1, 1});
     CHECK(scene.meshes[1].uv[0][5] == Vec2{1, 0});
     CHECK(scene.meshes[1].positions[5] == Vec3{0, 1, 0});
+    REQUIRE(scene.meshes.size() == 4); // the last one is kFace; corners of the third are turned
+    REQUIRE(scene.meshes[2].uv[0].size() == 6);
+    for (std::size_t i = 0; i < 6; ++i) {
+        const std::size_t same = i % 3 == 0 ? i : i - i % 3 + (3 - i % 3);
+        CHECK(scene.meshes[2].positions[i] == scene.meshes[1].positions[same]);
+        CHECK(scene.meshes[2].uv[0][i] == scene.meshes[1].uv[0][same]);
+    }
+}
+
+TEST_CASE("pbrt: a substrate whose coat reflects all light that arrives inside has no colour that is not a number") {
+    for (const std::string_view diffuse : {"1", "0.5"}) {
+        const Rgb color = load_pbrt_material(fmt::format("Material \"substrate\" \"rgb Kd\" [{0} {0} {0}] "
+                                                         "\"rgb Ks\" [.8 .8 .8]",
+                                                         diffuse),
+                                             "WorldEnd\n")
+                              .material.base_color;
+        CHECK(color.r >= 0);
+        CHECK(color.r <= 1);
+        if (diffuse == "1") CHECK(color.r == 1);
+    }
 }
 
 TEST_CASE("pbrt: colours of another colour space are converted") {

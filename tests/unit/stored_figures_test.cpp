@@ -88,7 +88,7 @@ TEST_CASE("the table of jobs has the record's scenes and jobs and the presets of
     CHECK(record.scenes[1].optix_fast_build_s == 0.00095);
     CHECK(job_named("S8").cycles == 41e6);
     CHECK(job_named("corridor").mitsuba == 0); // unknown
-    REQUIRE(record.jobs.size() == 6);
+    REQUIRE(record.jobs.size() == 7);
     for (const RecordJob& job : record.jobs) CHECK(job.view.has_value() == (job.filter == PixelFilter::Box));
     CHECK(job_named("corridor").view->eye == Vec3{0, 1.6f, 29.5f});
     CHECK_FALSE(job_named("corridor").reflectance); // materials of the file

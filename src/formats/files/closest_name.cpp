@@ -35,6 +35,8 @@ std::string_view closest_name(std::string_view word, std::span<const std::string
     std::string_view best;
     std::size_t least = std::max<std::size_t>(word.size() / 3, 1) + 1;
     for (const std::string_view name : known.first(std::min(known.size(), kMostSuggestions))) {
+        const std::size_t longer = std::max(word.size(), name.size()), shorter = std::min(word.size(), name.size());
+        if (longer - shorter >= least) continue; // so many letters are missing at least
         const std::size_t changes = distance(word, name);
         if (changes >= least) continue;
         least = changes;

@@ -33,7 +33,8 @@ DoubleBounds3 box_of(const Mesh& mesh, const DoubleTransform& transform) {
 }
 
 /// Gives a mesh without texture coordinates those of pbrt: each triangle has (0, 0), (1, 0) and (1, 1), v upwards.
-void give_coordinates(Mesh& mesh) {
+void give_coordinates(ShapeMesh& shape) {
+    Mesh& mesh = shape.mesh;
     constexpr Vec2 kCorners[3] = {{0, 1}, {1, 1}, {1, 0}};
     Mesh split;
     split.name = std::move(mesh.name);
@@ -41,7 +42,8 @@ void give_coordinates(Mesh& mesh) {
     for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
         split.positions.push_back(mesh.positions[mesh.indices[i]]);
         if (!mesh.normals.empty()) split.normals.push_back(mesh.normals[mesh.indices[i]]);
-        split.uv[0].push_back(kCorners[i % 3]);
+        const std::size_t corner = i % 3;
+        split.uv[0].push_back(kCorners[corner > 0 && shape.is_turned[i / 3] ? 3 - corner : corner]);
         split.indices.push_back(static_cast<uint32_t>(i));
     }
     mesh = std::move(split);
@@ -170,8 +172,8 @@ Scene World::finish(uint64_t file_bytes) {
             has_textures[shape.mesh] = true;
     }
     for (std::size_t i = 0; i < has_textures.size(); ++i) {
-        Mesh& mesh = shapes_.meshes()[i].mesh;
-        if (has_textures[i] && mesh.uv[0].empty()) give_coordinates(mesh);
+        ShapeMesh& shape = shapes_.meshes()[i];
+        if (has_textures[i] && shape.mesh.uv[0].empty()) give_coordinates(shape);
     }
 
     Assembly assembly{.world = *this, .scene = scene, .numbers = {}, .surfaces = {}};

@@ -31,7 +31,10 @@ Vec3 vec3_at(std::span<const double> numbers, std::size_t i) {
 }
 
 /// Turns triangles whose vertex normals point behind them, and all of a reversed mesh, with its normals.
-void wind(bool is_reversed, Mesh& mesh) {
+void wind(ShapeMesh& shape) {
+    Mesh& mesh = shape.mesh;
+    const bool is_reversed = shape.is_reversed;
+    shape.is_turned.assign(mesh.indices.size() / 3, false);
     if (is_reversed) {
         for (Vec3& normal : mesh.normals) normal = -normal;
     }
@@ -45,7 +48,9 @@ void wind(bool is_reversed, Mesh& mesh) {
             const float side = dot(across, sum);
             if (side != 0) turns = side < 0;
         }
-        if (turns) std::swap(corner[1], corner[2]);
+        if (!turns) continue;
+        std::swap(corner[1], corner[2]);
+        shape.is_turned[i / 3] = true;
     }
 }
 
@@ -275,7 +280,7 @@ void Shapes::finish() {
         shape.mesh.origin = fmt::format("{}:{}", shape.location.file, shape.location.line);
         if (has_bad_index(shape.mesh)) shape.mesh = {};
         subtract_middle(shape);
-        wind(shape.is_reversed, shape.mesh);
+        wind(shape);
     });
     for (const Messages& messages : said) context_.sink.add_all(messages);
 }

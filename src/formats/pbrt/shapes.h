@@ -24,7 +24,8 @@ struct ShapeMesh {
     std::string ply; // path of the file that finish() reads
     FileLocation location;
     bool is_reversed = false;
-    bool is_quadric = false; // one surface for pbrt, not many triangles
+    std::vector<bool> is_turned; // whether finish() has exchanged corners 1 and 2 of a triangle
+    bool is_quadric = false;     // one surface for pbrt, not many triangles
 };
 
 /// The mesh of a Shape statement.

@@ -26,6 +26,7 @@ Rgb converted(Curve curve, float amount, Rgb c) {
 /// Sets the texture of a slot. Returns the factor that the slot's number keeps.
 Rgb put_image(Surface& surface, TextureSlot slot, const TextureValue& value, Curve curve, float amount) {
     surface.material.*slot = value.ref;
+    std::erase_if(surface.images, [slot](const SlotImage& earlier) { return earlier.slot == slot; });
     SlotImage image{.slot = slot, .made = value.made, .change = {}};
     image.change.exponent = value.exponent;
     image.change.curve = curve;
@@ -47,7 +48,7 @@ bool has_alpha(const TextureImage& image) {
     return false;
 }
 
-/// Returns `from` with its colours changed: in 8 bits if it has them and no number of the change leaves [0, 1].
+/// Returns `from` with its colours changed, as floats.
 TextureImage changed_image(const TextureImage& from, const ImageChange& change, bool is_srgb) {
     TextureImage to;
     to.name = from.name;
@@ -103,8 +104,8 @@ float converted(Curve curve, float amount, float value) {
         return sqrt(clamp(width, 0.0f, 1.0f));
     }
     case Curve::BeneathCoat: {
-        const float albedo = clamp(value, 0.0f, 1.0f);
-        return albedo * (1 - amount) / (1 - albedo * amount);
+        const float albedo = clamp(value, 0.0f, 1.0f), inside = min(amount, 0.9999f);
+        return albedo * (1 - inside) / (1 - albedo * inside);
     }
     }
     return value;
@@ -145,7 +146,8 @@ void finish_images(const std::vector<const Surface*>& surfaces, std::vector<Text
             if (use.made >= 0) ref.image = first_made + use.made;
             if (!ref.has_image()) continue;
             ImageChange change = use.change;
-            if (std::exchange(change.is_alpha, false) && has_alpha(scene.images[static_cast<std::size_t>(ref.image)])) {
+            if (std::exchange(change.is_alpha, false) && change.is_identity() &&
+                has_alpha(scene.images[static_cast<std::size_t>(ref.image)])) {
                 ref.channel = 3;
                 continue;
             }

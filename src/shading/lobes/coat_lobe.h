@@ -72,12 +72,12 @@ struct CoatLobe {
     }
 
 private:
-    /// Light that passes through a solid crosses the coat once, outside; through a thin wall it crosses two.
+    /// Light crosses the coat of a solid once for each direction that is outside; a thin wall has a coat on both sides.
     HD_CALL Rgb tint_of(Vec3 wo, Vec3 wi, float coat_o, float coat_i, float albedo) const {
-        const bool is_once = color_b_and_solid.high() > 0 && wo.z * wi.z < 0;
+        const bool is_solid = color_b_and_solid.high() > 0;
         float length = 0;
-        if (!is_once || wo.z > 0) length += length_in_coat(coat_o, f0);
-        if (!is_once || wi.z > 0) length += length_in_coat(coat_i, f0);
+        if (!is_solid || wo.z > 0) length += length_in_coat(coat_o, f0);
+        if (!is_solid || wi.z > 0) length += length_in_coat(coat_i, f0);
         return coat_tint(color(), strength, 0.5f * length, albedo);
     }
     /// Factor on value times cosine about the coat's normal, for the cosines of both directions there (`coat_o`,
