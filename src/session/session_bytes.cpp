@@ -129,6 +129,8 @@ std::size_t predicted_frame_bytes(const PreparedScene& scene, const RenderSettin
     Queue queue = Queue::make_dry_run(on_cuda);
     const uint32_t width = settings.width, height = settings.height;
     const uint32_t of_light[] = {scaled_side(width, reconstruction), scaled_side(height, reconstruction)};
+    const bool by_oidn = reconstruction.denoiser == FrameDenoiser::Oidn;
+    const ReconstructionSettings used = by_oidn ? of_samples_alone(reconstruction) : reconstruction;
     const bool splits = splits_light(scene);
     const Buffer<InstanceView> places_before(queue, scene.scene->instances.size(), "instances before");
     const Tracing tracing(queue, scene, settings_of_frames(settings),
@@ -136,8 +138,7 @@ std::size_t predicted_frame_bytes(const PreparedScene& scene, const RenderSettin
     const NoisyFrame frame(queue, of_light[0], of_light[1], splits);
     const Reconstruction frames(queue, of_light[0], of_light[1]);
     std::optional<ContactFinder> contacts;
-    if (reconstruction.follow_light && reconstruction.denoiser != FrameDenoiser::Oidn) // that takes samples alone
-        contacts.emplace(queue, of_light[0], of_light[1]);
+    if (used.follow_light) contacts.emplace(queue, of_light[0], of_light[1]);
     std::optional<Restir> sharing;
     if (restir.light != RestirLight::Off) sharing.emplace(queue, of_light[0], of_light[1], restir.light);
     std::optional<NoisyFrame> features;
@@ -147,7 +148,7 @@ std::size_t predicted_frame_bytes(const PreparedScene& scene, const RenderSettin
         upsampled.emplace(queue, width, height);
     }
     std::optional<OidnFrames> denoiser;
-    if (reconstruction.denoiser == FrameDenoiser::Oidn) denoiser.emplace(queue, width, height);
+    if (by_oidn) denoiser.emplace(queue, width, height);
     std::optional<Film> film;
     CentreLayers centres(queue);
     if (settings.aovs != 0)

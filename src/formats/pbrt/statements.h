@@ -36,6 +36,8 @@ private:
     std::string take_text(Tokens& tokens, const FileLocation& place);
     std::vector<double> take_numbers(Tokens& tokens, std::size_t count, const FileLocation& place);
     Parameters take_parameters(Tokens& tokens, const FileLocation& place, std::string what, const char* attribute = "");
+    /// Takes the type and the parameters of a statement about the picture; `what` names it in messages.
+    ViewStatement take_view(Tokens& tokens, const FileLocation& place, std::string_view what);
     void apply(const DoubleTransform& transform, bool replaces, const FileLocation& place);
 
     // One function for each statement, or for a few.

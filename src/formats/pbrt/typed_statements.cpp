@@ -23,10 +23,14 @@ constexpr std::array<NamedSpace, 4> kSpaces = {
 
 } // namespace
 
-void Statements::camera(Tokens& tokens, const FileLocation& place) {
+ViewStatement Statements::take_view(Tokens& tokens, const FileLocation& place, std::string_view what) {
     std::string type = take_text(tokens, place);
-    Parameters parameters = take_parameters(tokens, place, fmt::format("the camera {}", shortened(type)));
-    world_.view.camera = ViewStatement{std::move(type), std::move(parameters)};
+    Parameters parameters = take_parameters(tokens, place, fmt::format("the {} {}", what, shortened(type)));
+    return {std::move(type), std::move(parameters)};
+}
+
+void Statements::camera(Tokens& tokens, const FileLocation& place) {
+    world_.view.camera = take_view(tokens, place, "camera");
     world_.view.camera_from_world = world_.state.transforms[0];
     if (!(world_.state.transforms[0] == world_.state.transforms[1]))
         context_.sink.leave_out({place, "the motion of the camera is left out"});
@@ -34,27 +38,19 @@ void Statements::camera(Tokens& tokens, const FileLocation& place) {
 }
 
 void Statements::film(Tokens& tokens, const FileLocation& place) {
-    std::string type = take_text(tokens, place);
-    Parameters parameters = take_parameters(tokens, place, fmt::format("the film {}", shortened(type)));
-    world_.view.film = ViewStatement{std::move(type), std::move(parameters)};
+    world_.view.film = take_view(tokens, place, "film");
 }
 
 void Statements::sampler(Tokens& tokens, const FileLocation& place) {
-    std::string type = take_text(tokens, place);
-    Parameters parameters = take_parameters(tokens, place, fmt::format("the sampler {}", shortened(type)));
-    world_.view.sampler = ViewStatement{std::move(type), std::move(parameters)};
+    world_.view.sampler = take_view(tokens, place, "sampler");
 }
 
 void Statements::integrator(Tokens& tokens, const FileLocation& place) {
-    std::string type = take_text(tokens, place);
-    Parameters parameters = take_parameters(tokens, place, fmt::format("the integrator {}", shortened(type)));
-    world_.view.integrator = ViewStatement{std::move(type), std::move(parameters)};
+    world_.view.integrator = take_view(tokens, place, "integrator");
 }
 
 void Statements::pixel_filter(Tokens& tokens, const FileLocation& place) {
-    std::string type = take_text(tokens, place);
-    Parameters parameters = take_parameters(tokens, place, fmt::format("the filter {}", shortened(type)));
-    world_.view.filter = ViewStatement{std::move(type), std::move(parameters)};
+    world_.view.filter = take_view(tokens, place, "filter");
 }
 
 void Statements::ignored(Tokens& tokens, const FileLocation& place) {
