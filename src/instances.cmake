@@ -145,24 +145,30 @@ pertev_launches(restir/restir_stages.cu
   restir/initial_gi_reservoirs.h restir/reuse_reservoirs.h render/row_band.h
   STAGES "FromPixel<SampleInitialCandidates<ShadingVariant::General>>"
     "FromPixel<SampleInitialCandidates<ShadingVariant::Unstacked>>"
+    "FromPixel<SampleInitialCandidates<ShadingVariant::Diffuse>>"
     "FromPixel<MakeInitialGiReservoirs<ShadingVariant::General>>"
     "FromPixel<MakeInitialGiReservoirs<ShadingVariant::Unstacked>>"
+    "FromPixel<MakeInitialGiReservoirs<ShadingVariant::Diffuse>>"
     "FromPixel<FindBefore>"
     "FromPixel<FindNeighbours>"
     "FromPixel<ReuseReservoirs<LightReservoir, ShadingVariant::General>>"
     "FromPixel<ReuseReservoirs<LightReservoir, ShadingVariant::Unstacked>>"
-    "FromPixel<QueueVisibilityRays<LightReservoir>>"
+    "FromPixel<ReuseReservoirs<LightReservoir, ShadingVariant::Diffuse>>"
+    "QueueVisibilityRays<LightReservoir>"
     "CountVisible<LightReservoir>"
     "FromPixel<FinishReuse<LightReservoir>>"
     "FromPixel<AddDirectLight<ShadingVariant::General>>"
     "FromPixel<AddDirectLight<ShadingVariant::Unstacked>>"
+    "FromPixel<AddDirectLight<ShadingVariant::Diffuse>>"
     "FromPixel<ReuseReservoirs<BounceReservoir, ShadingVariant::General>>"
     "FromPixel<ReuseReservoirs<BounceReservoir, ShadingVariant::Unstacked>>"
-    "FromPixel<QueueVisibilityRays<BounceReservoir>>"
+    "FromPixel<ReuseReservoirs<BounceReservoir, ShadingVariant::Diffuse>>"
+    "QueueVisibilityRays<BounceReservoir>"
     "CountVisible<BounceReservoir>"
     "FromPixel<FinishReuse<BounceReservoir>>"
     "FromPixel<AddIndirectLight<ShadingVariant::General>>"
-    "FromPixel<AddIndirectLight<ShadingVariant::Unstacked>>")
+    "FromPixel<AddIndirectLight<ShadingVariant::Unstacked>>"
+    "FromPixel<AddIndirectLight<ShadingVariant::Diffuse>>")
 
 # Stages of integrators.
 pertev_launches(integrators/bidirectional/camera_subpath_stages.cu

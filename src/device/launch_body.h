@@ -10,8 +10,10 @@
 namespace pertev {
 
 #if PERTEV_HAS_KERNELS
+/// A stage's functions that are called, not inlined, take its members by reference. Without __grid_constant__ each
+/// thread would copy the stage for them into its own memory, and all pointers in it would be of unknown memory.
 template <class Stage>
-__global__ void __launch_bounds__(128) run_stage(Stage stage, WorkCount count) {
+__global__ void __launch_bounds__(128) run_stage(const __grid_constant__ Stage stage, const WorkCount count) {
     // 64-bit on purpose: blocks * threads passes 2^32 for large queues.
     const uint64_t i = uint64_t(blockIdx.x) * blockDim.x + threadIdx.x;
     if (i < count.value()) stage(uint32_t(i));

@@ -17,6 +17,7 @@ HD inline void assume_variant([[maybe_unused]] const Bsdf& bsdf) {
     } else {
         __builtin_assume(bsdf.base.kind == LobeKind::Diffuse);
         __builtin_assume(bsdf.layer_count == 0);
+        __builtin_assume(!bsdf.is_called);
     }
 #endif
 }

@@ -17,13 +17,13 @@ struct AddDirectLight {
     HD void operator()(uint32_t pixel) const {
         const LightReservoir reservoir = reservoirs[pixel];
         if (!(reservoir.weight > 0)) return;
-        const Vec3 direction = here.direction(pixel), wo = -direction;
-        const Surface surface = here.surface<kVariant>(scene, pixel, direction);
+        const Receiver<kVariant> receiver = here.receiver<kVariant>(scene, pixel);
         LightSample light;
         float measure = 1;
-        if (!find_light(scene.lights, reservoir.point, surface.light_context(wo), light, measure)) return;
-        const Rgb scattered = (reservoir.weight * measure) * (surface.evaluate(wo, light.wi).f * light.radiance);
-        const Rgb share = film.frame.splits_light() ? surface.diffuse_share(wo, light.wi) : grey(1);
+        constexpr EmitterLook kLook = emitter_look(kVariant);
+        if (!find_light<kLook>(scene.lights, reservoir.point, receiver.light_context(), light, measure)) return;
+        const Rgb scattered = (reservoir.weight * measure) * (receiver.evaluate(light.wi).f * light.radiance);
+        const Rgb share = film.frame.splits_light() ? receiver.diffuse_share(light.wi) : grey(1);
         add_to_sample(film, pixel, scattered, share * scattered);
     }
 };

@@ -17,13 +17,12 @@ struct AddIndirectLight {
     HD void operator()(uint32_t pixel) const {
         const BounceReservoir reservoir = reservoirs[pixel];
         if (!(reservoir.weight > 0)) return;
-        const Vec3 direction = here.direction(pixel), wo = -direction;
-        const Surface surface = here.surface<kVariant>(scene, pixel, direction);
-        const Reconnection seen = reconnect(world_triangle(scene, reservoir), surface.position);
+        const Receiver<kVariant> receiver = here.receiver<kVariant>(scene, pixel);
+        const PreparedBounce from = prepare_light(scene, reservoir);
+        const Reconnection seen = reconnect(from.position, from.normal, receiver.position());
         if (!seen.is_there) return;
-        const Surface there = make_surface<kVariant>(scene, reservoir.hit(), seen.wi);
-        const float factor = reservoir.weight * diffuse_transmittance(there, -seen.wi);
-        const Rgb scattered = factor * light_scattered(scene, surface, wo, reservoir);
+        const float factor = reservoir.weight * diffuse_transmittance<kVariant>(scene, reservoir.hit(), seen.wi);
+        const Rgb scattered = factor * light_scattered(scene, receiver, from);
         add_to_sample(film, pixel, scattered, scattered);
     }
 };

@@ -39,12 +39,16 @@ struct Reconnection {
     bool is_there;
 };
 
-HD inline Reconnection reconnect(const WorldTriangle& triangle, Vec3 from) {
-    const Vec3 way = triangle.position - from;
+/// `normal` is the cross product of the triangle's edges.
+HD inline Reconnection reconnect(Vec3 position, Vec3 normal, Vec3 from) {
+    const Vec3 way = position - from;
     const float distance_squared = length_squared(way);
-    const Vec3 wi = way / sqrt(distance_squared), normal = cross(triangle.ab, triangle.ac);
+    const Vec3 wi = way / sqrt(distance_squared);
     const float facing = dot(normal, wi), measure = abs(facing) / distance_squared;
     return {wi, measure, facing < 0 ? 1.0f : -1.0f, measure > 0 && is_finite(measure)};
+}
+HD inline Reconnection reconnect(const WorldTriangle& triangle, Vec3 from) {
+    return reconnect(triangle.position, cross(triangle.ab, triangle.ac), from);
 }
 
 HD inline WorldTriangle world_triangle(const SceneView& scene, const BounceReservoir& reservoir) {
@@ -52,19 +56,42 @@ HD inline WorldTriangle world_triangle(const SceneView& scene, const BounceReser
     return world_triangle(instance, scene.meshes[instance.mesh], reservoir.hit());
 }
 
-/// A(wo) of a surface, times its colours' luminance; 0 if it has no diffuse lobes.
-HD inline float diffuse_transmittance(const Surface& surface, Vec3 wo) {
-    const Vec3 local = surface.frame.to_local(wo);
-    return luminance(surface.bsdf.evaluate(local, {0, 0, copysign(1.0f, local.z)}, only(LobeClass::Diffuse)).f);
+/// A(wo) of the surface at `hit`, seen along `direction`, times its colours' luminance; 0 if it has no diffuse lobes.
+template <ShadingVariant kVariant>
+HD inline float diffuse_transmittance(const SceneView& scene, const Hit& hit, Vec3 direction) {
+    if constexpr (kVariant == ShadingVariant::Diffuse) { // the same from everywhere, so only its colour is needed
+        const InstanceView& instance = scene.instances[hit.instance];
+        const MeshView& mesh = scene.meshes[instance.mesh];
+        const TriangleIndices corners = triangle_indices(mesh, hit.primitive);
+        const MaterialParameters& material = scene.materials[instance.material];
+        const Rgb albedo = base_color_at<kVariant>(scene, material, mesh, corners, hit.u, hit.v);
+        const Vec3 up = {0, 0, 1};
+        return luminance(DiffuseLobe{albedo, 1}.evaluate(up, up, {}).f);
+    } else {
+        const Surface surface = make_surface<kVariant>(scene, hit, direction);
+        const Vec3 wo = surface.frame.to_local(-direction);
+        return luminance(surface.bsdf.evaluate(wo, {0, 0, copysign(1.0f, wo.z)}, only(LobeClass::Diffuse)).f);
+    }
 }
 
-/// Integrand of indirect light: scattered only by diffuse lobes of the surface, and without A, which the target does
+/// A reservoir's point in the world, and what it sends: what is the same for all receivers.
+struct PreparedBounce {
+    Vec3 position, normal; // normal: cross product of its triangle's edges
+    Rgb sent;
+    float side;
+};
+HD inline PreparedBounce prepare_light(const SceneView& scene, const BounceReservoir& reservoir) {
+    const WorldTriangle triangle = world_triangle(scene, reservoir);
+    return {triangle.position, cross(triangle.ab, triangle.ac), reservoir.sent, reservoir.side};
+}
+
+/// Integrand of indirect light: scattered only by diffuse lobes of the receiver, and without A, which the target does
 /// not need.
-HD inline Rgb light_scattered(const SceneView& scene, const Surface& surface, Vec3 wo,
-                              const BounceReservoir& reservoir) {
-    const Reconnection seen = reconnect(world_triangle(scene, reservoir), surface.position);
-    if (!seen.is_there || seen.side != reservoir.side) return {};
-    return seen.measure * (surface.evaluate(wo, seen.wi, only(LobeClass::Diffuse)).f * reservoir.sent);
+template <ShadingVariant kVariant>
+HD inline Rgb light_scattered(const SceneView&, const Receiver<kVariant>& receiver, const PreparedBounce& from) {
+    const Reconnection seen = reconnect(from.position, from.normal, receiver.position());
+    if (!seen.is_there || seen.side != from.side) return {};
+    return seen.measure * (receiver.evaluate(seen.wi, only(LobeClass::Diffuse)).f * from.sent);
 }
 
 HD inline bool make_visibility_ray(const SceneView& scene, const BounceReservoir& reservoir, const WorldTriangle& from,

@@ -7,7 +7,6 @@
 // weighted by the balance heuristic (Wyman et al., "A Gentle Introduction to ReSTIR", SIGGRAPH 2023 courses).
 
 #include "render/picture_view.h"
-#include "render/scatter_calls.h"
 #include "restir/light_reservoir.h"
 #include "restir/ris_selection.h"
 
@@ -19,15 +18,16 @@ struct SampleInitialCandidates {
     PixelSurfaces here;
     const EmitterPoint* met; // light that the first bounce of each path hit
     LightReservoir* to;
+    DiffuseReceiver* receivers; // where those of each pixel are stored, if all materials are diffuse
     uint32_t candidates;
 
     HD void operator()(uint32_t pixel) const {
         LightReservoir& reservoir = to[pixel];
         reservoir = {};
         if (!here.is_there(pixel)) return;
-        const Vec3 direction = here.direction(pixel), wo = -direction;
-        const Surface surface = here.surface<kVariant>(scene, pixel, direction);
-        if (surface.is_unlit || surface.bsdf.has_delta_only()) return;
+        const Receiver<kVariant> receiver = here.make_receiver<kVariant>(scene, pixel);
+        if constexpr (kVariant == ShadingVariant::Diffuse) receivers[pixel] = receiver;
+        if (receiver.is_dark()) return;
         reservoir.count = 1;
         const SampleKey key = here.key(pixel);
         RisSelection selection = {sample_1d(here.sampler, key, kGroupSelectCandidate)};
@@ -35,11 +35,11 @@ struct SampleInitialCandidates {
         for (uint32_t k = 0; k < candidates; ++k) {
             const SampleKey candidate = {key.stream, key.sample * candidates + k, key.seed};
             LightSample light;
-            if (!sample_light<emitter_look(kVariant)>(scene.lights, surface.light_context(wo),
+            if (!sample_light<emitter_look(kVariant)>(scene.lights, receiver.light_context(),
                                                       sample_bits(here.sampler, candidate, kGroupCandidates), light)) {
                 continue;
             }
-            const BsdfValue value = evaluate_surface<kVariant>(surface, wo, light.wi);
+            const BsdfValue value = receiver.evaluate(light.wi);
             const float density = drawn * light.pdf + (light.is_delta ? 0.0f : value.pdf);
             if (selection.takes(luminance(value.f * light.radiance) / density)) {
                 reservoir.point = point_of(light);
@@ -49,14 +49,14 @@ struct SampleInitialCandidates {
         LightSample light;
         float measure = 1;
         const EmitterPoint point = met[pixel];
-        if (find_light(scene.lights, point, surface.light_context(wo), light, measure)) {
-            const BsdfValue value = evaluate_surface<kVariant>(surface, wo, light.wi);
+        if (find_light<emitter_look(kVariant)>(scene.lights, point, receiver.light_context(), light, measure)) {
+            const BsdfValue value = receiver.evaluate(light.wi);
             if (selection.takes(luminance(value.f * light.radiance) / (drawn * light.pdf + value.pdf))) {
                 reservoir.point = point;
                 reservoir.source = 0;
             }
         }
-        const float target = luminance(light_scattered(scene, surface, wo, reservoir));
+        const float target = luminance(light_scattered(scene, receiver, prepare_light(scene, reservoir)));
         reservoir.weight = target > 0 ? selection.sum / target : 0.0f;
     }
 };

@@ -35,8 +35,7 @@ struct MakeInitialGiReservoirs {
         taken.v = hit.w;
         const Reconnection seen = reconnect(world_triangle(scene, taken), surface.position);
         if (!seen.is_there) return; // stays in the sample
-        const Surface there = make_surface<kVariant>(scene, taken.hit(), seen.wi);
-        const float transmittance = diffuse_transmittance(there, -seen.wi);
+        const float transmittance = diffuse_transmittance<kVariant>(scene, taken.hit(), seen.wi);
         if (!(transmittance > 0)) return;
         const Rgb share = surface.diffuse_share(-direction, seen.wi);
         if (is_black(share)) return;

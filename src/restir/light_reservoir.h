@@ -16,23 +16,41 @@ struct alignas(16) LightReservoir {
 };
 static_assert(sizeof(LightReservoir) == 32);
 
-/// Light that a surface scatters to wo from the reservoir's point without occlusion: the rgb integrand over sample
-/// points.
-HD inline Rgb light_scattered(const SceneView& scene, const Surface& surface, Vec3 wo,
-                              const LightReservoir& reservoir) {
-    LightSample light;
-    float measure = 1;
-    if (!find_light(scene.lights, reservoir.point, surface.light_context(wo), light, measure)) return {};
-    return measure * (surface.evaluate(wo, light.wi).f * light.radiance);
+/// A reservoir's point, with what the environment sends from it: the part of its light that is the same for all
+/// receivers and takes longest to find.
+struct PreparedLight {
+    EmitterPoint point; // not there if nothing arrives from it
+    Rgb radiance;       // for a point of the environment
+};
+HD inline PreparedLight prepare_light(const SceneView& scene, const LightReservoir& reservoir) {
+    const EmitterPoint& point = reservoir.point;
+    if (!point.is_there() || point.kind() != SourceKind::Environment) return {point, {}};
+    const Vec3 wi = environment_direction(point);
+    const EnvironmentHit hit = find_environment(scene.lights, Vec3(), wi, true);
+    return {hit.pdf > 0 ? point : EmitterPoint(), hit.radiance};
 }
 
-/// Makes the shadow ray from a surface's triangle to the reservoir's point, which ends before `target`. Returns false
-/// if nothing can arrive. `coin` is the key of blended surfaces for the surface's pixel.
+/// Light that a receiver scatters to its viewer from the reservoir's point without occlusion: the rgb integrand over
+/// sample points.
+template <ShadingVariant kVariant>
+HD inline Rgb light_scattered(const SceneView& scene, const Receiver<kVariant>& receiver, const PreparedLight& from) {
+    if (!from.point.is_there()) return {};
+    if (from.point.kind() == SourceKind::Environment) {
+        return receiver.evaluate(environment_direction(from.point)).f * from.radiance;
+    }
+    LightSample light;
+    float measure = 1;
+    const LightContext context = receiver.light_context();
+    if (!find_local_light<emitter_look(kVariant)>(scene.lights, from.point, context, light, measure)) return {};
+    return measure * (receiver.evaluate(light.wi).f * light.radiance);
+}
+
+/// Makes the shadow ray from a surface's triangle to the point of a reservoir whose weight is above 0; it ends before
+/// `target`. Returns false if nothing can arrive. `coin` is the key of blended surfaces for the surface's pixel.
 HD inline bool make_visibility_ray(const SceneView& scene, const LightReservoir& reservoir, const WorldTriangle& from,
                                    uint32_t coin, Ray& ray, TriangleId& target) {
     LightSample light;
-    float measure = 1;
-    if (!find_light(scene.lights, reservoir.point, from.position, light, measure)) return false;
+    if (!find_light_end(scene.lights, reservoir.point, from.position, light)) return false;
     ray = ray_to_light(light, from.position, from.error, from.normal);
     target = {light.instance, light.primitive};
     const bool may_be_hole = light.instance != kNoLight && scene.any_alpha != 0;

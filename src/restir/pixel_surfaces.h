@@ -6,6 +6,7 @@
 #include "device_scene/surface.h"
 #include "render/camera_rays.h"
 #include "render/noisy_frame_view.h"
+#include "restir/receiver.h"
 
 namespace pertev {
 
@@ -13,8 +14,9 @@ struct PixelSurfaces {
     GBufferView g_buffer;
     CameraRays camera;
     SamplerKind sampler;
-    uint32_t sample, seed; // the frame's sample number and seed
-    bool filters;          // textures have mip-maps
+    uint32_t sample, seed;                   // the frame's sample number and seed
+    bool filters;                            // textures have mip-maps
+    const DiffuseReceiver* stored = nullptr; // of each pixel; null if they are not, or not yet, stored
 
     HD bool is_there(uint32_t pixel) const { return bits_of(g_buffer.hit[pixel].x) != kNoHit; }
     HD SampleKey key(uint32_t pixel) const { return {pixel, sample, seed}; }
@@ -35,6 +37,22 @@ struct PixelSurfaces {
     HD Surface surface(const SceneView& scene, uint32_t pixel, Vec3 seen_along) const {
         const float distance = g_buffer.normal[pixel].w / dot(seen_along, camera.axis);
         return make_surface<kVariant>(scene, hit(pixel), seen_along, filters ? camera.pixel_width(distance) : 0.0f);
+    }
+    template <ShadingVariant kVariant>
+    HD Receiver<kVariant> make_receiver(const SceneView& scene, uint32_t pixel) const {
+        const Vec3 seen_along = direction(pixel);
+        if constexpr (kVariant == ShadingVariant::Diffuse) {
+            return diffuse_receiver(surface<kVariant>(scene, pixel, seen_along), -seen_along);
+        } else {
+            return {surface<kVariant>(scene, pixel, seen_along), -seen_along};
+        }
+    }
+    template <ShadingVariant kVariant>
+    HD Receiver<kVariant> receiver(const SceneView& scene, uint32_t pixel) const {
+        if constexpr (kVariant == ShadingVariant::Diffuse) {
+            if (stored != nullptr) return stored[pixel];
+        }
+        return make_receiver<kVariant>(scene, pixel);
     }
     HD WorldTriangle triangle(const SceneView& scene, uint32_t pixel) const {
         const Hit at = hit(pixel);

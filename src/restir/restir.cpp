@@ -18,10 +18,11 @@ constexpr std::size_t kBounceArrays = 4;
 
 } // namespace
 
-Restir::Restir(Queue& queue, uint32_t width, uint32_t height, RestirLight light)
+Restir::Restir(Queue& queue, uint32_t width, uint32_t height, RestirLight light, ShadingVariant variant)
     : queue_(&queue), width_(width), height_(height), pixels_(width * height), light_(light),
       met_(queue, pixels_, "reservoirs"), reservoirs_(queue, std::size_t(2) * pixels_, "reservoirs"),
-      seen_before_(queue, std::size_t(2) * pixels_, "reservoirs"), neighbours_(queue, pixels_, "reservoirs"),
+      seen_before_(queue, std::size_t(2) * pixels_, "reservoirs"),
+      receivers_(queue, has_lobes(variant) ? 0 : pixels_, "receivers"), neighbours_(queue, pixels_, "reservoirs"),
       shares_(queue, pixels_, "reservoirs"), rays_(queue, pixels_, "reservoirs' rays"),
       ray_ends_(queue, std::size_t(2) * pixels_, "reservoirs' rays"),
       ray_words_(queue, std::size_t(2) * pixels_, "reservoirs' rays"),
@@ -93,7 +94,7 @@ void Restir::add(const NoisyFrame& frame, const PictureView& picture, const Samp
     const FilmView film = frame.film_view();
     const SceneView& scene = picture.scene;
     const GBufferView last = {seen_before_.data(), seen_before_.data() + pixels_};
-    const PixelSurfaces here = {noisy, picture.camera, numbers.sampler, numbers.sample, numbers.seed, numbers.filters};
+    PixelSurfaces here = {noisy, picture.camera, numbers.sampler, numbers.sample, numbers.seed, numbers.filters};
     const PixelSurfaces there = {last,
                                  camera_before_,
                                  numbers_before_.sampler,
@@ -108,14 +109,16 @@ void Restir::add(const NoisyFrame& frame, const PictureView& picture, const Samp
     BounceReservoir *const fresh_bounces = bounces_.data(), *const kept_bounces = fresh_bounces + pixels_;
     const bool has_bounces = light_ == RestirLight::Indirect;
     if (has_bounces)
-        with_stacks(scene.variant, [&]<ShadingVariant kVariant>() {
+        with_textures(scene.variant, [&]<ShadingVariant kVariant>() {
             launch_in_band(*queue_, "initial_gi_reservoirs", rows_, width_,
                            MakeInitialGiReservoirs<kVariant>{scene, here, film, fresh_bounces});
         });
-    with_stacks(scene.variant, [&]<ShadingVariant kVariant>() {
-        launch_in_band(*queue_, "initial_candidates", rows_, width_,
-                       SampleInitialCandidates<kVariant>{scene, here, met_.data(), fresh, settings.candidates});
+    with_textures(scene.variant, [&]<ShadingVariant kVariant>() {
+        launch_in_band(
+            *queue_, "initial_candidates", rows_, width_,
+            SampleInitialCandidates<kVariant>{scene, here, met_.data(), fresh, receivers_.data(), settings.candidates});
     });
+    here.stored = receivers_.data();
     test_visibility(scene, here, fresh, tracer, 0);
     if (has_history_ && settings.history > 0) {
         const FrameCameras cameras = {picture.camera.view, camera_before_.view, width_, height_};
@@ -131,18 +134,19 @@ void Restir::add(const NoisyFrame& frame, const PictureView& picture, const Samp
         std::vector<RowArray> arrays = {{fresh, width_ * sizeof(LightReservoir), height_},
                                         {noisy.hit, width_ * sizeof(Float4), height_},
                                         {noisy.normal, width_ * sizeof(Float4), height_}};
+        if (receivers_.size() > 0) arrays.push_back({receivers_.data(), width_ * sizeof(DiffuseReceiver), height_});
         if (has_bounces) arrays.push_back({fresh_bounces, width_ * sizeof(BounceReservoir), height_});
         others_->take(arrays, rows_.grown(FindNeighbours::reach(settings.radius), height_));
     }
     launch_in_band(*queue_, "find_beside", rows_, width_,
                    FindNeighbours{here, settings.neighbours, settings.radius, neighbours_.data()});
     reuse(scene, here, here, fresh, fresh, kept, kMaxEntries, tracer, kGroupReuse + 2);
-    with_stacks(scene.variant, [&]<ShadingVariant kVariant>() {
+    with_textures(scene.variant, [&]<ShadingVariant kVariant>() {
         launch_in_band(*queue_, "add_direct_light", rows_, width_, AddDirectLight<kVariant>{scene, here, kept, film});
     });
     if (has_bounces) {
         reuse(scene, here, here, fresh_bounces, fresh_bounces, kept_bounces, kMaxEntries, tracer, kGroupReuse + 3);
-        with_stacks(scene.variant, [&]<ShadingVariant kVariant>() {
+        with_textures(scene.variant, [&]<ShadingVariant kVariant>() {
             launch_in_band(*queue_, "add_indirect_light", rows_, width_,
                            AddIndirectLight<kVariant>{scene, here, kept_bounces, film});
         });
@@ -161,7 +165,7 @@ void Restir::add(const NoisyFrame& frame, const PictureView& picture, const Samp
 template <class Reservoir>
 void Restir::reuse(const SceneView& scene, const PixelSurfaces& here, const PixelSurfaces& there, const Reservoir* own,
                    const Reservoir* others, Reservoir* to, uint32_t entries, SceneTracer& tracer, uint32_t group) {
-    with_stacks(scene.variant, [&]<ShadingVariant kVariant>() {
+    with_textures(scene.variant, [&]<ShadingVariant kVariant>() {
         launch_in_band(*queue_, "reuse_reservoirs", rows_, width_,
                        ReuseReservoirs<Reservoir, kVariant>{scene, here, there, own, others, neighbours_.data(), to,
                                                             shares_.data(), group});
@@ -182,10 +186,11 @@ void Restir::test_visibility(const SceneView& scene, const PixelSurfaces& surfac
     const VisibilityRaysView rays = {
         rays_.data(), ray_ends_.data(), ray_ends_.data() + pixels_, ray_words_.data(), ray_words_.data() + pixels_,
         count};
-    launch_in_band(
-        *queue_, "queue_visibility_rays", rows_, width_,
-        QueueVisibilityRays<Reservoir>{scene, surfaces, neighbours_.data(), shares_.data(), reservoirs, rays, entry});
-    const WorkCount visibility_rays = {rows_.count() * width_, count};
+    const uint32_t pixels = rows_.count() * width_;
+    launch(*queue_, "queue_visibility_rays", pixels,
+           QueueVisibilityRays<Reservoir>{scene, surfaces, neighbours_.data(), shares_.data(), reservoirs, rays, entry,
+                                          rows_.first * width_});
+    const WorkCount visibility_rays = {pixels, count};
     tracer.find_occlusions(rays.query(), visibility_rays, {nullptr, rays.keys});
     launch(*queue_, "count_visible", visibility_rays, CountVisible<Reservoir>{rays, shares_.data(), reservoirs, entry});
 }

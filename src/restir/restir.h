@@ -33,8 +33,8 @@ struct SampleNumbers {
 
 class Restir {
 public:
-    /// Allocates memory for frames of this size; `queue` outlives it.
-    Restir(Queue& queue, uint32_t width, uint32_t height, RestirLight light);
+    /// Allocates memory for frames of this size of scenes with this shading variant; `queue` outlives it.
+    Restir(Queue& queue, uint32_t width, uint32_t height, RestirLight light, ShadingVariant variant);
 
     /// Discards the history, because the next frame is unrelated to it.
     void cut() { has_history_ = false; }
@@ -60,10 +60,11 @@ public:
 
     /// Number of rays that the last add() traced. Waits for it.
     uint64_t rays() const;
-    /// The light that is drawn from reservoirs.
-    RestirLight light() const { return light_; }
-    uint32_t width() const { return width_; }
-    uint32_t height() const { return height_; }
+    /// Returns whether it was made for such frames.
+    bool fits(uint32_t width, uint32_t height, RestirLight light, ShadingVariant variant) const {
+        return width_ == width && height_ == height && light_ == light &&
+               (receivers_.size() == 0) == has_lobes(variant);
+    }
 
 private:
     template <class Reservoir>
@@ -87,6 +88,7 @@ private:
     Buffer<BounceReservoir> bounces_;   // two arrays like `reservoirs_`, for indirect light
     Buffer<Float4> bounce_numbers_;     // arrays of FirstBounceView
     Buffer<Float4> seen_before_;        // hit and normal of the previous frame (GBufferView)
+    Buffer<DiffuseReceiver> receivers_; // if all materials are diffuse
     Buffer<Neighbours> neighbours_;
     Buffer<Shares> shares_;
     Buffer<Ray> rays_;

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "device/atomics.h"
+#include "device/block_append.h"
 #include "device_scene/accept_hit.h"
 #include "device_scene/ray_queue.h"
 
@@ -19,8 +19,7 @@ struct VisibilityRaysView {
 
     RayQueueView query() const { return {.rays = rays, .starts = starts, .targets = targets, .keys = keys}; }
 
-    HD void add(const Ray& ray, TriangleId start, TriangleId target, uint32_t key, uint32_t pixel) const {
-        const uint32_t i = atomic_add(count, 1u);
+    HD void store(uint32_t i, const Ray& ray, TriangleId start, TriangleId target, uint32_t key, uint32_t pixel) const {
         store_ray(rays + i, ray);
         starts[i] = {start.instance, start.primitive};
         targets[i] = {target.instance, target.primitive};

@@ -49,11 +49,10 @@ Restir* FrameSequence::restir_for(const RestirSettings& settings, const RenderSe
         restir_.reset();
         return nullptr;
     }
-    const bool fits =
-        restir_ && restir_->light() == settings.light && restir_->width() == width && restir_->height() == height;
-    if (!fits) {
+    const ShadingVariant variant = pictures_.scene().view().variant;
+    if (!restir_ || !restir_->fits(width, height, settings.light, variant)) {
         restir_.reset(); // freed before the new one, so that two need not fit
-        restir_.emplace(pictures_.queue(), width, height, settings.light);
+        restir_.emplace(pictures_.queue(), width, height, settings.light, variant);
     }
     if (settings != restir_settings_) restir_->cut();
     restir_settings_ = settings;

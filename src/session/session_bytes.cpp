@@ -140,7 +140,8 @@ std::size_t predicted_frame_bytes(const PreparedScene& scene, const RenderSettin
     std::optional<ContactFinder> contacts;
     if (used.follow_light) contacts.emplace(queue, of_light[0], of_light[1]);
     std::optional<Restir> sharing;
-    if (restir.light != RestirLight::Off) sharing.emplace(queue, of_light[0], of_light[1], restir.light);
+    if (restir.light != RestirLight::Off)
+        sharing.emplace(queue, of_light[0], of_light[1], restir.light, shading_variant(*scene.scene));
     std::optional<NoisyFrame> features;
     std::optional<UpsampledFrame> upsampled;
     if (reconstruction.resolution_scale < 1) {

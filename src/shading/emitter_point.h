@@ -40,40 +40,60 @@ HD inline EmitterPoint point_of(const LightSample& sample) {
     return environment_point(sample.wi);
 }
 
-/// Light that arrives at `context` from `point`, as sample_light returns it, except for the pdf of punctual lights,
-/// which is 1. `measure` is the ratio of the point's solid angle to its own measure. Returns false if nothing arrives;
-/// occlusion and alpha are up to the caller.
-HD inline bool find_light(const LightSetView& view, const EmitterPoint& point, const LightContext& context,
-                          LightSample& sample, float& measure) {
+HD inline Vec3 environment_direction(const EmitterPoint& point) { return {float_of(point.index), point.u, point.v}; }
+
+/// Light that arrives at `context` from `point`, which is not in the environment: as find_light.
+template <EmitterLook kLook>
+HD inline bool find_local_light(const LightSetView& view, const EmitterPoint& point, const LightContext& context,
+                                LightSample& sample, float& measure) {
     measure = 1;
-    if (!point.is_there()) return false;
-    switch (point.kind()) {
-    case SourceKind::Environment: {
-        sample = {};
-        sample.wi = {float_of(point.index), point.u, point.v};
-        const EnvironmentHit hit = find_environment(view, context, sample.wi, true);
-        if (!(hit.pdf > 0)) return false;
-        sample.pdf = hit.pdf;
-        sample.distance = kInfinity;
-        sample.radiance = hit.radiance;
-        return true;
-    }
-    case SourceKind::Punctual: {
+    if (point.kind() == SourceKind::Punctual) {
         if (point.index >= view.punctual_count) return false; // from another scene
         const bool arrives = sample_punctual_light(view.punctual[point.index], 1.0f, context.point, sample);
         sample.primitive = point.index;
         return arrives;
     }
-    case SourceKind::Triangle:
-        break;
-    }
     const uint32_t light = light_of(view, point.instance, point.index);
     if (light == kNoLight) return false;
     const float pmf = ChosenByPower::pmf_of_triangle(view, context, light);
-    if (!triangle_light_at<EmitterLook::Coated>(view, light, pmf, context.point, {point.u, point.v}, sample))
-        return false;
+    if (!triangle_light_at<kLook>(view, light, pmf, context.point, {point.u, point.v}, sample)) return false;
     measure = 2.0f * pmf / sample.pdf; // in weights, a triangle has the area 1/2
     return true;
+}
+
+/// Light that arrives at `context` from `point`, as sample_light returns it, except for the pdf of punctual lights,
+/// which is 1. `measure` is the ratio of the point's solid angle to its own measure. Returns false if nothing arrives;
+/// occlusion and alpha are up to the caller.
+template <EmitterLook kLook = EmitterLook::Coated>
+HD inline bool find_light(const LightSetView& view, const EmitterPoint& point, const LightContext& context,
+                          LightSample& sample, float& measure) {
+    if (!point.is_there()) return false;
+    if (point.kind() != SourceKind::Environment) {
+        return find_local_light<kLook>(view, point, context, sample, measure);
+    }
+    measure = 1;
+    sample = {};
+    sample.wi = environment_direction(point);
+    const EnvironmentHit hit = find_environment(view, context, sample.wi, true);
+    if (!(hit.pdf > 0)) return false;
+    sample.pdf = hit.pdf;
+    sample.distance = kInfinity;
+    sample.radiance = hit.radiance;
+    return true;
+}
+
+/// Direction and end of a shadow ray from `from` to `point`, whose light is known to arrive somewhere: find_light
+/// without textures, coats and the environment's image. Returns false if nothing can arrive.
+HD inline bool find_light_end(const LightSetView& view, const EmitterPoint& point, Vec3 from, LightSample& sample) {
+    if (!point.is_there()) return false;
+    if (point.kind() == SourceKind::Environment) {
+        sample = {};
+        sample.wi = environment_direction(point);
+        sample.distance = kInfinity;
+        return view.has_environment();
+    }
+    float measure;
+    return find_local_light<EmitterLook::Plain>(view, point, from, sample, measure);
 }
 
 } // namespace pertev

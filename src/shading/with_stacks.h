@@ -1,7 +1,7 @@
 #pragma once
 
-// Chooses between two kernels: for scenes whose materials have coats, fuzz, thin walls or weighted reflections, and,
-// with half as many registers, for all others.
+// Chooses a kernel by what a scene's materials have. One for coats, fuzz, thin walls and weighted reflections needs
+// twice as many registers as one without them.
 
 #include "shading/shading_variant.h"
 
@@ -12,6 +12,13 @@ template <class Run>
 void with_stacks(ShadingVariant variant, const Run& run) {
     if (variant == ShadingVariant::General) return run.template operator()<ShadingVariant::General>();
     run.template operator()<ShadingVariant::Unstacked>();
+}
+
+/// Calls run.operator()<kVariant>() with General, Unstacked, or Diffuse if all materials are diffuse.
+template <class Run>
+void with_textures(ShadingVariant variant, const Run& run) {
+    if (has_lobes(variant)) return with_stacks(variant, run);
+    run.template operator()<ShadingVariant::Diffuse>();
 }
 
 } // namespace pertev

@@ -29,6 +29,7 @@ using namespace pertev::test::lane; // NOLINT: before the name changes its meani
 #define __device__
 #define __global__
 #define __launch_bounds__(...)
+#define __grid_constant__
 
 namespace pertev {
 
