@@ -3,6 +3,10 @@
 MUTATIONS = [
     ("the history of ReSTIR counts as much where light has changed", "statistical/restir_motion",
      ("src/restir/find_neighbours.h", "if (change.share != nullptr) {", "if (false) {")),
+    ("stored receivers look to the front of their triangles", "unit/receiver",
+     ("src/restir/receiver.h", "dot(wo, normal) > 0 ? normal : -normal;", "normal;")),
+    ("stored receivers do not bend light at the terminator", "unit/receiver",
+     ("src/restir/receiver.h", "if (!(tilt > 0)) return lobe", "return lobe")),
     ("the change of light around a pixel is that of the pixel alone", "statistical/restir_motion",
      ("src/denoise/compare_light.h", "for (int k = 0; k < 9; ++k) {\n            const Float4 there = guide[held(y, k / 3 - 1, h) * w",
       "for (int k = 4; k < 5; ++k) {\n            const Float4 there = guide[held(y, k / 3 - 1, h) * w")),

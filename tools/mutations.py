@@ -197,7 +197,7 @@ MUTATIONS = part_mutations.MUTATIONS + format_mutations.MUTATIONS + lobe_mutatio
     ("lights and bounces that both draw one, without weights", "statistical/restir",
      ("src/restir/initial_candidates.h", "drawn * light.pdf + (light.is_delta ? 0.0f : value.pdf)", "drawn * light.pdf")),
     ("bounces shared without the ratio of solid angles", "statistical/restir",
-     ("src/restir/bounce_reservoir.h", "return seen.measure * (surface.evaluate", "return (surface.evaluate")),
+     ("src/restir/bounce_reservoir.h", "return seen.measure * (receiver.evaluate", "return (receiver.evaluate")),
     ("origins that are moved along the normal alone", "robust/light_leak unit/hit_error",
      ("src/device_scene/surface.h", "inset_barycentrics(u, v, min(least, T(0.25f)))", "inset_barycentrics(u, v, 0.0f * least)")),
     ("a light that stays where the file has it, in a world that is moved", "consistency/moved_world unit/prepare_scene",

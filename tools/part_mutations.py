@@ -53,6 +53,8 @@ MUTATIONS = [
      ("src/denoise/reconstruction.cpp", "const uint32_t reach = (1u << settings.passes) - 1;", "const uint32_t reach = (1u << settings.passes) / 2;")),
     ("a band takes fewer rows than its neighbours' reservoirs lie in", "consistency/frames_on_devices",
      ("src/restir/find_neighbours.h", "return static_cast<uint32_t>(radius) + 2;", "return static_cast<uint32_t>(radius) / 4;")),
+    ("a band takes no receivers of others", "consistency/frames_on_devices",
+     ("src/restir/restir.cpp", "if (receivers_.size() > 0) arrays", "if (false) arrays")),
     ("a band upsamples rows of light that it has not filtered", "consistency/frames_on_devices",
      ("src/denoise/upsample_picture.h", "static constexpr uint32_t kReach = 3;", "static constexpr uint32_t kReach = 0;")),
     ("rows of the history are taken by the bands of the present frame", "consistency/frames_on_devices",

@@ -59,7 +59,7 @@ HD inline WorldTriangle world_triangle(const SceneView& scene, const BounceReser
 /// A(wo) of the surface at `hit`, seen along `direction`, times its colours' luminance; 0 if it has no diffuse lobes.
 template <ShadingVariant kVariant>
 HD inline float diffuse_transmittance(const SceneView& scene, const Hit& hit, Vec3 direction) {
-    if constexpr (kVariant == ShadingVariant::Diffuse) { // the same from everywhere, so only its colour is needed
+    if constexpr (kVariant == ShadingVariant::Diffuse) { // it does not depend on the direction
         const InstanceView& instance = scene.instances[hit.instance];
         const MeshView& mesh = scene.meshes[instance.mesh];
         const TriangleIndices corners = triangle_indices(mesh, hit.primitive);

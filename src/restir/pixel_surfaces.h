@@ -16,7 +16,7 @@ struct PixelSurfaces {
     SamplerKind sampler;
     uint32_t sample, seed;                   // the frame's sample number and seed
     bool filters;                            // textures have mip-maps
-    const DiffuseReceiver* stored = nullptr; // of each pixel; null if they are not, or not yet, stored
+    const DiffuseReceiver* stored = nullptr; // receivers by pixel; null if there are none yet
 
     HD bool is_there(uint32_t pixel) const { return bits_of(g_buffer.hit[pixel].x) != kNoHit; }
     HD SampleKey key(uint32_t pixel) const { return {pixel, sample, seed}; }

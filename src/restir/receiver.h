@@ -31,7 +31,7 @@ struct alignas(16) Receiver<ShadingVariant::Diffuse> {
     float tilt;
     Vec3 geometric_normal; // unit, on the viewer's side
     float unused = 0;
-    Vec3 normal; // unit, on the viewer's side; zero if it is seen edge-on
+    Vec3 normal; // unit, on the viewer's side; zero if it is perpendicular to wo
     float unused_too = 0;
     Rgb albedo;
     float unused_again = 0;
@@ -39,7 +39,7 @@ struct alignas(16) Receiver<ShadingVariant::Diffuse> {
     HD Vec3 position() const { return at; }
     HD LightContext light_context() const { return {at, normal, false, kAtRest}; }
     HD bool is_dark() const { return false; }
-    /// As Surface::evaluate.
+    /// Returns what Surface::evaluate does.
     HD BsdfValue evaluate(Vec3 wi, LobeClasses = kAllLobeClasses) const {
         const float cosine = dot(wi, normal);
         if (!(cosine > 0 && dot(wi, geometric_normal) > 0)) return {};
