@@ -12,6 +12,7 @@
 #include "formats/files/parse_number.h"
 #include "python/transform_values.h"
 #include "scene/animation.h"
+#include "scene/projection_features.h"
 #include "scene/scene_origin.h"
 #include "session/degrees.h"
 
@@ -184,8 +185,8 @@ std::vector<Property> of_lights() {
 }
 
 std::vector<Property> of_cameras() {
-    const auto is_perspective = [](const Scene& scene, uint32_t i) {
-        return scene.cameras[i].projection == Projection::Perspective;
+    const auto has_angle = [](const Scene& scene, uint32_t i) {
+        return has_angle_of_view(scene.cameras[i].projection);
     };
     const auto is_parallel = [](const Scene& scene, uint32_t i) {
         return has_parallel_rays(scene.cameras[i].projection);
@@ -202,7 +203,7 @@ std::vector<Property> of_cameras() {
          .shape = {},
          .low = 0x1p-10,
          .high = 179.9,
-         .is_there = is_perspective,
+         .is_there = has_angle,
          .get = [](const Scene& scene, uint32_t i) { return std::vector{double(degrees_for(scene.cameras[i].fov_y))}; },
          .set = [](Scene& scene, uint32_t i,
                    std::span<const double> v) { scene.cameras[i].fov_y = float(v[0]) * kRadiansPerDegree; }},

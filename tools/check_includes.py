@@ -5,7 +5,7 @@ ALLOWED is the "may know" column of docs/architecture.md: a module may include i
 of which come before it. Beyond that table: only device/cuda and .cu files include CUDA's headers, no integrator includes
 another, except the parts that several share (integrators/ray_tree, subpaths), other modules include of an
 integrator only its settings (*_settings.h), and neither files nor folders include each other in a circle: the files that
-lie in a folder itself count as one, each folder below it as another.
+lie in a folder itself count as one, each folder below it as another. NAMED_IN lists the files that may name a kind.
 
 `check_includes.py [ROOT]` checks ROOT/src; `--self-test` makes trees that break each rule and must be caught.
 """
@@ -43,6 +43,11 @@ SHARED = (("integrators", "ray_tree"), ("integrators", "subpaths"))
 
 # Where all of them are known.
 KINDS = ("integrators", "kinds")
+
+# Only these files name a kind: the camera, its readers, the table of settings, and the maker of the light meter's camera.
+NAMED_IN = {"Projection::": {"scene/camera.h", "scene/projection_features.h", "render/camera_view.h", "render/camera_view.cpp",
+                             "formats/gltf/camera.cpp", "formats/pbrt/camera.cpp", "settings/value_names.h",
+                             "session/measure_irradiance.cpp"}}
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
 CUDA_HEADER = re.compile(r"^(cuda|cub/|thrust/|cooperative_groups|nccl|device_launch_parameters|curand|nvtx)")
@@ -124,6 +129,9 @@ def check(root):
                 faults.append(f"src/{path}:{number}: #include {match[2]}: {fault}")
             if match and match[1] == '"':
                 included.append(match[2])
+            code = line.partition("//")[0]
+            faults += [f"src/{path}:{number}: {name} is named here; ask for a feature of it" for name, known in NAMED_IN.items()
+                       if name in code and str(path) not in known]
     return faults + (circles(includes) or circles(by_folder(includes)))
 
 
@@ -179,6 +187,9 @@ CASES = [
     ("session/session.h", '#include "integrators/integrator.h"', True),
     ("integrators/integrator.h", '#include "session/session.h"', False),
     ("helpers/film.h", "#include <cstdint>", False),
+    ("render/camera_view.h", "case Projection::Cosine:", True),
+    ("denoise/filter.h", "case Projection::Cosine:", False),
+    ("denoise/filter.h", "// Projection::Cosine", True),
 ]
 
 

@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "scene/projection_features.h"
 
 namespace pertev {
 namespace {
@@ -47,10 +48,10 @@ DenoiserHead DenoiserHead::read(std::span<const uint32_t> words) {
         visit_numbers(head, take);
     }
     head.has_gloss = gloss != 0;
-    head.camera.projection = static_cast<Projection>(projection);
-    const bool is_sound = version == kVersion && gloss <= 1 && projection <= uint32_t(Projection::Orthographic) &&
-                          head.samples > 0 && head.features > 0;
+    const std::optional<Projection> kind = projection_of_picture(projection);
+    const bool is_sound = version == kVersion && gloss <= 1 && kind && head.samples > 0 && head.features > 0;
     if (!is_sound) throw Error(ErrorCode::BadInput, "what the denoiser has gathered is missing or damaged");
+    head.camera.projection = *kind;
     return head;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "math/double_vec3.h"
+#include "scene/projection_features.h"
 
 namespace pertev {
 namespace {
@@ -58,7 +59,7 @@ bool is_fisheye_monotone(const LensView& lens, double angle) {
 
 bool has_straight_lens(const Camera& camera) {
     const bool is_plain = std::ranges::all_of(camera.distortion, [](double k) { return static_cast<float>(k) == 0; });
-    return camera.projection != Projection::Perspective || camera.lens == LensModel::Straight ||
+    return !has_angle_of_view(camera.projection) || camera.lens == LensModel::Straight ||
            (camera.lens == LensModel::OpenCv && is_plain);
 }
 

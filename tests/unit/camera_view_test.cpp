@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "render/camera_view.h"
+#include "scene/projection_features.h"
 #include "tests/support/meshes.h"
 
 using namespace pertev;
@@ -132,4 +133,12 @@ TEST_CASE("an orthographic lens keeps the focus plane sharp") {
         const float t = 2 / -direction_in_camera_space(camera, ray.direction).z;
         CHECK(distance(ray.origin + t * ray.direction, focus) < 1e-5);
     }
+}
+
+TEST_CASE("a number in a file is the projection of a picture's camera, or it is none") {
+    CHECK(projection_of_picture(0) == Projection::Perspective);
+    CHECK(projection_of_picture(1) == Projection::Orthographic);
+    for (const uint32_t number : {2u, 3u, 255u, 256u, 257u, 0x80000000u}) CHECK(!projection_of_picture(number));
+    CHECK(has_angle_of_view(Projection::Perspective));
+    CHECK(!has_angle_of_view(Projection::Orthographic));
 }

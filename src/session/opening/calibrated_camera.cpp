@@ -12,6 +12,7 @@
 #include "base/limits.h"
 #include "image/read_exr.h"
 #include "math/portable_math.h"
+#include "scene/projection_features.h"
 #include "scene/scene_origin.h"
 #include "settings/parse_values.h"
 #include "settings/setting_table.h"
@@ -153,8 +154,8 @@ void apply_camera_from(PictureOptions& options) {
         choice.convention.reset();
     }
     take("projection");
-    const bool has_own_view =
-        is_given("fov") || is_given("intrinsics") || choice.projection == Projection::Orthographic;
+    const bool has_angle = has_angle_of_view(choice.projection.value_or(Projection{}));
+    const bool has_own_view = is_given("fov") || is_given("intrinsics") || !has_angle;
     if (!has_own_view && entry_of(file, "intrinsics")) {
         take("intrinsics");
         take("intrinsics_size");
@@ -164,7 +165,7 @@ void apply_camera_from(PictureOptions& options) {
         if (radians && !is_given("fov")) choice.fov_y = parse_number("fov_y", *radians);
     }
     for (const char* name : {"view_height", "aperture", "focus", "lens", "distortion"}) take(name);
-    if (choice.projection == Projection::Orthographic) choice.lens.reset(), choice.distortion.clear();
+    if (!has_angle) choice.lens.reset(), choice.distortion.clear();
     if (!options.size && !choice.intrinsics_size) options.size = PictureSize{file.width, file.height};
 }
 
