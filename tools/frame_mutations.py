@@ -46,4 +46,6 @@ MUTATIONS = [
      ("src/denoise/anti_alias.h", "frames_of_light > 0 ? 1.0f / (frames_of_light + 1.0f) : 0.0f", "0.0f")),
     ("a scene at rest waits for long histories", "statistical/black_texels",
      ("src/denoise/anti_alias.h", "if (!may_change) return true;", "")),
+    ("contacts of the gradients' picture are found while other devices copy it", "consistency/shared_rows",
+     ("src/session/frame_sequence.cpp", "    contacts_->find(small,", "    take_small(small);\n    contacts_->find(small,")),
 ]

@@ -264,10 +264,8 @@ void FrameSequence::render_sample(uint32_t number, const Camera& camera, RenderS
     kind_seconds_.shadow += seconds.shadow;
 }
 
-/// Renders a small picture of all rows.
-void FrameSequence::render_small(uint32_t number, const Camera& camera, const RenderSettings& of_light,
-                                 NoisyFrame& frame) {
-    render_sample(number, camera, of_light, frame);
+/// Takes the rows of a small picture that other devices have made. The picture stays as it is from then on.
+void FrameSequence::take_small(const NoisyFrame& frame) {
     if (others_ != nullptr) others_->take(frame.rows(), {0, frame.height()});
 }
 
@@ -280,12 +278,13 @@ TemporalGradientsView FrameSequence::measure_gradients(const RenderSettings& of_
                           before->path == of_light.path;
     if (!is_known) return {};
     NoisyFrame& small = temporal_gradients_->after();
-    render_small(before->number, before->camera, of_light, small);
+    render_sample(before->number, before->camera, of_light, small);
     RenderSettings of_small = of_light;
     of_small.width = small.width(), of_small.height = small.height();
     const PictureView picture = pictures_.view_of(before->camera, of_small);
-    contacts_->find(small, picture.camera.view, picture.scene, pictures_.scene().tracer(), {0, small.height()},
-                    TemporalGradientsMemory::kSide);
+    contacts_->find(small, picture.camera.view, picture.scene, pictures_.scene().tracer(),
+                    own_rows(others_, small.height()), TemporalGradientsMemory::kSide);
+    take_small(small);
     return temporal_gradients_->compare();
 }
 
@@ -294,7 +293,8 @@ TemporalGradientsView FrameSequence::measure_gradients(const RenderSettings& of_
 void FrameSequence::store_light(uint32_t number, const Camera& camera, const RenderSettings& of_light, bool goes_on) {
     light_before_.reset();
     if (!goes_on) return;
-    render_small(number, camera, of_light, temporal_gradients_->before());
+    render_sample(number, camera, of_light, temporal_gradients_->before());
+    take_small(temporal_gradients_->before());
     light_before_ = {camera, number, of_light.path};
 }
 

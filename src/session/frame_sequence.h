@@ -90,7 +90,7 @@ public:
 private:
     void render_sample(uint32_t number, const Camera& camera, RenderSettings settings, NoisyFrame& frame,
                        Sink* sink = nullptr);
-    void render_small(uint32_t number, const Camera& camera, const RenderSettings& of_light, NoisyFrame& frame);
+    void take_small(const NoisyFrame& frame);
     void take_restored(const FrameTask& task, const RenderSettings& of_light);
     void check(const FrameTask& task);
     void denoise();
