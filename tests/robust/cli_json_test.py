@@ -2,10 +2,11 @@
 """`--json`: standard output always has one object per line, and the last one has the result."""
 
 import json
+import pathlib
 import signal
 import subprocess
 
-from cli_run import FLOOR, PROGRAM, CliTest, main, write
+from cli_run import FLOOR, KEYS, PROGRAM, CliTest, main, write
 
 NAMES = {2: "bad_input", 3: "over_limit", 6: "file_write", 75: "interrupted"}
 
@@ -172,6 +173,24 @@ class Objects(CliTest):
     def test_an_exr_alone_reports_no_exposure(self):
         outcome = self.succeed("render", "cornell-box", "-o", "b.exr", "--size", "8x8", "--spp", "1", "--json")
         self.assertEqual(outcome.events("exposure"), [])
+
+
+# Files that write keys for several events, beside the file that writes the event.
+SHARED = ["apps/cli/bench_parts.cpp", "apps/cli/reporter.cpp", "apps/cli/report_result.cpp", "apps/cli/report_error.h", "apps/cli/flag_phrases.h"]
+# Events with keys from elsewhere: the table of settings and metadata; measurements; attributes of an EXR itself ("type").
+OTHERS = {"camera": ["src/settings/scene_settings.cpp", "src/session/writing/picture_metadata.cpp"], "lab": ["src/lab/measurement.cpp"],
+          "thesis": ["src/lab/measurement.cpp"], "transport": ["src/lab/measurement.cpp"], "info": ["src/image/check_exr_header.cpp"]}
+
+
+class Lists(CliTest):
+    def test_every_listed_key_is_written_where_its_event_is(self):
+        root = pathlib.Path(__file__).resolve().parents[2]
+        texts = {path: path.read_text(encoding="utf-8") for path in (root / "apps/cli").glob("*.cpp")}
+        for event, keys in KEYS.items():
+            own = [text for text in texts.values() if f'"{event}"' in text]
+            self.assertTrue(own, event)
+            text = "".join(own + [(root / file).read_text(encoding="utf-8") for file in SHARED + OTHERS.get(event, [])])
+            self.assertEqual([key for key in keys if f'"{key}"' not in text and f'pertev.{key}"' not in text], [], event)
 
 
 if __name__ == "__main__":
