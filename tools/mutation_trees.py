@@ -210,6 +210,8 @@ class Base(Tree):
 
     def read_build(self):
         """Learns from ninja which objects read a file and how long each took."""
+        if not self.programs:
+            return
         for line in (self.build / ".ninja_log").read_text().splitlines()[1:]:
             start, end, _, output, _ = line.split("\t")
             self.seconds_of[output] = (int(end) - int(start)) / 1000

@@ -9,12 +9,17 @@ built in copies of it (tools/mutation_trees.py), N at once. Those that take long
 `tools/test_the_tests.py [NAME ...]` runs the mutations of these names only, `--list` names them all, `--check` tells in a
 moment whether all of them still apply, and whether tools/check_gpu.sh names tests that exist. Prints a row for each as it
 ends, and exits 1 unless every mutation was noticed by all tests named for it.
+
+Runs of several days or machines make one: `--shard I/N` takes every Nth mutation from the Ith on, and `--results FILE` appends a
+line for each that was tried, with its commit. A later run with that file skips those noticed before whose text, files and tests
+have the same bytes.
 """
 
 import argparse
 import collections
 import concurrent.futures
 import fnmatch
+import hashlib
 import itertools
 import json
 import os
@@ -22,6 +27,7 @@ import pathlib
 import queue
 import re
 import shutil
+import subprocess
 import sys
 import threading
 import time
@@ -61,11 +67,51 @@ def check_gpu_list():
         sys.exit("tools/check_gpu.sh: no test has this name: " + ", ".join(absent))
 
 
-class Report:
-    """Rows as they come, on the screen and in a file."""
+def files_of(test):
+    """Files of a test's own; a check of the sources is a tool."""
+    if test.startswith("sources/"):
+        return [ROOT / f"tools/check_{test.removeprefix('sources/')}.py"]
+    return [ROOT / f"tests/{test}_test{suffix}" for suffix in (".cpp", ".py")]
 
-    def __init__(self, chosen, path):
-        self.chosen, self.path, self.begin, self.lock = chosen, path, time.monotonic(), threading.Lock()
+
+def digest_of(mutation):
+    """The hash of its text, and of the files that it edits and the tests that must notice it."""
+    paths = [ROOT / file for file, _, _ in mutation.edits] + [path for test in mutation.tests for path in files_of(test)]
+    texts = [path.read_bytes().hex() if path.is_file() else "" for path in paths]
+    return hashlib.sha256(json.dumps([*mutation, texts]).encode()).hexdigest()
+
+
+class Results:
+    """Rows of this run and earlier ones, a JSON object a line in a file; the last line of a mutation counts."""
+
+    def __init__(self, path):
+        self.path, self.rows = path, {}
+        self.commit = subprocess.run(["git", "describe", "--always", "--dirty"], cwd=ROOT, check=False, capture_output=True, text=True).stdout.strip()
+        if path and path.is_file():
+            self.rows = {row["name"]: row for row in map(json.loads, path.read_text().splitlines())}
+
+    def counts(self, mutation):
+        row = self.rows.get(mutation.name, {})
+        return row.get("state") == "noticed" and row["digest"] == digest_of(mutation)
+
+    def add(self, mutation, row):
+        if self.path:
+            kept = {"name": mutation.name, "digest": digest_of(mutation), "commit": self.commit}
+            kept |= {key: row[key] for key in ("state", "noticed_by", "unnoticed_by", "reason", "seconds") if row.get(key)}
+            self.rows[mutation.name] = kept
+            with self.path.open("a") as file:
+                file.write(json.dumps(kept) + "\n")
+
+    def summary(self):
+        commits = collections.Counter(self.rows[m.name]["commit"] for m in MUTATIONS if self.counts(m))
+        return f"{commits.total()} of {len(MUTATIONS)} mutations are noticed and unchanged since; by commit: {dict(commits)}"
+
+
+class Report:
+    """Rows as they come, on the screen and in files."""
+
+    def __init__(self, chosen, path, results):
+        self.chosen, self.path, self.results, self.begin, self.lock = chosen, path, results, time.monotonic(), threading.Lock()
         self.passes = {}  # tests without a mutation: whether they pass
         self.rows = {mutation.name: {"tests": mutation.tests, "state": "not run"} for mutation in chosen}
         self.unprinted = []
@@ -93,6 +139,7 @@ class Report:
             if bad and row["state"] in ("noticed", "unnoticed"):
                 row |= {"state": "cannot be tried", "reason": "without a mutation fails or does not run: " + ", ".join(bad)}
             self.print_row(mutation.name, row)
+            self.results.add(mutation, row)
         self.write()
 
     def print_row(self, name, row):
@@ -208,6 +255,8 @@ def main():
     parser.add_argument("--parallel", type=int, default=os.cpu_count(), help="mutations, and compilers, at once")
     parser.add_argument("--time-limit", type=float, default=500000, help="seconds for all of it, after which the rest is listed as not run")
     parser.add_argument("--json", type=pathlib.Path, help="write the rows to this file too, as they come")
+    parser.add_argument("--shard", metavar="I/N", default="1/1", help="try every Nth mutation, from the Ith on, 1 to N")
+    parser.add_argument("--results", type=pathlib.Path, metavar="FILE", help="append rows to this file; skip those that it has and that count")
     parser.add_argument("--assume-passing", action="store_true", help="do not run the tests without a mutation: they are known to pass")
     parser.add_argument("--work", type=pathlib.Path, default=ROOT / "build-mutations", help="folder for the trees, e.g. one in /dev/shm")
     parser.add_argument("--setting", action="append", default=[], help="another setting for CMake, e.g. CMAKE_CXX_FLAGS_RELEASE=-O1")
@@ -218,17 +267,25 @@ def main():
     unknown = set(arguments.names) - {mutation.name for mutation in MUTATIONS}
     if unknown:
         sys.exit(f"no mutation is named {', '.join(map(repr, sorted(unknown)))}; --list names them")
+    shard = re.fullmatch(r"(\d+)/(\d+)", arguments.shard)
+    if not shard or not 1 <= int(shard[1]) <= int(shard[2]):
+        sys.exit(f"--shard {arguments.shard}: expected I/N with I from 1 to N")
+    results = Results(arguments.results)
     chosen = [m for m in MUTATIONS if not arguments.names or m.name in arguments.names]
+    chosen = [m for m in chosen[int(shard[1]) - 1::int(shard[2])] if not results.counts(m)]
     if arguments.list:
         for mutation in chosen:
             print(f"{mutation.name}: {', '.join(mutation.tests)}")
+        return
+    if not chosen:
+        print(results.summary())
         return
 
     deadline = time.monotonic() + arguments.time_limit
     work = arguments.work.resolve()
     work.mkdir(parents=True, exist_ok=True)
     runner = Runner(work, arguments.parallel, deadline)
-    report = Report(chosen, arguments.json)
+    report = Report(chosen, arguments.json, results)
     tests = sorted({test for mutation in chosen for test in mutation.tests})
     if arguments.assume_passing:
         report.passes = dict.fromkeys(tests, True)
@@ -246,7 +303,10 @@ def main():
         print("no time was left to build without a mutation")
     finally:
         runner.close()
-    sys.exit(0 if report.finish() else 1)
+    all_is_well = report.finish()
+    if arguments.results:
+        print(results.summary())
+    sys.exit(0 if all_is_well else 1)
 
 
 if __name__ == "__main__":
