@@ -57,7 +57,7 @@ run_quietly() {
 
 # Package, or package=command where any copy of that command will do.
 packages=("cmake=cmake" "ninja-build=ninja" "g++=c++" "ccache=ccache" "pkg-config=pkg-config" libtbb-dev
-    libopenexr-dev libimath-dev libpng-dev zlib1g-dev libjpeg-dev libsimdjson-dev libmeshoptimizer-dev
+    libopenexr-dev libimath-dev libpng-dev zlib1g-dev libjpeg-dev libsimdjson-dev libmeshoptimizer-dev libpugixml-dev
     libwebp-dev libdraco-dev
     libcli11-dev libfmt-dev libxxhash-dev libboost-dev)
 installed_something=false

@@ -277,7 +277,7 @@ void add_info_command(CLI::App& app, int& status) {
     CLI::App& verb = *app.add_subcommand("info", "Describe a scene, a picture or a radiosity solution");
     const auto flags = std::make_shared<InfoFlags>();
     verb.add_option("FILE", flags->scene.scene,
-                    "a scene (.gltf .glb .obj .ply .stl .pbrt, or a built-in one:\n" + builtin_scene_list() +
+                    "a scene (.gltf .glb .obj .ply .stl .pbrt .xml, or a built-in one:\n" + builtin_scene_list() +
                         "),\na picture, a film file, or what solve has made")
         ->type_name("")
         ->check(file_name())

@@ -118,7 +118,7 @@ def _reopened(name, settings, edits):
 def load(scene, **values):
     """Opens a scene, builds its trees, and returns it as a Scene, of which render() makes pictures.
 
-    scene   a file (.gltf, .glb, .obj, .ply, .stl, .pbrt) or the name of a built-in scene (builtin_scenes())
+    scene   a file (.gltf, .glb, .obj, .ply, .stl, .pbrt, .xml) or the name of a built-in scene (builtin_scenes())
     values  settings, as render() has them, for all pictures that do not overrule them
 
     A picture with another camera, size or integrator, with other samples, or at another time, takes the scene as it is;

@@ -13,6 +13,7 @@
 #include "formats/builtin_scenes.h"
 #include "formats/files/file_choices.h"
 #include "formats/gltf/read_gltf.h"
+#include "formats/mitsuba/read_mitsuba.h"
 #include "formats/obj/read_obj.h"
 #include "formats/pbrt/read_pbrt.h"
 #include "formats/ply/read_ply.h"
@@ -34,7 +35,7 @@ const std::array kReaders = {
     FormatReader{".obj", read_obj, false, false},    FormatReader{".ply", read_ply, false, false},
     FormatReader{".stl", read_stl, false, false},    FormatReader{".gltf", read_gltf, true, true},
     FormatReader{".glb", read_gltf, true, true},     FormatReader{".pbrt", read_pbrt, true, true},
-    FormatReader{".pbrt.gz", read_pbrt, true, true},
+    FormatReader{".pbrt.gz", read_pbrt, true, true}, FormatReader{".xml", read_mitsuba, true, true},
 };
 
 /// Returns the reader for a file's extension, in front of .gz if it is gzip'd; null if there is none.

@@ -1,8 +1,8 @@
 #pragma once
 
-// Reads a scene file of any supported kind, by its extension: .obj .ply .stl .gltf .glb .pbrt. Readers are an open set:
-// one file each (read_obj, read_ply, read_stl, read_gltf, read_pbrt), listed in the table in read_scene.cpp. Built-in
-// scenes are read by their names.
+// Reads a scene file of any supported kind, by its extension: .obj .ply .stl .gltf .glb .pbrt .xml. Readers are an open
+// set: one file each (read_obj, read_ply, read_stl, read_gltf, read_pbrt, read_mitsuba), listed in the table in
+// read_scene.cpp. Built-in scenes are read by their names.
 
 #include <filesystem>
 #include <string>

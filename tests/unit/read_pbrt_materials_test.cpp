@@ -88,8 +88,9 @@ TEST_CASE("pbrt: roughness is remapped as each version does, and may differ alon
     CHECK(pbrt_material("Material \"dielectric\" \"float roughness\" .0625 \"bool remaproughness\" true").roughness ==
           doctest::Approx(0.5));
     // pbrt-v3: log 1 = 0, so that a roughness of 1 has the width 1.62142.
-    CHECK(pbrt::converted(pbrt::Curve::RoughnessOfVersion3, 0, 1) == 1);
-    CHECK(square(pbrt::converted(pbrt::Curve::RoughnessOfVersion3, 0, 0.1f)) == doctest::Approx(0.46176).epsilon(1e-4));
+    CHECK(described::converted(described::Curve::RoughnessOfVersion3, 0, 1) == 1);
+    CHECK(square(described::converted(described::Curve::RoughnessOfVersion3, 0, 0.1f)) ==
+          doctest::Approx(0.46176).epsilon(1e-4));
     const Material along = pbrt_material(
         "Material \"conductor\" \"float uroughness\" .5 \"float vroughness\" .1 \"bool remaproughness\" false");
     CHECK(square(along.roughness) == doctest::Approx(0.1));
@@ -104,8 +105,8 @@ TEST_CASE("pbrt: roughness is remapped as each version does, and may differ alon
 
 TEST_CASE("pbrt: coats, panes and sheets are the nearest materials") {
     // 59.6 % of diffuse light inside glass of 1.5 is reflected back.
-    CHECK(pbrt::reflected_inside(1.5f) == doctest::Approx(0.5963).epsilon(2e-3));
-    CHECK(pbrt::reflected_inside(1) == doctest::Approx(0).epsilon(1e-3));
+    CHECK(described::reflected_inside(1.5f) == doctest::Approx(0.5963).epsilon(2e-3));
+    CHECK(described::reflected_inside(1) == doctest::Approx(0).epsilon(1e-3));
     const Material coated = pbrt_material("Material \"coateddiffuse\" \"rgb reflectance\" [1 .5 0]");
     CHECK(coated.kind == MaterialKind::MetallicRoughness);
     CHECK(coated.base_color.r == doctest::Approx(1));

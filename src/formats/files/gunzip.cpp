@@ -15,9 +15,8 @@ namespace {
 /// A stream of zlib that ends with its scope.
 struct Inflating {
     z_stream stream = {};
-    explicit Inflating(const std::string& file) {
-        constexpr int kGzip = 16 + MAX_WBITS;
-        if (inflateInit2(&stream, kGzip) != Z_OK)
+    Inflating(int window_bits, const std::string& file) {
+        if (inflateInit2(&stream, window_bits) != Z_OK)
             throw Error(ErrorCode::OutOfMemory, FileLocation{file}, "zlib cannot begin to decompress");
     }
     Inflating(const Inflating&) = delete;
@@ -25,23 +24,19 @@ struct Inflating {
     ~Inflating() { inflateEnd(&stream); }
 };
 
-} // namespace
-
-bool is_gzip(std::span<const std::byte> bytes) {
-    return bytes.size() >= 18 && bytes[0] == std::byte{0x1f} && bytes[1] == std::byte{0x8b} && bytes[2] == std::byte{8};
-}
-
-std::vector<std::byte> gunzip(std::span<const std::byte> bytes, const std::string& file) {
+/// Inflates what begins in front of `bytes`; of gzip all members.
+std::vector<std::byte> inflate_all(std::span<const std::byte> bytes, int window_bits, const std::string& file) {
+    const bool has_members = window_bits > MAX_WBITS;
     constexpr std::size_t kPiece = std::size_t(1) << 20;
     const uint64_t limit = justified_bytes(kFreeMeshBytes, bytes.size());
-    Inflating inflating(file);
+    Inflating inflating(window_bits, file);
     z_stream& stream = inflating.stream;
     std::vector<std::byte> content;
     std::size_t size = 0;
     const auto* in = reinterpret_cast<const Bytef*>(bytes.data());
     std::size_t left = bytes.size();
     int state = Z_OK;
-    while (state != Z_STREAM_END || (left > 0 && is_gzip(bytes.last(left)))) {
+    while (state != Z_STREAM_END || (has_members && left > 0 && is_gzip(bytes.last(left)))) {
         if (state == Z_STREAM_END) inflateReset(&stream); // a further member
         if (size > limit) {
             throw Error(ErrorCode::OverLimit, FileLocation{file},
@@ -59,12 +54,27 @@ std::vector<std::byte> gunzip(std::span<const std::byte> bytes, const std::strin
         size += room - stream.avail_out;
         const bool is_stuck = given == stream.avail_in && room == stream.avail_out;
         if ((state != Z_OK && state != Z_STREAM_END) || (state == Z_OK && is_stuck)) {
-            throw Error(ErrorCode::BadInput, FileLocation{file},
-                        fmt::format("the gzip'd file is damaged or cut off after {} bytes of its content", size));
+            throw Error(
+                ErrorCode::BadInput, FileLocation{file},
+                fmt::format("the compressed data are damaged or cut off after {} bytes of their content", size));
         }
     }
     content.resize(size);
     return content;
+}
+
+} // namespace
+
+bool is_gzip(std::span<const std::byte> bytes) {
+    return bytes.size() >= 18 && bytes[0] == std::byte{0x1f} && bytes[1] == std::byte{0x8b} && bytes[2] == std::byte{8};
+}
+
+std::vector<std::byte> gunzip(std::span<const std::byte> bytes, const std::string& file) {
+    return inflate_all(bytes, 16 + MAX_WBITS, file);
+}
+
+std::vector<std::byte> inflate_zlib(std::span<const std::byte> bytes, const std::string& file) {
+    return inflate_all(bytes, MAX_WBITS, file);
 }
 
 std::vector<std::byte> read_unzipped(const std::filesystem::path& path) {

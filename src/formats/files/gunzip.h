@@ -1,6 +1,6 @@
 #pragma once
 
-// Decompresses gzip (RFC 1952) by zlib.
+// Decompresses gzip (RFC 1952) and zlib's own format (RFC 1950).
 
 #include <cstddef>
 #include <filesystem>
@@ -16,6 +16,9 @@ bool is_gzip(std::span<const std::byte> bytes);
 /// Returns the content of a gzip'd file, of all its members. `file` is for messages. Throws Error(BadInput) if it is
 /// damaged or cut off, and Error(OverLimit) if it unfolds to more than its size justifies (base/limits.h).
 std::vector<std::byte> gunzip(std::span<const std::byte> bytes, const std::string& file);
+
+/// Returns the content of one stream of zlib in front of `bytes`. Throws as gunzip().
+std::vector<std::byte> inflate_zlib(std::span<const std::byte> bytes, const std::string& file);
 
 /// Reads a file, and decompresses it if it is gzip'd. Throws as read_file() and gunzip().
 std::vector<std::byte> read_unzipped(const std::filesystem::path& path);

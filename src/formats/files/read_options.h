@@ -20,6 +20,7 @@ struct ReadOptions {
     uint32_t max_texture_size = 0; // pixels of the longer side of textures; larger ones are scaled down; 0: any
     std::string variant;    // the set of materials: a name or an index from 0 in the file; empty: the file's default
     std::string file_scene; // the scene to show: a name or an index from 0 in the file; empty: the file's default
+    std::vector<std::string> defines; // values of a Mitsuba file's parameters: NAME=VALUE
 };
 
 } // namespace pertev

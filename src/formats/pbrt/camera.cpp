@@ -8,8 +8,8 @@
 
 #include "base/limits.h"
 #include "base/message_text.h"
+#include "formats/described/transforms.h"
 #include "formats/files/closest_name.h"
-#include "formats/pbrt/transforms.h"
 #include "math/portable_math.h"
 
 namespace pertev::pbrt {
@@ -141,7 +141,7 @@ std::optional<Camera> make_camera(View& view, const FilmSize& size, DoubleVec3 o
     camera.origin = fmt::format("{}:{}", parameters.location().file, parameters.location().line);
     camera.aspect = static_cast<float>(static_cast<double>(size.width) / static_cast<double>(size.height));
     const DoubleTransform world_from_camera = inverse(view.camera_from_world);
-    DoubleTransform placed = compose(compose(scene_from_world(view), world_from_camera), make_scale({1, 1, -1}));
+    DoubleTransform placed = compose(compose(scene_from_world(view), world_from_camera), scale_by({1, 1, -1}));
     placed.translation = placed.translation - origin;
     const auto rigid = is_finite(placed) ? without_scale(to_float(placed)) : std::nullopt;
     if (!rigid) {
@@ -187,7 +187,7 @@ std::optional<Camera> make_camera(View& view, const FilmSize& size, DoubleVec3 o
 bool is_left_handed(const View& view) { return view.camera && determinant(view.camera_from_world) > 0; }
 
 DoubleTransform scene_from_world(const View& view) {
-    return is_left_handed(view) ? make_scale({-1, 1, 1}) : DoubleTransform();
+    return is_left_handed(view) ? scale_by({-1, 1, 1}) : DoubleTransform();
 }
 
 void add_view(View& view, const Context& context, Scene& scene) {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "formats/described/parameters.h"
 #include "formats/pbrt/context.h"
-#include "formats/pbrt/parameters.h"
 #include "math/double_transform.h"
 #include "scene/scene.h"
 

@@ -8,6 +8,7 @@
 #include "base/message_text.h"
 #include "base/read_file.h"
 #include "formats/files/parse_number.h"
+#include "formats/pbrt/tokens.h"
 #include "formats/spectra/spectrum.h"
 #include "math/scalar.h"
 
@@ -59,6 +60,7 @@ std::optional<Rgb> stated_color(const Parameters& parameters, const Parameter& p
     case ParameterType::Spectrum:
     case ParameterType::Blackbody:
     case ParameterType::Texture:
+    case ParameterType::Transform:
         break;
     }
     return std::nullopt;

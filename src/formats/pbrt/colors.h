@@ -10,8 +10,8 @@
 #include <optional>
 #include <string_view>
 
+#include "formats/described/parameters.h"
 #include "formats/pbrt/context.h"
-#include "formats/pbrt/parameters.h"
 #include "formats/spectra/named_spectra.h"
 #include "math/rgb.h"
 

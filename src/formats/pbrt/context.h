@@ -9,7 +9,11 @@
 #include "formats/files/load_textures.h"
 #include "formats/files/read_options.h"
 
+namespace pertev::described {}
+
 namespace pertev::pbrt {
+
+using namespace described; // parts that it shares with the reader of Mitsuba's scenes
 
 struct Context {
     const FileAccess& access;

@@ -68,14 +68,27 @@ std::optional<InfiniteLight> read_infinite_light(Parameters& parameters, const D
     light.location = parameters.location();
     light.world_from_light = world_from_light;
     const std::string of_version_3 = parameters.text("mapname", "", context.sink);
-    light.picture = parameters.text("filename", of_version_3, context.sink);
-    light.is_latlong = !of_version_3.empty();
+    const std::string name = parameters.text("filename", of_version_3, context.sink);
+    if (!of_version_3.empty()) light.layout = PanoramaLayout::AroundZ;
     light.scale = scale_of(parameters, context) * light_color(parameters, "L", grey(1), context);
     light.illuminance = std::max(parameters.number("illuminance", 0, context.sink), 0.0);
     parameters.leave_out({"portal"}, "it only guides samples, and cuts light from elsewhere off", context.sink);
     parameters.ignore({"samples", "nsamples"});
     parameters.leave_out_unknown(context.sink);
-    return light;
+    if (name.empty()) return light;
+    try {
+        const auto found = context.access.find(base_of(context, light.location, name), name, context.sink);
+        if (found) {
+            light.picture = found->string();
+            return light;
+        }
+        context.sink.leave_out(
+            {light.location, fmt::format("there is no picture {}; the infinite light is left out", shortened(name))});
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::BadInput) throw;
+        context.sink.leave_out(error.remark().and_then("; the infinite light is left out"));
+    }
+    return std::nullopt;
 }
 
 std::optional<Light> read_light(const std::string& type, Parameters& parameters,

@@ -135,19 +135,12 @@ Surface dielectric(const MaterialSource& source) {
     return surface;
 }
 
-/// Two surfaces of a pane, between which light bounces, reflect 2 F / (1 + F); an index of one has that at 0 degrees.
 Surface thin_dielectric(const MaterialSource& source) {
     Surface surface = make_surface(MaterialKind::MetallicRoughness);
     Material& material = surface.material;
     set_ior(source, "eta", &Material::ior, surface);
     material.transmission_dispersion_scale = 0;
-    const float root = (material.ior - 1) / (material.ior + 1), once = root * root;
-    const float amplitude = sqrt(2 * once / (1 + once));
-    material.ior = (1 + amplitude) / (1 - amplitude);
-    material.base_color = grey(1);
-    material.roughness = 0;
-    material.transmission_weight = 1;
-    material.thin_walled = true;
+    set_thin_pane(surface);
     source.parameters.ignore({"roughness", "remaproughness"});
     warn_of_nearest(source, "a thin wall with the same reflectance at 0 degrees");
     return surface;
@@ -178,9 +171,7 @@ Surface nothing() {
     return surface;
 }
 
-Rgb faded(Rgb a, Rgb b, float share) { return lerp(a, b, share); }
-
-/// Mixes two materials: exactly if one is no surface or both are diffuse, else as the one with the larger share.
+/// Mixes two materials as mix_surfaces() does.
 Surface mixture(const MaterialSource& source) {
     const Parameter* const names = source.parameters.find("materials");
     std::vector<std::string> parts;
@@ -205,38 +196,11 @@ Surface mixture(const MaterialSource& source) {
         of_second.offset += amount.has_image() ? grey(1) : grey(0);
         if (!amount.has_image()) of_second.factor = grey(1 - amount.factor.r);
     }
-    if (first->is_nothing || second->is_nothing) {
-        if (first->is_nothing && second->is_nothing) return nothing();
-        Surface surface = first->is_nothing ? *second : *first;
-        TextureValue alpha = of_second;
-        if (second->is_nothing) {
-            alpha = of_second.scaled(grey(-1));
-            alpha.offset += grey(1);
-            if (!alpha.has_image()) alpha = constant(grey(1 - of_second.factor.r));
-        }
-        set_alpha(surface, alpha);
-        return surface;
-    }
-    const float share = of_second.has_image() ? 0.5f : clamp(of_second.factor.r, 0.0f, 1.0f);
-    const bool is_diffuse = first->material.kind == MaterialKind::Diffuse &&
-                            second->material.kind == MaterialKind::Diffuse && first->images.empty() &&
-                            second->images.empty();
-    if (is_diffuse && !of_second.has_image()) {
-        Surface surface = *first;
-        surface.material.base_color = faded(first->material.base_color, second->material.base_color, share);
-        return surface;
-    }
-    if (is_diffuse) {
-        Surface surface = *first;
-        TextureValue color = of_second.scaled(second->material.base_color - first->material.base_color);
-        color.offset += first->material.base_color;
-        set_color(surface, &M::base_color, &M::base_color_texture, color);
-        return surface;
-    }
-    if (share > 0 && share < 1)
+    const MixedSurface mixed = mix_surfaces(*first, *second, of_second);
+    if (mixed.left_out)
         source.context.sink.leave_out(
-            {place, fmt::format("of the mix the material {} is left out", shortened(parts[share < 0.5f ? 1 : 0]))});
-    return share < 0.5f ? *first : *second;
+            {place, fmt::format("of the mix the material {} is left out", shortened(parts[*mixed.left_out]))});
+    return mixed.surface;
 }
 
 /// A measured or subsurface material as a diffuse one under a smooth coat.
@@ -282,15 +246,6 @@ std::optional<Surface> read_version_4_material(const MaterialSource& source) {
 
 } // namespace
 
-Surface make_surface(MaterialKind kind) {
-    Surface surface;
-    surface.material.kind = kind;
-    surface.material.roughness = 0;
-    surface.material.energy = MicrofacetEnergy::Single;
-    surface.material.microfacet_distribution = MicrofacetDistribution::Ggx;
-    return surface;
-}
-
 void warn_of_nearest(const MaterialSource& source, std::string_view nearest) {
     source.context.sink.warn({FileLocation{source.parameters.location().file},
                               fmt::format("materials of the type {} are drawn as {}", source.type, nearest)});
@@ -315,19 +270,9 @@ void read_roughness(const MaterialSource& source, double missing, std::string_vi
     const Curve curve = !is_remapped                  ? Curve::RoughnessOfWidth
                         : source.context.is_version_3 ? Curve::RoughnessOfVersion3
                                                       : Curve::RoughnessOfRoot;
-    Material& material = surface.material;
-    if (u.has_image() || v.has_image()) {
-        if (source.parameters.has(names.u) && source.parameters.has(names.v))
-            source.parameters.leave_out({names.v}, "a stretched reflection with textures is even", sink);
-        set_number(surface, &M::roughness, &M::roughness_texture, u.has_image() ? u : v, curve);
-        return;
-    }
-    const float along = converted(curve, 0, u.factor.r), across = converted(curve, 0, v.factor.r);
-    const float wide = max(along, across) * max(along, across), narrow = min(along, across) * min(along, across);
-    material.roughness = min(along, across);
-    if (!(wide > narrow) || narrow >= 1) return;
-    material.specular_roughness_anisotropy = sqrt((wide - narrow) / (1 - narrow));
-    material.anisotropy_rotation = along > across ? 0.0f : 0.5f * kPi;
+    if ((u.has_image() || v.has_image()) && source.parameters.has(names.u) && source.parameters.has(names.v))
+        source.parameters.leave_out({names.v}, "a stretched reflection with textures is even", sink);
+    set_roughness(surface, u, v, curve);
 }
 
 void read_bumps(const MaterialSource& source, Surface& surface) {
@@ -348,39 +293,6 @@ void read_bumps(const MaterialSource& source, Surface& surface) {
     TextureValue normals = source.textures.image_file(source.parameters.location(), map);
     normals.ref.is_srgb = false;
     if (normals.has_image()) surface.material.normal_texture = normals.ref;
-}
-
-void set_mirror(Surface& surface, const TextureValue& color) {
-    Material& material = surface.material;
-    material.kind = MaterialKind::MetallicRoughness;
-    material.metallic = 1;
-    set_color(surface, &M::base_color, &M::base_color_texture, color);
-    if (color.has_image()) return;
-    // Schlick's colour rises towards grazing angles; the tint of F82 takes that off again.
-    constexpr float kOneLessCosine = 1 - 1.0f / 7,
-                    kRise = kOneLessCosine * kOneLessCosine * kOneLessCosine * kOneLessCosine * kOneLessCosine;
-    const auto tint = [](float r) { return r / (r + (1 - r) * kRise); };
-    material.metal_fresnel = MetalFresnel::F82;
-    const Rgb c = material.base_color;
-    material.specular_color = {tint(c.r), tint(c.g), tint(c.b)};
-}
-
-float reflected_inside(float ior) {
-    constexpr int kSteps = 256;
-    float sum = 0; // the integral of F(cosine) 2 cosine, by the middles of equal steps
-    for (int i = 0; i < kSteps; ++i) {
-        const float cosine = (static_cast<float>(i) + 0.5f) / kSteps;
-        const float square = 1 - ior * ior * (1 - cosine * cosine);
-        float reflected = 1;
-        if (square > 0) {
-            const float out = sqrt(square);
-            const float s = (ior * cosine - out) / (ior * cosine + out),
-                        p = (cosine - ior * out) / (cosine + ior * out);
-            reflected = 0.5f * (s * s + p * p);
-        }
-        sum += reflected * 2 * cosine / kSteps;
-    }
-    return sum;
 }
 
 Surface read_material(const MaterialSource& source) {

@@ -6,7 +6,9 @@
 #include <functional>
 #include <string>
 
-#include "formats/pbrt/surface.h"
+#include "formats/described/make_surface.h"
+#include "formats/pbrt/context.h"
+#include "formats/pbrt/textures.h"
 
 namespace pertev::pbrt {
 
@@ -30,18 +32,11 @@ std::optional<Surface> read_version_3_material(const MaterialSource& source);
 /// Returns the types of pbrt-v3.
 std::span<const std::string_view> version_3_materials();
 
-/// Returns a surface of a kind with pbrt's microfacets.
-Surface make_surface(MaterialKind kind);
 /// Reads roughness, uroughness, vroughness and remaproughness.
 void read_roughness(const MaterialSource& source, double missing, std::string_view prefix, Surface& surface);
 /// Reads the bump map or normal map that all materials may have.
 void read_bumps(const MaterialSource& source, Surface& surface);
 /// Warns once that materials of a type are drawn as the nearest one.
 void warn_of_nearest(const MaterialSource& source, std::string_view nearest);
-/// Makes a metal of the colour that it reflects at every angle.
-void set_mirror(Surface& surface, const TextureValue& color);
-
-/// The share of diffuse light inside a smooth dielectric of this index that its surface reflects back.
-float reflected_inside(float ior);
 
 } // namespace pertev::pbrt

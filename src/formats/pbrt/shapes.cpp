@@ -8,15 +8,13 @@
 #include <fmt/format.h>
 
 #include "base/message_text.h"
-#include "base/parallel_for.h"
+#include "formats/described/finish_meshes.h"
+#include "formats/described/transforms.h"
 #include "formats/files/closest_name.h"
-#include "formats/mesh/move_positions.h"
-#include "formats/pbrt/transforms.h"
 #include "formats/ply/read_ply.h"
 #include "formats/shapes/bilinear_patches.h"
 #include "formats/shapes/loop_subdivision.h"
 #include "formats/shapes/quadrics.h"
-#include "scene/position_bounds.h"
 
 namespace pertev::pbrt {
 namespace {
@@ -28,43 +26,6 @@ constexpr std::array<std::string_view, 7> kShapeTypes = {"trianglemesh", "plymes
 
 Vec3 vec3_at(std::span<const double> numbers, std::size_t i) {
     return to_float(DoubleVec3{numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]});
-}
-
-/// Turns triangles whose vertex normals point behind them, and all of a reversed mesh, with its normals.
-void wind(ShapeMesh& shape) {
-    Mesh& mesh = shape.mesh;
-    const bool is_reversed = shape.is_reversed;
-    shape.is_turned.assign(mesh.indices.size() / 3, false);
-    if (is_reversed) {
-        for (Vec3& normal : mesh.normals) normal = -normal;
-    }
-    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-        uint32_t* const corner = mesh.indices.data() + i;
-        bool turns = is_reversed;
-        if (!mesh.normals.empty()) {
-            const Vec3 a = mesh.positions[corner[0]];
-            const Vec3 across = cross(mesh.positions[corner[1]] - a, mesh.positions[corner[2]] - a);
-            const Vec3 sum = mesh.normals[corner[0]] + mesh.normals[corner[1]] + mesh.normals[corner[2]];
-            const float side = dot(across, sum);
-            if (side != 0) turns = side < 0;
-        }
-        if (!turns) continue;
-        std::swap(corner[1], corner[2]);
-        shape.is_turned[i / 3] = true;
-    }
-}
-
-/// Moves a mesh's positions to their middle in double if they are far from 0.
-void subtract_middle(ShapeMesh& shape) {
-    Mesh& mesh = shape.mesh;
-    if (shape.exact.empty()) return;
-    const auto bounds = [&] { return bounds_of(mesh.positions, mesh.indices); };
-    DoubleBounds3 box = double_box_of(bounds());
-    if (!box.is_empty() && !(origin_for(box) == DoubleVec3{0, 0, 0})) {
-        box = move_positions(box, shape.exact, mesh.positions, bounds);
-        shape.shape_from_mesh = compose(shape.shape_from_mesh, make_translation(origin_for(box)));
-    }
-    shape.exact = {};
 }
 
 bool has_bad_index(const Mesh& mesh) {
@@ -190,7 +151,7 @@ ReadShape Shapes::ply_mesh(bool is_reversed, Parameters& parameters) {
     ShapeMesh shape;
     shape.location = parameters.location();
     shape.is_reversed = is_reversed;
-    shape.ply = path->string();
+    shape.file = path->string();
     const ReadShape read = add_mesh(std::move(shape), false);
     known->second = read.mesh;
     return read;
@@ -206,7 +167,7 @@ ReadShape Shapes::quadric(const std::string& type, bool is_reversed, Parameters&
     shape.location = parameters.location();
     shape.is_reversed = is_reversed;
     shape.is_quadric = true;
-    DoubleTransform from_mesh = make_scale({radius, radius, radius});
+    DoubleTransform from_mesh = scale_by({radius, radius, radius});
     float first = 0, second = 0;
     if (type == "disk") {
         first = static_cast<float>(std::clamp(parameters.number("innerradius", 0, sink) / radius, 0.0, 0.999999));
@@ -255,34 +216,16 @@ std::optional<ReadShape> Shapes::read(const std::string& type, bool is_reversed,
 void Shapes::read_ply_file(ShapeMesh& to, Sink& sink) const {
     ReadOptions options = context_.options;
     options.geometry_only = true; // pbrt takes neither colours nor textures from it
-    const std::filesystem::path path = to.ply;
+    const std::filesystem::path path = to.file;
     Scene scene = read_ply(path, context_.access, options, sink);
-    if (scene.meshes.size() != 1) throw Error(ErrorCode::BadInput, FileLocation{to.ply}, "the file has no mesh");
+    if (scene.meshes.size() != 1) throw Error(ErrorCode::BadInput, FileLocation{to.file}, "the file has no mesh");
     to.mesh = std::move(scene.meshes.front());
-    to.shape_from_mesh = make_translation(scene.origin_in_file);
+    to.shape_from_mesh = translation_by(scene.origin_in_file);
 }
 
 void Shapes::finish() {
-    std::vector<Messages> said(meshes_.size());
-    parallel_for(meshes_.size(), 1, [&](uint64_t i) {
-        ShapeMesh& shape = meshes_[i];
-        if (!shape.ply.empty()) {
-            PartMessages messages(context_.sink);
-            try {
-                read_ply_file(shape, messages);
-            } catch (const Error& error) {
-                if (error.code() != ErrorCode::BadInput) throw;
-                messages.leave_out(error.remark().and_then("; its shape is left out"));
-                shape.mesh = {};
-            }
-            said[i] = std::move(static_cast<Messages&>(messages));
-        }
-        shape.mesh.origin = fmt::format("{}:{}", shape.location.file, shape.location.line);
-        if (has_bad_index(shape.mesh)) shape.mesh = {};
-        subtract_middle(shape);
-        wind(shape);
-    });
-    for (const Messages& messages : said) context_.sink.add_all(messages);
+    finish_meshes(
+        meshes_, [this](ShapeMesh& shape, Sink& sink) { read_ply_file(shape, sink); }, context_.sink);
 }
 
 } // namespace pertev::pbrt

@@ -1,7 +1,7 @@
 #pragma once
 
-// Shapes of pbrt as meshes. Equal spheres, disks, cylinders and PLY files share one mesh. The front of a surface is
-// where its normals point, or where its corners run counter-clockwise; ReverseOrientation turns it round.
+// Shapes of pbrt as meshes. Equal spheres, disks, cylinders and PLY files share one mesh. ReverseOrientation
+// turns a surface round.
 
 #include <cstdint>
 #include <map>
@@ -9,35 +9,23 @@
 #include <string>
 #include <vector>
 
+#include "formats/described/parameters.h"
+#include "formats/described/parts.h"
 #include "formats/pbrt/context.h"
-#include "formats/pbrt/parameters.h"
 #include "math/double_transform.h"
-#include "scene/mesh.h"
 
 namespace pertev::pbrt {
 
-/// A mesh, and where it lies in the coordinates of its shape.
-struct ShapeMesh {
-    Mesh mesh;
-    std::vector<DoubleVec3> exact; // positions, until finish() subtracts their middle
-    DoubleTransform shape_from_mesh;
-    std::string ply; // path of the file that finish() reads
-    FileLocation location;
-    bool is_reversed = false;
-    std::vector<bool> is_turned; // whether finish() has exchanged corners 1 and 2 of a triangle
-    bool is_quadric = false;     // one surface for pbrt, not many triangles
-};
-
 /// The mesh of a Shape statement.
 struct ReadShape {
-    uint32_t mesh;             // index into Shapes::meshes()
+    uint32_t mesh;             // index into the meshes
     DoubleTransform from_mesh; // this shape's own, before ShapeMesh::shape_from_mesh
 };
 
 class Shapes {
 public:
-    /// `context` outlives it.
-    explicit Shapes(const Context& context) : context_(context) {}
+    /// Both outlive it; meshes are added to `meshes`.
+    Shapes(const Context& context, std::vector<ShapeMesh>& meshes) : context_(context), meshes_(meshes) {}
 
     /// Reads a shape except its alpha. Returns nothing, with a warning, for a type that is left out. Throws
     /// Error(BadInput) if it is unreadable.
@@ -46,7 +34,6 @@ public:
     /// Reads the PLY files in parallel, and completes all meshes. An unreadable file leaves an empty mesh, with a
     /// warning.
     void finish();
-    std::vector<ShapeMesh>& meshes() { return meshes_; }
 
 private:
     ReadShape add_mesh(ShapeMesh mesh, bool is_tessellated);
@@ -58,7 +45,7 @@ private:
     void read_ply_file(ShapeMesh& to, Sink& sink) const;
 
     const Context& context_;
-    std::vector<ShapeMesh> meshes_;
+    std::vector<ShapeMesh>& meshes_;
     std::map<std::string, uint32_t, std::less<>> shared_; // by what makes them
     uint64_t tessellated_ = 0;                            // triangles
 };

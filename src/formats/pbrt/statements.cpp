@@ -6,10 +6,11 @@
 
 #include "base/limits.h"
 #include "base/message_text.h"
+#include "formats/described/transforms.h"
 #include "formats/files/closest_name.h"
 #include "formats/files/gunzip.h"
 #include "formats/files/parse_number.h"
-#include "formats/pbrt/transforms.h"
+#include "formats/pbrt/read_parameters.h"
 
 namespace pertev::pbrt {
 namespace {
@@ -163,7 +164,7 @@ Parameters Statements::take_parameters(Tokens& tokens, const FileLocation& place
                                        const char* attribute) {
     Parameters parameters(place, std::move(what));
     parameters.set_color_space(world_.state.color_space);
-    parameters.read(tokens, context_.sink);
+    read_parameters(tokens, parameters, context_.sink);
     const auto& defaults = world_.state.attributes;
     if (*attribute == '\0' || !defaults) return parameters;
     if (const auto found = defaults->find(attribute); found != defaults->end()) parameters.add_missing(found->second);
@@ -254,12 +255,12 @@ void Statements::identity(Tokens&, const FileLocation& place) { apply({}, true, 
 
 void Statements::translate(Tokens& tokens, const FileLocation& place) {
     const std::vector<double> t = take_numbers(tokens, 3, place);
-    apply(make_translation({t[0], t[1], t[2]}), false, place);
+    apply(translation_by({t[0], t[1], t[2]}), false, place);
 }
 
 void Statements::scale(Tokens& tokens, const FileLocation& place) {
     const std::vector<double> s = take_numbers(tokens, 3, place);
-    apply(make_scale({s[0], s[1], s[2]}), false, place);
+    apply(scale_by({s[0], s[1], s[2]}), false, place);
 }
 
 void Statements::rotate(Tokens& tokens, const FileLocation& place) {

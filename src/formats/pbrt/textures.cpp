@@ -5,33 +5,13 @@
 #include <fmt/format.h>
 
 #include "base/message_text.h"
+#include "formats/described/make_texture.h"
 #include "formats/files/closest_name.h"
 #include "formats/files/parse_number.h"
 #include "formats/pbrt/colors.h"
 #include "math/scalar.h"
 
 namespace pertev::pbrt {
-namespace {
-
-/// Returns a * b. If both have images, only that of `a` counts.
-TextureValue product(const TextureValue& a, const TextureValue& b) {
-    if (!a.has_image()) return b.scaled(a.factor);
-    return a.scaled(b.has_image() ? b.factor + b.offset : b.factor);
-}
-
-/// Returns an image of 2 x 2 pixels, in 8 bits if they hold the colours.
-TextureImage checks_of(Rgb even, Rgb odd) {
-    TextureImage image;
-    image.name = "checkerboard";
-    image.rgba_float = {.width = 2, .height = 2, .channels = 4, .pixels = {}};
-    for (const Rgb color : {odd, even, even, odd}) {
-        for (const float channel : {color.r, color.g, color.b, 1.0f}) image.rgba_float.pixels.push_back(channel);
-    }
-    return image;
-}
-
-} // namespace
-
 void Textures::define(const std::string& name, const std::string& kind, const std::string& type,
                       Parameters& parameters) {
     const bool is_color = kind == "spectrum" || kind == "color";

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include "base/message_text.h"
+#include "formats/described/transforms.h"
 #include "formats/files/closest_name.h"
 #include "formats/pbrt/statements.h"
-#include "formats/pbrt/transforms.h"
 
 namespace pertev::pbrt {
 namespace {

@@ -6,15 +6,18 @@
 
 #include "base/limits.h"
 #include "base/message_text.h"
+#include "formats/described/assemble.h"
+#include "formats/described/transforms.h"
 #include "formats/files/closest_name.h"
-#include "formats/pbrt/transforms.h"
 
 namespace pertev::pbrt {
 
-World::World(const Context& context) : context_(context), textures_(context), shapes_(context) {
+World::World(const Context& context)
+    : context_(context), textures_(context, parts_.made), shapes_(context, parts_.meshes) {
+    parts_.missing_coordinates = {Vec2{0, 1}, Vec2{1, 1}, Vec2{1, 0}}; // (0, 0), (1, 0) and (1, 1) with v upwards
     Surface grey_surface = make_surface(MaterialKind::Diffuse);
     grey_surface.material.name = "default";
-    surfaces_.push_back(std::move(grey_surface));
+    parts_.surfaces.push_back(std::move(grey_surface));
 }
 
 /// Returns the present transform; that at the end of the shutter's time is left out.
@@ -32,7 +35,8 @@ void World::add_texture(const std::string& name, const std::string& kind, const 
 }
 
 const Surface* World::find_surface(const std::string& name, const FileLocation& from) {
-    if (const auto found = named_surfaces_.find(name); found != named_surfaces_.end()) return &surfaces_[found->second];
+    if (const auto found = named_surfaces_.find(name); found != named_surfaces_.end())
+        return &parts_.surfaces[found->second];
     if (name == "interface" || name.empty()) {
         static const Surface nothing{.material = {}, .is_nothing = true, .images = {}, .heights = {}};
         return &nothing;
@@ -50,8 +54,8 @@ uint32_t World::add_surface(const std::string& type, const std::string& name, Pa
     Surface surface = read_material({type, parameters, textures_, context_, find});
     surface.material.name = name;
     surface.material.origin = fmt::format("{}:{}", parameters.location().file, parameters.location().line);
-    surfaces_.push_back(std::move(surface));
-    return static_cast<uint32_t>(surfaces_.size() - 1);
+    parts_.surfaces.push_back(std::move(surface));
+    return static_cast<uint32_t>(parts_.surfaces.size() - 1);
 }
 
 void World::set_material(const std::string& type, Parameters& parameters) {
@@ -72,8 +76,8 @@ void World::set_named_material(const std::string& name, const FileLocation& from
         if (number != named_surfaces_.end()) {
             state.surface = number->second;
         } else {
-            surfaces_.push_back(*found);
-            state.surface = static_cast<uint32_t>(surfaces_.size() - 1);
+            parts_.surfaces.push_back(*found);
+            state.surface = static_cast<uint32_t>(parts_.surfaces.size() - 1);
         }
     }
 }
@@ -82,8 +86,8 @@ void World::set_area_light(const std::string& type, Parameters& parameters) {
     state.area_light.reset();
     if (context_.options.geometry_only) return;
     if (auto light = read_area_light(type, parameters, textures_, context_)) {
-        state.area_light = static_cast<uint32_t>(area_lights_.size());
-        area_lights_.push_back(*std::move(light));
+        state.area_light = static_cast<uint32_t>(parts_.area_lights.size());
+        parts_.area_lights.push_back(*std::move(light));
     }
 }
 
@@ -91,12 +95,12 @@ void World::add_light(const std::string& type, Parameters& parameters) {
     const DoubleTransform world_from_light = place(parameters.location());
     if (type == "infinite") {
         if (auto light = read_infinite_light(parameters, world_from_light, context_))
-            infinite_lights_.push_back(*std::move(light));
+            parts_.infinite_lights.push_back(*std::move(light));
         return;
     }
     const DoubleVec3 from = parameters.vector("from", context_.sink).value_or(DoubleVec3{0, 0, 0});
     if (auto light = read_light(type, parameters, world_from_light, context_))
-        lights_.push_back({*std::move(light), transform_point(world_from_light, from)});
+        parts_.lights.push_back({*std::move(light), transform_point(world_from_light, from)});
 }
 
 std::optional<uint32_t> World::alpha_of(Parameters& parameters) {
@@ -107,13 +111,13 @@ std::optional<uint32_t> World::alpha_of(Parameters& parameters) {
         found->texts.empty() ? fmt::format("{}", found->numbers.front()) : "texture " + found->texts.front();
     const TextureValue value = textures_.number(parameters, "alpha", 1);
     if (!value.has_image() && value.factor.r >= 1) return std::nullopt;
-    const auto [number, is_new] = alpha_numbers_.try_emplace(key, static_cast<uint32_t>(alphas_.size()));
-    if (is_new) alphas_.push_back(value);
+    const auto [number, is_new] = alpha_numbers_.try_emplace(key, static_cast<uint32_t>(parts_.alphas.size()));
+    if (is_new) parts_.alphas.push_back(value);
     return number->second;
 }
 
 void World::add_shape(const std::string& type, Parameters& parameters) {
-    if (surfaces_[state.surface].is_nothing) return;
+    if (parts_.surfaces[state.surface].is_nothing) return;
     const auto read = shapes_.read(type, state.is_reversed, parameters);
     if (!read) return;
     Placed placed;
@@ -122,7 +126,7 @@ void World::add_shape(const std::string& type, Parameters& parameters) {
     placed.alpha = alpha_of(parameters);
     placed.area_light = state.area_light;
     parameters.leave_out_unknown(context_.sink);
-    const std::string& file = shapes_.meshes()[read->mesh].ply;
+    const std::string& file = parts_.meshes[read->mesh].file;
     placed.name = file.empty() ? type : std::filesystem::path(file).stem().string();
     if (placed.name.ends_with(".ply")) placed.name.resize(placed.name.size() - 4);
     placed.world_from_mesh = compose(place(parameters.location()), read->from_mesh);
@@ -130,7 +134,7 @@ void World::add_shape(const std::string& type, Parameters& parameters) {
         context_.sink.leave_out({parameters.location(), "the light of a shape in an object is left out, as pbrt does"});
         placed.area_light.reset();
     }
-    (open_object_ ? objects_[*open_object_] : placed_).push_back(std::move(placed));
+    (open_object_ ? objects_[*open_object_] : parts_.placed).push_back(std::move(placed));
 }
 
 void World::begin_object(const std::string& name, const FileLocation& from) {
@@ -155,15 +159,23 @@ void World::add_instance(const std::string& name, const FileLocation& from, uint
     }
     const uint64_t most = std::min<uint64_t>(kMaxInstances, justified_bytes(kFreeMeshBytes, file_bytes) /
                                                                 (sizeof(Instance) + sizeof(Placed)));
-    if (placed_.size() + object->second.size() > most) {
+    if (parts_.placed.size() + object->second.size() > most) {
         throw Error(ErrorCode::OverLimit, from,
                     fmt::format("more than {} instances, the limit for files of this size", most));
     }
     const DoubleTransform world_from_object = place(from);
     for (const Placed& shape : object->second) {
-        placed_.push_back(shape);
-        placed_.back().world_from_mesh = compose(world_from_object, shape.world_from_mesh);
+        parts_.placed.push_back(shape);
+        parts_.placed.back().world_from_mesh = compose(world_from_object, shape.world_from_mesh);
     }
+}
+
+Scene World::finish(uint64_t file_bytes) {
+    shapes_.finish();
+    Scene scene = assemble(std::move(parts_), scene_from_world(view), file_bytes,
+                           "a statement such as Shape \"sphere\"", context_.loader, context_.sink);
+    add_view(view, context_, scene);
+    return scene;
 }
 
 } // namespace pertev::pbrt

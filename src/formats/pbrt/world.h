@@ -11,12 +11,12 @@
 #include <utility>
 #include <vector>
 
+#include "formats/described/parts.h"
 #include "formats/pbrt/camera.h"
 #include "formats/pbrt/context.h"
 #include "formats/pbrt/lights.h"
 #include "formats/pbrt/materials.h"
 #include "formats/pbrt/shapes.h"
-#include "formats/pbrt/surface.h"
 #include "formats/pbrt/textures.h"
 
 namespace pertev::pbrt {
@@ -26,25 +26,11 @@ struct GraphicsState {
     std::array<DoubleTransform, 2> transforms; // at the start and the end of the shutter's time
     std::array<bool, 2> is_active = {true, true};
     bool is_reversed = false;
-    uint32_t surface = 0; // index into World::surfaces
+    uint32_t surface = 0; // index into the surfaces
     std::optional<uint32_t> area_light;
     std::optional<ColorMatrix> color_space;
     // pbrt-v4's defaults of parameters, by what they are for; shared, because most states have none.
     std::shared_ptr<const std::map<std::string, Parameters>> attributes;
-};
-
-/// A shape, placed once.
-struct Placed {
-    std::string name;
-    uint32_t mesh = 0, surface = 0;
-    std::optional<uint32_t> area_light, alpha; // indices into World's lists
-    DoubleTransform world_from_mesh;           // before ShapeMesh::shape_from_mesh
-};
-
-/// A light with its position before it is rounded.
-struct PlacedLight {
-    Light light;
-    DoubleVec3 position;
 };
 
 class World {
@@ -72,28 +58,17 @@ public:
     Scene finish(uint64_t file_bytes);
 
 private:
-    /// A material of the scene and what it is made of.
-    using MaterialKey = std::array<uint32_t, 4>;
-    struct Assembly;
-
     uint32_t add_surface(const std::string& type, const std::string& name, Parameters& parameters);
     const Surface* find_surface(const std::string& name, const FileLocation& from);
     DoubleTransform place(const FileLocation& from);
     std::optional<uint32_t> alpha_of(Parameters& parameters);
-    void set_environment(const DoubleTransform& scene_from_file, Scene& scene);
-    void set_lights(const DoubleTransform& scene_from_file, Scene& scene);
 
     const Context& context_;
+    Parts parts_; // the first surface is the default
     Textures textures_;
     Shapes shapes_;
-    std::vector<Surface> surfaces_; // the first is the default
     std::map<std::string, uint32_t, std::less<>> named_surfaces_;
-    std::vector<AreaLight> area_lights_;
-    std::vector<TextureValue> alphas_;
     std::map<std::string, uint32_t, std::less<>> alpha_numbers_;
-    std::vector<InfiniteLight> infinite_lights_;
-    std::vector<PlacedLight> lights_;
-    std::vector<Placed> placed_;
     std::map<std::string, std::vector<Placed>, std::less<>> objects_;
     std::optional<std::string> open_object_;
 };

@@ -4,7 +4,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "math/portable_math.h"
+#include "formats/mesh/smooth_normals.h"
 
 namespace pertev {
 namespace {
@@ -104,25 +104,6 @@ private:
     std::vector<Edge> edges_;
     std::vector<uint32_t> edges_of_corners_; // the edge that begins at each corner
 };
-
-/// Returns the normals of the vertices: those of the triangles around them by the angles there.
-std::vector<Vec3> angle_weighted_normals(const Mesh& mesh) {
-    std::vector<Vec3> normals(mesh.positions.size());
-    for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
-        const std::size_t first = i - i % 3;
-        const Vec3 p = mesh.positions[mesh.indices[i]];
-        const Vec3 to_next = normalize(mesh.positions[mesh.indices[first + (i + 1) % 3]] - p);
-        const Vec3 to_last = normalize(mesh.positions[mesh.indices[first + (i + 2) % 3]] - p);
-        const Vec3 normal = normalize(cross(to_next, to_last));
-        if (!is_finite(normal)) continue;
-        normals[mesh.indices[i]] += acos(clamp(dot(to_next, to_last), -1.0f, 1.0f)) * normal;
-    }
-    for (Vec3& normal : normals) {
-        const float size = length(normal);
-        normal = size > 0 ? normal / size : Vec3{};
-    }
-    return normals;
-}
 
 } // namespace
 

@@ -81,12 +81,16 @@ Rgb color_of_unit_light(const Spectrum& spectrum) {
     return xyz[1] > 0 ? not_negative(rgb_from_xyz(xyz), 1 / xyz[1]) : Rgb{};
 }
 
-Rgb color_of_reflectance(const Spectrum& reflectance) {
+Rgb color_under_d65(const Spectrum& spectrum) {
     const Triple white = rgb_from_xyz(sum_observed(d65_at));
     const Triple seen =
-        rgb_from_xyz(sum_observed([&](std::size_t i) { return d65_at(i) * reflectance.at(wavelength(i)); }));
-    const auto channel = [&](std::size_t c) { return static_cast<float>(std::clamp(seen[c] / white[c], 0.0, 1.0)); };
-    return {channel(0), channel(1), channel(2)};
+        rgb_from_xyz(sum_observed([&](std::size_t i) { return d65_at(i) * spectrum.at(wavelength(i)); }));
+    return not_negative({seen[0] / white[0], seen[1] / white[1], seen[2] / white[2]}, 1);
+}
+
+Rgb color_of_reflectance(const Spectrum& reflectance) {
+    const Rgb color = color_under_d65(reflectance);
+    return {min(color.r, 1.0f), min(color.g, 1.0f), min(color.b, 1.0f)};
 }
 
 Rgb means_of_channels(const Spectrum& spectrum) {

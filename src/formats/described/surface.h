@@ -1,18 +1,18 @@
 #pragma once
 
-// A material of pbrt as one of Pertev, with what its textures still need once their images are decoded.
+// A material of pbrt or Mitsuba as one of Pertev, with what its textures still need once their images are decoded.
 
 #include <array>
 #include <compare>
 #include <optional>
 #include <vector>
 
-#include "formats/pbrt/image_budget.h"
-#include "formats/pbrt/textures.h"
+#include "formats/described/image_budget.h"
+#include "formats/described/texture_value.h"
 #include "scene/material.h"
 #include "scene/scene.h"
 
-namespace pertev::pbrt {
+namespace pertev::described {
 
 /// The conversion of a value after factor and offset.
 enum class Curve {
@@ -33,6 +33,7 @@ struct ImageChange {
     Curve curve = Curve::None;
     float amount = 0;
     bool is_alpha = false; // the alpha channel counts if it varies, else the first
+    bool decodes = false;  // numbers are sRGB-encoded; slots decode only colours
     auto operator<=>(const ImageChange&) const = default;
     bool is_identity() const { return *this == ImageChange(); }
 };
@@ -41,7 +42,7 @@ using TextureSlot = TextureRef MaterialParameters::*;
 
 struct SlotImage {
     TextureSlot slot = nullptr;
-    int32_t made = -1; // index into Textures::made(); else the slot has an image of the loader
+    int32_t made = -1; // index into Parts::made; else the slot has an image of the loader
     ImageChange change;
 };
 
@@ -67,4 +68,4 @@ void set_alpha(Surface& surface, const TextureValue& value);
 void finish_images(const std::vector<const Surface*>& surfaces, std::vector<TextureImage>& made, ImageBudget& budget,
                    Scene& scene);
 
-} // namespace pertev::pbrt
+} // namespace pertev::described

@@ -1,18 +1,18 @@
 #pragma once
 
-// Heights of pbrt as normal maps. pbrt's heights are metres, and its texture coordinates follow the mesh; a normal map
-// here has one strength, that of the mesh's mean size of the texture.
+// Heights of pbrt and Mitsuba as normal maps. Their heights are metres, and their texture coordinates follow the mesh;
+// a normal map here has one strength, that of the mesh's mean size of the texture.
 
 #include <cstdint>
 #include <map>
 #include <tuple>
 
-#include "formats/pbrt/image_budget.h"
-#include "formats/pbrt/textures.h"
+#include "formats/described/image_budget.h"
+#include "formats/described/texture_value.h"
 #include "math/double_transform.h"
 #include "scene/scene.h"
 
-namespace pertev::pbrt {
+namespace pertev::described {
 
 /// Returns the area of a mesh after a transform.
 double world_area(const Mesh& mesh, const DoubleTransform& world_from_mesh);
@@ -35,4 +35,4 @@ private:
     std::map<std::tuple<int32_t, bool, float, Wrap>, int32_t> numbers_; // by image, encoding and wrap
 };
 
-} // namespace pertev::pbrt
+} // namespace pertev::described

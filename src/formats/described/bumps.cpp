@@ -1,4 +1,4 @@
-#include "formats/pbrt/bumps.h"
+#include "formats/described/bumps.h"
 
 #include <cmath>
 
@@ -7,7 +7,7 @@
 #include "image/srgb.h"
 #include "math/portable_math.h"
 
-namespace pertev::pbrt {
+namespace pertev::described {
 namespace {
 
 /// Returns the picture with linear values.
@@ -86,4 +86,4 @@ void Bumps::set(const TextureValue& heights, const Mesh& mesh, const DoubleTrans
     material.normal_scale = clamp(static_cast<float>(slope / usual), -0x1p10f, 0x1p10f);
 }
 
-} // namespace pertev::pbrt
+} // namespace pertev::described

@@ -1,4 +1,4 @@
-#include "formats/pbrt/environment.h"
+#include "formats/described/environment.h"
 
 #include <algorithm>
 #include <utility>
@@ -9,13 +9,15 @@
 #include "image/read_image.h"
 #include "math/portable_math.h"
 
-namespace pertev::pbrt {
+namespace pertev::described {
 namespace {
 
-/// Returns where a panorama around +z has the unit direction d.
-Vec2 latlong_place(Vec3 d) {
-    const float angle = atan2(d.y, d.x), turn = angle / (2 * kPi);
-    return {turn < 0 ? turn + 1 : turn, acos(clamp(d.z, -1.0f, 1.0f)) / kPi};
+/// Returns where a panorama has the unit direction d.
+Vec2 place_of(PanoramaLayout layout, Vec3 d) {
+    if (layout == PanoramaLayout::Octahedron) return octahedral_place(d);
+    const bool is_around_y = layout == PanoramaLayout::AroundY;
+    const float turn = (is_around_y ? atan2(d.x, -d.z) : atan2(d.y, d.x)) / (2 * kPi);
+    return {turn < 0 ? turn + 1 : turn, acos(clamp(is_around_y ? d.y : d.z, -1.0f, 1.0f)) / kPi};
 }
 
 Rgb pixel(const Image& image, uint32_t x, uint32_t y) {
@@ -77,8 +79,8 @@ Vec2 octahedral_place(Vec3 d) {
     return {0.5f + (d.x < 0 ? -0.5f : 0.5f) * u, 0.5f + (d.y < 0 ? -0.5f : 0.5f) * v};
 }
 
-std::optional<Environment> make_environment(const InfiniteLight& light, const std::filesystem::path& picture,
-                                            const DoubleTransform& local_from_scene, Sink& sink) {
+std::optional<Environment> make_environment(const InfiniteLight& light, const DoubleTransform& local_from_scene,
+                                            Sink& sink) {
     Environment environment;
     environment.scale = light.scale;
     if (light.picture.empty()) {
@@ -86,15 +88,16 @@ std::optional<Environment> make_environment(const InfiniteLight& light, const st
             environment.scale = static_cast<float>(light.illuminance / 3.14159265358979323846) * light.scale;
         return environment;
     }
+    const bool is_octahedron = light.layout == PanoramaLayout::Octahedron;
     Image from;
     try {
-        from = read_image(picture, sink);
+        from = read_image(light.picture, sink);
     } catch (const Error& error) {
         if (error.code() != ErrorCode::BadInput) throw;
         sink.leave_out(error.remark().and_then("; the infinite light is left out"));
         return std::nullopt;
     }
-    if (!light.is_latlong && from.width != from.height) {
+    if (is_octahedron && from.width != from.height) {
         sink.leave_out(
             {light.location,
              "the picture of an infinite light is not square, as the equal-area octahedron is; the light is left out"});
@@ -102,7 +105,7 @@ std::optional<Environment> make_environment(const InfiniteLight& light, const st
     }
     Image& to = environment.image;
     to.height = from.height;
-    to.width = std::max(light.is_latlong ? from.width : 2 * from.width, 1u);
+    to.width = std::max(is_octahedron ? 2 * from.width : from.width, 1u);
     to.channels = 3;
     to.pixels.resize(std::size_t(3) * to.width * to.height);
     parallel_for(to.height, 4, [&](uint64_t y) {
@@ -110,8 +113,8 @@ std::optional<Environment> make_environment(const InfiniteLight& light, const st
             const DoubleVec3 d = to_double(direction_at(x, static_cast<uint32_t>(y), to.width, to.height));
             const Vec3 local = normalize(to_float(DoubleVec3{
                 dot(local_from_scene.row0, d), dot(local_from_scene.row1, d), dot(local_from_scene.row2, d)}));
-            const Vec2 place = light.is_latlong ? latlong_place(local) : octahedral_place(local);
-            const Rgb color = look_up(from, place, light.is_latlong);
+            const Vec2 place = place_of(light.layout, local);
+            const Rgb color = look_up(from, place, !is_octahedron);
             float* const pixel = to.pixels.data() + 3 * (static_cast<std::size_t>(y) * to.width + x);
             pixel[0] = color.r, pixel[1] = color.g, pixel[2] = color.b;
         }
@@ -123,4 +126,4 @@ std::optional<Environment> make_environment(const InfiniteLight& light, const st
     return environment;
 }
 
-} // namespace pertev::pbrt
+} // namespace pertev::described

@@ -1,17 +1,18 @@
+#include "formats/described/assemble.h"
+
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "base/limits.h"
-#include "base/message_text.h"
-#include "formats/obj/bump_normals.h"
-#include "formats/pbrt/bumps.h"
-#include "formats/pbrt/environment.h"
-#include "formats/pbrt/transforms.h"
-#include "formats/pbrt/world.h"
+#include "formats/described/bumps.h"
+#include "formats/described/environment.h"
+#include "formats/described/image_budget.h"
+#include "formats/described/transforms.h"
 #include "scene/scene_origin.h"
 
-namespace pertev::pbrt {
+namespace pertev::described {
 namespace {
 
 DoubleTransform without_translation(DoubleTransform m) {
@@ -32,10 +33,9 @@ DoubleBounds3 box_of(const Mesh& mesh, const DoubleTransform& transform) {
     return box;
 }
 
-/// Gives a mesh without texture coordinates those of pbrt: each triangle has (0, 0), (1, 0) and (1, 1), v upwards.
-void give_coordinates(ShapeMesh& shape) {
+/// Gives each triangle of a mesh the coordinates `corners`.
+void give_coordinates(const std::array<Vec2, 3>& corners, ShapeMesh& shape) {
     Mesh& mesh = shape.mesh;
-    constexpr Vec2 kCorners[3] = {{0, 1}, {1, 1}, {1, 0}};
     Mesh split;
     split.name = std::move(mesh.name);
     split.origin = std::move(mesh.origin);
@@ -43,25 +43,24 @@ void give_coordinates(ShapeMesh& shape) {
         split.positions.push_back(mesh.positions[mesh.indices[i]]);
         if (!mesh.normals.empty()) split.normals.push_back(mesh.normals[mesh.indices[i]]);
         const std::size_t corner = i % 3;
-        split.uv[0].push_back(kCorners[corner > 0 && shape.is_turned[i / 3] ? 3 - corner : corner]);
+        split.uv[0].push_back(corners[corner > 0 && shape.is_turned[i / 3] ? 3 - corner : corner]);
         split.indices.push_back(static_cast<uint32_t>(i));
     }
     mesh = std::move(split);
 }
 
-} // namespace
-
 /// The materials of the scene, each made once.
-struct World::Assembly {
-    World& world;
+struct Assembly {
+    using MaterialKey = std::array<uint32_t, 4>;
+    const Parts& parts;
     Scene& scene;
     std::map<MaterialKey, uint32_t> numbers;
     std::vector<Surface> surfaces; // one to one with the materials
 
     /// Returns the material of a shape with this mesh.
     uint32_t material_of(const Placed& shape, std::size_t number, const ShapeMesh& of, const Mesh& mesh) {
-        const Surface& from = world.surfaces_[shape.surface];
-        const bool has_power = shape.area_light && world.area_lights_[*shape.area_light].power > 0;
+        const Surface& from = parts.surfaces[shape.surface];
+        const bool has_power = shape.area_light && parts.area_lights[*shape.area_light].power > 0;
         // Bumps and powers depend on the shape's size.
         const auto own = from.has_heights || has_power ? static_cast<uint32_t>(number + 1) : 0u;
         const auto one_more = [](std::optional<uint32_t> i) { return i ? *i + 1 : 0u; };
@@ -69,8 +68,8 @@ struct World::Assembly {
         const auto [known, is_new] = numbers.try_emplace(key, static_cast<uint32_t>(surfaces.size()));
         if (!is_new) return known->second;
         Surface surface = from;
-        if (shape.area_light) add_emission(world.area_lights_[*shape.area_light], shape, of, mesh, surface);
-        if (shape.alpha) set_alpha(surface, world.alphas_[*shape.alpha]);
+        if (shape.area_light) add_emission(parts.area_lights[*shape.area_light], shape, of, mesh, surface);
+        if (shape.alpha) set_alpha(surface, parts.alphas[*shape.alpha]);
         if (surface.has_heights) surface.material.normal_texture = surface.heights.ref;
         scene.materials.push_back(surface.material);
         surfaces.push_back(std::move(surface));
@@ -95,40 +94,23 @@ struct World::Assembly {
     }
 };
 
-void World::set_lights(const DoubleTransform& scene_from_file, Scene& scene) {
+void set_lights(const Parts& parts, const DoubleTransform& scene_from_file, Scene& scene) {
     const Transform turned = to_float(without_translation(scene_from_file));
-    for (PlacedLight& placed : lights_) {
-        Light light = std::move(placed.light);
+    for (const PlacedLight& placed : parts.lights) {
+        Light light = placed.light;
         light.position = to_float(transform_point(scene_from_file, placed.position));
         light.direction = transform_vector(turned, light.direction);
         scene.lights.push_back(std::move(light));
     }
 }
 
-void World::set_environment(const DoubleTransform& scene_from_file, Scene& scene) {
-    Sink& sink = context_.sink;
-    for (const InfiniteLight& light : infinite_lights_) {
+void set_environment(const Parts& parts, const DoubleTransform& scene_from_file, Sink& sink, Scene& scene) {
+    for (const InfiniteLight& light : parts.infinite_lights) {
         const bool has_pictures =
             !light.picture.empty() || (scene.environment && !scene.environment->image.pixels.empty());
         if (scene.environment && has_pictures) {
             sink.leave_out({light.location, "a second infinite light is left out, because one of them has a picture"});
             continue;
-        }
-        std::filesystem::path picture;
-        if (!light.picture.empty()) {
-            std::optional<std::filesystem::path> found;
-            try {
-                found = context_.access.find(base_of(context_, light.location, light.picture), light.picture, sink);
-                if (!found)
-                    sink.leave_out(
-                        {light.location, fmt::format("there is no picture {}; the infinite light is left out",
-                                                     shortened(light.picture))});
-            } catch (const Error& error) {
-                if (error.code() != ErrorCode::BadInput) throw;
-                sink.leave_out(error.remark().and_then("; the infinite light is left out"));
-            }
-            if (!found) continue;
-            picture = *found;
         }
         const DoubleTransform local_from_scene =
             inverse(without_translation(compose(scene_from_file, light.world_from_light)));
@@ -136,7 +118,7 @@ void World::set_environment(const DoubleTransform& scene_from_file, Scene& scene
             sink.leave_out({light.location, "an infinite light is left out, because its transform has no inverse"});
             continue;
         }
-        auto made = make_environment(light, picture, local_from_scene, sink);
+        auto made = make_environment(light, local_from_scene, sink);
         if (!made) continue;
         if (!scene.environment) {
             scene.environment = *std::move(made);
@@ -144,54 +126,55 @@ void World::set_environment(const DoubleTransform& scene_from_file, Scene& scene
             scene.environment->scale += made->scale;
         }
     }
-    // A file of pbrt states all its light. Black is a light from outside too, so that none is made up.
+    // Such a file states all its light. Black is a light from outside too, so that none is made up.
     if (!scene.environment) scene.environment = Environment{.image = {}, .scale = {0, 0, 0}};
 }
 
-Scene World::finish(uint64_t file_bytes) {
+} // namespace
+
+Scene assemble(Parts parts, const DoubleTransform& scene_from_world, uint64_t file_bytes, std::string_view expected,
+               TextureLoader& loader, Sink& sink) {
     Scene scene;
-    shapes_.finish();
-    const DoubleTransform scene_from_world = pbrt::scene_from_world(view);
     DoubleBounds3 box;
     std::vector<DoubleTransform> transforms;
-    for (const Placed& shape : placed_) {
-        const ShapeMesh& mesh = shapes_.meshes()[shape.mesh];
+    for (const Placed& shape : parts.placed) {
+        const ShapeMesh& mesh = parts.meshes[shape.mesh];
         transforms.push_back(compose(scene_from_world, compose(shape.world_from_mesh, mesh.shape_from_mesh)));
         if (is_finite(transforms.back())) box.extend(box_of(mesh.mesh, transforms.back()));
     }
     set_origin(box, scene);
     const DoubleTransform scene_from_file =
-        compose(make_translation(DoubleVec3{0, 0, 0} - scene.origin_in_file), scene_from_world);
+        compose(translation_by(DoubleVec3{0, 0, 0} - scene.origin_in_file), scene_from_world);
 
-    std::vector<bool> has_textures(shapes_.meshes().size());
-    for (const Placed& shape : placed_) {
-        const Surface& surface = surfaces_[shape.surface];
+    std::vector<bool> has_textures(parts.meshes.size());
+    for (const Placed& shape : parts.placed) {
+        const Surface& surface = parts.surfaces[shape.surface];
         if (!surface.images.empty() || surface.has_heights || surface.material.normal_texture.has_image() ||
-            (shape.alpha && alphas_[*shape.alpha].has_image()) ||
-            (shape.area_light && area_lights_[*shape.area_light].image.has_image()))
+            (shape.alpha && parts.alphas[*shape.alpha].has_image()) ||
+            (shape.area_light && parts.area_lights[*shape.area_light].image.has_image()))
             has_textures[shape.mesh] = true;
     }
     for (std::size_t i = 0; i < has_textures.size(); ++i) {
-        ShapeMesh& shape = shapes_.meshes()[i];
-        if (has_textures[i] && shape.mesh.uv[0].empty()) give_coordinates(shape);
+        ShapeMesh& shape = parts.meshes[i];
+        if (has_textures[i] && shape.mesh.uv[0].empty()) give_coordinates(parts.missing_coordinates, shape);
     }
 
-    Assembly assembly{.world = *this, .scene = scene, .numbers = {}, .surfaces = {}};
-    std::vector<std::optional<uint32_t>> numbers(shapes_.meshes().size()); // meshes in the scene
-    std::vector<std::size_t> bumpy;                                        // the first shape of each material
-    for (std::size_t i = 0; i < placed_.size(); ++i) {
-        const Placed& shape = placed_[i];
-        ShapeMesh& mesh = shapes_.meshes()[shape.mesh];
+    Assembly assembly{.parts = parts, .scene = scene, .numbers = {}, .surfaces = {}};
+    std::vector<std::optional<uint32_t>> numbers(parts.meshes.size()); // meshes in the scene
+    std::vector<std::size_t> bumpy;                                    // the first shape of each material
+    for (std::size_t i = 0; i < parts.placed.size(); ++i) {
+        const Placed& shape = parts.placed[i];
+        ShapeMesh& mesh = parts.meshes[shape.mesh];
         if (mesh.mesh.indices.empty() && !numbers[shape.mesh]) continue;
         DoubleTransform transform = transforms[i];
         transform.translation = transform.translation - scene.origin_in_file;
         if (!is_finite(transform)) {
-            context_.sink.leave_out({mesh.location, "a shape is left out, because its transform is not finite"});
+            sink.leave_out({mesh.location, "a shape is left out, because its transform is not finite"});
             continue;
         }
         if (!numbers[shape.mesh]) {
             numbers[shape.mesh] = static_cast<uint32_t>(scene.meshes.size());
-            if (mesh.mesh.name.empty() || mesh.ply.empty()) mesh.mesh.name = shape.name;
+            if (mesh.mesh.name.empty() || mesh.file.empty()) mesh.mesh.name = shape.name;
             scene.meshes.push_back(std::move(mesh.mesh));
         }
         const std::size_t materials = scene.materials.size();
@@ -206,27 +189,26 @@ Scene World::finish(uint64_t file_bytes) {
         scene.instances.push_back(std::move(instance));
     }
     if (scene.instances.empty()) {
-        scene.no_instances = "no shape that can be drawn; expected a statement such as Shape \"sphere\"";
-        const std::vector<std::string> left_out = context_.sink.messages().left_out();
+        scene.no_instances = fmt::format("no shape that can be drawn; expected {}", expected);
+        const std::vector<std::string> left_out = sink.messages().left_out();
         if (!left_out.empty()) scene.no_instances += fmt::format("; left out: {}", left_out.front());
     }
-    context_.loader.load_into(scene, file_bytes);
+    loader.load_into(scene, file_bytes);
     ImageBudget budget(justified_bytes(4 * kFreeImageBytes, file_bytes));
     Bumps bumps(budget, scene);
     std::vector<const Surface*> surfaces;
     for (const Surface& surface : assembly.surfaces) surfaces.push_back(&surface);
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         if (!surfaces[i]->has_heights) continue;
-        const Placed& shape = placed_[bumpy[i]];
-        const ShapeMesh& mesh = shapes_.meshes()[shape.mesh];
+        const Placed& shape = parts.placed[bumpy[i]];
+        const ShapeMesh& mesh = parts.meshes[shape.mesh];
         bumps.set(surfaces[i]->heights, scene.meshes[*numbers[shape.mesh]],
                   compose(shape.world_from_mesh, mesh.shape_from_mesh), scene.materials[i]);
     }
-    finish_images(surfaces, textures_.made(), budget, scene);
-    set_lights(scene_from_file, scene);
-    set_environment(scene_from_file, scene);
-    add_view(view, context_, scene);
+    finish_images(surfaces, parts.made, budget, scene);
+    set_lights(parts, scene_from_file, scene);
+    set_environment(parts, scene_from_file, sink, scene);
     return scene;
 }
 
-} // namespace pertev::pbrt
+} // namespace pertev::described

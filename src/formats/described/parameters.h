@@ -1,8 +1,7 @@
 #pragma once
 
-// Parameters of a statement: `"TYPE NAME" VALUE` or `"TYPE NAME" [ VALUES ]`. Readers look them up by name; what no
-// reader has looked up in the end is unknown and is left out with a warning, which suggests the closest name that one
-// has.
+// Typed parameters of an object in a scene file of pbrt or Mitsuba. Readers look them up by name; what no reader has
+// looked up in the end is unknown and is left out with a warning, which suggests the closest name that one has.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,11 +13,10 @@
 
 #include "base/error.h"
 #include "base/sink.h"
-#include "formats/pbrt/tokens.h"
 #include "image/color_primaries.h"
 #include "math/double_vec3.h"
 
-namespace pertev::pbrt {
+namespace pertev::described {
 
 enum class ParameterType {
     Integer,
@@ -34,7 +32,8 @@ enum class ParameterType {
     Xyz,
     Spectrum,
     Blackbody,
-    Texture,
+    Texture,   // the name of a texture or another object
+    Transform, // 12 numbers, row by row
 };
 
 struct Parameter {
@@ -51,8 +50,8 @@ public:
     Parameters() = default;
     Parameters(FileLocation location, std::string what) : location_(std::move(location)), what_(std::move(what)) {}
 
-    /// Reads the parameters at the front of `tokens`. An unreadable one is left out with a warning.
-    void read(Tokens& tokens, Sink& sink);
+    /// Adds one; of equal names the first counts.
+    void add(Parameter parameter) { all_.push_back(std::move(parameter)); }
     /// Adds those of `others` whose names are not there.
     void add_missing(const Parameters& others);
 
@@ -70,6 +69,9 @@ public:
     /// Returns the parameter with this name, whatever its type; null if there is none.
     const Parameter* find(std::string_view name);
     bool has(std::string_view name) { return find(name) != nullptr; }
+    /// Looks up the name of one that is there, which find() cannot, because it keeps names that outlive it.
+    void look_up(std::string_view name) { looked_up_.emplace_back(name); }
+    const std::vector<Parameter>& all() const { return all_; }
     /// Returns whether there is one, without looking it up.
     bool contains(std::string_view name) const;
     std::size_t size() const { return all_.size(); }
@@ -101,6 +103,7 @@ private:
     std::optional<ColorMatrix> to_rec709_;
     std::vector<Parameter> all_;
     std::vector<std::string_view> asked_; // literals
+    std::vector<std::string> looked_up_;  // names in the file
 };
 
-} // namespace pertev::pbrt
+} // namespace pertev::described

@@ -1,4 +1,4 @@
-#include "formats/pbrt/surface.h"
+#include "formats/described/surface.h"
 
 #include <map>
 #include <tuple>
@@ -9,7 +9,7 @@
 #include "image/srgb.h"
 #include "math/portable_math.h"
 
-namespace pertev::pbrt {
+namespace pertev::described {
 namespace {
 
 bool is_unit(Rgb c) {
@@ -119,8 +119,12 @@ void set_color(Surface& surface, Rgb MaterialParameters::*color, TextureSlot slo
 
 void set_number(Surface& surface, float MaterialParameters::*number, TextureSlot slot, const TextureValue& value,
                 Curve curve) {
-    surface.material.*number =
-        value.has_image() ? put_image(surface, slot, value, curve, 0).r : converted(curve, 0.0f, value.factor.r);
+    if (!value.has_image()) {
+        surface.material.*number = converted(curve, 0.0f, value.factor.r);
+        return;
+    }
+    surface.material.*number = put_image(surface, slot, value, curve, 0).r;
+    surface.images.back().change.decodes = value.ref.is_srgb;
 }
 
 void set_alpha(Surface& surface, const TextureValue& value) {
@@ -131,7 +135,8 @@ void set_alpha(Surface& surface, const TextureValue& value) {
         return;
     }
     material.alpha *= put_image(surface, &MaterialParameters::alpha_texture, value, Curve::None, 0).r;
-    surface.images.back().change.is_alpha = true;
+    surface.images.back().change.is_alpha = !value.ignores_alpha;
+    surface.images.back().change.decodes = value.ref.is_srgb;
     material.alpha_mode = AlphaMode::Blend;
 }
 
@@ -146,11 +151,14 @@ void finish_images(const std::vector<const Surface*>& surfaces, std::vector<Text
             if (use.made >= 0) ref.image = first_made + use.made;
             if (!ref.has_image()) continue;
             ImageChange change = use.change;
-            if (std::exchange(change.is_alpha, false) && change.is_identity() &&
-                has_alpha(scene.images[static_cast<std::size_t>(ref.image)])) {
+            if (scene.images[static_cast<std::size_t>(ref.image)].rgba8.pixels.empty()) change.decodes = false;
+            const bool may_be_alpha = std::exchange(change.is_alpha, false),
+                       decodes = std::exchange(change.decodes, false);
+            if (may_be_alpha && change.is_identity() && has_alpha(scene.images[static_cast<std::size_t>(ref.image)])) {
                 ref.channel = 3;
                 continue;
             }
+            change.decodes = decodes;
             if (change.is_identity()) continue;
             const auto [number, is_new] = numbers.try_emplace({ref.image, ref.is_srgb, change}, kNoImage);
             if (is_new) {
@@ -165,4 +173,4 @@ void finish_images(const std::vector<const Surface*>& surfaces, std::vector<Text
     remove_unused(scene);
 }
 
-} // namespace pertev::pbrt
+} // namespace pertev::described

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "scene/texture.h"
 
-namespace pertev::pbrt {
+namespace pertev::described {
 
 class ImageBudget {
 public:
@@ -32,4 +32,4 @@ private:
     uint64_t bytes_, left_;
 };
 
-} // namespace pertev::pbrt
+} // namespace pertev::described

@@ -1,10 +1,10 @@
-#include "formats/pbrt/transforms.h"
+#include "formats/described/transforms.h"
 
 #include <cmath>
 
 #include "math/portable_math.h"
 
-namespace pertev::pbrt {
+namespace pertev::described {
 namespace {
 
 DoubleVec3 scaled(double s, DoubleVec3 v) { return {s * v.x, s * v.y, s * v.z}; }
@@ -47,13 +47,13 @@ bool is_finite(const DoubleTransform& m) {
     return is_finite(m.row0) && is_finite(m.row1) && is_finite(m.row2) && is_finite(m.translation);
 }
 
-DoubleTransform make_translation(DoubleVec3 t) {
+DoubleTransform translation_by(DoubleVec3 t) {
     DoubleTransform m;
     m.translation = t;
     return m;
 }
 
-DoubleTransform make_scale(DoubleVec3 s) {
+DoubleTransform scale_by(DoubleVec3 s) {
     DoubleTransform m;
     m.row0.x = s.x, m.row1.y = s.y, m.row2.z = s.z;
     return m;
@@ -84,4 +84,4 @@ DoubleTransform transform_of(std::span<const double> numbers) {
     return {row(0), row(1), row(2), {numbers[12], numbers[13], numbers[14]}};
 }
 
-} // namespace pertev::pbrt
+} // namespace pertev::described

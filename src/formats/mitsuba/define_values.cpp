@@ -1,0 +1,64 @@
+#include "formats/mitsuba/define_values.h"
+
+#include <fmt/format.h>
+
+#include "base/message_text.h"
+#include "formats/files/closest_name.h"
+
+namespace pertev::mitsuba {
+namespace {
+
+constexpr std::size_t kMostText = 1 << 16; // bytes of a text with values in it; names in values multiply
+
+} // namespace
+
+DefineValues::DefineValues(const std::vector<std::string>& defines, Sink& sink) : sink_(sink) {
+    for (const std::string& define : defines) {
+        const std::size_t equal = define.find('=');
+        if (equal == 0 || equal == std::string::npos)
+            throw Error(ErrorCode::BadInput, "define", define, "no NAME=VALUE");
+        values_.insert_or_assign(define.substr(0, equal), define.substr(equal + 1));
+        defined_.insert(define.substr(0, equal));
+    }
+}
+
+void DefineValues::set_default(std::string name, std::string value, const FileLocation& from) {
+    if (name.empty()) throw Error(ErrorCode::BadInput, from, "a default has no name");
+    if (defined_.contains(name)) used_.insert(name);
+    values_.try_emplace(std::move(name), std::move(value));
+}
+
+std::string DefineValues::put_into(std::string_view text, const FileLocation& from) {
+    if (text.find('$') == std::string_view::npos) return std::string(text);
+    std::string to;
+    while (!text.empty()) {
+        const std::size_t begin = text.find('$');
+        to += text.substr(0, begin);
+        if (begin == std::string_view::npos) break;
+        text.remove_prefix(begin + 1);
+        const std::pair<const std::string, std::string>* longest = nullptr;
+        for (const auto& row : values_) {
+            if (text.starts_with(row.first) && (longest == nullptr || row.first.size() > longest->first.size()))
+                longest = &row;
+        }
+        if (longest == nullptr)
+            throw Error(ErrorCode::BadInput, from,
+                        fmt::format("${} has no value{}", shortened(text), did_you_mean(text, first_names(values_))));
+        to += longest->second;
+        text.remove_prefix(longest->first.size());
+        used_.insert(longest->first);
+        if (to.size() > kMostText)
+            throw Error(ErrorCode::BadInput, from, fmt::format("a text with values takes over {} bytes", kMostText));
+    }
+    return to;
+}
+
+void DefineValues::report_unused() const {
+    for (const std::string& name : defined_) {
+        if (!used_.contains(name))
+            sink_.warn(Remark("define", name,
+                              fmt::format("the file has no ${}{}", name, did_you_mean(name, first_names(values_)))));
+    }
+}
+
+} // namespace pertev::mitsuba

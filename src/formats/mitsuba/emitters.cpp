@@ -1,0 +1,131 @@
+#include "formats/mitsuba/emitters.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "base/message_text.h"
+#include "formats/described/transforms.h"
+#include "formats/files/closest_name.h"
+#include "math/portable_math.h"
+
+namespace pertev::mitsuba {
+namespace {
+
+constexpr std::array<std::string_view, 6> kEmitterTypes = {"area",        "point",    "spot",
+                                                           "directional", "constant", "envmap"};
+constexpr std::array<std::string_view, 7> kOtherEmitterTypes = {
+    "projector", "sunsky", "sun", "sky", "timed_sunsky", "collimated", "directionalarea"};
+
+Vec3 direction_of(const DoubleTransform& m, DoubleVec3 v) {
+    return normalize_safely(to_float(DoubleVec3{dot(m.row0, v), dot(m.row1, v), dot(m.row2, v)}));
+}
+
+void add_light(Object& emitter, Reading& reading) {
+    Parameters& parameters = emitter.parameters;
+    Sink& sink = reading.sink();
+    const DoubleTransform to_world = transform_of(emitter, "to_world", sink);
+    PlacedLight placed;
+    Light& light = placed.light;
+    light.name = emitter.id;
+    light.origin = fmt::format("{}:{}", emitter.location().file, emitter.location().line);
+    placed.position = to_world.translation;
+    const bool is_directional = emitter.type == "directional";
+    light.intensity =
+        read_color(emitter, is_directional ? "irradiance" : "intensity", ColorUse::Light, grey(1), reading);
+    if (emitter.type == "point") {
+        light.kind = LightKind::Point;
+        placed.position = parameters.vector("position", sink).value_or(placed.position);
+    } else if (is_directional) {
+        light.kind = LightKind::Directional;
+        const auto direction = parameters.vector("direction", sink);
+        light.direction = direction ? normalize_safely(to_float(*direction)) : direction_of(to_world, {0, 0, 1});
+    } else {
+        light.kind = LightKind::Spot;
+        light.direction = direction_of(to_world, {0, 0, 1});
+        const double cutoff = std::clamp(parameters.number("cutoff_angle", 20, sink), 0.1, 89.9);
+        const double beam = std::clamp(parameters.number("beam_width", 0.75 * cutoff, sink), 0.0, cutoff);
+        light.cos_inner = cos(static_cast<float>(beam) * (kPi / 180));
+        light.cos_outer = min(cos(static_cast<float>(cutoff) * (kPi / 180)), light.cos_inner - kSharpestEdge);
+        parameters.leave_out({"texture"}, "spots project no picture", sink);
+        if (beam < cutoff)
+            sink.warn(
+                {FileLocation{emitter.location().file}, "the edges of spots fall off as those of glTF, not Mitsuba's"});
+    }
+    parameters.ignore({"sampling_weight"});
+    parameters.leave_out_unknown(sink);
+    const DoubleVec3 p = placed.position;
+    light.position = to_float(p);
+    if (is_finite(light.position) && is_finite(light.direction)) {
+        reading.parts.lights.push_back(std::move(placed));
+    } else {
+        sink.leave_out(
+            {emitter.location(), fmt::format("{} without a position or direction is left out", parameters.what())});
+    }
+}
+
+void add_infinite_light(Object& emitter, Reading& reading) {
+    Parameters& parameters = emitter.parameters;
+    Sink& sink = reading.sink();
+    InfiniteLight light;
+    light.location = emitter.location();
+    light.layout = PanoramaLayout::AroundY;
+    light.world_from_light = transform_of(emitter, "to_world", sink);
+    parameters.ignore({"sampling_weight", "mis_compensation", "gamma", "cache", "radius"});
+    if (emitter.type == "constant") {
+        light.scale = read_color(emitter, "radiance", ColorUse::Light, grey(1), reading);
+    } else {
+        light.scale = grey(static_cast<float>(std::max(parameters.number("scale", 1, sink), 0.0)));
+        const std::string name = parameters.text("filename", "", sink);
+        if (name.empty()) throw parameters.error("an envmap has no filename");
+        const auto path = find_file(reading.context, emitter.location(), name);
+        if (!path) throw parameters.error(fmt::format("there is no picture {}", shortened(name)));
+        light.picture = path->string();
+    }
+    parameters.leave_out_unknown(sink);
+    reading.parts.infinite_lights.push_back(std::move(light));
+}
+
+} // namespace
+
+void add_emitter(Object& emitter, Reading& reading) {
+    const std::string& type = emitter.type;
+    try {
+        if (type == "point" || type == "spot" || type == "directional") return add_light(emitter, reading);
+        if (type == "constant" || type == "envmap") return add_infinite_light(emitter, reading);
+        if (type == "area") throw emitter.parameters.error("an area emitter is in no shape");
+        const bool is_known = std::ranges::find(kOtherEmitterTypes, type) != kOtherEmitterTypes.end();
+        throw emitter.parameters.error(fmt::format("emitters of the type {} are not supported{}", shortened(type),
+                                                   is_known ? "" : did_you_mean(type, kEmitterTypes)));
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::BadInput) throw;
+        reading.sink().leave_out(error.remark().and_then("; the emitter is left out"));
+    }
+}
+
+std::optional<AreaLight> read_area_light(Object& emitter, Textures& textures, Reading& reading) {
+    Sink& sink = reading.sink();
+    if (emitter.type != "area") {
+        const bool is_known = std::ranges::find(kOtherEmitterTypes, emitter.type) != kOtherEmitterTypes.end();
+        sink.leave_out({emitter.location(),
+                        fmt::format("emitters of the type {} are left out of shapes{}", shortened(emitter.type),
+                                    is_known ? "" : did_you_mean(emitter.type, kEmitterTypes))});
+        return std::nullopt;
+    }
+    AreaLight light;
+    const TextureValue radiance = textures.color(emitter, "radiance", ColorUse::Light, grey(1));
+    light.radiance = radiance.factor;
+    if (radiance.has_image()) {
+        light.image = radiance;
+        if (radiance.made >= 0 || !is_black(radiance.offset)) {
+            light.image = {};
+            sink.leave_out({emitter.location(), "the texture of an area emitter is no image; its factor is used"});
+        }
+    }
+    emitter.parameters.ignore({"sampling_weight"});
+    emitter.parameters.leave_out_unknown(sink);
+    return light;
+}
+
+} // namespace pertev::mitsuba

@@ -1,0 +1,66 @@
+#include <algorithm>
+#include <cmath>
+
+#include "formats/described/make_surface.h"
+#include "formats/mitsuba/bsdfs.h"
+#include "math/portable_math.h"
+
+namespace pertev::mitsuba {
+namespace {
+
+using M = MaterialParameters;
+
+} // namespace
+
+Surface Bsdfs::principled(Object& bsdf) {
+    Sink& sink = reading_.sink();
+    Parameters& parameters = bsdf.parameters;
+    const bool is_thin = bsdf.type == "principledthin";
+    Surface surface = make_surface(MaterialKind::MetallicRoughness);
+    Material& material = surface.material;
+    const auto number = [&](const char* name, float missing) {
+        const TextureValue value = textures_.number(bsdf, name, missing);
+        if (!value.has_image()) return clamp(value.factor.r, 0.0f, 1.0f);
+        parameters.leave_out({name}, "it has no texture", sink);
+        return missing;
+    };
+    set_color(surface, &M::base_color, &M::base_color_texture, color(bsdf, "base_color", 0.5f));
+    set_number(surface, &M::roughness, &M::roughness_texture, textures_.number(bsdf, "roughness", 0.5f));
+    if (!is_thin) set_number(surface, &M::metallic, &M::metallic_texture, textures_.number(bsdf, "metallic", 0));
+    if (parameters.contains("eta")) {
+        material.ior = clamp(ior_of(bsdf, "eta", 1.5f), 1.0f, 0x1p10f);
+    } else { // 0.5 is the index of 1.5
+        const float root = sqrt(0.08f * number("specular", 0.5f));
+        material.ior = 2 / (1 - min(root, 0.99f)) - 1;
+    }
+    const float stretched = number("anisotropic", 0); // the widths are r^2 / a and r^2 a, a = sqrt(1 - 0.9 x)
+    if (stretched > 0 && !material.roughness_texture.has_image()) {
+        const float a = sqrt(1 - 0.9f * stretched), width = material.roughness * material.roughness;
+        set_roughness(surface, constant(grey(max(width / a, 1e-3f))), constant(grey(max(width * a, 1e-3f))),
+                      Curve::RoughnessOfWidth);
+    }
+    material.transmission_weight = number("spec_trans", 0);
+    material.thin_walled = is_thin;
+    if (is_thin) {
+        material.diffuse_transmission_weight =
+            0.5f * clamp(static_cast<float>(parameters.number("diff_trans", 0, sink)), 0.0f, 2.0f);
+        material.diffuse_transmission_color = material.base_color;
+    } else {
+        material.coat_weight = 0.25f * number("clearcoat", 0);
+        material.coat_roughness = sqrt(lerp(0.1f, 0.001f, number("clearcoat_gloss", 0)));
+    }
+    material.fuzz_weight = number("sheen", 0);
+    for (const char* const name : {"spec_tint", "sheen_tint", "flatness"}) {
+        const TextureValue value = textures_.number(bsdf, name, 0);
+        if (value.has_image() || value.factor.r > 0)
+            parameters.leave_out({name}, "the nearest material has none", sink);
+    }
+    parameters.ignore({"main_specular_sampling_rate", "clearcoat_sampling_rate", "diffuse_reflectance_sampling_rate",
+                       "diffuse_reflectance_sampling_rate", "spec_reflectance_sampling_rate",
+                       "spec_trans_sampling_rate", "specular_sampling_rate", "diffuse_sampling_rate",
+                       "diff_trans_sampling_rate"});
+    warn_of_nearest(bsdf, "glTF's material of these parameters");
+    return surface;
+}
+
+} // namespace pertev::mitsuba

@@ -1,0 +1,36 @@
+#pragma once
+
+// Textures of Mitsuba: bitmaps, checkerboards, their products with numbers, and colours of vertices.
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "formats/mitsuba/colors.h"
+#include "formats/mitsuba/reading.h"
+
+namespace pertev::mitsuba {
+
+class Textures {
+public:
+    /// `reading` outlives it.
+    explicit Textures(Reading& reading) : reading_(reading) {}
+
+    /// Returns the colour `name`, or a texture of colours; `missing` without one.
+    TextureValue color(Object& object, std::string_view name, ColorUse use, Rgb missing);
+    /// Returns the number `name`, or a texture of numbers.
+    TextureValue number(Object& object, std::string_view name, float missing);
+    /// Returns the value of an object <texture>; 0.5 after a warning if it is left out.
+    TextureValue value_of(Object& texture, ColorUse use);
+
+private:
+    TextureValue bitmap(Object& texture);
+    TextureValue checkerboard(Object& texture, ColorUse use);
+    void read_placing(Object& texture, TextureRef& ref);
+
+    Reading& reading_;
+    std::map<std::pair<uint32_t, ColorUse>, TextureValue> known_; // by the object's number
+};
+
+} // namespace pertev::mitsuba

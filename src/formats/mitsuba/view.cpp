@@ -1,0 +1,235 @@
+#include "formats/mitsuba/view.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/limits.h"
+#include "base/message_text.h"
+#include "formats/described/transforms.h"
+#include "formats/files/closest_name.h"
+#include "formats/mitsuba/parse_values.h"
+#include "math/portable_math.h"
+
+namespace pertev::mitsuba {
+namespace {
+
+struct FilmSize {
+    int64_t width = 768, height = 576;
+    double aspect() const { return static_cast<double>(width) / static_cast<double>(height); }
+};
+
+float tangent_of_half(double degrees) { return tan(static_cast<float>(degrees) * (kPi / 360)); }
+
+void suggest_filter(Object& film, Reading& reading, Scene& scene) {
+    const std::vector<Object*> filters = objects_in(film, "rfilter", reading);
+    Sink& sink = reading.sink();
+    if (filters.empty()) return;
+    Object& filter = *filters.front();
+    Parameters& parameters = filter.parameters;
+    std::string name;
+    double radius = 0;
+    if (filter.type == "box") {
+        name = "box", radius = parameters.number("radius", 0.5, sink);
+    } else if (filter.type == "tent") {
+        name = "tent", radius = parameters.number("radius", 1, sink);
+    } else if (filter.type == "gaussian") {
+        name = "gaussian", radius = 3 * parameters.number("stddev", 0.5, sink);
+    } else {
+        parameters.ignore({"radius", "lobes", "b", "c", "B", "C"});
+        sink.leave_out(
+            {filter.location(), fmt::format("the filter {} is left out; the default is used", shortened(filter.type))});
+    }
+    parameters.leave_out_unknown(sink);
+    if (!(radius > 0)) return;
+    scene.suggested.push_back({"filter", name});
+    scene.suggested.push_back({"filter_radius", fmt::format("{:.6g}", radius)});
+}
+
+FilmSize size_of(Object& sensor, Reading& reading, Scene* suggest) {
+    Sink& sink = reading.sink();
+    FilmSize size;
+    const std::vector<Object*> films = objects_in(sensor, "film", reading);
+    if (films.empty()) return size;
+    Object& film = *films.front();
+    Parameters& parameters = film.parameters;
+    size.width = std::clamp<int64_t>(parameters.integer("width", size.width, sink), 1, kMaxImageSide);
+    size.height = std::clamp<int64_t>(parameters.integer("height", size.height, sink), 1, kMaxImageSide);
+    if (suggest == nullptr) return size;
+    parameters.leave_out({"crop_offset_x", "crop_offset_y", "crop_width", "crop_height"},
+                         "the whole picture is rendered", sink);
+    parameters.ignore({"file_format", "pixel_format", "component_format", "filename", "banner", "gamma", "exposure",
+                       "tonemap_method", "attach_log", "high_quality_edges", "sample_border", "compensate", "metadata",
+                       "key", "burn"});
+    suggest->suggested.push_back({"size", fmt::format("{}x{}", size.width, size.height)});
+    suggest_filter(film, reading, *suggest);
+    parameters.leave_out_unknown(sink);
+    return size;
+}
+
+/// Returns the full angle of view across the picture, degrees.
+double angle_of(Object& sensor, const FilmSize& size, Sink& sink) {
+    Parameters& parameters = sensor.parameters;
+    double degrees = parameters.number("fov", 0, sink);
+    std::string axis = parameters.text("fov_axis", "x", sink);
+    std::string focal = parameters.text("focal_length", "", sink);
+    if (!parameters.has("fov")) { // that of a film of 36 x 24 mm
+        if (focal.ends_with("mm")) focal.resize(focal.size() - 2);
+        const std::vector<double> mm = parse_numbers(focal);
+        const double length = mm.size() == 1 && mm[0] > 0 ? mm[0] : 50.0;
+        degrees = static_cast<double>(atan(static_cast<float>(std::sqrt(36.0 * 36 + 24.0 * 24) / (2 * length)))) *
+                  (360.0 / 3.14159265358979323846);
+        axis = "diagonal";
+    }
+    if (!(degrees > 0 && degrees < 180)) {
+        sink.leave_out(
+            {sensor.location(),
+             fmt::format("the fov of a sensor is {} and left out; expected above 0 and below 180", degrees)});
+        degrees = 45;
+    }
+    const double aspect = size.aspect();
+    if (axis == "smaller") axis = aspect > 1 ? "y" : "x";
+    if (axis == "larger") axis = aspect > 1 ? "x" : "y";
+    double tangent = static_cast<double>(tangent_of_half(degrees));
+    if (axis == "y") {
+        tangent *= aspect;
+    } else if (axis == "diagonal") {
+        tangent *= aspect / std::sqrt(aspect * aspect + 1);
+    } else if (axis != "x") {
+        constexpr std::array<std::string_view, 5> kAxes = {"x", "y", "diagonal", "smaller", "larger"};
+        sink.leave_out({sensor.location(), fmt::format("the fov_axis {} is left out; x is used{}", shortened(axis),
+                                                       did_you_mean(axis, kAxes))});
+    }
+    return tangent;
+}
+
+void set_perspective(Object& sensor, const FilmSize& size, Camera& camera, Sink& sink) {
+    Parameters& parameters = sensor.parameters;
+    const double across = angle_of(sensor, size, sink), high = across / size.aspect();
+    camera.fov_y = 2 * atan(static_cast<float>(high));
+    const double offset_x = parameters.number("principal_point_offset_x", 0, sink),
+                 offset_y = parameters.number("principal_point_offset_y", 0, sink);
+    if (offset_x == 0 && offset_y == 0) return;
+    const auto width = static_cast<double>(size.width), height = static_cast<double>(size.height);
+    camera.intrinsics = Intrinsics{.focal_x = width / (2 * across),
+                                   .focal_y = height / (2 * high),
+                                   .centre_x = width * (0.5 + offset_x),
+                                   .centre_y = height * (0.5 + offset_y),
+                                   .width = static_cast<uint32_t>(size.width),
+                                   .height = static_cast<uint32_t>(size.height)};
+}
+
+std::optional<Camera> make_camera(Object& sensor, const FilmSize& size, const DoubleTransform& scene_from_world,
+                                  DoubleVec3 origin, Reading& reading) {
+    Sink& sink = reading.sink();
+    Parameters& parameters = sensor.parameters;
+    constexpr std::array<std::string_view, 3> kKnown = {"perspective", "thinlens", "orthographic"};
+    if (std::ranges::find(kKnown, sensor.type) == kKnown.end()) {
+        sink.leave_out({sensor.location(), fmt::format("sensors of the type {} are left out{}", shortened(sensor.type),
+                                                       did_you_mean(sensor.type, kKnown))});
+        return std::nullopt;
+    }
+    Camera camera;
+    camera.name = sensor.id;
+    camera.origin = fmt::format("{}:{}", sensor.location().file, sensor.location().line);
+    camera.aspect = static_cast<float>(size.aspect());
+    const DoubleTransform to_world = transform_of(sensor, "to_world", sink);
+    DoubleTransform placed = compose(compose(scene_from_world, to_world), scale_by({-1, 1, -1}));
+    placed.translation = placed.translation - origin;
+    const auto rigid = is_finite(placed) && determinant(placed) > 0 ? without_scale(to_float(placed)) : std::nullopt;
+    if (!rigid) {
+        sink.leave_out(
+            {sensor.location(), "the sensor is left out, because its transform has no direction or mirrors"});
+        return std::nullopt;
+    }
+    camera.world_from_camera = *rigid;
+    if (sensor.type == "orthographic") {
+        const DoubleVec3 x = {to_world.row0.x, to_world.row1.x, to_world.row2.x};
+        camera.projection = Projection::Orthographic;
+        camera.ortho_height = static_cast<float>(2 * std::sqrt(dot(x, x)) / size.aspect());
+    } else {
+        set_perspective(sensor, size, camera, sink);
+    }
+    if (sensor.type == "thinlens") {
+        const double radius = parameters.number("aperture_radius", 0, sink),
+                     focus = parameters.number("focus_distance", 0, sink);
+        if (radius > 0 && focus > 0) {
+            camera.aperture_radius = min(static_cast<float>(radius), kMaxCoordinate);
+            camera.focus_distance = min(static_cast<float>(focus), kMaxCoordinate);
+        }
+    }
+    parameters.ignore({"near_clip", "far_clip", "shutter_open", "shutter_close", "focus_distance", "aperture_radius"});
+    parameters.leave_out_unknown(sink);
+    return camera;
+}
+
+void suggest_samples(Object& sensor, Reading& reading, Scene& scene) {
+    for (Object* const sampler : objects_in(sensor, "sampler", reading)) {
+        const int64_t count = sampler->parameters.integer("sample_count", 0, reading.sink());
+        if (count > 0)
+            scene.suggested.push_back({"spp", fmt::format("{}", std::min<int64_t>(count, kMaxSamplesPerPixel))});
+        sampler->parameters.ignore({"seed", "scramble", "dimension", "jitter"});
+        sampler->parameters.leave_out_unknown(reading.sink());
+    }
+}
+
+void suggest_depth(Object* integrator, Reading& reading, Scene& scene) {
+    Sink& sink = reading.sink();
+    constexpr std::array<std::string_view, 4> kWrappers = {"moment", "aov", "multichannel", "adaptive"};
+    for (int i = 0; integrator != nullptr && i < 8; ++i) {
+        if (std::ranges::find(kWrappers, integrator->type) == kWrappers.end()) break;
+        const std::vector<Object*> inner = objects_in(*integrator, "integrator", reading);
+        integrator = inner.empty() ? nullptr : inner.front();
+    }
+    if (integrator == nullptr) return;
+    Parameters& parameters = integrator->parameters;
+    int64_t depth = parameters.integer("max_depth", -1, sink); // counts the emitter's vertex
+    if (integrator->type == "direct") depth = 2;
+    depth = depth < 0 ? kMaxPathDepth - 1 : std::max<int64_t>(depth - 1, 0);
+    scene.suggested.push_back({"max_depth", fmt::format("{}", std::min<int64_t>(depth, kMaxPathDepth - 1))});
+    constexpr std::array<std::string_view, 4> kPaths = {"path", "volpath", "volpathmis", "direct"};
+    if (std::ranges::find(kPaths, integrator->type) == kPaths.end()) {
+        sink.warn({integrator->location(),
+                   fmt::format("the integrator {} has no effect; paths are traced", shortened(integrator->type))});
+        return;
+    }
+    parameters.leave_out({"hide_emitters"}, "emitters are visible", sink);
+    parameters.ignore({"rr_depth", "strict_normals", "shading_samples", "emitter_samples", "bsdf_samples",
+                       "samples_per_pass", "timeout", "block_size"});
+    parameters.leave_out_unknown(sink);
+}
+
+} // namespace
+
+DoubleTransform scene_from_world(const View& view, Sink& sink) {
+    if (view.sensors.empty()) return {};
+    return determinant(transform_of(*view.sensors.front(), "to_world", sink)) < 0 ? scale_by({-1, 1, 1})
+                                                                                  : DoubleTransform();
+}
+
+void add_view(const View& view, Reading& reading, Scene& scene) {
+    const DoubleTransform mirrored = scene_from_world(view, reading.sink());
+    for (Object* const sensor : view.sensors) {
+        try {
+            const bool is_first = sensor == view.sensors.front();
+            const FilmSize size = size_of(*sensor, reading, is_first ? &scene : nullptr);
+            if (is_first) {
+                suggest_samples(*sensor, reading, scene);
+            } else {
+                (void)objects_in(*sensor, "sampler", reading);
+            }
+            if (auto camera = make_camera(*sensor, size, mirrored, scene.origin_in_file, reading)) {
+                if (camera->name.empty()) camera->name = fmt::format("{} {}", sensor->type, scene.cameras.size());
+                scene.cameras.push_back(*std::move(camera));
+            }
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::BadInput) throw;
+            reading.sink().leave_out(error.remark().and_then("; the sensor is left out"));
+        }
+    }
+    suggest_depth(view.integrator, reading, scene);
+}
+
+} // namespace pertev::mitsuba

@@ -1,0 +1,115 @@
+#include "formats/mitsuba/world.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "base/limits.h"
+#include "base/message_text.h"
+#include "formats/described/assemble.h"
+#include "formats/described/make_surface.h"
+#include "formats/mitsuba/emitters.h"
+
+namespace pertev::mitsuba {
+
+World::World(Context& context, Objects& objects) : context_(context), objects_(objects) {
+    parts_.missing_coordinates = {Vec2{0, 0}, Vec2{1, 0}, Vec2{0, 1}};
+    Surface surface = make_surface(MaterialKind::Diffuse);
+    surface.material.name = "default";
+    parts_.surfaces.push_back(std::move(surface));
+}
+
+void World::add_instance(Object& instance) {
+    const DoubleTransform to_world = transform_of(instance, "to_world", context_.sink);
+    const std::vector<Object*> groups = objects_in(instance, "shape", reading_);
+    instance.parameters.leave_out_unknown(context_.sink);
+    if (groups.size() != 1 || groups.front()->type != "shapegroup")
+        throw instance.parameters.error("an instance needs one shapegroup");
+    for (Object* const shape : objects_in(*groups.front(), "shape", reading_)) {
+        if (shape->type == "instance" || shape->type == "shapegroup")
+            throw shape->parameters.error("a shapegroup in another one");
+        add_shape(*shape, to_world);
+    }
+}
+
+void World::add_shape(Object& shape, const DoubleTransform& world_from_group) {
+    try {
+        const Depth depth(reading_.depth, shape);
+        if (shape.type == "shapegroup") return; // its instances show it
+        if (shape.type == "instance") return add_instance(shape);
+        if (shape.type == "merge") {
+            for (Object* const part : objects_in(shape, "shape", reading_)) add_shape(*part, world_from_group);
+            return;
+        }
+        place(shape, world_from_group);
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::BadInput) throw;
+        context_.sink.leave_out(error.remark().and_then("; the shape is left out"));
+    }
+}
+
+void World::place(Object& shape, const DoubleTransform& world_from_group) {
+    Sink& sink = context_.sink;
+    if (parts_.placed.size() >= most_placed_)
+        throw Error(ErrorCode::OverLimit, shape.location(),
+                    fmt::format("more than {} instances, the limit for files of this size", most_placed_));
+    const std::vector<Object*> bsdfs = objects_in(shape, "bsdf", reading_);
+    const std::vector<Object*> emitters = objects_in(shape, "emitter", reading_);
+    Placed placed;
+    if (!bsdfs.empty() && !context_.options.geometry_only) placed.surface = bsdfs_.surface_of(*bsdfs.front());
+    if (!emitters.empty() && !context_.options.geometry_only) {
+        Object& emitter = *emitters.front();
+        const auto known = area_lights_.find(emitter.number);
+        if (known != area_lights_.end()) {
+            placed.area_light = known->second;
+        } else if (auto light = read_area_light(emitter, textures_, reading_)) {
+            placed.area_light = static_cast<uint32_t>(parts_.area_lights.size());
+            area_lights_[emitter.number] = *placed.area_light;
+            parts_.area_lights.push_back(*std::move(light));
+        }
+    }
+    if (!objects_in(shape, "medium", reading_).empty() || !objects_in(shape, "subsurface", reading_).empty())
+        sink.leave_out(
+            {shape.location(), fmt::format("the medium of {} is left out, as all media are", shape.parameters.what())});
+    if (parts_.surfaces[placed.surface].is_nothing && !placed.area_light) return;
+    const auto read = shapes_.read(shape);
+    if (!read) return;
+    shape.parameters.ignore({"silhouette_sampling_weight", "flip_normals"});
+    shape.parameters.leave_out_unknown(sink);
+    placed.mesh = read->mesh;
+    const std::string& file = parts_.meshes[read->mesh].file;
+    placed.name = !shape.id.empty() ? shape.id
+                  : file.empty()    ? shape.type
+                                    : std::filesystem::path(file).stem().string();
+    placed.world_from_mesh = compose(world_from_group, read->world_from);
+    parts_.placed.push_back(std::move(placed));
+}
+
+Scene World::finish(uint64_t file_bytes) {
+    most_placed_ = std::min<uint64_t>(kMaxInstances, justified_bytes(kFreeMeshBytes, file_bytes) /
+                                                         (sizeof(Instance) + sizeof(Placed)));
+    for (const uint32_t number : std::vector<uint32_t>(objects_.top())) {
+        Object& object = objects_.at(number);
+        context_.sink.check_at(number);
+        if (object.tag == "shape") {
+            add_shape(object, {});
+        } else if (object.tag == "emitter") {
+            if (!context_.options.geometry_only) add_emitter(object, reading_);
+        } else if (object.tag == "sensor") {
+            view_.sensors.push_back(&object);
+        } else if (object.tag == "integrator") {
+            view_.integrator = &object;
+        } else if (object.tag == "medium") {
+            context_.sink.leave_out(
+                {object.location(), fmt::format("{} is left out, as all media are", object.parameters.what())});
+        }
+    }
+    shapes_.finish();
+    Scene scene = assemble(std::move(parts_), scene_from_world(view_, context_.sink), file_bytes,
+                           "an element such as <shape type=\"sphere\"/>", context_.loader, context_.sink);
+    add_view(view_, reading_, scene);
+    return scene;
+}
+
+} // namespace pertev::mitsuba
