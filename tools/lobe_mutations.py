@@ -58,4 +58,5 @@ MUTATIONS = [
     ("a measured metal with the numbers of another", "unit/set_materials", ("src/scene/metals.cpp", "std::ranges::find(kMetals, name, &MeasuredMetal::name)", "std::ranges::find_if(kMetals, [&](auto& m) { return m.name > name; })")),
     ("a path in the wavefront that forgets which surface it left", "statistical/solid_absorption",
      ("src/integrators/path/path_stages.h", "if ((kFeatures & kStacked) != 0 && !begins)", "if (false)")),
+    ("a dimmed metal is as bright as others", "statistical/mitsuba_lobes", ("src/shading/lobes/packed_lobes.h", "1.0f - microfacets.more()", "1.0f - 0 * microfacets.more()")),
 ]

@@ -23,9 +23,10 @@ std::string described(const Setting& setting, const std::string& otherwise) {
     return text;
 }
 
-/// "--traversal,--walk": help and documents show only the first name.
+/// "--traversal,--walk": help and documents show only the first name. Mitsuba's program has -D.
 std::string flag_names(const Setting& setting) {
-    return flag_of(setting.name) + (*setting.old_name != '\0' ? "," + flag_of(setting.old_name) : "");
+    const char* const letter = std::string_view(setting.name) == "define" ? "-D," : "";
+    return letter + flag_of(setting.name) + (*setting.old_name != '\0' ? "," + flag_of(setting.old_name) : "");
 }
 
 } // namespace

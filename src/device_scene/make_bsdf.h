@@ -104,7 +104,8 @@ HD_CALL inline Bsdf make_any_bsdf(const SceneView& scene, const MaterialParamete
     case MaterialKind::Unlit:
         bsdf = make_rough_diffuse(base_color, material.base_diffuse_roughness);
         break;
-    case MaterialKind::Conductor:
+    case MaterialKind::Conductor: // only here has it a weight: of the materials that are not stacked none has
+        reflection.weight = number(material.specular_weight, material.specular_texture);
         bsdf = make_metal(material.eta, material.k, reflection);
         break;
     case MaterialKind::Dielectric:

@@ -27,8 +27,9 @@ struct SceneOptions {
     std::string scene;                          // a file, or the name of a built-in scene
     std::string file_scene, variant, animation; // names or numbers
     std::vector<std::filesystem::path> allowed_paths;
-    std::string up_axis, unit;     // coordinate system of the file
-    uint32_t max_texture_size = 0; // pixels of the longer side; 0: any
+    std::vector<std::string> defines; // values of a Mitsuba file's parameters: NAME=VALUE
+    std::string up_axis, unit;        // coordinate system of the file
+    uint32_t max_texture_size = 0;    // pixels of the longer side; 0: any
     CameraChoice camera;
     std::string environment; // a file, or "r,g,b"
     float environment_rotation_deg = 0, environment_scale = 1;

@@ -44,10 +44,11 @@ HD inline Bsdf make_rough_diffuse(Rgb albedo, float roughness) {
     return roughness > 0 ? Bsdf(RoughDiffuseLobe{albedo, 1, roughness}) : make_diffuse(albedo);
 }
 
-/// Makes a conductor of the complex index eta + i k with any microfacets; of the parameters it uses those.
+/// Makes a conductor of the complex index eta + i k with any microfacets; of the parameters it uses those and the
+/// weight.
 HD inline Bsdf make_metal(Rgb eta, Rgb k, const ReflectionParameters& p) {
-    if (p.has_plain_microfacets()) return make_conductor(eta, k, p.roughness);
-    return Bsdf(MetalLobe{eta, k, p.microfacets()});
+    if (p.has_plain_microfacets() && !(p.weight < 1)) return make_conductor(eta, k, p.roughness);
+    return Bsdf(MetalLobe{eta, k, p.microfacets(), p.weight});
 }
 
 /// Adds the reflection of a dielectric and a metal.

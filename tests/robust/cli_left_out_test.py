@@ -63,6 +63,26 @@ class LeftOut(CliTest):
         self.assertRegex(done["left_out"][0], r'^fault\.pbrt:7: "Shap" .*"Shape"')
         self.refuse(2, "render", "fault.pbrt", "-o", "y.exr", "--strict", "--device", "cpu", says=["--strict: ", "fault.pbrt:7: "])
 
+    def test_a_mitsuba_scene_is_rendered_as_it_says_with_defined_values(self):
+        text = ('<scene version="3.0.0">\n<default name="spp" value="2"/><default name="r" value="1"/>\n'
+                '<sensor type="perspective"><film type="hdrfilm"><integer name="width" value="12"/><integer name="height" value="8"/>'
+                '</film><sampler type="independent"><integer name="sample_count" value="$spp"/></sampler></sensor>\n'
+                '<emitter type="constant"><rgb name="radiance" value="$r"/></emitter><shape type="sphere"/>\n')
+        write(self.path("grey.xml"), text + "</scene>")
+        outcome = self.succeed("render", "grey.xml", "-o", "x.exr", "--json", "--strict", "--device", "cpu", "-D", "spp=3", "--define", "r=0")
+        done, picture = outcome.events("done")[0], outcome.events("picture")[0]
+        self.assertEqual((done["left_out"], done["made_up"]), ([], []))
+        self.assertEqual((picture["width"], picture["height"], picture["spp"]), (12, 8, 3))
+        channels = read_exr(self.path("x.exr"))[2]
+        self.assertEqual({value for rows in channels.values() for row in rows for value in row}, {0.0})
+        warned = self.succeed("info", "grey.xml", "--json", "--define", "sp=3").events("warning")[0]
+        self.assertEqual((warned["setting"], warned["value"]), ("define", "sp"))
+        self.refuse(2, "info", "grey.xml", "--define", "spp", says=["--define spp"])
+        write(self.path("fault.xml"), text + '<shap type="sphere"/></scene>')
+        done = self.succeed("render", "fault.xml", "-o", "x.exr", "--json", "--device", "cpu").events("done")[0]
+        self.assertRegex(done["left_out"][0], r'^fault\.xml:5: .*"shape"')
+        self.refuse(2, "render", "fault.xml", "-o", "y.exr", "--strict", "--device", "cpu", says=["--strict: ", "fault.xml:5: "])
+
     def test_the_error_for_a_scene_without_triangles_lists_the_skipped_parts(self):
         accessors = [{"componentType": 5126, "count": 3, "type": "VEC3"}]
         meshes = [{"primitives": [{"attributes": {"POSITION": 0},

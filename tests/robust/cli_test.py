@@ -23,13 +23,13 @@ FLAGS = {
               "--shutter --shading-rate --displacement --photons --gather --radius --caustic-radius --nearest "
               "--accuracy --hemisphere-rays --show-records --patch-size --subdivisions --contrast --form-factors --patch-rays --hemicube "
               "--solver --tolerance --steps --link-error --max-memory --solution --flat-patches --real-time --restir --restir-history --resolution-scale --history --passes --no-anti-alias "
-              "--no-firefly-clamping --no-temporal-gradients --no-history-clamping --no-reconstruction --animation --file-scene --variant --movable --material --max-texture-size --ground --author --license --settings",
+              "--no-firefly-clamping --no-temporal-gradients --no-history-clamping --no-reconstruction --animation --file-scene --variant --define --movable --material --max-texture-size --ground --author --license --settings",
     "measure": "--at --normal --spp --max-depth --seed --lamp --efficacy --time --allow-path --up-axis --unit --environment --environment-rotation "
-               "--environment-scale --two-sided-lights --device --threads --no-bvh-cache --animation --file-scene --variant --material --max-texture-size --strict --quiet -q --json",
+               "--environment-scale --two-sided-lights --device --threads --no-bvh-cache --animation --file-scene --variant --define --material --max-texture-size --strict --quiet -q --json",
     "solve radiosity": "--output -o --patch-size --subdivisions --contrast --form-factors --patch-rays --hemicube --solver "
                        "--tolerance --steps --link-error --max-memory --seed --time --lamp --efficacy --allow-path --up-axis --unit --environment --environment-rotation "
-                       "--environment-scale --two-sided-lights --threads --no-bvh-cache --animation --file-scene --variant --material --max-texture-size --strict --quiet -q --json",
-    "info": "--file-scene --variant --material --max-texture-size --allow-path --up-axis --unit --settings --quiet -q --json",
+                       "--environment-scale --two-sided-lights --threads --no-bvh-cache --animation --file-scene --variant --define --material --max-texture-size --strict --quiet -q --json",
+    "info": "--file-scene --variant --define --material --max-texture-size --allow-path --up-axis --unit --settings --quiet -q --json",
     "compare": "--blocks --quiet -q --json",
     "bench": "--scene --size --spp --device --threads --build --structure --traversal --rta --order --distribution --report --quiet -q --json",
     "bench build": "--scene --runs --compare --device --threads --report --quiet -q --json",

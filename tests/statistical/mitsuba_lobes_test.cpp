@@ -32,6 +32,9 @@ void compare_with_mitsuba(bool is_beckmann, std::span<const RecordedByMitsuba> a
     const ReflectionParameters metal = {
         .base_color = {}, .roughness = 0.5f, .is_beckmann = is_beckmann, .is_single = true};
     const Bsdf gold = make_metal(kGoldEta, kGoldK, metal);
+    ReflectionParameters quarter = metal;
+    quarter.weight = 0.25f;
+    const Bsdf dimmed = make_metal(kGoldEta, kGoldK, quarter); // its specular_reflectance of 0.25
     const ReflectionParameters clear = {
         .base_color = grey(1), .roughness = 0.6f, .solid = 1, .is_beckmann = is_beckmann, .is_single = true};
     const Bsdf glass = make_reflection(clear);
@@ -46,6 +49,8 @@ void compare_with_mitsuba(bool is_beckmann, std::span<const RecordedByMitsuba> a
         CHECK(f.r == doctest::Approx(more * r.metal.r).epsilon(tolerance));
         CHECK(f.g == doctest::Approx(more * r.metal.g).epsilon(tolerance));
         CHECK(f.b == doctest::Approx(more * r.metal.b).epsilon(tolerance));
+        CHECK(dimmed.eval(r.wo, r.wi).g == doctest::Approx(0.25f * f.g).epsilon(1e-4));
+        CHECK(dimmed.pdf(r.wo, r.wi) == gold.pdf(r.wo, r.wi));
         CHECK(glass.eval(r.wo, r.wi).g ==
               doctest::Approx(correlation(clear.microfacets(), r.wo, r.wi) * r.glass).epsilon(tolerance));
         const float cos_h = dot(r.wo, normalize(r.wo + r.wi));

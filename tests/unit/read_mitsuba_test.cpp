@@ -170,6 +170,7 @@ TEST_CASE("mitsuba: thin lenses, orthographic views, principal points and severa
     CHECK(scene.cameras[1].projection == Projection::Orthographic);
     CHECK(scene.cameras[1].ortho_height == doctest::Approx(3));
     REQUIRE(scene.cameras[2].intrinsics);
+    CHECK(scene.cameras[2].intrinsics->centre_x == doctest::Approx(768 * 0.25)); // the picture moves to the left
     CHECK(scene.cameras[2].intrinsics->centre_y == doctest::Approx(288));
     CHECK(scene.cameras[2].intrinsics->focal_x == doctest::Approx(384));
 }

@@ -25,10 +25,12 @@ Rgb pixel(const Image& image, uint32_t x, uint32_t y) {
     return {p[0], p[1], p[2]};
 }
 
-/// Returns the picture at a place, bilinear; columns go round if `wraps`.
-Rgb look_up(const Image& image, Vec2 place, bool wraps) {
+/// Returns the picture at a place, bilinear. Columns go round a panorama; Mitsuba's first and last rows are the poles.
+Rgb look_up(const Image& image, Vec2 place, PanoramaLayout layout) {
+    const bool wraps = layout != PanoramaLayout::Octahedron;
     const auto width = static_cast<float>(image.width), height = static_cast<float>(image.height);
-    const float x = place.x * width - 0.5f, y = clamp(place.y * height - 0.5f, 0.0f, height - 1);
+    const float row_at = layout == PanoramaLayout::AroundY ? place.y * (height - 1) : place.y * height - 0.5f;
+    const float x = place.x * width - 0.5f, y = clamp(row_at, 0.0f, height - 1);
     const float left = floor(x), top = floor(y);
     const auto column = [&](float at) {
         const float turned = wraps ? (at < 0 ? at + width : (at >= width ? at - width : at)) : at;
@@ -114,7 +116,7 @@ std::optional<Environment> make_environment(const InfiniteLight& light, const Do
             const Vec3 local = normalize(to_float(DoubleVec3{
                 dot(local_from_scene.row0, d), dot(local_from_scene.row1, d), dot(local_from_scene.row2, d)}));
             const Vec2 place = place_of(light.layout, local);
-            const Rgb color = look_up(from, place, !is_octahedron);
+            const Rgb color = look_up(from, place, light.layout);
             float* const pixel = to.pixels.data() + 3 * (static_cast<std::size_t>(y) * to.width + x);
             pixel[0] = color.r, pixel[1] = color.g, pixel[2] = color.b;
         }

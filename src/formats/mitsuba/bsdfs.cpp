@@ -48,13 +48,27 @@ float find_ior(std::string_view name) {
 
 uint32_t Bsdfs::surface_of(Object& bsdf) {
     if (const auto known = known_.find(bsdf.number); known != known_.end()) return known->second;
+    has_two_sides_ = false;
     Surface surface = read(bsdf);
+    warn_of_backs(bsdf, surface);
     surface.material.name = bsdf.id.empty() ? bsdf.type : bsdf.id;
     surface.material.origin = fmt::format("{}:{}", bsdf.location().file, bsdf.location().line);
     const auto number = static_cast<uint32_t>(reading_.parts.surfaces.size());
     reading_.parts.surfaces.push_back(std::move(surface));
     known_[bsdf.number] = number;
     return number;
+}
+
+/// Warns once that a surface reflects from its back, too.
+void Bsdfs::warn_of_backs(const Object& bsdf, const Surface& surface) {
+    const Material& material = surface.material;
+    const bool is_black = material.kind == MaterialKind::Diffuse && max_component(material.base_color) == 0;
+    const bool has_back = material.kind == MaterialKind::Dielectric || material.transmits() ||
+                          material.has_diffuse_transmission() || surface.is_nothing;
+    if (has_back || is_black || has_two_sides_) return;
+    reading_.sink().warn(
+        {FileLocation{bsdf.location().file},
+         "BSDFs that are not in a twosided one reflect on both faces; their backs are black in Mitsuba"});
 }
 
 void Bsdfs::warn_of_nearest(const Object& bsdf, std::string_view nearest) {
@@ -75,6 +89,7 @@ Surface Bsdfs::read(Object& bsdf) {
             surface = diffuse(bsdf);
         } else if (is_one_of({"twosided"})) {
             surface = nested(bsdf);
+            has_two_sides_ = true;
         } else if (is_one_of({"conductor", "roughconductor"})) {
             surface = conductor(bsdf);
         } else if (is_one_of({"dielectric", "roughdielectric", "thindielectric"})) {

@@ -37,8 +37,10 @@ private:
     Surface bumpy(Object& bsdf);
 
     void read_roughness(Object& bsdf, Surface& surface);
+    void tint_metal(const Object& bsdf, const TextureValue& tint, Surface& surface);
     float ior_of(Object& bsdf, const char* name, float missing);
     float relative_ior(Object& bsdf);
+    void warn_of_backs(const Object& bsdf, const Surface& surface);
     void warn_of_nearest(const Object& bsdf, std::string_view nearest);
     TextureValue color(Object& bsdf, const char* name, float missing) {
         return textures_.color(bsdf, name, ColorUse::Reflectance, grey(missing));
@@ -46,6 +48,7 @@ private:
 
     Reading& reading_;
     Textures& textures_;
+    bool has_two_sides_ = false;         // the surface that is read is in a twosided BSDF
     std::map<uint32_t, uint32_t> known_; // surfaces by the object's number
 };
 

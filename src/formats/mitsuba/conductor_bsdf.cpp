@@ -18,6 +18,29 @@ Rgb usable_index(Rgb index, float least) {
     return {usable(index.r), usable(index.g), usable(index.b)};
 }
 
+bool is_grey(Rgb c) { return c.r == c.g && c.g == c.b; }
+
+bool has_greys_alone(const TextureImage& image) {
+    const std::vector<float>& p = image.rgba_float.pixels;
+    for (std::size_t i = 0; i + 3 < p.size(); i += 4) {
+        if (!is_grey({p[i], p[i + 1], p[i + 2]})) return false;
+    }
+    return true;
+}
+
+/// Returns Fresnel's reflectance of a metal at a cosine, of unpolarised light.
+float reflectance_of(float eta, float k, float cosine) {
+    const float c2 = cosine * cosine, s2 = 1 - c2, e2 = eta * eta, k2 = k * k;
+    const float t0 = e2 - k2 - s2, a2b2 = sqrt(t0 * t0 + 4 * e2 * k2), a = sqrt(max(0.5f * (a2b2 + t0), 0.0f));
+    const float across = (a2b2 + c2 - 2 * a * cosine) / (a2b2 + c2 + 2 * a * cosine);
+    const float t3 = c2 * a2b2 + s2 * s2, t4 = 2 * a * cosine * s2;
+    return 0.5f * across * (1 + (t3 - t4) / (t3 + t4));
+}
+Rgb reflectance_of(const ComplexIndex& index, float cosine) {
+    return {reflectance_of(index.eta.r, index.k.r, cosine), reflectance_of(index.eta.g, index.k.g, cosine),
+            reflectance_of(index.eta.b, index.k.b, cosine)};
+}
+
 } // namespace
 
 Surface Bsdfs::conductor(Object& bsdf) {
@@ -46,9 +69,36 @@ Surface Bsdfs::conductor(Object& bsdf) {
     surface.material.eta =
         usable_index(scale * read_color(bsdf, "eta", ColorUse::Index, index.eta, reading_), 0x1p-10f);
     surface.material.k = usable_index(scale * read_color(bsdf, "k", ColorUse::Index, index.k, reading_), 0);
-    if (tint.has_image() || !(tint.factor == grey(1)))
-        set_color(surface, &M::specular_color, &M::specular_color_texture, tint);
+    tint_metal(bsdf, tint, surface);
     return surface;
+}
+
+/// Multiplies all that a metal reflects: exactly by a grey.
+void Bsdfs::tint_metal(const Object& bsdf, const TextureValue& tint, Surface& surface) {
+    Material& material = surface.material;
+    const auto made = static_cast<std::size_t>(tint.made);
+    const bool is_white = !tint.has_image() && tint.factor == grey(1);
+    if (is_white ||
+        (tint.made >= 0 ? has_greys_alone(reading_.parts.made[made]) : !tint.has_image() && is_grey(tint.factor))) {
+        set_number(surface, &M::specular_weight, &M::specular_texture, tint);
+        return;
+    }
+    // The reflectance at 0 degrees and at the cosine of 1 / 7, at which F82 has its tint.
+    const ComplexIndex index = {material.eta, material.k};
+    const Rgb front = reflectance_of(index, 1), edge = reflectance_of(index, 1.0f / 7);
+    material.kind = MaterialKind::MetallicRoughness;
+    material.metallic = 1;
+    set_color(surface, &M::base_color, &M::base_color_texture, tint.scaled(front));
+    material.metal_fresnel = MetalFresnel::F82;
+    const Rgb mean = tint.has_image() ? grey(0.5f) : tint.factor;
+    constexpr float kRise = 0.46266437f; // (6 / 7)^5
+    const auto tint_of = [](float t, float at_0, float at_82) {
+        const float f0 = t * at_0;
+        return clamp(t * at_82 / (f0 + (1 - f0) * kRise), 0.0f, 1.0f);
+    };
+    material.specular_color = {tint_of(mean.r, front.r, edge.r), tint_of(mean.g, front.g, edge.g),
+                               tint_of(mean.b, front.b, edge.b)};
+    warn_of_nearest(bsdf, "a metal whose colour is near that of its specular_reflectance");
 }
 
 } // namespace pertev::mitsuba

@@ -23,7 +23,6 @@ struct Context {
     std::string file;                                                    // path of the scene
     std::vector<std::pair<FileLocation, std::string>> search_paths = {}; // folders that <path> names, and where
     bool is_old = false;                                                 // the file is one of Mitsuba 0.6
-    bool warned_of_backs = false;                                        // a file needs one warning
 };
 
 /// A name of a file, as if it were written at `from`.

@@ -43,7 +43,8 @@ std::string DefineValues::put_into(std::string_view text, const FileLocation& fr
         }
         if (longest == nullptr)
             throw Error(ErrorCode::BadInput, from,
-                        fmt::format("${} has no value{}", shortened(text), did_you_mean(text, first_names(values_))));
+                        fmt::format("${} has no value; `define` sets one{}", shortened(text),
+                                    did_you_mean(text, first_names(values_))));
         to += longest->second;
         text.remove_prefix(longest->first.size());
         used_.insert(longest->first);

@@ -115,8 +115,8 @@ void set_perspective(Object& sensor, const FilmSize& size, Camera& camera, Sink&
     const auto width = static_cast<double>(size.width), height = static_cast<double>(size.height);
     camera.intrinsics = Intrinsics{.focal_x = width / (2 * across),
                                    .focal_y = height / (2 * high),
-                                   .centre_x = width * (0.5 + offset_x),
-                                   .centre_y = height * (0.5 + offset_y),
+                                   .centre_x = width * (0.5 - offset_x),
+                                   .centre_y = height * (0.5 - offset_y),
                                    .width = static_cast<uint32_t>(size.width),
                                    .height = static_cast<uint32_t>(size.height)};
 }

@@ -146,6 +146,7 @@ ReadOptions read_options(const SceneOptions& options) {
     read.file_scene = options.file_scene;
     read.variant = options.variant;
     read.max_texture_size = options.max_texture_size;
+    read.defines = options.defines;
     return read;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Metal with microfacets other than those of conductor_lobe.h, which has all others: stretched, Beckmann's, or single
-// scattering. It is a base.
+// Metal with microfacets other than those of conductor_lobe.h, which has all others: stretched, Beckmann's, single
+// scattering, or dimmed. It is a base.
 
 #include "shading/lobes/fresnel.h"
 #include "shading/lobes/layer_transmittance.h"
@@ -12,13 +12,14 @@ namespace pertev {
 struct MetalLobe {
     Rgb eta, k; // complex index eta + i k, per channel, over that of the outside
     Microfacets widths;
+    float weight = 1; // [0, 1], a factor on all that it reflects
 
     HD LobeClass lobe_class() const { return widths.is_smooth() ? LobeClass::Specular : LobeClass::Glossy; }
-    HD float energy() const { return max_component(fresnel_conductor_average(eta, k)); }
-    HD Gloss gloss(float cos_o) const { return {fresnel_conductor(cos_o, eta, k), widths.energy_width()}; }
+    HD float energy() const { return weight * max_component(fresnel_conductor_average(eta, k)); }
+    HD Gloss gloss(float cos_o) const { return {weight * fresnel_conductor(cos_o, eta, k), widths.energy_width()}; }
     HD_CALL SpecularBranches specular(Vec3 wo) const {
         SpecularBranches branches;
-        if (widths.is_smooth()) branches.mirror = fresnel_conductor(abs(wo.z), eta, k);
+        if (widths.is_smooth()) branches.mirror = weight * fresnel_conductor(abs(wo.z), eta, k);
         return branches;
     }
 
@@ -34,10 +35,10 @@ struct MetalLobe {
                  multiple_scattering_tint(fresnel_conductor_average(eta, k), lost);
             pdf = (1.0f - lost_o) * once.pdf + lost_o * widths.pdf_lost_lobe(i.z);
         }
-        return {transmittance.light * f, transmittance.reach * pdf};
+        return {transmittance.light * (weight * f), transmittance.reach * pdf};
     }
     HD_CALL LobeDraw draw(Vec3 wo, float u_lobe, Vec2 u) const {
-        if (widths.is_smooth()) return draw_mirror(wo, fresnel_conductor(abs(wo.z), eta, k), 1);
+        if (widths.is_smooth()) return draw_mirror(wo, weight * fresnel_conductor(abs(wo.z), eta, k), 1);
         Vec3 wi;
         if (u_lobe < widths.lost(abs(wo.z))) {
             wi = widths.sample_lost_lobe(u);

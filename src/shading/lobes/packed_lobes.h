@@ -98,10 +98,11 @@ struct PackedGlassLobe {
 
 struct PackedMetalLobe {
     Rgb eta, k;
-    PackedMicrofacets microfacets;
+    PackedMicrofacets microfacets; // and 1 - weight
 
-    HD explicit PackedMetalLobe(const MetalLobe& lobe) : eta(lobe.eta), k(lobe.k), microfacets(lobe.widths, 0) {}
-    HD MetalLobe unpacked() const { return {eta, k, microfacets.widths()}; }
+    HD explicit PackedMetalLobe(const MetalLobe& lobe)
+        : eta(lobe.eta), k(lobe.k), microfacets(lobe.widths, 1.0f - lobe.weight) {}
+    HD MetalLobe unpacked() const { return {eta, k, microfacets.widths(), 1.0f - microfacets.more()}; }
 };
 
 static_assert(sizeof(PackedFilmedLobe) == 36 && sizeof(PackedGlassLobe) <= 36 && sizeof(PackedMetalLobe) == 36);

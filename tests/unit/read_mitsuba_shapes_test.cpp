@@ -1,0 +1,315 @@
+// Shapes, emitters and instances of Mitsuba's scenes.
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <cstring>
+
+#include "formats/described/environment.h"
+#include "formats/mitsuba/read_serialized.h"
+#include "formats/mitsuba/shapes.h"
+#include "formats/read_scene.h"
+#include "image/write_image.h"
+#include "math/portable_math.h"
+#include "tests/support/options.h"
+#include "tests/support/thrown_error.h"
+#include "tests/support/write_text.h"
+
+namespace fs = std::filesystem;
+using namespace pertev;
+
+namespace {
+
+Scene load_shapes(const fs::path& folder, const std::string& text, Messages& messages, const char* version = "3.0.0") {
+    return read_scene(
+        test::write_text(folder / "scene.xml", fmt::format("<scene version=\"{}\">{}</scene>", version, text)), {},
+        messages);
+}
+Scene load_shapes(const std::string& text, const char* version = "3.0.0") {
+    Messages messages;
+    Scene scene = load_shapes(test::scratch_folder(), text, messages, version);
+    CHECK(messages.left_out() == std::vector<std::string>{});
+    return scene;
+}
+std::string shape_of(const std::string& type, const std::string& inner = "") {
+    return fmt::format("<shape type=\"{}\">{}</shape>", type, inner);
+}
+std::string named_file(const char* name) { return fmt::format("<string name=\"filename\" value=\"{}\"/>", name); }
+
+/// The box of an instance in the world.
+Bounds3 world_box(const Scene& scene, std::size_t i = 0) {
+    Bounds3 box;
+    const Instance& instance = scene.instances.at(i);
+    for (const uint32_t k : scene.meshes.at(instance.mesh).indices)
+        box.extend(transform_point(instance.world_from_local, scene.meshes[instance.mesh].positions[k]));
+    return box;
+}
+void check_box(const Bounds3& box, Vec3 lo, Vec3 hi) {
+    CHECK(length(box.lo - lo) < 2e-3f);
+    CHECK(length(box.hi - hi) < 2e-3f);
+}
+/// The geometric normal of the first triangle, as its corners run.
+Vec3 front_of(const Mesh& mesh) {
+    const Vec3 a = mesh.positions[mesh.indices[0]], b = mesh.positions[mesh.indices[1]],
+               c = mesh.positions[mesh.indices[2]];
+    return normalize(cross(b - a, c - a));
+}
+
+template <class T>
+void put(std::string& to, T value) {
+    to.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+std::string deflated(const std::string& content) {
+    std::string to(compressBound(content.size()), '\0');
+    uLongf size = to.size();
+    compress(reinterpret_cast<Bytef*>(to.data()), &size, reinterpret_cast<const Bytef*>(content.data()),
+             content.size());
+    to.resize(size);
+    return to;
+}
+/// The content of a serialized mesh: a triangle with coordinates at height z.
+std::string serialized_triangle(bool is_double, bool has_name, float z, uint64_t vertices = 3, uint64_t triangles = 1) {
+    std::string to;
+    put(to, uint32_t((is_double ? 0x2000 : 0x1000) | 2));
+    if (has_name) to += std::string("tri") + '\0';
+    put(to, vertices);
+    put(to, triangles);
+    const auto number = [&](float x) { is_double ? put(to, double(x)) : put(to, x); };
+    for (const float x : {0.0f, 0.0f, z, 1.0f, 0.0f, z, 0.0f, 1.0f, z}) number(x);
+    for (const float x : {0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.25f}) number(x);
+    for (const uint32_t i : {0u, 1u, 2u}) put(to, i);
+    return to;
+}
+std::string serialized_file(uint16_t version, const std::vector<std::string>& meshes) {
+    std::string to;
+    std::vector<uint64_t> offsets;
+    for (const std::string& mesh : meshes) {
+        offsets.push_back(to.size());
+        put(to, uint16_t(0x041C));
+        put(to, version);
+        to += deflated(mesh);
+    }
+    for (const uint64_t offset : offsets) version >= 4 ? put(to, offset) : put(to, uint32_t(offset));
+    put(to, uint32_t(meshes.size()));
+    return to;
+}
+std::span<const std::byte> bytes_of(const std::string& text) {
+    return {reinterpret_cast<const std::byte*>(text.data()), text.size()};
+}
+
+} // namespace
+
+TEST_CASE("mitsuba: analytic shapes have their places and normals") {
+    check_box(world_box(load_shapes(shape_of("rectangle"))), {-1, -1, 0}, {1, 1, 0});
+    check_box(world_box(load_shapes(shape_of("cube"))), {-1, -1, -1}, {1, 1, 1});
+    check_box(world_box(load_shapes(shape_of(
+                  "sphere", "<point name=\"center\" x=\"1\" y=\"2\" z=\"3\"/><float name=\"radius\" value=\".5\"/>"))),
+              {0.5f, 1.5f, 2.5f}, {1.5f, 2.5f, 3.5f});
+    check_box(world_box(load_shapes(shape_of("disk", "<transform name=\"to_world\"><scale value=\"2\"/></transform>"))),
+              {-2, -2, 0}, {2, 2, 0});
+    check_box(world_box(load_shapes(
+                  shape_of("cylinder", "<point name=\"p0\" x=\"0\" y=\"0\" z=\"1\"/><point name=\"p1\" x=\"4\" y=\"0\" "
+                                       "z=\"1\"/><float name=\"radius\" value=\".5\"/>"))),
+              {0, -0.5f, 0.5f}, {4, 0.5f, 1.5f});
+    CHECK(front_of(load_shapes(shape_of("rectangle")).meshes[0]).z == 1);
+    const Scene flipped = load_shapes(shape_of("rectangle", "<boolean name=\"flip_normals\" value=\"true\"/>"));
+    CHECK(front_of(flipped.meshes[0]).z == -1);
+    CHECK(flipped.meshes[0].normals[0].z == -1);
+    const Mesh cube = mitsuba::make_cube();
+    for (std::size_t i = 0; i < cube.indices.size(); i += 3) {
+        const Vec3 a = cube.positions[cube.indices[i]], b = cube.positions[cube.indices[i + 1]],
+                   c = cube.positions[cube.indices[i + 2]];
+        CHECK(dot(cross(b - a, c - a), cube.normals[cube.indices[i]]) == doctest::Approx(4));
+    }
+}
+
+TEST_CASE("mitsuba: texture coordinates of shapes are Mitsuba's") {
+    const auto uv_at = [](const Mesh& mesh, Vec3 p) {
+        for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+            if (length(mesh.positions[i] - p) < 1e-5f) return mesh.uv[0][i];
+        }
+        return Vec2{-1, -1};
+    };
+    const Mesh square = load_shapes(shape_of("rectangle")).meshes[0];
+    CHECK(uv_at(square, {-1, -1, 0}) == Vec2{0, 0});
+    CHECK(uv_at(square, {1, -1, 0}) == Vec2{1, 0});
+    CHECK(uv_at(mitsuba::make_cube(), {1, -1, -1}) == Vec2{0, 1});
+    const Mesh sphere = load_shapes(shape_of("sphere")).meshes[0]; // v begins at +z
+    CHECK(uv_at(sphere, {0, 0, 1}).y == doctest::Approx(0));
+    CHECK(uv_at(sphere, {0, 1, 0}).x == doctest::Approx(0.25));
+    CHECK(uv_at(sphere, {0, 1, 0}).y == doctest::Approx(0.5));
+    const Mesh disk = load_shapes(shape_of("disk")).meshes[0]; // the radius and the angle
+    CHECK(uv_at(disk, {0, 1, 0}).x == doctest::Approx(1));
+    CHECK(uv_at(disk, {0, 1, 0}).y == doctest::Approx(0.25));
+    const Mesh tube = load_shapes(shape_of("cylinder")).meshes[0];
+    CHECK(uv_at(tube, {0, 1, 1}).x == doctest::Approx(0.25));
+    CHECK(uv_at(tube, {0, 1, 1}).y == doctest::Approx(1));
+}
+
+TEST_CASE("mitsuba: files of meshes are smooth unless they shall not be, and v follows flip_tex_coords") {
+    const fs::path folder = test::scratch_folder();
+    test::write_text(folder / "roof.obj", "v 0 0 0\nv 1 0 1\nv 2 0 0\nv 0 1 0\nv 1 1 1\nv 2 1 0\nvt 0 .25\n"
+                                          "f 1/1 2/1 5/1 4/1\nf 2/1 3/1 6/1 5/1\n");
+    test::write_text(folder / "a.ply",
+                     "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                     "property float u\nproperty float v\nelement face 1\nproperty list uchar int vertex_indices\n"
+                     "end_header\n0 0 0 0 .25\n1 0 0 0 .25\n0 1 0 0 .25\n3 0 1 2\n");
+    Messages messages;
+    const std::string flat = "<boolean name=\"face_normals\" value=\"true\"/>",
+                      flip = "<boolean name=\"flip_tex_coords\" value=\"{}\"/>";
+    const Scene scene = load_shapes(
+        folder,
+        shape_of("obj", named_file("roof.obj")) + shape_of("obj", named_file("roof.obj") + flat) +
+            shape_of("obj", named_file("roof.obj") + "<boolean name=\"flip_tex_coords\" value=\"false\"/>") +
+            shape_of("ply", named_file("a.ply")) +
+            shape_of("ply", named_file("a.ply") + "<boolean name=\"flip_tex_coords\" value=\"true\"/>"),
+        messages);
+    CHECK(messages.left_out() == std::vector<std::string>{});
+    REQUIRE(scene.meshes.size() == 5);
+    const Mesh& smooth = scene.meshes[0];
+    REQUIRE(!smooth.normals.empty());
+    for (std::size_t i = 0; i < smooth.positions.size(); ++i) {
+        if (smooth.positions[i].x == 1) CHECK(smooth.normals[i].z == doctest::Approx(1)); // the ridge
+    }
+    CHECK(scene.meshes[1].normals.empty());
+    CHECK(smooth.uv[0][0].y == 0.75f);
+    CHECK(scene.meshes[2].uv[0][0].y == 0.25f);
+    CHECK(scene.meshes[3].uv[0][0].y == 0.25f);
+    CHECK(scene.meshes[4].uv[0][0].y == 0.75f);
+}
+
+TEST_CASE("mitsuba: equal shapes share a mesh, groups are instanced") {
+    const Scene scene = load_shapes("<shape type=\"shapegroup\" id=\"pair\">" +
+                                    shape_of("sphere", "<point name=\"center\" x=\"5\" y=\"0\" z=\"0\"/>") +
+                                    shape_of("sphere") + "</shape>" +
+                                    "<shape type=\"instance\"><ref id=\"pair\"/><transform "
+                                    "name=\"to_world\"><translate y=\"10\"/></transform></shape>"
+                                    "<shape type=\"instance\"><ref id=\"pair\"/></shape>" +
+                                    shape_of("sphere"));
+    CHECK(scene.meshes.size() == 1);
+    REQUIRE(scene.instances.size() == 5);
+    check_box(world_box(scene, 0), {4, 9, -1}, {6, 11, 1});
+    check_box(world_box(scene, 4), {-1, -1, -1}, {1, 1, 1});
+}
+
+TEST_CASE("mitsuba: a mirrored file without normals has its front where its mirrored corners say") {
+    const fs::path folder = test::scratch_folder();
+    test::write_text(folder / "t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    Messages messages;
+    const Scene scene = load_shapes(
+        folder,
+        shape_of("obj", named_file("t.obj") + "<transform name=\"to_world\"><scale x=\"-1\"/></transform>") +
+            shape_of("rectangle", "<transform name=\"to_world\"><scale x=\"-1\"/></transform>"),
+        messages);
+    CHECK(front_of(scene.meshes[0]).z == -1);
+    CHECK(front_of(scene.meshes[1]).z == 1);
+}
+
+TEST_CASE("mitsuba: serialized meshes of both versions, by their number, in floats and doubles") {
+    const std::string three =
+        serialized_file(3, {serialized_triangle(false, false, 1), serialized_triangle(true, false, 2)});
+    const auto first = mitsuba::read_serialized(bytes_of(three), 0, "m.serialized");
+    CHECK(first.mesh.positions[1] == Vec3{1, 0, 1});
+    CHECK(first.exact.empty());
+    const auto second = mitsuba::read_serialized(bytes_of(three), 1, "m.serialized");
+    CHECK(second.exact[2].z == 2);
+    CHECK(second.mesh.uv[0][2].y == 0.25f);
+    CHECK(second.mesh.indices == std::vector<uint32_t>{0, 1, 2});
+    const fs::path folder = test::scratch_folder();
+    test::write_text(folder / "m.serialized",
+                     serialized_file(4, {serialized_triangle(false, true, 1), serialized_triangle(false, true, 7)}));
+    Messages messages;
+    const Scene scene = load_shapes(
+        folder, shape_of("serialized", named_file("m.serialized") + "<integer name=\"shapeIndex\" value=\"1\"/>"),
+        messages, "0.6.0");
+    REQUIRE(scene.instances.size() == 1);
+    check_box(world_box(scene), {0, 0, 7}, {1, 1, 7});
+    CHECK(scene.meshes[0].uv[0][2].y == 0.25f);
+}
+
+TEST_CASE("mitsuba: damaged and untrue serialized meshes are refused") {
+    const auto refuses = [](const std::string& bytes, uint32_t index = 0) {
+        const auto error = test::thrown_error([&] { (void)mitsuba::read_serialized(bytes_of(bytes), index, "m"); });
+        return error && (error->code() == ErrorCode::BadInput || error->code() == ErrorCode::OverLimit);
+    };
+    const std::string good = serialized_file(4, {serialized_triangle(false, true, 1)});
+    CHECK(!refuses(good));
+    CHECK(refuses(good, 1));
+    for (std::size_t size = 0; size < good.size(); ++size) CHECK(refuses(good.substr(0, size)));
+    CHECK(refuses(serialized_file(4, {serialized_triangle(false, true, 1, uint64_t(1) << 60, 1)})));
+    CHECK(refuses(serialized_file(4, {serialized_triangle(false, true, 1, 3, uint64_t(1) << 62)})));
+    CHECK(refuses(serialized_file(5, {serialized_triangle(false, true, 1)})));
+    std::string wrong = good;
+    wrong[good.size() - 12] = '\x7f'; // the offset of the mesh
+    CHECK(refuses(wrong));
+    std::string torn = good;
+    torn[20] = static_cast<char>(torn[20] ^ 0x55);
+    CHECK((refuses(torn) || !mitsuba::read_serialized(bytes_of(torn), 0, "m").mesh.indices.empty()));
+}
+
+TEST_CASE("mitsuba: point, spot and directional emitters") {
+    const Scene scene =
+        load_shapes(shape_of("rectangle") + "<emitter type=\"point\"><point name=\"position\" x=\"1\" y=\"2\" "
+                                            "z=\"3\"/><rgb name=\"intensity\" value=\"4 5 6\"/></emitter>"
+                                            "<emitter type=\"spot\"><transform name=\"to_world\"><lookat "
+                                            "origin=\"0,0,5\" target=\"0,0,0\" up=\"0,1,0\"/></transform>"
+                                            "<float name=\"cutoff_angle\" value=\"30\"/></emitter>"
+                                            "<emitter type=\"directional\"><vector name=\"direction\" x=\"0\" y=\"-2\" "
+                                            "z=\"0\"/><rgb name=\"irradiance\" value=\"7\"/></emitter>");
+    REQUIRE(scene.lights.size() == 3);
+    CHECK(scene.lights[0].position == Vec3{1, 2, 3});
+    CHECK(scene.lights[0].intensity == Rgb{4, 5, 6});
+    CHECK(scene.lights[1].direction.z == doctest::Approx(-1));
+    CHECK(scene.lights[1].position.z == doctest::Approx(5));
+    CHECK(scene.lights[1].cos_outer == doctest::Approx(cos(kPi / 6)));
+    CHECK(scene.lights[1].cos_inner == doctest::Approx(cos(kPi / 8))); // three quarters of the angle
+    CHECK(scene.lights[2].direction == Vec3{0, -1, 0});
+    CHECK(scene.lights[2].intensity == grey(7));
+    Messages messages;
+    (void)load_shapes(test::scratch_folder(),
+                      shape_of("rectangle") + "<emitter type=\"sunsky\"/><emitter type=\"spott\"/>", messages);
+    REQUIRE(messages.left_out().size() == 2);
+    CHECK(messages.left_out()[1].find("did you mean \"spot\"?") != std::string::npos);
+}
+
+TEST_CASE("mitsuba: a constant emitter and an envmap are the environment") {
+    const Scene constant = load_shapes(shape_of("rectangle") +
+                                       "<emitter type=\"constant\"><rgb name=\"radiance\" value=\"2\"/></emitter>");
+    REQUIRE(constant.environment);
+    CHECK(constant.environment->scale == grey(2));
+    const fs::path folder = test::scratch_folder();
+    Image picture{.width = 8, .height = 4, .channels = 3, .pixels = {}};
+    for (int i = 0; i < 32; ++i) {
+        for (int c = 0; c < 3; ++c) picture.pixels.push_back(static_cast<float>(i % 8 == 2 || i % 8 == 1 ? 10 : 1));
+    }
+    write_image(folder / "sky.exr", picture);
+    // The bright columns are at u = 0.25, which is +x for Mitsuba.
+    const auto brightest = [&](const std::string& transform) {
+        Messages messages;
+        const Scene scene = load_shapes(folder,
+                                        shape_of("rectangle") + "<emitter type=\"envmap\">" + named_file("sky.exr") +
+                                            "<float name=\"scale\" value=\"3\"/>" + transform + "</emitter>",
+                                        messages);
+        const Image& image = scene.environment->image;
+        CHECK(scene.environment->scale == grey(3));
+        uint32_t most = 0;
+        for (uint32_t x = 0; x + 1 < image.width; ++x) {
+            const auto pair = [&](uint32_t at) {
+                return image.pixels[3 * (image.width + at)] + image.pixels[3 * (image.width + at + 1)];
+            };
+            if (pair(x) > pair(most)) most = x;
+        }
+        return most + 1; // the border between the brightest two columns, of 8
+    };
+    // The upper rows differ: the second row of ours, at 67.5 degrees from +y, is 9/8 rows of Mitsuba's from its first.
+    for (std::size_t i = 0; i < 3 * 8; ++i) picture.pixels[i] = 0;
+    write_image(folder / "rows.exr", picture);
+    Messages messages;
+    const Scene rows = load_shapes(
+        folder, shape_of("rectangle") + "<emitter type=\"envmap\">" + named_file("rows.exr") + "</emitter>", messages);
+    CHECK(rows.environment->image.pixels[0] == doctest::Approx(3 / 8.0));
+    CHECK(rows.environment->image.pixels[3 * 8] == doctest::Approx(1));
+    CHECK(brightest("") == 6); // +x is at three quarters of our panoramas
+    CHECK(brightest("<transform name=\"to_world\"><rotate y=\"1\" angle=\"90\"/></transform>") == 4); // +x turns to -z
+}
