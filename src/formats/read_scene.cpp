@@ -36,6 +36,7 @@ const std::array kReaders = {
     FormatReader{".stl", read_stl, false, false},    FormatReader{".gltf", read_gltf, true, true},
     FormatReader{".glb", read_gltf, true, true},     FormatReader{".pbrt", read_pbrt, true, true},
     FormatReader{".pbrt.gz", read_pbrt, true, true}, FormatReader{".xml", read_mitsuba, true, true},
+    FormatReader{".ply.gz", read_ply, false, false},
 };
 
 /// Returns the reader for a file's extension, in front of .gz if it is gzip'd; null if there is none.

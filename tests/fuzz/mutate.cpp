@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <random>
+#include <string_view>
 
 #include "base/read_file.h"
 #include "base/stopwatch.h"
@@ -28,7 +29,20 @@ extern "C" void keep_input(int number) {
     std::raise(number);
 }
 
-/// Changes a few bytes: flipped bits, other values, digits of numbers in text, parts that are missing, twice or from
+bool is_digit(std::byte b) { return b >= std::byte('0') && b <= std::byte('9'); }
+
+/// Replaces the next number of a text from `at` on, without its sign and fraction, by one that is hardly a number.
+void put_extreme(std::mt19937_64& random, Bytes& bytes, std::size_t at) {
+    constexpr std::string_view kExtremes[] = {"1e300",  "-1e300", "1e39", "nan",       "1e999",
+                                              "1e-300", "-1",     "0",    "2147483648"};
+    const auto first = std::find_if(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.end(), is_digit);
+    const std::string_view text = kExtremes[random() % std::size(kExtremes)];
+    const auto* const from = reinterpret_cast<const std::byte*>(text.data());
+    const auto last = std::find_if_not(first, bytes.end(), is_digit);
+    bytes.insert(bytes.erase(first, last), from, from + text.size());
+}
+
+/// Changes a few bytes: flipped bits, other values, digits and numbers in text, parts that are missing, twice or from
 /// elsewhere.
 void mutate(std::mt19937_64& random, Bytes& bytes) {
     constexpr uint8_t kValues[] = {0, 1, 0x7f, 0x80, 0xff, '0', '9', '-', '"', '[', '}', 'e'};
@@ -36,7 +50,7 @@ void mutate(std::mt19937_64& random, Bytes& bytes) {
         const std::size_t at = random() % bytes.size(), to = random() % bytes.size();
         const std::size_t length = std::min<std::size_t>(1 + random() % 40, bytes.size() - std::max(at, to));
         const auto first = bytes.begin() + static_cast<std::ptrdiff_t>(at);
-        switch (random() % 6) {
+        switch (random() % 7) {
         case 0:
             bytes[at] ^= std::byte(1u << random() % 8);
             break;
@@ -49,6 +63,9 @@ void mutate(std::mt19937_64& random, Bytes& bytes) {
                 bytes[i] = std::byte('0' + random() % 10);
                 break;
             }
+            break;
+        case 6:
+            put_extreme(random, bytes, at);
             break;
         case 3:
             bytes.erase(first, first + static_cast<std::ptrdiff_t>(length));

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <doctest/doctest.h>
 
 #include "formats/described/environment.h"
@@ -141,6 +143,40 @@ TEST_CASE("pbrt: lights without a size") {
     check_near(scene.lights[3].intensity, {3, 3, 3});
     check_near(scene.lights[4].direction, {0, 0, 1});
     check_near(scene.lights[4].intensity, {7, 7, 7});
+}
+
+TEST_CASE("pbrt: a light whose strength or place is no finite number is left out alone, at its line") {
+    for (const std::string light : {"LightSource \"point\" \"float scale\" 1e30 \"rgb I\" [1e30 1 1]",
+                                    "LightSource \"point\" \"float power\" 1e300 \"rgb I\" [0 1 1]",
+                                    "LightSource \"point\" \"point3 from\" [0 0 5e12]",
+                                    "Scale 1e30 1e30 1e30 LightSource \"spot\" \"point3 from\" [0 0 1e30]",
+                                    "LightSource \"distant\" \"float illuminance\" 1e300",
+                                    "LightSource \"infinite\" \"float scale\" 1e30 \"rgb L\" [1e30 1 1]",
+                                    "LightSource \"infinite\" \"float illuminance\" 1e300",
+                                    "AreaLightSource \"diffuse\" \"float scale\" 1e30 \"rgb L\" [1e30 1 1]"}) {
+        CAPTURE(light);
+        Messages messages;
+        const Scene scene = load_lit("WorldBegin LightSource \"distant\"\nAttributeBegin\n" + light +
+                                         "\nShape \"disk\" AttributeEnd\n" + kFloor,
+                                     messages);
+        REQUIRE_FALSE(scene.instances.empty());
+        CHECK(scene.lights.size() == 1);
+        CHECK(is_black(scene.environment->scale));
+        for (const Material& material : scene.materials) CHECK(is_black(material.emission));
+        CHECK(std::ranges::any_of(messages.all(), [](const Message& message) {
+            return message.is_left_out && message.remark.location && message.remark.location->line == 3;
+        }));
+    }
+    // The largest sum of two that are finite, and a power that fits no float.
+    Messages messages;
+    const Scene scene = load_lit("WorldBegin LightSource \"infinite\" \"rgb L\" [3e38 0 0]\nLightSource \"infinite\" "
+                                 "\"rgb L\" [3e38 0 0]\nAreaLightSource \"diffuse\" \"rgb L\" [0 1 0] \"float power\" "
+                                 "1e300\n" +
+                                     kFloor,
+                                 messages);
+    CHECK(scene.environment->scale == Rgb{3e38f, 0, 0});
+    CHECK(scene.materials[scene.instances[0].material].emission == Rgb{0, 0x1p40f, 0});
+    CHECK(messages.left_out().size() == 1);
 }
 
 TEST_CASE("pbrt: nothing is made up for a file without light, and infinite lights add up") {

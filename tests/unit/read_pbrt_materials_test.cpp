@@ -311,6 +311,39 @@ TEST_CASE("pbrt: alpha of a shape, bumps and normal maps") {
     CHECK_FALSE(of(4).normal_texture.is_srgb);
 }
 
+TEST_CASE("pbrt: a texture that is defined again has its new value as alpha from there on") {
+    const OneMaterial read = load_pbrt_material("Texture \"t\" \"float\" \"constant\" \"float value\" 0.5\n"
+                                                "Shape \"sphere\" \"texture alpha\" \"t\"\n"
+                                                "Texture \"t\" \"float\" \"constant\" \"float value\" 0.25\n"
+                                                "Shape \"sphere\" \"texture alpha\" \"t\"\n");
+    REQUIRE(read.scene.instances.size() == 3);
+    CHECK(read.scene.materials[read.scene.instances[0].material].alpha == 0.5f);
+    CHECK(read.scene.materials[read.scene.instances[1].material].alpha == 0.25f);
+}
+
+TEST_CASE("pbrt: the value of a missing picture is inverted as its texels would be") {
+    const auto color = [](const char* more) {
+        return load_pbrt_material(
+                   std::string("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"no.png\" ") + more +
+                   " Material \"diffuse\" \"texture reflectance\" \"t\"")
+            .material.base_color;
+    };
+    CHECK(color("") == grey(0.5f));
+    CHECK(color("\"bool invert\" true") == grey(0.5f));
+    CHECK(color("\"bool invert\" true \"float scale\" 0.5") == grey(0.75f));
+}
+
+TEST_CASE("pbrt: numbers of a material that fit no float are kept within their range, and cost no more") {
+    const OneMaterial read = load_pbrt_material("Material \"disney\"\n\"float metallic\" 1e300");
+    CHECK(read.material.metallic == 1);
+    CHECK(read.messages.left_out().size() == 1);
+    const OneMaterial mapped = load_pbrt_material(
+        "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"a.exr\" \"float uscale\" 1e30\n"
+        "Material \"diffuse\" \"texture reflectance\" \"t\"");
+    CHECK(mapped.material.base_color_texture.m00 == 1);
+    CHECK(mapped.messages.left_out().size() == 1);
+}
+
 TEST_CASE("pbrt: triangles without texture coordinates have those of pbrt under a texture") {
     const std::string flat =
         "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 1 1 0 0 1 0] \"integer indices\" [0 1 2 0 2 3]\n";

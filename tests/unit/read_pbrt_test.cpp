@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include <fmt/format.h>
 #include <zlib.h>
 
 #include "formats/files/closest_name.h"
@@ -79,6 +80,10 @@ TEST_CASE("pbrt: tokens are words, quoted texts and brackets with their lines, w
     CHECK(tokens.next().is_word("next"));
     CHECK(tokens.next().kind == TokenKind::End);
     CHECK(pbrt::unescaped("C:\\textures\\a.png") == "C:\\textures\\a.png");
+    pbrt::Tokens cut("\"a\\\nnext"); // a backslash does not take the end of a line with it
+    CHECK(cut.next().is_open_ended);
+    CHECK(cut.peek().is_word("next"));
+    CHECK(cut.peek().line == 2);
 }
 
 TEST_CASE("the closest name is the one with the fewest changed letters, and far ones are none") {
@@ -265,6 +270,8 @@ TEST_CASE("pbrt: a gzip'd PLY file is read, and a damaged one costs its shape al
     CHECK(scene.meshes[0].triangle_count() == 1);
     REQUIRE(messages.left_out().size() == 1);
     CHECK(messages.left_out()[0].find("b.ply.gz") != std::string::npos);
+    CHECK(read_scene(folder / "a.ply.gz", {}, messages).meshes.at(0).triangle_count() == 1); // by itself
+    CHECK_FALSE(defines_space(folder / "a.ply.gz"));
 }
 
 TEST_CASE("pbrt: files that include themselves, or grow without reason, end") {
@@ -282,6 +289,37 @@ TEST_CASE("pbrt: files that include themselves, or grow without reason, end") {
     crowd += "ObjectEnd\n";
     for (int i = 0; i < 3000; ++i) crowd += "ObjectInstance \"a\"\n";
     CHECK(test::thrown_error([&] { (void)load_pbrt(crowd, messages); })->code() == ErrorCode::OverLimit);
+}
+
+TEST_CASE("pbrt: lists of attributes, which each statement copies, have a limit together") {
+    std::string list;
+    for (int i = 0; i < 300; ++i) list += " 0.5";
+    const auto attribute = [&](const char* name) {
+        return fmt::format("Attribute \"shape\" \"float {}\" [{} ]\n", name, list);
+    };
+    Messages messages;
+    const Scene scene = load_pbrt("WorldBegin\n" + attribute("alpha") + attribute("b") +
+                                      "Attribute \"shape\" \"string c\" \"" + std::string(3000, 'c') + "\"\n" + kFlat,
+                                  messages);
+    REQUIRE(scene.instances.size() == 1);
+    CHECK(scene.materials[scene.instances[0].material].alpha == 0.5f); // the first is kept
+    CHECK(left_out_at(messages, 2).empty());
+    CHECK_FALSE(left_out_at(messages, 3).empty());
+    CHECK_FALSE(left_out_at(messages, 4).empty());
+}
+
+TEST_CASE("pbrt: a camera without a usable view is left out alone") {
+    for (const char* view : {"LookAt 0 0 5e12 0 0 0 0 1 0\nCamera \"perspective\"\n",
+                             "Camera \"perspective\" \"float screenwindow\"\n[-1e30 1e30 -1e30 1e30]\n",
+                             "Camera \"perspective\"\n\"float fov\" 1e-300\n",
+                             "Camera \"orthographic\"\n\"float screenwindow\" [0 1e-300 0 1e-300]\n"}) {
+        CAPTURE(view);
+        Messages messages;
+        const Scene scene = load_pbrt(view + ("WorldBegin\n" + kFlat), messages);
+        CHECK(scene.instances.size() == 1);
+        CHECK(scene.cameras.empty());
+        CHECK(messages.left_out().size() == 1);
+    }
 }
 
 TEST_CASE("pbrt: files outside of the allowed folders are not read") {
@@ -315,6 +353,9 @@ TEST_CASE("gzip: all members are read, and a damaged or multiplied file is refus
         CHECK(test::is_at(test::thrown_error([&] { (void)gunzip(bytes_of(bad), "a.gz"); }), ErrorCode::BadInput,
                           {"a.gz"}));
     }
+    CHECK(gunzip(bytes_of(two), "a.gz", 3'000'000).size() == 3'000'000);
+    CHECK(test::is_at(test::thrown_error([&] { (void)gunzip(bytes_of(two), "a.gz", 2'999'999); }), ErrorCode::OverLimit,
+                      {"a.gz"}));
 }
 
 TEST_CASE("pbrt: a scene far from its origin keeps its precision") {

@@ -10,6 +10,7 @@
 #include "formats/described/environment.h"
 #include "formats/described/image_budget.h"
 #include "formats/described/transforms.h"
+#include "formats/described/usable_values.h"
 #include "scene/scene_origin.h"
 
 namespace pertev::described {
@@ -54,6 +55,7 @@ struct Assembly {
     using MaterialKey = std::array<uint32_t, 4>;
     const Parts& parts;
     Scene& scene;
+    Sink& sink;
     std::map<MaterialKey, uint32_t> numbers;
     std::vector<Surface> surfaces; // one to one with the materials
 
@@ -71,35 +73,49 @@ struct Assembly {
         if (shape.area_light) add_emission(parts.area_lights[*shape.area_light], shape, of, mesh, surface);
         if (shape.alpha) set_alpha(surface, parts.alphas[*shape.alpha]);
         if (surface.has_heights) surface.material.normal_texture = surface.heights.ref;
+        keep_usable(surface.material, of.location, sink);
         scene.materials.push_back(surface.material);
         surfaces.push_back(std::move(surface));
         return known->second;
     }
 
-    static void add_emission(const AreaLight& light, const Placed& shape, const ShapeMesh& of, const Mesh& mesh,
-                             Surface& surface) {
+    void add_emission(const AreaLight& light, const Placed& shape, const ShapeMesh& of, const Mesh& mesh,
+                      Surface& surface) const {
         Material& material = surface.material;
         Rgb radiance = light.radiance;
         if (light.power > 0) {
             const double area = world_area(mesh, compose(shape.world_from_mesh, of.shape_from_mesh));
             const double shapes = of.is_quadric ? 1 : mesh.triangle_count();
             const double radiance_of_1 = area * 3.14159265358979323846 * (light.is_two_sided ? 2 : 1);
-            radiance = radiance_of_1 > 0 ? static_cast<float>(light.power * shapes / radiance_of_1) * radiance : Rgb{};
+            const double scale = radiance_of_1 > 0 ? light.power * shapes / radiance_of_1 : 0;
+            radiance = static_cast<float>(std::min(scale, static_cast<double>(kMaxSampleValue))) * radiance;
         }
         set_color(surface, &MaterialParameters::emission, &MaterialParameters::emission_texture, constant(radiance));
         const auto limited = [](float x) { return min(x, kMaxSampleValue); };
         material.emission = {limited(radiance.r), limited(radiance.g), limited(radiance.b)};
+        if (material.emission != radiance)
+            sink.warn({light.location, "the radiance of an area light is kept within 2^40"});
         material.two_sided_emission = light.is_two_sided;
         if (light.image.has_image()) material.emission_texture = light.image.ref;
     }
 };
 
-void set_lights(const Parts& parts, const DoubleTransform& scene_from_file, Scene& scene) {
+void set_lights(const Parts& parts, const DoubleTransform& scene_from_file, Sink& sink, Scene& scene) {
     const Transform turned = to_float(without_translation(scene_from_file));
     for (const PlacedLight& placed : parts.lights) {
         Light light = placed.light;
         light.position = to_float(transform_point(scene_from_file, placed.position));
-        light.direction = transform_vector(turned, light.direction);
+        light.direction = normalize_safely(transform_vector(turned, light.direction));
+        if (!is_light(light.intensity)) {
+            leave_out_strength("a", placed.location, sink);
+            continue;
+        }
+        const LightParts has = parts_of(light.kind);
+        if ((has.position && !is_near(light.position)) || (has.direction && !is_finite(light.direction))) {
+            sink.leave_out(
+                {placed.location, "a light is left out, because it has no direction or lies beyond 2^40 metres"});
+            continue;
+        }
         scene.lights.push_back(std::move(light));
     }
 }
@@ -120,6 +136,11 @@ void set_environment(const Parts& parts, const DoubleTransform& scene_from_file,
         }
         auto made = make_environment(light, local_from_scene, sink);
         if (!made) continue;
+        const Rgb before = scene.environment ? scene.environment->scale : Rgb{};
+        if (!is_light(made->scale) || !is_light(before + made->scale)) {
+            leave_out_strength("an infinite", light.location, sink);
+            continue;
+        }
         if (!scene.environment) {
             scene.environment = *std::move(made);
         } else {
@@ -159,7 +180,7 @@ Scene assemble(Parts parts, const DoubleTransform& scene_from_world, uint64_t fi
         if (has_textures[i] && shape.mesh.uv[0].empty()) give_coordinates(parts.missing_coordinates, shape);
     }
 
-    Assembly assembly{.parts = parts, .scene = scene, .numbers = {}, .surfaces = {}};
+    Assembly assembly{.parts = parts, .scene = scene, .sink = sink, .numbers = {}, .surfaces = {}};
     std::vector<std::optional<uint32_t>> numbers(parts.meshes.size()); // meshes in the scene
     std::vector<std::size_t> bumpy;                                    // the first shape of each material
     for (std::size_t i = 0; i < parts.placed.size(); ++i) {
@@ -204,9 +225,10 @@ Scene assemble(Parts parts, const DoubleTransform& scene_from_world, uint64_t fi
         const ShapeMesh& mesh = parts.meshes[shape.mesh];
         bumps.set(surfaces[i]->heights, scene.meshes[*numbers[shape.mesh]],
                   compose(shape.world_from_mesh, mesh.shape_from_mesh), scene.materials[i]);
+        keep_usable(scene.materials[i], mesh.location, sink);
     }
     finish_images(surfaces, parts.made, budget, scene);
-    set_lights(parts, scene_from_file, scene);
+    set_lights(parts, scene_from_file, sink, scene);
     set_environment(parts, scene_from_file, sink, scene);
     return scene;
 }

@@ -16,6 +16,15 @@ void Parameters::add_missing(const Parameters& others) {
     }
 }
 
+std::size_t Parameters::bytes() const {
+    std::size_t sum = 0;
+    for (const Parameter& parameter : all_) {
+        sum += parameter.name.size() + parameter.numbers.size() * sizeof(double);
+        for (const std::string& text : parameter.texts) sum += sizeof(double) + text.size();
+    }
+    return sum;
+}
+
 bool Parameters::contains(std::string_view name) const {
     return std::ranges::find(all_, name, &Parameter::name) != all_.end();
 }

@@ -74,7 +74,8 @@ public:
     const std::vector<Parameter>& all() const { return all_; }
     /// Returns whether there is one, without looking it up.
     bool contains(std::string_view name) const;
-    std::size_t size() const { return all_.size(); }
+    /// Returns what the values of all take.
+    std::size_t bytes() const;
 
     // Values by name; `missing` if there is none. One of another type is left out with a warning.
     double number(std::string_view name, double missing, Sink& sink);

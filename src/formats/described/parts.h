@@ -32,6 +32,7 @@ struct ShapeMesh {
 
 /// The emission of shapes.
 struct AreaLight {
+    FileLocation location;
     Rgb radiance;       // W/(sr m2), times the image
     TextureValue image; // if it has one
     bool is_two_sided = false;
@@ -58,6 +59,7 @@ struct InfiniteLight {
 struct PlacedLight {
     Light light;
     DoubleVec3 position;
+    FileLocation location;
 };
 
 /// A shape, placed once. The members are indices into Parts.

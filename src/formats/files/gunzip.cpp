@@ -25,10 +25,10 @@ struct Inflating {
 };
 
 /// Inflates what begins in front of `bytes`; of gzip all members.
-std::vector<std::byte> inflate_all(std::span<const std::byte> bytes, int window_bits, const std::string& file) {
+std::vector<std::byte> inflate_all(std::span<const std::byte> bytes, int window_bits, const std::string& file,
+                                   uint64_t limit) {
     const bool has_members = window_bits > MAX_WBITS;
     constexpr std::size_t kPiece = std::size_t(1) << 20;
-    const uint64_t limit = justified_bytes(kFreeMeshBytes, bytes.size());
     Inflating inflating(window_bits, file);
     z_stream& stream = inflating.stream;
     std::vector<std::byte> content;
@@ -38,10 +38,6 @@ std::vector<std::byte> inflate_all(std::span<const std::byte> bytes, int window_
     int state = Z_OK;
     while (state != Z_STREAM_END || (has_members && left > 0 && is_gzip(bytes.last(left)))) {
         if (state == Z_STREAM_END) inflateReset(&stream); // a further member
-        if (size > limit) {
-            throw Error(ErrorCode::OverLimit, FileLocation{file},
-                        fmt::format("the file unfolds to over {} MiB, more than its size justifies", limit >> 20));
-        }
         if (content.size() < size + kPiece) content.resize(std::max(2 * content.size(), kPiece));
         stream.next_in = const_cast<Bytef*>(in + (bytes.size() - left)); // zlib does not write to it
         const auto given = static_cast<uInt>(std::min(left, kPiece));
@@ -52,6 +48,10 @@ std::vector<std::byte> inflate_all(std::span<const std::byte> bytes, int window_
         state = inflate(&stream, Z_NO_FLUSH);
         left -= given - stream.avail_in;
         size += room - stream.avail_out;
+        if (size > limit) {
+            throw Error(ErrorCode::OverLimit, FileLocation{file},
+                        fmt::format("the file unfolds to over {} MiB, more than its size justifies", limit >> 20));
+        }
         const bool is_stuck = given == stream.avail_in && room == stream.avail_out;
         if ((state != Z_OK && state != Z_STREAM_END) || (state == Z_OK && is_stuck)) {
             throw Error(
@@ -70,11 +70,15 @@ bool is_gzip(std::span<const std::byte> bytes) {
 }
 
 std::vector<std::byte> gunzip(std::span<const std::byte> bytes, const std::string& file) {
-    return inflate_all(bytes, 16 + MAX_WBITS, file);
+    return gunzip(bytes, file, justified_bytes(kFreeMeshBytes, bytes.size()));
+}
+
+std::vector<std::byte> gunzip(std::span<const std::byte> bytes, const std::string& file, uint64_t limit) {
+    return inflate_all(bytes, 16 + MAX_WBITS, file, limit);
 }
 
 std::vector<std::byte> inflate_zlib(std::span<const std::byte> bytes, const std::string& file) {
-    return inflate_all(bytes, MAX_WBITS, file);
+    return inflate_all(bytes, MAX_WBITS, file, justified_bytes(kFreeMeshBytes, bytes.size()));
 }
 
 std::vector<std::byte> read_unzipped(const std::filesystem::path& path) {

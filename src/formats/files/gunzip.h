@@ -3,6 +3,7 @@
 // Decompresses gzip (RFC 1952) and zlib's own format (RFC 1950).
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -14,7 +15,9 @@ namespace pertev {
 bool is_gzip(std::span<const std::byte> bytes);
 
 /// Returns the content of a gzip'd file, of all its members. `file` is for messages. Throws Error(BadInput) if it is
-/// damaged or cut off, and Error(OverLimit) if it unfolds to more than its size justifies (base/limits.h).
+/// damaged or cut off, and Error(OverLimit) if it unfolds to more than `limit` bytes; without one, to more than its
+/// size justifies (base/limits.h).
+std::vector<std::byte> gunzip(std::span<const std::byte> bytes, const std::string& file, uint64_t limit);
 std::vector<std::byte> gunzip(std::span<const std::byte> bytes, const std::string& file);
 
 /// Returns the content of one stream of zlib in front of `bytes`. Throws as gunzip().

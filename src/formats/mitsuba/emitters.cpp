@@ -1,4 +1,5 @@
 #include "formats/mitsuba/emitters.h"
+#include "formats/described/usable_values.h"
 
 #include <algorithm>
 #include <array>
@@ -31,6 +32,7 @@ void add_light(Object& emitter, Reading& reading) {
     light.name = emitter.id;
     light.origin = fmt::format("{}:{}", emitter.location().file, emitter.location().line);
     placed.position = to_world.translation;
+    placed.location = emitter.location();
     const bool is_directional = emitter.type == "directional";
     light.intensity =
         read_color(emitter, is_directional ? "irradiance" : "intensity", ColorUse::Light, grey(1), reading);
@@ -55,14 +57,7 @@ void add_light(Object& emitter, Reading& reading) {
     }
     parameters.ignore({"sampling_weight"});
     parameters.leave_out_unknown(sink);
-    const DoubleVec3 p = placed.position;
-    light.position = to_float(p);
-    if (is_finite(light.position) && is_finite(light.direction)) {
-        reading.parts.lights.push_back(std::move(placed));
-    } else {
-        sink.leave_out(
-            {emitter.location(), fmt::format("{} without a position or direction is left out", parameters.what())});
-    }
+    reading.parts.lights.push_back(std::move(placed));
 }
 
 void add_infinite_light(Object& emitter, Reading& reading) {
@@ -114,6 +109,7 @@ std::optional<AreaLight> read_area_light(Object& emitter, Textures& textures, Re
         return std::nullopt;
     }
     AreaLight light;
+    light.location = emitter.location();
     const TextureValue radiance = textures.color(emitter, "radiance", ColorUse::Light, grey(1));
     light.radiance = radiance.factor;
     if (radiance.has_image()) {
@@ -125,7 +121,9 @@ std::optional<AreaLight> read_area_light(Object& emitter, Textures& textures, Re
     }
     emitter.parameters.ignore({"sampling_weight"});
     emitter.parameters.leave_out_unknown(sink);
-    return light;
+    if (is_light(light.radiance)) return light;
+    leave_out_strength("an area", emitter.location(), sink);
+    return std::nullopt;
 }
 
 } // namespace pertev::mitsuba

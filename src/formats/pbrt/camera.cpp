@@ -9,6 +9,7 @@
 #include "base/limits.h"
 #include "base/message_text.h"
 #include "formats/described/transforms.h"
+#include "formats/described/usable_values.h"
 #include "formats/files/closest_name.h"
 #include "math/portable_math.h"
 
@@ -80,10 +81,11 @@ void suggest_settings(View& view, const Context& context, Scene& scene) {
     Sink& sink = context.sink;
     if (view.sampler) {
         Parameters& sampler = view.sampler->parameters;
+        const auto many = [](int64_t n) { return std::min<int64_t>(n, kMaxSamplesPerPixel); };
         const int64_t across = sampler.integer("xsamples", 0, sink), down = sampler.integer("ysamples", 0, sink);
-        const int64_t samples = across > 0 && down > 0 ? across * down : sampler.integer("pixelsamples", 0, sink);
-        if (samples > 0)
-            scene.suggested.push_back({"spp", fmt::format("{}", std::min<int64_t>(samples, kMaxSamplesPerPixel))});
+        const int64_t samples =
+            across > 0 && down > 0 ? many(across) * many(down) : sampler.integer("pixelsamples", 0, sink);
+        if (samples > 0) scene.suggested.push_back({"spp", fmt::format("{}", many(samples))});
     }
     int64_t depth = 5; // pbrt renders this depth without one
     if (view.integrator) depth = std::max<int64_t>(view.integrator->parameters.integer("maxdepth", depth, sink), 0);
@@ -179,6 +181,10 @@ std::optional<Camera> make_camera(View& view, const FilmSize& size, DoubleVec3 o
     }
     parameters.ignore({"shutteropen", "shutterclose"});
     parameters.leave_out_unknown(sink);
+    if (const std::string fault = fault_of(camera); !fault.empty()) {
+        sink.leave_out({parameters.location(), fmt::format("the camera is left out, because {}", fault)});
+        return std::nullopt;
+    }
     return camera;
 }
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/message_text.h"
+#include "formats/described/usable_values.h"
 #include "formats/files/closest_name.h"
 #include "formats/pbrt/colors.h"
 #include "math/portable_math.h"
@@ -52,6 +53,7 @@ std::optional<AreaLight> read_area_light(const std::string& type, Parameters& pa
         return std::nullopt;
     }
     AreaLight light;
+    light.location = parameters.location();
     light.radiance = scale_of(parameters, context) * light_color(parameters, "L", grey(1), context);
     light.is_two_sided = parameters.truth("twosided", false, context.sink);
     light.power = std::max(parameters.number("power", 0, context.sink), 0.0);
@@ -59,7 +61,9 @@ std::optional<AreaLight> read_area_light(const std::string& type, Parameters& pa
         light.image = textures.image_file(parameters.location(), picture);
     parameters.ignore({"samples", "nsamples"});
     parameters.leave_out_unknown(context.sink);
-    return light;
+    if (is_light(light.radiance)) return light;
+    leave_out_strength("an area", parameters.location(), context.sink);
+    return std::nullopt;
 }
 
 std::optional<InfiniteLight> read_infinite_light(Parameters& parameters, const DoubleTransform& world_from_light,
@@ -131,10 +135,7 @@ std::optional<Light> read_light(const std::string& type, Parameters& parameters,
     }
     parameters.ignore({"samples", "nsamples"});
     parameters.leave_out_unknown(sink);
-    if (is_finite(light.position) && is_finite(light.direction)) return light;
-    sink.leave_out(
-        {parameters.location(), fmt::format("a {} light without a position or direction is left out", type)});
-    return std::nullopt;
+    return light;
 }
 
 } // namespace pertev::pbrt

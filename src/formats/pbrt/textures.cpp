@@ -134,7 +134,10 @@ TextureValue Textures::image_map(Parameters& parameters) {
     read_mapping(parameters, value.ref);
     const auto scale = static_cast<float>(parameters.number("scale", 1, sink));
     value = value.scaled(grey(scale));
-    if (parameters.truth("invert", false, sink)) value.factor = -1.0f * value.factor, value.offset = grey(1);
+    if (parameters.truth("invert", false, sink)) {
+        value.offset = grey(1);
+        value.factor = (value.has_image() ? Rgb{} : value.offset) - value.factor;
+    }
     parameters.ignore({"maxanisotropy", "trilinear"});
     return value;
 }

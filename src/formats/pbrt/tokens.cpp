@@ -29,8 +29,7 @@ Token Tokens::read() {
         token.kind = TokenKind::Quoted;
         ++at_;
         while (at_ < size && text_[at_] != '"' && text_[at_] != '\n')
-            at_ += text_[at_] == '\\' && at_ + 1 < size ? 2 : 1;
-        at_ = std::min(at_, size);
+            at_ += text_[at_] == '\\' && at_ + 1 < size && text_[at_ + 1] != '\n' ? 2 : 1;
         token.text = text_.substr(begin + 1, at_ - begin - 1);
         token.is_open_ended = at_ >= size || text_[at_] != '"';
         if (!token.is_open_ended) ++at_;

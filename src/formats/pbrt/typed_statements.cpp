@@ -84,9 +84,10 @@ void Statements::attribute(Tokens& tokens, const FileLocation& place) {
     std::map<std::string, Parameters> all;
     if (world_.state.attributes) all = *world_.state.attributes;
     if (const auto before = all.find(target); before != all.end()) parameters.add_missing(before->second);
-    constexpr std::size_t kMostAttributes = 256; // each statement copies them
-    if (parameters.size() > kMostAttributes)
-        throw Error(ErrorCode::BadInput, place, fmt::format("{} has over {} attributes", target, kMostAttributes));
+    constexpr std::size_t kMostBytes = 4096; // each statement copies them, and a shape may keep them
+    if (parameters.bytes() > kMostBytes)
+        throw Error(ErrorCode::BadInput, place,
+                    fmt::format("the attributes of {} take over {} bytes", target, kMostBytes));
     all.insert_or_assign(target, std::move(parameters));
     world_.state.attributes = std::make_shared<const std::map<std::string, Parameters>>(std::move(all));
 }

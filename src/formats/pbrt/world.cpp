@@ -8,9 +8,15 @@
 #include "base/message_text.h"
 #include "formats/described/assemble.h"
 #include "formats/described/transforms.h"
+#include "formats/described/usable_values.h"
 #include "formats/files/closest_name.h"
 
 namespace pertev::pbrt {
+namespace {
+
+std::string alpha_key(const std::string& texture) { return "texture " + texture; }
+
+} // namespace
 
 World::World(const Context& context)
     : context_(context), textures_(context, parts_.made), shapes_(context, parts_.meshes) {
@@ -31,7 +37,9 @@ DoubleTransform World::place(const FileLocation& from) {
 
 void World::add_texture(const std::string& name, const std::string& kind, const std::string& type,
                         Parameters& parameters) {
-    if (!context_.options.geometry_only) textures_.define(name, kind, type, parameters);
+    if (context_.options.geometry_only) return;
+    textures_.define(name, kind, type, parameters);
+    alpha_numbers_.erase(alpha_key(name)); // shapes from here on have the new one
 }
 
 const Surface* World::find_surface(const std::string& name, const FileLocation& from) {
@@ -54,6 +62,7 @@ uint32_t World::add_surface(const std::string& type, const std::string& name, Pa
     Surface surface = read_material({type, parameters, textures_, context_, find});
     surface.material.name = name;
     surface.material.origin = fmt::format("{}:{}", parameters.location().file, parameters.location().line);
+    keep_usable(surface.material, parameters.location(), context_.sink);
     parts_.surfaces.push_back(std::move(surface));
     return static_cast<uint32_t>(parts_.surfaces.size() - 1);
 }
@@ -100,7 +109,7 @@ void World::add_light(const std::string& type, Parameters& parameters) {
     }
     const DoubleVec3 from = parameters.vector("from", context_.sink).value_or(DoubleVec3{0, 0, 0});
     if (auto light = read_light(type, parameters, world_from_light, context_))
-        parts_.lights.push_back({*std::move(light), transform_point(world_from_light, from)});
+        parts_.lights.push_back({*std::move(light), transform_point(world_from_light, from), parameters.location()});
 }
 
 std::optional<uint32_t> World::alpha_of(Parameters& parameters) {
@@ -108,7 +117,7 @@ std::optional<uint32_t> World::alpha_of(Parameters& parameters) {
     parameters.ignore({"shadowalpha"}); // pbrt-v3's
     if (found == nullptr || context_.options.geometry_only) return std::nullopt;
     const std::string key =
-        found->texts.empty() ? fmt::format("{}", found->numbers.front()) : "texture " + found->texts.front();
+        found->texts.empty() ? fmt::format("{}", found->numbers.front()) : alpha_key(found->texts.front());
     const TextureValue value = textures_.number(parameters, "alpha", 1);
     if (!value.has_image() && value.factor.r >= 1) return std::nullopt;
     const auto [number, is_new] = alpha_numbers_.try_emplace(key, static_cast<uint32_t>(parts_.alphas.size()));
