@@ -110,7 +110,7 @@ MUTATIONS = [
     ("mitsuba: microfacets are those of GGX", "unit/read_mitsuba_materials", ("src/formats/mitsuba/bsdfs.cpp", "distribution == \"ggx\" ?", "true ?")),
     ("mitsuba: plastic is always nonlinear", "unit/read_mitsuba_materials", ("src/formats/mitsuba/bsdfs.cpp", "truth(\"nonlinear\", false,", "truth(\"nonlinear\", true,")),
     ("mitsuba: the outside of glass is a vacuum", "unit/read_mitsuba_materials", ("src/formats/mitsuba/bsdfs.cpp", "const float ior = inside / outside;", "const float ior = inside + 0 * outside;")),
-    ("mitsuba: a grey specular_reflectance does nothing", "unit/read_mitsuba_materials", ("src/formats/mitsuba/conductor_bsdf.cpp", "    tint_metal(bsdf, tint, surface);\n", "")),
+    ("mitsuba: a grey specular_reflectance does nothing", "unit/read_mitsuba_materials", ("src/formats/mitsuba/conductor_bsdf.cpp", "set_number(surface, &M::specular_weight, &M::specular_texture, tint);", "")),
     ("mitsuba: numbers of encoded pictures stay encoded", "unit/read_mitsuba_materials", ("src/formats/described/surface.cpp", "            change.decodes = decodes;\n", "")),
     ("mitsuba: an alpha channel is the opacity", "unit/read_mitsuba_materials", ("src/formats/mitsuba/textures.cpp", "    value.ignores_alpha = true;\n", "")),
     ("mitsuba: a checkerboard begins with color1", "unit/read_mitsuba_materials", ("src/formats/mitsuba/textures.cpp", "checks_of(second.factor, first.factor)", "checks_of(first.factor, second.factor)")),
@@ -145,4 +145,6 @@ MUTATIONS = [
      ("src/formats/pbrt/tokens.cpp", " && text_[at_ + 1] != '\\n'", "")),
     ("a gzip'd file unfolds without end", "unit/read_pbrt", ("src/formats/files/gunzip.cpp", "if (size > limit) {", "if (size > 2 * limit) {")),
     ("no gzip'd PLY file is a scene", "unit/read_pbrt", ("src/formats/read_scene.cpp", 'FormatReader{".ply.gz", ', 'FormatReader{".ply.zip", ')),
+    ("mitsuba: normal maps have the tangents of v", "unit/read_mitsuba_shapes", ("src/formats/mitsuba/shapes.cpp", "Vec4{t.x, t.y, t.z, 1}", "Vec4{t.x, t.y, t.z, -1}")),
+    ("mitsuba: a cylinder begins elsewhere", "unit/read_mitsuba_shapes", ("src/formats/mitsuba/shapes.cpp", "y = {b, sign + z.y * z.y * a, -z.y};", "y = {-b, -sign - z.y * z.y * a, z.y};")),
 ]

@@ -147,6 +147,34 @@ TEST_CASE("mitsuba: texture coordinates of shapes are Mitsuba's") {
     CHECK(uv_at(tube, {0, 1, 1}).y == doctest::Approx(1));
 }
 
+TEST_CASE("mitsuba: a cylinder's u begins where Mitsuba's does, and normal maps have Mitsuba's tangents") {
+    const Scene tube = load_shapes(shape_of("cylinder", "<point name=\"p1\" x=\"0\" y=\"2\" z=\"0\"/>"));
+    // Mitsuba 3.9 has u = 0 at +x, and goes to -z, around this one.
+    const Mesh& mesh = tube.meshes[0];
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        const Vec3 p = transform_point(tube.instances[0].world_from_local, mesh.positions[i]);
+        if (mesh.uv[0][i].x == 0) CHECK(p.x == doctest::Approx(1));
+        if (mesh.uv[0][i].x == 0.25f) CHECK(p.z == doctest::Approx(-1));
+    }
+    const fs::path folder = test::scratch_folder();
+    write_image(folder / "n.exr", Image{.width = 1, .height = 1, .channels = 3, .pixels = {0.5f, 0.5f, 1}});
+    Messages messages;
+    const Scene scene =
+        load_shapes(folder,
+                    shape_of("rectangle") +
+                        shape_of("rectangle", "<bsdf type=\"normalmap\"><texture name=\"normalmap\" "
+                                              "type=\"bitmap\">" +
+                                                  named_file("n.exr") + "</texture><bsdf type=\"diffuse\"/></bsdf>"),
+                    messages);
+    REQUIRE(scene.meshes.size() == 2); // the other has none
+    CHECK(scene.meshes[0].tangents.empty());
+    REQUIRE(scene.meshes[1].tangents.size() == 4);
+    for (const Vec4 t : scene.meshes[1].tangents) {
+        CHECK(t.x == doctest::Approx(1));
+        CHECK(t.w == 1); // so y is up, where v = 0 is below
+    }
+}
+
 TEST_CASE("mitsuba: files of meshes are smooth unless they shall not be, and v follows flip_tex_coords") {
     const fs::path folder = test::scratch_folder();
     test::write_text(folder / "roof.obj", "v 0 0 0\nv 1 0 1\nv 2 0 0\nv 0 1 0\nv 1 1 1\nv 2 1 0\nvt 0 .25\n"

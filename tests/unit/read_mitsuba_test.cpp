@@ -255,6 +255,13 @@ TEST_CASE("mitsuba: references, aliases and named references") {
         "scene.xml:3: there is no object with the id glas (did you mean \"glass\"?)"));
 }
 
+TEST_CASE("mitsuba: ids of files that look like ours of unnamed objects refer to nothing else") {
+    CHECK(!left_out_of("<shape type=\"cube\"><ref id=\"\x01zz\"/></shape>").empty());
+    CHECK(!left_out_of("<shape type=\"cube\"><ref id=\"\x01"
+                       "99999\"/></shape>")
+               .empty());
+}
+
 TEST_CASE("mitsuba: cycles of references and of includes end") {
     CHECK(!left_out_of("<bsdf type=\"twosided\" id=\"a\"><ref id=\"b\"/></bsdf><bsdf type=\"mask\" id=\"b\"><ref "
                        "id=\"a\"/></bsdf><shape type=\"cube\"><ref id=\"a\"/></shape>")

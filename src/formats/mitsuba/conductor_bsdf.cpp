@@ -51,8 +51,10 @@ Surface Bsdfs::conductor(Object& bsdf) {
     const TextureValue tint = color(bsdf, "specular_reflectance", 1);
     const bool has_index = parameters.contains("eta") || parameters.contains("k");
     std::string name = parameters.text("material", has_index ? "" : reading_.context.is_old ? "Cu" : "none", sink);
-    if (name == "none") { // a mirror, which has the tint alone
-        set_mirror(surface, tint);
+    if (name == "none") { // reflects all
+        surface.material.eta = grey(0x1p-10f);
+        surface.material.k = grey(4);
+        tint_metal(bsdf, tint, surface);
         return surface;
     }
     ComplexIndex index = find_metal_index("Cu").value_or(ComplexIndex{});

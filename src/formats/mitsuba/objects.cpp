@@ -6,11 +6,12 @@
 
 #include "base/message_text.h"
 #include "formats/files/closest_name.h"
+#include "formats/files/parse_number.h"
 
 namespace pertev::mitsuba {
 namespace {
 
-constexpr char kNumbered = '\x01'; // begins ids of objects without their own, which no file can have
+constexpr char kNumbered = '\x01'; // begins ids of objects without their own
 
 bool is_upper(char c) { return c >= 'A' && c <= 'Z'; }
 
@@ -40,7 +41,10 @@ Object& Objects::add(std::string tag, std::string type, std::string id, FileLoca
 std::string Objects::id_of(const Object& object) { return kNumbered + std::to_string(object.number); }
 
 Object& Objects::find(const std::string& id, const FileLocation& from) {
-    if (id.starts_with(kNumbered)) return all_[static_cast<std::size_t>(std::stoul(id.substr(1)))];
+    if (id.starts_with(kNumbered)) {
+        const auto number = parse_whole_number<uint32_t>(std::string_view(id).substr(1));
+        if (number && *number < all_.size()) return all_[*number];
+    }
     std::string name = id;
     for (int i = 0; i < 16; ++i) {
         if (const auto found = ids_.find(name); found != ids_.end()) return all_[found->second];

@@ -49,11 +49,12 @@ Mesh joined(std::vector<Mesh> meshes) {
     return all;
 }
 
-/// Returns the frame whose +z leads from `from` to `to`.
+/// Returns the frame whose +z leads from `from` to `to`, with the other axes that Mitsuba chooses.
+/// Source: Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
 DoubleTransform frame_between(DoubleVec3 from, DoubleVec3 to) {
     const DoubleVec3 along = to - from, z = along / std::sqrt(dot(along, along));
-    const DoubleVec3 other = std::abs(z.x) < 0.5 ? DoubleVec3{1, 0, 0} : DoubleVec3{0, 1, 0};
-    const DoubleVec3 across = cross(other, z), y = across / std::sqrt(dot(across, across)), x = cross(y, z);
+    const double sign = std::copysign(1.0, z.z), a = -1 / (sign + z.z), b = z.x * z.y * a;
+    const DoubleVec3 x = {1 + sign * z.x * z.x * a, sign * b, -sign * z.x}, y = {b, sign + z.y * z.y * a, -z.y};
     return {{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}, from};
 }
 
@@ -91,9 +92,10 @@ Mesh make_cube() {
 }
 
 uint32_t Shapes::add(const std::string& key, const Object& shape, bool is_reversed, Mesh mesh) {
-    const auto [known, is_new] = shared_.try_emplace(fmt::format("{} {}", is_reversed, key),
+    const auto [known, is_new] = shared_.try_emplace(fmt::format("{} {} {}", is_reversed, has_normal_map_, key),
                                                      static_cast<uint32_t>(reading_.parts.meshes.size()));
     if (!is_new) return known->second;
+    if (has_normal_map_) with_tangents_.push_back(known->second);
     ShapeMesh made;
     made.mesh = std::move(mesh);
     made.location = shape.location();
@@ -128,7 +130,8 @@ uint32_t Shapes::file_mesh(Object& shape, bool is_reversed, const DoubleTransfor
     return mesh;
 }
 
-std::optional<ReadShape> Shapes::read(Object& shape) {
+std::optional<ReadShape> Shapes::read(Object& shape, bool has_normal_map) {
+    has_normal_map_ = has_normal_map;
     Parameters& parameters = shape.parameters;
     Sink& sink = reading_.sink();
     const DoubleTransform to_world = transform_of(shape, "to_world", sink);
@@ -194,6 +197,28 @@ void Shapes::read_mesh_file(const FileUse& use, ShapeMesh& to, Sink& sink) const
     if (is_smooth && mesh.normals.empty() && fits) mesh.normals = angle_weighted_normals(mesh);
 }
 
+void set_tangents(Mesh& mesh) {
+    if (mesh.uv[0].empty() || !mesh.tangents.empty()) return;
+    std::vector<Vec3> sums(mesh.positions.size());
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        const uint32_t* const corner = mesh.indices.data() + i;
+        const auto edge = [&](int k) { return mesh.positions[corner[k]] - mesh.positions[corner[0]]; };
+        const auto change = [&](int k) { return mesh.uv[0][corner[k]] - mesh.uv[0][corner[0]]; };
+        const Vec2 b = change(1), c = change(2);
+        const float area = b.x * c.y - b.y * c.x;
+        if (area == 0) continue;
+        const Vec3 along_u = normalize((c.y * edge(1) - b.y * edge(2)) / area);
+        if (!is_finite(along_u)) continue;
+        for (int k = 0; k < 3; ++k) sums[corner[k]] += along_u;
+    }
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        Vec3 t = sums[i];
+        if (!mesh.normals.empty()) t = t - dot(t, mesh.normals[i]) * mesh.normals[i];
+        t = normalize(t);
+        mesh.tangents.push_back(is_finite(t) ? Vec4{t.x, t.y, t.z, 1} : Vec4{1, 0, 0, 1});
+    }
+}
+
 void Shapes::finish() {
     const ShapeMesh* const first = reading_.parts.meshes.data();
     finish_meshes(
@@ -202,6 +227,7 @@ void Shapes::finish() {
             read_mesh_file(files_.at(static_cast<uint32_t>(&shape - first)), shape, sink);
         },
         reading_.sink());
+    for (const uint32_t mesh : with_tangents_) set_tangents(reading_.parts.meshes[mesh].mesh);
 }
 
 } // namespace pertev::mitsuba

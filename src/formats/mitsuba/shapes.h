@@ -25,9 +25,9 @@ public:
     /// `reading` outlives it.
     explicit Shapes(Reading& reading) : reading_(reading) {}
 
-    /// Reads the geometry of a shape. Returns nothing, with a warning, for a type that is left out. Throws
-    /// Error(BadInput) if it is unreadable.
-    std::optional<ReadShape> read(Object& shape);
+    /// Reads the geometry of a shape. One with a normal map has a mesh of its own, with tangents. Returns nothing, with
+    /// a warning, for a type that is left out. Throws Error(BadInput) if it is unreadable.
+    std::optional<ReadShape> read(Object& shape, bool has_normal_map);
 
     /// Reads the files and completes all meshes. An unreadable file leaves an empty mesh, with a warning.
     void finish();
@@ -47,8 +47,14 @@ private:
 
     Reading& reading_;
     std::map<std::string, uint32_t, std::less<>> shared_; // by what makes them
+    bool has_normal_map_ = false;                         // the shape that is read has one
+    std::vector<uint32_t> with_tangents_;                 // meshes of such shapes
     std::map<uint32_t, FileUse> files_;                   // by mesh
 };
+
+/// Sets the tangents of normal maps: Mitsuba's lead along u, and its bitangents are across them and the normals, even
+/// where v runs the other way.
+void set_tangents(Mesh& mesh);
 
 /// Returns the cube from -1 to 1 as Mitsuba has it, and the square from (-1, -1) to (1, 1) that faces +z.
 Mesh make_cube();

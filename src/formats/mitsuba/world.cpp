@@ -73,7 +73,9 @@ void World::place(Object& shape, const DoubleTransform& world_from_group) {
         sink.leave_out(
             {shape.location(), fmt::format("the medium of {} is left out, as all media are", shape.parameters.what())});
     if (parts_.surfaces[placed.surface].is_nothing && !placed.area_light) return;
-    const auto read = shapes_.read(shape);
+    const Surface& surface = parts_.surfaces[placed.surface];
+    const bool has_normal_map = surface.material.normal_texture.has_image() && !surface.has_heights;
+    const auto read = shapes_.read(shape, has_normal_map);
     if (!read) return;
     shape.parameters.ignore({"silhouette_sampling_weight", "flip_normals"});
     shape.parameters.leave_out_unknown(sink);
