@@ -9,6 +9,7 @@
 #include "base/limits.h"
 #include "base/message_text.h"
 #include "formats/described/transforms.h"
+#include "formats/described/usable_values.h"
 #include "formats/files/closest_name.h"
 #include "formats/mitsuba/parse_values.h"
 #include "math/portable_math.h"
@@ -162,6 +163,10 @@ std::optional<Camera> make_camera(Object& sensor, const FilmSize& size, const Do
     }
     parameters.ignore({"near_clip", "far_clip", "shutter_open", "shutter_close", "focus_distance", "aperture_radius"});
     parameters.leave_out_unknown(sink);
+    if (const std::string fault = fault_of(camera); !fault.empty()) {
+        sink.leave_out({sensor.location(), fmt::format("the sensor is left out, because {}", fault)});
+        return std::nullopt;
+    }
     return camera;
 }
 
