@@ -46,8 +46,8 @@ KINDS = ("integrators", "kinds")
 
 # Only these files name a kind: the camera, its readers, the table of settings, and the maker of the light meter's camera.
 NAMED_IN = {"Projection::": {"scene/camera.h", "scene/projection_features.h", "render/camera_view.h", "render/camera_view.cpp",
-                             "formats/gltf/camera.cpp", "formats/pbrt/camera.cpp", "settings/value_names.h",
-                             "session/measure_irradiance.cpp"}}
+                             "formats/gltf/camera.cpp", "formats/mitsuba/view.cpp", "formats/pbrt/camera.cpp",
+                             "settings/value_names.h", "session/measure_irradiance.cpp"}}
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
 CUDA_HEADER = re.compile(r"^(cuda|cub/|thrust/|cooperative_groups|nccl|device_launch_parameters|curand|nvtx)")

@@ -79,7 +79,7 @@ void check_sheet(const Material& sheet) {
     const Image samples = picture_of_sheet(queue, scene, Denoise::None, kSheetSamples);
     const Image denoised = picture_of_sheet(queue, scene, Denoise::Svgf, kSheetSamples);
     CHECK(error_of_sheet(denoised, reference) < 0.4 * error_of_sheet(samples, reference));
-    CHECK(mean_of(denoised) == doctest::Approx(mean_of(reference)).epsilon(0.02));
+    CHECK(pertev::mean_of(denoised) == doctest::Approx(pertev::mean_of(reference)).epsilon(0.02));
 }
 
 } // namespace

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include <doctest/doctest.h>
 
@@ -195,7 +196,7 @@ TEST_CASE("pbrt: nothing is made up for a file without light, and infinite light
 
 TEST_CASE("pbrt: the octahedron's middle is +z, its corners -z, and its sides x and y") {
     using described::octahedral_place;
-    const auto is_at = [](Vec2 p, float x, float y) { return abs(p.x - x) < 1e-6f && abs(p.y - y) < 1e-6f; };
+    const auto is_at = [](Vec2 p, float x, float y) { return std::abs(p.x - x) < 1e-6f && std::abs(p.y - y) < 1e-6f; };
     CHECK(is_at(octahedral_place({0, 0, 1}), 0.5f, 0.5f));
     CHECK(is_at(octahedral_place({1, 0, 0}), 1, 0.5f));
     CHECK(is_at(octahedral_place({-1, 0, 0}), 0, 0.5f));

@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "formats/read_scene.h"
 #include "formats/shapes/bilinear_patches.h"
 #include "formats/shapes/loop_subdivision.h"
@@ -46,7 +48,7 @@ TEST_CASE("shapes: spheres, disks and cylinders have the area, the front and the
     CHECK(area_of(sphere) == doctest::Approx(4 * kPi).epsilon(2e-3));
     check_fronts(sphere);
     for (std::size_t i = 0; i < sphere.positions.size(); ++i) {
-        if (abs(length(sphere.positions[i]) - 1) > 1e-6f) FAIL("a vertex is off the sphere");
+        if (std::abs(length(sphere.positions[i]) - 1) > 1e-6f) FAIL("a vertex is off the sphere");
         if (length(sphere.normals[i] - sphere.positions[i]) > 1e-5f) FAIL("a normal is not the sphere's");
     }
     // No chord is further from the sphere than the header says.

@@ -1,0 +1,34 @@
+#pragma once
+
+// Builds the tree of light_tree.h, top down, by Conty Estevez and Kulla's surface area orientation heuristic over bins.
+// The tree does not depend on the number of threads.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "math/bounds3.h"
+#include "shading/light_tree/light_tree_view.h"
+
+namespace pertev {
+
+/// A light to be put into a tree.
+struct TreeLight {
+    Bounds3 bounds;           // metres
+    Vec3 axis;                // unit normal, or the axis of a spot; any if light leaves in all directions
+    float emission_angle = 0; // within which light leaves from the axis, radians; pi: in all directions
+    bool has_two_sides = false;
+    double power = 0; // W; without power it is left out
+};
+
+struct LightTreeData {
+    std::vector<LightTreeNode> nodes;    // empty: no light has power
+    std::vector<uint32_t> leaf_of_light; // [lights]
+
+    uint32_t light_count() const { return static_cast<uint32_t>(nodes.size() / 2); }
+    LightTreeView view() const { return {nodes.data(), leaf_of_light.data(), light_count()}; }
+};
+
+LightTreeData build_light_tree(std::span<const TreeLight> lights);
+
+} // namespace pertev
