@@ -258,6 +258,15 @@ pertev_launches(integrators/path/shade_layers.cu
   integrators/path/path_stages.h
   STAGES "Shade<kUnstacked, LayerListeners>"
     "Shade<kUnstacked | kMoving, LayerListeners>")
+# For lights that are selected by a tree.
+pertev_launches(integrators/path/shade_light_tree_films.cu
+  integrators/path/path_stages.h
+  STAGES "Shade<kUnstacked | kLightTree, FilmListeners>"
+    "Shade<kAllMaterials | kMoving | kBatched | kMipMapped | kNested | kLightTree, FilmListeners>")
+pertev_launches(integrators/path/shade_light_tree_parts.cu
+  integrators/path/path_stages.h
+  STAGES "Shade<kAllMaterials | kMipMapped | kNested | kLightTree, FrameListeners>"
+    "Shade<kAllMaterials | kMoving | kMipMapped | kNested | kLightTree, LayerListeners>")
 # For motion while the shutter is open, of the camera or of anything else.
 pertev_launches(integrators/path/shade_moving_films.cu
   integrators/path/path_stages.h

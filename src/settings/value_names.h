@@ -30,6 +30,8 @@ inline constexpr ValueName<PixelFilter> kPixelFilters[] = {{PixelFilter::Box, "b
                                                            {PixelFilter::BlackmanHarris, "blackman-harris"}};
 inline constexpr ValueName<MipMaps> kMipMapPictures[] = {
     {MipMaps::Frames, "frames"}, {MipMaps::On, "on"}, {MipMaps::Off, "off"}};
+inline constexpr ValueName<LightSelection> kLightSelections[] = {
+    {LightSelection::Auto, "auto"}, {LightSelection::Tree, "tree"}, {LightSelection::Power, "power"}};
 inline constexpr ValueName<RestirLight> kRestirLights[] = {
     {RestirLight::Off, "off"}, {RestirLight::Direct, "di"}, {RestirLight::Indirect, "gi"}};
 inline constexpr ValueName<LayersAt> kLayerPlaces[] = {{LayersAt::Samples, "samples"}, {LayersAt::Centre, "centre"}};
@@ -49,6 +51,7 @@ constexpr const auto& names_of_all(PathLight) { return kPathLights; }
 constexpr const auto& names_of_all(SamplerKind) { return kSamplers; }
 constexpr const auto& names_of_all(PixelFilter) { return kPixelFilters; }
 constexpr const auto& names_of_all(MipMaps) { return kMipMapPictures; }
+constexpr const auto& names_of_all(LightSelection) { return kLightSelections; }
 constexpr const auto& names_of_all(RestirLight) { return kRestirLights; }
 constexpr const auto& names_of_all(LayersAt) { return kLayerPlaces; }
 constexpr const auto& names_of_all(Denoise) { return kDenoisers; }

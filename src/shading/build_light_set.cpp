@@ -9,6 +9,7 @@
 #include "base/limits.h"
 #include "base/parallel_for.h"
 #include "math/hilbert_curve.h"
+#include "math/portable_math.h"
 #include "shading/hierarchical_warp.h"
 
 namespace pertev {
@@ -181,8 +182,15 @@ void order_punctual_lights(LightSetData& data) {
     std::ranges::copy(ordered, data.punctual.begin());
 }
 
+std::vector<double> triangle_powers(const LightSetData& data, const Pyramids& pyramids) {
+    std::vector<double> powers(data.triangles.size());
+    parallel_for(powers.size(), 1024,
+                 [&](uint64_t i) { powers[i] = triangle_power(data, pyramids, data.triangles[i]); });
+    return powers;
+}
+
 /// Builds the tables of the emitters in their order and returns their powers.
-std::vector<double> build_triangle_tables(LightSetData& data, const Pyramids& pyramids) {
+std::vector<double> build_triangle_tables(LightSetData& data, std::span<const double> of_triangles) {
     std::size_t starts = 0, guides = 0;
     for (Emitter& emitter : data.emitters) {
         emitter.first_start = static_cast<uint32_t>(starts);
@@ -194,20 +202,46 @@ std::vector<double> build_triangle_tables(LightSetData& data, const Pyramids& py
     data.triangle_starts.resize(starts);
     data.triangle_guides.resize(guides);
 
-    std::vector<double> triangle_powers(data.triangles.size()), powers(data.emitters.size());
-    parallel_for(data.triangles.size(), 1024,
-                 [&](uint64_t i) { triangle_powers[i] = triangle_power(data, pyramids, data.triangles[i]); });
+    std::vector<double> powers(data.emitters.size());
     parallel_for(data.emitters.size(), 16, [&](uint64_t i) {
         const Emitter& emitter = data.emitters[i];
         std::vector<double> in_order(emitter.triangle_count);
         for (uint32_t k = 0; k < emitter.triangle_count; ++k) {
-            in_order[k] = triangle_powers[emitter.first_triangle + data.triangle_order[emitter.first_triangle + k]];
+            in_order[k] = of_triangles[emitter.first_triangle + data.triangle_order[emitter.first_triangle + k]];
         }
         powers[i] = build_guided_cdf(
             in_order, std::span(data.triangle_starts).subspan(emitter.first_start, emitter.triangle_count + 1),
             std::span(data.triangle_guides).subspan(emitter.first_guide, (std::size_t(1) << emitter.guide_bits) + 1));
     });
     return powers;
+}
+
+/// Returns the lights with a position for a tree: triangles, then punctual lights in their order.
+std::vector<TreeLight> list_tree_lights(const LightSetData& data, std::span<const double> of_triangles,
+                                        std::span<const double> of_punctual) {
+    const std::size_t triangles = data.triangles.size();
+    std::vector<TreeLight> lights(triangles + of_punctual.size());
+    parallel_for(triangles, 4096, [&](uint64_t i) {
+        if (!(of_triangles[i] > 0)) return;
+        const EmissiveTriangle& triangle = data.triangles[i];
+        TreeLight& light = lights[i];
+        for (const Vec3 edge : {Vec3{}, triangle.ab, triangle.ac}) light.bounds.extend(triangle.a + edge);
+        const Vec3 normal = normalize(cross(triangle.ab, triangle.ac));
+        light.axis = triangle.is_mirrored != 0 ? -normal : normal;
+        light.emission_angle = 0.5f * kPi;
+        light.has_two_sides = triangle.is_two_sided != 0;
+        light.power = of_triangles[i];
+    });
+    for (std::size_t i = 0; i < of_punctual.size(); ++i) {
+        const PunctualLight& punctual = data.punctual[i];
+        TreeLight& light = lights[triangles + i];
+        light.bounds.extend(punctual.position);
+        light.axis = punctual.direction;
+        const bool is_spot = punctual.kind == LightKind::Spot;
+        light.emission_angle = is_spot ? acos(clamp(punctual.cos_outer, -1.0f, 1.0f)) : kPi;
+        light.power = of_punctual[i];
+    }
+    return lights;
 }
 
 /// Stores every triangle's probability, from the tables' integers.
@@ -263,7 +297,8 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
 
     order_emitters(data);
     order_punctual_lights(data);
-    data.source_powers = build_triangle_tables(data, pyramids);
+    const std::vector<double> of_triangles = triangle_powers(data, pyramids);
+    data.source_powers = build_triangle_tables(data, of_triangles);
     const auto add_source = [&](double power, bool is_far) {
         data.source_powers.push_back(power);
         if (!is_far) data.near_count = static_cast<uint32_t>(data.source_powers.size());
@@ -274,6 +309,9 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
         add_source(power, !parts_of(light.kind).position);
     }
     if (data.environment) add_source(environment_power(*data.environment, radius), true);
+    const auto of_punctual = std::span<const double>(data.source_powers)
+                                 .subspan(data.emitters.size(), data.near_count - data.emitters.size());
+    data.tree = build_light_tree(list_tree_lights(data, of_triangles, of_punctual));
     share_draws(data, kEvenShare);
     return data;
 }
@@ -314,6 +352,8 @@ LightSetView view_of(const LightSetData& data, const TextureImageView* images, c
     view.emitter_count = static_cast<uint32_t>(data.emitters.size());
     view.triangle_count = static_cast<uint32_t>(data.triangles.size());
     view.punctual_count = static_cast<uint32_t>(data.punctual.size());
+    view.near_count = data.near_count;
+    view.tree.light_count = data.tree.light_count();
     if (data.environment) view.environment_source = view.emitter_count + view.punctual_count;
     view.images = images;
     view.linear_from_srgb = linear_from_srgb;

@@ -13,6 +13,7 @@
 #include "base/sink.h"
 #include "scene/scene.h"
 #include "shading/light_set.h"
+#include "shading/light_tree/build_light_tree.h"
 
 namespace pertev {
 
@@ -22,6 +23,7 @@ struct LightSetData {
     std::vector<EmissiveTriangle> triangles;
     std::vector<uint32_t> triangle_order, triangle_starts, triangle_guides;
     std::vector<PunctualLight> punctual;
+    LightTreeData tree; // nodes of LightSetView::tree
     std::vector<uint32_t> first_light;
     std::vector<SurfaceEmission> emissions;
     std::shared_ptr<const EnvironmentData> environment; // null if there is none
@@ -61,6 +63,8 @@ void visit_arrays(const LightSetData& data, LightSetView& view, const Visit& vis
     visit(data.triangle_guides, view.triangle_guides);
     visit(data.triangles, view.triangles);
     visit(data.punctual, view.punctual);
+    visit(data.tree.nodes, view.tree.nodes);
+    visit(data.tree.leaf_of_light, view.tree.leaf_of_light);
     visit(data.first_light, view.first_light);
     visit(data.emissions, view.emissions);
 }

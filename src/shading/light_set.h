@@ -4,7 +4,7 @@
 // and the environment, sampled by power. sample_light samples a light and a direction to it for a context, the
 // receiver. pdf_light_hit and find_environment return that density for a direction found otherwise, which multiple
 // importance sampling needs (Veach 1997, section 9.2). A class that all three take as a parameter, ChosenByPower,
-// selects the light and defines its probability; a light tree is another such class.
+// selects the light and defines its probability; ChosenByTree (shading/chosen_by_tree.h) is another such class.
 //
 // A pair of numbers determines everything, and near pairs give near points: x selects the source (an emissive
 // instance, a punctual light, the environment) and y the instance's triangle, both by cdfs with guide tables; the
@@ -31,6 +31,7 @@
 #include "scene/texture.h"
 #include "shading/environment_light.h"
 #include "shading/guided_cdf.h"
+#include "shading/light_tree/light_tree_view.h"
 #include "shading/lobes/coat_absorption.h"
 #include "shading/lobes/schlick_lobe.h"
 #include "shading/punctual_light.h"
@@ -85,7 +86,9 @@ struct LightSetView {
     const uint32_t* triangle_starts = nullptr; // tables of the emitters: [triangles + emitters]
     const uint32_t* triangle_guides = nullptr;
     const PunctualLight* punctual = nullptr;
+    LightTreeView tree; // over triangles and, numbered after them, punctual lights with a position
     uint32_t emitter_count = 0, triangle_count = 0, punctual_count = 0;
+    uint32_t near_count = 0;                    // sources with a position, which come first
     uint32_t environment_source = kNoLight;     // index of the environment among the sources
     const uint32_t* first_light = nullptr;      // [instances] light number of primitive 0, or kNoLight
     const SurfaceEmission* emissions = nullptr; // [materials]

@@ -17,7 +17,7 @@ FLAGS = {
               "--allow-path --up-axis --unit --quiet -q --json --strict --camera --eye --target --up --fov --projection "
               "--view-height --aperture --focus --environment --environment-rotation --environment-scale "
               "--two-sided-lights --show-back-faces --size --tone-map --exposure --transparent --aov --spp --time-limit --denoise "
-              "--integrator --max-depth --ambient --shading --wireframe --seed --sampler --filter --filter-radius --clamp --mip-maps --device --threads "
+              "--integrator --max-depth --ambient --shading --wireframe --seed --sampler --filter --filter-radius --clamp --mip-maps --light-choice --device --threads "
               "--no-bvh-cache --build --structure --traversal --rta --order --distribution --time --frames --fps --camera-path "
               "--turntable --continue --cuts --lpe --lamp --efficacy --false-color --false-color-range --f-number --shutter-time --iso "
               "--shutter --shading-rate --displacement --photons --gather --radius --caustic-radius --nearest "

@@ -55,7 +55,7 @@ void choose_shading(const PathJob& job, const With& with) {
     } else if (!job.film.frame.is_there()) {
         choose.template operator()<FilmFeatures, FilmListeners, FilmListeners>();
     } else if (job.film.frame.first_bounce.leaves_direct_light()) {
-        choose.template operator()<FrameFeatures, PlainReuseListeners, ReuseListeners>();
+        choose.template operator()<ReuseFeatures, PlainReuseListeners, ReuseListeners>();
     } else {
         choose.template operator()<FrameFeatures, PlainFrameListeners, FrameListeners>();
     }
@@ -82,6 +82,9 @@ void PathIntegrator::Wavefront::take(Queue& queue, const PathParts& parts) {
     if (parts.has_interiors && sets[0].interiors.size() == 0) {
         for (Paths& set : sets) set.interiors = {queue, capacity, "paths"};
     }
+    if (parts.has_normals && sets[0].normals.size() == 0) {
+        for (Paths& set : sets) set.normals = {queue, capacity, "paths"};
+    }
     if (parts.has_layers && layer_parts.size() == 0) {
         for (Paths& set : sets) set.states = {queue, capacity, "paths"};
         layer_diffuse = {queue, capacity, "shadow rays"};
@@ -96,8 +99,8 @@ void PathIntegrator::Wavefront::take(Queue& queue, const PathParts& parts) {
 
 PathQueueView PathIntegrator::Wavefront::paths(uint32_t of_round) const {
     const Paths& set = sets[of_round % 2];
-    return {set.rays.data(),     set.starts.data(), path_keys.data(),    set.throughput.data(),
-            set.radiance.data(), path_times.data(), set.interiors.data()};
+    return {set.rays.data(),     set.starts.data(), path_keys.data(),     set.throughput.data(),
+            set.radiance.data(), path_times.data(), set.interiors.data(), set.normals.data()};
 }
 
 ShadowQueueView PathIntegrator::Wavefront::shadows() const {
@@ -137,11 +140,13 @@ void PathIntegrator::reserve(const WorkSize& size) {
         if (uploaded_) layers_on_device_.emplace(queue_, *uploaded_);
     }
     if (uses_loop(size)) return;
-    allocate_wavefronts(size.all(), {.has_times = size.has_times,
-                                     .has_layers = settings_.layers != nullptr,
-                                     .splits_light = size.splits_light,
-                                     .records_bounce = size.records_bounce,
-                                     .has_interiors = size.has_interiors});
+    allocate_wavefronts(
+        size.all(), {.has_times = size.has_times,
+                     .has_layers = settings_.layers != nullptr,
+                     .splits_light = size.splits_light,
+                     .records_bounce = size.records_bounce,
+                     .has_interiors = size.has_interiors,
+                     .has_normals = uses_light_tree(settings_.path.light_choice, size.tree_lights, size.has_times)});
 }
 
 void PathIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) {
@@ -162,6 +167,7 @@ void PathIntegrator::allocate_wavefronts(uint64_t samples, const PathParts& part
     parts_.splits_light |= parts.splits_light;
     parts_.records_bounce |= parts.records_bounce;
     parts_.has_interiors |= parts.has_interiors;
+    parts_.has_normals |= parts.has_normals;
     const Size size = size_for(samples, batch_, queue_.is_cuda(), settings_.path.max_depth, parts_);
     // Two wavefronts can serve as one, so that passes of few samples and of many use the same memory.
     const uint64_t held = wavefronts_.empty() ? 0 : wavefronts_.size() * uint64_t(wavefronts_.front().capacity);
@@ -214,10 +220,12 @@ void PathIntegrator::render_loop(uint32_t first, uint32_t count, const FilmView&
 }
 
 void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const FilmView& film) {
-    allocate_wavefronts(
-        uint64_t(picture_.camera.width) * picture_.camera.height * count,
-        {.splits_light = film.frame.splits_light(), .records_bounce = film.frame.first_bounce.records_bounce()});
-    const Work work = {{film.window, first, count}, job_for(film)};
+    const PathJob job = job_for(film);
+    allocate_wavefronts(uint64_t(picture_.camera.width) * picture_.camera.height * count,
+                        {.splits_light = film.frame.splits_light(),
+                         .records_bounce = film.frame.first_bounce.records_bounce(),
+                         .has_normals = uses_light_tree(job)});
+    const Work work = {{film.window, first, count}, job};
     // Ray kinds can only be timed one after the other.
     const bool in_turns = tracer_->times_kinds();
     const uint64_t all = work.samples.count();

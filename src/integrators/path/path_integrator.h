@@ -89,6 +89,7 @@ private:
             Buffer<Float4> diffuse;  // if frames split light
             Buffer<Uint2> states;    // if there are layers
             Buffer<Uint2> interiors; // if solids are nested
+            Buffer<Vec3> normals;    // if lights are selected by a tree
         };
         uint32_t capacity;
         uint32_t in_flight = 0; // maximum for the current call of render()

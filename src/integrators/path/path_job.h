@@ -4,12 +4,14 @@
 // its code; one table lists the masks that are compiled.
 
 #include <cstdint>
+#include <type_traits>
 
 #include "device_scene/moved_surface.h"
 #include "integrators/path/path_settings.h"
 #include "render/film_view.h"
 #include "render/light_paths/light_path_view.h"
 #include "render/picture_view.h"
+#include "shading/chosen_by_tree.h"
 
 namespace pertev {
 
@@ -24,14 +26,15 @@ struct PathJob {
 /// Features that a scene and a request use. Code for absent features would cost registers.
 using Features = uint32_t;
 enum Feature : Features {
-    kTextured = 1,   // textured colours, emission or normals
-    kAlpha = 2,      // surfaces that a ray may pass, including emitters
-    kLayered = 4,    // surfaces other than diffuse ones
-    kMoving = 8,     // paths have a time
-    kBatched = 16,   // several pictures (PictureView::batch); code without it renders one
-    kStacked = 32,   // coats, fuzz, thin walls and weighted reflections
-    kMipMapped = 64, // textures are filtered; code with it filters where the settings say so
-    kNested = 128,   // solids lie in each other; code with it also serves scenes without
+    kTextured = 1,    // textured colours, emission or normals
+    kAlpha = 2,       // surfaces that a ray may pass, including emitters
+    kLayered = 4,     // surfaces other than diffuse ones
+    kMoving = 8,      // paths have a time
+    kBatched = 16,    // several pictures (PictureView::batch); code without it renders one
+    kStacked = 32,    // coats, fuzz, thin walls and weighted reflections
+    kMipMapped = 64,  // textures are filtered; code with it filters where the settings say so
+    kNested = 128,    // solids lie in each other; code with it also serves scenes without
+    kLightTree = 256, // lights are selected by a tree
 };
 inline constexpr Features kPlainDiffuse = 0, kDiffuse = kTextured | kAlpha, kUnstacked = kDiffuse | kLayered,
                           kAllMaterials = kUnstacked | kStacked;
@@ -60,6 +63,15 @@ inline Features features_of(ShadingVariant variant) {
     return kAllMaterials;
 }
 
+/// Returns whether the job's vertices select lights by a tree. ReSTIR's candidates for the first one, and the draws of
+/// a light meter, are by power, which must then hold for the lights that a path hits.
+inline bool uses_light_tree(const PathJob& job) {
+    const PictureView& picture = job.picture;
+    return !picture.camera.is_meter() && !job.film.frame.first_bounce.leaves_direct_light() &&
+           uses_light_tree(job.settings.light_choice, picture.scene.lights.tree.light_count,
+                           picture.scene.motions.is_there());
+}
+
 /// Returns the features that the job needs. A moving camera's depth is along its axis at the ray's time.
 inline Features features_for(const PathJob& job) {
     const PictureView& picture = job.picture;
@@ -68,7 +80,8 @@ inline Features features_for(const PathJob& job) {
     const bool filters = job.settings.mip_maps == MipMaps::On && has_textures(picture.scene.variant);
     return features_of(picture.scene.variant) | (has_times ? Features{kMoving} : 0) |
            (picture.batch.is_there() ? Features{kBatched} : 0) | (filters ? Features{kMipMapped} : 0) |
-           (picture.scene.nesting.is_there() ? Features{kNested} : 0);
+           (picture.scene.nesting.is_there() ? Features{kNested} : 0) |
+           (uses_light_tree(job) ? Features{kLightTree} : 0);
 }
 
 /// Returns the key of the random numbers of a path.
@@ -78,10 +91,9 @@ HD inline SampleKey sample_key(const PathJob& job, uint32_t pixel, uint32_t samp
     return sample_key(job.settings, pixel, sample);
 }
 
-/// The light selection of code for a mask of features (shading/light_set.h). A light tree is a feature, for which it
-/// is specialised.
+/// The light selection of code for a mask of features (shading/light_set.h).
 template <Features kFeatures>
-struct LightChoice : ChosenByPower {};
+struct LightChoice : std::conditional_t<(kFeatures & kLightTree) != 0, ChosenByTree, ChosenByPower> {};
 
 /// Masks for which code has been compiled, ordered from the least code on.
 template <Features... kMasks>
@@ -96,9 +108,14 @@ struct CompiledFor {
 using FilmFeatures =
     CompiledFor<kPlainDiffuse, kDiffuse, kUnstacked, kAllMaterials, kPlainDiffuse | kMoving, kDiffuse | kMoving,
                 kUnstacked | kMoving, kPlainDiffuse | kBatched, kDiffuse | kBatched, kUnstacked | kBatched,
-                kUnstacked | kMoving | kBatched, kAllMaterials | kMoving | kBatched | kMipMapped | kNested>;
-using FrameFeatures =
+                kUnstacked | kMoving | kBatched, kAllMaterials | kMoving | kBatched | kMipMapped | kNested,
+                kUnstacked | kLightTree, kAllMaterials | kMoving | kBatched | kMipMapped | kNested | kLightTree>;
+using ReuseFeatures = // frames that leave light to ReSTIR
     CompiledFor<kPlainDiffuse, kDiffuse | kMipMapped, kUnstacked | kMipMapped, kAllMaterials | kMipMapped | kNested>;
-using LayerFeatures = CompiledFor<kUnstacked, kUnstacked | kMoving, kAllMaterials | kMoving | kMipMapped | kNested>;
+using FrameFeatures =
+    CompiledFor<kPlainDiffuse, kDiffuse | kMipMapped, kUnstacked | kMipMapped, kAllMaterials | kMipMapped | kNested,
+                kAllMaterials | kMipMapped | kNested | kLightTree>;
+using LayerFeatures = CompiledFor<kUnstacked, kUnstacked | kMoving, kAllMaterials | kMoving | kMipMapped | kNested,
+                                  kAllMaterials | kMoving | kMipMapped | kNested | kLightTree>;
 
 } // namespace pertev

@@ -25,6 +25,7 @@ struct PathQueueView {
     Float4* radiance;   // rgb, bsdf_pdf; for an ended path rgb, bits of the pixel
     float* times;       // the times of RayQueueView; null unless something moves while the shutter is open
     Uint2* interiors;   // PathState::interior; null unless solids are nested
+    Vec3* normals;      // PathState::normal; null unless lights are selected by a tree
 
     /// Query of the rays at slots 0, 1, ..., or of those from the camera, backwards from `last`.
     RayQueueView query() const {

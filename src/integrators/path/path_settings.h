@@ -30,6 +30,27 @@ enum class PathBody : uint8_t { Loop, Wavefront };
 /// (settings_of_frames), all or none.
 enum class MipMaps : uint8_t { Frames, On, Off };
 
+/// Selection of lights for next-event estimation: by a tree for each receiver (shading/light_tree/), by power, or by
+/// the tree where there are many lights.
+enum class LightSelection : uint8_t { Auto, Tree, Power };
+
+/// The most lights with a position that Auto selects by power: a step down a tree costs more than tables do.
+inline constexpr uint32_t kFewLights = 256;
+
+/// Returns whether lights are selected by a tree, which holds `lights`. It does not know lights that move while the
+/// shutter is open.
+inline bool uses_light_tree(LightSelection selection, uint32_t lights, bool has_times) {
+    switch (selection) {
+    case LightSelection::Auto:
+        return lights > kFewLights && !has_times;
+    case LightSelection::Tree:
+        return lights > 0 && !has_times;
+    case LightSelection::Power:
+        break;
+    }
+    return false;
+}
+
 /// Optional parts of a path in flight in the queues of a wavefront, which take memory there.
 struct PathParts {
     bool has_times = false;      // something moves while the shutter is open
@@ -37,6 +58,7 @@ struct PathParts {
     bool splits_light = false;   // a frame of samples separates kinds of light (FilmView::frame)
     bool records_bounce = false; // a frame stores its first bounce
     bool has_interiors = false;  // solids lie in each other
+    bool has_normals = false;    // lights are selected by a tree
 };
 
 struct PathSettings {
@@ -50,6 +72,7 @@ struct PathSettings {
     SamplerKind sampler = SamplerKind::Sobol;
     uint32_t seed = 0;
     MipMaps mip_maps = MipMaps::Frames;
+    LightSelection light_choice = LightSelection::Power;
 
     bool operator==(const PathSettings&) const = default;
 };

@@ -101,6 +101,7 @@ struct Shade {
             const SampleKey of_sample = sample_key<kFeatures>(job, path.pixel, path.sample);
             if ((kFeatures & kStacked) != 0 && !begins) path.start = paths.start_of(slot);
             if constexpr ((kFeatures & kNested) != 0) path.interior = interior_of(path.pixel, slot, begins);
+            if constexpr (LightChoice<kFeatures>::kReadsNormal) path.normal = begins ? Vec3{} : paths.normals[slot];
             if (kMoves) path.time = job.picture.camera.time(job.settings.sampler, of_sample);
             const Hit hit = hits.load(slot);
             key = coin_key(of_sample, path.depth, true);
@@ -124,6 +125,7 @@ struct Shade {
             next.store(slots.path, path, sample_key<kFeatures>(job, path.pixel, path.sample),
                        job.picture.scene.any_alpha != 0);
             if (kMoves && next.times != nullptr) next.times[slots.path] = path.time;
+            if constexpr (LightChoice<kFeatures>::kReadsNormal) next.normals[slots.path] = path.normal;
             if ((kFeatures & kNested) != 0 && next.interiors != nullptr) {
                 next.interiors[slots.path] = path.interior.words();
             }
