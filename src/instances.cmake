@@ -140,15 +140,11 @@ pertev_launches(denoise/reconstruction_stages.cu
     ShowPicture)
 
 # Stages of restir.
-pertev_launches(restir/restir_stages.cu
-  restir/add_direct_light.h restir/add_indirect_light.h restir/find_neighbours.h restir/initial_candidates.h
-  restir/initial_gi_reservoirs.h restir/reuse_reservoirs.h render/row_band.h
+pertev_launches(restir/direct_stages.cu
+  restir/add_direct_light.h restir/find_neighbours.h restir/initial_candidates.h restir/reuse_reservoirs.h render/row_band.h
   STAGES "FromPixel<SampleInitialCandidates<ShadingVariant::General>>"
     "FromPixel<SampleInitialCandidates<ShadingVariant::Unstacked>>"
     "FromPixel<SampleInitialCandidates<ShadingVariant::Diffuse>>"
-    "FromPixel<MakeInitialGiReservoirs<ShadingVariant::General>>"
-    "FromPixel<MakeInitialGiReservoirs<ShadingVariant::Unstacked>>"
-    "FromPixel<MakeInitialGiReservoirs<ShadingVariant::Diffuse>>"
     "FromPixel<FindBefore>"
     "FromPixel<FindNeighbours>"
     "FromPixel<ReuseReservoirs<LightReservoir, ShadingVariant::General>>"
@@ -159,7 +155,12 @@ pertev_launches(restir/restir_stages.cu
     "FromPixel<FinishReuse<LightReservoir>>"
     "FromPixel<AddDirectLight<ShadingVariant::General>>"
     "FromPixel<AddDirectLight<ShadingVariant::Unstacked>>"
-    "FromPixel<AddDirectLight<ShadingVariant::Diffuse>>"
+    "FromPixel<AddDirectLight<ShadingVariant::Diffuse>>")
+pertev_launches(restir/indirect_stages.cu
+  restir/add_indirect_light.h restir/initial_gi_reservoirs.h restir/reuse_reservoirs.h render/row_band.h
+  STAGES "FromPixel<MakeInitialGiReservoirs<ShadingVariant::General>>"
+    "FromPixel<MakeInitialGiReservoirs<ShadingVariant::Unstacked>>"
+    "FromPixel<MakeInitialGiReservoirs<ShadingVariant::Diffuse>>"
     "FromPixel<ReuseReservoirs<BounceReservoir, ShadingVariant::General>>"
     "FromPixel<ReuseReservoirs<BounceReservoir, ShadingVariant::Unstacked>>"
     "FromPixel<ReuseReservoirs<BounceReservoir, ShadingVariant::Diffuse>>"
@@ -283,8 +284,10 @@ pertev_launches(integrators/path/shade_reused_frames.cu
 pertev_launches(integrators/path/shade_stacks.cu
   integrators/path/path_stages.h
   STAGES "Shade<kAllMaterials, FilmListeners>"
-    "Shade<kAllMaterials | kMoving | kBatched | kMipMapped | kNested, FilmListeners>"
-    "Shade<kAllMaterials | kMipMapped | kNested, FrameListeners>"
+    "Shade<kAllMaterials | kMoving | kBatched | kMipMapped | kNested, FilmListeners>")
+pertev_launches(integrators/path/shade_stacks_of_frames.cu
+  integrators/path/path_stages.h
+  STAGES "Shade<kAllMaterials | kMipMapped | kNested, FrameListeners>"
     "Shade<kAllMaterials | kMipMapped | kNested, ReuseListeners>"
     "Shade<kAllMaterials | kMoving | kMipMapped | kNested, LayerListeners>")
 pertev_launches(integrators/photon_map/photon_stages.cu
