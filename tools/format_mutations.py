@@ -147,4 +147,5 @@ MUTATIONS = [
     ("no gzip'd PLY file is a scene", "unit/read_pbrt", ("src/formats/read_scene.cpp", 'FormatReader{".ply.gz", ', 'FormatReader{".ply.zip", ')),
     ("mitsuba: normal maps have the tangents of v", "unit/read_mitsuba_shapes", ("src/formats/mitsuba/shapes.cpp", "Vec4{t.x, t.y, t.z, 1}", "Vec4{t.x, t.y, t.z, -1}")),
     ("mitsuba: a cylinder begins elsewhere", "unit/read_mitsuba_shapes", ("src/formats/mitsuba/shapes.cpp", "y = {b, sign + z.y * z.y * a, -z.y};", "y = {-b, -sign - z.y * z.y * a, z.y};")),
+    ("mitsuba: colours of vertices are those of a photograph", "unit/read_mitsuba_shapes", ("src/formats/mitsuba/shapes.cpp", "c = {srgb_encode(c.x), srgb_encode(c.y), srgb_encode(c.z), 1};", "c.w = 1;")),
 ]

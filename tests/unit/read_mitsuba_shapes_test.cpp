@@ -207,6 +207,30 @@ TEST_CASE("mitsuba: files of meshes are smooth unless they shall not be, and v f
     CHECK(scene.meshes[4].uv[0][0].y == 0.75f);
 }
 
+TEST_CASE("mitsuba: mesh_attribute has the numbers of a PLY's vertices, for its shapes alone") {
+    const fs::path folder = test::scratch_folder();
+    test::write_text(folder / "c.ply",
+                     "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                     "property float r\nproperty float g\nproperty float b\nelement face 1\nproperty list uchar int "
+                     "vertex_indices\nend_header\n0 0 0 .25 .5 1\n1 0 0 .25 .5 1\n0 1 0 .25 .5 1\n3 0 1 2\n");
+    Messages messages;
+    const std::string colored =
+        "<bsdf type=\"diffuse\"><texture type=\"mesh_attribute\" name=\"reflectance\"><string name=\"name\" "
+        "value=\"vertex_color\"/></texture></bsdf>";
+    const Scene scene = load_shapes(
+        folder, shape_of("ply", named_file("c.ply") + colored) + shape_of("ply", named_file("c.ply")), messages);
+    CHECK(messages.left_out() == std::vector<std::string>{});
+    REQUIRE(scene.meshes.size() == 2);
+    REQUIRE(scene.meshes[0].colors.size() == 3);
+    CHECK(scene.meshes[0].colors[0].x == doctest::Approx(0.25));
+    CHECK(scene.meshes[0].colors[0].y == doctest::Approx(0.5));
+    CHECK(scene.meshes[1].colors.empty());
+    CHECK(scene.materials[scene.instances[0].material].base_color == grey(1));
+    Messages none;
+    (void)load_shapes(folder, shape_of("rectangle", colored), none);
+    CHECK(none.left_out().empty()); // the factor is white
+}
+
 TEST_CASE("mitsuba: equal shapes share a mesh, groups are instanced") {
     const Scene scene = load_shapes("<shape type=\"shapegroup\" id=\"pair\">" +
                                     shape_of("sphere", "<point name=\"center\" x=\"5\" y=\"0\" z=\"0\"/>") +

@@ -190,6 +190,14 @@ TEST_CASE("mitsuba: film, sampler and integrator suggest settings") {
     CHECK(suggested_in(scene, "filter_radius") == "1");
     const Scene direct = load_mitsuba(in_scene("<integrator type=\"direct\"/>" + kSquare));
     CHECK(suggested_in(direct, "max_depth") == "1");
+    CHECK(
+        left_out_of(
+            "<integrator type=\"path\"><boolean name=\"hide_emitters\" value=\"false\"/></integrator><sensor "
+            "type=\"perspective\"><film type=\"hdrfilm\"><integer name=\"crop_width\" value=\"768\"/></film></sensor>")
+            .empty());
+    CHECK(
+        left_out_of("<integrator type=\"path\"><boolean name=\"hide_emitters\" value=\"true\"/></integrator>").size() ==
+        1);
     CHECK(begins_with(left_out_of("<sensor type=\"perspective\"><film type=\"hdrfilm\"><integer name=\"crop_width\" "
                                   "value=\"3\"/></film></sensor>"),
                       "scene.xml:2: the parameter \"crop_width\""));

@@ -48,7 +48,8 @@ struct SlotImage {
 
 struct Surface {
     Material material;
-    bool is_nothing = false; // an interface between media: light passes
+    bool is_nothing = false;        // an interface between media: light passes
+    bool has_vertex_colors = false; // its colour is that of the mesh's vertices
     std::vector<SlotImage> images;
     TextureValue heights; // metres along the normal, if it has an image
     bool has_heights = false;

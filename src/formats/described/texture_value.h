@@ -18,6 +18,8 @@ struct TextureValue {
     float exponent = 1;         // the gamma of the stored values; applied before factor and offset
     bool ignores_alpha = false; // an opacity is that of the colour, even if the image has an alpha channel
 
+    bool is_of_vertices = false; // the colours of a mesh's vertices, times factor
+
     bool has_image() const { return ref.has_image() || made >= 0; }
     /// Returns the same value times `color`.
     TextureValue scaled(Rgb color) const {

@@ -49,7 +49,9 @@ float find_ior(std::string_view name) {
 uint32_t Bsdfs::surface_of(Object& bsdf) {
     if (const auto known = known_.find(bsdf.number); known != known_.end()) return known->second;
     has_two_sides_ = false;
+    (void)textures_.took_vertex_colors();
     Surface surface = read(bsdf);
+    surface.has_vertex_colors = textures_.took_vertex_colors();
     warn_of_backs(bsdf, surface);
     surface.material.name = bsdf.id.empty() ? bsdf.type : bsdf.id;
     surface.material.origin = fmt::format("{}:{}", bsdf.location().file, bsdf.location().line);

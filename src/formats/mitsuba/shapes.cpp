@@ -17,6 +17,7 @@
 #include "formats/obj/read_obj.h"
 #include "formats/ply/read_ply.h"
 #include "formats/shapes/quadrics.h"
+#include "image/srgb.h"
 
 namespace pertev::mitsuba {
 namespace {
@@ -92,10 +93,11 @@ Mesh make_cube() {
 }
 
 uint32_t Shapes::add(const std::string& key, const Object& shape, bool is_reversed, Mesh mesh) {
-    const auto [known, is_new] = shared_.try_emplace(fmt::format("{} {} {}", is_reversed, has_normal_map_, key),
-                                                     static_cast<uint32_t>(reading_.parts.meshes.size()));
+    const auto [known, is_new] =
+        shared_.try_emplace(fmt::format("{} {} {} {}", is_reversed, needs_.tangents, needs_.colors, key),
+                            static_cast<uint32_t>(reading_.parts.meshes.size()));
     if (!is_new) return known->second;
-    if (has_normal_map_) with_tangents_.push_back(known->second);
+    if (needs_.tangents) with_tangents_.push_back(known->second);
     ShapeMesh made;
     made.mesh = std::move(mesh);
     made.location = shape.location();
@@ -118,6 +120,7 @@ uint32_t Shapes::file_mesh(Object& shape, bool is_reversed, const DoubleTransfor
     use.flips_v = use.kind == 's' ? is_turned : !is_turned;
     use.has_face_normals = parameters.truth("face_normals", false, sink);
     use.is_mirrored = determinant(to_world) < 0;
+    use.has_colors = needs_.colors;
     if (use.kind == 's')
         use.index =
             static_cast<uint32_t>(std::clamp<int64_t>(parameters.integer("shape_index", 0, sink), 0, UINT32_MAX));
@@ -130,8 +133,8 @@ uint32_t Shapes::file_mesh(Object& shape, bool is_reversed, const DoubleTransfor
     return mesh;
 }
 
-std::optional<ReadShape> Shapes::read(Object& shape, bool has_normal_map) {
-    has_normal_map_ = has_normal_map;
+std::optional<ReadShape> Shapes::read(Object& shape, MeshNeeds needs) {
+    needs_ = needs;
     Parameters& parameters = shape.parameters;
     Sink& sink = reading_.sink();
     const DoubleTransform to_world = transform_of(shape, "to_world", sink);
@@ -178,7 +181,7 @@ void Shapes::read_mesh_file(const FileUse& use, ShapeMesh& to, Sink& sink) const
         to.exact = std::move(read.exact);
     } else {
         ReadOptions options = reading_.context.options;
-        options.geometry_only = true; // Mitsuba takes no materials from it
+        options.geometry_only = !use.has_colors; // Mitsuba takes no materials from it
         const FileAccess& access = reading_.context.access;
         Scene scene =
             use.kind == 'o' ? read_obj(to.file, access, options, sink) : read_ply(to.file, access, options, sink);
@@ -187,6 +190,9 @@ void Shapes::read_mesh_file(const FileUse& use, ShapeMesh& to, Sink& sink) const
         to.shape_from_mesh = translation_by(scene.origin_in_file);
     }
     Mesh& mesh = to.mesh;
+    for (Vec4& c : mesh.colors) c = {srgb_encode(c.x), srgb_encode(c.y), srgb_encode(c.z), 1}; // the file's numbers
+    if (use.has_colors && mesh.colors.empty())
+        sink.leave_out({to.location, "the mesh has no vertex_color; its surface has the factor alone"});
     if (!mesh.uv[0].empty() && use.flips_v) {
         for (Vec2& uv : mesh.uv[0]) uv.y = 1 - uv.y;
     }

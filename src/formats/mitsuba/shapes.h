@@ -20,14 +20,20 @@ struct ReadShape {
     DoubleTransform world_from; // before ShapeMesh::shape_from_mesh
 };
 
+/// Lists what the surface of a shape needs of its mesh besides its geometry.
+struct MeshNeeds {
+    bool tangents = false; // a normal map needs them
+    bool colors = false;   // vertex colours are the surface's
+};
+
 class Shapes {
 public:
     /// `reading` outlives it.
     explicit Shapes(Reading& reading) : reading_(reading) {}
 
-    /// Reads the geometry of a shape. One with a normal map has a mesh of its own, with tangents. Returns nothing, with
-    /// a warning, for a type that is left out. Throws Error(BadInput) if it is unreadable.
-    std::optional<ReadShape> read(Object& shape, bool has_normal_map);
+    /// Reads the geometry of a shape. Shapes with other needs have other meshes. Returns nothing, with a warning,
+    /// for a type that is left out. Throws Error(BadInput) if it is unreadable.
+    std::optional<ReadShape> read(Object& shape, MeshNeeds needs);
 
     /// Reads the files and completes all meshes. An unreadable file leaves an empty mesh, with a warning.
     void finish();
@@ -36,7 +42,7 @@ private:
     /// Describes how a file becomes a mesh.
     struct FileUse {
         char kind = 0; // o, p or s: obj, ply, serialized
-        bool flips_v = false, has_face_normals = false;
+        bool flips_v = false, has_face_normals = false, has_colors = false;
         bool is_mirrored =
             false;          // by its transform: without normals of its own its front is that of the mirrored corners
         uint32_t index = 0; // number of the mesh in a serialized file
@@ -47,8 +53,8 @@ private:
 
     Reading& reading_;
     std::map<std::string, uint32_t, std::less<>> shared_; // by what makes them
-    bool has_normal_map_ = false;                         // the shape that is read has one
-    std::vector<uint32_t> with_tangents_;                 // meshes of such shapes
+    MeshNeeds needs_;                                     // needs of the shape that is read
+    std::vector<uint32_t> with_tangents_;                 // meshes of normal maps
     std::map<uint32_t, FileUse> files_;                   // by mesh
 };
 

@@ -12,7 +12,13 @@
 namespace pertev::mitsuba {
 
 TextureValue Textures::value_of(Object& texture, ColorUse use) {
-    if (const auto known = known_.find({texture.number, use}); known != known_.end()) return known->second;
+    auto known = known_.find({texture.number, use});
+    if (known == known_.end()) known = known_.emplace(std::pair{texture.number, use}, read(texture, use)).first;
+    took_vertex_colors_ = took_vertex_colors_ || known->second.is_of_vertices;
+    return known->second;
+}
+
+TextureValue Textures::read(Object& texture, ColorUse use) {
     const Depth depth(reading_.depth, texture);
     Parameters& parameters = texture.parameters;
     Sink& sink = reading_.sink();
@@ -28,6 +34,9 @@ TextureValue Textures::value_of(Object& texture, ColorUse use) {
         Object* const inner = child_of(texture, "texture", reading_);
         const TextureValue factor = color(texture, "scale", ColorUse::Index, grey(1));
         value = product(inner != nullptr ? value_of(*inner, use) : color(texture, "value", use, grey(0.5f)), factor);
+    } else if (texture.type == "mesh_attribute" && parameters.text("name", "", sink) == "vertex_color") {
+        value = constant(grey(static_cast<float>(parameters.number("scale", 1, sink))));
+        value.is_of_vertices = true;
     } else {
         const bool is_known = std::ranges::find(kOthers, texture.type) != kOthers.end() || texture.type == kKnown[3];
         sink.leave_out({texture.location(),
@@ -37,7 +46,6 @@ TextureValue Textures::value_of(Object& texture, ColorUse use) {
         value = constant(grey(0.5f));
     }
     parameters.leave_out_unknown(sink);
-    known_.insert_or_assign({texture.number, use}, value);
     return value;
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "formats/mitsuba/colors.h"
 #include "formats/mitsuba/reading.h"
@@ -23,13 +24,17 @@ public:
     TextureValue number(Object& object, std::string_view name, float missing);
     /// Returns the value of an object <texture>; 0.5 after a warning if it is left out.
     TextureValue value_of(Object& texture, ColorUse use);
+    /// Returns whether a value since the last call was that of a mesh's vertices.
+    bool took_vertex_colors() { return std::exchange(took_vertex_colors_, false); }
 
 private:
+    TextureValue read(Object& texture, ColorUse use);
     TextureValue bitmap(Object& texture);
     TextureValue checkerboard(Object& texture, ColorUse use);
     void read_placing(Object& texture, TextureRef& ref);
 
     Reading& reading_;
+    bool took_vertex_colors_ = false;
     std::map<std::pair<uint32_t, ColorUse>, TextureValue> known_; // by the object's number
 };
 

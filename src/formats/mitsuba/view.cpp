@@ -59,8 +59,14 @@ FilmSize size_of(Object& sensor, Reading& reading, Scene* suggest) {
     size.width = std::clamp<int64_t>(parameters.integer("width", size.width, sink), 1, kMaxImageSide);
     size.height = std::clamp<int64_t>(parameters.integer("height", size.height, sink), 1, kMaxImageSide);
     if (suggest == nullptr) return size;
-    parameters.leave_out({"crop_offset_x", "crop_offset_y", "crop_width", "crop_height"},
-                         "the whole picture is rendered", sink);
+    const bool is_cropped = parameters.integer("crop_offset_x", 0, sink) != 0 ||
+                            parameters.integer("crop_offset_y", 0, sink) != 0 ||
+                            parameters.integer("crop_width", size.width, sink) != size.width ||
+                            parameters.integer("crop_height", size.height, sink) != size.height;
+    if (is_cropped)
+        parameters.leave_out({"crop_offset_x", "crop_offset_y", "crop_width", "crop_height"},
+                             "the whole picture is rendered", sink);
+    parameters.ignore({"crop_offset_x", "crop_offset_y", "crop_width", "crop_height"});
     parameters.ignore({"file_format", "pixel_format", "component_format", "filename", "banner", "gamma", "exposure",
                        "tonemap_method", "attach_log", "high_quality_edges", "sample_border", "compensate", "metadata",
                        "key", "burn"});
@@ -200,7 +206,8 @@ void suggest_depth(Object* integrator, Reading& reading, Scene& scene) {
                    fmt::format("the integrator {} has no effect; paths are traced", shortened(integrator->type))});
         return;
     }
-    parameters.leave_out({"hide_emitters"}, "emitters are visible", sink);
+    if (parameters.truth("hide_emitters", false, sink))
+        parameters.leave_out({"hide_emitters"}, "emitters are visible", sink);
     parameters.ignore({"rr_depth", "strict_normals", "shading_samples", "emitter_samples", "bsdf_samples",
                        "samples_per_pass", "timeout", "block_size"});
     parameters.leave_out_unknown(sink);

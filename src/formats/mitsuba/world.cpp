@@ -75,7 +75,7 @@ void World::place(Object& shape, const DoubleTransform& world_from_group) {
     if (parts_.surfaces[placed.surface].is_nothing && !placed.area_light) return;
     const Surface& surface = parts_.surfaces[placed.surface];
     const bool has_normal_map = surface.material.normal_texture.has_image() && !surface.has_heights;
-    const auto read = shapes_.read(shape, has_normal_map);
+    const auto read = shapes_.read(shape, {has_normal_map, surface.has_vertex_colors});
     if (!read) return;
     shape.parameters.ignore({"silhouette_sampling_weight", "flip_normals"});
     shape.parameters.leave_out_unknown(sink);
