@@ -6,13 +6,14 @@ cd "$(dirname "${BASH_SOURCE[0]}")"
 
 usage() {
     cat <<'END'
-usage: ./setup.sh [--cpu | --cuda | --check-kernels] [--lab] [--tests] [--no-apt] [--help]
+usage: ./setup.sh [--cpu | --cuda | --check-kernels] [--lab] [--tests [--build-only]] [--no-apt] [--help]
 
   --cpu            build without CUDA
   --cuda           build with CUDA; where no nvcc is found, fetch one from PyPI into build/cuda (about 300 MB)
   --check-kernels  build without CUDA, but compile the kernels to see whether they compile (needs nvcc)
   --lab            build every traversal that `pertev lab` can compare, not only those that pictures use by default
   --tests          build the tests and the laboratory too and run the tests; the exit status is theirs
+  --build-only     with --tests: run none of them
   --no-apt         install nothing; say what is missing
 
 Without --cpu or --cuda, CUDA is used if there is a GPU's driver; nvcc is fetched if there is none. Kernels are compiled
@@ -22,7 +23,7 @@ END
 
 readonly oldest_systems="Debian 12 or Ubuntu 24.04"
 readonly build=build
-cuda=auto lab=false tests=false apt=true
+cuda=auto lab=false tests=false run=true apt=true
 for arg in "$@"; do
     case $arg in
         --cpu | --cuda | --check-kernels)
@@ -31,6 +32,7 @@ for arg in "$@"; do
             ;;
         --lab) lab=true ;;
         --tests) tests=true lab=true ;;
+        --build-only) run=false ;;
         --no-apt) apt=false ;;
         -h | --help) usage; exit 0 ;;
         *) echo "setup.sh: unknown flag '$arg'" >&2; usage >&2; exit 2 ;;
@@ -344,7 +346,7 @@ compile() {
     local jobs memory_gb
     memory_gb=$(awk '/MemAvailable/ { print int($2 / 1048576) }' /proc/meminfo)
     jobs=$(nproc)
-    ((jobs <= memory_gb * 2 / 3)) || jobs=$((memory_gb * 2 / 3)) # the largest files take 1.5 GB to compile
+    ((jobs <= memory_gb * 3 / 5)) || jobs=$((memory_gb * 3 / 5)) # the largest files take 1.7 GB to compile
     ((jobs >= 1)) || jobs=1
     local targets=(pertev)
     ! $tests || targets=(all)
@@ -401,7 +403,7 @@ configure
 compile
 summary
 
-if $tests; then
+if $tests && $run; then
     echo
     tools/missing_scenes.sh
     ctest --test-dir "$build" --output-on-failure -j 3 # some of them wait

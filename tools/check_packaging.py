@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Fails where packaging/ or .github/workflows could not be read by what they are for: an image's recipe has only known instructions, copies
 from stages and folders that there are, and is accepted by hadolint; a workflow is YAML, runs files that there are, and is accepted by
-actionlint; systemd accepts the unit. It says which of these tools are missing, also in build/linters, where .ci/run puts them, and then ends
+actionlint; systemd accepts the unit. It says which of these tools are missing, also in build/test-tools, where .ci/run puts them, and then ends
 with 77; it runs nothing of the files.
 
     tools/check_packaging.py
@@ -62,8 +62,8 @@ def faults_of_unit(text):
 
 
 def linter(name):
-    """Returns the linter's program, or None: the system's, or the one of build/linters."""
-    return shutil.which(name) or shutil.which(name, path=ROOT / "build/linters/bin")
+    """Returns the linter's program, or None: the system's, or the one of build/test-tools."""
+    return shutil.which(name) or shutil.which(name, path=ROOT / "build/test-tools/bin")
 
 
 def faults_by_linter(name, file):
