@@ -122,7 +122,7 @@ class Devices(CliTest):
                 self.refuse(2, "render", "cornell-box", "-o", "x.png", "--device", name, says=[f"--device {name}: "])
 
     def test_bench_devices_compares_each_number_of_devices_with_one(self):
-        line = ["bench", "devices", "--scene", "cornell-box", "--job", "cornell-box-8", "--size", "16x16", "--runs", "2", "--pictures", "5", "--frames", "3"]
+        line = ["bench", "devices", "--scene", "cornell-box", "--job", "cornell-box-8", "--size", "16x16", "--runs", "2", "--pictures", "3", "--frames", "3"]
         outcome = self.succeed(*line, *THREE, "--spp", "300", "--report", "devices.json", "--json")
         made = outcome.events("devices")
         self.assertEqual([(row["samples"], row["devices"]) for row in made], [(spp, n) for spp in (300, 256) for n in (1, 2, 3)])
@@ -147,7 +147,7 @@ class Devices(CliTest):
         self.assertEqual(made[0]["hash"], alike["hash"])
         batches = outcome.events("devices_cameras")
         self.assertEqual([(row["devices"], row["pictures"], row["width"], row["hash"]) for row in batches],
-                         [(n, 5, 128, batches[0]["hash"]) for n in (1, 2, 3)])
+                         [(n, 3, 128, batches[0]["hash"]) for n in (1, 2, 3)])
         for row in batches:
             self.assertAlmostEqual(row["ratio_to_one"], batches[0]["median_seconds"] / row["median_seconds"], 4)
         frames = outcome.events("devices_frames")

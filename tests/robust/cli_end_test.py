@@ -47,7 +47,7 @@ class WhenItEnds(CliTest):
     def test_a_second_interrupt_ends_at_once_and_leaves_no_file(self):
         leader, follower = pty.openpty()
         listener, said = listen_to(leader)
-        program = subprocess.Popen([PROGRAM, "render", "cornell-box", "-o", "x.exr", "--size", "2000x2000", "--spp", "640",
+        program = subprocess.Popen([PROGRAM, "render", "cornell-box", "-o", "x.exr", "--size", "1200x1200", "--spp", "640",
                                     "--threads", "1", "--device", "cpu"], cwd=self.folder, env=self.environment, stderr=follower)
         self.addCleanup(program.kill)
         os.close(follower)

@@ -258,7 +258,7 @@ class RealTime(CliTest):
 
     def check_interrupt(self, kind, *more):
         os.mkdir(self.path("x")), os.mkdir(self.path("again"))
-        arguments = ["render", "m.gltf", "-o", "x/f-##.png", "--real-time", "--size", "320x240", "--device", "cpu",
+        arguments = ["render", "m.gltf", "-o", "x/f-##.png", "--real-time", "--size", "200x150", "--device", "cpu",
                      "--exposure", "0", "--frames", "0-29", "--fps", "20"]
         program = subprocess.Popen([PROGRAM, *arguments, *more], cwd=self.folder, env=self.environment,
                                    stdin=subprocess.DEVNULL, stderr=subprocess.PIPE)
