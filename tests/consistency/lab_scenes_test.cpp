@@ -22,7 +22,7 @@ namespace {
 constexpr uint64_t kSceneRays = 3'000, kOtherTreeRays = 3'000;
 constexpr bool kTwoScenes = false;
 #else
-constexpr uint64_t kSceneRays = 50'000, kOtherTreeRays = 10'000;
+constexpr uint64_t kSceneRays = 20'000, kOtherTreeRays = 5'000;
 constexpr bool kTwoScenes = true;
 #endif
 constexpr const char *kSponzaFile = "crytek-sponza/sponza.obj", *kSibenikFile = "sibenik/sibenik.obj";
@@ -118,7 +118,7 @@ void check_all_scenes(Queue& queue) {
 } // namespace
 
 TEST_CASE(
-    "each traversal with each switch gives the same hits on 50,000 rays of each kind in Sponza, Sibenik or both") {
+    "each traversal with each switch gives the same hits on 20,000 rays of each kind in Sponza, Sibenik or both") {
     Queue queue = Queue::make_cpu();
     if (effort(0, 1) != 0) return check_all_scenes(queue);
     if (kTwoScenes) {
@@ -136,7 +136,7 @@ TEST_CASE(
                    kSceneRays);
 }
 
-TEST_CASE("each traversal gives the same hits over each tree on 10,000 rays of each kind in Sibenik") {
+TEST_CASE("each traversal gives the same hits over each tree on 5,000 rays of each kind in Sibenik") {
     if (effort(0, 1) != 0) return; // the long setting tests these on all rays of both scenes
     const auto sibenik = read_geometry(kSibenikFile);
     if (!sibenik) return;

@@ -14,7 +14,7 @@ using namespace pertev::test;
 
 namespace {
 
-constexpr uint32_t kSheetSide = 48, kSheetSamples = 8, kSheetReference = 1024;
+constexpr uint32_t kSheetSide = 48, kSheetSamples = 8, kSheetReference = 512;
 
 Material matt(float albedo) {
     Material material;
