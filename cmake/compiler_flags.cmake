@@ -12,6 +12,10 @@ endif()
 if(PERTEV_WERROR)
   list(APPEND PERTEV_WARNING_FLAGS -Werror)
 endif()
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # g++ collects garbage from 128 MB on, which takes a tenth of the time of a unity file; the objects are the same.
+  add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:--param=ggc-min-heapsize=1048576>")
+endif()
 
 add_compile_options(
   "$<$<COMPILE_LANGUAGE:CXX>:${PERTEV_ARITHMETIC_FLAGS};${PERTEV_WARNING_FLAGS}>"
