@@ -347,7 +347,7 @@ MUTATIONS = part_mutations.MUTATIONS + format_mutations.MUTATIONS + lobe_mutatio
     ("rays start on the wrong side", "unit/ray_origin",
      ("src/device_scene/ray_origin.h", "select(dot(direction, normal) < 0,", "select(dot(direction, normal) > 0,")),
     ("lanes turn a constant sky", "consistency/one_picture unit/shade_lanes",
-     ("src/integrators/path/shade_lanes.inl", "{drawn.x.get(), drawn.y.get()}", "{drawn.y.get(), drawn.x.get()}")),
+     ("src/integrators/path/light_lanes.inl", "{drawn.x.get(), drawn.y.get()}", "{drawn.y.get(), drawn.x.get()}")),
     ("frames in lanes have no first hit", "consistency/frames",
      ("src/integrators/path/frame_listeners.h", "static uint32_t depth_of_lanes(const PathJob&) { return 1; }",
       "static uint32_t depth_of_lanes(const PathJob&) { return 0; }")),

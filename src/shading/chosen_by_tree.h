@@ -38,8 +38,10 @@ struct ChosenByTree {
         return ChosenByPower::pmf_of_environment(view, context);
     }
 
-private:
+    /// Returns how many of 2^31 numbers select lights of the tree.
     HD static uint32_t numbers_of_near(const LightSetView& view) { return view.choice.starts[view.near_count]; }
+
+private:
     HD static LightReceiver receiver(const LightContext& context) { return {context.point, context.normal}; }
 };
 

@@ -21,9 +21,17 @@ RenderSettings tree_settings(uint32_t samples) {
     return settings;
 }
 
-Scene mixed_scene(bool is_stacked) {
+/// The scene of all kinds of surfaces and lights with coats, or as it is, or with plain diffuse surfaces alone.
+enum class Surfaces { Stacked, Mixed, Plain };
+Scene mixed_scene(Surfaces surfaces) {
     Scene scene = test::make_mixed_scene();
-    for (Material& material : scene.materials) material.coat_weight = is_stacked ? 0.5f : 0.0f;
+    for (Material& material : scene.materials) {
+        if (surfaces == Surfaces::Stacked) material.coat_weight = 0.5f;
+        if (surfaces != Surfaces::Plain) continue;
+        material.kind = MaterialKind::Diffuse;
+        material.alpha_mode = AlphaMode::Opaque;
+        material.base_color_texture = material.normal_texture = material.emission_texture = {};
+    }
     return scene;
 }
 
@@ -37,9 +45,9 @@ Hash128 hash_of(Queue& queue, const Scene& scene, const RenderSettings& settings
 
 TEST_CASE("a light tree gives the same bytes by both schedules and on both devices, other than those by power") {
     Queue cpu = Queue::make_cpu(), requested = test::requested_queue();
-    for (const bool is_stacked : {false, true}) {
-        CAPTURE(is_stacked);
-        const Scene scene = mixed_scene(is_stacked);
+    for (const Surfaces surfaces : {Surfaces::Stacked, Surfaces::Mixed, Surfaces::Plain}) {
+        CAPTURE(static_cast<int>(surfaces));
+        const Scene scene = mixed_scene(surfaces);
         RenderSettings settings = tree_settings(5);
         const Hash128 hash = hash_of(cpu, scene, settings);
         CHECK(hash_of(requested, scene, settings) == hash);
@@ -62,7 +70,7 @@ TEST_CASE("a light tree gives the same bytes by both schedules and on both devic
 TEST_CASE("pictures by a light tree have the mean of those by power, under every strategy that samples lights") {
     Queue queue = test::requested_queue();
     Messages messages;
-    const Scene scene = mixed_scene(false);
+    const Scene scene = mixed_scene(Surfaces::Mixed);
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     RenderSettings settings = tree_settings(32);
     settings.path.sampler = SamplerKind::Independent;

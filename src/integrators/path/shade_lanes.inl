@@ -50,6 +50,11 @@ struct WordTable {
     }
 };
 
+/// Features of a job whose vertices may be shaded in lanes.
+Features features_of_lanes(const PathJob& job) {
+    return uses_light_tree(job) ? kPlainDiffuse | kLightTree : kPlainDiffuse;
+}
+
 /// Random numbers of the vertices.
 VertexWords<Words> draw_numbers(const PathJob& job, const LaneVertices& vertices) {
     const PathSettings& settings = job.settings;
@@ -159,6 +164,8 @@ struct Surfaces {
         return same_side == (wo_z * wi_z > 0);
     }
     Vec3s origin_towards(Vec3s wi) const { return offset_ray_origin(position, error, geometric_normal, wi); }
+    /// Normal of Surface::light_context.
+    Vec3s context_normal(Vec3s wo) const { return select(dot(wo, frame.normal) < 0, -frame.normal, frame.normal); }
 };
 
 Surfaces make_surfaces(const Triangles& t, Vec3s wo) {
@@ -211,140 +218,13 @@ Values evaluate(const Surfaces& s, Vec3s wo, Vec3s wo_local, Vec3s wi) {
     return {(1.0f / from.slope) * value.f, select(is_valid, value.pdf / from.slope, Floats(0.0f))};
 }
 
-/// LightSample of receivers.
-struct Lights {
-    Mask arrives, is_delta, has_distance, is_triangle;
-    Vec3s wi, point, normal;
-    Rgbs radiance;
-    Floats pdf;
-    TriangleId targets[kLanes];
-};
+} // namespace
+} // namespace pertev
 
-/// Selected lights: the data of a triangle and of the draws that select its point, the numbers for a constant
-/// environment, or the whole sample of another kind.
-struct LightTable {
-    enum Field { kA = 0, kAb = 3, kAc = 6, kRadiance = 9, kPdf = 12, kRestX, kOwnedX, kRestY, kOwnedY, kFields };
-    static constexpr int kPoint = kA, kWi = kAb; // another kind of light
-    Table<kFields> table;
-    WordTable x, y; // triangle: the binary places of both rests; constant environment: its pair of numbers
-    TriangleId targets[kLanes];
-    unsigned arrive = 0, are_triangles = 0, are_mirrored = 0, are_two_sided = 0, are_delta = 0, have_distance = 0;
-    unsigned are_constant = 0; // constant environment
-};
+#include "integrators/path/light_lanes.inl"
 
-/// Enters the lights that lanes select.
-struct LightOfLane {
-    const LightSetView& view;
-    LightTable& to;
-    uint32_t lane;
-
-    void enter(Vec3 receiver, SampleBits u) const {
-        const LightDraw draw = select_light(view, u);
-        const float pmf = cdf_pmf(draw.source.owned);
-        const LightContext context(receiver);
-        const EmittersAtRest at_rest;
-        LightSample sample;
-        const SampleOfKind<EmitterLook::Plain, EmittersAtRest> at_receiver = {view, context, at_rest, sample};
-        switch (draw.kind) {
-        case SourceKind::Triangle:
-            return enter_triangle(draw);
-        case SourceKind::Punctual:
-            if (at_receiver.punctual(draw.source.index - view.emitter_count, pmf)) enter(sample);
-            return;
-        case SourceKind::Environment:
-            const SampleBits rest = {number_of_rest(draw.source), u.y};
-            if (view.environment.is_constant) return enter_constant_environment(pmf, rest);
-            if (at_receiver.environment(pmf, rest)) enter(sample);
-        }
-    }
-
-private:
-    using F = LightTable;
-
-    void enter_triangle(const LightDraw& draw) const {
-        const EmissiveTriangle& from = view.triangles[draw.light];
-        const Rgb radiance = view.emissions[from.material].emission;
-        const unsigned bit = 1u << lane;
-        to.table.set(F::kA, lane, from.a), to.table.set(F::kAb, lane, from.ab), to.table.set(F::kAc, lane, from.ac);
-        to.table.set(F::kRadiance, lane, radiance);
-        to.table.set(F::kPdf, lane, from.pmf);
-        to.table.set(F::kRestX, lane, static_cast<float>(draw.source.rest));
-        to.table.set(F::kOwnedX, lane, static_cast<float>(draw.source.owned));
-        to.table.set(F::kRestY, lane, static_cast<float>(draw.triangle.rest));
-        to.table.set(F::kOwnedY, lane, static_cast<float>(draw.triangle.owned));
-        to.x.at[lane] = draw.source.more, to.y.at[lane] = draw.triangle.more;
-        to.targets[lane] = {from.instance, from.primitive};
-        to.are_triangles |= bit, to.have_distance |= bit;
-        if (from.is_mirrored != 0) to.are_mirrored |= bit;
-        if (from.is_two_sided != 0) to.are_two_sided |= bit;
-        if (!is_black(radiance)) to.arrive |= bit;
-    }
-    void enter_constant_environment(float pmf, SampleBits rest) const {
-        const float pdf = pmf * (0.25f * kInvPi);
-        if (view.environment.rows.starts == nullptr || !(pdf > 0)) return; // black
-        to.table.set(F::kRadiance, lane, view.environment.constant), to.table.set(F::kPdf, lane, pdf);
-        to.x.at[lane] = rest.x, to.y.at[lane] = rest.y;
-        to.targets[lane] = {kNoLight, kNoLight};
-        to.arrive |= 1u << lane, to.are_constant |= 1u << lane;
-    }
-    void enter(const LightSample& sample) const {
-        const unsigned bit = 1u << lane;
-        to.table.set(F::kPoint, lane, sample.light_point), to.table.set(F::kWi, lane, sample.wi);
-        to.table.set(F::kRadiance, lane, sample.radiance), to.table.set(F::kPdf, lane, sample.pdf);
-        to.targets[lane] = {sample.instance, sample.primitive};
-        to.arrive |= bit;
-        if (sample.is_delta) to.are_delta |= bit;
-        if (sample.distance < kInfinity) to.have_distance |= bit;
-    }
-};
-
-/// sample_light for the receivers of `lanes`.
-void sample_lights(const LightSetView& view, unsigned lanes, Vec3s position, const SampleBitsOf<Words>& u,
-                   Lights& lights) {
-    LightTable drawn;
-    for (; lanes != 0; lanes &= lanes - 1) {
-        const auto lane = static_cast<uint32_t>(__builtin_ctz(lanes));
-        const Vec3 receiver = {position.x[lane], position.y[lane], position.z[lane]};
-        LightOfLane{view, drawn, lane}.enter(receiver, {u.x[lane], u.y[lane]});
-    }
-    const auto& table = drawn.table;
-    lights.arrives = Mask::of_bits(drawn.arrive);
-    lights.is_delta = Mask::of_bits(drawn.are_delta);
-    lights.has_distance = Mask::of_bits(drawn.have_distance);
-    lights.is_triangle = Mask::of_bits(drawn.are_triangles);
-    lights.radiance = table.rgb(LightTable::kRadiance);
-    lights.wi = table.vec3(LightTable::kWi), lights.point = table.vec3(LightTable::kA);
-    lights.pdf = table.get(LightTable::kPdf);
-    lights.normal = {0, 0, 0};
-    for (uint32_t lane = 0; lane < kLanes; ++lane) lights.targets[lane] = drawn.targets[lane];
-    if (drawn.are_constant != 0) {
-        const Vec3s wi = sample_constant_environment<Floats>(view.environment, {drawn.x.get(), drawn.y.get()});
-        lights.wi = select(Mask::of_bits(drawn.are_constant), wi, lights.wi);
-    }
-    if (drawn.are_triangles == 0) return;
-    // LightDraw::weights.
-    const auto rest_at = [&](int rest, const WordTable& more) {
-        return rest_of<Floats>(table.get(rest), table.get(rest + 1), more.get());
-    };
-    const Vec2Of<Floats> b = sample_uniform_triangle(
-        Vec2Of<Floats>{rest_at(LightTable::kRestX, drawn.x), rest_at(LightTable::kRestY, drawn.y)});
-    // triangle_light_at.
-    const Vec3s ab = table.vec3(LightTable::kAb), ac = table.vec3(LightTable::kAc);
-    const Vec3s point = lights.point + (b.x * ab + b.y * ac);
-    const Vec3s to_light = point - position;
-    const Floats distance_squared = length_squared(to_light), distance = sqrt(distance_squared);
-    const Vec3s wi = to_light / distance;
-    const Vec3s normal = cross(ab, ac);
-    const Mask emits =
-        Mask::of_bits(drawn.are_two_sided) || (dot(normal, wi) < 0) == !Mask::of_bits(drawn.are_mirrored);
-    const Floats pdf = lights.pdf * triangle_pdf(normal, wi, distance_squared);
-    const Mask is_triangle = lights.is_triangle;
-    lights.arrives = lights.arrives && (!is_triangle || (emits && pdf > 0 && is_finite(pdf)));
-    lights.point = select(is_triangle, point, lights.point);
-    lights.wi = select(is_triangle, wi, lights.wi);
-    lights.normal = select(is_triangle, normalize(normal), lights.normal);
-    lights.pdf = select(is_triangle, pdf, lights.pdf);
-}
+namespace pertev {
+namespace {
 
 /// The parts of a path that shading reads and writes.
 struct Paths {
@@ -357,7 +237,13 @@ struct Paths {
 unsigned sample_direct(const PathJob& job, unsigned lanes, const Paths& paths, const Surfaces& surfaces, Vec3s wo,
                        Vec3s wo_local, const LaneVertices& vertices, const SampleBitsOf<Words>& u, ShadowRay* shadows) {
     Lights lights;
-    sample_lights(job.picture.scene.lights, lanes, surfaces.position, u, lights);
+    if (features_of_lanes(job) == kPlainDiffuse) {
+        sample_lights<kPlainDiffuse>(job.picture.scene.lights, lanes, surfaces.position, {}, u, lights);
+    } else {
+        const Vec3s normal = surfaces.context_normal(wo);
+        sample_lights<kPlainDiffuse | kLightTree>(job.picture.scene.lights, lanes, surfaces.position, normal, u,
+                                                  lights);
+    }
     const Values scattered = evaluate(surfaces, wo, wo_local, lights.wi);
     const Mask wants = lights.arrives && scattered.pdf > 0 && !is_black(scattered.f);
     const unsigned wanted = bit_mask(wants) & lanes;
@@ -392,8 +278,9 @@ unsigned sample_direct(const PathJob& job, unsigned lanes, const Paths& paths, c
 }
 
 /// sample_scattering; returns the lanes whose paths go on, and moves these.
-unsigned sample_scattering(const PathSettings& settings, unsigned lanes, const Paths& paths, const Surfaces& surfaces,
-                           Vec3s wo, Vec3s wo_local, const LaneVertices& vertices, const VertexWords<Words>& words) {
+unsigned sample_scattering(const PathJob& job, unsigned lanes, const Paths& paths, const Surfaces& surfaces, Vec3s wo,
+                           Vec3s wo_local, const LaneVertices& vertices, const VertexWords<Words>& words) {
+    const PathSettings& settings = job.settings;
     const Vec2Of<Floats> u = {unit_interval<Floats>(words.direction.x), unit_interval<Floats>(words.direction.y)};
     Vec3s drawn = sample_cosine_hemisphere(u);
     drawn.z = copysign(drawn.z, wo_local.z);
@@ -418,7 +305,8 @@ unsigned sample_scattering(const PathSettings& settings, unsigned lanes, const P
         throughput = select(may_end, (1.0f / survival) * throughput, throughput);
     }
     if (going == 0) return 0;
-    const Vec3s origin = surfaces.origin_towards(wi);
+    const Vec3s origin = surfaces.origin_towards(wi), normal = surfaces.context_normal(wo);
+    const bool has_tree = features_of_lanes(job) != kPlainDiffuse;
     alignas(64) float rows[kLanes][8];
     store_columns({origin.x, origin.y, origin.z, wi.x, wi.y, wi.z, throughput.r, throughput.g}, rows_of(rows));
     for (unsigned rest = going; rest != 0; rest &= rest - 1) {
@@ -430,6 +318,7 @@ unsigned sample_scattering(const PathSettings& settings, unsigned lanes, const P
         path.throughput = {row[6], row[7], throughput.b[lane]};
         path.bsdf_pdf = pdf[lane];
         path.start = {vertices.hits[lane]->instance, vertices.hits[lane]->primitive};
+        if (has_tree) path.normal = {normal.x[lane], normal.y[lane], normal.z[lane]};
         path.depth += 1;
         path.rough_depth += 1;
     }
@@ -452,7 +341,11 @@ void add_emission(const PathJob& job, unsigned lanes, const LaneVertices& vertic
         surface.triangle = {hit.instance, hit.primitive};
         surface.emission = surface_emission<EmitterLook::Plain>(scene.lights, material, {});
         Listeners<> listener(job);
-        add_surface_emission<kPlainDiffuse>(job, path, hit, surface, listener);
+        if (features_of_lanes(job) == kPlainDiffuse) {
+            add_surface_emission<kPlainDiffuse>(job, path, hit, surface, listener);
+        } else {
+            add_surface_emission<kPlainDiffuse | kLightTree>(job, path, hit, surface, listener);
+        }
     }
 }
 
@@ -490,7 +383,7 @@ Paths load_paths(const LaneVertices& vertices) {
         results.has_shadow_ray =
             sample_direct(job, scatter, paths, surfaces, wo, wo_local, vertices, words.light, shadows);
     }
-    results.goes_on = sample_scattering(job.settings, scatter, paths, surfaces, wo, wo_local, vertices, words);
+    results.goes_on = sample_scattering(job, scatter, paths, surfaces, wo, wo_local, vertices, words);
     return results;
 }
 

@@ -194,7 +194,7 @@ private:
         Cone stored = built.cone; // about the axis as it is stored
         if (stored.normals < kPi) {
             stored.normals =
-                min(stored.normals + angle_between(normalize(unpack_axis(node.axis)), built.cone.axis), kPi);
+                min(stored.normals + angle_between(normalize(unpack_axis<float>(node.axis)), built.cone.axis), kPi);
         }
         node.angles = pack_angles(stored);
         node.next = next;

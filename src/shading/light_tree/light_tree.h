@@ -18,88 +18,108 @@
 
 namespace pertev {
 
+/// A number of at most 23 bits as a float, for one node or for several at once.
+template <class T>
+HD inline T float_of_number(WordOf<T> number) {
+    return float_of<T>(number | 0x4b000000u) - 0x1p23f;
+}
+
 /// Unit vector from three signed numbers of 10 bits; its length may be off by 2^-9.
-HD inline Vec3 unpack_axis(uint32_t axis) {
-    const auto side = [&](uint32_t shift) {
-        return static_cast<float>((axis >> shift) & 0x3ffu) * (1.0f / 511.0f) - 1.0f;
-    };
+template <class T>
+HD inline Vec3Of<T> unpack_axis(WordOf<T> axis) {
+    const auto side = [&](int shift) { return float_of_number<T>((axis >> shift) & 0x3ffu) * (1.0f / 511.0f) - 1.0f; };
     return {side(0), side(10), side(20)};
 }
 
 /// The directions in which a node emits: normals lie within a half angle about the axis, and light leaves within
 /// another angle of a normal.
-struct LightCone {
-    float cos_normals, sin_normals, cos_emission;
-    bool has_two_sides; // light also leaves against the normals
+template <class T>
+struct LightConeOf {
+    T cos_normals, sin_normals, cos_emission;
+    MaskOf<T> has_two_sides; // light also leaves against the normals
 
-    HD explicit LightCone(uint32_t angles)
-        : cos_normals(static_cast<float>(angles & 0xfffu) * (1.0f / 2047.0f) - 1.0f),
-          sin_normals(static_cast<float>((angles >> 12) & 0xfffu) * (1.0f / 4095.0f)),
-          cos_emission(static_cast<float>((angles >> 24) & 0x7fu) * (1.0f / 63.0f) - 1.0f),
+    HD explicit LightConeOf(WordOf<T> angles)
+        : cos_normals(float_of_number<T>(angles & 0xfffu) * (1.0f / 2047.0f) - 1.0f),
+          sin_normals(float_of_number<T>((angles >> 12) & 0xfffu) * (1.0f / 4095.0f)),
+          cos_emission(float_of_number<T>((angles >> 24) & 0x7fu) * (1.0f / 63.0f) - 1.0f),
           has_two_sides((angles >> 31) != 0) {}
     /// Returns whether light may leave equally in all directions.
-    HD bool is_isotropic() const { return !(cos_emission > -1); }
+    HD MaskOf<T> is_isotropic() const { return !(cos_emission > -1.0f); }
+};
+
+/// The numbers of a node, or of several at once.
+template <class T>
+struct LightNodeOf {
+    Vec3Of<T> centre;
+    T power, radius;
+    WordOf<T> axis, angles;
 };
 
 /// The receiver of light, for a tree: a point, and the unit normal of the side that scatters light, or zero.
-struct LightReceiver {
-    Vec3 point, normal;
-    HD bool has_normal() const { return !(normal == Vec3{0, 0, 0}); }
+template <class T>
+struct LightReceiverOf {
+    Vec3Of<T> point, normal;
+    HD MaskOf<T> has_normal() const { return !(normal.x == 0.0f && normal.y == 0.0f && normal.z == 0.0f); }
 };
+using LightReceiver = LightReceiverOf<float>;
 
 /// The least and the largest importance of a node. Both are 0 if no light of it can reach the receiver.
-struct LightImportance {
-    float least = 0, most = 0;
+template <class T>
+struct LightImportanceOf {
+    T least, most;
 };
 
 /// Cosines that differ by less count as equal, so that rounding hides no light.
 inline constexpr float kLightTreeMargin = 0x1p-9f;
 
-HD inline LightImportance importance_of(const LightTreeNode& node, const LightReceiver& to) {
-    const Vec3 to_node = node.centre - to.point;
-    const float radius_squared = node.radius * node.radius, distance_squared = length_squared(to_node);
-    const bool is_outside = distance_squared > radius_squared;
-    const float per_square = 1.0f / max(max(distance_squared, 0.25f * radius_squared), 0x1p-120f);
-    const float reach = node.power * per_square, per_distance = sqrt(per_square);
-    const float sin_u = min(node.radius * per_distance, 1.0f); // u: half angle of the sphere around the box
-    const float cos_u = sqrt(1.0f - sin_u * sin_u);
+template <class T>
+HD inline LightImportanceOf<T> importance_of(const LightNodeOf<T>& node, const LightReceiverOf<T>& to) {
+    const T zero = T(0.0f), one = T(1.0f), margin = T(kLightTreeMargin);
+    const Vec3Of<T> to_node = node.centre - to.point;
+    const T radius_squared = node.radius * node.radius, distance_squared = length_squared(to_node);
+    const MaskOf<T> is_outside = distance_squared > radius_squared;
+    const T per_square = 1.0f / max(max(distance_squared, 0.25f * radius_squared), T(0x1p-120f));
+    const T reach = node.power * per_square, per_distance = sqrt(per_square);
+    const T sin_u = min(node.radius * per_distance, one); // u: half angle of the sphere around the box
+    const T cos_u = sqrt(1.0f - sin_u * sin_u);
 
     // The receiver's normal and the way to the light: i. A receiver without a normal has cosines of 1.
-    const bool has_normal = to.has_normal();
-    const float cos_i = per_distance * dot(to.normal, to_node), sin_i = safe_sqrt(1.0f - cos_i * cos_i);
-    const float most_i = cos_i >= cos_u ? 1.0f : cos_i * cos_u + sin_i * sin_u;
-    const float least_i = max(cos_i * cos_u - sin_i * sin_u, 0.0f);
+    const MaskOf<T> has_normal = to.has_normal();
+    const T cos_i = per_distance * dot(to.normal, to_node), sin_i = safe_sqrt(1.0f - cos_i * cos_i);
+    const T most_i = select(cos_i >= cos_u, one, cos_i * cos_u + sin_i * sin_u);
+    const T least_i = max(cos_i * cos_u - sin_i * sin_u, zero);
 
     // The light's axis and the way to the receiver: o. Normals spread by n about the axis, light by e about normals.
-    const LightCone cone(node.angles);
-    const float along = -per_distance * dot(unpack_axis(node.axis), to_node),
-                cos_o = cone.has_two_sides ? abs(along) : along;
-    const float sin_o = safe_sqrt(1.0f - cos_o * cos_o), cos_n = cone.cos_normals, sin_n = cone.sin_normals;
-    const float cos_cos = cos_o * cos_u, sin_sin = sin_o * sin_u, sin_cos = sin_o * cos_u, cos_sin = cos_o * sin_u;
-    const float near = cos_cos + sin_sin, far = cos_cos - sin_sin; // cosines of o - u and o + u
-    const bool may_face = cos_o >= cos_u || near >= cos_n;
-    const float most_o = may_face ? 1.0f : near * cos_n + (sin_cos - cos_sin) * sin_n;
-    const float sum = far * cos_n - (sin_cos + cos_sin) * sin_n; // cosine of o + u + n
-    const bool is_ahead = cos_o > 0 && far > 0 && cos_n > 0 && sum > max(cone.cos_emission, 0.0f);
+    const LightConeOf<T> cone(node.angles);
+    const T along = -per_distance * dot(unpack_axis<T>(node.axis), to_node);
+    const T cos_o = select(cone.has_two_sides, abs(along), along), sin_o = safe_sqrt(1.0f - cos_o * cos_o);
+    const T cos_n = cone.cos_normals, sin_n = cone.sin_normals, cos_e = cone.cos_emission;
+    const T cos_cos = cos_o * cos_u, sin_sin = sin_o * sin_u, sin_cos = sin_o * cos_u, cos_sin = cos_o * sin_u;
+    const T near = cos_cos + sin_sin, far = cos_cos - sin_sin; // cosines of o - u and o + u
+    const T most_o = select(cos_o >= cos_u || near >= cos_n, one, near * cos_n + (sin_cos - cos_sin) * sin_n);
+    const T sum = far * cos_n - (sin_cos + cos_sin) * sin_n; // cosine of o + u + n
+    const MaskOf<T> is_ahead = cos_o > 0.0f && far > 0.0f && cos_n > 0.0f && sum > max(cos_e, zero);
 
-    const bool is_isotropic = cone.is_isotropic();
-    const bool is_dark = (has_normal && !(most_i > -kLightTreeMargin)) ||
-                         (!is_isotropic && !(most_o > cone.cos_emission - kLightTreeMargin));
-    const float most =
-        (has_normal ? max(most_i, kLightTreeMargin) : 1.0f) * (is_isotropic ? 1.0f : max(most_o, kLightTreeMargin));
-    const float least = (has_normal ? least_i : 1.0f) * (is_isotropic ? 1.0f : is_ahead ? sum : 0.0f);
+    const MaskOf<T> is_isotropic = cone.is_isotropic();
+    const MaskOf<T> is_dark = (has_normal && !(most_i > -margin)) || (!is_isotropic && !(most_o > cos_e - margin));
+    const T most = select(has_normal, max(most_i, margin), one) * select(is_isotropic, one, max(most_o, margin));
+    const T least = select(has_normal, least_i, one) * select(is_isotropic, one, select(is_ahead, sum, zero));
     // Lights of a sphere around the receiver may lie close by, on any side.
-    if (!is_outside) return {0.5f * reach, reach};
-    return is_dark ? LightImportance{} : LightImportance{least * reach, most * reach};
+    return {select(is_outside, select(is_dark, zero, least * reach), 0.5f * reach),
+            select(is_outside, select(is_dark, zero, most * reach), reach)};
+}
+HD inline LightImportanceOf<float> importance_of(const LightTreeNode& node, const LightReceiver& to) {
+    return importance_of<float>({node.centre, node.power, node.radius, node.axis, node.angles}, to);
 }
 
 /// Probability of the left one of two children: its share of the means of least and largest importances. Negative if
 /// neither gives light.
-HD inline float left_probability(const LightImportance& left, const LightImportance& right) {
-    if (!(right.most > 0)) return left.most > 0 ? 1.0f : -1.0f;
-    if (!(left.most > 0)) return 0;
-    const float of_left = left.least + left.most, of_right = right.least + right.most;
-    return clamp(of_left / (of_left + of_right), 0x1p-16f, 1.0f - 0x1p-16f);
+template <class T>
+HD inline T left_probability(const LightImportanceOf<T>& left, const LightImportanceOf<T>& right) {
+    const T of_left = left.least + left.most, of_right = right.least + right.most;
+    const T share = clamp(of_left / (of_left + of_right), T(0x1p-16f), T(1.0f - 0x1p-16f));
+    const MaskOf<T> left_lights = left.most > 0.0f, right_lights = right.most > 0.0f;
+    return select(right_lights, select(left_lights, share, T(0.0f)), select(left_lights, T(1.0f), T(-1.0f)));
 }
 
 /// A light that a tree has selected. `light` is kNoLeaf if the tree gives no light to the receiver.
@@ -110,30 +130,40 @@ struct LightTreeDraw {
     float rest = 0; // position of the number within those that select it, uniform in [0, 1)
 };
 
+/// The way of a number down a tree: which of `width` numbers of a node it is, and the node's probability.
+struct LightTreeWay {
+    uint64_t number, width;
+    float pmf = 1;
+
+    /// Goes on to a child by the left one's probability, and returns whether that is the right one.
+    HD bool goes_right(float p) {
+        const auto share = static_cast<uint64_t>(p * 0x1p32f); // at most 2^32
+        const uint64_t of_left = (width >> 32) * share + ((width & 0xffffffffu) * share >> 32);
+        const bool is_right = number >= of_left;
+        number -= is_right ? of_left : 0;
+        width = is_right ? width - of_left : of_left;
+        pmf *= is_right ? 1.0f - p : p;
+        return is_right;
+    }
+    HD LightTreeDraw at(uint32_t light) const {
+        return {light, pmf, min(static_cast<float>(number) / static_cast<float>(width), 0x1.fffffep-1f)};
+    }
+};
+
 /// Selects a light by a number in [0, width); the larger of two never selects the earlier leaf. `width` is at least
 /// 2^32.
 HD_CALL inline LightTreeDraw draw_from_tree(const LightTreeView& tree, const LightReceiver& to, uint64_t number,
                                             uint64_t width) {
-    LightTreeDraw draw;
-    float pmf = 1;
+    LightTreeWay way = {number, width};
     LightTreeNode node = tree.nodes[kLightTreeRoot];
-    if (node.is_leaf() && !(importance_of(node, to).most > 0)) return draw;
+    if (node.is_leaf() && !(importance_of(node, to).most > 0)) return {};
     while (!node.is_leaf()) {
         const LightTreeNode left = tree.nodes[node.next], right = tree.nodes[node.next + 1];
         const float p = left_probability(importance_of(left, to), importance_of(right, to));
-        if (p < 0) return draw;
-        const auto share = static_cast<uint64_t>(p * 0x1p32f); // at most 2^32; number and width become the child's
-        const uint64_t of_left = (width >> 32) * share + ((width & 0xffffffffu) * share >> 32);
-        if (number < of_left) {
-            node = left, width = of_left, pmf *= p;
-        } else {
-            node = right, number -= of_left, width -= of_left, pmf *= 1.0f - p;
-        }
+        if (p < 0) return {};
+        node = way.goes_right(p) ? right : left;
     }
-    draw.light = node.light();
-    draw.pmf = pmf;
-    draw.rest = min(static_cast<float>(number) / static_cast<float>(width), 0x1.fffffep-1f);
-    return draw;
+    return way.at(node.light());
 }
 
 /// Probability with which draw_from_tree selects a light, to the bit.
