@@ -43,7 +43,7 @@ MitsubaMaterial load_bsdf(const std::string& bsdf, const std::string& version = 
     if (!read.scene.instances.empty()) read.material = read.scene.materials[read.scene.instances[0].material];
     return read;
 }
-Material material_of(const std::string& bsdf, const std::string& version = "3.0.0") {
+Material mitsuba_material(const std::string& bsdf, const std::string& version = "3.0.0") {
     const MitsubaMaterial read = load_bsdf(bsdf, version);
     CHECK(read.messages.left_out() == std::vector<std::string>{});
     return read.material;
@@ -57,27 +57,27 @@ std::string number_of(const char* name, double value) {
 std::string rgb_of(const char* name, const char* value) {
     return fmt::format("<rgb name=\"{}\" value=\"{}\"/>", name, value);
 }
-std::string text_of(const char* name, const char* value) {
+std::string string_of(const char* name, const char* value) {
     return fmt::format("<string name=\"{}\" value=\"{}\"/>", name, value);
 }
 std::string bitmap_of(const char* name, const std::string& inner, const char* file = "a.exr") {
-    return fmt::format("<texture name=\"{}\" type=\"bitmap\">{}{}</texture>", name, text_of("filename", file), inner);
+    return fmt::format("<texture name=\"{}\" type=\"bitmap\">{}{}</texture>", name, string_of("filename", file), inner);
 }
 
-void check_color(Rgb color, Rgb wanted, double epsilon = 2e-3) {
+void check_mitsuba_color(Rgb color, Rgb wanted, double epsilon = 2e-3) {
     CHECK(color.r == doctest::Approx(wanted.r).epsilon(epsilon));
     CHECK(color.g == doctest::Approx(wanted.g).epsilon(epsilon));
     CHECK(color.b == doctest::Approx(wanted.b).epsilon(epsilon));
 }
-Rgb reflectance_of(const std::string& value, const char* version = "3.0.0") {
-    return material_of(bsdf_of("diffuse", value), version).base_color;
+Rgb mitsuba_reflectance(const std::string& value, const char* version = "3.0.0") {
+    return mitsuba_material(bsdf_of("diffuse", value), version).base_color;
 }
-Rgb radiance_of(const std::string& value, const char* version = "3.0.0") {
-    return material_of("<emitter type=\"area\">" + value + "</emitter>", version).emission;
+Rgb mitsuba_radiance(const std::string& value, const char* version = "3.0.0") {
+    return mitsuba_material("<emitter type=\"area\">" + value + "</emitter>", version).emission;
 }
 
 /// The nearest texel of a texture at coordinates of Mitsuba.
-float texel_of(const MitsubaMaterial& read, const TextureRef& ref, float u, float v) {
+float mitsuba_texel(const MitsubaMaterial& read, const TextureRef& ref, float u, float v) {
     const Image& image = read.scene.images.at(static_cast<std::size_t>(ref.image)).rgba_float;
     const float x = ref.m00 * u + ref.m01 * v + ref.m02, y = ref.m10 * u + ref.m11 * v + ref.m12;
     const auto column = static_cast<uint32_t>((x - floor(x)) * float(image.width)),
@@ -88,48 +88,52 @@ float texel_of(const MitsubaMaterial& read, const TextureRef& ref, float u, floa
 } // namespace
 
 TEST_CASE("mitsuba: colours of reflectances are seen under D65") {
-    check_color(reflectance_of(rgb_of("reflectance", ".1, .2, .3")), {0.1f, 0.2f, 0.3f});
-    check_color(reflectance_of(""), grey(0.5f));
-    check_color(reflectance_of("<srgb name=\"reflectance\" value=\"#808080\"/>", "0.6.0"), grey(0.21586f));
-    check_color(reflectance_of("<spectrum name=\"reflectance\" value=\".3\"/>"), grey(0.3f));
+    check_mitsuba_color(mitsuba_reflectance(rgb_of("reflectance", ".1, .2, .3")), {0.1f, 0.2f, 0.3f});
+    check_mitsuba_color(mitsuba_reflectance(""), grey(0.5f));
+    check_mitsuba_color(mitsuba_reflectance("<srgb name=\"reflectance\" value=\"#808080\"/>", "0.6.0"), grey(0.21586f));
+    check_mitsuba_color(mitsuba_reflectance("<spectrum name=\"reflectance\" value=\".3\"/>"), grey(0.3f));
     // The numbers are those of Mitsuba 3.9.
     const Rgb wanted = {0, 0.533364f, 0.534482f};
-    check_color(reflectance_of("<spectrum name=\"reflectance\" value=\"400:.2, 500:.8, 600:.1, 700:.4\"/>"), wanted,
-                0.01);
-    check_color(reflectance_of("<spectrum name=\"reflectance\" filename=\"a.spd\"/>"), wanted, 0.01);
-    check_color(reflectance_of("<spectrum name=\"reflectance\" type=\"regular\"><float name=\"wavelength_min\" "
-                               "value=\"400\"/><float name=\"wavelength_max\" value=\"700\"/>" +
-                               text_of("values", ".2, .8, .1, .4") + "</spectrum>"),
-                wanted, 0.01);
-    check_color(reflectance_of("<spectrum name=\"reflectance\" type=\"irregular\">" +
-                               text_of("wavelengths", "400,500,600,700") + text_of("values", ".2, .8, .1, .4") +
-                               "</spectrum>"),
-                wanted, 0.01);
-    check_color(reflectance_of(
-                    "<spectrum name=\"reflectance\" type=\"uniform\"><float name=\"value\" value=\".7\"/></spectrum>"),
-                grey(0.7f));
+    check_mitsuba_color(
+        mitsuba_reflectance("<spectrum name=\"reflectance\" value=\"400:.2, 500:.8, 600:.1, 700:.4\"/>"), wanted, 0.01);
+    check_mitsuba_color(mitsuba_reflectance("<spectrum name=\"reflectance\" filename=\"a.spd\"/>"), wanted, 0.01);
+    check_mitsuba_color(
+        mitsuba_reflectance("<spectrum name=\"reflectance\" type=\"regular\"><float name=\"wavelength_min\" "
+                            "value=\"400\"/><float name=\"wavelength_max\" value=\"700\"/>" +
+                            string_of("values", ".2, .8, .1, .4") + "</spectrum>"),
+        wanted, 0.01);
+    check_mitsuba_color(mitsuba_reflectance("<spectrum name=\"reflectance\" type=\"irregular\">" +
+                                            string_of("wavelengths", "400,500,600,700") +
+                                            string_of("values", ".2, .8, .1, .4") + "</spectrum>"),
+                        wanted, 0.01);
+    check_mitsuba_color(
+        mitsuba_reflectance(
+            "<spectrum name=\"reflectance\" type=\"uniform\"><float name=\"value\" value=\".7\"/></spectrum>"),
+        grey(0.7f));
     CHECK(
         !load_bsdf(bsdf_of("diffuse", "<spectrum name=\"reflectance\" type=\"unifrm\"/>")).messages.left_out().empty());
 }
 
 TEST_CASE("mitsuba: colours of light are those of its radiance") {
     // The numbers are those of Mitsuba 3.9.
-    check_color(radiance_of("<spectrum name=\"radiance\" value=\"400:0, 500:8, 600:15.6, 700:18.4\"/>"),
-                {20.7108f, 10.8546f, 2.77115f}, 0.01);
-    check_color(radiance_of("<spectrum name=\"radiance\" value=\"2\"/>"), {2.40959f, 1.89658f, 1.81783f}, 0.01);
-    check_color(radiance_of("<spectrum name=\"radiance\" value=\"2\"/>", "0.6.0"), grey(2));
-    check_color(radiance_of(rgb_of("radiance", "3 2 1")), {3, 2, 1});
-    check_color(radiance_of("<spectrum name=\"radiance\" type=\"d65\"><float name=\"scale\" value=\"4\"/></spectrum>"),
-                grey(4));
-    check_color(radiance_of("<spectrum name=\"radiance\" type=\"blackbody\"><float name=\"temperature\" "
-                            "value=\"3000\"/></spectrum>"),
-                {733.5f, 350, 113.1f}, 0.01);
-    check_color(radiance_of("<blackbody name=\"radiance\" temperature=\"3000K\" scale=\".1\"/>", "0.6.0"),
-                {73.35f, 35, 11.31f}, 0.01);
+    check_mitsuba_color(mitsuba_radiance("<spectrum name=\"radiance\" value=\"400:0, 500:8, 600:15.6, 700:18.4\"/>"),
+                        {20.7108f, 10.8546f, 2.77115f}, 0.01);
+    check_mitsuba_color(mitsuba_radiance("<spectrum name=\"radiance\" value=\"2\"/>"), {2.40959f, 1.89658f, 1.81783f},
+                        0.01);
+    check_mitsuba_color(mitsuba_radiance("<spectrum name=\"radiance\" value=\"2\"/>", "0.6.0"), grey(2));
+    check_mitsuba_color(mitsuba_radiance(rgb_of("radiance", "3 2 1")), {3, 2, 1});
+    check_mitsuba_color(
+        mitsuba_radiance("<spectrum name=\"radiance\" type=\"d65\"><float name=\"scale\" value=\"4\"/></spectrum>"),
+        grey(4));
+    check_mitsuba_color(mitsuba_radiance("<spectrum name=\"radiance\" type=\"blackbody\"><float name=\"temperature\" "
+                                         "value=\"3000\"/></spectrum>"),
+                        {733.5f, 350, 113.1f}, 0.01);
+    check_mitsuba_color(mitsuba_radiance("<blackbody name=\"radiance\" temperature=\"3000K\" scale=\".1\"/>", "0.6.0"),
+                        {73.35f, 35, 11.31f}, 0.01);
 }
 
 TEST_CASE("mitsuba: an area emitter emits from the front, and its image is that of the emission") {
-    const Material plain = material_of("<emitter type=\"area\">" + rgb_of("radiance", "3") + "</emitter>");
+    const Material plain = mitsuba_material("<emitter type=\"area\">" + rgb_of("radiance", "3") + "</emitter>");
     CHECK(!plain.two_sided_emission);
     const MitsubaMaterial image = load_bsdf("<emitter type=\"area\">" + bitmap_of("radiance", "") + "</emitter>");
     CHECK(image.material.emission_texture.has_image());
@@ -137,37 +141,38 @@ TEST_CASE("mitsuba: an area emitter emits from the front, and its image is that 
 }
 
 TEST_CASE("mitsuba: metals by name, by numbers and by nothing") {
-    const Material gold = material_of(bsdf_of("roughconductor", text_of("material", "Au") + number_of("alpha", 0.25)));
+    const Material gold =
+        mitsuba_material(bsdf_of("roughconductor", string_of("material", "Au") + number_of("alpha", 0.25)));
     CHECK(gold.kind == MaterialKind::Conductor);
     CHECK(gold.eta == find_metal("gold")->eta);
     CHECK(gold.roughness == doctest::Approx(0.5));
     CHECK(gold.energy == MicrofacetEnergy::Single);
     CHECK(gold.microfacet_distribution == MicrofacetDistribution::Beckmann);
     const Material ggx =
-        material_of(bsdf_of("roughconductor", text_of("material", "Al") + text_of("distribution", "ggx")));
+        mitsuba_material(bsdf_of("roughconductor", string_of("material", "Al") + string_of("distribution", "ggx")));
     CHECK(ggx.microfacet_distribution == MicrofacetDistribution::Ggx);
     CHECK(ggx.roughness == doctest::Approx(std::sqrt(0.1)));
     // The numbers are those of Mitsuba 3.9.
     const Material listed =
-        material_of(bsdf_of("conductor", "<spectrum name=\"eta\" value=\"400:1.5,500:1,600:.4,700:.3\"/><spectrum "
-                                         "name=\"k\" value=\"400:2,700:4\"/>"));
-    check_color(listed.eta, {0.247094f, 0.737936f, 1.29431f}, 0.01);
-    check_color(listed.k, {3.59898f, 2.95242f, 2.2619f}, 0.01);
+        mitsuba_material(bsdf_of("conductor", "<spectrum name=\"eta\" value=\"400:1.5,500:1,600:.4,700:.3\"/><spectrum "
+                                              "name=\"k\" value=\"400:2,700:4\"/>"));
+    check_mitsuba_color(listed.eta, {0.247094f, 0.737936f, 1.29431f}, 0.01);
+    check_mitsuba_color(listed.k, {3.59898f, 2.95242f, 2.2619f}, 0.01);
     CHECK(listed.roughness == 0);
-    CHECK(material_of(bsdf_of("conductor"), "0.6.0").eta == find_metal("copper")->eta);
-    const Material mirror = material_of(bsdf_of("conductor"));
+    CHECK(mitsuba_material(bsdf_of("conductor"), "0.6.0").eta == find_metal("copper")->eta);
+    const Material mirror = mitsuba_material(bsdf_of("conductor"));
     const float loss = 4 * mirror.eta.g / (square(1 + mirror.eta.g) + square(mirror.k.g));
     CHECK(loss < 1e-3f);
-    CHECK(material_of(bsdf_of("conductor", rgb_of("specular_reflectance", ".5"))).specular_weight == 0.5f);
-    CHECK(!load_bsdf(bsdf_of("conductor", text_of("material", "Unobtainium"))).messages.left_out().empty());
+    CHECK(mitsuba_material(bsdf_of("conductor", rgb_of("specular_reflectance", ".5"))).specular_weight == 0.5f);
+    CHECK(!load_bsdf(bsdf_of("conductor", string_of("material", "Unobtainium"))).messages.left_out().empty());
 }
 
 TEST_CASE("mitsuba: a grey specular_reflectance weighs a metal exactly, a colour nearly") {
     const std::string index = rgb_of("eta", ".2 .92 1.1") + rgb_of("k", "3.9 2.45 2.14");
-    const Material grey_metal = material_of(bsdf_of("conductor", index + rgb_of("specular_reflectance", ".3")));
+    const Material grey_metal = mitsuba_material(bsdf_of("conductor", index + rgb_of("specular_reflectance", ".3")));
     CHECK(grey_metal.kind == MaterialKind::Conductor);
     CHECK(grey_metal.specular_weight == 0.3f);
-    const Material red = material_of(bsdf_of("conductor", index + rgb_of("specular_reflectance", ".5 .2 .1")));
+    const Material red = mitsuba_material(bsdf_of("conductor", index + rgb_of("specular_reflectance", ".5 .2 .1")));
     CHECK(red.kind == MaterialKind::MetallicRoughness);
     CHECK(red.metal_fresnel == MetalFresnel::F82);
     CHECK(red.base_color.r == doctest::Approx(0.5 * 0.9535).epsilon(5e-3));
@@ -175,13 +180,13 @@ TEST_CASE("mitsuba: a grey specular_reflectance weighs a metal exactly, a colour
         load_bsdf(bsdf_of("conductor", index + "<texture type=\"checkerboard\" name=\"specular_reflectance\">" +
                                            rgb_of("color0", ".8") + rgb_of("color1", ".2") + "</texture>"));
     CHECK(checks.material.kind == MaterialKind::Conductor);
-    CHECK(texel_of(checks, checks.material.specular_texture, 0.1f, 0.1f) == doctest::Approx(0.8f));
-    CHECK(texel_of(checks, checks.material.specular_texture, 0.6f, 0.1f) == doctest::Approx(0.2f));
+    CHECK(mitsuba_texel(checks, checks.material.specular_texture, 0.1f, 0.1f) == doctest::Approx(0.8f));
+    CHECK(mitsuba_texel(checks, checks.material.specular_texture, 0.6f, 0.1f) == doctest::Approx(0.2f));
 }
 
 TEST_CASE("mitsuba: stretched microfacets are wide along u") {
-    const Material wide = material_of(
-        bsdf_of("roughconductor", text_of("material", "Au") + number_of("alpha_u", 0.4) + number_of("alpha_v", 0.1)));
+    const Material wide = mitsuba_material(
+        bsdf_of("roughconductor", string_of("material", "Au") + number_of("alpha_u", 0.4) + number_of("alpha_v", 0.1)));
     CHECK(wide.roughness == doctest::Approx(std::sqrt(0.1)));
     CHECK(wide.specular_roughness_anisotropy == doctest::Approx(std::sqrt(0.3 / 0.9)));
     CHECK(wide.anisotropy_rotation == 0);
@@ -189,18 +194,19 @@ TEST_CASE("mitsuba: stretched microfacets are wide along u") {
 
 TEST_CASE("mitsuba: dielectrics by the names of substances and by numbers") {
     CHECK(mitsuba::find_ior("diamond") == 2.419f);
-    const Material plain = material_of(bsdf_of("dielectric"));
+    const Material plain = mitsuba_material(bsdf_of("dielectric"));
     CHECK(plain.kind == MaterialKind::Dielectric);
     CHECK(plain.ior == doctest::Approx(1.5046 / 1.000277));
-    CHECK(material_of(bsdf_of("dielectric", text_of("intIOR", "Water") + text_of("extIOR", "vacuum")), "0.6.0").ior ==
-          doctest::Approx(1.333));
+    CHECK(mitsuba_material(bsdf_of("dielectric", string_of("intIOR", "Water") + string_of("extIOR", "vacuum")), "0.6.0")
+              .ior == doctest::Approx(1.333));
     const Material rough =
-        material_of(bsdf_of("roughdielectric", number_of("int_ior", 1.8) + number_of("ext_ior", 1) +
-                                                   number_of("alpha", 0.09) + text_of("distribution", "ggx")));
+        mitsuba_material(bsdf_of("roughdielectric", number_of("int_ior", 1.8) + number_of("ext_ior", 1) +
+                                                        number_of("alpha", 0.09) + string_of("distribution", "ggx")));
     CHECK(rough.ior == doctest::Approx(1.8));
     CHECK(rough.roughness == doctest::Approx(0.3));
     CHECK(rough.microfacet_distribution == MicrofacetDistribution::Ggx);
-    const Material thin = material_of(bsdf_of("thindielectric", number_of("int_ior", 1.5) + number_of("ext_ior", 1)));
+    const Material thin =
+        mitsuba_material(bsdf_of("thindielectric", number_of("int_ior", 1.5) + number_of("ext_ior", 1)));
     CHECK(thin.thin_walled);
     CHECK(thin.transmission_weight == 1);
     CHECK(square((thin.ior - 1) / (thin.ior + 1)) == doctest::Approx(2 * 0.04 / 1.04).epsilon(1e-3));
@@ -211,12 +217,13 @@ TEST_CASE("mitsuba: dielectrics by the names of substances and by numbers") {
 
 TEST_CASE("mitsuba: the colour of plastic is that of the whole, or with nonlinear that beneath the coat") {
     const std::string ior = number_of("int_ior", 1.5) + number_of("ext_ior", 1) + rgb_of("diffuse_reflectance", ".5");
-    const Material whole = material_of(bsdf_of("plastic", ior));
+    const Material whole = mitsuba_material(bsdf_of("plastic", ior));
     CHECK(whole.kind == MaterialKind::MetallicRoughness);
     CHECK(whole.base_color == grey(0.5f));
     CHECK(whole.ior == 1.5f);
     const float inside = described::reflected_inside(1.5f);
-    const Material dyed = material_of(bsdf_of("roughplastic", ior + "<boolean name=\"nonlinear\" value=\"true\"/>"));
+    const Material dyed =
+        mitsuba_material(bsdf_of("roughplastic", ior + "<boolean name=\"nonlinear\" value=\"true\"/>"));
     CHECK(dyed.base_color.r == doctest::Approx(0.5f * (1 - inside) / (1 - 0.5f * inside)));
     CHECK(dyed.roughness == doctest::Approx(std::sqrt(0.1)));
 }
@@ -228,14 +235,14 @@ TEST_CASE("mitsuba: phong, ward, roughdiffuse and coating are the nearest, with 
         CHECK(read.messages.all().size() == 2); // and that both faces reflect
     }
     CHECK(load_bsdf(bsdf_of("phong", number_of("exponent", 6))).material.roughness == doctest::Approx(std::sqrt(0.5)));
-    const Material coated = material_of(
+    const Material coated = mitsuba_material(
         bsdf_of("coating", number_of("intIOR", 1.4) + number_of("extIOR", 1) + bsdf_of("diffuse")), "0.6.0");
     CHECK(coated.coat_weight == 1);
     CHECK(coated.coat_ior == 1.4f);
 }
 
 TEST_CASE("mitsuba: principled has its parameters") {
-    const Material m = material_of(bsdf_of(
+    const Material m = mitsuba_material(bsdf_of(
         "principled", rgb_of("base_color", ".1 .2 .3") + number_of("metallic", 0.25) + number_of("roughness", 0.6) +
                           number_of("spec_trans", 0.5) + number_of("clearcoat", 1) + number_of("specular", 0.5)));
     CHECK(m.base_color == Rgb{0.1f, 0.2f, 0.3f});
@@ -245,37 +252,38 @@ TEST_CASE("mitsuba: principled has its parameters") {
     CHECK(!m.thin_walled);
     CHECK(m.coat_weight == 0.25f);
     CHECK(m.ior == doctest::Approx(1.5));
-    CHECK(material_of(bsdf_of("principled", number_of("eta", 1.33))).ior == 1.33f);
-    CHECK(material_of(bsdf_of("principledthin", number_of("diff_trans", 1))).diffuse_transmission_weight == 0.5f);
+    CHECK(mitsuba_material(bsdf_of("principled", number_of("eta", 1.33))).ior == 1.33f);
+    CHECK(mitsuba_material(bsdf_of("principledthin", number_of("diff_trans", 1))).diffuse_transmission_weight == 0.5f);
 }
 
 TEST_CASE("mitsuba: twosided, mask, null and mixtures") {
     const std::string red = bsdf_of("diffuse", rgb_of("reflectance", "1 0 0")),
                       blue = bsdf_of("diffuse", rgb_of("reflectance", "0 0 1"));
-    CHECK(material_of(bsdf_of("twosided", red)).base_color == Rgb{1, 0, 0});
+    CHECK(mitsuba_material(bsdf_of("twosided", red)).base_color == Rgb{1, 0, 0});
     CHECK(load_bsdf(bsdf_of("twosided", red + blue)).messages.left_out().size() == 1);
     CHECK(load_bsdf(bsdf_of("twosided")).messages.left_out().size() == 1);
-    const Material half = material_of(bsdf_of("mask", number_of("opacity", 0.25) + red));
+    const Material half = mitsuba_material(bsdf_of("mask", number_of("opacity", 0.25) + red));
     CHECK(half.alpha == 0.25f);
     CHECK(half.alpha_mode == AlphaMode::Blend);
     CHECK(test::thrown_error([&] { (void)load_bsdf(bsdf_of("null")); }).has_value()); // nothing is left to see
-    CHECK(material_of(bsdf_of("blendbsdf", number_of("weight", 0.25) + red + blue)).base_color == Rgb{0.75f, 0, 0.25f});
-    CHECK(material_of(bsdf_of("blendbsdf", number_of("weight", 0.25) + red + bsdf_of("null"))).alpha == 0.75f);
+    CHECK(mitsuba_material(bsdf_of("blendbsdf", number_of("weight", 0.25) + red + blue)).base_color ==
+          Rgb{0.75f, 0, 0.25f});
+    CHECK(mitsuba_material(bsdf_of("blendbsdf", number_of("weight", 0.25) + red + bsdf_of("null"))).alpha == 0.75f);
     const Material three =
-        material_of(bsdf_of("mixturebsdf", text_of("weights", ".5 .25 .25") + red + blue + red), "0.6.0");
+        mitsuba_material(bsdf_of("mixturebsdf", string_of("weights", ".5 .25 .25") + red + blue + red), "0.6.0");
     CHECK(three.base_color.r == doctest::Approx(0.75));
     CHECK(three.base_color.b == doctest::Approx(0.25));
     CHECK(load_bsdf(bsdf_of("blendbsdf", number_of("weight", 0.25) + red + bsdf_of("dielectric")))
               .messages.left_out()
               .size() == 1);
-    CHECK(load_bsdf(bsdf_of("mixturebsdf", text_of("weights", ".5") + red + blue)).messages.left_out().size() == 1);
+    CHECK(load_bsdf(bsdf_of("mixturebsdf", string_of("weights", ".5") + red + blue)).messages.left_out().size() == 1);
 }
 
 TEST_CASE("mitsuba: bitmaps have wraps, filters, places and encodings") {
     const MitsubaMaterial read = load_bsdf(
         bsdf_of("diffuse",
                 bitmap_of("reflectance",
-                          text_of("filter_type", "nearest") + text_of("wrap_mode", "mirror") +
+                          string_of("filter_type", "nearest") + string_of("wrap_mode", "mirror") +
                               "<transform name=\"to_uv\"><scale x=\"2\" y=\"3\"/><translate x=\".5\"/></transform>")));
     const TextureRef& ref = read.material.base_color_texture;
     CHECK(ref.filter == TextureFilter::Nearest);
@@ -285,25 +293,26 @@ TEST_CASE("mitsuba: bitmaps have wraps, filters, places and encodings") {
     CHECK(ref.m02 == 0.5f);
     CHECK(read.material.base_color == grey(1));
     // The first row of a picture has v = 0.
-    CHECK(texel_of(load_bsdf(bsdf_of("diffuse", bitmap_of("reflectance", ""))), TextureRef{.image = 0}, 0.25f, 0.1f) ==
-          0.25f);
-    const Material old = material_of(
+    CHECK(mitsuba_texel(load_bsdf(bsdf_of("diffuse", bitmap_of("reflectance", ""))), TextureRef{.image = 0}, 0.25f,
+                        0.1f) == 0.25f);
+    const Material old = mitsuba_material(
         bsdf_of("diffuse", bitmap_of("reflectance", number_of("uscale", 4) + number_of("voffset", 0.25))), "0.6.0");
     CHECK(old.base_color_texture.m00 == 4);
     CHECK(old.base_color_texture.m12 == 0.25f);
-    CHECK(material_of(bsdf_of("diffuse", bitmap_of("reflectance", "", "a.png"))).base_color_texture.is_srgb);
-    CHECK(!material_of(bsdf_of("diffuse", bitmap_of("reflectance", "<boolean name=\"raw\" value=\"true\"/>", "a.png")))
+    CHECK(mitsuba_material(bsdf_of("diffuse", bitmap_of("reflectance", "", "a.png"))).base_color_texture.is_srgb);
+    CHECK(!mitsuba_material(
+               bsdf_of("diffuse", bitmap_of("reflectance", "<boolean name=\"raw\" value=\"true\"/>", "a.png")))
                .base_color_texture.is_srgb);
     CHECK(load_bsdf(bsdf_of("diffuse", bitmap_of("reflectance", "", "none.png"))).material.base_color == grey(0.5f));
 }
 
 TEST_CASE("mitsuba: numbers of encoded pictures are decoded, and alpha channels are ignored") {
     const MitsubaMaterial rough =
-        load_bsdf(bsdf_of("roughconductor", text_of("material", "Au") + bitmap_of("alpha", "", "a.png")));
+        load_bsdf(bsdf_of("roughconductor", string_of("material", "Au") + bitmap_of("alpha", "", "a.png")));
     const float linear = srgb_decode(128 / 255.0f);
-    CHECK(texel_of(rough, rough.material.roughness_texture, 0, 0) == doctest::Approx(std::sqrt(linear)));
+    CHECK(mitsuba_texel(rough, rough.material.roughness_texture, 0, 0) == doctest::Approx(std::sqrt(linear)));
     const MitsubaMaterial masked = load_bsdf(bsdf_of("mask", bitmap_of("opacity", "", "a.png") + bsdf_of("diffuse")));
-    CHECK(texel_of(masked, masked.material.alpha_texture, 0, 0) == doctest::Approx(linear));
+    CHECK(mitsuba_texel(masked, masked.material.alpha_texture, 0, 0) == doctest::Approx(linear));
     CHECK(masked.material.alpha_texture.channel == 0);
 }
 
@@ -312,12 +321,12 @@ TEST_CASE("mitsuba: a checkerboard begins with color0, and scale multiplies") {
         load_bsdf(bsdf_of("diffuse", "<texture type=\"checkerboard\" name=\"reflectance\">" + rgb_of("color0", ".75") +
                                          rgb_of("color1", ".25") + "</texture>"));
     const TextureRef& ref = read.material.base_color_texture;
-    CHECK(texel_of(read, ref, 0.1f, 0.1f) == 0.75f);
-    CHECK(texel_of(read, ref, 0.6f, 0.1f) == 0.25f);
-    CHECK(texel_of(read, ref, 0.1f, 0.6f) == 0.25f);
-    CHECK(texel_of(read, ref, 0.6f, 0.6f) == 0.75f);
+    CHECK(mitsuba_texel(read, ref, 0.1f, 0.1f) == 0.75f);
+    CHECK(mitsuba_texel(read, ref, 0.6f, 0.1f) == 0.25f);
+    CHECK(mitsuba_texel(read, ref, 0.1f, 0.6f) == 0.25f);
+    CHECK(mitsuba_texel(read, ref, 0.6f, 0.6f) == 0.75f);
     CHECK(ref.filter == TextureFilter::Nearest);
-    const Material scaled = material_of(
+    const Material scaled = mitsuba_material(
         bsdf_of("diffuse", "<texture type=\"scale\" name=\"reflectance\"><float name=\"scale\" value=\".5\"/>" +
                                bitmap_of("", "") + "</texture>"),
         "0.6.0");
@@ -329,13 +338,13 @@ TEST_CASE("mitsuba: a checkerboard begins with color0, and scale multiplies") {
 }
 
 TEST_CASE("mitsuba: bumps and normal maps") {
-    CHECK(material_of(bsdf_of("normalmap",
-                              bitmap_of("normalmap", "<boolean name=\"raw\" value=\"true\"/>") + bsdf_of("diffuse")))
+    CHECK(mitsuba_material(bsdf_of("normalmap", bitmap_of("normalmap", "<boolean name=\"raw\" value=\"true\"/>") +
+                                                    bsdf_of("diffuse")))
               .normal_texture.has_image());
     const Material bumpy =
-        material_of(bsdf_of("bumpmap", bitmap_of("arbitrary", "<boolean name=\"raw\" value=\"true\"/>") +
-                                           number_of("scale", 2) + bsdf_of("diffuse")));
-    const Material flatter = material_of(
+        mitsuba_material(bsdf_of("bumpmap", bitmap_of("arbitrary", "<boolean name=\"raw\" value=\"true\"/>") +
+                                                number_of("scale", 2) + bsdf_of("diffuse")));
+    const Material flatter = mitsuba_material(
         bsdf_of("bumpmap", bitmap_of("arbitrary", "<boolean name=\"raw\" value=\"true\"/>") + bsdf_of("diffuse")));
     CHECK(bumpy.normal_texture.has_image());
     CHECK(bumpy.normal_scale == doctest::Approx(2 * flatter.normal_scale));

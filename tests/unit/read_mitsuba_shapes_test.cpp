@@ -21,14 +21,15 @@ using namespace pertev;
 
 namespace {
 
-Scene load_shapes(const fs::path& folder, const std::string& text, Messages& messages, const char* version = "3.0.0") {
+Scene load_mitsuba_shapes(const fs::path& folder, const std::string& text, Messages& messages,
+                          const char* version = "3.0.0") {
     return read_scene(
         test::write_text(folder / "scene.xml", fmt::format("<scene version=\"{}\">{}</scene>", version, text)), {},
         messages);
 }
-Scene load_shapes(const std::string& text, const char* version = "3.0.0") {
+Scene load_mitsuba_shapes(const std::string& text, const char* version = "3.0.0") {
     Messages messages;
-    Scene scene = load_shapes(test::scratch_folder(), text, messages, version);
+    Scene scene = load_mitsuba_shapes(test::scratch_folder(), text, messages, version);
     CHECK(messages.left_out() == std::vector<std::string>{});
     return scene;
 }
@@ -45,22 +46,22 @@ Bounds3 world_box(const Scene& scene, std::size_t i = 0) {
         box.extend(transform_point(instance.world_from_local, scene.meshes[instance.mesh].positions[k]));
     return box;
 }
-void check_box(const Bounds3& box, Vec3 lo, Vec3 hi) {
+void check_world_box(const Bounds3& box, Vec3 lo, Vec3 hi) {
     CHECK(length(box.lo - lo) < 2e-3f);
     CHECK(length(box.hi - hi) < 2e-3f);
 }
 /// The geometric normal of the first triangle, as its corners run.
-Vec3 front_of(const Mesh& mesh) {
+Vec3 front_of_first(const Mesh& mesh) {
     const Vec3 a = mesh.positions[mesh.indices[0]], b = mesh.positions[mesh.indices[1]],
                c = mesh.positions[mesh.indices[2]];
     return normalize(cross(b - a, c - a));
 }
 
 template <class T>
-void put(std::string& to, T value) {
+void put_value(std::string& to, T value) {
     to.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
-std::string deflated(const std::string& content) {
+std::string deflated_bytes(const std::string& content) {
     std::string to(compressBound(content.size()), '\0');
     uLongf size = to.size();
     compress(reinterpret_cast<Bytef*>(to.data()), &size, reinterpret_cast<const Bytef*>(content.data()),
@@ -71,14 +72,14 @@ std::string deflated(const std::string& content) {
 /// The content of a serialized mesh: a triangle with coordinates at height z.
 std::string serialized_triangle(bool is_double, bool has_name, float z, uint64_t vertices = 3, uint64_t triangles = 1) {
     std::string to;
-    put(to, uint32_t((is_double ? 0x2000 : 0x1000) | 2));
+    put_value(to, uint32_t((is_double ? 0x2000 : 0x1000) | 2));
     if (has_name) to += std::string("tri") + '\0';
-    put(to, vertices);
-    put(to, triangles);
-    const auto number = [&](float x) { is_double ? put(to, double(x)) : put(to, x); };
+    put_value(to, vertices);
+    put_value(to, triangles);
+    const auto number = [&](float x) { is_double ? put_value(to, double(x)) : put_value(to, x); };
     for (const float x : {0.0f, 0.0f, z, 1.0f, 0.0f, z, 0.0f, 1.0f, z}) number(x);
     for (const float x : {0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.25f}) number(x);
-    for (const uint32_t i : {0u, 1u, 2u}) put(to, i);
+    for (const uint32_t i : {0u, 1u, 2u}) put_value(to, i);
     return to;
 }
 std::string serialized_file(uint16_t version, const std::vector<std::string>& meshes) {
@@ -86,35 +87,37 @@ std::string serialized_file(uint16_t version, const std::vector<std::string>& me
     std::vector<uint64_t> offsets;
     for (const std::string& mesh : meshes) {
         offsets.push_back(to.size());
-        put(to, uint16_t(0x041C));
-        put(to, version);
-        to += deflated(mesh);
+        put_value(to, uint16_t(0x041C));
+        put_value(to, version);
+        to += deflated_bytes(mesh);
     }
-    for (const uint64_t offset : offsets) version >= 4 ? put(to, offset) : put(to, uint32_t(offset));
-    put(to, uint32_t(meshes.size()));
+    for (const uint64_t offset : offsets) version >= 4 ? put_value(to, offset) : put_value(to, uint32_t(offset));
+    put_value(to, uint32_t(meshes.size()));
     return to;
 }
-std::span<const std::byte> bytes_of(const std::string& text) {
+std::span<const std::byte> bytes_in(const std::string& text) {
     return {reinterpret_cast<const std::byte*>(text.data()), text.size()};
 }
 
 } // namespace
 
 TEST_CASE("mitsuba: analytic shapes have their places and normals") {
-    check_box(world_box(load_shapes(shape_of("rectangle"))), {-1, -1, 0}, {1, 1, 0});
-    check_box(world_box(load_shapes(shape_of("cube"))), {-1, -1, -1}, {1, 1, 1});
-    check_box(world_box(load_shapes(shape_of(
-                  "sphere", "<point name=\"center\" x=\"1\" y=\"2\" z=\"3\"/><float name=\"radius\" value=\".5\"/>"))),
-              {0.5f, 1.5f, 2.5f}, {1.5f, 2.5f, 3.5f});
-    check_box(world_box(load_shapes(shape_of("disk", "<transform name=\"to_world\"><scale value=\"2\"/></transform>"))),
-              {-2, -2, 0}, {2, 2, 0});
-    check_box(world_box(load_shapes(
-                  shape_of("cylinder", "<point name=\"p0\" x=\"0\" y=\"0\" z=\"1\"/><point name=\"p1\" x=\"4\" y=\"0\" "
-                                       "z=\"1\"/><float name=\"radius\" value=\".5\"/>"))),
-              {0, -0.5f, 0.5f}, {4, 0.5f, 1.5f});
-    CHECK(front_of(load_shapes(shape_of("rectangle")).meshes[0]).z == 1);
-    const Scene flipped = load_shapes(shape_of("rectangle", "<boolean name=\"flip_normals\" value=\"true\"/>"));
-    CHECK(front_of(flipped.meshes[0]).z == -1);
+    check_world_box(world_box(load_mitsuba_shapes(shape_of("rectangle"))), {-1, -1, 0}, {1, 1, 0});
+    check_world_box(world_box(load_mitsuba_shapes(shape_of("cube"))), {-1, -1, -1}, {1, 1, 1});
+    check_world_box(
+        world_box(load_mitsuba_shapes(shape_of(
+            "sphere", "<point name=\"center\" x=\"1\" y=\"2\" z=\"3\"/><float name=\"radius\" value=\".5\"/>"))),
+        {0.5f, 1.5f, 2.5f}, {1.5f, 2.5f, 3.5f});
+    check_world_box(world_box(load_mitsuba_shapes(
+                        shape_of("disk", "<transform name=\"to_world\"><scale value=\"2\"/></transform>"))),
+                    {-2, -2, 0}, {2, 2, 0});
+    check_world_box(world_box(load_mitsuba_shapes(shape_of(
+                        "cylinder", "<point name=\"p0\" x=\"0\" y=\"0\" z=\"1\"/><point name=\"p1\" x=\"4\" y=\"0\" "
+                                    "z=\"1\"/><float name=\"radius\" value=\".5\"/>"))),
+                    {0, -0.5f, 0.5f}, {4, 0.5f, 1.5f});
+    CHECK(front_of_first(load_mitsuba_shapes(shape_of("rectangle")).meshes[0]).z == 1);
+    const Scene flipped = load_mitsuba_shapes(shape_of("rectangle", "<boolean name=\"flip_normals\" value=\"true\"/>"));
+    CHECK(front_of_first(flipped.meshes[0]).z == -1);
     CHECK(flipped.meshes[0].normals[0].z == -1);
     const Mesh cube = mitsuba::make_cube();
     for (std::size_t i = 0; i < cube.indices.size(); i += 3) {
@@ -131,24 +134,24 @@ TEST_CASE("mitsuba: texture coordinates of shapes are Mitsuba's") {
         }
         return Vec2{-1, -1};
     };
-    const Mesh square = load_shapes(shape_of("rectangle")).meshes[0];
+    const Mesh square = load_mitsuba_shapes(shape_of("rectangle")).meshes[0];
     CHECK(uv_at(square, {-1, -1, 0}) == Vec2{0, 0});
     CHECK(uv_at(square, {1, -1, 0}) == Vec2{1, 0});
     CHECK(uv_at(mitsuba::make_cube(), {1, -1, -1}) == Vec2{0, 1});
-    const Mesh sphere = load_shapes(shape_of("sphere")).meshes[0]; // v begins at +z
+    const Mesh sphere = load_mitsuba_shapes(shape_of("sphere")).meshes[0]; // v begins at +z
     CHECK(uv_at(sphere, {0, 0, 1}).y == doctest::Approx(0));
     CHECK(uv_at(sphere, {0, 1, 0}).x == doctest::Approx(0.25));
     CHECK(uv_at(sphere, {0, 1, 0}).y == doctest::Approx(0.5));
-    const Mesh disk = load_shapes(shape_of("disk")).meshes[0]; // the radius and the angle
+    const Mesh disk = load_mitsuba_shapes(shape_of("disk")).meshes[0]; // the radius and the angle
     CHECK(uv_at(disk, {0, 1, 0}).x == doctest::Approx(1));
     CHECK(uv_at(disk, {0, 1, 0}).y == doctest::Approx(0.25));
-    const Mesh tube = load_shapes(shape_of("cylinder")).meshes[0];
+    const Mesh tube = load_mitsuba_shapes(shape_of("cylinder")).meshes[0];
     CHECK(uv_at(tube, {0, 1, 1}).x == doctest::Approx(0.25));
     CHECK(uv_at(tube, {0, 1, 1}).y == doctest::Approx(1));
 }
 
 TEST_CASE("mitsuba: a cylinder's u begins where Mitsuba's does, and normal maps have Mitsuba's tangents") {
-    const Scene tube = load_shapes(shape_of("cylinder", "<point name=\"p1\" x=\"0\" y=\"2\" z=\"0\"/>"));
+    const Scene tube = load_mitsuba_shapes(shape_of("cylinder", "<point name=\"p1\" x=\"0\" y=\"2\" z=\"0\"/>"));
     // Mitsuba 3.9 has u = 0 at +x, and goes to -z, around this one.
     const Mesh& mesh = tube.meshes[0];
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
@@ -159,13 +162,13 @@ TEST_CASE("mitsuba: a cylinder's u begins where Mitsuba's does, and normal maps 
     const fs::path folder = test::scratch_folder();
     write_image(folder / "n.exr", Image{.width = 1, .height = 1, .channels = 3, .pixels = {0.5f, 0.5f, 1}});
     Messages messages;
-    const Scene scene =
-        load_shapes(folder,
-                    shape_of("rectangle") +
-                        shape_of("rectangle", "<bsdf type=\"normalmap\"><texture name=\"normalmap\" "
-                                              "type=\"bitmap\">" +
-                                                  named_file("n.exr") + "</texture><bsdf type=\"diffuse\"/></bsdf>"),
-                    messages);
+    const Scene scene = load_mitsuba_shapes(
+        folder,
+        shape_of("rectangle") +
+            shape_of("rectangle", "<bsdf type=\"normalmap\"><texture name=\"normalmap\" "
+                                  "type=\"bitmap\">" +
+                                      named_file("n.exr") + "</texture><bsdf type=\"diffuse\"/></bsdf>"),
+        messages);
     REQUIRE(scene.meshes.size() == 2); // the other has none
     CHECK(scene.meshes[0].tangents.empty());
     REQUIRE(scene.meshes[1].tangents.size() == 4);
@@ -186,7 +189,7 @@ TEST_CASE("mitsuba: files of meshes are smooth unless they shall not be, and v f
     Messages messages;
     const std::string flat = "<boolean name=\"face_normals\" value=\"true\"/>",
                       flip = "<boolean name=\"flip_tex_coords\" value=\"{}\"/>";
-    const Scene scene = load_shapes(
+    const Scene scene = load_mitsuba_shapes(
         folder,
         shape_of("obj", named_file("roof.obj")) + shape_of("obj", named_file("roof.obj") + flat) +
             shape_of("obj", named_file("roof.obj") + "<boolean name=\"flip_tex_coords\" value=\"false\"/>") +
@@ -217,7 +220,7 @@ TEST_CASE("mitsuba: mesh_attribute has the numbers of a PLY's vertices, for its 
     const std::string colored =
         "<bsdf type=\"diffuse\"><texture type=\"mesh_attribute\" name=\"reflectance\"><string name=\"name\" "
         "value=\"vertex_color\"/></texture></bsdf>";
-    const Scene scene = load_shapes(
+    const Scene scene = load_mitsuba_shapes(
         folder, shape_of("ply", named_file("c.ply") + colored) + shape_of("ply", named_file("c.ply")), messages);
     CHECK(messages.left_out() == std::vector<std::string>{});
     REQUIRE(scene.meshes.size() == 2);
@@ -227,44 +230,44 @@ TEST_CASE("mitsuba: mesh_attribute has the numbers of a PLY's vertices, for its 
     CHECK(scene.meshes[1].colors.empty());
     CHECK(scene.materials[scene.instances[0].material].base_color == grey(1));
     Messages none;
-    (void)load_shapes(folder, shape_of("rectangle", colored), none);
+    (void)load_mitsuba_shapes(folder, shape_of("rectangle", colored), none);
     CHECK(none.left_out().empty()); // the factor is white
 }
 
 TEST_CASE("mitsuba: equal shapes share a mesh, groups are instanced") {
-    const Scene scene = load_shapes("<shape type=\"shapegroup\" id=\"pair\">" +
-                                    shape_of("sphere", "<point name=\"center\" x=\"5\" y=\"0\" z=\"0\"/>") +
-                                    shape_of("sphere") + "</shape>" +
-                                    "<shape type=\"instance\"><ref id=\"pair\"/><transform "
-                                    "name=\"to_world\"><translate y=\"10\"/></transform></shape>"
-                                    "<shape type=\"instance\"><ref id=\"pair\"/></shape>" +
-                                    shape_of("sphere"));
+    const Scene scene = load_mitsuba_shapes("<shape type=\"shapegroup\" id=\"pair\">" +
+                                            shape_of("sphere", "<point name=\"center\" x=\"5\" y=\"0\" z=\"0\"/>") +
+                                            shape_of("sphere") + "</shape>" +
+                                            "<shape type=\"instance\"><ref id=\"pair\"/><transform "
+                                            "name=\"to_world\"><translate y=\"10\"/></transform></shape>"
+                                            "<shape type=\"instance\"><ref id=\"pair\"/></shape>" +
+                                            shape_of("sphere"));
     CHECK(scene.meshes.size() == 1);
     REQUIRE(scene.instances.size() == 5);
-    check_box(world_box(scene, 0), {4, 9, -1}, {6, 11, 1});
-    check_box(world_box(scene, 4), {-1, -1, -1}, {1, 1, 1});
+    check_world_box(world_box(scene, 0), {4, 9, -1}, {6, 11, 1});
+    check_world_box(world_box(scene, 4), {-1, -1, -1}, {1, 1, 1});
 }
 
 TEST_CASE("mitsuba: a mirrored file without normals has its front where its mirrored corners say") {
     const fs::path folder = test::scratch_folder();
     test::write_text(folder / "t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     Messages messages;
-    const Scene scene = load_shapes(
+    const Scene scene = load_mitsuba_shapes(
         folder,
         shape_of("obj", named_file("t.obj") + "<transform name=\"to_world\"><scale x=\"-1\"/></transform>") +
             shape_of("rectangle", "<transform name=\"to_world\"><scale x=\"-1\"/></transform>"),
         messages);
-    CHECK(front_of(scene.meshes[0]).z == -1);
-    CHECK(front_of(scene.meshes[1]).z == 1);
+    CHECK(front_of_first(scene.meshes[0]).z == -1);
+    CHECK(front_of_first(scene.meshes[1]).z == 1);
 }
 
 TEST_CASE("mitsuba: serialized meshes of both versions, by their number, in floats and doubles") {
     const std::string three =
         serialized_file(3, {serialized_triangle(false, false, 1), serialized_triangle(true, false, 2)});
-    const auto first = mitsuba::read_serialized(bytes_of(three), 0, "m.serialized");
+    const auto first = mitsuba::read_serialized(bytes_in(three), 0, "m.serialized");
     CHECK(first.mesh.positions[1] == Vec3{1, 0, 1});
     CHECK(first.exact.empty());
-    const auto second = mitsuba::read_serialized(bytes_of(three), 1, "m.serialized");
+    const auto second = mitsuba::read_serialized(bytes_in(three), 1, "m.serialized");
     CHECK(second.exact[2].z == 2);
     CHECK(second.mesh.uv[0][2].y == 0.25f);
     CHECK(second.mesh.indices == std::vector<uint32_t>{0, 1, 2});
@@ -272,17 +275,17 @@ TEST_CASE("mitsuba: serialized meshes of both versions, by their number, in floa
     test::write_text(folder / "m.serialized",
                      serialized_file(4, {serialized_triangle(false, true, 1), serialized_triangle(false, true, 7)}));
     Messages messages;
-    const Scene scene = load_shapes(
+    const Scene scene = load_mitsuba_shapes(
         folder, shape_of("serialized", named_file("m.serialized") + "<integer name=\"shapeIndex\" value=\"1\"/>"),
         messages, "0.6.0");
     REQUIRE(scene.instances.size() == 1);
-    check_box(world_box(scene), {0, 0, 7}, {1, 1, 7});
+    check_world_box(world_box(scene), {0, 0, 7}, {1, 1, 7});
     CHECK(scene.meshes[0].uv[0][2].y == 0.25f);
 }
 
 TEST_CASE("mitsuba: damaged and untrue serialized meshes are refused") {
     const auto refuses = [](const std::string& bytes, uint32_t index = 0) {
-        const auto error = test::thrown_error([&] { (void)mitsuba::read_serialized(bytes_of(bytes), index, "m"); });
+        const auto error = test::thrown_error([&] { (void)mitsuba::read_serialized(bytes_in(bytes), index, "m"); });
         return error && (error->code() == ErrorCode::BadInput || error->code() == ErrorCode::OverLimit);
     };
     const std::string good = serialized_file(4, {serialized_triangle(false, true, 1)});
@@ -297,12 +300,12 @@ TEST_CASE("mitsuba: damaged and untrue serialized meshes are refused") {
     CHECK(refuses(wrong));
     std::string torn = good;
     torn[20] = static_cast<char>(torn[20] ^ 0x55);
-    CHECK((refuses(torn) || !mitsuba::read_serialized(bytes_of(torn), 0, "m").mesh.indices.empty()));
+    CHECK((refuses(torn) || !mitsuba::read_serialized(bytes_in(torn), 0, "m").mesh.indices.empty()));
 }
 
 TEST_CASE("mitsuba: point, spot and directional emitters") {
-    const Scene scene =
-        load_shapes(shape_of("rectangle") + "<emitter type=\"point\"><point name=\"position\" x=\"1\" y=\"2\" "
+    const Scene scene = load_mitsuba_shapes(shape_of("rectangle") +
+                                            "<emitter type=\"point\"><point name=\"position\" x=\"1\" y=\"2\" "
                                             "z=\"3\"/><rgb name=\"intensity\" value=\"4 5 6\"/></emitter>"
                                             "<emitter type=\"spot\"><transform name=\"to_world\"><lookat "
                                             "origin=\"0,0,5\" target=\"0,0,0\" up=\"0,1,0\"/></transform>"
@@ -319,15 +322,15 @@ TEST_CASE("mitsuba: point, spot and directional emitters") {
     CHECK(scene.lights[2].direction == Vec3{0, -1, 0});
     CHECK(scene.lights[2].intensity == grey(7));
     Messages messages;
-    (void)load_shapes(test::scratch_folder(),
-                      shape_of("rectangle") + "<emitter type=\"sunsky\"/><emitter type=\"spott\"/>", messages);
+    (void)load_mitsuba_shapes(test::scratch_folder(),
+                              shape_of("rectangle") + "<emitter type=\"sunsky\"/><emitter type=\"spott\"/>", messages);
     REQUIRE(messages.left_out().size() == 2);
     CHECK(messages.left_out()[1].find("did you mean \"spot\"?") != std::string::npos);
 }
 
 TEST_CASE("mitsuba: a constant emitter and an envmap are the environment") {
-    const Scene constant = load_shapes(shape_of("rectangle") +
-                                       "<emitter type=\"constant\"><rgb name=\"radiance\" value=\"2\"/></emitter>");
+    const Scene constant = load_mitsuba_shapes(
+        shape_of("rectangle") + "<emitter type=\"constant\"><rgb name=\"radiance\" value=\"2\"/></emitter>");
     REQUIRE(constant.environment);
     CHECK(constant.environment->scale == grey(2));
     const fs::path folder = test::scratch_folder();
@@ -339,10 +342,11 @@ TEST_CASE("mitsuba: a constant emitter and an envmap are the environment") {
     // The bright columns are at u = 0.25, which is +x for Mitsuba.
     const auto brightest = [&](const std::string& transform) {
         Messages messages;
-        const Scene scene = load_shapes(folder,
-                                        shape_of("rectangle") + "<emitter type=\"envmap\">" + named_file("sky.exr") +
-                                            "<float name=\"scale\" value=\"3\"/>" + transform + "</emitter>",
-                                        messages);
+        const Scene scene =
+            load_mitsuba_shapes(folder,
+                                shape_of("rectangle") + "<emitter type=\"envmap\">" + named_file("sky.exr") +
+                                    "<float name=\"scale\" value=\"3\"/>" + transform + "</emitter>",
+                                messages);
         const Image& image = scene.environment->image;
         CHECK(scene.environment->scale == grey(3));
         uint32_t most = 0;
@@ -358,7 +362,7 @@ TEST_CASE("mitsuba: a constant emitter and an envmap are the environment") {
     for (std::size_t i = 0; i < 3 * 8; ++i) picture.pixels[i] = 0;
     write_image(folder / "rows.exr", picture);
     Messages messages;
-    const Scene rows = load_shapes(
+    const Scene rows = load_mitsuba_shapes(
         folder, shape_of("rectangle") + "<emitter type=\"envmap\">" + named_file("rows.exr") + "</emitter>", messages);
     CHECK(rows.environment->image.pixels[0] == doctest::Approx(3 / 8.0));
     CHECK(rows.environment->image.pixels[3 * 8] == doctest::Approx(1));

@@ -19,7 +19,7 @@ using namespace pertev;
 
 namespace {
 
-const std::string kSquare = "<shape type=\"rectangle\"/>\n";
+const std::string kMitsubaSquare = "<shape type=\"rectangle\"/>\n";
 
 std::string in_scene(const std::string& text, const std::string& version = "3.0.0") {
     return "<scene version=\"" + version + "\">\n" + text + "</scene>\n";
@@ -36,9 +36,9 @@ Scene load_mitsuba(const std::string& text) {
 }
 
 /// Returns what a scene with a square and `text` leaves out, without the path of its folder.
-std::vector<std::string> left_out_of(const std::string& text) {
+std::vector<std::string> mitsuba_left_out(const std::string& text) {
     Messages messages;
-    const Scene scene = load_mitsuba(in_scene(text + kSquare), messages);
+    const Scene scene = load_mitsuba(in_scene(text + kMitsubaSquare), messages);
     CHECK(scene.instances.size() >= 1);
     std::vector<std::string> texts = messages.left_out();
     for (std::string& line : texts) line.erase(0, std::min(line.find("scene.xml"), line.size()));
@@ -56,9 +56,9 @@ Vec3 corner_after(const std::string& steps, const std::string& version = "3.0.0"
     return corner_of(load_mitsuba(in_scene(
         fmt::format("<shape type=\"rectangle\"><transform name=\"{}\">{}</transform></shape>", name, steps), version)));
 }
-void check_at(Vec3 p, Vec3 wanted) { CHECK(length(p - wanted) < 1e-5f); }
+void check_corner(Vec3 p, Vec3 wanted) { CHECK(length(p - wanted) < 1e-5f); }
 
-std::string suggested_in(const Scene& scene, const std::string& name) {
+std::string mitsuba_suggestion(const Scene& scene, const std::string& name) {
     for (const SuggestedSetting& setting : scene.suggested) {
         if (setting.name == name) return setting.text;
     }
@@ -75,7 +75,7 @@ float fov_y_of(const std::string& parameters, int width, int height, const std::
         in_scene(fmt::format("<sensor type=\"perspective\">{}<film type=\"hdrfilm\"><integer name=\"width\" "
                              "value=\"{}\"/><integer name=\"height\" value=\"{}\"/></film></sensor>",
                              parameters, width, height) +
-                     kSquare,
+                     kMitsubaSquare,
                  version));
     return scene.cameras.at(0).fov_y;
 }
@@ -102,35 +102,36 @@ TEST_CASE("mitsuba: names of 0.6 are those of 3") {
 }
 
 TEST_CASE("mitsuba: a later step of a transform is applied later") {
-    check_at(corner_after("<translate x=\"1\"/><scale value=\"2\"/>"), {4, 2, 0});
-    check_at(corner_after("<scale x=\"2\"/><translate x=\"1\" z=\"3\"/>"), {3, 1, 3});
-    check_at(corner_after("<scale value=\"2, 3, 4\"/>"), {2, 3, 0});
-    check_at(corner_after("<rotate z=\"1\" angle=\"90\"/><translate x=\"5\"/>"), {4, 1, 0});
-    check_at(corner_after("<rotate value=\"1,0,0\" angle=\"90\"/>"), {1, 0, 1});
-    check_at(corner_after("<matrix value=\"1 0 0 5  0 2 0 6  0 0 1 7  0 0 0 1\"/>"), {6, 8, 7});
-    check_at(corner_after("<matrix value=\"2 0 0 0  0 2 0 0  0 0 2 0  0 0 0 2\"/>"), {1, 1, 0});
-    check_at(corner_after("<translate x=\"1\"/><scale value=\"2\"/>", "0.6.0", "toWorld"), {4, 2, 0});
+    check_corner(corner_after("<translate x=\"1\"/><scale value=\"2\"/>"), {4, 2, 0});
+    check_corner(corner_after("<scale x=\"2\"/><translate x=\"1\" z=\"3\"/>"), {3, 1, 3});
+    check_corner(corner_after("<scale value=\"2, 3, 4\"/>"), {2, 3, 0});
+    check_corner(corner_after("<rotate z=\"1\" angle=\"90\"/><translate x=\"5\"/>"), {4, 1, 0});
+    check_corner(corner_after("<rotate value=\"1,0,0\" angle=\"90\"/>"), {1, 0, 1});
+    check_corner(corner_after("<matrix value=\"1 0 0 5  0 2 0 6  0 0 1 7  0 0 0 1\"/>"), {6, 8, 7});
+    check_corner(corner_after("<matrix value=\"2 0 0 0  0 2 0 0  0 0 2 0  0 0 0 2\"/>"), {1, 1, 0});
+    check_corner(corner_after("<translate x=\"1\"/><scale value=\"2\"/>", "0.6.0", "toWorld"), {4, 2, 0});
 }
 
 TEST_CASE("mitsuba: a camera looks along +z with +x to the left") {
     const std::string square = "<shape type=\"rectangle\"><transform name=\"to_world\"><translate x=\"3\" "
                                "y=\"1\" z=\"9\"/></transform></shape>";
     const Scene plain = load_mitsuba(in_scene("<sensor type=\"perspective\"/>" + square));
-    check_at(seen_from(plain, {3, 1, 9}), {-3, 1, -9});
+    check_corner(seen_from(plain, {3, 1, 9}), {-3, 1, -9});
     const Scene aimed = load_mitsuba(in_scene("<sensor type=\"perspective\"><transform name=\"to_world\"><lookat "
                                               "origin=\"0,0,5\" target=\"0,0,0\" up=\"0,1,0\"/></transform></sensor>" +
                                               square));
-    check_at(seen_from(aimed, {3, 1, 1}), {3, 1, -4});
+    check_corner(seen_from(aimed, {3, 1, 1}), {3, 1, -4});
     const Scene old = load_mitsuba(in_scene("<sensor type=\"perspective\"><transform name=\"toWorld\"><lookAt "
                                             "origin=\"0 0 5\" target=\"0 0 0\"/></transform></sensor>" +
                                                 square,
                                             "0.6.0"));
-    check_at(seen_from(old, {0, 0, 1}), {0, 0, -4});
+    check_corner(seen_from(old, {0, 0, 1}), {0, 0, -4});
 }
 
 TEST_CASE("mitsuba: a mirroring sensor shows a mirrored world") {
-    const Scene scene = load_mitsuba(in_scene(
-        "<sensor type=\"perspective\"><transform name=\"to_world\"><scale x=\"-1\"/></transform></sensor>" + kSquare));
+    const Scene scene = load_mitsuba(
+        in_scene("<sensor type=\"perspective\"><transform name=\"to_world\"><scale x=\"-1\"/></transform></sensor>" +
+                 kMitsubaSquare));
     // Without the mirror (1, 1, 0) would be on the left.
     CHECK(seen_from(scene, corner_of(scene)).x == doctest::Approx(1));
 }
@@ -162,7 +163,7 @@ TEST_CASE("mitsuba: thin lenses, orthographic views, principal points and severa
         "value=\"100\"/></film></sensor>"
         "<sensor type=\"perspective\"><float name=\"principal_point_offset_x\" value=\"0.25\"/><float "
         "name=\"fov\" value=\"90\"/></sensor>" +
-        kSquare));
+        kMitsubaSquare));
     REQUIRE(scene.cameras.size() == 3);
     CHECK(scene.cameras[0].name == "near");
     CHECK(scene.cameras[0].aperture_radius == 0.25f);
@@ -181,30 +182,30 @@ TEST_CASE("mitsuba: film, sampler and integrator suggest settings") {
         "</integrator><sensor type=\"perspective\"><sampler type=\"ldsampler\"><integer name=\"sampleCount\" "
         "value=\"36\"/></sampler><film type=\"hdrfilm\"><integer name=\"width\" value=\"64\"/><integer name=\"height\" "
         "value=\"48\"/><rfilter type=\"tent\"/></film></sensor>" +
-            kSquare,
+            kMitsubaSquare,
         "0.6.0"));
-    CHECK(suggested_in(scene, "size") == "64x48");
-    CHECK(suggested_in(scene, "spp") == "36");
-    CHECK(suggested_in(scene, "max_depth") == "8"); // Mitsuba counts the emitter's vertex
-    CHECK(suggested_in(scene, "filter") == "tent");
-    CHECK(suggested_in(scene, "filter_radius") == "1");
-    const Scene direct = load_mitsuba(in_scene("<integrator type=\"direct\"/>" + kSquare));
-    CHECK(suggested_in(direct, "max_depth") == "1");
+    CHECK(mitsuba_suggestion(scene, "size") == "64x48");
+    CHECK(mitsuba_suggestion(scene, "spp") == "36");
+    CHECK(mitsuba_suggestion(scene, "max_depth") == "8"); // Mitsuba counts the emitter's vertex
+    CHECK(mitsuba_suggestion(scene, "filter") == "tent");
+    CHECK(mitsuba_suggestion(scene, "filter_radius") == "1");
+    const Scene direct = load_mitsuba(in_scene("<integrator type=\"direct\"/>" + kMitsubaSquare));
+    CHECK(mitsuba_suggestion(direct, "max_depth") == "1");
     CHECK(
-        left_out_of(
+        mitsuba_left_out(
             "<integrator type=\"path\"><boolean name=\"hide_emitters\" value=\"false\"/></integrator><sensor "
             "type=\"perspective\"><film type=\"hdrfilm\"><integer name=\"crop_width\" value=\"768\"/></film></sensor>")
             .empty());
+    CHECK(mitsuba_left_out("<integrator type=\"path\"><boolean name=\"hide_emitters\" value=\"true\"/></integrator>")
+              .size() == 1);
     CHECK(
-        left_out_of("<integrator type=\"path\"><boolean name=\"hide_emitters\" value=\"true\"/></integrator>").size() ==
-        1);
-    CHECK(begins_with(left_out_of("<sensor type=\"perspective\"><film type=\"hdrfilm\"><integer name=\"crop_width\" "
-                                  "value=\"3\"/></film></sensor>"),
-                      "scene.xml:2: the parameter \"crop_width\""));
+        begins_with(mitsuba_left_out("<sensor type=\"perspective\"><film type=\"hdrfilm\"><integer name=\"crop_width\" "
+                                     "value=\"3\"/></film></sensor>"),
+                    "scene.xml:2: the parameter \"crop_width\""));
 }
 
 TEST_CASE("mitsuba: nothing is made up for a file without lights") {
-    const Scene scene = load_mitsuba(in_scene(kSquare));
+    const Scene scene = load_mitsuba(in_scene(kMitsubaSquare));
     REQUIRE(scene.environment);
     CHECK(is_black(scene.environment->scale));
     CHECK(scene.cameras.empty());
@@ -214,11 +215,11 @@ TEST_CASE("mitsuba: defaults and defined values replace $NAME") {
     const std::string text = in_scene("<default name=\"a\" value=\"2\"/><default name=\"ab\" value=\"5\"/><default "
                                       "name=\"a\" value=\"9\"/><shape type=\"rectangle\"><transform name=\"to_world\">"
                                       "<scale x=\"$a\" y=\"$ab\" z=\"1\"/></transform></shape>");
-    check_at(corner_of(load_mitsuba(text)), {2, 5, 0});
+    check_corner(corner_of(load_mitsuba(text)), {2, 5, 0});
     Messages messages;
     ReadOptions options;
     options.defines = {"a=3", "zz=1"};
-    check_at(corner_of(load_mitsuba(text, messages, options)), {3, 5, 0});
+    check_corner(corner_of(load_mitsuba(text, messages, options)), {3, 5, 0});
     REQUIRE(messages.all().size() >= 1);
     CHECK(messages.all()[0].remark.setting == "define");
     CHECK(messages.all()[0].remark.value == "zz");
@@ -226,7 +227,7 @@ TEST_CASE("mitsuba: defaults and defined values replace $NAME") {
     Messages refused;
     CHECK(test::is_about(test::thrown_error([&] { load_mitsuba(text, refused, options); }), ErrorCode::BadInput,
                          "define", "a"));
-    CHECK(begins_with(left_out_of("<bsdf type=\"diffuse\"><float name=\"x\" value=\"$none\"/></bsdf>"),
+    CHECK(begins_with(mitsuba_left_out("<bsdf type=\"diffuse\"><float name=\"x\" value=\"$none\"/></bsdf>"),
                       "scene.xml:2: $none"));
 }
 
@@ -237,7 +238,7 @@ TEST_CASE("mitsuba: values that multiply each other are left out") {
         for (int k = 0; k < 10; ++k) text += fmt::format("$n{}", i - 1);
         text += "\"/>";
     }
-    CHECK(!left_out_of(text).empty());
+    CHECK(!mitsuba_left_out(text).empty());
 }
 
 TEST_CASE("mitsuba: entities of a document type are not expanded") {
@@ -259,26 +260,26 @@ TEST_CASE("mitsuba: references, aliases and named references") {
     CHECK(scene.materials[scene.instances[0].material].base_color == Rgb{0, 0, 1});
     CHECK(scene.materials[scene.instances[1].material].base_color == Rgb{1, 0, 0});
     CHECK(begins_with(
-        left_out_of("\n<shape type=\"cube\"><ref id=\"glas\"/></shape><bsdf type=\"diffuse\" id=\"glass\"/>"),
+        mitsuba_left_out("\n<shape type=\"cube\"><ref id=\"glas\"/></shape><bsdf type=\"diffuse\" id=\"glass\"/>"),
         "scene.xml:3: there is no object with the id glas (did you mean \"glass\"?)"));
 }
 
 TEST_CASE("mitsuba: ids of files that look like ours of unnamed objects refer to nothing else") {
-    CHECK(!left_out_of("<shape type=\"cube\"><ref id=\"\x01zz\"/></shape>").empty());
-    CHECK(!left_out_of("<shape type=\"cube\"><ref id=\"\x01"
-                       "99999\"/></shape>")
+    CHECK(!mitsuba_left_out("<shape type=\"cube\"><ref id=\"\x01zz\"/></shape>").empty());
+    CHECK(!mitsuba_left_out("<shape type=\"cube\"><ref id=\"\x01"
+                            "99999\"/></shape>")
                .empty());
 }
 
 TEST_CASE("mitsuba: cycles of references and of includes end") {
-    CHECK(!left_out_of("<bsdf type=\"twosided\" id=\"a\"><ref id=\"b\"/></bsdf><bsdf type=\"mask\" id=\"b\"><ref "
-                       "id=\"a\"/></bsdf><shape type=\"cube\"><ref id=\"a\"/></shape>")
+    CHECK(!mitsuba_left_out("<bsdf type=\"twosided\" id=\"a\"><ref id=\"b\"/></bsdf><bsdf type=\"mask\" id=\"b\"><ref "
+                            "id=\"a\"/></bsdf><shape type=\"cube\"><ref id=\"a\"/></shape>")
                .empty());
-    CHECK(!left_out_of("<texture type=\"scale\" id=\"t\"><ref id=\"t\"/></texture><shape type=\"cube\"><bsdf "
-                       "type=\"diffuse\"><ref id=\"t\" name=\"reflectance\"/></bsdf></shape>")
+    CHECK(!mitsuba_left_out("<texture type=\"scale\" id=\"t\"><ref id=\"t\"/></texture><shape type=\"cube\"><bsdf "
+                            "type=\"diffuse\"><ref id=\"t\" name=\"reflectance\"/></bsdf></shape>")
                .empty());
-    CHECK(!left_out_of("<shape type=\"merge\" id=\"m\"><ref id=\"m\"/></shape>").empty());
-    CHECK(!left_out_of("<include filename=\"scene.xml\"/>").empty());
+    CHECK(!mitsuba_left_out("<shape type=\"merge\" id=\"m\"><ref id=\"m\"/></shape>").empty());
+    CHECK(!mitsuba_left_out("<include filename=\"scene.xml\"/>").empty());
 }
 
 TEST_CASE("mitsuba: included files are found beside the scene, in <path> and beside each other") {
@@ -289,50 +290,52 @@ TEST_CASE("mitsuba: included files are found beside the scene, in <path> and bes
     test::write_text(folder / "parts" / "b.xml", "<shape version=\"3.0.0\" type=\"cube\"/>");
     test::write_text(folder / "parts" / "more" / "c.xml", in_scene("<shape type=\"sphere\"/>"));
     Messages messages;
-    const fs::path path = test::write_text(
-        folder / "scene.xml", in_scene("<path value=\"parts/more\"/><include filename=\"parts/a.xml\"/>" + kSquare));
+    const fs::path path =
+        test::write_text(folder / "scene.xml",
+                         in_scene("<path value=\"parts/more\"/><include filename=\"parts/a.xml\"/>" + kMitsubaSquare));
     const Scene scene = read_scene(path, {}, messages);
     CHECK(messages.left_out() == std::vector<std::string>{});
     REQUIRE(scene.instances.size() == 3);
     CHECK(scene.instances[0].name == "cube");
     CHECK(scene.instances[1].name == "sphere");
-    CHECK(begins_with(left_out_of("<include filename=\"none.xml\"/>"), "scene.xml:2: there is no file none.xml"));
-    CHECK(!left_out_of("<path value=\"/etc\"/><include filename=\"passwd\"/>").empty());
+    CHECK(begins_with(mitsuba_left_out("<include filename=\"none.xml\"/>"), "scene.xml:2: there is no file none.xml"));
+    CHECK(!mitsuba_left_out("<path value=\"/etc\"/><include filename=\"passwd\"/>").empty());
 }
 
 TEST_CASE("mitsuba: what is unknown or unreadable is left out with its line") {
-    CHECK(begins_with(left_out_of("\n<shap type=\"cube\"/>"),
+    CHECK(begins_with(mitsuba_left_out("\n<shap type=\"cube\"/>"),
                       "scene.xml:3: there is no such element (did you mean \"shape\"?)"));
-    CHECK(begins_with(left_out_of("<shape type=\"spher\"/>"),
+    CHECK(begins_with(mitsuba_left_out("<shape type=\"spher\"/>"),
                       "scene.xml:2: shapes of the type spher are left out (did you mean \"sphere\"?)"));
     CHECK(begins_with(
-        left_out_of("<shape type=\"sphere\">\n<float name=\"radus\" value=\"2\"/></shape>"),
+        mitsuba_left_out("<shape type=\"sphere\">\n<float name=\"radus\" value=\"2\"/></shape>"),
         "scene.xml:3: the parameter \"radus\" of the shape sphere is unknown and left out (did you mean \"radius\"?)"));
-    CHECK(begins_with(left_out_of("<shape type=\"sphere\"><float name=\"radius\" value=\"big\"/></shape>"),
+    CHECK(begins_with(mitsuba_left_out("<shape type=\"sphere\"><float name=\"radius\" value=\"big\"/></shape>"),
                       "scene.xml:2: value=\"big\""));
-    CHECK(begins_with(left_out_of("<shape type=\"sphere\"><float name=\"radius\" value=\"nan\"/></shape>"),
+    CHECK(begins_with(mitsuba_left_out("<shape type=\"sphere\"><float name=\"radius\" value=\"nan\"/></shape>"),
                       "scene.xml:2: value=\"nan\""));
-    CHECK(begins_with(left_out_of("<shape type=\"sphere\"><float name=\"radius\" value=\"-1\"/></shape>"),
+    CHECK(begins_with(mitsuba_left_out("<shape type=\"sphere\"><float name=\"radius\" value=\"-1\"/></shape>"),
                       "scene.xml:2: the radius is -1"));
     CHECK(begins_with(
-        left_out_of("<shape type=\"cube\"><transform name=\"to_world\"><matrix value=\"1 2 3\"/></transform></shape>"),
+        mitsuba_left_out(
+            "<shape type=\"cube\"><transform name=\"to_world\"><matrix value=\"1 2 3\"/></transform></shape>"),
         "scene.xml:2: value=\"1 2 3\""));
-    CHECK(begins_with(left_out_of("<shape type=\"cube\"><transform name=\"to_world\"><lookat origin=\"0,0,0\" "
-                                  "target=\"0,0,0\"/></transform></shape>"),
+    CHECK(begins_with(mitsuba_left_out("<shape type=\"cube\"><transform name=\"to_world\"><lookat origin=\"0,0,0\" "
+                                       "target=\"0,0,0\"/></transform></shape>"),
                       "scene.xml:2: the transform has no inverse"));
-    CHECK(begins_with(left_out_of("<medium type=\"homogeneous\" id=\"fog\"/>"),
+    CHECK(begins_with(mitsuba_left_out("<medium type=\"homogeneous\" id=\"fog\"/>"),
                       "scene.xml:2: the medium homogeneous is left out"));
 }
 
 TEST_CASE("mitsuba: broken XML keeps what is in front of the fault, and deep nesting ends") {
     Messages messages;
-    const Scene scene = load_mitsuba("<scene version=\"3.0.0\">" + kSquare + "<shape type=", messages);
+    const Scene scene = load_mitsuba("<scene version=\"3.0.0\">" + kMitsubaSquare + "<shape type=", messages);
     CHECK(scene.instances.size() == 1);
     CHECK(!messages.left_out().empty());
     std::string deep;
     for (int i = 0; i < 20000; ++i) deep += "<bsdf type=\"twosided\">";
     for (int i = 0; i < 20000; ++i) deep += "</bsdf>";
-    CHECK(!left_out_of("<shape type=\"cube\">" + deep + "</shape>").empty());
+    CHECK(!mitsuba_left_out("<shape type=\"cube\">" + deep + "</shape>").empty());
     Messages none;
     CHECK(test::thrown_error([&] { load_mitsuba("no XML", none); }).has_value());
 }
