@@ -219,9 +219,12 @@ TEST_CASE("mitsuba: the colour of plastic is that of the whole, or with nonlinea
     const std::string ior = number_of("int_ior", 1.5) + number_of("ext_ior", 1) + rgb_of("diffuse_reflectance", ".5");
     const Material whole = mitsuba_material(bsdf_of("plastic", ior));
     CHECK(whole.kind == MaterialKind::MetallicRoughness);
-    CHECK(whole.base_color == grey(0.5f));
     CHECK(whole.ior == 1.5f);
     const float inside = described::reflected_inside(1.5f);
+    const float more = 0.96f / ((1 - inside) * 2.25f); // all directions let in less than the vertical one
+    CHECK(more == doctest::Approx(1.057).epsilon(2e-3));
+    CHECK(whole.base_color.r == doctest::Approx(0.5f * more));
+    CHECK(mitsuba_material(bsdf_of("plastic")).ior == doctest::Approx(1.49 / 1.000277));
     const Material dyed =
         mitsuba_material(bsdf_of("roughplastic", ior + "<boolean name=\"nonlinear\" value=\"true\"/>"));
     CHECK(dyed.base_color.r == doctest::Approx(0.5f * (1 - inside) / (1 - 0.5f * inside)));
@@ -364,4 +367,33 @@ TEST_CASE("mitsuba: an unknown BSDF is grey") {
     REQUIRE(read.messages.left_out().size() == 1);
     CHECK(read.messages.left_out()[0].find("did you mean \"diffuse\"?") != std::string::npos);
     CHECK(load_bsdf(bsdf_of("hair")).messages.left_out().size() == 1);
+}
+
+TEST_CASE("mitsuba: a spectrum is dark beyond its wavelengths") {
+    const Rgb narrow = mitsuba_radiance("<spectrum name=\"radiance\" value=\"500:1, 600:1\"/>");
+    CHECK(narrow.b == doctest::Approx(0).epsilon(1e-2));
+    CHECK(narrow.g > 3 * narrow.r);
+    const Rgb green = mitsuba_reflectance("<spectrum name=\"reflectance\" value=\"500:1, 550:1\"/>");
+    CHECK(green.g > 5 * green.r);
+}
+
+TEST_CASE("mitsuba: spectra that contain themselves are left out, and the scale of a coloured d65 counts") {
+    for (const char* const type : {"d65", "srgb", "rgb"}) {
+        CAPTURE(type);
+        const MitsubaMaterial read = load_bsdf(
+            bsdf_of("diffuse", fmt::format("<spectrum name=\"reflectance\" type=\"{}\" id=\"s\"><ref name=\"color\" "
+                                           "id=\"s\"/></spectrum>",
+                                           type)));
+        CHECK(read.messages.left_out().size() >= 1);
+        CHECK(read.scene.instances.size() == 1);
+    }
+    check_mitsuba_color(mitsuba_radiance("<spectrum name=\"radiance\" type=\"d65\"><float name=\"scale\" value=\"7\"/>"
+                                         "<rgb name=\"color\" value=\"1 2 0\"/></spectrum>"),
+                        {7, 14, 0});
+}
+
+TEST_CASE("mitsuba: an emitter without a BSDF is black, but not in version 0.6") {
+    const std::string lamp = "<emitter type=\"area\"/>";
+    CHECK(is_black(mitsuba_material(lamp).base_color));
+    CHECK_FALSE(is_black(mitsuba_material(lamp, "0.6.0").base_color));
 }

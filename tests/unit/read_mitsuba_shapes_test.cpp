@@ -369,3 +369,9 @@ TEST_CASE("mitsuba: a constant emitter and an envmap are the environment") {
     CHECK(brightest("") == 6); // +x is at three quarters of our panoramas
     CHECK(brightest("<transform name=\"to_world\"><rotate y=\"1\" angle=\"90\"/></transform>") == 4); // +x turns to -z
 }
+
+TEST_CASE("mitsuba: a serialized mesh whose triangles name no vertices of it is refused") {
+    const std::string torn = serialized_file(4, {serialized_triangle(false, true, 1, 2)});
+    CHECK(test::thrown_error([&] { (void)mitsuba::read_serialized(bytes_in(torn), 0, "m.serialized"); })->code() ==
+          ErrorCode::BadInput);
+}

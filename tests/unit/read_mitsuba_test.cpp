@@ -339,3 +339,37 @@ TEST_CASE("mitsuba: broken XML keeps what is in front of the fault, and deep nes
     Messages none;
     CHECK(test::thrown_error([&] { load_mitsuba("no XML", none); }).has_value());
 }
+
+TEST_CASE("mitsuba: objects that each name two others, and values in values, end at a limit") {
+    const auto fault_of_file = [](const std::string& text) {
+        return test::thrown_error([&] {
+            Messages messages;
+            (void)load_mitsuba(in_scene(text), messages);
+        });
+    };
+    std::string blends = "<bsdf type=\"diffuse\" id=\"b0\"/>", merges = "<shape type=\"merge\" id=\"m0\"/>";
+    for (int i = 1; i < 30; ++i) {
+        const auto both = [&](char c) { return fmt::format("<ref id=\"{0}{1}\"/><ref id=\"{0}{1}\"/>", c, i - 1); };
+        blends += fmt::format("<bsdf type=\"blendbsdf\" id=\"b{}\">{}</bsdf>", i, both('b'));
+        merges += fmt::format("<shape type=\"merge\" id=\"m{}\">{}</shape>", i, both('m'));
+    }
+    const auto blend = fault_of_file(blends + "<shape type=\"rectangle\"><ref id=\"b29\"/></shape>");
+    REQUIRE(blend);
+    CHECK(blend->code() == ErrorCode::OverLimit);
+    const auto merge = fault_of_file(merges);
+    REQUIRE(merge);
+    CHECK(merge->code() == ErrorCode::OverLimit);
+    std::string texts = fmt::format("<default name=\"a\" value=\"{}\"/>", std::string(60000, '1'));
+    for (int i = 0; i < 600; ++i) texts += "<bsdf type=\"diffuse\" id=\"$a\"/>";
+    const auto values = fault_of_file(texts + kMitsubaSquare);
+    REQUIRE(values);
+    CHECK(values->code() == ErrorCode::OverLimit);
+}
+
+TEST_CASE("mitsuba: a lens that is too near to focus is a pinhole") {
+    const Scene scene = load_mitsuba(in_scene(kMitsubaSquare +
+                                              "<sensor type=\"thinlens\"><float name=\"aperture_radius\" value=\".1\"/>"
+                                              "<float name=\"focus_distance\" value=\"1e-60\"/></sensor>"));
+    REQUIRE(scene.cameras.size() == 1);
+    CHECK(scene.cameras[0].aperture_radius == 0);
+}

@@ -92,7 +92,9 @@ std::optional<DoubleVec3> Parameters::vector(std::string_view name, Sink& sink) 
 }
 
 void Parameters::ignore(std::initializer_list<std::string_view> names) {
-    asked_.insert(asked_.end(), names.begin(), names.end());
+    for (const std::string_view name : names) {
+        if (std::ranges::find(asked_, name) == asked_.end()) asked_.push_back(name);
+    }
 }
 
 void Parameters::leave_out(std::initializer_list<std::string_view> names, std::string_view reason, Sink& sink) {

@@ -39,15 +39,18 @@ private:
     void read_roughness(Object& bsdf, Surface& surface);
     void tint_metal(const Object& bsdf, const TextureValue& tint, Surface& surface);
     float ior_of(Object& bsdf, const char* name, float missing);
-    float relative_ior(Object& bsdf);
+    float relative_ior(Object& bsdf, const char* substance = "bk7"); // by default inside
     void warn_of_backs(const Object& bsdf, const Surface& surface);
     void warn_of_nearest(const Object& bsdf, std::string_view nearest);
     TextureValue color(Object& bsdf, const char* name, float missing) {
         return textures_.color(bsdf, name, ColorUse::Reflectance, grey(missing));
     }
 
+    static constexpr std::size_t kMostReads = 4096; // and some for each object of the file
+
     Reading& reading_;
     Textures& textures_;
+    std::size_t reads_ = 0;
     bool has_two_sides_ = false;         // the surface that is read is in a twosided BSDF
     std::map<uint32_t, uint32_t> known_; // surfaces by the object's number
 };

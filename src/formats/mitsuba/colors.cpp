@@ -26,6 +26,18 @@ Rgb of_spectrum(const Spectrum& spectrum, ColorUse use) {
     return use == ColorUse::Light ? color_of_light(spectrum) : color_under_d65(spectrum);
 }
 
+/// A spectrum of pairs; as colour or light it is 0 beyond its wavelengths.
+Spectrum bounded_spectrum(std::span<const double> pairs, ColorUse use) {
+    Spectrum spectrum = make_spectrum(pairs);
+    if (use == ColorUse::Index || spectrum.values.empty()) return spectrum;
+    constexpr double kEdge = 1e-3; // nm
+    spectrum.wavelengths_nm.insert(spectrum.wavelengths_nm.begin(), spectrum.wavelengths_nm.front() - kEdge);
+    spectrum.wavelengths_nm.push_back(spectrum.wavelengths_nm.back() + kEdge);
+    spectrum.values.insert(spectrum.values.begin(), 0);
+    spectrum.values.push_back(0);
+    return spectrum;
+}
+
 /// The radiance of a black body, W/(sr m2 nm), as Mitsuba has it.
 Spectrum radiance_of_black_body(double temperature_k) {
     constexpr double kPeak = 4.095674682e-15; // Planck's law at the wavelength of Wien's, for 1 K
@@ -36,7 +48,7 @@ Spectrum radiance_of_black_body(double temperature_k) {
 }
 
 /// Reads pairs of wavelength and value from a file of text, in which # begins a comment.
-Spectrum spectrum_of_file(const std::filesystem::path& path) {
+Spectrum spectrum_of_file(const std::filesystem::path& path, ColorUse use) {
     const std::vector<std::byte> bytes = read_file(path);
     std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     std::vector<double> pairs;
@@ -48,13 +60,13 @@ Spectrum spectrum_of_file(const std::filesystem::path& path) {
             pairs.insert(pairs.end(), {numbers[0], numbers[1]});
         text.remove_prefix(std::min(end + 1, text.size()));
     }
-    return make_spectrum(pairs);
+    return bounded_spectrum(pairs, use);
 }
 
 std::optional<Rgb> of_file(const std::string& name, const FileLocation& from, ColorUse use, Reading& reading) {
     const auto path = find_file(reading.context, from, name);
     if (!path) throw Error(ErrorCode::BadInput, from, fmt::format("there is no file {}", shortened(name)));
-    const Spectrum spectrum = spectrum_of_file(*path);
+    const Spectrum spectrum = spectrum_of_file(*path, use);
     if (spectrum.values.empty())
         throw Error(ErrorCode::BadInput, from,
                     fmt::format("the file {} has no lines of wavelength and value", shortened(name)));
@@ -89,12 +101,13 @@ std::optional<Rgb> of_list(Object& object, ColorUse use, Sink& sink) {
         if (!std::isfinite(nm[i]) || !std::isfinite(values[i])) return std::nullopt;
         pairs.insert(pairs.end(), {nm[i], values[i]});
     }
-    return of_spectrum(make_spectrum(pairs), use);
+    return of_spectrum(bounded_spectrum(pairs, use), use);
 }
 
 } // namespace
 
 std::optional<Rgb> color_of_object(Object& object, ColorUse use, Reading& reading) {
+    const Depth depth(reading.depth, object); // the colour of one may be another
     Sink& sink = reading.sink();
     Parameters& parameters = object.parameters;
     std::optional<Rgb> color;
@@ -108,8 +121,10 @@ std::optional<Rgb> color_of_object(Object& object, ColorUse use, Reading& readin
             color = Rgb{static_cast<float>(value->numbers[0]), static_cast<float>(value->numbers[1]),
                         static_cast<float>(value->numbers[2])};
     } else if (object.type == "d65") {
-        color = static_cast<float>(parameters.number("scale", 1, sink)) * grey(1);
+        const auto scale = static_cast<float>(parameters.number("scale", 1, sink));
+        color = grey(1);
         if (const Parameter* const value = parameters.find("color")) color = color_of(object, *value, use, reading);
+        if (color) color = scale * *color;
     } else if (object.type == "regular" || object.type == "irregular") {
         color = of_list(object, use, sink);
     } else if (object.type == "blackbody") {
@@ -144,7 +159,7 @@ std::optional<Rgb> color_of(Object& object, const Parameter& parameter, ColorUse
             if (!parameter.texts.empty()) {
                 color = of_file(parameter.texts[0], place, use, reading);
             } else if (numbers.size() > 1) {
-                color = of_spectrum(make_spectrum(numbers), use);
+                color = of_spectrum(bounded_spectrum(numbers, use), use);
             } else { // light of Mitsuba 3 is equal at all wavelengths, which is not white
                 const bool is_flat = use == ColorUse::Light && !reading.context.is_old;
                 color = is_flat ? color_of_light({{550}, {numbers[0]}}) : grey(static_cast<float>(numbers[0]));

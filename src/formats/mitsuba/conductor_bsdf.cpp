@@ -66,6 +66,7 @@ Surface Bsdfs::conductor(Object& bsdf) {
             sink.leave_out(
                 {bsdf.location(), fmt::format("there are no data of the metal {}; copper is used", shortened(name))});
     }
+    if (has_index && !reading_.context.is_old) index = {.eta = grey(0), .k = grey(1)}; // where one is missing
     const float outside = parameters.contains("ext_eta") ? ior_of(bsdf, "ext_eta", 1) : 1.0f;
     const float scale = outside > 0 ? 1 / outside : 1.0f;
     surface.material.eta =

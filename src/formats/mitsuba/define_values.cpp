@@ -8,7 +8,8 @@
 namespace pertev::mitsuba {
 namespace {
 
-constexpr std::size_t kMostText = 1 << 16; // bytes of a text with values in it; names in values multiply
+// Bytes of a text with values in it, since names in values multiply, and of all such texts.
+constexpr std::size_t kMostText = 1 << 16, kMostInAll = std::size_t(1) << 25;
 
 } // namespace
 
@@ -51,6 +52,9 @@ std::string DefineValues::put_into(std::string_view text, const FileLocation& fr
         if (to.size() > kMostText)
             throw Error(ErrorCode::BadInput, from, fmt::format("a text with values takes over {} bytes", kMostText));
     }
+    in_all_ += to.size();
+    if (in_all_ > kMostInAll)
+        throw Error(ErrorCode::OverLimit, from, fmt::format("values take over {} MiB of texts", kMostInAll >> 20));
     return to;
 }
 

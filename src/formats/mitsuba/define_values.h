@@ -28,6 +28,7 @@ public:
 private:
     std::map<std::string, std::string, std::less<>> values_;
     std::set<std::string, std::less<>> defined_, used_;
+    std::size_t in_all_ = 0; // bytes of all texts with values in them
     Sink& sink_;
 };
 

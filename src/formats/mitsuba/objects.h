@@ -27,6 +27,7 @@ public:
 
     std::vector<uint32_t>& top() { return top_; } // objects directly in <scene>, in order
     Object& at(uint32_t number) { return all_[number]; }
+    std::size_t size() const { return all_.size(); }
 
 private:
     std::deque<Object> all_;

@@ -1,5 +1,6 @@
 #include "formats/mitsuba/read_serialized.h"
 
+#include <algorithm>
 #include <cstring>
 #include <type_traits>
 
@@ -130,6 +131,8 @@ SerializedMesh read_serialized(std::span<const std::byte> bytes, uint32_t index,
     const auto corners = taken.some(triangles * 12);
     read.mesh.indices.resize(static_cast<std::size_t>(triangles * 3));
     std::memcpy(read.mesh.indices.data(), corners.data(), corners.size());
+    if (std::ranges::any_of(read.mesh.indices, [&](uint32_t i) { return i >= vertices; }))
+        throw Error(ErrorCode::BadInput, FileLocation{file}, "a triangle has a corner beyond the vertices of its mesh");
     return read;
 }
 

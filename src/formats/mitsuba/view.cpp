@@ -160,12 +160,11 @@ std::optional<Camera> make_camera(Object& sensor, const FilmSize& size, const Do
         set_perspective(sensor, size, camera, sink);
     }
     if (sensor.type == "thinlens") {
-        const double radius = parameters.number("aperture_radius", 0, sink),
-                     focus = parameters.number("focus_distance", 0, sink);
-        if (radius > 0 && focus > 0) {
-            camera.aperture_radius = min(static_cast<float>(radius), kMaxCoordinate);
-            camera.focus_distance = min(static_cast<float>(focus), kMaxCoordinate);
-        }
+        const auto length = [&](const char* name) {
+            return min(static_cast<float>(parameters.number(name, 0, sink)), kMaxCoordinate);
+        };
+        const float radius = length("aperture_radius"), focus = length("focus_distance");
+        if (radius > 0 && focus > 0) camera.aperture_radius = radius, camera.focus_distance = focus;
     }
     parameters.ignore({"near_clip", "far_clip", "shutter_open", "shutter_close", "focus_distance", "aperture_radius"});
     parameters.leave_out_unknown(sink);

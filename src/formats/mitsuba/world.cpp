@@ -17,6 +17,10 @@ World::World(Context& context, Objects& objects) : context_(context), objects_(o
     parts_.missing_coordinates = {Vec2{0, 0}, Vec2{1, 0}, Vec2{0, 1}};
     Surface surface = make_surface(MaterialKind::Diffuse);
     surface.material.name = "default";
+    parts_.surfaces.push_back(surface);
+    if (context.is_old) return;
+    surface.material.name = "default of emitters";
+    surface.material.base_color = {0, 0, 0};
     parts_.surfaces.push_back(std::move(surface));
 }
 
@@ -36,6 +40,8 @@ void World::add_instance(Object& instance) {
 void World::add_shape(Object& shape, const DoubleTransform& world_from_group) {
     try {
         const Depth depth(reading_.depth, shape);
+        if (++visited_ > 2 * most_placed_) // shapes that each merge two others multiply, though nothing is placed
+            throw Error(ErrorCode::OverLimit, shape.location(), "shapes contain each other too often");
         if (shape.type == "shapegroup") return; // its instances show it
         if (shape.type == "instance") return add_instance(shape);
         if (shape.type == "merge") {
@@ -68,6 +74,7 @@ void World::place(Object& shape, const DoubleTransform& world_from_group) {
             area_lights_[emitter.number] = *placed.area_light;
             parts_.area_lights.push_back(*std::move(light));
         }
+        if (bsdfs.empty() && placed.area_light && !context_.is_old) placed.surface = 1;
     }
     if (!objects_in(shape, "medium", reading_).empty() || !objects_in(shape, "subsurface", reading_).empty())
         sink.leave_out(

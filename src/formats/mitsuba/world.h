@@ -37,7 +37,7 @@ private:
     Bsdfs bsdfs_{reading_, textures_};
     View view_;
     std::map<uint32_t, uint32_t> area_lights_; // by the emitter's number
-    uint64_t most_placed_ = 0;
+    uint64_t most_placed_ = 0, visited_ = 0;
 };
 
 } // namespace pertev::mitsuba
