@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "base/parallel_for.h"
@@ -157,7 +158,10 @@ private:
 
     void collect() {
         std::vector<double> powers(lights_.size());
-        for (std::size_t i = 0; i < lights_.size(); ++i) powers[i] = lights_[i].power > 0 ? lights_[i].power : 0;
+        for (std::size_t i = 0; i < lights_.size(); ++i) {
+            const double power = lights_[i].power; // infinite where the square of an area overflows
+            powers[i] = std::isfinite(power) && power > 0 ? power : 0;
+        }
         double sum = 0;
         for (const double power : powers) sum += power;
         std::size_t count = 0;
