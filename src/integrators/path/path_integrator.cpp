@@ -274,7 +274,8 @@ void PathIntegrator::launch_rounds(int going, const Work& work) {
 
 void PathIntegrator::launch_round(Wavefront& w, const Work& work) {
     const uint32_t last = w.capacity - 1;
-    const bool any_alpha = picture_.scene.any_alpha != 0;
+    // The tracer reads the keys of camera rays that meet hidden backs, too, though it does not need them there.
+    const bool any_keys = picture_.scene.any_alpha != 0 || picture_.scene.any_hidden_back != 0;
     const PathQueueView paths = w.paths(w.round), next = w.paths(w.round + 1);
     const ShadowQueueView shadows = w.shadows();
     const ListenerQueues listened = w.listened(w.round);
@@ -298,7 +299,7 @@ void PathIntegrator::launch_round(Wavefront& w, const Work& work) {
             const WorkCount fresh = {most, &counts->fresh};
             const HitQueueView camera_hits = {hits.records + last, hits.instances + last, -1};
             const auto begin_paths = [&]<bool kInBatch>() {
-                const GeneratePaths<kInBatch> generate = {work.job, work.samples, counts, last, any_alpha, paths};
+                const GeneratePaths<kInBatch> generate = {work.job, work.samples, counts, last, any_keys, paths};
                 if (!raster_ && begin_and_trace(queue_, *tracer_, fresh, generate, camera_hits)) return;
                 launch(queue_, "generate_paths", fresh, generate);
                 if (raster_) {
