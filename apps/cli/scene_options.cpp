@@ -15,8 +15,7 @@ std::string builtin_scene_list() { return fmt::format("{}", fmt::join(builtin_sc
 CLI::Option* add_scene_name(CLI::App& verb, SceneOptions& options) {
     return verb
         .add_option("SCENE", options.scene,
-                    "A .gltf, .glb, .obj, .ply, .stl, .pbrt or Mitsuba's .xml file, or a built-in scene: " +
-                        builtin_scene_list())
+                    "A .gltf, .glb, .obj, .ply, .stl, .pbrt or .xml file, or a built-in scene: " + builtin_scene_list())
         ->type_name("")
         ->check(file_name())
         ->required();

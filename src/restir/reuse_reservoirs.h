@@ -12,6 +12,7 @@
 // other, and the weight is divided by their sum. Thus no light is lost or counted twice, whatever the occlusion, at one
 // ray per neighbour.
 
+#include "device/launch.h"
 #include "restir/find_neighbours.h"
 #include "restir/ris_selection.h"
 #include "restir/visibility_rays.h"
