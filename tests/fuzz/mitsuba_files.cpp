@@ -1,21 +1,19 @@
 // Fuzz target of the reader of Mitsuba's scenes (formats/mitsuba/read_mitsuba.h) and of its serialized meshes. An input
 // is taken for the XML of a scene, or for a file of meshes if it begins like one. It is refused by an Error, or it is
-// a scene that passes validate().
+// a scene that passes validate(), unless nothing of it can be drawn.
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <filesystem>
 #include <string>
 #include <string_view>
 
 #include <zlib.h>
 
-#include "base/error.h"
 #include "formats/mitsuba/read_mitsuba.h"
 #include "formats/mitsuba/read_serialized.h"
-#include "scene/validate/validate.h"
 #include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/scene_text.h"
 
 namespace pertev {
 namespace {
@@ -94,35 +92,21 @@ std::string serialized_seed(uint16_t version) {
 
 std::vector<std::byte> fuzz_seed(uint32_t number) {
     const uint32_t choice = number % (kTexts.size() + 2);
-    const std::string text = choice < kTexts.size()
-                                 ? std::string(kTexts[choice])
-                                 : serialized_seed(static_cast<uint16_t>(choice - kTexts.size() + 3));
-    std::vector<std::byte> bytes(text.size());
-    std::memcpy(bytes.data(), text.data(), text.size());
-    return bytes;
+    if (choice < kTexts.size()) return bytes_of_text(kTexts[choice]);
+    return bytes_of_text(serialized_seed(static_cast<uint16_t>(choice - kTexts.size() + 3)));
 }
 
 void fuzz_input(std::span<const std::byte> input, bool& is_read) {
-    static const std::filesystem::path folder = [] {
-        std::filesystem::path made = std::filesystem::temp_directory_path() / "pertev-fuzz-mitsuba"; // stays empty
-        std::filesystem::create_directories(made);
-        return made;
-    }();
-    const std::filesystem::path path = folder / "input.xml";
-    is_read = false;
-    try {
+    static const std::filesystem::path path = input_path("mitsuba", "input.xml");
+    is_read = reads([&] {
         if (input.size() > 1 && input[0] == std::byte{0x1C} && input[1] == std::byte{4}) {
             (void)mitsuba::read_serialized(input, 0, "input.serialized");
-            is_read = true;
-            return;
+            return true;
         }
         Messages messages;
         Scene scene = read_mitsuba(path, input, FileAccess(path, {}), {}, messages);
-        validate(scene, path.string(), messages);
-        is_read = true;
-    } catch (const Error& error) {
-        if (error.code() != ErrorCode::BadInput && error.code() != ErrorCode::OverLimit) throw;
-    }
+        return check_scene(scene, path.string(), messages);
+    });
 }
 
 } // namespace pertev

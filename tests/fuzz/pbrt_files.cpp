@@ -3,17 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <string>
 #include <string_view>
 
-#include "base/error.h"
 #include "formats/pbrt/read_pbrt.h"
-#include "scene/validate/validate.h"
 #include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/scene_text.h"
 
 namespace pertev {
 namespace {
@@ -61,42 +57,17 @@ constexpr std::array<std::string_view, 8> kTexts = {
     "Material \"disney\" \"float metallic\" .5 Shape \"sphere\" Material \"translucent\" Shape \"sphere\" Material "
     "\"mirror\" Shape \"sphere\"\n"};
 
-/// Returns why a scene is refused though something of it can be drawn; empty if it is not.
-std::string fault_of(Scene& scene, const std::string& file, Messages& messages) {
-    try {
-        validate(scene, file, messages);
-    } catch (const Error& error) {
-        if (!scene.instances.empty()) return error.what();
-    }
-    return "";
-}
-
 } // namespace
 
-std::vector<std::byte> fuzz_seed(uint32_t number) {
-    const std::string_view text = kTexts[number % kTexts.size()];
-    std::vector<std::byte> bytes(text.size());
-    std::memcpy(bytes.data(), text.data(), text.size());
-    return bytes;
-}
+std::vector<std::byte> fuzz_seed(uint32_t number) { return bytes_of_text(kTexts[number % kTexts.size()]); }
 
 void fuzz_input(std::span<const std::byte> input, bool& is_read) {
-    static const std::filesystem::path folder = [] {
-        std::filesystem::path made = std::filesystem::temp_directory_path() / "pertev-fuzz-pbrt"; // stays empty
-        std::filesystem::create_directories(made);
-        return made;
-    }();
-    const std::filesystem::path path = folder / "input.pbrt";
-    is_read = false;
-    try {
+    static const std::filesystem::path path = input_path("pbrt", "input.pbrt");
+    is_read = reads([&] {
         Messages messages;
         Scene scene = read_pbrt(path, input, FileAccess(path, {}), {}, messages);
-        const std::string fault = fault_of(scene, path.string(), messages);
-        if (!fault.empty()) std::fprintf(stderr, "%s\n", fault.c_str()), std::abort();
-        is_read = !scene.instances.empty();
-    } catch (const Error& error) {
-        if (error.code() != ErrorCode::BadInput && error.code() != ErrorCode::OverLimit) throw;
-    }
+        return check_scene(scene, path.string(), messages);
+    });
 }
 
 } // namespace pertev
