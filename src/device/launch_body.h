@@ -21,7 +21,7 @@ __global__ void __launch_bounds__(128) run_stage(const __grid_constant__ Stage s
 
 template <class Stage>
 __global__ void __launch_bounds__(Stage::kShape.threads, Stage::kShape.wanted)
-    run_whole_blocks(Stage stage, WorkCount count) {
+    run_whole_blocks(const __grid_constant__ Stage stage, const WorkCount count) {
     const uint64_t first = uint64_t(blockIdx.x) * blockDim.x, i = first + threadIdx.x;
     const uint32_t indices = count.value();
     if (first < indices) stage(uint32_t(i), i < indices);

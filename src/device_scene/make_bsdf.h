@@ -25,18 +25,26 @@ HD inline Rgb base_color_at(const SceneView& scene, const MaterialParameters& ma
     return {clamp(color.r, 0.0f, 1.0f), clamp(color.g, 0.0f, 1.0f), clamp(color.b, 0.0f, 1.0f)};
 }
 
-/// Returns `factor` times the texture's colour at a point of a triangle.
-HD_CALL inline Rgb textured_color(const SceneView& scene, const MeshView& mesh, Rgb factor, const TextureRef& ref,
-                                  TriangleIndices i, float u, float v) {
-    if (!ref.has_image()) return factor;
+HD_CALL inline Rgb color_of_texture(const SceneView& scene, const MeshView& mesh, const TextureRef& ref,
+                                    TriangleIndices i, float u, float v) {
     const Vec4 texel = texel_at(scene, mesh, ref, i, u, v);
-    return factor * Rgb{texel.x, texel.y, texel.z};
+    return {texel.x, texel.y, texel.z};
+}
+HD_CALL inline float share_of_texture(const SceneView& scene, const MeshView& mesh, float factor, const TextureRef& ref,
+                                      TriangleIndices i, float u, float v) {
+    return clamp(textured_factor(scene, mesh, factor, ref, i, u, v), 0.0f, 1.0f);
+}
+
+/// Returns `factor` times the texture's colour at a point of a triangle. Only a texture needs a call.
+HD inline Rgb textured_color(const SceneView& scene, const MeshView& mesh, Rgb factor, const TextureRef& ref,
+                             TriangleIndices i, float u, float v) {
+    return ref.has_image() ? factor * color_of_texture(scene, mesh, ref, i, u, v) : factor;
 }
 
 /// Returns `factor` times the channel of `ref` in [0, 1], at a point of a triangle.
-HD_CALL inline float textured_share(const SceneView& scene, const MeshView& mesh, float factor, const TextureRef& ref,
-                                    TriangleIndices i, float u, float v) {
-    return clamp(textured_factor(scene, mesh, factor, ref, i, u, v), 0.0f, 1.0f);
+HD inline float textured_share(const SceneView& scene, const MeshView& mesh, float factor, const TextureRef& ref,
+                               TriangleIndices i, float u, float v) {
+    return ref.has_image() ? share_of_texture(scene, mesh, factor, ref, i, u, v) : clamp(factor, 0.0f, 1.0f);
 }
 
 /// Directions of a material at a point, in the shading frame.

@@ -42,13 +42,14 @@ struct Surface {
 
     /// The BSDF of this triangle for light along wi to wo (unit, world space), by the lobes of `classes`. It is not
     /// reciprocal: render/particle_scatter.h has its adjoint.
+    template <BsdfPass kPass = BsdfPass::Copied>
     HD BsdfValue evaluate(Vec3 wo, Vec3 wi, LobeClasses classes = kAllLobeClasses) const {
         const Vec3 wo_local = frame.to_local(wo), wi_local = frame.to_local(wi);
         if (!is_consistent(wo, wi, wo_local, wi_local)) return {};
-        if (!(tilt > 0)) return bsdf.evaluate(wo_local, wi_local, classes);
+        if (!(tilt > 0)) return bsdf.evaluate<kPass>(wo_local, wi_local, classes);
         const RaisedDirection from = lower_direction(wi_local, tilt);
         if (!(from.slope > 0)) return {};
-        const BsdfValue value = bsdf.evaluate(wo_local, from.direction, classes);
+        const BsdfValue value = bsdf.evaluate<kPass>(wo_local, from.direction, classes);
         return {(1.0f / from.slope) * value.f, value.pdf / from.slope};
     }
 
@@ -57,9 +58,10 @@ struct Surface {
 
     /// Samples a wi in world space with the density of evaluate(), or that of a delta lobe; the pdf is 0 if there is no
     /// sample.
+    template <BsdfPass kPass = BsdfPass::Copied>
     HD BsdfSample sample(Vec3 wo, float u_lobe, Vec2 u) const {
         const Vec3 wo_local = frame.to_local(wo);
-        BsdfSample sample = bsdf.sample(wo_local, u_lobe, u);
+        BsdfSample sample = bsdf.sample<kPass>(wo_local, u_lobe, u);
         if (!(sample.pdf > 0) || is_black(sample.weight)) return {};
         if (tilt > 0 && !sample.is_delta()) {
             const RaisedDirection raised = raise_direction(sample.wi, tilt);

@@ -51,12 +51,13 @@ HD inline float squared_index_along(const Surface& surface, Vec3 wi, Vec3 wo, fl
 
 /// Power scattered per solid angle of `wo` for a power of 1 from `wi`, by the lobes of `classes`, and the density of
 /// sample_adjoint() at wo. Both directions are unit, in world space. Delta lobes contribute nothing.
+template <BsdfPass kPass = BsdfPass::Copied>
 HD inline BsdfValue evaluate_adjoint(const Surface& surface, Vec3 wi, Vec3 wo, LobeClasses classes = kAllLobeClasses) {
     const Vec3 wo_local = surface.frame.to_local(wo), wi_local = surface.frame.to_local(wi);
     if (!surface.is_consistent(wo, wi, wo_local, wi_local)) return {};
     const RaisedDirection from = particle::lowered(surface, wi_local);
     if (!(from.slope > 0)) return {};
-    const BsdfValue value = surface.bsdf.evaluate(from.direction, wo_local, classes);
+    const BsdfValue value = surface.bsdf.evaluate<kPass>(from.direction, wo_local, classes);
     if (!(value.pdf > 0)) return {};
     return {particle::factor(surface, wo, wi, wo_local, from) * value.f,
             particle::is_split(surface, from) ? 0.5f * value.pdf : value.pdf};
@@ -65,6 +66,7 @@ HD inline BsdfValue evaluate_adjoint(const Surface& surface, Vec3 wi, Vec3 wo, L
 /// Samples the direction in which a particle from `wi` (unit, world space) is scattered: it is the sample's `wi`, and
 /// its weight multiplies the particle's power. pdf 0 means absorption. With a bent normal the weight is unbounded as wo
 /// nears its horizon.
+template <BsdfPass kPass = BsdfPass::Copied>
 HD inline BsdfSample sample_adjoint(const Surface& surface, Vec3 wi, float u_lobe, Vec2 u) {
     const Vec3 wi_local = surface.frame.to_local(wi);
     RaisedDirection from = particle::lowered(surface, wi_local);
@@ -73,7 +75,7 @@ HD inline BsdfSample sample_adjoint(const Surface& surface, Vec3 wi, float u_lob
     if (draws_delta) from = {wi_local, 1.0f};
     if (!(from.slope > 0)) return {};
 
-    BsdfSample sample = surface.bsdf.sample(from.direction, u_lobe, u);
+    BsdfSample sample = surface.bsdf.sample<kPass>(from.direction, u_lobe, u);
     if (!(sample.pdf > 0) || is_black(sample.weight)) return {};
     if (splits && sample.is_delta() != draws_delta) return {};
     const Vec3 wo_local = sample.wi, wo = normalize(surface.frame.to_world(wo_local));

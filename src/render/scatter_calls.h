@@ -22,27 +22,27 @@ HD inline void assume_variant([[maybe_unused]] const Bsdf& bsdf) {
 #endif
 }
 
-namespace scatter_call {
+namespace scatter_call { // the surface is in memory for the call already
 
 template <ShadingVariant kVariant>
 HD_CALL inline BsdfValue evaluate(const Surface& surface, Vec3 wo, Vec3 wi, LobeClasses classes) {
     assume_variant<kVariant>(surface.bsdf);
-    return surface.evaluate(wo, wi, classes);
+    return surface.evaluate<BsdfPass::InPlace>(wo, wi, classes);
 }
 template <ShadingVariant kVariant>
 HD_CALL inline BsdfSample sample(const Surface& surface, Vec3 wo, float u_lobe, Vec2 u) {
     assume_variant<kVariant>(surface.bsdf);
-    return surface.sample(wo, u_lobe, u);
+    return surface.sample<BsdfPass::InPlace>(wo, u_lobe, u);
 }
 template <ShadingVariant kVariant>
 HD_CALL inline BsdfValue evaluate_particle(const Surface& surface, Vec3 wi, Vec3 wo) {
     assume_variant<kVariant>(surface.bsdf);
-    return evaluate_adjoint(surface, wi, wo);
+    return evaluate_adjoint<BsdfPass::InPlace>(surface, wi, wo);
 }
 template <ShadingVariant kVariant>
 HD_CALL inline BsdfSample sample_particle(const Surface& surface, Vec3 wi, float u_lobe, Vec2 u) {
     assume_variant<kVariant>(surface.bsdf);
-    return sample_adjoint(surface, wi, u_lobe, u);
+    return sample_adjoint<BsdfPass::InPlace>(surface, wi, u_lobe, u);
 }
 
 } // namespace scatter_call

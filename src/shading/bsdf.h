@@ -8,14 +8,20 @@
 
 namespace pertev {
 
+/// How called functions of stacks get their BSDF. In kernels whose BSDFs are never stacks, the address that such a call
+/// takes would keep all BSDFs in memory, though the call is never made; a copy does not. Kernels for stacks have them
+/// in memory anyway, and there copies are most of what shading reads and writes.
+enum class BsdfPass : uint8_t { Copied, InPlace };
+
 struct Bsdf {
     static constexpr int kMaxLayers = 4; // thin wall or sheet, reflection or share of glass, sheen, coat
 
     Lobe base;
     int layer_count = 0;
-    Lobe layers[kMaxLayers];    // the innermost first; a Schlick lobe is the innermost
-    bool is_stacked = false;    // there are layers that may lie on anything
-    bool has_far_light = false; // a layer transmits light to the other side
+    Lobe layers[kMaxLayers];      // the innermost first; a Schlick lobe is the innermost
+    bool is_stacked = false;      // there are layers that may lie on anything
+    bool has_far_light = false;   // a layer transmits light to the other side
+    bool has_rough_layer = false; // a layer has no delta lobe alone
     // Functions of the lobes are called, not inlined (HD_CALL): those of stacks always are, and kernels for stacks call
     // those of any BSDF, because inlining both would double their code.
     bool is_called = false;
@@ -32,6 +38,7 @@ struct Bsdf {
         layers[0] = lobe;
         layers[0].beneath = base.kind == LobeKind::Diffuse ? base.diffuse.energy() : 0.0f;
         layer_count = 1;
+        has_rough_layer = !lobe.is_smooth();
     }
     /// Adds a layer on top. There is room for kMaxLayers; further ones are ignored.
     HD void add(const CoatLobe& lobe) { stack(lobe); }
@@ -48,20 +55,22 @@ struct Bsdf {
     HD bool is_diffuse() const { return base.kind == LobeKind::Diffuse && layer_count == 0; }
 
     /// Value of the lobes of `classes`, and density of all lobes.
+    template <BsdfPass kPass = BsdfPass::Copied>
     HD BsdfValue evaluate(Vec3 wo, Vec3 wi, LobeClasses classes = kAllLobeClasses) const {
         if (is_diffuse()) return masked(LobeClass::Diffuse, base.diffuse.evaluate(wo, wi, {}), classes);
-        return evaluate_lobes(wo, wi, classes);
+        return evaluate_lobes<kPass>(wo, wi, classes);
     }
     HD Rgb eval(Vec3 wo, Vec3 wi) const { return evaluate(wo, wi).f; }
     HD float pdf(Vec3 wo, Vec3 wi) const { return evaluate(wo, wi).pdf; }
 
+    template <BsdfPass kPass = BsdfPass::Copied>
     HD BsdfSample sample(Vec3 wo, float u_lobe, Vec2 u) const {
         if (wo.z == 0) return {};
         if (is_diffuse()) {
             const Vec3 wi = base.diffuse.draw(wo, u).sample.wi;
             return make_bsdf_sample(wi, base.diffuse.evaluate(wo, wi, {}), LobeClass::Diffuse);
         }
-        return sample_lobes(wo, u_lobe, u);
+        return sample_lobes<kPass>(wo, u_lobe, u);
     }
 
     /// Fraction of eval() that diffuse lobes contribute, [0, 1].
@@ -101,7 +110,7 @@ struct Bsdf {
     HD bool has_delta() const { return has(LobeClass::Specular); }
     /// Returns whether eval() is black for every pair of directions, so that light sampling is useless.
     HD bool has_delta_only() const {
-        if (is_called && layer_count > 0 && !has_delta_layers_only(*this)) return false;
+        if (is_called && has_rough_layer) return false;
         if (!is_called && layer_count == 1 && !layers[0].schlick.is_smooth()) return false;
         return base.kind == LobeKind::None || base.lobe_class() == LobeClass::Specular;
     }
@@ -115,6 +124,7 @@ private:
         for (int i = 0; i <= layer_count; ++i) beneath += lobe(i).energy();
         layers[layer_count] = layer;
         layers[layer_count++].beneath = min(beneath, 1.0f);
+        has_rough_layer = has_rough_layer || layer.lobe_class() != LobeClass::Specular;
         is_stacked = is_called = true;
     }
     HD void stack_far(const Lobe& layer) {
@@ -143,8 +153,12 @@ private:
     HD BsdfValue evaluate_diffuse(Vec3 wo, Vec3 wi, const LayerTransmittance& transmittance) const {
         return base.kind == LobeKind::Diffuse ? base.diffuse.evaluate(wo, wi, transmittance) : BsdfValue{};
     }
+    template <BsdfPass kPass>
     HD BsdfValue evaluate_lobes(Vec3 wo, Vec3 wi, LobeClasses classes) const {
-        if (is_called) return evaluate_stack(*this, wo, wi, classes);
+        if (is_called) {
+            if constexpr (kPass == BsdfPass::InPlace) return evaluate_stack(*this, wo, wi, classes);
+            return evaluate_copy(*this, wo, wi, classes);
+        }
         LayerTransmittance transmittance;
         if (layer_count == 0) return masked(base.lobe_class(), base.evaluate_inlined(wo, wi), classes);
         const BsdfValue layer = layers[0].schlick.evaluate(wo, wi, layers[0].beneath, transmittance);
@@ -152,20 +166,25 @@ private:
         return masked(layer_class, layer, classes) +
                masked(LobeClass::Diffuse, evaluate_diffuse(wo, wi, transmittance), classes);
     }
+    template <BsdfPass kPass>
     HD BsdfSample sample_lobes(Vec3 wo, float u_lobe, Vec2 u) const {
-        if (is_called) return sample_stack(*this, wo, u_lobe, u);
+        if (is_called) {
+            if constexpr (kPass == BsdfPass::InPlace) return sample_stack(*this, wo, u_lobe, u);
+            return sample_copy(*this, wo, u_lobe, u);
+        }
         LobeDraw draw = {.u_lobe = u_lobe, .is_beneath = true};
         if (layer_count == 1) draw = layers[0].schlick.draw(wo, layers[0].beneath, u_lobe, u);
         const LobeClass lobe_class = draw.is_beneath ? base.lobe_class() : layers[0].schlick.lobe_class();
         if (draw.is_beneath) draw = base.draw_inlined(wo, draw.u_lobe, u);
-        return finish(draw, lobe_class, wo);
+        return finish<kPass>(draw, lobe_class, wo);
     }
 
+    template <BsdfPass kPass>
     HD BsdfSample finish(const LobeDraw& draw, LobeClass lobe_class, Vec3 wo) const {
         if (!(draw.sample.pdf > 0)) return {};
         if (lobe_class != LobeClass::Specular) {
-            return make_bsdf_sample(draw.sample.wi, evaluate_lobes(wo, draw.sample.wi, kAllLobeClasses), lobe_class,
-                                    draw.sample.is_transmission);
+            return make_bsdf_sample(draw.sample.wi, evaluate_lobes<kPass>(wo, draw.sample.wi, kAllLobeClasses),
+                                    lobe_class, draw.sample.is_transmission);
         }
         BsdfSample sample = draw.sample;
         sample.lobe_class = lobe_class;
@@ -184,9 +203,12 @@ private:
         }
         return sum;
     }
-    HD_CALL static BsdfValue evaluate_stack(Bsdf bsdf, Vec3 wo, Vec3 wi, LobeClasses classes) {
+    HD_CALL static BsdfValue evaluate_stack(const Bsdf& bsdf, Vec3 wo, Vec3 wi, LobeClasses classes) {
         LayerTransmittance transmittance;
         return bsdf.evaluate_down_to(0, wo, wi, classes, transmittance);
+    }
+    HD_CALL static BsdfValue evaluate_copy(Bsdf bsdf, Vec3 wo, Vec3 wi, LobeClasses classes) {
+        return evaluate_stack(bsdf, wo, wi, classes);
     }
     HD_CALL static SpecularBranches specular_of_lobes(Bsdf bsdf, Vec3 wo) {
         SpecularBranches sum;
@@ -210,21 +232,19 @@ private:
         bsdf.evaluate_down_to(i + 1, wo, wi, kAllLobeClasses, transmittance);
         return transmittance;
     }
-    HD_CALL static bool has_delta_layers_only(Bsdf bsdf) {
-        for (int i = 0; i < bsdf.layer_count; ++i)
-            if (bsdf.layers[i].lobe_class() != LobeClass::Specular) return false;
-        return true;
-    }
-    HD_CALL static BsdfSample sample_stack(Bsdf bsdf, Vec3 wo, float u_lobe, Vec2 u) {
+    HD_CALL static BsdfSample sample_stack(const Bsdf& bsdf, Vec3 wo, float u_lobe, Vec2 u) {
         LobeDraw draw = {.u_lobe = u_lobe, .is_beneath = true};
         int i = bsdf.layer_count + 1;
         while (draw.is_beneath && i > 0) draw = bsdf.lobe(--i).draw(wo, draw.u_lobe, u);
-        BsdfSample sample = bsdf.finish(draw, bsdf.lobe(i).lobe_class(), wo);
+        BsdfSample sample = bsdf.finish<BsdfPass::InPlace>(draw, bsdf.lobe(i).lobe_class(), wo);
         if (!sample.is_delta()) return sample;
         const LayerTransmittance transmittance = above_in_stack(bsdf, i, wo, sample.wi);
         sample.weight = ((transmittance.light_of_delta() / transmittance.reach) * sample.weight) * transmittance.tint;
         sample.pdf = transmittance.reach * sample.pdf;
         return sample;
+    }
+    HD_CALL static BsdfSample sample_copy(Bsdf bsdf, Vec3 wo, float u_lobe, Vec2 u) {
+        return sample_stack(bsdf, wo, u_lobe, u);
     }
 };
 

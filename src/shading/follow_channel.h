@@ -7,8 +7,7 @@
 
 namespace pertev {
 
-/// Lets a BSDF refract as in the only channel of `throughput` that is not 0; if there are others, it stays as it is.
-HD_CALL inline void follow_channel(Rgb throughput, Bsdf& bsdf) {
+HD_CALL inline void follow_channel_in_stack(Rgb throughput, Bsdf& bsdf) {
     const bool r = throughput.r > 0, g = throughput.g > 0, b = throughput.b > 0;
     if (int(r) + int(g) + int(b) != 1) return;
     for (int i = 0; i < bsdf.layer_count; ++i) {
@@ -18,6 +17,10 @@ HD_CALL inline void follow_channel(Rgb throughput, Bsdf& bsdf) {
         glass.ior = glass.unpacked().of_channel(r ? 0 : g ? 1 : 2).ior;
         glass.spread = 0;
     }
+}
+/// Lets a BSDF refract as in the only channel of `throughput` that is not 0; if there are others, it stays as it is.
+HD inline void follow_channel(Rgb throughput, Bsdf& bsdf) {
+    if (bsdf.has_far_light) follow_channel_in_stack(throughput, bsdf);
 }
 
 } // namespace pertev

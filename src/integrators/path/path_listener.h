@@ -52,6 +52,15 @@ struct SurfaceVertex {
     HD TriangleId triangle() const { return surface.triangle; }
 };
 
+/// The vertex in code for a shading variant.
+template <ShadingVariant kVariant>
+struct SurfaceVertexOf : SurfaceVertex {
+    static constexpr BsdfPass kPass = kVariant == ShadingVariant::General ? BsdfPass::InPlace : BsdfPass::Copied;
+
+    HD BsdfValue evaluate(Vec3 wi) const { return surface.evaluate<kPass>(wo, wi); }
+    HD BsdfSample sample(float lobe, Vec2 u) const { return surface.sample<kPass>(wo, lobe, u); }
+};
+
 /// The depth of lanes for jobs that have none.
 inline constexpr uint32_t kNoLaneDepth = 0xffffffffu;
 

@@ -285,7 +285,7 @@ HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const
     listener.vertex(path, hit, surface);
     add_surface_emission<kFeatures>(job, path, hit, surface, listener);
     if (surface.is_unlit || path.depth >= job.settings.max_depth) return false;
-    const SurfaceVertex vertex = {surface, -path.direction};
+    const SurfaceVertexOf<variant_of(kFeatures)> vertex = {{surface, -path.direction}};
     const LightContext context = vertex.light_context(path.time);
     has_shadow_ray = listener.samples_direct(path, hit, surface) &&
                      sample_direct<kFeatures>(job, path, vertex, context, numbers, shadow, listener);
