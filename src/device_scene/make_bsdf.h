@@ -83,11 +83,14 @@ HD inline Bsdf make_unstacked_bsdf(const SceneView& scene, const MaterialParamet
     return make_diffuse(base_color);
 }
 
-/// Makes the BSDF of any material.
-HD_CALL inline Bsdf make_any_bsdf(const SceneView& scene, const MaterialParameters& material, const MeshView& mesh,
-                                  TriangleIndices i, float u, float v, Rgb base_color, const MaterialAxes& axes) {
-    if (!material.is_stacked())
-        return make_unstacked_bsdf<ShadingVariant::Unstacked>(scene, material, mesh, i, u, v, base_color);
+/// Makes `bsdf`, which is empty, that of any material, where it is (build_reflection).
+HD_CALL inline void build_any_bsdf(Bsdf& bsdf, const SceneView& scene, const MaterialParameters& material,
+                                   const MeshView& mesh, TriangleIndices i, float u, float v, Rgb base_color,
+                                   const MaterialAxes& axes) {
+    if (!material.is_stacked()) {
+        bsdf = make_unstacked_bsdf<ShadingVariant::Unstacked>(scene, material, mesh, i, u, v, base_color);
+        return;
+    }
     const auto number = [&](float factor, const TextureRef& ref) {
         return textured_share(scene, mesh, factor, ref, i, u, v);
     };
@@ -106,7 +109,6 @@ HD_CALL inline Bsdf make_any_bsdf(const SceneView& scene, const MaterialParamete
         reflection.film = {number(material.thin_film_weight, material.thin_film_texture), material.thin_film_ior,
                            1e-3f * lerp(material.thin_film_least_nm, material.thin_film_thickness_nm, full)};
     }
-    Bsdf bsdf;
     switch (material.kind) {
     case MaterialKind::Diffuse:
     case MaterialKind::Unlit:
@@ -118,7 +120,7 @@ HD_CALL inline Bsdf make_any_bsdf(const SceneView& scene, const MaterialParamete
         break;
     case MaterialKind::Dielectric:
         reflection.solid = 1;
-        bsdf = make_reflection(reflection);
+        build_reflection(bsdf, reflection);
         break;
     case MaterialKind::MetallicRoughness: {
         const float through = number(material.transmission_weight, material.transmission_texture);
@@ -142,7 +144,7 @@ HD_CALL inline Bsdf make_any_bsdf(const SceneView& scene, const MaterialParamete
             reflection.translucent_color =
                 textured_color(scene, mesh, material.diffuse_transmission_color, colors, i, u, v);
         }
-        bsdf = make_reflection(reflection);
+        build_reflection(bsdf, reflection);
         break;
     }
     }
@@ -151,18 +153,20 @@ HD_CALL inline Bsdf make_any_bsdf(const SceneView& scene, const MaterialParamete
         const float fuzz_roughness = number(material.fuzz_roughness, material.fuzz_roughness_texture);
         if (!is_black(color)) {
             const Rgb strength = material.fuzz_weight * color;
-            bsdf = material.fuzz_model == FuzzModel::Zeltner ? make_fuzz(bsdf, strength, fuzz_roughness)
-                                                             : make_sheen(bsdf, strength, fuzz_roughness);
+            if (material.fuzz_model == FuzzModel::Zeltner) {
+                add_fuzz(bsdf, strength, fuzz_roughness);
+            } else {
+                add_sheen(bsdf, strength, fuzz_roughness);
+            }
         }
     }
     if (material.coat_weight > 0) {
         const float weight = number(material.coat_weight, material.coat_texture);
         const float coat_roughness = number(material.coat_roughness, material.coat_roughness_texture);
         if (weight > 0) {
-            bsdf = make_coated(bsdf, weight, coat_roughness, material.coat_ior, axes.coat_normal, material.coat_color);
+            add_coat(bsdf, weight, coat_roughness, material.coat_ior, axes.coat_normal, material.coat_color);
         }
     }
-    return bsdf;
 }
 
 /// Makes the BSDF of a material.
@@ -174,8 +178,12 @@ HD inline Bsdf make_bsdf(const SceneView& scene, const MaterialParameters& mater
         return make_unstacked_bsdf<kVariant>(scene, material, mesh, i, u, v, base_color);
     } else {
         const bool is_diffuse = material.kind == MaterialKind::Diffuse && !material.is_stacked();
-        Bsdf bsdf =
-            is_diffuse ? make_diffuse(base_color) : make_any_bsdf(scene, material, mesh, i, u, v, base_color, axes);
+        Bsdf bsdf;
+        if (is_diffuse) {
+            bsdf.base = DiffuseLobe{base_color, 1};
+        } else {
+            build_any_bsdf(bsdf, scene, material, mesh, i, u, v, base_color, axes);
+        }
         bsdf.is_called = true;
         return bsdf;
     }

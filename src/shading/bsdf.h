@@ -280,25 +280,36 @@ HD inline Bsdf make_metallic_roughness(Rgb base_color, float metallic, float rou
 /// Adds a clear coat to `bsdf`, which has at most kMaxLayers - 1 layers: `strength` and `roughness` in [0, 1], `ior`
 /// >= 1 (1.5 in KHR_materials_clearcoat), `normal` unit with z > 0 in the frame of `bsdf`, `color` in [0, 1]: the share
 /// of light that both ways through the coat leave at normal incidence.
-HD inline Bsdf make_coated(Bsdf bsdf, float strength, float roughness, float ior, Vec3 normal = {0, 0, 1},
-                           Rgb color = {1, 1, 1}) {
+HD inline void add_coat(Bsdf& bsdf, float strength, float roughness, float ior, Vec3 normal, Rgb color) {
     CoatLobe coat = {strength, alpha_from_roughness(roughness), f0_from_ior(ior), normal};
     if (!(color == Rgb{1, 1, 1})) {
         coat.color_rg = UnitPair(color.r, color.g);
         coat.color_b_and_solid = UnitPair(color.b, bsdf.inner_ior() != 1 ? 1.0f : 0.0f);
     }
     bsdf.add(coat);
-    return bsdf;
 }
 /// Adds sheen (KHR_materials_sheen) to `bsdf`, which has at most kMaxLayers - 1 layers: `color` and `roughness` in
 /// [0, 1].
-HD inline Bsdf make_sheen(Bsdf bsdf, Rgb color, float roughness) {
+HD inline void add_sheen(Bsdf& bsdf, Rgb color, float roughness) {
     bsdf.add(SheenLobe{color, SheenLobe::usable_alpha(roughness)});
+}
+/// Adds OpenPBR's fuzz to `bsdf`, as add_sheen.
+HD inline void add_fuzz(Bsdf& bsdf, Rgb color, float roughness) {
+    bsdf.add(FuzzLobe{color, FuzzLobe::usable_roughness(roughness)});
+}
+
+/// Returns copies of `bsdf` with a layer of these functions.
+HD inline Bsdf make_coated(Bsdf bsdf, float strength, float roughness, float ior, Vec3 normal = {0, 0, 1},
+                           Rgb color = {1, 1, 1}) {
+    add_coat(bsdf, strength, roughness, ior, normal, color);
     return bsdf;
 }
-/// Adds OpenPBR's fuzz to `bsdf`, as make_sheen.
+HD inline Bsdf make_sheen(Bsdf bsdf, Rgb color, float roughness) {
+    add_sheen(bsdf, color, roughness);
+    return bsdf;
+}
 HD inline Bsdf make_fuzz(Bsdf bsdf, Rgb color, float roughness) {
-    bsdf.add(FuzzLobe{color, FuzzLobe::usable_roughness(roughness)});
+    add_fuzz(bsdf, color, roughness);
     return bsdf;
 }
 

@@ -73,13 +73,13 @@ HD_CALL inline void add_glass(Bsdf& bsdf, const ReflectionParameters& p, float s
                        DielectricLobe::usable_ior(p.ior, alpha_from_roughness(p.roughness)), p.film, spread});
 }
 
-HD_CALL inline Bsdf make_reflection(const ReflectionParameters& p) {
+/// Makes `bsdf`, which is empty, that of the parameters, where it is: a result would be copied out of the call.
+HD_CALL inline void build_reflection(Bsdf& bsdf, const ReflectionParameters& p) {
     const float metal_of_all = clamp(p.metallic, 0.0f, 1.0f), glass = (1.0f - metal_of_all) * p.solid;
-    Bsdf bsdf;
     if (!(glass < 1)) {
-        if (p.is_clear()) return make_dielectric(p.ior, p.roughness, p.base_color);
-        add_glass(bsdf, p, 1);
-        return bsdf;
+        if (!p.is_clear()) return add_glass(bsdf, p, 1);
+        bsdf = make_dielectric(p.ior, p.roughness, p.base_color);
+        return;
     }
     const float metal = glass > 0 ? metal_of_all / (1.0f - glass) : metal_of_all;
     const float opaque = (1.0f - metal) * (1.0f - p.through), through = (1.0f - metal) * p.through;
@@ -94,6 +94,10 @@ HD_CALL inline Bsdf make_reflection(const ReflectionParameters& p) {
     if (far > 0 && !is_black(p.translucent_color)) bsdf.add(TranslucentLobe{p.translucent_color, far});
     add_reflection(bsdf, p, metal);
     if (glass > 0) add_glass(bsdf, p, glass);
+}
+HD inline Bsdf make_reflection(const ReflectionParameters& p) {
+    Bsdf bsdf;
+    build_reflection(bsdf, p);
     return bsdf;
 }
 
