@@ -224,7 +224,8 @@ pertev_launches(integrators/light/shade_seen.cu
     "ShadeSeen<ShadingVariant::Unstacked>")
 pertev_launches(integrators/path/meter_light.cu
   integrators/path/meter_light.h
-  STAGES DrawMeterLights
+  STAGES "DrawMeterLights<false>"
+    "DrawMeterLights<true>"
     AddMeterLights)
 # Stages that compile quickly; shading has files of its own.
 pertev_launches(integrators/path/path_stages.cu
@@ -268,6 +269,14 @@ pertev_launches(integrators/path/shade_light_tree_parts.cu
   integrators/path/path_stages.h
   STAGES "Shade<kAllMaterials | kMipMapped | kNested | kLightTree, FrameListeners>"
     "Shade<kAllMaterials | kMoving | kMipMapped | kNested | kLightTree, LayerListeners>")
+# For media.
+pertev_launches(integrators/path/shade_media.cu
+  integrators/path/path_stages.h
+  STAGES "Shade<kAnyFilm | kMedia, FilmListeners>"
+    "Shade<kAnyFilm | kMedia | kLightTree, FilmListeners>")
+pertev_launches(integrators/path/shade_media_of_frames.cu
+  integrators/path/path_stages.h
+  STAGES "Shade<kAllMaterials | kMipMapped | kNested | kMedia, FrameListeners>")
 # For motion while the shutter is open, of the camera or of anything else.
 pertev_launches(integrators/path/shade_moving_films.cu
   integrators/path/path_stages.h

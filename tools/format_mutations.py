@@ -151,4 +151,7 @@ MUTATIONS = [
     ("mitsuba: a spectrum goes on beyond its wavelengths", "unit/read_mitsuba_materials", ("src/formats/mitsuba/colors.cpp", "if (use == ColorUse::Index || spectrum.values.empty()) return spectrum;", "(void)use;\n    return spectrum;")),
     ("mitsuba: emitters reflect by default", "unit/read_mitsuba_materials", ("src/formats/mitsuba/world.cpp", "placed.area_light && !context_.is_old) placed.surface = 1;", "false) placed.surface = 1;")),
     ("mitsuba: corners of serialized meshes are believed", "unit/read_mitsuba_shapes", ("src/formats/mitsuba/read_serialized.cpp", "return i >= vertices;", "return i > UINT32_MAX - 1;")),
+    ("glTF's scatter is absorbed besides", "unit/read_media", ("src/formats/gltf/material_layers.cpp", "    material.transmission_depth = 0; // the medium has the whole extinction\n", "")),
+    ("pbrt's camera is in the medium inside", "unit/read_media", ("src/formats/pbrt/world.h", "around_ = state.outside;", "around_ = state.inside;")),
+    ("Mitsuba's medium without its scale", "unit/read_media", ("src/formats/mitsuba/media.cpp", "    read.sigma_s = scale * read.sigma_s;\n", "")),
 ]

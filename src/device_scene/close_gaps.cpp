@@ -132,7 +132,8 @@ std::vector<TouchingSolid> closed_solids(const Scene& scene) {
     std::vector<TouchingSolid> all, solids;
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
-        if (instance.is_hidden || !is_solid(scene.materials[instance.material])) continue;
+        const Material& material = scene.materials[instance.material];
+        if (instance.is_hidden || !material.encloses() || material.is_clear_boundary) continue;
         const Bounds3 bounds = world_bounds(scene.meshes[instance.mesh], instance.world_from_local);
         all.push_back({static_cast<uint32_t>(i), bounds, kTouching * max_component(bounds.size())});
     }

@@ -55,10 +55,6 @@ int crossing(DoubleVec3 from, DoubleVec3 way, DoubleVec3 a, DoubleVec3 b, Double
 
 } // namespace
 
-bool is_solid(const MaterialParameters& material) {
-    return material.kind == MaterialKind::Dielectric || (material.transmits() && !material.thin_walled);
-}
-
 Bounds3 world_bounds(const Mesh& mesh, const Transform& world_from_local) {
     Bounds3 bounds;
     for (const uint32_t vertex : mesh.indices) {
@@ -99,7 +95,7 @@ NestedSolids::NestedSolids(const Scene& scene, Vec3 centre, ClosedMeshes& closed
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         const Material& material = scene.materials[instance.material];
-        if (instance.is_hidden || instance.is_background || !is_solid(material)) continue;
+        if (instance.is_hidden || instance.is_background || !material.encloses()) continue;
         solids_.push_back({.instance = static_cast<uint32_t>(i),
                            .shape = nullptr,
                            .world_from_local = instance.world_from_local,
@@ -107,7 +103,9 @@ NestedSolids::NestedSolids(const Scene& scene, Vec3 centre, ClosedMeshes& closed
                            .bounds = world_bounds(scene.meshes[instance.mesh], instance.world_from_local),
                            .priority = material.priority});
     }
+    const bool keeps_all = has_media(scene);
     const auto keep_overlapping = [&] {
+        if (keeps_all) return;
         std::sort(solids_.begin(), solids_.end(),
                   [](const Solid& a, const Solid& b) { return a.bounds.lo.x < b.bounds.lo.x; });
         std::vector<bool> is_kept(solids_.size());
@@ -121,7 +119,11 @@ NestedSolids::NestedSolids(const Scene& scene, Vec3 centre, ClosedMeshes& closed
     };
     keep_overlapping(); // before meshes are looked at, which takes longer
     for (Solid& solid : solids_) solid.shape = closed.shape_of(scene, scene.instances[solid.instance].mesh);
-    std::erase_if(solids_, [](const Solid& solid) { return solid.shape == nullptr; });
+    std::erase_if(solids_, [&](const Solid& solid) {
+        const Material& material = scene.materials[scene.instances[solid.instance].material];
+        const bool has_medium = material.is_clear_boundary || material.medium.is_there();
+        return solid.shape == nullptr && !(keeps_all && has_medium);
+    });
     keep_overlapping();
     if (solids_.empty()) return;
     parallel_for(solids_.size(), 1, [&](uint64_t i) {
@@ -143,7 +145,7 @@ NestedSolids::NestedSolids(const Scene& scene, Vec3 centre, ClosedMeshes& closed
 
 /// Returns whether the line from a point meets the mesh more often from inside than from outside, or the other way.
 bool NestedSolids::holds(const Solid& solid, Vec3 point) const {
-    if (!contains(solid.bounds, point)) return false;
+    if (solid.shape == nullptr || !contains(solid.bounds, point)) return false;
     const ClosedMeshes::Shape& shape = *solid.shape;
     const DoubleVec3 from = to_double(transform_point(solid.local_from_world, point));
     // Two of three lines decide, because one may meet an edge.
@@ -164,7 +166,8 @@ bool NestedSolids::holds(const Solid& solid, Vec3 point) const {
 
 /// Returns whether two of three of its vertices are inside another solid whose box holds the whole of it.
 bool NestedSolids::holds(const Solid& outer, const Solid& inner) const {
-    if (!contains(outer.bounds, inner.bounds.lo) || !contains(outer.bounds, inner.bounds.hi)) return false;
+    if (inner.shape == nullptr || !contains(outer.bounds, inner.bounds.lo) || !contains(outer.bounds, inner.bounds.hi))
+        return false;
     const ClosedMeshes::Shape& shape = *inner.shape;
     const std::size_t count = shape.indices.size();
     int votes = 0;
@@ -184,6 +187,7 @@ InteriorList NestedSolids::at(Vec3 point) const {
 
 bool NestedSolids::is_nested() const {
     return std::ranges::any_of(solids_, [&](const Solid& inner) {
+        if (inner.shape == nullptr) return false;
         const ClosedMeshes::Shape& shape = *inner.shape;
         const std::size_t step = std::max<std::size_t>(shape.indices.size() / kLookedAt, 1);
         for (std::size_t corner = 0; corner < shape.indices.size(); corner += step) {

@@ -3,6 +3,8 @@
 // Finds the solids of glass or water that lie in each other, and ranks them. A solid is an instance of a closed mesh
 // whose material light enters; it counts here if its box overlaps that of another one. Where several hold a point, the
 // one of the greatest priority fills it, of equal ones that in the most others, then the first of the scene.
+// In a scene with media every solid counts, and so does an open mesh with a medium, which then begins where a ray
+// crosses it and holds no camera.
 
 #include <cstdint>
 #include <map>
@@ -51,8 +53,8 @@ public:
 private:
     struct Solid {
         uint32_t instance = 0;
-        std::shared_ptr<const ClosedMeshes::Shape> shape;
-        Transform world_from_local, local_from_world; // the scene's coordinates
+        std::shared_ptr<const ClosedMeshes::Shape> shape; // null: the mesh is open
+        Transform world_from_local, local_from_world;     // the scene's coordinates
         Bounds3 bounds;
         float priority = 0;
         uint32_t depth = 0; // solids that hold it
@@ -66,8 +68,6 @@ private:
     Vec3 centre_;
 };
 
-/// Returns whether a material is that of a solid, which light enters.
-bool is_solid(const MaterialParameters& material);
 /// Returns the box of the mesh's triangles.
 Bounds3 world_bounds(const Mesh& mesh, const Transform& world_from_local);
 /// Returns whether each edge of the mesh has two triangles of opposite direction, of corners at equal positions.

@@ -1,6 +1,7 @@
 #include "device_scene/scene_on_device.h"
 
 #include "base/error.h"
+#include "device_scene/medium_boundaries.h"
 #include "device_scene/pack_texels.h"
 #include "device_scene/part_arrays.h"
 #include "image/srgb_table.h"
@@ -172,7 +173,10 @@ void SceneOnDevice::update(Queue& queue, const PlacedScene& prepared, uint32_t p
     if ((parts & kPartInstances) != 0) update_instances(queue, prepared);
     if ((parts & kPartMaterials) != 0) update_materials(queue, *prepared.scene);
     if ((parts & kPartGeometry) != 0) closed_meshes_.clear();
-    if ((parts & (kPartGeometry | kPartInstances | kPartMaterials)) != 0) update_nesting(queue, prepared);
+    if ((parts & (kPartGeometry | kPartInstances | kPartMaterials)) != 0) {
+        update_nesting(queue, prepared);
+        update_media(queue, prepared);
+    }
     if ((parts & kPartTextures) != 0) update_textures(queue, *prepared.scene);
     if ((parts & kPartLights) != 0) update_lights(queue, prepared); // after the textures, which it reads
     if ((parts & kPartEnvironment) != 0) update_environment(queue, prepared);
@@ -227,6 +231,18 @@ void SceneOnDevice::update_nesting(Queue& queue, const PlacedScene& prepared) {
     arrays.add(nested_.ranks(), view_.nesting.ranks);
     arrays.add(nested_.instances(), view_.nesting.solids);
     arrays.upload(queue, nesting_, "nested solids");
+}
+
+void SceneOnDevice::update_media(Queue& queue, const PlacedScene& prepared) {
+    const MediumBoundaries found = find_medium_boundaries(prepared);
+    view_.has_media = has_media(*prepared.scene) ? 1 : 0;
+    view_.medium = prepared.scene->medium;
+    view_.boundaries = {view_of(found.tree)};
+    PartArrays arrays;
+    arrays.add(found.tree.nodes, view_.boundaries.tree.nodes);
+    arrays.add(found.tree.triangles, view_.boundaries.tree.triangles);
+    arrays.add(found.triangles, view_.boundaries.triangles);
+    arrays.upload(queue, boundaries_, "boundaries of media");
 }
 
 void SceneOnDevice::update_textures(Queue& queue, const Scene& scene) {

@@ -66,6 +66,7 @@ private:
     void update_lights(Queue& queue, const PlacedScene& prepared);
     void update_environment(Queue& queue, const PlacedScene& prepared);
     void update_nesting(Queue& queue, const PlacedScene& prepared); // after instances and materials
+    void update_media(Queue& queue, const PlacedScene& prepared);   // after instances and materials
     void update_shapes(Queue& queue, const PlacedScene& prepared);  // before geometry
     void update_poses(const PlacedScene& prepared) { deforming_.set_poses(prepared); }
     void update_micromaps(Queue& queue, const Scene& scene, uint32_t parts); // after all of these
@@ -80,7 +81,7 @@ private:
     ClosedMeshes closed_meshes_; // cleared where the geometry changes
     NestedSolids nested_;
     ShadingVariant variant_ = ShadingVariant::General; // variant of the materials alone
-    Buffer<std::byte> geometry_, instances_, materials_, lights_, environment_, textures_, nesting_;
+    Buffer<std::byte> geometry_, instances_, materials_, lights_, environment_, textures_, nesting_, boundaries_;
 };
 
 /// The simplest shading variant that covers the scene.

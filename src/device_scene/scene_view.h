@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "device_scene/interior_list.h"
+#include "device_scene/medium_boundaries.h"
 #include "device_scene/micro_triangle.h"
 #include "math/rigid_motion.h"
 #include "math/transform.h"
@@ -63,6 +64,9 @@ struct SceneView {
     uint64_t triangle_count; // total of all instances
     MotionsView motions;     // while the shutter is open
     NestingView nesting;     // solids that lie in each other; then `variant` is General
+    uint32_t has_media;      // 1 if a medium fills any part of space
+    MediumParameters medium; // fills what no solid fills
+    MediumBoundariesView boundaries;
 };
 
 /// Returns whether a camera ray that hits this instance shows the background; true for kNoHit too.

@@ -63,8 +63,8 @@ void warn_of_invisible_materials(const Scene& scene, const std::string& file, Si
     }
     std::size_t invisible = 0;
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-        if (unseen[i] == 0 || seen[i] > 0 || invisible++ >= kMaxNamed) continue;
         const Material& material = scene.materials[i];
+        if (material.is_clear_boundary || unseen[i] == 0 || seen[i] > 0 || invisible++ >= kMaxNamed) continue;
         sink.warn(
             {FileLocation{file}, fmt::format("the material {} is invisible{}, because its alpha is 0 or below its "
                                              "cutoff (in MTL d 0 or Tr 1); {} with it are not shown",

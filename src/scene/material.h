@@ -11,6 +11,7 @@
 #include "base/host_device.h"
 #include "base/limits.h"
 #include "math/rgb.h"
+#include "scene/medium.h"
 #include "scene/texture.h"
 
 namespace pertev {
@@ -52,6 +53,7 @@ struct MaterialParameters {
     // whatever its vertex normals are. Thus a node that mirrors a mesh keeps its front.
     bool two_sided_emission = false; // otherwise only the front emits; unlit materials show both faces
     bool double_sided = true;        // otherwise camera rays pass through the back; all other rays hit it
+    bool is_clear_boundary = false;  // no ray meets it (its alpha is 0); it only ends the medium that it encloses
 
     float alpha = 1;           // [0, 1]; multiplied by the alpha of the base colour texture, the vertex colour and
                                // alpha_texture
@@ -102,6 +104,8 @@ struct MaterialParameters {
     TextureRef anisotropy_texture, thin_film_texture, thin_film_thickness_texture;
     TextureRef diffuse_transmission_texture, diffuse_transmission_color_texture, retroreflectivity_texture;
 
+    MediumParameters medium; // fills the object besides the absorption of transmission_depth, if light enters it
+
     HD bool has_coat() const { return coat_weight > 0; }
     HD bool has_fuzz() const { return fuzz_weight > 0 && max_component(fuzz_color) > 0; }
     HD bool transmits() const { return kind == MaterialKind::MetallicRoughness && transmission_weight > 0; }
@@ -114,6 +118,11 @@ struct MaterialParameters {
     /// Returns whether it is a solid, which light enters, that absorbs by distance.
     HD bool absorbs() const {
         return transmission_depth > 0 && (kind == MaterialKind::Dielectric || (transmits() && !thin_walled));
+    }
+    /// Returns whether it is the surface of a body that light enters and that a medium may fill.
+    HD bool encloses() const {
+        return kind == MaterialKind::Dielectric || is_clear_boundary || (transmits() && !thin_walled) ||
+               (medium.is_there() && has_diffuse_transmission());
     }
     HD bool has_microfacets() const { return kind != MaterialKind::Diffuse && kind != MaterialKind::Unlit; }
     HD bool has_anisotropy() const { return has_microfacets() && specular_roughness_anisotropy > 0; }
@@ -207,6 +216,9 @@ void visit_parameters(Parameters& m, const Number& number, const Texture& textur
     color(m.diffuse_transmission_color, "diffuse_transmission_color", 0, 1);
     number(m.specular_retroreflectivity, "specular_retroreflectivity", 0, 1);
     number(m.priority, "priority", -0x1p10f, 0x1p10f);
+    color(m.medium.sigma_a, "medium_sigma_a", 0, 0x1p40f);
+    color(m.medium.sigma_s, "medium_sigma_s", 0, 0x1p40f);
+    number(m.medium.g, "medium_g", -kMaxScatterAnisotropy, kMaxScatterAnisotropy);
     texture(m.base_color_texture, "base_color_texture");
     texture(m.alpha_texture, "alpha_texture");
     texture(m.metallic_texture, "metallic_texture");
@@ -254,6 +266,14 @@ void visit_textures(Parameters& m, const Texture& texture) {
 /// A material of a scene: its parameters and its name.
 struct Material : MaterialParameters {
     std::string name, origin; // `origin` is its location in the file
+
+    /// Makes it the boundary of a medium that all light passes unchanged.
+    void make_clear_boundary() {
+        is_clear_boundary = true;
+        alpha_mode = AlphaMode::Mask;
+        alpha = 0;
+        ior = 1;
+    }
 
     /// Texture slots that have an image.
     std::vector<const TextureRef*> textures() const {

@@ -1,5 +1,7 @@
 #include "scene/scene.h"
 
+#include <algorithm>
+
 #include "base/limits.h"
 #include "scene/position_bounds.h"
 
@@ -37,6 +39,14 @@ bool is_within_limits(const Transform& world_from_local, const Bounds3& local) {
         if (!(is_finite(p) && max_component(abs(p)) <= kMaxCoordinate)) return false;
     }
     return true;
+}
+
+bool has_media(const Scene& scene) {
+    if (scene.medium.is_there()) return true;
+    return std::ranges::any_of(scene.instances, [&](const Instance& instance) {
+        const Material& material = scene.materials[instance.material];
+        return !instance.is_hidden && material.medium.is_there() && material.encloses();
+    });
 }
 
 Bounds3 bounds_of(const Scene& scene) {

@@ -19,6 +19,7 @@
 #include "scene/camera.h"
 #include "scene/light.h"
 #include "scene/material.h"
+#include "scene/medium.h"
 #include "scene/mesh.h"
 #include "scene/mesh_shape.h"
 #include "scene/node.h"
@@ -54,6 +55,7 @@ struct Scene {
     std::vector<Instance> instances;
     std::vector<Light> lights;
     std::optional<Environment> environment;
+    MediumParameters medium; // fills all space that no body with a surface fills
     std::vector<Camera> cameras;
     std::vector<Node> nodes; // all nodes of a glTF file by their numbers there, including empty ones
     std::vector<Skin> skins;
@@ -75,6 +77,9 @@ struct Scene {
 /// World-from-local transform of an object with this transform within a node; relative to `origin`, in the
 /// coordinates of the file.
 Transform placed_in(const NodeTransform& transform, const Transform& node_from_local, DoubleVec3 origin);
+
+/// Returns whether a medium fills any part of space: the scene's own, or one in a body.
+bool has_media(const Scene& scene);
 
 /// JSON pointer of the node that an instance comes from; empty if there is none.
 std::string origin_of(const Instance& instance);

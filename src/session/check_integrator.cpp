@@ -119,6 +119,13 @@ void check_reconstruction(const Camera& camera) {
     refuse(!has_straight_lens(camera), "distortion", "", "real-time frames need a lens without distortion");
 }
 
+void check_media(const RenderSettings& settings) {
+    if (!has_media(settings.integrator)) return;
+    constexpr std::string_view kWhy = "it does not support scenes with media (`medium`, or that of a material)";
+    refuse(settings.light_paths != nullptr, "lpe", "", std::string(kWhy));
+    refuse(settings.irradiance, "false_color", "illuminance", std::string(kWhy));
+}
+
 std::optional<Remark> why_dark(const RenderSettings& settings, const Scene& scene) {
     const auto why = [&](std::string text) {
         return Remark("integrator", std::string(integrator_name(settings)), std::move(text));
@@ -141,6 +148,11 @@ void check_light(const RenderSettings& settings, const Scene& scene, Sink& sink)
                         "solids lie in each other, and it refracts at each as in a vacuum (`integrator=path`, "
                         "whitted and distributed do not)"});
     }
+    if (has_media(scene) && !has_media(settings.integrator)) {
+        sink.leave_out({"integrator", std::string(integrator_name(settings)),
+                        fmt::format("it renders a vacuum in place of media; {} know them", those_that(has_media))});
+    }
+    if (has_media(scene)) check_media(settings);
     if (const auto why = why_dark(settings, scene)) throw Error(ErrorCode::BadInput, *why);
     const bool is_ambient = needs_punctual_lights(settings.integrator) && settings.ambient;
     if (!is_ambient && !has_any_light(scene) && !has_unlit(scene)) {

@@ -21,12 +21,16 @@ void check_camera(const RenderSettings& settings, const Camera& camera);
 /// Throws Error(BadInput) if frames cannot be reconstructed because the lens is not straight.
 void check_reconstruction(const Camera& camera);
 
+/// Throws Error(BadInput) if media fill a part of a scene whose light path tracing separates for layers or irradiance,
+/// which do not know them.
+void check_media(const RenderSettings& settings);
+
 /// Returns why nothing would be lit, because the integrator supports none of the lights (though mirrors may show
 /// emitters), or because no photon leaves a light. Nothing if something may be lit.
 std::optional<Remark> why_dark(const RenderSettings& settings, const Scene& scene);
 
 /// Throws Error(BadInput) with the reason of why_dark. A note says what whitted leaves out, and a warning says if
-/// nothing in the scene, not even its environment, emits light.
+/// nothing in the scene, not even its environment, emits light. Media that the integrator does not know are left out.
 void check_light(const RenderSettings& settings, const Scene& scene, Sink& sink);
 
 } // namespace pertev

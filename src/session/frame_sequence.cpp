@@ -88,6 +88,9 @@ void FrameSequence::check(const FrameTask& task) {
     if (!task.camera.motion.empty() || pictures_.scene().view().motions.is_there()) {
         throw Error(ErrorCode::BadInput, "shutter", "", "reconstructed frames do not support an open shutter");
     }
+    if (pictures_.scene().view().has_media != 0 && task.restir.light != RestirLight::Off) {
+        throw Error(ErrorCode::BadInput, "restir", "", "ReSTIR does not support scenes with media");
+    }
     check_reconstruction(task.camera);
 }
 

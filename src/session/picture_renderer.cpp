@@ -93,6 +93,7 @@ Integrator& PictureRenderer::begin(const PictureView& picture, const RenderSetti
             throw Error(ErrorCode::BadInput, "shutter", "", "irradiance does not support an open shutter");
         }
     }
+    if (picture.scene.has_media != 0) check_media(settings);
     const IntegratorSettings& wanted = settings;
     const bool is_aside =
         number == 0 && begun_number_ == last_number_ && main_.integrator && main_.integrator->has_made();

@@ -30,6 +30,7 @@ void visit_flags(Parameters& m, const Flag& flag) {
     flag(m.double_sided, "double_sided");
     flag(m.two_sided_emission, "two_sided_emission");
     flag(m.thin_walled, "thin_walled");
+    flag(m.is_clear_boundary, "is_clear_boundary");
 }
 
 std::string name_of_material(const Scene& scene, std::size_t index) {
@@ -63,6 +64,7 @@ public:
             if (value != "true" && value != "false") refuse(fmt::format("{} is true or false", key));
             flag = value == "true";
         });
+        if (material_.is_clear_boundary) material_.make_clear_boundary();
         set_numbers(key, value, is_known);
         if (!is_known) refuse(fmt::format("there is no {}; there are {}", key, fmt::join(known_names(), ", ")));
     }

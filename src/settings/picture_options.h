@@ -33,6 +33,7 @@ struct SceneOptions {
     CameraChoice camera;
     std::string environment; // a file, or "r,g,b"
     float environment_rotation_deg = 0, environment_scale = 1;
+    std::string medium;                           // around everything; empty: the file's
     std::string ground = "auto";                  // auto, on or off
     std::vector<std::string> emitters, materials; // changes of the scene
     std::vector<std::string> movable;             // names of instances

@@ -110,6 +110,10 @@ std::vector<Setting> scene_settings() {
         row("environment_scale", "Environment", "X", FIELD(scene.environment_scale),
             "A factor for the radiance of the environment or of the default sky.", Range{0, 1e12}, On{kScenes},
             Mark::OpensScene, Recorded::AsUsed),
+        row("medium", "Environment", "KEY=VALUE", FIELD(scene.medium),
+            "The medium around everything, such as \"sigma_s=0.1,0.2,0.3 sigma_a=0.01 g=0.5\": scattering and "
+            "absorption in 1/m, and the mean cosine of scattering; none is a vacuum.",
+            Otherwise{"the file's"}, On{kLooking | kMeasure}, Mark::Name, Mark::OpensScene, Recorded::AsUsed),
         row("ground", "Environment", "on|off|auto", FIELD(scene.ground),
             "A ground plane that receives shadows. auto adds it to a single object whose file has neither camera nor "
             "light.",

@@ -30,6 +30,7 @@ struct BlockVertex {
         if (!(light.distance < kInfinity)) return {point, 0, light.wi, kInfinity};
         return {point, 0, light.light_point - point, 1};
     }
+    HD bool stays(Vec3) const { return true; }
     HD TriangleId triangle() const { return {}; }
 };
 
@@ -40,11 +41,12 @@ struct AbsorbingBlock {
 
     HD explicit AbsorbingBlock(const SceneView&) {}
 
-    HD bool scatters(const PathSettings& settings, PathState& path, float distance, Vertex& vertex) const {
+    HD bool scatters(const PathJob& job, PathState& path, const Hit& hit, Vertex& vertex) const {
+        const float distance = hit.instance == kNoHit ? kInfinity : hit.t;
         const Part part = part_within(path.origin, path.direction, distance);
         if constexpr (kScatters) {
-            const SampleKey key = sample_key(settings, path.pixel, path.sample);
-            const float u = sample_1d(settings.sampler, key, vertex_group(path.depth, kGroupChoices), 3);
+            const SampleKey key = sample_key(job.settings, path.pixel, path.sample);
+            const float u = sample_1d(job.settings.sampler, key, vertex_group(path.depth, kGroupChoices), 3);
             const float way = -log(u) / kBlockScatters;
             if (way < part.length) {
                 vertex = {path.origin + (part.begin + way) * path.direction};
@@ -55,7 +57,7 @@ struct AbsorbingBlock {
         path.throughput = path.throughput * absorbed(part.length);
         return false;
     }
-    HD Rgb transmittance(const PathSettings&, const PathState&, const Ray& ray) const {
+    HD Rgb transmittance(InteriorList, const Ray& ray) const {
         const float size = length(ray.direction);
         const float way = part_within(ray.origin, ray.direction / size, ray.t_max * size).length;
         return (kScatters ? exp(-kBlockScatters * way) : 1.0f) * absorbed(way);

@@ -7,6 +7,7 @@
 
 #include "base/limits.h"
 #include "formats/described/bumps.h"
+#include "formats/described/described_medium.h"
 #include "formats/described/environment.h"
 #include "formats/described/image_budget.h"
 #include "formats/described/transforms.h"
@@ -52,7 +53,7 @@ void give_coordinates(const std::array<Vec2, 3>& corners, ShapeMesh& shape) {
 
 /// The materials of the scene, each made once.
 struct Assembly {
-    using MaterialKey = std::array<uint32_t, 4>;
+    using MaterialKey = std::array<uint32_t, 5>;
     const Parts& parts;
     Scene& scene;
     Sink& sink;
@@ -66,12 +67,16 @@ struct Assembly {
         // Bumps and powers depend on the shape's size.
         const auto own = from.has_heights || has_power ? static_cast<uint32_t>(number + 1) : 0u;
         const auto one_more = [](std::optional<uint32_t> i) { return i ? *i + 1 : 0u; };
-        const MaterialKey key = {shape.surface, one_more(shape.area_light), one_more(shape.alpha), own};
+        const MaterialKey key = {shape.surface, one_more(shape.area_light), one_more(shape.alpha),
+                                 one_more(shape.medium), own};
         const auto [known, is_new] = numbers.try_emplace(key, static_cast<uint32_t>(surfaces.size()));
         if (!is_new) return known->second;
         Surface surface = from;
         if (shape.area_light) add_emission(parts.area_lights[*shape.area_light], shape, of, mesh, surface);
         if (shape.alpha) set_alpha(surface, parts.alphas[*shape.alpha]);
+        if (shape.medium || (surface.is_nothing && !shape.area_light)) {
+            fill_surface(shape.medium ? parts.media[*shape.medium] : MediumParameters{}, of.location, sink, surface);
+        }
         if (surface.has_heights) surface.material.normal_texture = surface.heights.ref;
         keep_usable(surface.material, of.location, sink);
         scene.materials.push_back(surface.material);
@@ -230,6 +235,7 @@ Scene assemble(Parts parts, const DoubleTransform& scene_from_world, uint64_t fi
     finish_images(surfaces, parts.made, budget, scene);
     set_lights(parts, scene_from_file, sink, scene);
     set_environment(parts, scene_from_file, sink, scene);
+    if (parts.around) scene.medium = parts.media[*parts.around];
     return scene;
 }
 

@@ -13,6 +13,7 @@
 #include "formats/described/texture_value.h"
 #include "math/double_transform.h"
 #include "scene/light.h"
+#include "scene/medium.h"
 #include "scene/mesh.h"
 
 namespace pertev::described {
@@ -66,8 +67,8 @@ struct PlacedLight {
 struct Placed {
     std::string name;
     uint32_t mesh = 0, surface = 0;
-    std::optional<uint32_t> area_light, alpha;
-    DoubleTransform world_from_mesh; // before ShapeMesh::shape_from_mesh
+    std::optional<uint32_t> area_light, alpha, medium; // the medium fills it
+    DoubleTransform world_from_mesh;                   // before ShapeMesh::shape_from_mesh
 };
 
 struct Parts {
@@ -75,6 +76,8 @@ struct Parts {
     std::vector<Surface> surfaces;
     std::vector<AreaLight> area_lights;
     std::vector<TextureValue> alphas;
+    std::vector<MediumParameters> media;
+    std::optional<uint32_t> around; // the medium around everything
     std::vector<Placed> placed;
     std::vector<InfiniteLight> infinite_lights;
     std::vector<PlacedLight> lights;

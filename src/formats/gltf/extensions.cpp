@@ -10,7 +10,7 @@
 namespace pertev::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 22> kRead = {"EXT_lights_image_based",
+constexpr std::array<std::string_view, 23> kRead = {"EXT_lights_image_based",
                                                     "EXT_mesh_gpu_instancing",
                                                     "EXT_meshopt_compression",
                                                     "KHR_animation_pointer",
@@ -29,6 +29,7 @@ constexpr std::array<std::string_view, 22> kRead = {"EXT_lights_image_based",
                                                     "KHR_materials_unlit",
                                                     "KHR_materials_variants",
                                                     "KHR_materials_volume",
+                                                    "KHR_materials_volume_scatter",
                                                     "KHR_mesh_quantization",
                                                     "KHR_node_visibility",
                                                     "KHR_texture_transform"};

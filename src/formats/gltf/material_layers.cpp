@@ -2,13 +2,20 @@
 // (scene/material.h), and the material that a variant gives to a primitive.
 //
 // Source: KHR_materials_clearcoat, _sheen, _specular, _transmission, _volume, _dispersion, _anisotropy, _iridescence,
-// _diffuse_transmission, _retroreflection (draft) and _variants.
+// _diffuse_transmission, _retroreflection (draft), _volume_scatter (draft) and _variants.
 
 #include <algorithm>
 
 #include "formats/gltf/materials.h"
+#include "math/portable_math.h"
+#include "scene/scatter_albedo.h"
 
 namespace pertev::gltf {
+namespace {
+
+constexpr float kLeastTransmitted = 0x1p-20f; // replaces a colour of 0, whose extinction would be infinite
+
+} // namespace
 
 std::optional<JsonValue> Materials::material_in_variant(const JsonValue& primitive) const {
     std::optional<JsonValue> reference = primitive.find("material");
@@ -169,6 +176,38 @@ void Materials::read_diffuse_transmission(const JsonValue& source, Material& mat
     material.diffuse_transmission_color = {color[0], color[1], color[2]};
     material.diffuse_transmission_texture = read_channel(*extension, "diffuseTransmissionTexture", 3);
     material.diffuse_transmission_color_texture = read_texture(*extension, "diffuseTransmissionColorTexture", true);
+}
+
+void Materials::read_scatter(const JsonValue& source, Material& material) {
+    const std::optional<JsonValue> extension = source.extension("KHR_materials_volume_scatter");
+    if (!extension) return;
+    const std::optional<JsonValue> volume = source.extension("KHR_materials_volume");
+    const bool has_thickness =
+        volume && (!volume->find("thicknessFactor") || volume->float_or("thicknessFactor", 0) > 0);
+    const bool is_entered = material.encloses() || material.has_diffuse_transmission();
+    if (!has_thickness || !is_entered) {
+        sink_.leave_out({extension->location(), "KHR_materials_volume_scatter is left out, because the material has no "
+                                                "volume with a thickness that light enters"});
+        return;
+    }
+    std::array<float, 3> color = {0, 0, 0};
+    attempt_at(*extension, [&] { color = extension->floats_or<3>("multiscatterColor", color); });
+    float g = 0;
+    attempt_at(*extension, [&] { g = extension->float_or("scatterAnisotropy", 0); });
+    Material attenuating;
+    attempt_at(*volume, [&] { read_attenuation(*volume, attenuating); });
+    if (!(attenuating.transmission_depth > 0) || color == std::array<float, 3>{0, 0, 0}) return;
+    const auto extinction = [&](float transmitted) {
+        return -log(max(transmitted, kLeastTransmitted)) / attenuating.transmission_depth;
+    };
+    const Rgb passed = attenuating.transmission_color;
+    const Rgb sigma_t = {extinction(passed.r), extinction(passed.g), extinction(passed.b)};
+    material.medium.sigma_s = sigma_t * Rgb{single_scatter_albedo(color[0]), single_scatter_albedo(color[1]),
+                                            single_scatter_albedo(color[2])};
+    material.medium.sigma_a = sigma_t - material.medium.sigma_s;
+    material.medium.g = clamp(g, -kMaxScatterAnisotropy, kMaxScatterAnisotropy);
+    material.transmission_depth = 0; // the medium has the whole extinction
+    material.transmission_color = {1, 1, 1};
 }
 
 } // namespace pertev::gltf

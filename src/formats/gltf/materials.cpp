@@ -62,6 +62,7 @@ Material Materials::read(const JsonValue& source) {
     attempt([&] { read_retroreflection(source, material); });
     attempt([&] { read_thin_film(source, material); });
     attempt([&] { read_diffuse_transmission(source, material); });
+    attempt([&] { read_scatter(source, material); });
     attempt([&] { read_specular(source, material); });
     attempt([&] { read_coat(source, material); });
     attempt([&] { read_fuzz(source, material); });

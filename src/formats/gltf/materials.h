@@ -60,6 +60,7 @@ private:
     void read_retroreflection(const JsonValue& source, Material& material);
     void read_thin_film(const JsonValue& source, Material& material);
     void read_diffuse_transmission(const JsonValue& source, Material& material);
+    void read_scatter(const JsonValue& source, Material& material);
     void read_coat(const JsonValue& source, Material& material);
     void read_fuzz(const JsonValue& source, Material& material);
     float read_ior(const JsonValue& material) const;

@@ -76,10 +76,13 @@ void World::place(Object& shape, const DoubleTransform& world_from_group) {
         }
         if (bsdfs.empty() && placed.area_light && !context_.is_old) placed.surface = 1;
     }
-    if (!objects_in(shape, "medium", reading_).empty() || !objects_in(shape, "subsurface", reading_).empty())
-        sink.leave_out(
-            {shape.location(), fmt::format("the medium of {} is left out, as all media are", shape.parameters.what())});
-    if (parts_.surfaces[placed.surface].is_nothing && !placed.area_light) return;
+    if (!objects_in(shape, "subsurface", reading_).empty())
+        sink.leave_out({shape.location(), fmt::format("subsurface of {} is left out; a medium inside of it scatters "
+                                                      "likewise",
+                                                      shape.parameters.what())});
+    const Media::OfShape media = context_.options.geometry_only ? Media::OfShape{} : media_.of_shape(shape);
+    if (parts_.surfaces[placed.surface].is_nothing && !placed.area_light && !media.ends_medium) return;
+    placed.medium = media.inside;
     const Surface& surface = parts_.surfaces[placed.surface];
     const bool has_normal_map = surface.material.normal_texture.has_image() && !surface.has_heights;
     const auto read = shapes_.read(shape, {has_normal_map, surface.has_vertex_colors});
@@ -107,13 +110,12 @@ Scene World::finish(uint64_t file_bytes) {
             if (!context_.options.geometry_only) add_emitter(object, reading_);
         } else if (object.tag == "sensor") {
             view_.sensors.push_back(&object);
+            media_.set_around(object);
         } else if (object.tag == "integrator") {
             view_.integrator = &object;
-        } else if (object.tag == "medium") {
-            context_.sink.leave_out(
-                {object.location(), fmt::format("{} is left out, as all media are", object.parameters.what())});
         }
     }
+    media_.finish();
     shapes_.finish();
     Scene scene = assemble(std::move(parts_), scene_from_world(view_, context_.sink), file_bytes,
                            "an element such as <shape type=\"sphere\"/>", context_.loader, context_.sink);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "formats/mitsuba/bsdfs.h"
+#include "formats/mitsuba/media.h"
 #include "formats/mitsuba/reading.h"
 #include "formats/mitsuba/shapes.h"
 #include "formats/mitsuba/textures.h"
@@ -35,6 +36,7 @@ private:
     Textures textures_{reading_};
     Shapes shapes_{reading_};
     Bsdfs bsdfs_{reading_, textures_};
+    Media media_{reading_};
     View view_;
     std::map<uint32_t, uint32_t> area_lights_; // by the emitter's number
     uint64_t most_placed_ = 0, visited_ = 0;

@@ -8,10 +8,13 @@
 #include "base/message_text.h"
 #include "formats/files/closest_name.h"
 #include "formats/pbrt/colors.h"
+#include "formats/pbrt/media.h"
 #include "math/portable_math.h"
 
 namespace pertev::pbrt {
 namespace {
+
+constexpr float kSubsurfaceIor = 1.33f;
 
 using M = MaterialParameters;
 
@@ -165,6 +168,21 @@ Surface diffuse_transmission(const MaterialSource& source) {
     return surface;
 }
 
+} // namespace
+
+Surface read_subsurface(const MaterialSource& source) {
+    Surface surface = make_surface(MaterialKind::Dielectric);
+    surface.material.base_color = grey(1);
+    surface.material.ior = kSubsurfaceIor;
+    if (source.parameters.has("eta")) set_ior(source, "eta", &Material::ior, surface);
+    surface.material.transmission_dispersion_scale = 0;
+    read_roughness(source, 0, "", surface);
+    surface.material.medium = read_subsurface_medium(source);
+    return surface;
+}
+
+namespace {
+
 Surface nothing() {
     Surface surface;
     surface.is_nothing = true;
@@ -203,19 +221,13 @@ Surface mixture(const MaterialSource& source) {
     return mixed.surface;
 }
 
-/// A measured or subsurface material as a diffuse one under a smooth coat.
-Surface nearest_coated(const MaterialSource& source, bool has_coat) {
-    Surface surface = make_surface(has_coat ? MaterialKind::MetallicRoughness : MaterialKind::Diffuse);
-    if (has_coat) {
-        set_ior(source, "eta", &Material::ior, surface);
-        surface.material.transmission_dispersion_scale = 0;
-        read_roughness(source, 0, "", surface);
-    }
+/// A measured material as a diffuse one.
+Surface measured(const MaterialSource& source) {
+    Surface surface = make_surface(MaterialKind::Diffuse);
     const TextureValue color = source.textures.color(source.parameters, "reflectance", grey(0.5f));
     set_color(surface, &M::base_color, &M::base_color_texture, color);
-    warn_of_nearest(source, has_coat ? "a diffuse surface beneath a coat" : "a diffuse surface");
-    for (const std::string_view name : {"name", "sigma_a", "sigma_s", "mfp", "scale", "g", "filename", "fname"})
-        source.parameters.ignore({name});
+    warn_of_nearest(source, "a diffuse surface");
+    for (const std::string_view name : {"filename", "fname"}) source.parameters.ignore({name});
     return surface;
 }
 
@@ -239,8 +251,8 @@ std::optional<Surface> read_version_4_material(const MaterialSource& source) {
     if (type == "diffusetransmission") return diffuse_transmission(source);
     if (type == "mix") return mixture(source);
     if (type == "interface" || type == "none" || type.empty()) return nothing();
-    if (type == "measured") return nearest_coated(source, false);
-    if (type == "subsurface" && !source.context.is_version_3) return nearest_coated(source, true);
+    if (type == "measured") return measured(source);
+    if (type == "subsurface" && !source.context.is_version_3) return read_subsurface(source);
     return std::nullopt;
 }
 

@@ -34,6 +34,8 @@ std::span<const std::string_view> version_3_materials();
 
 /// Reads roughness, uroughness, vroughness and remaproughness.
 void read_roughness(const MaterialSource& source, double missing, std::string_view prefix, Surface& surface);
+/// Reads a subsurface material as a medium in a body of glass, in which paths scatter at random.
+Surface read_subsurface(const MaterialSource& source);
 /// Reads the bump map or normal map that all materials may have.
 void read_bumps(const MaterialSource& source, Surface& surface);
 /// Warns once that materials of a type are drawn as the nearest one.

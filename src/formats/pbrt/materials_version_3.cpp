@@ -179,17 +179,6 @@ Surface disney(const MaterialSource& source) {
     return surface;
 }
 
-Surface scattering(const MaterialSource& source) {
-    Surface surface = make_surface(MaterialKind::MetallicRoughness);
-    set_index(source, surface);
-    read_roughness(source, 0, "", surface);
-    set_color(surface, &M::base_color, &M::base_color_texture,
-              source.textures.color(source.parameters, "Kd", grey(0.5f)));
-    warn_of_nearest(source, "a diffuse surface beneath a reflection");
-    source.parameters.ignore({"name", "sigma_a", "sigma_s", "sigma_prime_s", "mfp", "scale", "g", "Kr", "Kt"});
-    return surface;
-}
-
 } // namespace
 
 std::span<const std::string_view> version_3_materials() { return kVersion3Types; }
@@ -205,7 +194,7 @@ std::optional<Surface> read_version_3_material(const MaterialSource& source) {
     if (type == "uber") return uber(source);
     if (type == "translucent") return translucent(source);
     if (type == "disney") return disney(source);
-    if (type == "kdsubsurface" || type == "subsurface") return scattering(source);
+    if (type == "kdsubsurface" || type == "subsurface") return read_subsurface(source);
     return std::nullopt;
 }
 

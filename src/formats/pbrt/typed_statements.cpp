@@ -32,6 +32,7 @@ ViewStatement Statements::take_view(Tokens& tokens, const FileLocation& place, s
 void Statements::camera(Tokens& tokens, const FileLocation& place) {
     world_.view.camera = take_view(tokens, place, "camera");
     world_.view.camera_from_world = world_.state.transforms[0];
+    world_.set_camera_medium();
     if (!(world_.state.transforms[0] == world_.state.transforms[1]))
         context_.sink.leave_out({place, "the motion of the camera is left out"});
     world_.coordinate_systems["camera"] = {inverse(world_.state.transforms[0]), inverse(world_.state.transforms[1])};
@@ -116,13 +117,14 @@ void Statements::named_material(Tokens& tokens, const FileLocation& place) {
 
 void Statements::medium(Tokens& tokens, const FileLocation& place) {
     const std::string name = take_text(tokens, place);
-    (void)take_parameters(tokens, place, fmt::format("the medium {}", shortened(name)));
-    context_.sink.leave_out({place, fmt::format("the medium {} is left out, as all media are", shortened(name))});
+    Parameters parameters = take_parameters(tokens, place, fmt::format("the medium {}", shortened(name)), "medium");
+    world_.make_named_medium(name, parameters);
 }
 
 void Statements::medium_interface(Tokens& tokens, const FileLocation& place) {
-    (void)take_text(tokens, place); // the medium has its own message
-    if (tokens.peek().kind == TokenKind::Quoted) (void)take_text(tokens, place);
+    const std::string inside = take_text(tokens, place);
+    const bool has_outside = tokens.peek().kind == TokenKind::Quoted;
+    world_.set_media(inside, has_outside ? take_text(tokens, place) : inside, place);
 }
 
 void Statements::light(Tokens& tokens, const FileLocation& place) {

@@ -10,6 +10,7 @@
 #include "formats/described/transforms.h"
 #include "formats/described/usable_values.h"
 #include "formats/files/closest_name.h"
+#include "formats/pbrt/media.h"
 
 namespace pertev::pbrt {
 namespace {
@@ -126,14 +127,14 @@ std::optional<uint32_t> World::alpha_of(Parameters& parameters) {
 }
 
 void World::add_shape(const std::string& type, Parameters& parameters) {
-    if (parts_.surfaces[state.surface].is_nothing) return;
+    Placed placed;
+    if (!fill(placed, parameters.location())) return;
     const auto read = shapes_.read(type, state.is_reversed, parameters);
     if (!read) return;
-    Placed placed;
     placed.mesh = read->mesh;
     placed.surface = state.surface;
     placed.alpha = alpha_of(parameters);
-    placed.area_light = state.area_light;
+    if (!parts_.surfaces[state.surface].is_nothing) placed.area_light = state.area_light;
     parameters.leave_out_unknown(context_.sink);
     const std::string& file = parts_.meshes[read->mesh].file;
     placed.name = file.empty() ? type : std::filesystem::path(file).stem().string();
@@ -144,6 +145,54 @@ void World::add_shape(const std::string& type, Parameters& parameters) {
         placed.area_light.reset();
     }
     (open_object_ ? objects_[*open_object_] : parts_.placed).push_back(std::move(placed));
+}
+
+void World::make_named_medium(const std::string& name, Parameters& parameters) {
+    const std::string type = parameters.text("type", "", context_.sink);
+    if (type != "homogeneous") {
+        for (const Parameter& parameter : parameters.all()) parameters.look_up(parameter.name);
+        throw parameters.error(
+            fmt::format("the medium {} of the type {} is left out; it is a vacuum", shortened(name), shortened(type)));
+    }
+    media_.insert_or_assign(name, static_cast<uint32_t>(parts_.media.size()));
+    parts_.media.push_back(read_medium(parameters, context_));
+    parameters.leave_out_unknown(context_.sink);
+}
+
+void World::set_media(const std::string& inside, const std::string& outside, const FileLocation& place) {
+    state.inside = inside, state.outside = outside;
+    for (const std::string& name : {inside, outside}) {
+        if (name.empty() || media_.contains(name)) continue;
+        throw Error(ErrorCode::BadInput, place,
+                    fmt::format("there is no medium {}{}; it is a vacuum", shortened(name),
+                                did_you_mean(name, first_names(media_))));
+    }
+}
+
+/// Sets the medium of a shape. Returns false if the shape is an interface between equal media, which is not there.
+bool World::fill(Placed& placed, const FileLocation& from) {
+    const bool is_nothing = parts_.surfaces[state.surface].is_nothing;
+    if (context_.options.geometry_only || (state.inside == state.outside && is_nothing)) return !is_nothing;
+    const auto medium = media_.find(state.inside);
+    // A state's media last, so that shapes that let no light in often have one by chance.
+    const bool is_entered = is_nothing || parts_.surfaces[state.surface].material.encloses();
+    if (medium != media_.end() && is_entered) placed.medium = medium->second;
+    if (state.inside != state.outside) {
+        inside_.insert(state.inside);
+        outside_.try_emplace(state.outside, from);
+    }
+    return true;
+}
+
+/// Puts the camera's medium around everything, and leaves out media that are only outside of shapes.
+void World::finish_media() {
+    if (const auto medium = media_.find(around_); medium != media_.end()) parts_.around = medium->second;
+    for (const auto& [name, from] : outside_) {
+        if (name.empty() || name == around_ || inside_.contains(name)) continue;
+        context_.sink.leave_out({from, fmt::format("the medium {} outside of a shape is left out, because it neither "
+                                                   "fills another shape nor is that of the camera",
+                                                   shortened(name))});
+    }
 }
 
 void World::begin_object(const std::string& name, const FileLocation& from) {
@@ -181,6 +230,7 @@ void World::add_instance(const std::string& name, const FileLocation& from, uint
 
 Scene World::finish(uint64_t file_bytes) {
     shapes_.finish();
+    finish_media();
     Scene scene = assemble(std::move(parts_), scene_from_world(view), file_bytes,
                            "a statement such as Shape \"sphere\"", context_.loader, context_.sink);
     add_view(view, context_, scene);

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,6 +29,7 @@ struct GraphicsState {
     bool is_reversed = false;
     uint32_t surface = 0; // index into the surfaces
     std::optional<uint32_t> area_light;
+    std::string inside, outside; // names of media; empty: a vacuum
     std::optional<ColorMatrix> color_space;
     // pbrt-v4's defaults of parameters, by what they are for; shared, because most states have none.
     std::shared_ptr<const std::map<std::string, Parameters>> attributes;
@@ -47,6 +49,10 @@ public:
     void set_material(const std::string& type, Parameters& parameters);
     void make_named_material(const std::string& name, Parameters& parameters);
     void set_named_material(const std::string& name, const FileLocation& place);
+    void make_named_medium(const std::string& name, Parameters& parameters);
+    void set_media(const std::string& inside, const std::string& outside, const FileLocation& place);
+    /// Puts the present medium outside around everything, because a camera is there.
+    void set_camera_medium() { around_ = state.outside; }
     void set_area_light(const std::string& type, Parameters& parameters);
     void add_light(const std::string& type, Parameters& parameters);
     void add_shape(const std::string& type, Parameters& parameters);
@@ -61,6 +67,8 @@ private:
     uint32_t add_surface(const std::string& type, const std::string& name, Parameters& parameters);
     const Surface* find_surface(const std::string& name, const FileLocation& from);
     DoubleTransform place(const FileLocation& from);
+    bool fill(Placed& placed, const FileLocation& from);
+    void finish_media();
     std::optional<uint32_t> alpha_of(Parameters& parameters);
 
     const Context& context_;
@@ -71,6 +79,10 @@ private:
     std::map<std::string, uint32_t, std::less<>> alpha_numbers_;
     std::map<std::string, std::vector<Placed>, std::less<>> objects_;
     std::optional<std::string> open_object_;
+    std::map<std::string, uint32_t, std::less<>> media_;       // indices into Parts::media
+    std::map<std::string, FileLocation, std::less<>> outside_; // media outside of shapes
+    std::set<std::string, std::less<>> inside_;
+    std::string around_;
 };
 
 } // namespace pertev::pbrt

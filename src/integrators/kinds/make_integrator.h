@@ -107,6 +107,8 @@ struct IntegratorDescriptor {
     bool needs_any_light = false;
     /// True if it refracts at each solid as in a vacuum, although solids lie in each other (SceneView::nesting).
     bool ignores_nesting = false;
+    /// True if media absorb and scatter its light (SceneView::has_media).
+    bool has_media = false;
     /// True if the scene's light is solved before the first sample (radiosity/).
     bool is_solved = false;
     /// The largest PathSettings::max_depth.
@@ -134,6 +136,7 @@ inline bool finds_all_light(IntegratorKind kind) { return describe(kind).finds_a
 inline bool rasterises_camera(IntegratorKind kind) { return describe(kind).rasterises_camera; }
 inline bool has_shutter(IntegratorKind kind) { return describe(kind).has_shutter; }
 inline bool needs_punctual_lights(IntegratorKind kind) { return describe(kind).needs_punctual_lights; }
+inline bool has_media(IntegratorKind kind) { return describe(kind).has_media; }
 inline bool is_solved(IntegratorKind kind) { return describe(kind).is_solved; }
 inline uint32_t max_depth(IntegratorKind kind) { return describe(kind).max_depth; }
 inline uint32_t samples_at_once(const IntegratorSettings& settings, uint64_t pixels) {

@@ -3,6 +3,7 @@
 // Listeners for a frame of samples (render/noisy_frame_view.h): the G-buffer of the first hit, the part of the light
 // that its diffuse lobes scatter, and the data of the path's first bounce for ReSTIR.
 
+#include "integrators/path/medium.h"
 #include "integrators/path/mirror_chain.h"
 
 namespace pertev {
@@ -82,6 +83,11 @@ public:
         if (!frame_.splits_light()) return;
         shadow_data_.diffuse = (path.depth == 0 ? at.surface.diffuse_share(at.wo, wi) : first_) * shadow.contribution;
     }
+    /// Light that a medium scatters before the first surface is not that of a diffuse lobe.
+    HD void direct(const PathState&, const MediumVertex&, Vec3, const ShadowRay& shadow) {
+        if (frame_.splits_light()) shadow_data_.diffuse = first_ * shadow.contribution;
+    }
+    HD void scattered(const PathState&, const MediumVertex&, const BsdfSample&) {}
     /// The drawn lobe does not matter: other lobes scatter light that way too, and light of glossy ones depends on
     /// the view.
     HD void scattered(const PathState& path, const SurfaceVertex& at, const BsdfSample&) {
@@ -183,6 +189,10 @@ public:
         const Rgb share = at.surface.diffuse_share(at.wo, path.direction);
         left().onwards[path.pixel] = {share.r, share.g, share.b, 0};
     }
+    HD void direct(const PathState& path, const MediumVertex&, Vec3, const ShadowRay& shadow) {
+        if (records()) shadow_data_ = {share_onwards(path.pixel) * shadow.contribution, path.pixel};
+    }
+    HD void scattered(const PathState&, const MediumVertex&, const BsdfSample&) {}
     HD void save_shadow_data(ShadowData& shadow_data) const { shadow_data = shadow_data_; }
 
     HD void arrived(PathData&, const ShadowData& shadow_data, Rgb) const {

@@ -21,8 +21,14 @@ uint64_t add_meter_lights(Queue& queue, SceneTracer& tracer, const PictureView& 
     const MeterQueueView view = {rays.data(), targets.data(), keys.data(), contribution.data()};
     for (uint32_t done = 0; done < count;) {
         const uint32_t now = std::min(samples_at_once, count - done);
-        launch(queue, "draw_meter_lights", pixels * now,
-               DrawMeterLights{picture, settings, {film.window, first + done, now}, view});
+        const BeginOrder samples_now = {film.window, first + done, now};
+        if (picture.scene.has_media != 0) {
+            launch(queue, "draw_meter_lights", pixels * now,
+                   DrawMeterLights<true>{picture, settings, samples_now, view});
+        } else {
+            launch(queue, "draw_meter_lights", pixels * now,
+                   DrawMeterLights<false>{picture, settings, samples_now, view});
+        }
         tracer.find_occlusions(view.query(), pixels * now, {nullptr, keys.data()});
         launch(queue, "add_meter_lights", pixels * now, AddMeterLights{view, film});
         done += now;

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 
+#include "device_scene/media_along_ray.h"
 #include "device_scene/ray_queue.h"
 #include "device_scene/surface.h"
 #include "integrators/path/path_settings.h"
@@ -29,6 +30,7 @@ struct MeterQueueView {
 };
 
 /// Light that reaches the meter from one point of one light without occlusion; black if there is none.
+template <bool kHasMedia = false>
 HD inline ShadowRay draw_meter_light(const PictureView& picture, const PathSettings& settings, uint32_t pixel,
                                      uint32_t sample) {
     const SceneView& scene = picture.scene;
@@ -56,9 +58,13 @@ HD inline ShadowRay draw_meter_light(const PictureView& picture, const PathSetti
     shadow.target = {light.instance, light.primitive};
     shadow.contribution = (pdf * (weight / light.pdf)) * light.radiance; // for albedo 1 the BSDF's value equals its
                                                                          // density
+    if constexpr (kHasMedia) {
+        shadow.contribution = transmittance_of_media(scene, picture.camera.interior, ray) * shadow.contribution;
+    }
     return shadow;
 }
 
+template <bool kHasMedia>
 struct DrawMeterLights {
     PictureView picture;
     PathSettings settings;
@@ -67,7 +73,7 @@ struct DrawMeterLights {
 
     HD void operator()(uint32_t i) const {
         const auto [pixel, sample] = samples.at(i);
-        const ShadowRay shadow = draw_meter_light(picture, settings, pixel, sample);
+        const ShadowRay shadow = draw_meter_light<kHasMedia>(picture, settings, pixel, sample);
         store_ray(queue.rays + i, {shadow.origin, 0.0f, shadow.direction, shadow.t_max});
         queue.targets[i] = {shadow.target.instance, shadow.target.primitive};
         queue.keys[i] = coin_key({pixel, sample, settings.seed}, 0, true);

@@ -35,6 +35,7 @@ enum Feature : Features {
     kMipMapped = 64,  // textures are filtered; code with it filters where the settings say so
     kNested = 128,    // solids lie in each other; code with it also serves scenes without
     kLightTree = 256, // lights are selected by a tree
+    kMedia = 512,     // media absorb and scatter; code with it has kNested
 };
 inline constexpr Features kPlainDiffuse = 0, kDiffuse = kTextured | kAlpha, kUnstacked = kDiffuse | kLayered,
                           kAllMaterials = kUnstacked | kStacked;
@@ -67,7 +68,8 @@ inline Features features_of(ShadingVariant variant) {
 /// a light meter, are by power, which must then hold for the lights that a path hits.
 inline bool uses_light_tree(const PathJob& job) {
     const PictureView& picture = job.picture;
-    return !picture.camera.is_meter() && !job.film.frame.first_bounce.leaves_direct_light() &&
+    const bool is_frame_of_media = picture.scene.has_media != 0 && job.film.frame.is_there(); // has no such code
+    return !picture.camera.is_meter() && !job.film.frame.first_bounce.leaves_direct_light() && !is_frame_of_media &&
            uses_light_tree(job.settings.light_choice, picture.scene.lights.tree.light_count,
                            picture.scene.motions.is_there());
 }
@@ -81,7 +83,7 @@ inline Features features_for(const PathJob& job) {
     return features_of(picture.scene.variant) | (has_times ? Features{kMoving} : 0) |
            (picture.batch.is_there() ? Features{kBatched} : 0) | (filters ? Features{kMipMapped} : 0) |
            (picture.scene.nesting.is_there() ? Features{kNested} : 0) |
-           (uses_light_tree(job) ? Features{kLightTree} : 0);
+           (uses_light_tree(job) ? Features{kLightTree} : 0) | (picture.scene.has_media != 0 ? Features{kMedia} : 0);
 }
 
 /// Returns the key of the random numbers of a path.
@@ -105,16 +107,17 @@ struct CompiledFor {
         return (((wanted & ~kMasks) == 0 && (with.template operator()<kMasks>(), true)) || ...);
     }
 };
+inline constexpr Features kAnyFilm = kAllMaterials | kMoving | kBatched | kMipMapped | kNested;
 using FilmFeatures =
     CompiledFor<kPlainDiffuse, kDiffuse, kUnstacked, kAllMaterials, kPlainDiffuse | kMoving, kDiffuse | kMoving,
                 kUnstacked | kMoving, kPlainDiffuse | kBatched, kDiffuse | kBatched, kUnstacked | kBatched,
-                kUnstacked | kMoving | kBatched, kAllMaterials | kMoving | kBatched | kMipMapped | kNested,
-                kUnstacked | kLightTree, kAllMaterials | kMoving | kBatched | kMipMapped | kNested | kLightTree>;
+                kUnstacked | kMoving | kBatched, kAnyFilm, kUnstacked | kLightTree, kAnyFilm | kLightTree,
+                kAnyFilm | kMedia, kAnyFilm | kMedia | kLightTree>;
 using ReuseFeatures = // frames that leave light to ReSTIR
     CompiledFor<kPlainDiffuse, kDiffuse | kMipMapped, kUnstacked | kMipMapped, kAllMaterials | kMipMapped | kNested>;
 using FrameFeatures =
     CompiledFor<kPlainDiffuse, kDiffuse | kMipMapped, kUnstacked | kMipMapped, kAllMaterials | kMipMapped | kNested,
-                kAllMaterials | kMipMapped | kNested | kLightTree>;
+                kAllMaterials | kMipMapped | kNested | kLightTree, kAllMaterials | kMipMapped | kNested | kMedia>;
 using LayerFeatures = CompiledFor<kUnstacked, kUnstacked | kMoving, kAllMaterials | kMoving | kMipMapped | kNested,
                                   kAllMaterials | kMoving | kMipMapped | kNested | kLightTree>;
 

@@ -136,8 +136,13 @@ public:
         }
         shade_together(together_, together);
         shade_alone(alone_, alone);
-        const VertexWords<Words8> none = {};
-        for (uint32_t k = 0; k < missed; ++k) shade(missed_[k], none, 0);
+        VertexWords<Words8> words = {};
+        for (uint32_t k = 0; k < missed; ++k) { // a medium may scatter rays that leave the scene
+            if (k % kWords == 0 && job_.picture.scene.has_media != 0) {
+                words = draw_for(missed_ + k, min(missed - k, kWords));
+            }
+            shade(missed_[k], words, k % kWords);
+        }
         add_light();
         counts.shadow += shadows_;
         compact();

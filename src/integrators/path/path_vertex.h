@@ -128,14 +128,15 @@ HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path
     if (!light.is_delta && settings.strategy == LightStrategy::Mis) {
         weight = power_heuristic(light.pdf, scattered.pdf);
     }
+    constexpr bool kIsVacuum = Medium<kFeatures>::kIsVacuum;
     bool is_within = false; // nested solids, by which light is then absorbed
-    if constexpr ((kFeatures & kNested) != 0) {
+    if constexpr ((kFeatures & kNested) != 0 && kIsVacuum) {
         const InteriorList around = interior_towards(scene, path, vertex, light.wi);
         is_within = around.top() != 0;
         if (is_within) light.radiance = light.radiance * transmittance_within(scene, around, light.distance);
     }
     if constexpr ((kFeatures & kStacked) != 0) {
-        if (!is_within) {
+        if (!is_within && (kIsVacuum || !scene.nesting.is_there())) {
             light.radiance = light.radiance *
                              transmittance_to_light<variant_of(kFeatures)>(scene, vertex.triangle(), light, path.time);
         }
@@ -144,8 +145,9 @@ HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path
                                              path.throughput * scattered.f * ((weight / light.pdf) * light.radiance));
     const float emitter_error = kMoves ? emitter_error_at(scene, light, path.time) : 0.0f;
     const Ray ray = vertex.ray_to(light, emitter_error);
-    if constexpr (!Medium<kFeatures>::kIsVacuum) {
-        const Rgb transmittance = Medium<kFeatures>(scene).transmittance(settings, path, ray);
+    if constexpr (!kIsVacuum) {
+        const InteriorList around = interior_towards(scene, path, vertex, light.wi);
+        const Rgb transmittance = Medium<kFeatures>(scene).transmittance(around, ray);
         if (is_black(transmittance)) return false;
         const Rgb arriving = transmittance * ((weight / light.pdf) * light.radiance);
         shadow.contribution =
@@ -232,7 +234,7 @@ template <Features kFeatures, class Vertex, class Numbers, class Listener>
 HD INLINE_ON_DEVICE bool shade_in_medium(const PathJob& job, PathState& path, const Vertex& vertex,
                                          const Numbers& numbers, ShadowRay& shadow, bool& has_shadow_ray,
                                          Listener& listener) {
-    listener.missed(path);
+    if (path.depth == 0) listener.emitted(path, {0, 0, 0}); // the ray reaches no emitter
     if (path.depth >= job.settings.max_depth) return false;
     has_shadow_ray =
         sample_direct<kFeatures>(job, path, vertex, vertex.light_context(path.time), numbers, shadow, listener);
@@ -241,12 +243,14 @@ HD INLINE_ON_DEVICE bool shade_in_medium(const PathJob& job, PathState& path, co
 }
 
 /// Follows the path to a surface among nested solids: which of them hold it there, what they absorb on the way, and
-/// the surface's interface. Returns whether solids are nested.
+/// the surface's interface. Returns whether solids are nested. Media absorb by themselves, without kAbsorbs.
+template <bool kAbsorbs>
 HD_CALL inline bool reach_nested_solid(const SceneView& scene, PathState& path, const Hit& hit, Surface& surface) {
     if (!scene.nesting.is_there()) return false;
     const bool enters = dot(path.direction, surface.geometric_normal) < 0;
     path.interior = solids_before(scene, path.interior, hit.instance, enters);
     nest_surface(scene, path.interior, surface);
+    if constexpr (!kAbsorbs) return true;
     const Rgb passed = transmittance_to_surface(scene, path.interior, path.start, path.direction, hit, path.time);
     path.throughput = path.throughput * passed;
     return true;
@@ -259,11 +263,14 @@ HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const
                                       ShadowRay& shadow, bool& has_shadow_ray, Listener& listener) {
     const SceneView& scene = job.picture.scene;
     has_shadow_ray = false;
-    if constexpr (!Medium<kFeatures>::kIsVacuum) {
-        typename Medium<kFeatures>::Vertex vertex;
-        const float distance = hit.instance == kNoHit ? kInfinity : hit.t;
-        if (Medium<kFeatures>(scene).scatters(job.settings, path, distance, vertex)) {
-            return shade_in_medium<kFeatures>(job, path, vertex, numbers, shadow, has_shadow_ray, listener);
+    constexpr bool kIsVacuum = Medium<kFeatures>::kIsVacuum;
+    [[maybe_unused]] typename Medium<kFeatures>::Vertex in_medium;
+    [[maybe_unused]] bool scatters = false;
+    if constexpr (!kIsVacuum) {
+        scatters = Medium<kFeatures>(scene).scatters(job, path, hit, in_medium);
+        if (scatters && (path.depth > 0 || hit.instance == kNoHit)) {
+            listener.missed(path);
+            return shade_in_medium<kFeatures>(job, path, in_medium, numbers, shadow, has_shadow_ray, listener);
         }
     }
     if (hit.instance == kNoHit) {
@@ -273,8 +280,16 @@ HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const
     }
     const float width = cone_width<kFeatures>(job, path, hit.t);
     Surface surface = make_vertex<kFeatures>(scene, path, hit, width);
+    if constexpr (!kIsVacuum) {
+        if (scatters) { // the camera's layers show the surface behind the medium
+            listener.vertex(path, hit, surface);
+            return shade_in_medium<kFeatures>(job, path, in_medium, numbers, shadow, has_shadow_ray, listener);
+        }
+    }
     bool is_within = false;
-    if constexpr ((kFeatures & kNested) != 0) is_within = reach_nested_solid(scene, path, hit, surface);
+    if constexpr ((kFeatures & kNested) != 0) {
+        is_within = reach_nested_solid<kIsVacuum>(scene, path, hit, surface);
+    }
     if constexpr ((kFeatures & kStacked) != 0) {
         if (!is_within) {
             path.throughput = path.throughput * transmittance_to_hit<variant_of(kFeatures)>(

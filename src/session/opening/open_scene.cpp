@@ -13,6 +13,7 @@
 #include "math/scalar.h"
 #include "scene/names.h"
 #include "session/degrees.h"
+#include "session/opening/set_medium.h"
 #include "session/photometry.h"
 #include "session/set_materials.h"
 #include "session/survey/emitter_fronts.h"
@@ -205,6 +206,7 @@ Scene open_scene(const SceneOptions& options, Sink& sink, SceneUse use, Ground g
     }
     turn_and_scale(options, scene, sink);
     set_emitters(scene, others, efficacy);
+    set_medium(options.medium, scene, sink);
     return scene;
 }
 

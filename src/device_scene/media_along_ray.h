@@ -1,0 +1,116 @@
+#pragma once
+
+// The media that a ray passes: that of the solid which fills each part of it (nested_solids.h), or the scene's own
+// where there is none. Clear boundaries divide a ray into parts; at other surfaces it ends.
+
+#include "device_scene/medium_boundaries.h"
+#include "device_scene/nested_solids.h"
+#include "trace/traverse_scene.h"
+
+namespace pertev {
+
+/// A ray's crossing of a boundary. Two at one distance are ordered by their triangles.
+struct BoundaryCrossing {
+    float distance = 0;  // in multiples of the direction's length
+    uint32_t number = 0; // number of the triangle
+    uint32_t instance = kNoHit;
+    bool enters = false; // from the front, into the instance's medium
+};
+
+/// Visitor of a traversal for the first crossing after another one.
+struct NextCrossingVisitor {
+    float after;
+    uint32_t after_number;
+    bool is_first;
+    Hit best;
+
+    HD float limit() const { return best.t; }
+    HD static constexpr bool visits_far_first() { return false; }
+    HD bool visit(uint32_t, uint32_t number, const TriangleHit& hit) {
+        const bool is_later = is_first || hit.t > after || (hit.t == after && number > after_number);
+        const bool is_nearer = hit.t < best.t || (hit.t == best.t && number < best.primitive);
+        if (is_later && is_nearer) best = {hit.t, hit.u, hit.v, 0, number};
+        return false;
+    }
+};
+
+/// Finds the first crossing of the ray after `crossing`, whose instance is kNoHit at first, and before `distance`.
+/// Returns false if there is none.
+HD_CALL inline bool find_next_crossing(const MediumBoundariesView& boundaries, Vec3 origin, Vec3 direction,
+                                       float distance, BoundaryCrossing& crossing) {
+    const bool is_first = crossing.instance == kNoHit;
+    // Boxes that end at the former crossing must not be culled.
+    const float from = is_first ? 0.0f : (1.0f - 0x1p-20f) * crossing.distance;
+    NextCrossingVisitor visitor = {crossing.distance, crossing.number, is_first, {}};
+    visitor.best.t = distance;
+    PlainTraversal::traverse(boundaries.tree, {origin, from, direction, distance}, 0, visitor, NoTraversalCounter{});
+    if (visitor.best.instance == kNoHit) return false;
+    const BoundaryTriangle& triangle = boundaries.triangles[visitor.best.primitive];
+    crossing = {visitor.best.t, visitor.best.primitive, triangle.instance, dot(direction, triangle.normal) < 0};
+    return true;
+}
+
+/// A part of a ray in one medium.
+struct RayPart {
+    const MediumParameters* medium;
+    const MaterialParameters* solid; // whose medium it is; null: the scene's
+    float begin, end;                // in multiples of the direction's length
+};
+
+/// Calls `visit` for each part of a ray up to `distance`, in order, until it returns true. `list` has the solids that
+/// hold the ray's origin, and afterwards those that hold the end of the last part visited. A ray that leaves the scene
+/// (`leaves`) ends in the scene's own medium, whatever its list says: rounding may have missed a surface.
+template <class Visit>
+HD inline void visit_media(const SceneView& scene, InteriorList& list, Vec3 origin, Vec3 direction, float distance,
+                           bool leaves, const Visit& visit) {
+    BoundaryCrossing crossing;
+    float begin = 0;
+    for (;;) {
+        const bool crosses =
+            scene.boundaries.is_there() && find_next_crossing(scene.boundaries, origin, direction, distance, crossing);
+        if (crosses) list = solids_before(scene, list, crossing.instance, crossing.enters);
+        if (!crosses && leaves) list = {};
+        const MaterialParameters* const solid = scene.nesting.is_there() ? filling(scene, list) : nullptr;
+        const float end = crosses ? crossing.distance : distance;
+        if (visit(RayPart{solid != nullptr ? &solid->medium : &scene.medium, solid, begin, end}) || !crosses) return;
+        list = solids_behind(scene, list, crossing.instance);
+        begin = end;
+    }
+}
+
+/// Returns the optical depth of `distance` metres, which may not end, for each colour.
+HD inline Rgb optical_depth(Rgb sigma, float distance) {
+    const auto of = [&](float rate) { return rate > 0 ? rate * distance : 0.0f; };
+    return {of(sigma.r), of(sigma.g), of(sigma.b)};
+}
+HD inline Rgb transmittance_of(Rgb optical_depth) {
+    return {exp(-optical_depth.r), exp(-optical_depth.g), exp(-optical_depth.b)};
+}
+
+/// Returns what the absorption of the part's solid leaves over `distance` metres, besides its medium.
+HD inline Rgb absorption_of(const RayPart& part, float distance) {
+    if (part.solid == nullptr || !part.solid->absorbs()) return {1, 1, 1};
+    return transmittance_of_depth(*part.solid, distance);
+}
+
+/// Returns the transmittance of a ray with a unit direction over `distance` metres; `list` has the solids that hold its
+/// origin.
+HD_CALL inline Rgb transmittance_of_media(const SceneView& scene, InteriorList list, Vec3 origin, Vec3 direction,
+                                          float distance) {
+    Rgb depth = {0, 0, 0}, absorbed = {1, 1, 1};
+    visit_media(scene, list, origin, direction, distance, !(distance < kInfinity), [&](const RayPart& part) {
+        const float length = part.end - part.begin;
+        depth += optical_depth(part.medium->sigma_t(), length);
+        absorbed = absorbed * absorption_of(part, length);
+        return false;
+    });
+    return absorbed * transmittance_of(depth);
+}
+
+/// Returns that of a ray of any length, up to its t_max.
+HD inline Rgb transmittance_of_media(const SceneView& scene, InteriorList list, const Ray& ray) {
+    const float size = length(ray.direction);
+    return transmittance_of_media(scene, list, ray.origin, ray.direction / size, size * ray.t_max);
+}
+
+} // namespace pertev

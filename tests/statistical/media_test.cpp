@@ -1,0 +1,253 @@
+// Participating media (device_scene/media_along_ray.h, integrators/path/homogeneous_medium.h) against closed forms, and
+// the same bytes by each schedule.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "session/check_integrator.h"
+#include "session/measure_irradiance.h"
+#include "session/opening/set_medium.h"
+#include "shading/phase_function.h"
+#include "tests/support/estimate.h"
+#include "tests/support/flat_scenes.h"
+#include "tests/support/options.h"
+#include "tests/support/random.h"
+#include "tests/support/solid_scenes.h"
+#include "tests/support/thrown_error.h"
+
+using namespace pertev;
+
+namespace {
+
+constexpr MediumParameters kAmber = {.sigma_a = {0.3f, 0.9f, 2}};
+constexpr MediumParameters kMilk = {.sigma_s = {4, 1.5f, 0.5f}, .g = 0.4f};
+
+Material filled(Material material, const MediumParameters& medium) {
+    material.medium = medium;
+    return material;
+}
+/// A boundary that only ends its medium.
+Material clear_boundary(const MediumParameters& medium) {
+    Material material = filled({{}, "boundary"}, medium);
+    material.make_clear_boundary();
+    return material;
+}
+
+/// Orthographic, `height` metres high, from 5 m along `from`.
+Camera parallel_view(Vec3 from, float height) {
+    Camera camera;
+    camera.projection = Projection::Orthographic;
+    camera.ortho_height = height;
+    camera.world_from_camera = look_at(5 * from, {0, 0, 0}, from.y == 0 ? Vec3{0, 1, 0} : Vec3{0, 0, 1});
+    return camera;
+}
+
+RenderSettings settings_in_media(uint32_t size, uint32_t samples, uint32_t max_depth) {
+    RenderSettings settings;
+    settings.width = settings.height = size;
+    settings.samples = samples;
+    settings.path.max_depth = max_depth;
+    settings.path.roulette_depth = 1000;
+    settings.path.light_choice = LightSelection::Power;
+    return settings;
+}
+
+double channel_of(Rgb color, std::size_t channel) {
+    return static_cast<double>(channel == 0 ? color.r : channel == 1 ? color.g : color.b);
+}
+
+/// Checks that every pixel is the transmittance of `distance` metres of amber.
+void check_amber(const Scene& scene, const Camera& camera, double distance) {
+    Queue queue = test::requested_queue();
+    for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
+        RenderSettings settings = settings_in_media(3, 2, 8);
+        settings.body = body;
+        const Image picture = test::render(queue, scene, camera, settings).picture;
+        for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+            const double expected = std::exp(-distance * channel_of(kAmber.sigma_a, i % 3));
+            CHECK(static_cast<double>(picture.pixels[i]) == doctest::Approx(expected).epsilon(1e-4));
+        }
+    }
+}
+
+test::Estimate channel_mean(const Image& picture, std::size_t channel) {
+    const std::size_t count = picture.pixels.size() / 3;
+    std::size_t i = 0;
+    test::Estimate all = test::estimate(count, [&] { return static_cast<double>(picture.pixels[3 * i++ + channel]); });
+    all.error = std::sqrt(all.variance / static_cast<double>(count - 1));
+    return all;
+}
+
+} // namespace
+
+TEST_CASE("the phase function is a density with its mean cosine, and sampling follows it") {
+    for (const float g : {0.0f, 0.3f, -0.6f, 0.95f}) {
+        CAPTURE(g);
+        double whole = 0, mean = 0;
+        constexpr int kSteps = 200'000;
+        for (int i = 0; i < kSteps; ++i) {
+            const float cosine = -1 + 2 * (static_cast<float>(i) + 0.5f) / kSteps;
+            const double density = 4 * 3.14159265358979 / kSteps * static_cast<double>(henyey_greenstein(g, cosine));
+            whole += density, mean += density * static_cast<double>(cosine);
+        }
+        CHECK(whole == doctest::Approx(1).epsilon(1e-3));
+        CHECK(mean == doctest::Approx(static_cast<double>(g)).epsilon(2e-3));
+        const Vec3 along = normalize(Vec3{0.3f, -0.8f, 0.5f});
+        double sampled = 0, squares = 0;
+        constexpr uint32_t kDraws = 20'000;
+        for (uint32_t i = 0; i < kDraws; ++i) {
+            const Hash4 h = hash_words(i, 7, 11, 13);
+            const Vec3 wi = sample_henyey_greenstein(g, along, {unit_interval(h.x), unit_interval(h.y)});
+            const double cosine = static_cast<double>(dot(wi, along));
+            sampled += cosine, squares += cosine * cosine;
+        }
+        sampled /= kDraws;
+        const double error = std::sqrt((squares / kDraws - sampled * sampled) / kDraws);
+        CHECK(std::abs(sampled - static_cast<double>(g)) < 4 * error + 1e-6);
+    }
+}
+
+TEST_CASE("a slab absorbs each colour by its thickness, between clear boundaries and between glass") {
+    for (const Material& material : {clear_boundary(kAmber), filled(test::glass(1), kAmber)}) {
+        Scene scene = test::under_sky();
+        test::add(scene, test::box({0, 0, 0}, {2, 0.35f, 2}), material);
+        check_amber(scene, parallel_view({0, 1, 0}, 1), 0.7);
+    }
+}
+
+TEST_CASE("a medium around everything leaves out the bodies in it, and one with an open surface begins there") {
+    Scene scene;
+    Material glowing;
+    glowing.emission = {1, 1, 1};
+    test::add(scene, test::sheet({0, -1, 0}, {0, 0, 4}, {4, 0, 0}), glowing);
+    scene.medium = kAmber;
+    check_amber(scene, parallel_view({0, 1, 0}, 1), 6);
+    Scene hollow = scene;
+    test::add(hollow, test::box({0, 1, 0}, {2, 0.5f, 2}), clear_boundary({}));
+    check_amber(hollow, parallel_view({0, 1, 0}, 1), 5);
+    hollow.instances.back().material = static_cast<uint32_t>(hollow.materials.size());
+    hollow.materials.push_back(test::glass(1));
+    check_amber(hollow, parallel_view({0, 1, 0}, 1), 5);
+    scene.medium = {};
+    test::add(scene, test::sheet({0, 0.5f, 0}, {0, 0, 4}, {4, 0, 0}), clear_boundary(kAmber));
+    check_amber(scene, parallel_view({0, 1, 0}, 1), 1.5);
+}
+
+TEST_CASE("a ball that only scatters shows the radiance of the furnace around it") {
+    Queue queue = test::requested_queue();
+    for (const bool is_clear : {true, false}) {
+        CAPTURE(is_clear);
+        Scene scene = test::under_sky();
+        test::add(scene, test::ball({0, 0, 0}, 1), is_clear ? clear_boundary(kMilk) : filled(test::glass(1.4f), kMilk));
+        for (const LightStrategy strategy : {LightStrategy::Mis, LightStrategy::BsdfOnly}) {
+            RenderSettings settings = settings_in_media(16, 64, 400);
+            settings.path.strategy = strategy;
+            const Image picture = test::render(queue, scene, parallel_view({0, 0, 1}, 1), settings).picture;
+            for (std::size_t channel = 0; channel < 3; ++channel) {
+                CAPTURE(channel);
+                const test::Estimate mean = channel_mean(picture, channel);
+                CHECK(std::abs(mean.mean - 1) < 4 * mean.error + 1e-4);
+                CHECK(mean.error < 0.01);
+            }
+        }
+    }
+}
+
+TEST_CASE("light scattered once in a slab is the integral along the camera's ray") {
+    constexpr MediumParameters kHaze = {.sigma_a = {0.5f, 1, 0.1f}, .sigma_s = {3, 1, 0.4f}, .g = -0.3f};
+    Queue queue = test::requested_queue();
+    Scene scene;
+    test::add(scene, test::box({0, 0, 0}, {2, 0.25f, 2}), clear_boundary(kHaze));
+    Light sun;
+    sun.kind = LightKind::Directional;
+    sun.direction = {0, -1, 0};
+    sun.intensity = {1, 1, 1};
+    scene.lights = {sun};
+    const Image picture =
+        test::render(queue, scene, parallel_view({0, 1, 0}, 1), settings_in_media(24, 256, 1)).picture;
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+        CAPTURE(channel);
+        const double sigma = channel_of(kHaze.sigma_t(), channel);
+        const double phase = static_cast<double>(henyey_greenstein(kHaze.g, -1));
+        const double expected =
+            channel_of(kHaze.sigma_s, channel) * phase * -std::expm1(-2 * sigma * 0.5) / (2 * sigma);
+        const test::Estimate mean = channel_mean(picture, channel);
+        CHECK(std::abs(mean.mean - expected) < 4 * mean.error);
+        CHECK(mean.error < 0.01 * expected);
+    }
+}
+
+TEST_CASE("each schedule renders the same bytes of glass with a medium, in a clear body, in a medium") {
+    Scene scene = test::under_sky();
+    scene.medium = {.sigma_a = {0, 0.01f, 0}, .sigma_s = {0.05f, 0.02f, 0}};
+    test::add(scene, test::ball({0.3f, 0, 0}, 0.7f), filled(test::glass(1.5f), kMilk));
+    test::add(scene, test::box({0, 0.1f, 0}, {1.5f, 0.5f, 1.5f}), clear_boundary({.sigma_s = {0.5f, 1, 2}}));
+    Material glowing;
+    glowing.emission = {3, 2, 1};
+    test::add(scene, test::sheet({0, 3, 0}, {1, 0, 0}, {0, 0, 1}), glowing);
+    Queue cpu = Queue::make_cpu(), queue = test::requested_queue();
+    RenderSettings settings = settings_in_media(12, 4, 20);
+    settings.path.roulette_depth = 3;
+    settings.aovs = kAovAlbedo | kAovDepth;
+    const Hash128 loop = test::render_hash(test::render(cpu, scene, parallel_view({0, 0, 1}, 3), settings));
+    settings.body = PathBody::Wavefront;
+    CHECK(test::render_hash(test::render(queue, scene, parallel_view({0, 0, 1}, 3), settings)) == loop);
+    settings.path.light_choice = LightSelection::Tree;
+    const Hash128 by_tree = test::render_hash(test::render(queue, scene, parallel_view({0, 0, 1}, 3), settings));
+    settings.body = PathBody::Loop;
+    CHECK(test::render_hash(test::render(cpu, scene, parallel_view({0, 0, 1}, 3), settings)) == by_tree);
+}
+
+TEST_CASE("what knows no media says so") {
+    Scene scene = test::under_sky();
+    scene.medium = kMilk;
+    RenderSettings settings;
+    settings.integrator = IntegratorKind::Distributed;
+    Messages messages;
+    check_light(settings, scene, messages);
+    CHECK(messages.all().size() == 1);
+    settings.integrator = IntegratorKind::Path;
+    Messages none;
+    check_light(settings, scene, none);
+    CHECK(none.all().empty());
+    settings.irradiance = true;
+    CHECK_THROWS_AS(check_light(settings, scene, none), Error);
+}
+
+TEST_CASE("the text of a medium has coefficients for each colour or for all") {
+    const MediumParameters read = parse_medium("sigma_s=0.1,0.2,0.3 g=-0.5 sigma_a=2");
+    CHECK(read.sigma_s == Rgb{0.1f, 0.2f, 0.3f});
+    CHECK(read.sigma_a == Rgb{2, 2, 2});
+    CHECK(read.g == -0.5f);
+    CHECK(parse_medium("none") == MediumParameters());
+    for (const char* wrong : {"sigma_s=-1", "sigma=1", "g=1 sigma_s=1", "sigma_s=a", "g=0.5", ""}) {
+        CAPTURE(wrong);
+        CHECK_THROWS_AS(parse_medium(wrong), Error);
+    }
+}
+
+TEST_CASE("a light meter in a medium measures lights that it dims") {
+    Scene scene;
+    scene.medium = kAmber;
+    scene.lights = {test::point_light({0, 2, 0}, {8, 8, 8})};
+    test::add(scene, test::floor_at(-1, 1), test::white());
+    Messages messages;
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Queue queue = test::requested_queue();
+    RenderSettings settings;
+    settings.samples = 1;
+    const Irradiance measured = measure_irradiance(queue, prepared, {{0, 0, 0}, {0, 1, 0}}, settings);
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+        const double expected = 2 * std::exp(-2 * channel_of(kAmber.sigma_a, channel));
+        CHECK(measured.rgb[channel].value == doctest::Approx(expected).epsilon(1e-4));
+    }
+}
+
+TEST_CASE("bodies that share a face have each its own medium") {
+    Scene scene = test::under_sky();
+    test::add(scene, test::box({0, 0.5f, 0}, {2, 0.5f, 2}), clear_boundary(kAmber));
+    test::add(scene, test::box({0, -0.25f, 0}, {2, 0.25f, 2}), clear_boundary({}));
+    test::add(scene, test::box({0, -0.75f, 0}, {2, 0.25f, 2}), clear_boundary(kAmber));
+    check_amber(scene, parallel_view({0, 1, 0}, 1), 1.5);
+}

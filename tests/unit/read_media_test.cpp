@@ -1,0 +1,144 @@
+// Homogeneous media of files: pbrt, Mitsuba and glTF (formats/pbrt/media.h, formats/mitsuba/media.h,
+// KHR_materials_volume_scatter).
+
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "formats/read_scene.h"
+#include "tests/support/gltf_builder.h"
+#include "tests/support/options.h"
+#include "tests/support/write_text.h"
+
+using namespace pertev;
+
+namespace {
+
+Scene read_with_media(const std::string& name, const std::string& text, Messages& messages) {
+    return read_scene(test::write_text(test::scratch_folder() / name, text), {}, messages);
+}
+Scene read_with_media(const std::string& name, const std::string& text) {
+    Messages messages;
+    Scene scene = read_with_media(name, text, messages);
+    CHECK(messages.left_out() == std::vector<std::string>{});
+    return scene;
+}
+
+const Material& material_of(const Scene& scene, std::size_t instance) {
+    return scene.materials[scene.instances.at(instance).material];
+}
+void check_rates(Rgb rates, Rgb expected) {
+    CHECK(rates.r == doctest::Approx(expected.r).epsilon(1e-4));
+    CHECK(rates.g == doctest::Approx(expected.g).epsilon(1e-4));
+    CHECK(rates.b == doctest::Approx(expected.b).epsilon(1e-4));
+}
+
+/// The material of a glTF file whose only one has these extensions.
+Material gltf_material(const std::string& extensions) {
+    test::GltfBuilder builder;
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+    return material_of(
+        read_with_media("m.gltf",
+                        builder.json(R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"material":0,)"
+                                     R"("attributes":{"POSITION":0}}]}],"materials":[{"pbrMetallicRoughness":)"
+                                     R"({"metallicFactor":0},"extensions":{)" +
+                                     extensions + "}}]")),
+        0);
+}
+
+} // namespace
+
+TEST_CASE("pbrt: the camera's medium is around everything, and others are in shapes") {
+    const Scene scene = read_with_media(
+        "m.pbrt",
+        "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [1 2 3] \"rgb sigma_s\" [4 5 6] "
+        "\"float scale\" .5 \"float g\" .25\n"
+        "MediumInterface \"\" \"fog\" Camera \"perspective\" WorldBegin\n"
+        "MakeNamedMedium \"milk\" \"string type\" \"homogeneous\" \"string preset\" \"Wholemilk\"\n"
+        "Material \"diffuse\" Shape \"sphere\"\n"
+        "AttributeBegin MediumInterface \"milk\" \"fog\" Material \"interface\" Shape \"sphere\" Material "
+        "\"dielectric\" Shape \"sphere\" AttributeEnd\n"
+        "Material \"interface\" Shape \"sphere\"\n"
+        "AttributeBegin MediumInterface \"fog\" Shape \"sphere\" AttributeEnd\n");
+    check_rates(scene.medium.sigma_a, {0.5f, 1, 1.5f});
+    check_rates(scene.medium.sigma_s, {2, 2.5f, 3});
+    CHECK(scene.medium.g == 0.25f);
+    REQUIRE(scene.instances.size() == 4); // the last one divides nothing
+    CHECK(!material_of(scene, 0).medium.is_there());
+    CHECK(material_of(scene, 1).is_clear_boundary);
+    check_rates(material_of(scene, 1).medium.sigma_s, {2.55f, 3.21f, 3.77f});
+    CHECK(material_of(scene, 2).kind == MaterialKind::Dielectric);
+    check_rates(material_of(scene, 2).medium.sigma_a, {0.0011f, 0.0024f, 0.014f});
+    CHECK(material_of(scene, 3).is_clear_boundary); // a hollow in the fog
+    CHECK(!material_of(scene, 3).medium.is_there());
+}
+
+TEST_CASE("pbrt: a subsurface material is a medium in glass, and grids are left out") {
+    const Scene skin =
+        read_with_media("m.pbrt", "WorldBegin Material \"subsurface\" \"rgb sigma_a\" [1 1 2] \"rgb sigma_s\" "
+                                  "[3 4 5] \"float scale\" 10 \"float eta\" 1.4 Shape \"sphere\"\n"
+                                  "Material \"subsurface\" \"rgb reflectance\" [.5 .5 .5] \"rgb mfp\" [.1 .2 "
+                                  ".5] Shape \"sphere\"\n");
+    CHECK(material_of(skin, 0).ior == 1.4f);
+    check_rates(material_of(skin, 0).medium.sigma_s, {30, 40, 50});
+    CHECK(material_of(skin, 1).ior == 1.33f);
+    check_rates(material_of(skin, 1).medium.sigma_t(), {10, 5, 2});
+    CHECK(material_of(skin, 1).medium.sigma_s.r == doctest::Approx(10 * 0.91171).epsilon(1e-3));
+    Messages messages;
+    const Scene cloud =
+        read_with_media("m.pbrt",
+                        "WorldBegin MakeNamedMedium \"c\" \"string type\" \"uniformgrid\" \"float density\" [1 2]\n"
+                        "MediumInterface \"c\" \"\" Material \"interface\" Shape \"sphere\"\n",
+                        messages);
+    CHECK(messages.left_out().size() == 2); // the medium, and its use
+    CHECK(!cloud.medium.is_there());
+}
+
+TEST_CASE("Mitsuba: the sensor's medium is around everything, and interior ones are in shapes") {
+    const Scene scene = read_with_media(
+        "m.xml",
+        "<scene version='3.0.0'><medium type='homogeneous' id='fog'><rgb name='sigma_t' value='.2,.4,.6'/><float "
+        "name='scale' value='10'/><rgb name='albedo' value='.5,.5,1'/><phase type='hg'><float name='g' "
+        "value='-.5'/></phase></medium>"
+        "<sensor type='perspective'><ref name='medium' id='fog'/></sensor>"
+        "<shape type='sphere'><bsdf type='dielectric'/><ref name='exterior' id='fog'/></shape>"
+        "<shape type='cube'><bsdf type='null'/><medium name='interior' type='homogeneous'><rgb name='sigma_t' "
+        "value='1,.5,.25'/></medium></shape><shape type='cube'><bsdf type='null'/></shape></scene>");
+    check_rates(scene.medium.sigma_s, {1, 2, 6});
+    check_rates(scene.medium.sigma_a, {1, 2, 0});
+    CHECK(scene.medium.g == -0.5f);
+    REQUIRE(scene.instances.size() == 2);
+    CHECK(!material_of(scene, 0).medium.is_there());
+    CHECK(material_of(scene, 1).is_clear_boundary);
+    check_rates(material_of(scene, 1).medium.sigma_s, {0.75f, 0.375f, 0.1875f});
+    Messages messages;
+    const Scene opaque = read_with_media(
+        "m.xml",
+        "<scene version='3.0.0'><shape type='cube'><bsdf type='diffuse'/><medium name='interior' "
+        "type='homogeneous'/></shape><shape type='sphere'><bsdf type='dielectric'/><medium name='exterior' "
+        "type='homogeneous'/></shape></scene>",
+        messages);
+    CHECK(messages.left_out().size() == 2); // in an opaque shape, and outside of one
+}
+
+TEST_CASE("glTF: volume scatter is a medium whose extinction is the volume's attenuation") {
+    const std::string volume = R"("KHR_materials_volume":{"thicknessFactor":1,"attenuationColor":[0.5,0.25,1],)"
+                               R"("attenuationDistance":0.1})";
+    const std::string scatter =
+        R"("KHR_materials_volume_scatter":{"multiscatterColor":[0.5,1,1],"scatterAnisotropy":0.3})";
+    const Material milk =
+        gltf_material(R"("KHR_materials_transmission":{"transmissionFactor":1},)" + volume + "," + scatter);
+    CHECK(milk.kind == MaterialKind::Dielectric);
+    CHECK(!milk.absorbs()); // the medium does
+    check_rates(milk.medium.sigma_t(), {6.93147f, 13.86294f, 0});
+    CHECK(milk.medium.sigma_s.r == doctest::Approx(6.93147 * 0.91171).epsilon(1e-3));
+    CHECK(milk.medium.sigma_a.g == doctest::Approx(0).epsilon(1e-3));
+    CHECK(milk.medium.g == 0.3f);
+    const Material wax =
+        gltf_material(R"("KHR_materials_diffuse_transmission":{"diffuseTransmissionFactor":1},"KHR_materials_volume":)"
+                      R"({"attenuationColor":[0.5,0.25,1],"attenuationDistance":0.1},)" +
+                      scatter);
+    CHECK(wax.encloses());
+    CHECK(wax.medium.scatters());
+    CHECK(!gltf_material(R"("KHR_materials_transmission":{"transmissionFactor":1},)" + volume).medium.is_there());
+}
