@@ -72,7 +72,7 @@ void check_arrays(std::span<const OutArray> arrays, const RenderSettings& settin
     for (const OutArray& array : arrays) {
         const std::optional<std::size_t> channels = channels_of(array.name, settings);
         if (!channels) throw Error(ErrorCode::BadInput, "out", array.name, "the picture has no such array");
-        const std::size_t shape[] = {settings.height, settings.width, *channels};
+        const std::size_t shape[] = {settings.window().height, settings.window().width, *channels};
         const std::span expected(shape, *channels > 1 ? 3 : 2);
         const bool is_ids = array.name == "ids";
         if (array.memory != nullptr && (is_ids ? array.is_uint : array.is_float) &&

@@ -115,7 +115,8 @@ std::vector<double> intrinsics_of(const PictureRecord& record) {
     const Intrinsics k = camera.intrinsics.value_or(
         Intrinsics{focal, focal, 0.5 * width, 0.5 * height, record.settings.width, record.settings.height});
     const double x = width / k.width, y = height / k.height;
-    return {x * k.focal_x, 0, x * k.centre_x, 0, y * k.focal_y, y * k.centre_y, 0, 0, 1};
+    const PixelWindow window = record.settings.window(); // pixels of a crop count from its own corner
+    return {x * k.focal_x, 0, x * k.centre_x - window.x, 0, y * k.focal_y, y * k.centre_y - window.y, 0, 0, 1};
 }
 
 nb::bytes png_of(std::span<const Image> pictures, uint32_t columns) {

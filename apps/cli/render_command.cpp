@@ -43,25 +43,29 @@ void report_start(const RenderFlags& flags, const RenderSetup& ready, Reporter& 
     const Scene& scene = ready.scene();
     const PreparedScene& prepared = ready.prepared();
     const RenderSettings& settings = ready.settings;
+    const PixelWindow window = settings.window();
     const std::string device = ready.device_name();
     const bool has_more = has_ground(scene); // counts the file's contents, without defaults
     const uint64_t triangles = prepared.triangles - (has_more ? scene.meshes.back().triangle_count() : 0);
     const uint64_t instances = scene.instances.size() - (has_more ? 1 : 0);
     const uint64_t textures = texture_bytes(scene);
-    reporter.print(fmt::format("{}: {}, {}, {}; loaded in {:.2f} s, trees in {:.2f} s; "
-                               "rendering {}x{}, {} spp{} on {}, using {:.0f} MiB{}",
-                               flags.scene.scene, counted(triangles, "triangle"), counted(instances, "instance"),
-                               counted(prepared.lights.count(), "light"), ready.load_s, prepared.build_seconds,
-                               settings.width, settings.height, settings.range().count(),
-                               flags.real_time ? " per frame, reconstructed," : "", device, mebibytes(ready.bytes),
-                               textures > 0 ? fmt::format(" with {:.1f} MiB of textures", mebibytes(textures)) : ""));
+    reporter.print(fmt::format(
+        "{}: {}, {}, {}; loaded in {:.2f} s, trees in {:.2f} s; "
+        "rendering {}x{}{}, {} spp{} on {}, using {:.0f} MiB{}",
+        flags.scene.scene, counted(triangles, "triangle"), counted(instances, "instance"),
+        counted(prepared.lights.count(), "light"), ready.load_s, prepared.build_seconds, window.width, window.height,
+        settings.crop ? fmt::format(" at {},{} of {}x{}", window.x, window.y, settings.width, settings.height) : "",
+        settings.range().count(), flags.real_time ? " per frame, reconstructed," : "", device, mebibytes(ready.bytes),
+        textures > 0 ? fmt::format(" with {:.1f} MiB of textures", mebibytes(textures)) : ""));
     reporter.event(fmt::format(
         R"({{"event":"scene","scene":{},"triangles":{},"instances":{},"lights":{},"texture_bytes":{},"load_seconds":{:.6f},"build_seconds":{:.6f}}})",
         json_string(flags.scene.scene), triangles, instances, prepared.lights.count(), textures, ready.load_s,
         prepared.build_seconds));
-    reporter.event(
-        fmt::format(R"({{"event":"picture","width":{},"height":{},"spp":{},"device":{},"predicted_bytes":{}}})",
-                    settings.width, settings.height, settings.range().count(), json_string(device), ready.bytes));
+    reporter.event(fmt::format(
+        R"({{"event":"picture","width":{},"height":{},"crop":{},"spp":{},"device":{},"predicted_bytes":{}}})",
+        settings.width, settings.height,
+        settings.crop ? fmt::format("[{},{},{},{}]", window.x, window.y, window.width, window.height) : "null",
+        settings.range().count(), json_string(device), ready.bytes));
 }
 
 /// Names the part that is rendered, as "part 2/3"; empty for a whole picture.

@@ -47,10 +47,22 @@ constexpr std::size_t kMaxRowBytes = std::size_t(1) << 30;   // OpenEXR counts t
 
 constexpr std::size_t row_bytes(uint32_t width, std::size_t channels) { return sizeof(float) * width * channels; }
 
+Imath::Box2i box_of(uint32_t x, uint32_t y, uint32_t width, uint32_t height) {
+    const Imath::V2i corner(static_cast<int>(x), static_cast<int>(y));
+    return {corner, corner + Imath::V2i(static_cast<int>(width) - 1, static_cast<int>(height) - 1)};
+}
+
+Imf::Header header_of(const Image& picture, const ExrPlace& place) {
+    if (place.is_whole()) return {static_cast<int>(picture.width), static_cast<int>(picture.height)};
+    return {box_of(0, 0, place.whole_width, place.whole_height),
+            box_of(place.x, place.y, picture.width, picture.height)};
+}
+
 class Builder {
 public:
-    Builder(uint32_t width, uint32_t height, std::size_t channels)
-        : header(static_cast<int>(width), static_cast<int>(height)), width_(width) {
+    Builder(const Image& picture, std::size_t channels, const ExrPlace& place)
+        : header(header_of(picture, place)), width_(picture.width), before_(std::size_t{place.y} * width_ + place.x) {
+        const uint32_t width = picture.width;
         const bool is_wide = 16 * row_bytes(width, channels) > kMaxChunkBytes;
         header.compression() = is_wide ? Imf::ZIPS_COMPRESSION : Imf::ZIP_COMPRESSION;
     }
@@ -59,15 +71,17 @@ public:
     void add(const std::string& name, Imf::PixelType type, const void* first, std::size_t stride) {
         PERTEV_CHECK(header.channels().findChannel(name) == nullptr); // two layers of one name
         header.channels().insert(name, Imf::Channel(type));
-        char* base = const_cast<char*>(static_cast<const char*>(first));
-        frame.insert(name, Imf::Slice(type, base, stride, stride * width_));
+        // OpenEXR wants the address that pixel (0, 0) of the display would have, which may lie outside.
+        const auto base = reinterpret_cast<intptr_t>(first) - static_cast<intptr_t>(stride * before_);
+        // NOLINTNEXTLINE(performance-no-int-to-ptr): the library's interface requires it
+        frame.insert(name, Imf::Slice(type, reinterpret_cast<char*>(base), stride, stride * width_));
     }
 
     Imf::Header header;
     Imf::FrameBuffer frame;
 
 private:
-    std::size_t width_;
+    std::size_t width_, before_; // pixels of a row, and from the display's first pixel to the picture's
 };
 
 void add_metadata(Imf::Header& header, const ExrMetadata& metadata) {
@@ -95,7 +109,8 @@ void check_exr_row(uint32_t width, std::size_t channels) {
                             channels, width, kMaxRowBytes / row_bytes(width, 1)));
 }
 
-std::vector<std::byte> encode_exr(const Image& picture, std::span<const ExrLayer> layers, const ExrMetadata& metadata) {
+std::vector<std::byte> encode_exr(const Image& picture, std::span<const ExrLayer> layers, const ExrMetadata& metadata,
+                                  const ExrPlace& place) {
     const std::size_t pixels = std::size_t(picture.width) * picture.height;
     PERTEV_CHECK(pixels > 0 && picture.channels >= 1 && picture.channels <= 4);
     PERTEV_CHECK(picture.pixels.size() == pixels * picture.channels);
@@ -103,7 +118,7 @@ std::vector<std::byte> encode_exr(const Image& picture, std::span<const ExrLayer
     std::size_t channels = picture.channels;
     for (const ExrLayer& layer : layers) channels += layer.channels.size();
     PERTEV_CHECK(row_bytes(picture.width, channels) <= kMaxRowBytes);
-    Builder builder(picture.width, picture.height, channels);
+    Builder builder(picture, channels, place);
     constexpr const char* kNames[4][4] = {{"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
     for (uint32_t c = 0; c < picture.channels; ++c)
         builder.add(kNames[picture.channels - 1][c], Imf::FLOAT, picture.pixels.data() + c, picture.channels * 4);
@@ -131,8 +146,8 @@ std::vector<std::byte> encode_exr(const Image& picture, std::span<const ExrLayer
 }
 
 void write_exr(const std::filesystem::path& path, const Image& picture, std::span<const ExrLayer> layers,
-               const ExrMetadata& metadata) {
-    write_file_atomically(path, encode_exr(picture, layers, metadata));
+               const ExrMetadata& metadata, const ExrPlace& place) {
+    write_file_atomically(path, encode_exr(picture, layers, metadata, place));
 }
 
 } // namespace pertev

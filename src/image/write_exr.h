@@ -25,16 +25,24 @@ struct ExrLayer {
     std::variant<std::vector<float>, std::vector<uint32_t>> values;
 };
 
+/// The place of a picture that is a part of another one: the data window is inside the display window. All zero: the
+/// picture is whole.
+struct ExrPlace {
+    uint32_t x = 0, y = 0;                      // upper left pixel of the picture in the whole one
+    uint32_t whole_width = 0, whole_height = 0; // size of the whole picture
+    bool is_whole() const { return whole_width == 0; }
+};
+
 /// Throws Error(OverLimit) if a row with this number of channels exceeds the limit of EXR, 1 GiB.
 void check_exr_row(uint32_t width, std::size_t channels);
 
 /// The file's bytes. Channels of `picture`: 1 Y, 2 Y A, 3 R G B, 4 R G B A (colour premultiplied by alpha, as in
 /// EXR). Metadata with names of the format's own attributes ("channels", ...) is a programmer's mistake.
 std::vector<std::byte> encode_exr(const Image& picture, std::span<const ExrLayer> layers = {},
-                                  const ExrMetadata& metadata = {});
+                                  const ExrMetadata& metadata = {}, const ExrPlace& place = {});
 
 /// Replaces `path` atomically. Throws Error(FileWrite).
 void write_exr(const std::filesystem::path& path, const Image& picture, std::span<const ExrLayer> layers = {},
-               const ExrMetadata& metadata = {});
+               const ExrMetadata& metadata = {}, const ExrPlace& place = {});
 
 } // namespace pertev

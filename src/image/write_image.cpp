@@ -32,7 +32,7 @@ void check_image_output(const std::filesystem::path& path, uint32_t width, uint3
 void write_image(const std::filesystem::path& path, const Image& linear, const WriteImageOptions& options) {
     switch (image_format_for(path)) {
     case ImageFormat::Exr:
-        return write_exr(path, linear, options.layers, options.metadata);
+        return write_exr(path, linear, options.layers, options.metadata, options.place);
     case ImageFormat::Hdr:
         return write_hdr(path, linear);
     case ImageFormat::Png:

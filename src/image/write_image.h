@@ -18,6 +18,7 @@ struct WriteImageOptions {
     bool transparent = false;              // keeps alpha in PNG; EXR keeps what the picture has
     std::span<const ExrLayer> layers = {}; // EXR only
     ExrMetadata metadata = {};             // EXR only
+    ExrPlace place = {};                   // EXR only
 };
 
 /// The format of a file to be written, by its case-insensitive extension: .exr .png .jpg .jpeg .hdr. Throws

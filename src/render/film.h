@@ -69,6 +69,7 @@ public:
     uint32_t aovs() const { return aovs_; }
     LayersAt layers_at() const { return layers_at_; }
     const std::vector<std::string>& light_layers() const { return sums_->light_layers(); }
+    const PixelWindow& window() const { return window_; }
     void clear();
 
     /// Makes the film hold this window, which has its size, of a larger picture. Each pixel gets the bytes that it has

@@ -23,7 +23,7 @@ constexpr uint32_t kFirstAtOnce = 16; // samples of a first pass
 uint32_t next_pass(const RenderSettings& settings, uint32_t left, uint32_t done, double seconds) {
     if (settings.pass_samples > 0) return std::min(left, settings.pass_samples);
     const FilmPart part = settings.part();
-    const uint64_t pixels = uint64_t(settings.width) * (part.end_row - part.first_row);
+    const uint64_t pixels = uint64_t(settings.window().width) * (part.end_row - part.first_row);
     const uint32_t at_once =
         settings.time_limit_s > 0 ? 1 : std::min(samples_at_once(settings, pixels), std::max(done, kFirstAtOnce));
     if (done == 0) return std::min(left, at_once);

@@ -17,6 +17,7 @@ RenderSettings meter_settings(const RenderSettings& picture) {
     RenderSettings meter = picture;
     meter.width = static_cast<uint32_t>(to_int(scale * width + 0.5f, 1, kMeterPixels));
     meter.height = static_cast<uint32_t>(to_int(scale * height + 0.5f, 1, kMeterPixels));
+    meter.crop.reset(); // a crop is shown as the whole picture is
     meter.samples = kMeterSamples;
     meter.filter = PixelFilter::Box;
     meter.filter_radius = 0;

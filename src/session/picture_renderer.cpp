@@ -9,12 +9,15 @@
 namespace pertev {
 
 bool is_film_of(const Film& film, const RenderSettings& settings) {
-    return film.width() == settings.width && film.height() == settings.height && film.aovs() == settings.aovs &&
+    return film.window() == settings.window() && film.aovs() == settings.aovs &&
            film.layers_at() == settings.layers_at && film.light_layers() == light_layers_of(settings);
 }
 
 Film make_film(Queue& queue, const RenderSettings& settings) {
-    return {queue, settings.width, settings.height, settings.aovs, light_layers_of(settings), settings.layers_at};
+    const PixelWindow window = settings.window();
+    Film film(queue, window.width, window.height, settings.aovs, light_layers_of(settings), settings.layers_at);
+    film.set_window(window);
+    return film;
 }
 
 Film& fit_film(Queue& queue, std::optional<Film>& film, const RenderSettings& settings, const AddTargets& add) {

@@ -14,7 +14,7 @@ namespace {
 /// Bytes of the finished picture and its layers.
 std::size_t result_bytes(const RenderSettings& settings) {
     const std::size_t channels = film_channel_count(settings.aovs) + 3 * light_layers_of(settings).size();
-    return std::size_t(settings.width) * settings.height * channels * sizeof(float);
+    return std::size_t{settings.window().count()} * channels * sizeof(float);
 }
 
 /// Amount in MiB, with enough digits to distinguish it from 0 and from `other`.
@@ -39,8 +39,9 @@ std::string limit_text(std::size_t bytes, const RenderSettings& settings, const 
 std::string advice(const RenderSettings& settings, bool is_cuda, uint64_t textures) {
     const std::vector<std::string> layer_names = light_layers_of(settings);
     const std::size_t layers = layer_names.size();
+    const PixelWindow window = settings.window();
     const std::size_t film =
-        Film::predicted_bytes(settings.width, settings.height, settings.aovs, layer_names, settings.layers_at);
+        Film::predicted_bytes(window.width, window.height, settings.aovs, layer_names, settings.layers_at);
     const WorkSize size = {
         .width = settings.width, .height = settings.height, .samples = settings.samples, .traverses_on_host = !is_cuda};
     const std::size_t own = predicted_bytes(settings, size, is_cuda);
@@ -51,10 +52,9 @@ std::string advice(const RenderSettings& settings, bool is_cuda, uint64_t textur
         const auto [what, less] = memory(settings, size);
         return fmt::format("{} take {}; {} takes less", what, amount(own), less);
     }
-    return fmt::format("the film of {}x{} pixels{} takes {}: {} smaller `size`{} takes less", settings.width,
-                       settings.height, layers > 0 ? " and " + counted(layers, "layer") + " of `lpe`" : "",
-                       amount(film), layers > 0 ? "fewer of them or a" : "a",
-                       settings.aovs != 0 ? ", or fewer `aov`," : "");
+    return fmt::format("the film of {}x{} pixels{} takes {}: {} smaller `size`{} takes less", window.width,
+                       window.height, layers > 0 ? " and " + counted(layers, "layer") + " of `lpe`" : "", amount(film),
+                       layers > 0 ? "fewer of them or a" : "a", settings.aovs != 0 ? ", or fewer `aov`," : "");
 }
 
 } // namespace

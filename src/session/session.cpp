@@ -1,6 +1,7 @@
 #include "session/session.h"
 
 #include "session/check_integrator.h"
+#include "session/crop.h"
 
 namespace pertev {
 
@@ -49,6 +50,8 @@ void Session::cut() {
     frames_.cut();
     film_.restart();
 }
+
+Image Session::motion() { return pixels_in(frames_.motion(camera(), settings()), settings().window()); }
 
 RenderResult Session::result() {
     RenderResult result = film_.result();

@@ -96,7 +96,7 @@ public:
     RenderResult frame_result() { return frames_.result(camera(), settings()); }
     /// Makes the present scene and camera the reference of motion vectors (kAovMotion).
     void store_previous() { frames_.store_previous(camera()); }
-    Image motion() { return frames_.motion(camera(), settings()); }
+    Image motion();
 
     /// Renders another picture of the scene, of samples from `first` on. The film stays as it is.
     RenderResult render_separately(const Camera& camera, const RenderSettings& settings, uint32_t first = 0);

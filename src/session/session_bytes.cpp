@@ -110,10 +110,11 @@ private:
 std::size_t predicted_bytes(const PreparedScene& scene, const RenderSettings& settings, bool on_cuda) {
     Queue queue = Queue::make_dry_run(on_cuda);
     const uint32_t width = settings.width, height = settings.height;
+    const PixelWindow window = settings.window();
     const Tracing tracing(queue, scene, settings, work_of_picture(scene, settings));
     const Film film = make_film(queue, settings);
     CentreLayers centres(queue);
-    if (has_centres(settings)) centres.reserve(uint64_t(width) * height, scene.motions != nullptr);
+    if (has_centres(settings)) centres.reserve(window.count(), scene.motions != nullptr);
     const DenoisingMemory denoising(queue, scene, settings);
     std::optional<MotionVectorMemory> motion;
     Buffer<InstanceView> places_before;

@@ -89,8 +89,10 @@ enum class SettingOrigin : uint8_t {
 
 struct PictureOptions {
     SceneOptions scene;
-    RenderSettings render; // except for size, aovs, light_paths, irradiance and heights, which are the fields below
+    RenderSettings
+        render; // except for size, crop, aovs, light_paths, irradiance and heights, which are the fields below
     std::optional<PictureSize> size;
+    std::vector<double> crop; // X,Y,W,H
     std::optional<ToneMap> tone_map;
     std::string exposure;                                         // auto, or stops
     float iso = 0, f_number = 0, shutter_s = 0;                   // a physical exposure

@@ -31,6 +31,12 @@ std::vector<Setting> picture_settings() {
         row("size", "Picture", "WIDTHxHEIGHT", FIELD(size), "The width and height of the picture in pixels.",
             Otherwise{"1280x720, or the shape of the scene's camera"}, On{kLooking | kLab | kBenchPictures},
             Mark::Common, Changes::Picture),
+        row("crop", "Picture", "X,Y,W,H", FIELD(crop),
+            "The pixels that are rendered, with their bytes in the whole picture: left column and upper row, from 0, "
+            "width "
+            "and height.",
+            Counts{{4}}, Unit{"pixels"}, Otherwise{"all"}, Excludes{"rows denoise!=none real_time"}, Recorded::AsUsed,
+            Changes::Picture),
         row("tone_map", "Picture", "NAME", FIELD(tone_map), "The tone mapping of PNG and JPEG output.",
             Otherwise{"agx"}, On{kShown | kMerge}, In{kToned}, Mark::Common, Recorded::AsUsed,
             Panel{"Tone map", PanelGroup::Picture}, Changes::Picture),

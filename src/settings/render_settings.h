@@ -22,10 +22,17 @@ enum class Denoise : uint8_t {
     Oidn, // denoise/oidn/oidn_denoiser.h, outside the one-picture law
 };
 
+/// A part of a picture: its upper left pixel, from 0, and its size in pixels.
+struct PictureCrop {
+    uint32_t x = 0, y = 0, width = 0, height = 0;
+    bool operator==(const PictureCrop&) const = default;
+};
+
 /// The integrator with its settings (IntegratorSettings), and further settings of a picture.
 struct RenderSettings : IntegratorSettings {
     // Besides scene, camera, light and number of samples, the picture depends on these.
-    uint32_t width = 1280, height = 720;
+    uint32_t width = 1280, height = 720; // pixels of the whole picture
+    std::optional<PictureCrop> crop;     // the pixels that are rendered; none: all
     PixelFilter filter = PixelFilter::BlackmanHarris;
     float filter_radius = 0;                // pixels; 0 = the filter's default
     uint32_t aovs = 0;                      // AovBits
@@ -49,8 +56,13 @@ struct RenderSettings : IntegratorSettings {
     bool time_kinds = false;             // fills RenderStats::kind_seconds, which slows the wavefront down
 
     SampleRange range() const { return {first_sample, samples}; }
-    /// The part of the picture that is rendered.
-    FilmPart part() const { return {first_row, end_row == 0 ? height : end_row, range()}; }
+    /// The window of the picture that the film holds.
+    PixelWindow window() const {
+        if (!crop) return {.width = width, .height = height};
+        return {width, crop->x, crop->y, crop->width, crop->height};
+    }
+    /// The part of the film that is rendered.
+    FilmPart part() const { return {first_row, end_row == 0 ? window().height : end_row, range()}; }
 };
 
 /// Returns the names of the requested layers of light paths.

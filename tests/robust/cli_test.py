@@ -13,7 +13,7 @@ from cli_run import FLOOR, PROGRAM, SANITIZED, UNMETERED, CliTest, as_flag, gltf
 
 FLAGS = {
     "merge": "--denoise --exposure --tone-map --output -o --partial --progress --quiet -q --json",
-    "render": "--output -o --progress --rows --part --part-base --samples --checkpoint --checkpoint-every --records --camera-pose --convention --intrinsics --intrinsics-size --lens --distortion --camera-from --cameras --layers-at --frame-denoiser "
+    "render": "--output -o --progress --crop --rows --part --part-base --samples --checkpoint --checkpoint-every --records --camera-pose --convention --intrinsics --intrinsics-size --lens --distortion --camera-from --cameras --layers-at --frame-denoiser "
               "--allow-path --up-axis --unit --quiet -q --json --strict --camera --eye --target --up --fov --projection "
               "--view-height --aperture --focus --environment --environment-rotation --environment-scale --medium "
               "--two-sided-lights --show-back-faces --size --tone-map --exposure --transparent --aov --spp --time-limit --denoise "

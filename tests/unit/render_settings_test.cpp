@@ -33,3 +33,17 @@ TEST_CASE("a scene is prepared for the tracers of a session with these settings"
     CHECK(prepare_options(settings, false).tracers == settings.tracers);
     CHECK(aspect_of(3, 2) == 1.5f);
 }
+
+TEST_CASE("another crop is another picture, and its film is a window of the whole") {
+    RenderSettings whole, crop;
+    whole.width = crop.width = 40, whole.height = crop.height = 30;
+    CHECK(whole.window() == PixelWindow{.width = 40, .height = 30});
+    crop.crop = PictureCrop{5, 6, 7, 8};
+    CHECK(crop.window() == PixelWindow{40, 5, 6, 7, 8});
+    CHECK(crop.part().end_row == 8);
+    CHECK_FALSE(same_picture(whole, crop));
+    RenderSettings other = crop;
+    CHECK(same_picture(other, crop));
+    other.crop->y = 5;
+    CHECK_FALSE(same_picture(other, crop));
+}

@@ -13,7 +13,7 @@ namespace {
 constexpr uint32_t kFirstSlice = 16; // samples of a first slice at most
 
 uint32_t first_count(const RenderSettings& settings) {
-    const uint64_t pixels = uint64_t(settings.width) * settings.height;
+    const uint64_t pixels = settings.window().count();
     return settings.time_limit_s > 0 ? 1 : std::min(samples_at_once(settings, pixels), kFirstSlice);
 }
 

@@ -116,6 +116,32 @@ std::pair<uint32_t, uint32_t> read_range(const JsonValue& value, uint32_t most) 
     return {first, end};
 }
 
+/// The place of a crop in the whole picture; empty if the film is of the whole.
+std::string json_of_place(const ExrPlace& place) {
+    if (place.is_whole()) return "";
+    return fmt::format(R"(,"crop_at":[{},{}],"whole_size":[{},{}])", place.x, place.y, place.whole_width,
+                       place.whole_height);
+}
+
+/// Reads two numbers.
+std::pair<uint32_t, uint32_t> read_pair(const JsonValue& value, uint32_t least) {
+    const std::vector<JsonValue> numbers = value.elements();
+    if (numbers.size() != 2) throw value.error("expected two numbers");
+    return {read_number(numbers[0], least, kMaxImageSide), read_number(numbers[1], least, kMaxImageSide)};
+}
+
+/// Reads where a film of this size is in its whole picture.
+ExrPlace read_place(const JsonValue& root, uint32_t width, uint32_t height) {
+    const auto at = root.find("crop_at");
+    if (!at) return {};
+    ExrPlace place;
+    std::tie(place.x, place.y) = read_pair(*at, 0);
+    std::tie(place.whole_width, place.whole_height) = read_pair(root.at("whole_size"), 1);
+    if (uint64_t{place.x} + width > place.whole_width || uint64_t{place.y} + height > place.whole_height)
+        throw at->error("the film is not inside the whole picture");
+    return place;
+}
+
 /// The targets as other readers need them.
 std::string json_of_targets(const FilmHeader& header) {
     Queue queue = Queue::make_dry_run(false);
@@ -178,10 +204,10 @@ std::string json_of(const FilmHeader& header) {
         if ((header.aovs & group.bit) != 0) layers.emplace_back(group.name);
     const PictureFacts& facts = header.facts;
     return fmt::format(
-        R"({{"settings":{{{}}},"size":[{},{}],"rows":[{},{}],"samples":[{},{}],"spp":{},"layers":{},"light_layers":{},"layers_at":"{}"{},"targets":{},)"
+        R"({{"settings":{{{}}},"size":[{},{}]{},"rows":[{},{}],"samples":[{},{}],"spp":{},"layers":{},"light_layers":{},"layers_at":"{}"{},"targets":{},)"
         R"("metadata":{},"display_metadata":{},"origin":{},"display":{},"transparent":{},"rays":{{"camera":{},"bounce":{},"shadow":{}}},"seconds":{}}})",
-        fmt::join(settings, ","), header.width, header.height, header.part.first_row, header.part.end_row,
-        header.part.samples.first, header.part.samples.end, header.spp, json_strings(layers),
+        fmt::join(settings, ","), header.width, header.height, json_of_place(facts.place), header.part.first_row,
+        header.part.end_row, header.part.samples.first, header.part.samples.end, header.spp, json_strings(layers),
         json_strings(header.light_layers), name_of(header.layers_at),
         header.denoise == Denoise::None ? "" : fmt::format(R"(,"denoise":"{}")", name_of(header.denoise)),
         json_of_targets(header), json_of_metadata(facts.settings), json_of_metadata(facts.shown),
@@ -193,9 +219,7 @@ FilmHeader read_film_header(const JsonValue& root) {
     FilmHeader header;
     for (const auto& [name, value] : root.at("settings").members())
         header.settings.emplace_back(name, value.to_string());
-    const std::vector<JsonValue> size = root.at("size").elements();
-    if (size.size() != 2) throw root.at("size").error("expected two numbers");
-    header.width = read_number(size[0], 1, kMaxImageSide), header.height = read_number(size[1], 1, kMaxImageSide);
+    std::tie(header.width, header.height) = read_pair(root.at("size"), 1);
     if (uint64_t(header.width) * header.height > kMaxImagePixels)
         throw Error(ErrorCode::OverLimit, root.at("size").location(), "too many pixels");
     std::tie(header.part.first_row, header.part.end_row) = read_range(root.at("rows"), header.height);
@@ -217,7 +241,8 @@ FilmHeader read_film_header(const JsonValue& root) {
                     .shown = read_metadata(root.at("display_metadata")),
                     .origin = read_metadata(root.at("origin")),
                     .display = std::nullopt,
-                    .transparent = root.at("transparent").to_bool()};
+                    .transparent = root.at("transparent").to_bool(),
+                    .place = read_place(root, header.width, header.height)};
     if (const auto display = root.find("display")) header.facts.display = read_display(*display);
     const JsonValue rays = root.at("rays");
     header.rays = {rays.at("camera").to_unsigned(), rays.at("bounce").to_unsigned(), rays.at("shadow").to_unsigned()};

@@ -9,6 +9,7 @@
 #include "image/write_exr.h"
 #include "render/light_paths/light_path_layers.h"
 #include "session/check_integrator.h"
+#include "session/crop.h"
 #include "session/height_maps.h"
 #include "session/opening/choose_camera.h"
 #include "session/sample_range.h"
@@ -60,6 +61,7 @@ void set_size(const PictureOptions& options, const Scene& scene, RenderSettings&
     } else {
         set_default_size(settings, scene_camera(camera.camera, scene));
     }
+    set_crop(options, settings);
 }
 
 RenderSettings render_settings(const PictureOptions& options, const Scene& scene) {
@@ -78,7 +80,8 @@ RenderSettings render_settings(const PictureOptions& options, const Scene& scene
                     fmt::format("the picture has the rows 0 to {}", settings.height - 1));
     }
     const std::size_t of_ids = (settings.aovs & kAovIds) != 0 ? 3 : 0;
-    check_exr_row(settings.width, film_channel_count(settings.aovs) + of_ids + 3 * light_layers_of(settings).size());
+    check_exr_row(settings.window().width,
+                  film_channel_count(settings.aovs) + of_ids + 3 * light_layers_of(settings).size());
     return settings;
 }
 

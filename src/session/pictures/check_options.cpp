@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "denoise/oidn/oidn_library.h"
 #include "session/check_integrator.h"
+#include "session/crop.h"
 #include "session/frame_range.h"
 #include "session/opening/open_scene.h"
 #include "session/opening/picture_settings.h"
@@ -31,6 +32,18 @@ void check_solution(const std::string& file) {
     throw Error(ErrorCode::BadInput, "solution", file, "the file does not exist");
 }
 
+/// Refuses a crop that no picture has, or that the requested size does not have.
+void check_crop(const PictureOptions& options) {
+    RenderSettings settings;
+    settings.width = settings.height = UINT32_MAX;
+    if (options.size) settings.width = options.size->width, settings.height = options.size->height;
+    set_crop(options, settings);
+    if (settings.crop && !options.false_color.empty() && options.false_color_range.empty()) {
+        throw Error(ErrorCode::BadInput, "false_color", options.false_color,
+                    "a crop has the whole picture's scale only if that is stated; set `false_color_range`");
+    }
+}
+
 /// Refuses a part without all samples of its pixels to a denoiser that adds floats up in the samples' order.
 void check_denoised_part(const PictureOptions& options) {
     if (adds_exactly(options.render.denoise)) return;
@@ -47,6 +60,7 @@ void check_options(const PictureOptions& options, uint32_t verbs) {
     frame_range(options);
     sample_range(options);
     row_range(options);
+    check_crop(options);
     check_denoised_part(options);
     check_real_time(options);
     if (options.reconstruction.used().denoiser == FrameDenoiser::Oidn) OidnLibrary::find("frame_denoiser");

@@ -12,6 +12,7 @@
 #include "base/file_extension.h"
 #include "base/write_file_atomically.h"
 #include "image/write_image.h"
+#include "session/crop.h"
 #include "session/frame_range.h"
 #include "settings/setting_table.h"
 #include "settings/value_names.h"
@@ -122,7 +123,8 @@ void note_number_signs(const std::string& output, Sink& sink) {
 
 void check_outputs(const PictureOptions& options, std::span<const std::string> outputs, Sink& sink) {
     const std::optional<FrameRange> frames = frame_range(options);
-    const PictureSize size = options.size.value_or(PictureSize{1280, 720}); // without one it is small enough, too
+    PictureSize size = options.size.value_or(PictureSize{1280, 720}); // without one it is small enough, too
+    if (const auto crop = parse_crop(options)) size = {crop->width, crop->height};
     uint32_t written = 0;
     for (const std::string& output : outputs) {
         if (frames && !names_frames(output)) {

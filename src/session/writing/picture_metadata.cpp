@@ -78,6 +78,8 @@ PictureOptions used_options(const PictureRecord& record) {
     if (const auto& shutter = record.scene.shutter) {
         used.shutter = fmt::format("{},{}", shutter->open_s, shutter->close_s);
     }
+    if (const auto& crop = settings.crop)
+        used.crop = {double(crop->x), double(crop->y), double(crop->width), double(crop->height)};
     if (settings.light_paths) {
         for (const LightPathExpression& layer : settings.light_paths->expressions) {
             used.lpe.push_back(fmt::format("{}={}", layer.name, layer.text));
@@ -213,6 +215,15 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
     return metadata;
 }
 
+namespace {
+
+ExrPlace place_of(const RenderSettings& settings) {
+    if (!settings.crop) return {};
+    return {settings.crop->x, settings.crop->y, settings.width, settings.height};
+}
+
+} // namespace
+
 std::optional<float> Display::metered_stops(ToneMap curve) const {
     const auto found = std::ranges::find(metered, curve, &std::pair<ToneMap, float>::first);
     return found == metered.end() ? std::nullopt : std::optional(found->second);
@@ -225,7 +236,8 @@ PictureFacts facts_of(const PictureRecord& record, std::span<const PixelIds> ids
                           .shown = settings_metadata(record),
                           .origin = {},
                           .display = record.display,
-                          .transparent = record.settings.transparent};
+                          .transparent = record.settings.transparent,
+                          .place = place_of(record.settings)};
     std::erase_if(facts.shown, [&](const auto& entry) {
         return std::ranges::find(facts.settings, entry.first, &ExrMetadata::value_type::first) != facts.settings.end();
     });

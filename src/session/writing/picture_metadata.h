@@ -10,6 +10,7 @@
 #include "denoise/reconstruction_settings.h"
 #include "image/exr_file.h"
 #include "image/tone_map.h"
+#include "image/write_exr.h"
 #include "restir/restir_settings.h"
 #include "session/opening/choose_camera.h"
 #include "session/opening/open_scene.h"
@@ -111,6 +112,7 @@ struct PictureFacts {
     ExrMetadata origin;             // device, messages, where settings came from; names of ids
     std::optional<Display> display; // none: the picture is not displayed
     bool transparent = false;
+    ExrPlace place; // where a crop lies in the whole picture
 };
 /// `ids` are those of the picture; none without a layer of ids.
 PictureFacts facts_of(const PictureRecord& record, std::span<const PixelIds> ids);

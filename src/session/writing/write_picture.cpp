@@ -100,7 +100,7 @@ std::vector<std::byte> encode_picture(ImageFormat format, const PictureRecord& r
     PERTEV_CHECK(format == ImageFormat::Exr);
     const PictureFacts facts = facts_of(record, result.ids);
     return encode_exr(beauty_of(result), take_layers(result),
-                      metadata_of(facts, result, picture_hash(result.picture).hex()));
+                      metadata_of(facts, result, picture_hash(result.picture).hex()), facts.place);
 }
 
 WrittenPicture write_picture(std::span<const std::string> paths, const PictureRecord& record, RenderResult& result) {
@@ -118,7 +118,8 @@ WrittenPicture write_picture(std::span<const std::string> paths, const PictureFa
                                        .exposure_stops = display.exposure_stops,
                                        .transparent = facts.transparent,
                                        .layers = layers,
-                                       .metadata = metadata_of(facts, result, written.hash)};
+                                       .metadata = metadata_of(facts, result, written.hash),
+                                       .place = facts.place};
     for (const std::string& path : paths) {
         if (is_film_name(path)) continue;
         WrittenFile& file = written.files.emplace_back(WrittenFile{path, ""});
