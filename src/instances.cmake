@@ -79,6 +79,16 @@ pertev_launches(render/film_stages.cu
     AddFrames
     ResolveFilm
     DisplayFilm)
+pertev_launches(render/sample_layers/sample_stages.cu
+  render/sample_layers/first_hits.h render/sample_layers/variance_target.h
+  STAGES MakeSampleRays
+    AddFirstHits
+    CountSamples
+    AddMattes
+    AddMoments
+    AddSampleCounts
+    AddUvSums
+    TakeMoments)
 pertev_launches(render/raster/tile_lists.cu
   render/raster/find_in_tile.h
   STAGES BinTriangles

@@ -70,6 +70,8 @@ public:
     LayersAt layers_at() const { return layers_at_; }
     const std::vector<std::string>& light_layers() const { return sums_->light_layers(); }
     const PixelWindow& window() const { return window_; }
+    /// The first row of view().
+    uint32_t first_row() const { return first_row_; }
     void clear();
 
     /// Makes the film hold this window, which has its size, of a larger picture. Each pixel gets the bytes that it has

@@ -26,6 +26,7 @@ void check_batch(const CameraBatch& batch, const RenderSettings& settings) {
     refuse(settings.light_paths != nullptr, "lpe", "", "batches of pictures have no layers of light paths");
     refuse(settings.irradiance, "false_color", "illuminance", "batches of pictures show radiance");
     refuse((settings.aovs & kAovMotion) != 0, "aov", "motion", "pictures of a batch have no earlier frame");
+    refuse(settings.sample_layers != 0, "aov", "", "batches of pictures have none of uv, samples, variance, mattes");
     refuse(settings.crop.has_value(), "crop", "", "batches of pictures are whole; crop their arrays");
     refuse(settings.time_limit_s > 0, "time_limit", "", "pictures of a batch would end at different samples");
     refuse(settings.samples == 0 && !has_centres(settings), "spp", "0",

@@ -6,6 +6,7 @@
 #include "base/limits.h"
 #include "base/stopwatch.h"
 #include "render/hidden_back_share.h"
+#include "render/sample_layers/variance_target.h"
 #include "session/check_integrator.h"
 #include "session/render_progress.h"
 #include "session/shared_render.h"
@@ -160,7 +161,8 @@ uint32_t FilmRender::render(SampleRange range, Sink& sink) {
     const RayCounts rays_before = stats_.rays;
     const double seconds_before = stats_.render_seconds;
     const Stopwatch watch;
-    const bool is_apart = interrupts_passes_ && on_cpu && before > 0 && !has_steps;
+    const bool has_moments = (settings_.sample_layers & kLayerVariance) != 0; // samples are rendered alone
+    const bool is_apart = has_moments || (interrupts_passes_ && on_cpu && before > 0 && !has_steps);
     if (!is_apart) pass_film_.reset();
     Film& into = is_apart ? fit_part(pass_film_) : into_film;
     bool makes = false;
@@ -177,7 +179,7 @@ uint32_t FilmRender::render(SampleRange range, Sink& sink) {
             return progress_of(settings_, before + done, before + count, watch.seconds(), made_seconds,
                                integrator.rays());
         };
-        const uint32_t pass = next_pass(settings_, count - done, done, watch.seconds());
+        const uint32_t pass = has_moments ? 1 : next_pass(settings_, count - done, done, watch.seconds());
         Sink* const stops = on_cpu && (interrupts_passes_ || (before == 0 && done == 0)) ? &sink : nullptr;
         integrator.stop_with(stops);
         uint32_t added = pass;
@@ -200,8 +202,10 @@ uint32_t FilmRender::render(SampleRange range, Sink& sink) {
         if (added == 0) break;
         if (is_apart) {
             into.set_samples({first + done, first + done + added});
+            if (has_moments) take_moments(pictures_.queue(), into);
             into_film.add(into);
         }
+        pictures_.add_first_hits(camera_, settings_, {first + done, first + done + added}, into_film);
         done += added;
         const double seconds = watch.seconds();
         into_film.set_samples({first - before, first + done});

@@ -21,7 +21,7 @@ RenderSettings meter_settings(const RenderSettings& picture) {
     meter.samples = kMeterSamples;
     meter.filter = PixelFilter::Box;
     meter.filter_radius = 0;
-    meter.aovs = 0;
+    meter.aovs = meter.sample_layers = 0;
     meter.light_paths = nullptr;
     meter.time_kinds = false;
     if (finds_all_light(meter.integrator)) meter.integrator = IntegratorKind::Path; // they give the same light

@@ -10,14 +10,22 @@ namespace pertev {
 
 bool is_film_of(const Film& film, const RenderSettings& settings) {
     return film.window() == settings.window() && film.aovs() == settings.aovs &&
-           film.layers_at() == settings.layers_at && film.light_layers() == light_layers_of(settings);
+           sample_layers_of(film) == settings.sample_layers && film.layers_at() == settings.layers_at &&
+           film.light_layers() == light_layers_of(settings);
 }
 
 Film make_film(Queue& queue, const RenderSettings& settings) {
     const PixelWindow window = settings.window();
     Film film(queue, window.width, window.height, settings.aovs, light_layers_of(settings), settings.layers_at);
     film.set_window(window);
+    hold_sample_layers(queue, settings.sample_layers, film);
     return film;
+}
+
+std::size_t predicted_film_bytes(const RenderSettings& settings) {
+    Queue queue = Queue::make_dry_run(false);
+    const Film film = make_film(queue, settings);
+    return queue.allocated_bytes();
 }
 
 Film& fit_film(Queue& queue, std::optional<Film>& film, const RenderSettings& settings, const AddTargets& add) {
@@ -127,11 +135,20 @@ void PictureRenderer::find_centres(const Camera& camera, const RenderSettings& s
     queue().wait(); // the camera's keys may change
 }
 
+void PictureRenderer::add_first_hits(const Camera& camera, const RenderSettings& settings, SampleRange samples,
+                                     const Film& film) {
+    if ((settings.sample_layers & (kFirstHitLayers | kLayerCount)) == 0) return;
+    const UseThreads use(queue().threads());
+    first_hits_.add(view_of(camera, settings), scene_.tracer(), settings.path.sampler, settings.path.seed,
+                    settings.mattes, samples.first, samples.count(), film);
+}
+
 RenderResult PictureRenderer::render_separately(const Camera& camera, const RenderSettings& settings, uint32_t first) {
     Film film = make_film(queue(), settings);
     find_centres(camera, settings, film);
     Integrator& integrator = begin(camera, settings, settings.samples);
     integrator.render(first, settings.samples, film.view());
+    add_first_hits(camera, settings, {first, first + settings.samples}, film);
     film.set_samples({first, first + settings.samples});
     RenderResult result;
     result.samples = settings.samples;

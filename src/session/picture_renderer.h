@@ -12,6 +12,7 @@
 #include "render/filter_table.h"
 #include "render/noisy_frame.h"
 #include "render/picture_view.h"
+#include "render/sample_layers/first_hits.h"
 #include "session/device_scene.h"
 
 namespace pertev {
@@ -23,6 +24,8 @@ class SharedFrames; // session/shared_frames.h
 using AddTargets = std::function<void(Film&)>;
 
 Film make_film(Queue& queue, const RenderSettings& settings);
+/// Returns the bytes that such a film takes.
+std::size_t predicted_film_bytes(const RenderSettings& settings);
 /// Returns `film` if it fits a picture of these settings, else replaces it by a new one without samples, for which
 /// `add` is called.
 Film& fit_film(Queue& queue, std::optional<Film>& film, const RenderSettings& settings, const AddTargets& add = {});
@@ -33,7 +36,8 @@ bool is_film_of(const Film& film, const RenderSettings& settings);
 class PictureRenderer {
 public:
     /// Makes a renderer of `scene`, which outlives it.
-    explicit PictureRenderer(DeviceScene& scene) : scene_(scene), filter_(scene.queue()), centres_(scene.queue()) {}
+    explicit PictureRenderer(DeviceScene& scene)
+        : scene_(scene), filter_(scene.queue()), centres_(scene.queue()), first_hits_(scene.queue()) {}
 
     DeviceScene& scene() { return scene_; }
     Queue& queue() { return scene_.queue(); }
@@ -63,6 +67,9 @@ public:
     /// Finds the layers at the centres of pixels, if the film has any. Throws Error(OutOfMemory, DeviceFault).
     void find_centres(const Camera& camera, const RenderSettings& settings, const Film& film);
     CentreLayers& centres() { return centres_; }
+    /// Adds the first hits and the number of samples that `film` has just taken to its layers of them, if the settings
+    /// have any (FirstHits). Throws Error(OutOfMemory, DeviceFault).
+    void add_first_hits(const Camera& camera, const RenderSettings& settings, SampleRange samples, const Film& film);
     /// Returns a number for a picture whose samples continue over several begin() calls. Pictures in between use
     /// another integrator if the one of the latest such picture has precomputed data.
     uint64_t new_number() { return ++last_number_; }
@@ -83,6 +90,7 @@ private:
     SharedFrames* sharing_frames_ = nullptr;
     FilterTable filter_;
     CentreLayers centres_;
+    FirstHits first_hits_;
     Buffer<MotionKey> camera_motion_; // used while the shutter is open
     struct HeldIntegrator {
         std::unique_ptr<Integrator> integrator;

@@ -7,13 +7,15 @@
 #include "base/error.h"
 #include "base/machine_memory.h"
 #include "base/message_text.h"
+#include "session/picture_renderer.h"
 
 namespace pertev {
 namespace {
 
 /// Bytes of the finished picture and its layers.
 std::size_t result_bytes(const RenderSettings& settings) {
-    const std::size_t channels = film_channel_count(settings.aovs) + 3 * light_layers_of(settings).size();
+    const std::size_t channels = film_channel_count(settings.aovs) + 3 * light_layers_of(settings).size() +
+                                 sample_layer_channels(settings.sample_layers);
     return std::size_t{settings.window().count()} * channels * sizeof(float);
 }
 
@@ -40,8 +42,7 @@ std::string advice(const RenderSettings& settings, bool is_cuda, uint64_t textur
     const std::vector<std::string> layer_names = light_layers_of(settings);
     const std::size_t layers = layer_names.size();
     const PixelWindow window = settings.window();
-    const std::size_t film =
-        Film::predicted_bytes(window.width, window.height, settings.aovs, layer_names, settings.layers_at);
+    const std::size_t film = predicted_film_bytes(settings);
     const WorkSize size = {
         .width = settings.width, .height = settings.height, .samples = settings.samples, .traverses_on_host = !is_cuda};
     const std::size_t own = predicted_bytes(settings, size, is_cuda);

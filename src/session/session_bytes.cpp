@@ -116,6 +116,10 @@ std::size_t predicted_bytes(const PreparedScene& scene, const RenderSettings& se
     CentreLayers centres(queue);
     if (has_centres(settings)) centres.reserve(window.count(), scene.motions != nullptr);
     const DenoisingMemory denoising(queue, scene, settings);
+    FirstHits first_hits(queue);
+    if ((settings.sample_layers & kFirstHitLayers) != 0) first_hits.reserve(window.count(), scene.motions != nullptr);
+    std::optional<Film> of_sample; // alone, for its moments
+    if ((settings.sample_layers & kLayerVariance) != 0) of_sample.emplace(make_film(queue, settings));
     std::optional<MotionVectorMemory> motion;
     Buffer<InstanceView> places_before;
     if ((settings.aovs & kAovMotion) != 0) {

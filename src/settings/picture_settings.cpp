@@ -19,6 +19,13 @@ SettingField integrator_field(PictureOptions& options) {
         [] { return integrator_names(); }};
 }
 
+/// Returns the names of all layers besides those of light.
+std::vector<std::string> layer_names() {
+    std::vector<std::string> names = aov_names();
+    for (std::string& name : sample_layer_names()) names.push_back(std::move(name));
+    return names;
+}
+
 } // namespace
 
 std::vector<Setting> picture_settings() {
@@ -53,7 +60,9 @@ std::vector<Setting> picture_settings() {
         row("transparent", "Picture", "", FIELD(render.transparent),
             "The background is transparent; alpha is the covered part of a pixel.", In{kExr | kPng},
             Excludes{"ground=on"}, Mark::OpensScene, Changes::Picture),
-        row("aov", "Picture", "NAME,...", FIELD(aovs), "Additional layers of EXR output.", Choices{aov_names()},
+        row("aov", "Picture", "NAME,...", FIELD(aovs), "Additional layers of EXR output.", Choices{layer_names()},
+            Excludes{"variance:denoise!=none uv:real_time samples:real_time variance:real_time crypto_object:real_time "
+                     "crypto_material:real_time"},
             In{kExr}, Mark::Common, Changes::Picture),
         row("layers_at", "Picture", "WHERE", FIELD(render.layers_at),
             "Where layers of aov are evaluated: at the samples, whose values are blended, or at the centres of pixels.",

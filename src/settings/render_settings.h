@@ -3,6 +3,7 @@
 // Settings of a render besides scene and camera, and its result.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "render/film.h"
 #include "render/pixel_filter.h"
 #include "render/prepare_scene.h"
+#include "render/sample_layers/matte_names.h"
+#include "render/sample_layers/sample_layers.h"
 #include "scene/camera.h"
 
 namespace pertev {
@@ -34,12 +37,14 @@ struct RenderSettings : IntegratorSettings {
     uint32_t width = 1280, height = 720; // pixels of the whole picture
     std::optional<PictureCrop> crop;     // the pixels that are rendered; none: all
     PixelFilter filter = PixelFilter::BlackmanHarris;
-    float filter_radius = 0;                // pixels; 0 = the filter's default
-    uint32_t aovs = 0;                      // AovBits
-    LayersAt layers_at = LayersAt::Samples; // the place of these layers
-    bool transparent = false;               // RGBA: the background is omitted, and alpha is the covered fraction of the
-                                            // pixel
-    Denoise denoise = Denoise::None;        // the film does not change
+    float filter_radius = 0;                  // pixels; 0 = the filter's default
+    uint32_t aovs = 0;                        // AovBits
+    LayersAt layers_at = LayersAt::Samples;   // the place of these layers
+    uint32_t sample_layers = 0;               // SampleLayerBits
+    std::shared_ptr<const MatteNames> mattes; // ids of the scene's names, if layers show them
+    bool transparent = false;        // RGBA: the background is omitted, and alpha is the covered fraction of the
+                                     // pixel
+    Denoise denoise = Denoise::None; // the film does not change
     /// Maximum number of scatterings in real-time frames, if that is below path.max_depth; none: no separate limit.
     /// It does not affect the film.
     std::optional<uint32_t> frame_depth;

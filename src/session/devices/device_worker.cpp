@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "device/device_identity.h"
+#include "render/sample_layers/variance_target.h"
 #include "session/devices/one_device.h"
 
 namespace pertev {
@@ -152,8 +153,23 @@ void DeviceWorker::begin_steps(const SharedPicture& picture, PictureRenderer& pi
         steps_number_ = picture.number;
 }
 
-void DeviceWorker::add_samples(Integrator& integrator, SampleRange slice, Sink& drops) {
-    if (!steps_) {
+/// Renders each sample alone, and adds it with its moments.
+void DeviceWorker::add_moments(Integrator& integrator, const SharedPicture& picture, SampleRange slice) {
+    Film& one = fit_film(*film_queue_, sample_film_, picture.settings, picture.add_targets);
+    one.set_place_of(*held_.film);
+    for (uint32_t sample = slice.first; sample < slice.end; ++sample) {
+        clear(one);
+        integrator.render(sample, 1, one.view());
+        take_moments(queue_, one);
+        for (std::size_t i = 0; i < one.targets().size(); ++i) held_.film->targets()[i]->add(*one.targets()[i]);
+    }
+    film_queue_->wait();
+}
+
+void DeviceWorker::add_samples(Integrator& integrator, const SharedPicture& picture, SampleRange slice, Sink& drops) {
+    if ((picture.settings.sample_layers & kLayerVariance) != 0) {
+        add_moments(integrator, picture, slice);
+    } else if (!steps_) {
         integrator.render(slice.first, slice.count(), held_.film->view());
     } else {
         steps_->add(integrator, slice.first, slice.count(), *held_.film, queue_.is_cuda() ? nullptr : &drops);
@@ -191,7 +207,8 @@ void DeviceWorker::take_slices(SharedRun& run, const SharedPicture& picture, Pic
         const bool is_first = slice->first == picture.first;
         const RayCounts before = integrator.rays();
         if (is_first) pictures.find_centres(picture.camera, picture.settings, *held_.film);
-        add_samples(integrator, *slice, drops);
+        add_samples(integrator, picture, *slice, drops);
+        pictures.add_first_hits(picture.camera, picture.settings, *slice, *held_.film);
         if (hooks.after_slice) hooks.after_slice(number_, *slice);
         if (run.is_dropped()) break;
         const double now = slice->count() / std::max(watch.seconds(), 1e-9);

@@ -69,17 +69,19 @@ private:
                      Sink& drops, const DeviceHooks& hooks);
     void make_films(const SharedPicture& picture, const Film& into);
     void begin_steps(const SharedPicture& picture, PictureRenderer& pictures, Sink& drops);
-    void add_samples(Integrator& integrator, SampleRange slice, Sink& drops);
+    void add_samples(Integrator& integrator, const SharedPicture& picture, SampleRange slice, Sink& drops);
+    void add_moments(Integrator& integrator, const SharedPicture& picture, SampleRange slice);
     Film& other_film() { return films_[1] && &*films_[0] == held_.film ? *films_[1] : *films_[0]; }
 
     std::size_t number_;
     Queue& queue_;
     std::optional<SceneCopy> own_scene_;
     std::optional<Queue> film_queue_;
-    std::optional<Film> films_[2];   // one is filled while the other is added to the sum; one alone if memory is short
-    std::optional<Film> landing_;    // a film of another device, before it is added; on the caller's device alone
-    FilledFilm held_;                // the contents of the film that is being filled
-    std::optional<PostSteps> steps_; // denoised pictures have them
+    std::optional<Film> films_[2];    // one is filled while the other is added to the sum; one alone if memory is short
+    std::optional<Film> sample_film_; // one sample, for its moments
+    std::optional<Film> landing_;     // a film of another device, before it is added; on the caller's device alone
+    FilledFilm held_;                 // the contents of the film that is being filled
+    std::optional<PostSteps> steps_;  // denoised pictures have them
     const PictureRenderer* steps_of_ = nullptr; // they belong to its picture of this number
     uint64_t steps_number_ = 0;
 };

@@ -123,6 +123,20 @@ std::string json_of_place(const ExrPlace& place) {
                        place.whole_height);
 }
 
+/// The names that mattes may show; empty if there are none.
+std::string json_of_mattes(const PictureFacts& facts) {
+    if (facts.objects.empty() && facts.matte_materials.empty()) return "";
+    return fmt::format(R"(,"matte_objects":{},"matte_materials":{})", json_strings(facts.objects),
+                       json_strings(facts.matte_materials));
+}
+
+std::vector<std::string> read_texts(const JsonValue& root, const char* name) {
+    std::vector<std::string> texts;
+    if (const auto list = root.find(name))
+        for (const JsonValue& text : list->elements()) texts.emplace_back(text.to_string());
+    return texts;
+}
+
 /// Reads two numbers.
 std::pair<uint32_t, uint32_t> read_pair(const JsonValue& value, uint32_t least) {
     const std::vector<JsonValue> numbers = value.elements();
@@ -158,6 +172,7 @@ std::string json_of_targets(const FilmHeader& header) {
 
 Film FilmHeader::make_film(Queue& queue) const {
     Film film(queue, width, height, aovs, light_layers, layers_at);
+    hold_sample_layers(queue, sample_layers, film);
     if (denoise != Denoise::None)
         film.hold(std::make_unique<DenoiserTarget>(denoiser_state_size(denoise, width, height)));
     return film;
@@ -169,6 +184,7 @@ FilmHeader film_header(const PictureOptions& options, const PictureRecord& recor
                          .width = film.width(),
                          .height = film.height(),
                          .aovs = film.aovs(),
+                         .sample_layers = sample_layers_of(film),
                          .light_layers = film.light_layers(),
                          .layers_at = film.layers_at(),
                          .denoise = record.settings.denoise,
@@ -189,8 +205,8 @@ FilmHeader film_header(const PictureOptions& options, const PictureRecord& recor
 std::optional<SettingDifference> film_difference(const FilmHeader& before, const FilmHeader& after) {
     if (auto different = first_difference(before.settings, after.settings)) return different;
     const auto shape = [](const FilmHeader& of) {
-        return fmt::format("{}x{}, {}, {}, {}, {}", of.width, of.height, of.aovs, json_strings(of.light_layers),
-                           static_cast<int>(of.layers_at), name_of(of.denoise));
+        return fmt::format("{}x{}, {}, {}, {}, {}, {}", of.width, of.height, of.aovs, of.sample_layers,
+                           json_strings(of.light_layers), static_cast<int>(of.layers_at), name_of(of.denoise));
     };
     if (shape(before) == shape(after)) return std::nullopt;
     return SettingDifference{"the film", shape(before), shape(after)};
@@ -202,15 +218,16 @@ std::string json_of(const FilmHeader& header) {
         settings.push_back(fmt::format("{}:{}", json_string(name), json_string(value)));
     for (const AovGroup& group : kAovTable)
         if ((header.aovs & group.bit) != 0) layers.emplace_back(group.name);
+    for (std::string& name : sample_layer_names(header.sample_layers)) layers.push_back(std::move(name));
     const PictureFacts& facts = header.facts;
     return fmt::format(
-        R"({{"settings":{{{}}},"size":[{},{}]{},"rows":[{},{}],"samples":[{},{}],"spp":{},"layers":{},"light_layers":{},"layers_at":"{}"{},"targets":{},)"
+        R"({{"settings":{{{}}},"size":[{},{}]{},"rows":[{},{}],"samples":[{},{}],"spp":{},"layers":{},"light_layers":{},"layers_at":"{}"{}{},"targets":{},)"
         R"("metadata":{},"display_metadata":{},"origin":{},"display":{},"transparent":{},"rays":{{"camera":{},"bounce":{},"shadow":{}}},"seconds":{}}})",
         fmt::join(settings, ","), header.width, header.height, json_of_place(facts.place), header.part.first_row,
         header.part.end_row, header.part.samples.first, header.part.samples.end, header.spp, json_strings(layers),
         json_strings(header.light_layers), name_of(header.layers_at),
         header.denoise == Denoise::None ? "" : fmt::format(R"(,"denoise":"{}")", name_of(header.denoise)),
-        json_of_targets(header), json_of_metadata(facts.settings), json_of_metadata(facts.shown),
+        json_of_mattes(facts), json_of_targets(header), json_of_metadata(facts.settings), json_of_metadata(facts.shown),
         json_of_metadata(facts.origin), facts.display ? json_of_display(*facts.display) : "null", facts.transparent,
         header.rays.camera, header.rays.bounce, header.rays.shadow, exact_number(header.render_seconds));
 }
@@ -227,6 +244,10 @@ FilmHeader read_film_header(const JsonValue& root) {
     header.part.samples = {first, end};
     header.spp = read_number(root.at("spp"), end, kMaxSamplesPerPixel);
     for (const JsonValue& layer : root.at("layers").elements()) {
+        if (const auto of_samples = sample_layer_named(layer.to_string())) {
+            header.sample_layers |= *of_samples;
+            continue;
+        }
         const auto aov = aov_named(layer.to_string());
         if (!aov || *aov == kAovMotion) throw layer.error("unknown layer");
         header.aovs |= *aov;
@@ -242,7 +263,9 @@ FilmHeader read_film_header(const JsonValue& root) {
                     .origin = read_metadata(root.at("origin")),
                     .display = std::nullopt,
                     .transparent = root.at("transparent").to_bool(),
-                    .place = read_place(root, header.width, header.height)};
+                    .place = read_place(root, header.width, header.height),
+                    .objects = read_texts(root, "matte_objects"),
+                    .matte_materials = read_texts(root, "matte_materials")};
     if (const auto display = root.find("display")) header.facts.display = read_display(*display);
     const JsonValue rays = root.at("rays");
     header.rays = {rays.at("camera").to_unsigned(), rays.at("bounce").to_unsigned(), rays.at("shadow").to_unsigned()};

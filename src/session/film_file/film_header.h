@@ -18,7 +18,8 @@ inline constexpr BlockFileKind kFilmFile = {kFilmFileMagic, kFilmFileVersion, "f
 struct FilmHeader {
     DecidingSettings settings; // without the number of samples, and without the name of the scene
     uint32_t width = 0, height = 0;
-    uint32_t aovs = 0; // AovBits
+    uint32_t aovs = 0;          // AovBits
+    uint32_t sample_layers = 0; // SampleLayerBits
     std::vector<std::string> light_layers;
     LayersAt layers_at = LayersAt::Samples;
     Denoise denoise = Denoise::None;

@@ -160,9 +160,9 @@ void FilmMerge::check_rows(bool is_partial) {
 }
 
 Film FilmMerge::film(Queue& queue, Sink& sink) const {
-    const std::size_t bytes =
-        Film::predicted_bytes(header_.width, header_.height, header_.aovs, header_.light_layers, header_.layers_at) +
-        denoiser_state_size(header_.denoise, header_.width, header_.height).words * sizeof(uint32_t);
+    Queue counting = Queue::make_dry_run(false);
+    const Film counted = header_.make_film(counting);
+    const std::size_t bytes = counting.allocated_bytes();
     if (bytes > machine_memory_bytes()) {
         throw Error(ErrorCode::OutOfMemory, FileLocation{parts_.front().file},
                     fmt::format("the film takes {:.1f} MiB; this machine has {:.1f} MiB", mebibytes(bytes),

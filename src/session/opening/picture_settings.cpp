@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "image/write_exr.h"
 #include "render/light_paths/light_path_layers.h"
+#include "render/sample_layers/matte_target.h"
 #include "session/check_integrator.h"
 #include "session/crop.h"
 #include "session/height_maps.h"
@@ -20,7 +21,8 @@ namespace {
 
 /// Returns whether the picture's own channels or another layer have this name in files.
 bool is_layer_of_files(const std::string& name) {
-    return name == "noisy" ||
+    return name == "noisy" || name.starts_with(kObjectMattes) || name.starts_with(kMaterialMattes) ||
+           std::ranges::count(sample_layer_names(), name) > 0 ||
            std::ranges::any_of(kAovTable, [&](const AovGroup& group) { return name == group.layer; });
 }
 
@@ -46,7 +48,13 @@ std::vector<HeightMapText> height_maps(const PictureOptions& options) {
 
 RenderSettings light_settings(const PictureOptions& options) {
     RenderSettings settings = options.render;
-    for (const std::string& name : options.aovs) settings.aovs |= *aov_named(name); // names have been checked
+    for (const std::string& name : options.aovs) { // names have been checked
+        if (const auto layer = sample_layer_named(name)) {
+            settings.sample_layers |= *layer;
+        } else {
+            settings.aovs |= *aov_named(name);
+        }
+    }
     settings.irradiance = options.false_color == "illuminance";
     if (!options.lpe.empty()) settings.light_paths = std::make_shared<const LightPathLayers>(light_paths(options));
     check_integrator(settings);
@@ -70,6 +78,8 @@ RenderSettings render_settings(const PictureOptions& options, const Scene& scene
         settings.light_paths =
             std::make_shared<const LightPathLayers>(bind_to_scene(settings.light_paths->expressions, scene));
     }
+    if ((settings.sample_layers & (kLayerObjects | kLayerMaterials)) != 0)
+        settings.mattes = std::make_shared<const MatteNames>(scene);
     settings.heights = read_height_maps(height_maps(options), scene);
     set_size(options, scene, settings);
     const SampleRange range = sample_range(options);
@@ -80,8 +90,9 @@ RenderSettings render_settings(const PictureOptions& options, const Scene& scene
                     fmt::format("the picture has the rows 0 to {}", settings.height - 1));
     }
     const std::size_t of_ids = (settings.aovs & kAovIds) != 0 ? 3 : 0;
-    check_exr_row(settings.window().width,
-                  film_channel_count(settings.aovs) + of_ids + 3 * light_layers_of(settings).size());
+    check_exr_row(settings.window().width, film_channel_count(settings.aovs) + of_ids +
+                                               3 * light_layers_of(settings).size() +
+                                               sample_layer_channels(settings.sample_layers));
     return settings;
 }
 

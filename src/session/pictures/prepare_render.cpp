@@ -46,9 +46,7 @@ Ground ground_of(const PictureOptions& options) {
 
 /// Refuses a picture for which there is no room before its scene is solved.
 void check_film(const PictureOptions& options, const RenderSettings& settings, const Queue& queue) {
-    const PixelWindow window = settings.window();
-    const std::size_t film = Film::predicted_bytes(window.width, window.height, settings.aovs,
-                                                   light_layers_of(settings), settings.layers_at);
+    const std::size_t film = predicted_film_bytes(settings);
     check_render_memory(film, settings, memory_to_render_in(queue, settings, max_memory_bytes(options.radiosity)));
 }
 

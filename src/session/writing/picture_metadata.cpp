@@ -237,7 +237,11 @@ PictureFacts facts_of(const PictureRecord& record, std::span<const PixelIds> ids
                           .origin = {},
                           .display = record.display,
                           .transparent = record.settings.transparent,
-                          .place = place_of(record.settings)};
+                          .place = place_of(record.settings),
+                          .objects = {},
+                          .matte_materials = {}};
+    if (const auto& mattes = record.settings.mattes)
+        facts.objects = mattes->objects, facts.matte_materials = mattes->materials;
     std::erase_if(facts.shown, [&](const auto& entry) {
         return std::ranges::find(facts.settings, entry.first, &ExrMetadata::value_type::first) != facts.settings.end();
     });

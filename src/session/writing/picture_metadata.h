@@ -112,7 +112,8 @@ struct PictureFacts {
     ExrMetadata origin;             // device, messages, where settings came from; names of ids
     std::optional<Display> display; // none: the picture is not displayed
     bool transparent = false;
-    ExrPlace place; // where a crop lies in the whole picture
+    ExrPlace place;                                    // where a crop lies in the whole picture
+    std::vector<std::string> objects, matte_materials; // names that layers of mattes may show
 };
 /// `ids` are those of the picture; none without a layer of ids.
 PictureFacts facts_of(const PictureRecord& record, std::span<const PixelIds> ids);

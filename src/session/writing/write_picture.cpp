@@ -1,5 +1,8 @@
 #include "session/writing/write_picture.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "base/error.h"
 #include "image/false_color.h"
 #include "image/picture_hash.h"
@@ -7,6 +10,8 @@
 #include "image/write_image.h"
 #include "image/write_jpeg.h"
 #include "image/write_png.h"
+#include "render/sample_layers/matte_names.h"
+#include "render/sample_layers/matte_target.h"
 #include "session/opening/strictness.h"
 #include "session/writing/check_outputs.h"
 
@@ -69,8 +74,24 @@ std::string hash_of_layers(const std::vector<ExrLayer>& layers) {
     return hasher.result().hex();
 }
 
-ExrMetadata metadata_of(const PictureFacts& facts, const RenderResult& result, const std::string& hash) {
+/// Describes the mattes among the layers.
+ExrMetadata matte_entries(const PictureFacts& facts, std::span<const FilmLayer> layers) {
+    ExrMetadata metadata;
+    for (const auto& [type, names] :
+         {std::pair(kObjectMattes, &facts.objects), {kMaterialMattes, &facts.matte_materials}}) {
+        if (std::ranges::none_of(layers, [&](const FilmLayer& layer) { return layer.name.starts_with(type); }))
+            continue;
+        for (auto& [name, text] : matte_metadata(type, *names, shown_mattes(layers, type)))
+            metadata.emplace_back(std::move(name), std::move(text));
+    }
+    return metadata;
+}
+
+/// `mattes` are matte_entries() of the result's layers.
+ExrMetadata metadata_of(const PictureFacts& facts, const RenderResult& result, const ExrMetadata& mattes,
+                        const std::string& hash) {
     ExrMetadata metadata = picture_metadata(facts, result, hash);
+    metadata.insert(metadata.end(), mattes.begin(), mattes.end());
     if (!result.denoiser.empty()) metadata.emplace_back("pertev.denoiser", result.denoiser);
     return metadata;
 }
@@ -99,8 +120,9 @@ std::vector<std::byte> encode_picture(ImageFormat format, const PictureRecord& r
     }
     PERTEV_CHECK(format == ImageFormat::Exr);
     const PictureFacts facts = facts_of(record, result.ids);
+    const ExrMetadata mattes = matte_entries(facts, result.layers);
     return encode_exr(beauty_of(result), take_layers(result),
-                      metadata_of(facts, result, picture_hash(result.picture).hex()), facts.place);
+                      metadata_of(facts, result, mattes, picture_hash(result.picture).hex()), facts.place);
 }
 
 WrittenPicture write_picture(std::span<const std::string> paths, const PictureRecord& record, RenderResult& result) {
@@ -109,6 +131,7 @@ WrittenPicture write_picture(std::span<const std::string> paths, const PictureRe
 
 WrittenPicture write_picture(std::span<const std::string> paths, const PictureFacts& facts, RenderResult& result) {
     const Display display = facts.display.value_or(Display{});
+    const ExrMetadata mattes = matte_entries(facts, result.layers);
     const std::vector<ExrLayer> layers = take_layers(result);
     WrittenPicture written = {.hash = picture_hash(result.picture).hex(),
                               .layers_hash = hash_of_layers(layers),
@@ -118,7 +141,7 @@ WrittenPicture write_picture(std::span<const std::string> paths, const PictureFa
                                        .exposure_stops = display.exposure_stops,
                                        .transparent = facts.transparent,
                                        .layers = layers,
-                                       .metadata = metadata_of(facts, result, written.hash),
+                                       .metadata = metadata_of(facts, result, mattes, written.hash),
                                        .place = facts.place};
     for (const std::string& path : paths) {
         if (is_film_name(path)) continue;
