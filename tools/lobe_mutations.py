@@ -1,6 +1,10 @@
-"""Ways to break lobes with parameters of OpenPBR and of other renderers (see mutations.py)."""
+"""Ways to break lobes with parameters of OpenPBR and of other renderers, and light trees (see mutations.py)."""
 
 MUTATIONS = [
+    ("a light tree is built at every start", "consistency/light_tree",
+     ("src/session/picture_renderer.cpp", "    if (uses_light_tree(", "    if (settings.width > 0 || uses_light_tree(")),
+    ("a light tree weighs a spot by its flux", "statistical/chosen_by_tree",
+     ("src/shading/build_light_set.cpp", "of_punctual[i] > 0 ? kPiDouble * mean_of_channels(punctual.intensity) : 0;", "of_punctual[i];")),
     ("fuzz that takes one direction's fit alone", "statistical/bsdf_energy", ("src/shading/lobes/fuzz_lobe.h", "2.0f * (there * back) / both * cos_i", "there * cos_i")),
     ("fuzz drawn away from the view", "statistical/bsdf_sampling", ("src/shading/lobes/fuzz_lobe.h", "cosine.x - o.shear_by_sine", "cosine.x + o.shear_by_sine")),
     ("fuzz whose base gets all light", "statistical/openpbr_layers", ("src/shading/lobes/fuzz_lobe.h", "transmittance.pass(strength * o.albedo, strength * i.albedo, p_beneath);", "transmittance.pass(0, 0, p_beneath);")),

@@ -265,6 +265,18 @@ void SceneOnDevice::update_lights(Queue& queue, const PlacedScene& prepared) {
     view_.lights = view_of(prepared.lights, view_.images, view_.linear_from_srgb);
     view_.lights.environment = environment;
     list_lights(prepared.lights, view_.lights).upload(queue, lights_, "lights");
+    light_tree_ = prepared.lights.tree;
+    view_.lights.tree.nodes = nullptr; // the memory of the last one is used again
+    view_.lights.tree.leaf_of_light = nullptr;
+}
+
+void SceneOnDevice::make_light_tree(Queue& queue) {
+    if (view_.lights.tree.nodes != nullptr || view_.lights.tree.light_count == 0) return;
+    const LightTreeData& data = light_tree_->get();
+    PartArrays arrays;
+    arrays.add(data.nodes, view_.lights.tree.nodes);
+    arrays.add(data.leaf_of_light, view_.lights.tree.leaf_of_light);
+    arrays.upload(queue, light_nodes_, "light tree");
 }
 
 void SceneOnDevice::update_environment(Queue& queue, const PlacedScene& prepared) {

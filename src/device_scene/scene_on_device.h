@@ -3,6 +3,7 @@
 // A prepared scene in device memory, without its trees, which belong to a tracer (tracer/scene_tracer.h): owns the
 // buffers and provides the view. It consists of parts with one buffer each, which are updated separately.
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -49,6 +50,10 @@ public:
     /// lose theirs. Throws Error(OutOfMemory), without an effect.
     void make_mip_maps(Queue& queue);
 
+    /// Uploads the light tree, which is built at the first request, if there is none of these lights; this changes
+    /// view(). Throws Error(OutOfMemory), without an effect.
+    void make_light_tree(Queue& queue);
+
     /// Meshes whose vertices have moved on the device, for refitting trees.
     std::vector<DeformedMesh> deformed(const PlacedScene& prepared) const {
         return deforming_.deformed(prepared, meshes_);
@@ -80,8 +85,10 @@ private:
     std::optional<MipMapLevels> mip_maps_;
     ClosedMeshes closed_meshes_; // cleared where the geometry changes
     NestedSolids nested_;
-    ShadingVariant variant_ = ShadingVariant::General; // variant of the materials alone
-    Buffer<std::byte> geometry_, instances_, materials_, lights_, environment_, textures_, nesting_, boundaries_;
+    ShadingVariant variant_ = ShadingVariant::General;     // variant of the materials alone
+    std::shared_ptr<const RequestedLightTree> light_tree_; // that of the lights
+    Buffer<std::byte> geometry_, instances_, materials_, lights_, light_nodes_, environment_, textures_, nesting_,
+        boundaries_;
 };
 
 /// The simplest shading variant that covers the scene.

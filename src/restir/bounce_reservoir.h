@@ -56,7 +56,8 @@ HD inline WorldTriangle world_triangle(const SceneView& scene, const BounceReser
     return world_triangle(instance, scene.meshes[instance.mesh], reservoir.hit());
 }
 
-/// A(wo) of the surface at `hit`, seen along `direction`, times its colours' luminance; 0 if it has no diffuse lobes.
+/// Returns A(wo) of the surface at `hit`, seen along `direction`, times its colours' luminance. It is 0 if the surface
+/// has no diffuse lobes.
 template <ShadingVariant kVariant>
 HD inline float diffuse_transmittance(const SceneView& scene, const Hit& hit, Vec3 direction) {
     if constexpr (kVariant == ShadingVariant::Diffuse) { // it does not depend on the direction
@@ -74,7 +75,7 @@ HD inline float diffuse_transmittance(const SceneView& scene, const Hit& hit, Ve
     }
 }
 
-/// A reservoir's point in the world, and what it sends: what is the same for all receivers.
+/// Holds what is the same for all receivers: a reservoir's point in the world, and the light that it sends.
 struct PreparedBounce {
     Vec3 position, normal; // normal: cross product of its triangle's edges
     Rgb sent;
@@ -85,8 +86,8 @@ HD inline PreparedBounce prepare_light(const SceneView& scene, const BounceReser
     return {triangle.position, cross(triangle.ab, triangle.ac), reservoir.sent, reservoir.side};
 }
 
-/// Integrand of indirect light: scattered only by diffuse lobes of the receiver, and without A, which the target does
-/// not need.
+/// Returns the integrand of indirect light that only diffuse lobes of the receiver scatter, without A, which the target
+/// does not need.
 template <ShadingVariant kVariant>
 HD inline Rgb light_scattered(const SceneView&, const Receiver<kVariant>& receiver, const PreparedBounce& from) {
     const Reconnection seen = reconnect(from.position, from.normal, receiver.position());

@@ -36,6 +36,10 @@ public:
     void make_mip_maps() {
         if (scene_) scene_->make_mip_maps(queue_);
     }
+    /// Uploads the light tree, by SceneOnDevice::make_light_tree, if there is a scene.
+    void make_light_tree() {
+        if (scene_) scene_->make_light_tree(queue_);
+    }
 
     /// Lets the next calls copy what `other`, which has the same scene, has just uploaded from its device. It must not
     /// change until they have returned, nor is it used after it has changed.

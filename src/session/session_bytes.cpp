@@ -60,7 +60,10 @@ public:
         size.traverses_on_host = can_traverse_on_host(tracers, queue.is_cuda());
         size.has_times = scene.motions != nullptr;
         size.has_interiors = !scene_.nested_solids().is_empty();
-        size.tree_lights = scene.lights.tree.light_count();
+        size.tree_lights = scene_.view().lights.tree.light_count;
+        if (uses_light_tree(settings.path.light_choice, size.tree_lights, size.has_times)) {
+            scene_.make_light_tree(queue);
+        }
         if (size.samples > 0) integrator_ = make_integrator(queue, settings);
         if (integrator_) integrator_->reserve(size);
         take_deforming_trees(scene, tracers);

@@ -216,7 +216,8 @@ std::vector<double> build_triangle_tables(LightSetData& data, std::span<const do
     return powers;
 }
 
-/// Returns the lights with a position for a tree: triangles, then punctual lights in their order.
+/// Returns the lights with a position for a tree: triangles, then punctual lights in their order. A spot's flux says
+/// little about the light in its cone, nor does that of a second face about the light of the first.
 std::vector<TreeLight> list_tree_lights(const LightSetData& data, std::span<const double> of_triangles,
                                         std::span<const double> of_punctual) {
     const std::size_t triangles = data.triangles.size();
@@ -230,7 +231,7 @@ std::vector<TreeLight> list_tree_lights(const LightSetData& data, std::span<cons
         light.axis = triangle.is_mirrored != 0 ? -normal : normal;
         light.emission_angle = 0.5f * kPi;
         light.has_two_sides = triangle.is_two_sided != 0;
-        light.power = of_triangles[i];
+        light.power = light.has_two_sides ? 0.5 * of_triangles[i] : of_triangles[i];
     });
     for (std::size_t i = 0; i < of_punctual.size(); ++i) {
         const PunctualLight& punctual = data.punctual[i];
@@ -239,7 +240,7 @@ std::vector<TreeLight> list_tree_lights(const LightSetData& data, std::span<cons
         light.axis = punctual.direction;
         const bool is_spot = punctual.kind == LightKind::Spot;
         light.emission_angle = is_spot ? acos(clamp(punctual.cos_outer, -1.0f, 1.0f)) : kPi;
-        light.power = of_punctual[i];
+        light.power = of_punctual[i] > 0 ? kPiDouble * mean_of_channels(punctual.intensity) : 0;
     }
     return lights;
 }
@@ -311,7 +312,7 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
     if (data.environment) add_source(environment_power(*data.environment, radius), true);
     const auto of_punctual = std::span<const double>(data.source_powers)
                                  .subspan(data.emitters.size(), data.near_count - data.emitters.size());
-    data.tree = build_light_tree(list_tree_lights(data, of_triangles, of_punctual));
+    data.tree = std::make_shared<const RequestedLightTree>(list_tree_lights(data, of_triangles, of_punctual));
     share_draws(data, kEvenShare);
     return data;
 }
@@ -353,7 +354,8 @@ LightSetView view_of(const LightSetData& data, const TextureImageView* images, c
     view.triangle_count = static_cast<uint32_t>(data.triangles.size());
     view.punctual_count = static_cast<uint32_t>(data.punctual.size());
     view.near_count = data.near_count;
-    view.tree.light_count = data.tree.light_count();
+    if (data.tree != nullptr) view.tree = data.tree->is_built() ? data.tree->get().view() : LightTreeView{};
+    if (data.tree != nullptr) view.tree.light_count = data.tree->light_count();
     if (data.environment) view.environment_source = view.emitter_count + view.punctual_count;
     view.images = images;
     view.linear_from_srgb = linear_from_srgb;

@@ -23,7 +23,7 @@ struct LightSetData {
     std::vector<EmissiveTriangle> triangles;
     std::vector<uint32_t> triangle_order, triangle_starts, triangle_guides;
     std::vector<PunctualLight> punctual;
-    LightTreeData tree; // nodes of LightSetView::tree
+    std::shared_ptr<const RequestedLightTree> tree; // nodes of LightSetView::tree; null before build_light_set
     std::vector<uint32_t> first_light;
     std::vector<SurfaceEmission> emissions;
     std::shared_ptr<const EnvironmentData> environment; // null if there is none
@@ -53,8 +53,8 @@ void share_draws(LightSetData& data, double far_share);
 /// Number of emissive triangles; every instance counts separately.
 uint64_t count_emissive_triangles(const Scene& scene);
 
-/// Calls `visit(array, pointer)` for each array and the pointer to it in a view. The table of sources and the
-/// environment have views of their own.
+/// Calls `visit(array, pointer)` for each array and the pointer to it in a view. The table of sources, the light tree
+/// and the environment have views of their own.
 template <class Visit>
 void visit_arrays(const LightSetData& data, LightSetView& view, const Visit& visit) {
     visit(data.emitters, view.emitters);
@@ -63,13 +63,12 @@ void visit_arrays(const LightSetData& data, LightSetView& view, const Visit& vis
     visit(data.triangle_guides, view.triangle_guides);
     visit(data.triangles, view.triangles);
     visit(data.punctual, view.punctual);
-    visit(data.tree.nodes, view.tree.nodes);
-    visit(data.tree.leaf_of_light, view.tree.leaf_of_light);
     visit(data.first_light, view.first_light);
     visit(data.emissions, view.emissions);
 }
 
-/// View of host memory, valid as long as the data, the images and the table.
+/// View of host memory, valid as long as the data, the images and the table. The light tree has only its number of
+/// lights until it is requested.
 LightSetView view_of(const LightSetData& data, const TextureImageView* images, const float* linear_from_srgb);
 
 } // namespace pertev

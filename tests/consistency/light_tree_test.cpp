@@ -1,10 +1,16 @@
 // Pictures whose lights are selected by a tree: the same bytes by both schedules and on both devices, with and without
-// layers, and the mean of pictures by power.
+// layers, in batches and frames, and the mean of pictures by power. The tree is built only where it is used.
 
 #include <doctest/doctest.h>
 
+#include <span>
+
 #include "image/picture_hash.h"
+#include "render/light_paths/light_path_layers.h"
+#include "render/update_scene.h"
+#include "session/batch_render.h"
 #include "tests/support/compare_pictures.h"
+#include "tests/support/lit_scenes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 
@@ -84,4 +90,131 @@ TEST_CASE("pictures by a light tree have the mean of those by power, under every
         CHECK(test::p_value(tree, power) > 0.01);
         CHECK(test::p_value(test::brightened(tree, 1.1, 0), power) < 1e-6);
     }
+}
+
+TEST_CASE("layers of light paths by a light tree keep the picture and add up to it") {
+    const Scene scene = mixed_scene(Surfaces::Mixed);
+    Queue queue = test::requested_queue(), cpu = Queue::make_cpu();
+    RenderSettings settings = tree_settings(3);
+    const Hash128 picture = hash_of(cpu, scene, settings);
+    std::vector<LightPathExpression> expressions;
+    for (const char* text : {"seen=LE", "direct=L.E", "rest=L..+E"}) expressions.push_back(parse_light_path(text));
+    settings.light_paths = std::make_shared<const LightPathLayers>(bind_to_scene(std::move(expressions), scene));
+    const RenderResult result = test::render(cpu, scene, test::mixed_scene_camera(), settings);
+    CHECK(picture_hash(result.picture) == picture);
+    REQUIRE(result.layers.size() == 3);
+    double most = 0;
+    for (std::size_t i = 0; i < result.picture.pixels.size(); ++i) {
+        double sum = 0;
+        for (const auto& layer : result.layers) sum += static_cast<double>(layer.image.pixels[i]);
+        const double whole = static_cast<double>(result.picture.pixels[i]);
+        most = std::max(most, std::abs(sum - whole) / (1 + whole));
+    }
+    CHECK(most < 1e-6);
+    settings.body = PathBody::Wavefront;
+    settings.batch = 200;
+    const RenderResult other = test::render(queue, scene, test::mixed_scene_camera(), settings);
+    CHECK(test::render_hash(other) == test::render_hash(result));
+}
+
+TEST_CASE("each picture of a batch by a light tree has the hash of a single render") {
+    Messages messages;
+    const Scene scene = mixed_scene(Surfaces::Mixed);
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Camera parallel = test::mixed_scene_camera();
+    parallel.projection = Projection::Orthographic;
+    parallel.ortho_height = 4;
+    const CameraBatch batch = {{parallel, test::mixed_scene_camera()}, {7, 0}};
+    RenderSettings settings = tree_settings(2);
+    Queue queue = test::requested_queue(), cpu = Queue::make_cpu();
+    DeviceScene on_device(queue);
+    PictureRenderer pictures(on_device);
+    on_device.set(prepared, settings);
+    BatchRender render(pictures, batch, settings, 2);
+    BatchArrays arrays;
+    REQUIRE(render.next(arrays));
+    const std::vector<float> colors = arrays.color.download();
+    const std::size_t size = colors.size() / 2;
+    for (uint32_t k = 0; k < 2; ++k) {
+        settings.path.seed = batch.seed_of(k, settings);
+        const RenderResult alone = render_picture(cpu, prepared, batch.cameras[k], settings);
+        const auto first = colors.begin() + static_cast<std::ptrdiff_t>(k * size);
+        CHECK(std::vector<float>(first, first + static_cast<std::ptrdiff_t>(size)) == alone.picture.pixels);
+    }
+}
+
+TEST_CASE("frames by a light tree have the same bytes on both devices, and follow lights that move") {
+    Messages messages;
+    Scene scene = mixed_scene(Surfaces::Mixed);
+    const PreparedScene before = prepare_scene(scene, {}, messages);
+    for (Light& light : scene.lights) light.position += Vec3{0.5f, 0, 0};
+    SceneUpdate update;
+    update.lights_changed = true;
+    const PreparedScene after = update_scene(before, scene, update, messages);
+    const PreparedScene fresh = prepare_scene(scene, {.centre = before.centre}, messages);
+    Queue queue = test::requested_queue(), cpu = Queue::make_cpu();
+    const auto frame_of = [&](Queue& on, const PreparedScene& first, LightSelection choice, PathBody body) {
+        RenderSettings settings = tree_settings(1);
+        settings.path.light_choice = choice;
+        settings.body = body;
+        Session session(on, first, test::mixed_scene_camera(), settings);
+        session.render_frame(0, {}, {});
+        session.update_scene(after, parts_of(update));
+        session.cut();
+        session.render_frame(0, {}, {});
+        return picture_hash(session.frame().picture());
+    };
+    const Hash128 frame = frame_of(cpu, before, LightSelection::Tree, PathBody::Loop);
+    CHECK(frame_of(cpu, fresh, LightSelection::Tree, PathBody::Wavefront) == frame);
+    CHECK(frame_of(queue, before, LightSelection::Tree, PathBody::Wavefront) == frame);
+    CHECK(frame_of(cpu, before, LightSelection::Power, PathBody::Loop) != frame);
+}
+
+TEST_CASE("a light tree is built where it is used, also for a session that began without") {
+    Messages messages;
+    const Scene scene = mixed_scene(Surfaces::Mixed);
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Queue queue = test::requested_queue();
+    RenderSettings settings = tree_settings(2);
+    for (const LightSelection without : {LightSelection::Power, LightSelection::Auto}) {
+        settings.path.light_choice = without;
+        Session session(queue, prepared, test::mixed_scene_camera(), settings);
+        session.render(2);
+        CHECK_FALSE(prepared.lights.tree->is_built());
+    }
+    Session session(queue, prepared, test::mixed_scene_camera(), settings);
+    settings.path.light_choice = LightSelection::Tree;
+    session.set_settings(settings);
+    session.render(2);
+    CHECK(prepared.lights.tree->is_built());
+    CHECK(picture_hash(session.result().picture) == hash_of(queue, scene, settings));
+}
+
+TEST_CASE("the tree is taken by itself above 256 lights, and one light makes a tree of one leaf") {
+    Queue queue = test::requested_queue(), cpu = Queue::make_cpu();
+    const auto hash_by = [&](Queue& on, const Scene& scene, LightSelection choice) {
+        RenderSettings settings = tree_settings(2);
+        settings.path.light_choice = choice;
+        return hash_of(on, scene, settings);
+    };
+    for (const uint32_t side : {11u, 12u}) { // 242 and 288 triangles
+        Scene scene = mixed_scene(Surfaces::Plain);
+        for (Material& material : scene.materials) material.emission = {};
+        scene.lights.clear();
+        Transform above;
+        above.translation = {0, 3, 0};
+        test::add_emitter(scene, test::make_square(side), {2, 2, 2}, above);
+        const Hash128 by_tree = hash_by(cpu, scene, LightSelection::Tree);
+        const Hash128 by_power = hash_by(cpu, scene, LightSelection::Power);
+        CHECK(by_tree != by_power);
+        CHECK(hash_by(queue, scene, LightSelection::Auto) == (side == 11 ? by_power : by_tree));
+    }
+    Scene one = mixed_scene(Surfaces::Plain);
+    for (Material& material : one.materials) material.emission = {};
+    one.environment.reset();
+    one.lights.resize(1);
+    one.lights[0].kind = LightKind::Point;
+    const Hash128 by_power = hash_by(cpu, one, LightSelection::Power);
+    CHECK(hash_by(cpu, one, LightSelection::Tree) == by_power); // there is nothing to choose
+    CHECK(hash_by(queue, one, LightSelection::Tree) == by_power);
 }

@@ -136,3 +136,37 @@ TEST_CASE("a draw on the floor of many-lights has a relative variance of at most
     CHECK(by_tree / kPoints <= 0.5);
     CHECK(by_power / kPoints > 3);
 }
+
+TEST_CASE("a tree selects a narrow spot as often as a lamp of its intensity, and a face as often as one of two") {
+    Scene scene;
+    const auto add = [&](LightKind kind, float x) {
+        Light& light = scene.lights.emplace_back();
+        light.kind = kind;
+        light.position = {x, 4, 0};
+        light.direction = {0, -1, 0};
+        light.intensity = {5, 5, 5};
+        light.cos_inner = 0.9999f, light.cos_outer = 0.999f; // its flux is 1/1800 of the point light's
+    };
+    add(LightKind::Point, 3);
+    add(LightKind::Spot, 0);
+    const test::Lights lights(scene);
+    const LightReceiver below_both = {{0, 0, 0}, {0, 0, 0}};
+    const uint32_t spot = lights.view.punctual[0].kind == LightKind::Spot ? 0 : 1;
+    const float pmf = pmf_in_tree(lights.view.tree, below_both, spot);
+    CHECK(pmf == doctest::Approx(25.0 / (25 + 16)).epsilon(0.01)); // by the squared distances alone
+
+    Scene faces;
+    for (const bool has_two : {false, true}) {
+        Transform at;
+        at.translation = {has_two ? 2.0f : -2.0f, 4, 0};
+        test::add_emitter(faces, test::make_square(1), {1, 1, 1}, at);
+        faces.materials.back().two_sided_emission = has_two;
+    }
+    const test::Lights of_faces(faces);
+    double of_two = 0;
+    for (uint32_t i = 0; i < 4; ++i) {
+        if (of_faces.view.triangles[i].is_two_sided != 0)
+            of_two += test::as_double(pmf_in_tree(of_faces.view.tree, below_both, i));
+    }
+    CHECK(of_two == doctest::Approx(0.5).epsilon(0.01));
+}

@@ -31,6 +31,7 @@ struct Lights {
     explicit Lights(const Scene& scene) : images(views_of_images(scene)) {
         Messages messages;
         data = build_light_set(scene, kTable.data(), messages);
+        data.tree->get();
         view = view_of(data, images.data(), kTable.data());
     }
 };

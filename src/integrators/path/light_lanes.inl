@@ -4,7 +4,7 @@
 namespace pertev {
 namespace {
 
-/// LightSample of receivers.
+/// Holds a LightSample of each receiver.
 struct Lights {
     Mask arrives, is_delta, has_distance, is_triangle;
     Vec3s wi, point, normal;
@@ -13,11 +13,11 @@ struct Lights {
     TriangleId targets[kLanes];
 };
 
-/// Selected lights: the data of a triangle and of the draws that select its point, the numbers for a constant
-/// environment, or the whole sample of another kind.
+/// Holds the selected lights: the data of a triangle and of the draws that select its point, the numbers for a
+/// constant environment, or the whole sample of another kind.
 struct LightTable {
     enum Field { kA = 0, kAb = 3, kAc = 6, kRadiance = 9, kPdf = 12, kRestX, kOwnedX, kRestY, kOwnedY, kFields };
-    static constexpr int kPoint = kA, kWi = kAb; // another kind of light
+    static constexpr int kPoint = kA, kWi = kAb; // for another kind of light
     Table<kFields> table;
     WordTable x, y; // triangle: the binary places of both rests; constant environment: its pair of numbers
     TriangleId targets[kLanes];
@@ -118,7 +118,7 @@ private:
     }
 };
 
-/// draw_from_tree for lanes of receivers.
+/// Does what draw_from_tree does, for lanes of receivers.
 class TreeDraws {
 public:
     TreeDraws(const LightTreeView& tree, const LightReceiverOf<Floats>& to) : tree_(tree), to_(to) {}
@@ -182,7 +182,7 @@ private:
     unsigned going_ = 0;
 };
 
-/// ChosenByTree::draw for the receivers of `lanes`.
+/// Does what ChosenByTree::draw does, for the receivers of `lanes`.
 void enter_by_tree(const LightSetView& view, unsigned lanes, const LightReceiverOf<Floats>& to,
                    const SampleBitsOf<Words>& u, LightTable& drawn) {
     const uint32_t of_near = ChosenByTree::numbers_of_near(view);
@@ -209,7 +209,7 @@ void enter_by_tree(const LightSetView& view, unsigned lanes, const LightReceiver
     }
 }
 
-/// sample_light for the receivers of `lanes`; `normal` is that of their contexts.
+/// Does what sample_light does, for the receivers of `lanes`. `normal_of_context` is that of their contexts.
 template <Features kFeatures>
 void sample_lights(const LightSetView& view, unsigned lanes, Vec3s position, Vec3s normal_of_context,
                    const SampleBitsOf<Words>& u, Lights& lights) {
@@ -238,7 +238,7 @@ void sample_lights(const LightSetView& view, unsigned lanes, Vec3s position, Vec
         lights.wi = select(Mask::of_bits(drawn.are_constant), wi, lights.wi);
     }
     if (drawn.are_triangles == 0) return;
-    // LightDraw::weights.
+    // The next lines repeat LightDraw::weights.
     const auto rest_at = [&](int rest, const WordTable& more) {
         return rest_of<Floats>(table.get(rest), table.get(rest + 1), more.get());
     };
@@ -249,7 +249,7 @@ void sample_lights(const LightSetView& view, unsigned lanes, Vec3s position, Vec
         rests.y = select(is_in_tree, table.get(LightTable::kRestY), rests.y);
     }
     const Vec2Of<Floats> b = sample_uniform_triangle(rests);
-    // triangle_light_at.
+    // The rest repeats triangle_light_at.
     const Vec3s ab = table.vec3(LightTable::kAb), ac = table.vec3(LightTable::kAc);
     const Vec3s point = lights.point + (b.x * ab + b.y * ac);
     const Vec3s to_light = point - position;

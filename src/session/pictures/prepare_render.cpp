@@ -116,6 +116,20 @@ void set_light(const RenderSettings& settings, const Scene& rest, RenderSetup& r
     ready.of_light = std::move(messages);
 }
 
+/// Warns if lights cannot be selected by the tree that the options name.
+void report_light_choice(const PictureOptions& options, const RenderSettings& settings, const PreparedScene& prepared,
+                         Sink& sink) {
+    if (settings.path.light_choice != LightSelection::Tree) return;
+    const bool shares = options.real_time && options.reconstruction.sharing.light != RestirLight::Off;
+    const char* const why = prepared.motions != nullptr                ? "the tree is that of lights at rest"
+                            : shares                                   ? "ReSTIR takes its candidates by power"
+                            : settings.irradiance                      ? "a light meter samples lights by power"
+                            : prepared.lights.tree->light_count() == 0 ? "no light has a position"
+                                                                       : nullptr;
+    if (why == nullptr) return;
+    sink.warn({"light_choice", "tree", fmt::format("lights are selected by power, because {}", why)});
+}
+
 /// Returns whether the choice leaves nothing open that is decided in the scene at rest.
 bool is_whole(const PictureOptions& options, const Scene& scene) {
     const CameraChoice& choice = options.scene.camera;
@@ -181,6 +195,7 @@ bool adapt_setup(RenderSetup& ready, const PictureOptions& before, PictureOption
     ready.must_choose = false;
     ready.settings = std::move(settings);
     ready.bytes = bytes;
+    report_light_choice(taken, ready.settings, ready.prepared(), messages);
     options = std::move(taken);
     messages.add_all(ready.of_light);
     messages.add_all(ready.of_camera);
@@ -241,6 +256,7 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
         settings.radiosity = radiosity_display(ready->prepared(), options.radiosity, settings.path.seed, sink, report);
     }
     ready->bytes = bytes_to_render(options, ready->prepared(), settings_of_largest(*ready), *ready->queue);
+    report_light_choice(options, settings, ready->prepared(), sink);
     return ready;
 }
 

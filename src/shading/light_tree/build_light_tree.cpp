@@ -17,12 +17,15 @@ constexpr uint32_t kMostBins = 12, kChunk = 1u << 14, kParallel = 1u << 12, kFew
 constexpr int kMaxDepth = 64; // beyond, ranges are halved
 constexpr uint32_t kHilbert = 32;
 
+/// Returns whether a tree holds the light. Its power is infinite where the square of an area overflows.
+bool has_leaf(const TreeLight& light) { return std::isfinite(light.power) && light.power > 0; }
+
 /// Four floats, of which three are coordinates: sums over bins take most of a build's time.
 using Floats4 = float __attribute__((vector_size(16)));
 Floats4 floats4(Vec3 v, float last = 0) { return Floats4{v.x, v.y, v.z, last}; }
 Vec3 vec3(Floats4 v) { return {v[0], v[1], v[2]}; }
 
-/// A light while the tree is built.
+/// A light of a tree that is being built.
 struct Item {
     Floats4 lo, hi;
     Floats4 sum; // normal, or 0 if light leaves in all directions or from both faces; power
@@ -32,7 +35,7 @@ struct Item {
     float power() const { return sum[3]; }
 };
 
-/// A set of lights for the heuristic.
+/// Sums and bounds of a set of lights, for the heuristic.
 struct Measure {
     Floats4 lo = floats4({kInfinity, kInfinity, kInfinity}), hi = -lo;
     Floats4 sum = {}; // sum of normals and, last, of powers
@@ -78,7 +81,7 @@ struct Split {
     }
 };
 
-/// A cone of normals while the tree is built.
+/// A cone of normals of a tree that is being built.
 struct Cone {
     Vec3 axis = {0, 0, 1};
     float normals = 0, emission = 0; // half angle of normals, angle of emission about one; radians
@@ -159,8 +162,7 @@ private:
     void collect() {
         std::vector<double> powers(lights_.size());
         for (std::size_t i = 0; i < lights_.size(); ++i) {
-            const double power = lights_[i].power; // infinite where the square of an area overflows
-            powers[i] = std::isfinite(power) && power > 0 ? power : 0;
+            powers[i] = has_leaf(lights_[i]) ? lights_[i].power : 0;
         }
         double sum = 0;
         for (const double power : powers) sum += power;
@@ -415,6 +417,18 @@ LightTreeData build_light_tree(std::span<const TreeLight> lights) {
     LightTreeData data;
     Builder(lights, data).build();
     return data;
+}
+
+RequestedLightTree::RequestedLightTree(std::vector<TreeLight> lights)
+    : lights_(std::move(lights)), light_count_(static_cast<uint32_t>(std::ranges::count_if(lights_, has_leaf))) {}
+
+const LightTreeData& RequestedLightTree::get() const {
+    std::call_once(once_, [&] {
+        data_ = build_light_tree(lights_);
+        lights_ = {};
+        is_built_ = true;
+    });
+    return data_;
 }
 
 } // namespace pertev
