@@ -19,6 +19,8 @@ void add_merge_command(CLI::App& app, int& status);
 void add_measure_command(CLI::App& app, int& status);
 void add_solve_command(CLI::App& app, int& status);
 void add_info_command(CLI::App& app, int& status);
+void add_check_command(CLI::App& app, int& status);
+void add_convert_command(CLI::App& app, int& status);
 void add_bench_command(CLI::App& app, int& status);
 void add_lab_command(CLI::App& app, int& status);
 

@@ -175,6 +175,40 @@ void describe_choices(const Scene& scene, Facts& facts) {
     facts.add("shows", file_scene_choice(scene));
 }
 
+/// Returns each name once, with the number of its objects if there are several. Those without a name have a number.
+template <class Objects>
+std::vector<std::string> names_of_objects(const Objects& objects) {
+    std::map<std::string, std::size_t> counts;
+    std::vector<std::string> order;
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        const std::string name = objects[i].name.empty() ? fmt::format("{}", i) : objects[i].name;
+        if (++counts[name] == 1) order.push_back(name);
+    }
+    for (std::string& name : order) {
+        if (counts[name] > 1) name += fmt::format(" ({} times)", counts[name]);
+    }
+    return order;
+}
+
+/// Returns a line for each light: its name or number, kind, strength and place.
+std::vector<std::string> describe_lights(const Scene& scene) {
+    std::vector<std::string> lines;
+    for (const Light& light : scene.lights) {
+        const char* const kinds[] = {"point", "spot", "directional"}; // in the order of LightKind
+        const LightParts parts = parts_of(light.kind);
+        const DoubleVec3 at = in_file(scene, light.position);
+        const Rgb c = light.intensity;
+        lines.push_back(fmt::format(
+            "{} {}: {:.6g} {:.6g} {:.6g} {}{}{}", light.name.empty() ? fmt::format("{}", lines.size()) : light.name,
+            kinds[static_cast<std::size_t>(light.kind)], c.r, c.g, c.b, parts.position ? "W/sr" : "W/m2",
+            parts.position ? fmt::format(", at {:.6g} {:.6g} {:.6g}", at.x, at.y, at.z) : "",
+            parts.direction
+                ? fmt::format(", towards {:.4g} {:.4g} {:.4g}", light.direction.x, light.direction.y, light.direction.z)
+                : ""));
+    }
+    return lines;
+}
+
 void describe_scene(const InfoFlags& flags, Facts& facts, Sink& sink) {
     const Scene scene = read_any_scene(flags.scene, sink);
     uint64_t unique = 0, placed = 0;
@@ -220,6 +254,9 @@ void describe_scene(const InfoFlags& flags, Facts& facts, Sink& sink) {
     std::vector<std::string> materials; // values of --material
     for (std::size_t i = 0; i < scene.materials.size(); ++i) materials.push_back(describe_material(scene, i));
     facts.add_lines("material_list", materials);
+    facts.add_lines("light_list", describe_lights(scene));
+    facts.add_lines("object_list", names_of_objects(scene.instances));
+    facts.add_lines("image_list", names_of_objects(scene.images));
 }
 
 void describe_solution(const InfoFlags& flags, Facts& facts) {

@@ -108,6 +108,8 @@ int run(std::vector<std::string> words, bool json) {
         add_measure_command(app, status);
         add_solve_command(app, status);
         add_info_command(app, status);
+        add_check_command(app, status);
+        add_convert_command(app, status);
         add_bench_command(app, status);
         add_lab_command(app, status);
         app.add_flag("--list-devices")->description("Lists the devices that --device names, with their memory.");

@@ -23,9 +23,9 @@ std::string described(const Setting& setting, const std::string& otherwise) {
     return text;
 }
 
-/// "--traversal,--walk": help and documents show only the first name. Mitsuba's program has -D.
+/// "--traversal,--walk": help and documents show only the first name, and not the letter.
 std::string flag_names(const Setting& setting) {
-    const char* const letter = std::string_view(setting.name) == "define" ? "-D," : "";
+    const std::string letter = *setting.letter != '\0' ? fmt::format("-{},", setting.letter) : "";
     return letter + flag_of(setting.name) + (*setting.old_name != '\0' ? "," + flag_of(setting.old_name) : "");
 }
 

@@ -130,12 +130,12 @@ std::vector<Setting> frame_settings() {
         row("passes", "Frames", "N", FIELD(reconstruction.settings.passes),
             "The number of passes of the wavelet filter.", Range{0, 8}),
         row("restir", "Frames", "NAME", FIELD(reconstruction.sharing.light),
-            "Resampling of light between pixels: di for direct light at the first surface, gi for indirect light as "
-            "well. It helps with many emitters and takes time.",
+            "Resampling of light between pixels: di for direct light at the first surface, gi for indirect light, too. "
+            "It helps with many emitters.",
             Panel{"ReSTIR", PanelGroup::Frames}),
         row("restir_history", "Frames", "N", FIELD(reconstruction.sharing.history),
-            "The maximum number of samples that a reservoir of earlier frames counts as. Fewer follow moving light and "
-            "shadows sooner, with more noise.",
+            "The most samples that a reservoir of earlier frames counts as. Fewer follow moving light sooner, with "
+            "more noise.",
             Range{0, 1024}, Panel{"ReSTIR max history, frames", PanelGroup::Frames}),
         row("resolution_scale", "Frames", "X", FIELD(reconstruction.settings.resolution_scale),
             "The resolution of light, relative to each side of the picture; less is faster. Edges and textures keep "
@@ -146,12 +146,12 @@ std::vector<Setting> frame_settings() {
         row.verbs = kRender | kView | kBenchFrames | kBenchSequence;
         row.needs = "real_time";
     }
-    rows.insert(rows.begin(),
-                row("real_time", "Frames", "", FIELD(real_time),
-                    "Frames are rendered as the viewer does in motion: one sample per pixel each, "
-                    "reconstructed with earlier frames.",
-                    Of{integrators_that(makes_frames)}, Needs{"frames turntable"},
-                    Excludes{"denoise!=none transparent shutter lpe false_color=illuminance aov=motion"}));
+    rows.insert(
+        rows.begin(),
+        row("real_time", "Frames", "", FIELD(real_time),
+            "Frames are those of the viewer in motion: one sample per pixel, reconstructed with earlier frames.",
+            Of{integrators_that(makes_frames)}, Needs{"frames turntable"},
+            Excludes{"denoise!=none transparent shutter lpe false_color=illuminance aov=motion"}));
     return rows;
 }
 

@@ -68,15 +68,15 @@ std::vector<Setting> picture_settings() {
             "Where layers of aov are evaluated: at the samples, whose values are blended, or at the centres of pixels.",
             In{kExr}, Needs{"aov"}, Recorded::Changed),
         row("false_color", "Picture", "NAME", FIELD(false_color),
-            "The quantity that PNG and JPEG show in false colours with a scale: luminance in cd/m2, or illuminance of "
-            "visible surfaces in lx. For illuminance, EXR and HDR hold irradiance in W/m2.",
+            "The quantity that PNG and JPEG show in false colours: luminance in cd/m2, or illuminance of visible "
+            "surfaces in lx, of which EXR and HDR hold irradiance in W/m2.",
             Choices{{"luminance", "illuminance"}}, Excludes{"exposure tone_map f_number transparent"},
             Recorded::AsUsed),
         row("false_color_range", "Picture", "A,B", FIELD(false_color_range), "The ends of the false-color scale.",
             Otherwise{"the picture's own range"}, Needs{"false_color"}),
         row("lpe", "Picture", "NAME=EXPRESSION", FIELD(lpe),
-            "An EXR layer with the light of paths that match an expression, written from the light to the eye: LD+E, "
-            "caustics LS+DE, or L<'lamp'>.*E. It may be given again (docs/transport.md).",
+            "An EXR layer with the light of paths that match an expression from the light to the eye: LD+E, caustics "
+            "LS+DE, or L<'lamp'>.*E. It may be given again (docs/transport.md).",
             In{kExr}, Recorded::AsUsed, Changes::Picture),
 
         row("spp", "Quality", "N", FIELD(render.samples),
@@ -84,13 +84,11 @@ std::vector<Setting> picture_settings() {
             On{kShown | kMeasure | kBenchNoise | kBenchCameras | kBenchPictures}, Mark::Common,
             Panel{"Samples per pixel", PanelGroup::Light}, Changes::Picture),
         row("integrator", "Quality", "NAME", integrator_field, "The light transport algorithm (docs/transport.md).",
-            More{"path finds all light; direct and indirect render its direct and its indirect part. hybrid is path "
-                 "with rasterised primary visibility. cast, whitted and distributed are "
-                 "ray trees without most indirect light. raster and reyes (micropolygons) trace no rays. light traces "
-                 "particles from the lights and misses what mirrors and glass show. bidirectional finds all light by "
-                 "paths from both ends. photon_map converges to all light and finds caustics early. irradiance_cache "
-                 "interpolates indirect light, with a small bias instead of noise. radiosity solves the light between "
-                 "diffuse patches once."},
+            More{"path finds all light, direct and indirect a part each. hybrid is path with rasterised primary "
+                 "visibility. cast, whitted and distributed are ray trees without most indirect light. raster and "
+                 "reyes (micropolygons) trace no rays. light traces particles and misses what mirrors and glass show. "
+                 "bidirectional joins paths from both ends. photon_map finds caustics early. irradiance_cache "
+                 "interpolates, with a small bias. radiosity solves diffuse light once."},
             On{kLooking}, Recorded::Always, Mark::Common, Panel{"Light", PanelGroup::Light}, Changes::Picture),
         row("max_depth", "Quality", "N", FIELD(render.path.max_depth),
             "The maximum number of scatterings between light and camera: 0 is emission, 1 adds direct light.",
@@ -115,13 +113,13 @@ std::vector<Setting> picture_settings() {
             "The choice of a light at each point: by a tree, by power, or by the tree for more than 256 lights (auto).",
             Of{integrators_that(makes_frames)}, On{kLooking | kBenchRender}, Recorded::Changed, Changes::Picture),
         row("time_limit", "Quality", "SECONDS", FIELD(render.time_limit_s),
-            "The time after which the render stops, at the end of a sample. irradiance_cache makes records first and "
-            "may stop before its first sample.",
+            "The time after which the render stops, at the end of a sample. irradiance_cache may stop while it makes "
+            "records.",
             Above{0}, Unit{"s"}, Otherwise{"none"}, Excludes{"frames turntable cameras"}, Mark::NotKept, Mark::Common,
             Changes::Picture),
         row("denoise", "Quality", "NAME", FIELD(render.denoise),
-            "The denoiser of pictures with few samples. It is biased; EXR output also has the picture before denoising "
-            "as the layer noisy. oidn is Open Image Denoise, whose bytes differ between devices.",
+            "The denoiser of pictures with few samples, which is biased. EXR output keeps the picture before as the "
+            "layer noisy. Bytes of oidn (Open Image Denoise) differ between devices.",
             On{kRender | kBenchSequence | kMerge}, Excludes{"!none:max_depth=0"}, Recorded::Changed, Mark::Common,
             Changes::Picture),
 
@@ -138,7 +136,7 @@ std::vector<Setting> picture_settings() {
         row("part_base", "Parts", "B", FIELD(part_base), "The number of the first part.", Range{0, 1u << 31},
             Needs{"part"}, Mark::NotKept, Changes::Picture),
         row("checkpoint", "Parts", "FILE", FIELD(checkpoint),
-            "A film file (.pvf) that keeps the samples so far, from which the render goes on; in real time the frames' "
+            "A film file (.pvf) of the samples so far, from which the render goes on; in real time the frames' "
             "history, for continue.",
             Mark::NotKept, Changes::Picture),
         row("checkpoint_every", "Parts", "SECONDS", FIELD(checkpoint_every_s),
@@ -180,13 +178,13 @@ std::vector<Setting> picture_settings() {
             "The acceleration structure is built, even if it is in the cache.", On{kShown | kMeasure | kSolve},
             Mark::NotKept),
         row("max_memory", "Machine", "MIB", FIELD(radiosity.max_memory),
-            "The memory that may be used: of the device for a picture, of the machine for solving radiosity. Larger "
-            "tasks are refused.",
+            "The most memory: of the device for a picture, of the machine for solving radiosity. Larger tasks are "
+            "refused.",
             Above{0}, Unit{"MiB"}, Otherwise{"all there is"}, On{kLooking | kSolve}, Mark::NotKept),
         row("strict", "Machine", "", FIELD(strict),
-            "Warnings are errors: the verb fails before rendering if a part of the scene is left out or a file "
-            "of settings has an unknown entry, and after writing if a sample is not finite.",
-            On{kScenes | kLab}, Mark::NotKept, Mark::Common),
+            "The verb fails before its work if a part of the scene is left out or a settings file has an unknown "
+            "entry, and after writing if a sample is not finite.",
+            On{kScenes | kLab | kConvert}, Mark::NotKept, Mark::Common),
     };
 }
 

@@ -15,28 +15,28 @@ std::vector<Setting> scene_settings() {
     return {
         row("file_scene", "File", "NAME|N", FIELD(scene.file_scene),
             "The scene of a glTF file that has several, by name or by number from 0.", Otherwise{"the file's default"},
-            On{kScenes | kLab | kInfo}, Mark::Name, Mark::OpensScene, Recorded::AsUsed),
+            On{kScenes | kLab | kDescribes}, Mark::Name, Mark::OpensScene, Recorded::AsUsed),
         row("variant", "File", "NAME|N", FIELD(scene.variant),
             "The variant of a glTF file's materials (KHR_materials_variants), by name or by number from 0.",
-            Otherwise{"the file's default materials"}, On{kScenes | kLab | kInfo}, Mark::Name, Mark::OpensScene,
+            Otherwise{"the file's default materials"}, On{kScenes | kLab | kDescribes}, Mark::Name, Mark::OpensScene,
             Recorded::AsUsed),
         row("define", "File", "NAME=VALUE", FIELD(scene.defines),
-            "The value of $NAME in a Mitsuba file. It may be given again.", On{kScenes | kLab | kInfo},
-            Mark::OpensScene, Recorded::AsUsed),
+            "The value of $NAME in a Mitsuba file. It may be given again.", Letter{"D"},
+            On{kScenes | kLab | kDescribes}, Mark::OpensScene, Recorded::AsUsed),
         row("allow_path", "File", "DIR", FIELD(scene.allowed_paths),
             "A folder outside the scene's own that it may read from as well. It may be given again.",
-            On{kScenes | kLab | kInfo}, Mark::NotKept),
+            On{kScenes | kLab | kDescribes}, Mark::NotKept),
         row("up_axis", "File", "x|y|z", FIELD(scene.up_axis),
             "The axis of an .obj, .ply or .stl file that points up. All other settings are for a scene with y up.",
-            Otherwise{"y"}, On{kScenes | kLab | kInfo}, Mark::OpensScene, Recorded::AsUsed),
+            Otherwise{"y"}, On{kScenes | kLab | kDescribes}, Mark::OpensScene, Recorded::AsUsed),
         row("unit", "File", "UNIT|M", FIELD(scene.unit),
             "The unit of an .obj, .ply or .stl file: m, cm, mm, km, in, ft or a number of metres. All other settings "
             "are for a scene in metres.",
-            Otherwise{"m"}, On{kScenes | kLab | kInfo}, Mark::OpensScene, Recorded::AsUsed),
+            Otherwise{"m"}, On{kScenes | kLab | kDescribes}, Mark::OpensScene, Recorded::AsUsed),
 
         row("material", "File", "NAME KEY=VALUE", FIELD(scene.materials),
             "Sets parameters of the materials with this name, as in \"gold roughness=0.2\"; info lists them.",
-            On{kScenes | kInfo}, Mark::OpensScene, Recorded::AsUsed),
+            On{kScenes | kDescribes}, Mark::OpensScene, Recorded::AsUsed),
         row("movable", "File", "NAME", FIELD(scene.movable),
             "Instances with this name keep their own trees, so that Python moves them quickly; last bits change.",
             On{kRender | kView}, Mark::Name, Recorded::AsUsed),
@@ -46,7 +46,7 @@ std::vector<Setting> scene_settings() {
             Otherwise{"the file's"}, On{kRender | kView}, Recorded::AsUsed, Changes::Picture),
         row("max_texture_size", "File", "N", FIELD(scene.max_texture_size),
             "Larger textures are scaled down to this longer side.", Range{1, kMaxImageSide}, Unit{"pixels"},
-            Otherwise{"any size"}, On{kScenes | kLab | kInfo}, Mark::OpensScene, Recorded::AsUsed),
+            Otherwise{"any size"}, On{kScenes | kLab | kDescribes}, Mark::OpensScene, Recorded::AsUsed),
 
         row("camera", "Camera", "NAME|N", FIELD(scene.camera.camera),
             "The scene's camera to render from, by name or by number from 0.", Otherwise{"its first"}, On{kAimed},
@@ -115,8 +115,7 @@ std::vector<Setting> scene_settings() {
             "absorption in 1/m, and the mean cosine of scattering; none is a vacuum.",
             Otherwise{"the file's"}, On{kLooking | kMeasure}, Mark::Name, Mark::OpensScene, Recorded::AsUsed),
         row("ground", "Environment", "on|off|auto", FIELD(scene.ground),
-            "A ground plane that receives shadows. auto adds it to a single object whose file has neither camera nor "
-            "light.",
+            "A ground plane that receives shadows. auto adds it to an object whose file has neither camera nor light.",
             Choices{{"on", "off", "auto"}}, On{kRender | kView}, Mark::OpensScene, Recorded::AsUsed),
 
         row("lamp", "Lamps", "NAME=AMOUNT", FIELD(scene.emitters),
@@ -141,8 +140,8 @@ std::vector<Setting> scene_settings() {
             On{kRender | kView | kBenchSequence | kMeasure | kSolve}, Excludes{"frames"}, Mark::Common,
             Recorded::AsUsed, Changes::Picture),
         row("shutter", "Motion", "[OPEN,]SECONDS", FIELD(shutter),
-            "The times at which the shutter opens, 0 by default, and closes, relative to the time of the picture or "
-            "frame. Motion between them is blurred.",
+            "The times at which the shutter opens (by default 0) and closes, after the time of the picture or frame. "
+            "Motion between them is blurred.",
             Unit{"s"}, Of{integrators_that(has_shutter)}, Needs{"time frames"}, Excludes{"denoise!=none"}, Mark::Name,
             Recorded::AsUsed),
         row("camera_path", "Motion", "FILE", FIELD(camera_path),
@@ -152,9 +151,8 @@ std::vector<Setting> scene_settings() {
             "The number of pictures in which the camera orbits its target once; in the viewer, in N / 24 s.",
             Range{1, 1e9}, On{kRender | kView | kBenchSequence}, Excludes{"camera_path"}),
         row("cameras", "Motion", "FILE", FIELD(cameras),
-            "A file of cameras, each of which makes a picture: JSON, NeRF's transforms.json or COLMAP's folder. {name} "
-            "in "
-            "an output's name becomes the camera's, # its number.",
+            "A file of cameras with a picture each: JSON, NeRF's transforms.json or COLMAP's folder. {name} in an "
+            "output's name becomes the camera's, # its number.",
             Excludes{"frames turntable camera_path camera camera_from eye target up camera_pose real_time"},
             Mark::Name),
         row("frames", "Motion", "A-B", FIELD(frames),

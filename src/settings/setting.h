@@ -83,6 +83,8 @@ enum SettingVerbs : uint32_t {
     kBenchCameras = 8192,
     kBenchDevices = 16384,
     kMerge = 32768,
+    kCheck = 65536,
+    kConvert = 131072,
 };
 /// Names of verbs in the order of documents.
 inline constexpr ValueName<SettingVerbs> kVerbNames[] = {{kRender, "render"},
@@ -100,7 +102,9 @@ inline constexpr ValueName<SettingVerbs> kVerbNames[] = {{kRender, "render"},
                                                          {kBenchSequence, "bench sequence"},
                                                          {kBenchCameras, "bench cameras"},
                                                          {kBenchDevices, "bench devices"},
-                                                         {kMerge, "merge"}};
+                                                         {kMerge, "merge"},
+                                                         {kCheck, "check"},
+                                                         {kConvert, "convert"}};
 
 /// Form in which a picture's file records a setting under its name.
 enum class Recorded : uint8_t {
@@ -133,6 +137,7 @@ struct Setting {
     SettingField (*field)(PictureOptions&);
     const char* sentence;       // describes the setting
     const char* more = "";      // further sentences for longer help
+    const char* letter = "";    // letter of a short flag
     const char* old_name = "";  // name in earlier versions, which files may have; the flag takes it, hidden
     double low = 0, high = 0;   // range of numbers; high 0: the maximum of the field
     bool above = false;         // whether `low` itself is excluded

@@ -21,6 +21,7 @@ std::vector<Setting> frame_settings();      // settings of real-time frames
 
 inline constexpr uint32_t kLooking = kRender | kView | kBenchNoise | kBenchFrames | kBenchSequence | kBenchCameras;
 inline constexpr uint32_t kScenes = kLooking | kMeasure | kSolve;
+inline constexpr uint32_t kDescribes = kInfo | kCheck | kConvert; // verbs that read a scene and render nothing
 inline constexpr uint32_t kBenchPictures = kBench | kBenchRender | kBenchDevices;
 
 /// The field at a path in PictureOptions.
@@ -57,6 +58,9 @@ struct On {
 struct Of {
     uint32_t integrators;
 };
+struct Letter { // a short flag, as another program has it
+    const char* text;
+};
 struct Needs {
     const char* text;
 };
@@ -73,6 +77,7 @@ inline void put(Setting& s, Above range) { s.low = range.low, s.high = range.hig
 inline void put(Setting& s, Unit unit) { s.unit = unit.text; }
 inline void put(Setting& s, Otherwise otherwise) { s.otherwise = otherwise.text; }
 inline void put(Setting& s, OldName old) { s.old_name = old.text; }
+inline void put(Setting& s, Letter letter) { s.letter = letter.text; }
 inline void put(Setting& s, More more) { s.more = more.text; }
 inline void put(Setting& s, Choices choices) { s.choices = std::move(choices.names); }
 inline void put(Setting& s, Counts counts) { s.counts = std::move(counts.numbers); }

@@ -30,6 +30,8 @@ FLAGS = {
                        "--tolerance --steps --link-error --max-memory --seed --time --lamp --efficacy --allow-path --up-axis --unit --environment --environment-rotation "
                        "--environment-scale --two-sided-lights --threads --no-bvh-cache --animation --file-scene --variant --define --material --max-texture-size --strict --quiet -q --json",
     "info": "--file-scene --variant --define --material --max-texture-size --allow-path --up-axis --unit --settings --quiet -q --json",
+    "check": "--file-scene --variant --define --material --max-texture-size --allow-path --up-axis --unit --quiet -q --json",
+    "convert": "--file-scene --variant --define --material --max-texture-size --allow-path --up-axis --unit --strict --quiet -q --json",
     "compare": "--blocks --quiet -q --json",
     "bench": "--scene --size --spp --device --threads --build --structure --traversal --rta --order --distribution --report --quiet -q --json",
     "bench build": "--scene --runs --compare --device --threads --report --quiet -q --json",
