@@ -32,6 +32,7 @@ struct SceneOptions {
     uint32_t max_texture_size = 0;    // pixels of the longer side; 0: any
     CameraChoice camera;
     std::string environment; // a file, or "r,g,b"
+    std::string sun_sky;     // formats/sun_sky/sun_sky.h
     float environment_rotation_deg = 0, environment_scale = 1;
     std::string medium;                           // around everything; empty: the file's
     std::string ground = "auto";                  // auto, on or off

@@ -104,6 +104,10 @@ std::vector<Setting> scene_settings() {
         row("environment", "Environment", "FILE|R,G,B", FIELD(scene.environment),
             "Light from infinitely far away: an .hdr or .exr panorama, or a radiance R,G,B.", On{kScenes}, Mark::Common,
             Mark::OpensScene, Recorded::AsUsed),
+        row("sun_sky", "Environment", "ELEVATION,AZIMUTH[,TURBIDITY]", FIELD(scene.sun_sky),
+            "A clear sky by Preetham's formulas, with the sun this high and this far from -z towards +x. The turbidity "
+            "is from 2 (clear) to 10, by default 3.",
+            Unit{"degrees"}, On{kScenes}, Excludes{"environment"}, Mark::OpensScene, Recorded::AsUsed),
         row("environment_rotation", "Environment", "DEG", FIELD(scene.environment_rotation_deg),
             "The rotation of the environment or of the default sky about +y.", Range{-1e6, 1e6}, Unit{"degrees"},
             On{kScenes}, Mark::OpensScene, Recorded::AsUsed),

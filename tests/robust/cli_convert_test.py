@@ -74,6 +74,14 @@ class Notices(CliTest):
         warned = self.remarks("render", "dark.gltf", "-o", "y.exr", "--environment", "1,1,1", *SMALL, "--light-choice", "tree", about="light_choice")
         self.assertIn("no light has a position", warned[0]["text"])
 
+    def test_a_sky_of_the_sun_lights_a_scene_and_is_recorded(self):
+        write(self.path("a.gltf"), gltf_with_cameras())
+        line = ["render", "a.gltf", "-o", "x.exr", "--sun-sky", "30,120,4", "--json", *SMALL]
+        self.assertEqual(self.succeed(*line).events("done")[0]["made_up"], [])
+        self.assertEqual(self.info("x.exr")["pertev.sun_sky"], "30,120,4")
+        self.refuse(2, "render", "a.gltf", "-o", "y.exr", "--sun-sky", "100,0", *SMALL, says=["--sun-sky 100,0", "0 to 90"])
+        self.refuse(2, "render", "a.gltf", "-o", "y.exr", "--sun-sky", "10,0", "--environment", "1,1,1", *SMALL, says=["--environment"])
+
 
 if __name__ == "__main__":
     main()

@@ -15,7 +15,7 @@ FLAGS = {
     "merge": "--denoise --exposure --tone-map --output -o --partial --progress --quiet -q --json",
     "render": "--output -o --progress --crop --rows --part --part-base --samples --checkpoint --checkpoint-every --records --camera-pose --convention --intrinsics --intrinsics-size --lens --distortion --camera-from --cameras --layers-at --frame-denoiser "
               "--allow-path --up-axis --unit --quiet -q --json --strict --camera --eye --target --up --fov --projection "
-              "--view-height --aperture --focus --environment --environment-rotation --environment-scale --medium "
+              "--view-height --aperture --focus --environment --sun-sky --environment-rotation --environment-scale --medium "
               "--two-sided-lights --show-back-faces --size --tone-map --exposure --transparent --aov --spp --time-limit --denoise "
               "--integrator --max-depth --ambient --shading --wireframe --seed --sampler --filter --filter-radius --clamp --mip-maps --light-choice --device --threads "
               "--no-bvh-cache --build --structure --traversal --rta --order --distribution --time --frames --fps --camera-path "
@@ -24,10 +24,10 @@ FLAGS = {
               "--accuracy --hemisphere-rays --show-records --patch-size --subdivisions --contrast --form-factors --patch-rays --hemicube "
               "--solver --tolerance --steps --link-error --max-memory --solution --flat-patches --real-time --restir --restir-history --resolution-scale --history --passes --no-anti-alias "
               "--no-firefly-clamping --no-temporal-gradients --no-history-clamping --no-reconstruction --animation --file-scene --variant --define --movable --material --max-texture-size --ground --author --license --settings",
-    "measure": "--at --normal --spp --max-depth --seed --lamp --efficacy --time --allow-path --up-axis --unit --environment --environment-rotation "
+    "measure": "--at --normal --spp --max-depth --seed --lamp --efficacy --time --allow-path --up-axis --unit --environment --sun-sky --environment-rotation "
                "--environment-scale --medium --two-sided-lights --device --threads --no-bvh-cache --animation --file-scene --variant --define --material --max-texture-size --strict --quiet -q --json",
     "solve radiosity": "--output -o --patch-size --subdivisions --contrast --form-factors --patch-rays --hemicube --solver "
-                       "--tolerance --steps --link-error --max-memory --seed --time --lamp --efficacy --allow-path --up-axis --unit --environment --environment-rotation "
+                       "--tolerance --steps --link-error --max-memory --seed --time --lamp --efficacy --allow-path --up-axis --unit --environment --sun-sky --environment-rotation "
                        "--environment-scale --two-sided-lights --threads --no-bvh-cache --animation --file-scene --variant --define --material --max-texture-size --strict --quiet -q --json",
     "info": "--file-scene --variant --define --material --max-texture-size --allow-path --up-axis --unit --settings --quiet -q --json",
     "check": "--file-scene --variant --define --material --max-texture-size --allow-path --up-axis --unit --quiet -q --json",

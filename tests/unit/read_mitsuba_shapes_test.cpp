@@ -323,7 +323,8 @@ TEST_CASE("mitsuba: point, spot and directional emitters") {
     CHECK(scene.lights[2].intensity == grey(7));
     Messages messages;
     (void)load_mitsuba_shapes(test::scratch_folder(),
-                              shape_of("rectangle") + "<emitter type=\"sunsky\"/><emitter type=\"spott\"/>", messages);
+                              shape_of("rectangle") + "<emitter type=\"timed_sunsky\"/><emitter type=\"spott\"/>",
+                              messages);
     REQUIRE(messages.left_out().size() == 2);
     CHECK(messages.left_out()[1].find("did you mean \"spot\"?") != std::string::npos);
 }

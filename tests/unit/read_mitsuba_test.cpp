@@ -373,3 +373,40 @@ TEST_CASE("mitsuba: a lens that is too near to focus is a pinhole") {
     REQUIRE(scene.cameras.size() == 1);
     CHECK(scene.cameras[0].aperture_radius == 0);
 }
+
+TEST_CASE("mitsuba: a sky has its sun where the file says, about the axis that points up there") {
+    const auto brightest = [](const Scene& scene) {
+        const Image& image = scene.environment->image;
+        std::size_t best = 0;
+        for (std::size_t i = 0; i < image.pixels.size(); i += 3) best = image.pixels[i] > image.pixels[best] ? i : best;
+        const float x = (static_cast<float>(best / 3 % image.width) + 0.5f) / static_cast<float>(image.width);
+        const float y = (static_cast<float>(best / 3 / image.width) + 0.5f) / static_cast<float>(image.height);
+        const float around = 2 * kPi * (x - 0.5f), down = kPi * y;
+        return Vec3{sin(down) * sin(around), cos(down), -sin(down) * cos(around)};
+    };
+    Messages messages;
+    const std::string direction = "<vector name=\"sun_direction\" x=\"0.6\" y=\"0\" z=\"0.8\"/>";
+    const Scene sun =
+        load_mitsuba(in_scene(kMitsubaSquare + "<emitter type=\"sunsky\">" + direction + "</emitter>"), messages);
+    CHECK(messages.left_out().empty());
+    CHECK(messages.all().size() == 1); // it is another model
+    CHECK(length(brightest(sun) - Vec3{0.6f, 0, 0.8f}) < 0.01f);
+    CHECK(sun.environment->image.width == 2048);
+    const Scene sky =
+        load_mitsuba(in_scene(kMitsubaSquare + "<emitter type=\"sky\">" + direction + "</emitter>"), messages);
+    CHECK(sky.environment->image.width == 512);
+    const Scene old = load_mitsuba(
+        in_scene(kMitsubaSquare + "<emitter type=\"sun\"><vector name=\"sunDirection\" x=\"0.6\" y=\"0.8\" z=\"0\"/>"
+                                  "</emitter>",
+                 "0.6.0"),
+        messages);
+    CHECK(length(brightest(old) - Vec3{0.6f, 0.8f, 0}) < 0.01f);
+    // An afternoon in Tokyo: in the west, which is +y, and somewhat south, 46 degrees high.
+    const Vec3 tokyo = brightest(load_mitsuba(in_scene(kMitsubaSquare + "<emitter type=\"sun\"/>"), messages));
+    CHECK(tokyo.z == doctest::Approx(0.72f).epsilon(0.02));
+    CHECK(tokyo.y > 0.65f);
+    CHECK(abs(tokyo.x) < 0.15f);
+    const auto below =
+        mitsuba_left_out("<emitter type=\"sky\"><vector name=\"sun_direction\" x=\"0\" y=\"0\" z=\"-1\"/></emitter>");
+    CHECK(below.size() == 1);
+}

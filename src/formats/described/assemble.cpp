@@ -128,7 +128,7 @@ void set_lights(const Parts& parts, const DoubleTransform& scene_from_file, Sink
 void set_environment(const Parts& parts, const DoubleTransform& scene_from_file, Sink& sink, Scene& scene) {
     for (const InfiniteLight& light : parts.infinite_lights) {
         const bool has_pictures =
-            !light.picture.empty() || (scene.environment && !scene.environment->image.pixels.empty());
+            !light.picture.empty() || light.sky || (scene.environment && !scene.environment->image.pixels.empty());
         if (scene.environment && has_pictures) {
             sink.leave_out({light.location, "a second infinite light is left out, because one of them has a picture"});
             continue;

@@ -6,6 +6,8 @@
 
 #include "base/limits.h"
 #include "base/parallel_for.h"
+#include "formats/described/transforms.h"
+#include "formats/described/usable_values.h"
 #include "image/read_image.h"
 #include "math/portable_math.h"
 
@@ -83,6 +85,15 @@ Vec2 octahedral_place(Vec3 d) {
 
 std::optional<Environment> make_environment(const InfiniteLight& light, const DoubleTransform& local_from_scene,
                                             Sink& sink) {
+    if (light.sky) {
+        SunSky sky = *light.sky;
+        const DoubleTransform scene_from_local = inverse(local_from_scene);
+        for (Vec3* const d : {&sky.zenith, &sky.sun})
+            *d = normalize_safely(to_float(transform_point(scene_from_local, to_double(*d))));
+        Environment of_sky = make_sun_sky(sky, light.lumens_per_watt);
+        of_sky.scale = light.scale;
+        return of_sky;
+    }
     Environment environment;
     environment.scale = light.scale;
     if (light.picture.empty()) {

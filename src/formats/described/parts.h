@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "formats/described/surface.h"
 #include "formats/described/texture_value.h"
+#include "formats/sun_sky/sun_sky.h"
 #include "math/double_transform.h"
 #include "scene/light.h"
 #include "scene/medium.h"
@@ -54,6 +55,8 @@ struct InfiniteLight {
     PanoramaLayout layout = PanoramaLayout::Octahedron;
     double illuminance = 0; // above 0: on a surface that faces +z of the light
     DoubleTransform world_from_light;
+    std::optional<SunSky> sky;  // in place of a picture, in the light's directions
+    double lumens_per_watt = 0; // that a watt of the sky has
 };
 
 /// A light with its position before it is rounded.

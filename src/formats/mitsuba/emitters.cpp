@@ -9,15 +9,16 @@
 #include "base/message_text.h"
 #include "formats/described/transforms.h"
 #include "formats/files/closest_name.h"
+#include "formats/mitsuba/skies.h"
 #include "math/portable_math.h"
 
 namespace pertev::mitsuba {
 namespace {
 
-constexpr std::array<std::string_view, 6> kEmitterTypes = {"area",        "point",    "spot",
-                                                           "directional", "constant", "envmap"};
-constexpr std::array<std::string_view, 7> kOtherEmitterTypes = {
-    "projector", "sunsky", "sun", "sky", "timed_sunsky", "collimated", "directionalarea"};
+constexpr std::array<std::string_view, 9> kEmitterTypes = {"area",   "point",  "spot", "directional", "constant",
+                                                           "envmap", "sunsky", "sun",  "sky"};
+constexpr std::array<std::string_view, 4> kOtherEmitterTypes = {"projector", "timed_sunsky", "collimated",
+                                                                "directionalarea"};
 
 Vec3 direction_of(const DoubleTransform& m, DoubleVec3 v) {
     return normalize_safely(to_float(DoubleVec3{dot(m.row0, v), dot(m.row1, v), dot(m.row2, v)}));
@@ -68,7 +69,10 @@ void add_infinite_light(Object& emitter, Reading& reading) {
     light.layout = PanoramaLayout::AroundY;
     light.world_from_light = transform_of(emitter, "to_world", sink);
     parameters.ignore({"sampling_weight", "mis_compensation", "gamma", "cache", "radius"});
-    if (emitter.type == "constant") {
+    if (emitter.type == "sunsky" || emitter.type == "sun" || emitter.type == "sky") {
+        light.scale = grey(1);
+        set_sky(emitter, reading, light);
+    } else if (emitter.type == "constant") {
         light.scale = read_color(emitter, "radiance", ColorUse::Light, grey(1), reading);
     } else {
         light.scale = grey(static_cast<float>(std::max(parameters.number("scale", 1, sink), 0.0)));
@@ -88,7 +92,8 @@ void add_emitter(Object& emitter, Reading& reading) {
     const std::string& type = emitter.type;
     try {
         if (type == "point" || type == "spot" || type == "directional") return add_light(emitter, reading);
-        if (type == "constant" || type == "envmap") return add_infinite_light(emitter, reading);
+        const bool is_sky = type == "sunsky" || type == "sun" || type == "sky";
+        if (is_sky || type == "constant" || type == "envmap") return add_infinite_light(emitter, reading);
         if (type == "area") throw emitter.parameters.error("an area emitter is in no shape");
         const bool is_known = std::ranges::find(kOtherEmitterTypes, type) != kOtherEmitterTypes.end();
         throw emitter.parameters.error(fmt::format("emitters of the type {} are not supported{}", shortened(type),

@@ -24,7 +24,8 @@ namespace pertev {
 namespace {
 
 /// Returns the environment that the options set; nothing if they set none.
-std::optional<Environment> environment_of(const SceneOptions& options, Sink& sink) {
+std::optional<Environment> environment_of(const SceneOptions& options, double efficacy, Sink& sink) {
+    if (!options.sun_sky.empty()) return make_sun_sky(sun_sky(options), efficacy);
     Environment environment;
     if (Rgb color; parse_rgb(options.environment, color)) {
         if (!(is_finite(color) && color.r >= 0 && color.g >= 0 && color.b >= 0)) {
@@ -151,6 +152,12 @@ ReadOptions read_options(const SceneOptions& options) {
     return read;
 }
 
+SunSky sun_sky(const SceneOptions& options) {
+    if (const auto sky = parse_sun_sky(options.sun_sky)) return *sky;
+    throw Error(ErrorCode::BadInput, "sun_sky", options.sun_sky,
+                "expected ELEVATION,AZIMUTH[,TURBIDITY]: 0 to 90 degrees, degrees, and 2 to 10, as in 45,90,3");
+}
+
 std::string environment_text(const SceneOptions& options) {
     Rgb radiance;
     if (!parse_rgb(options.environment, radiance)) return options.environment;
@@ -190,8 +197,8 @@ Scene open_scene(const SceneOptions& options, Sink& sink, SceneUse use, Ground g
         sink.warn({"two_sided_lights", "", "no surface of the scene emits light"});
     }
     if (options.show_back_faces) show_back_faces(scene, sink);
-    if (auto environment = environment_of(options, sink)) scene.environment = *std::move(environment);
     const double efficacy = lumens_per_watt(options.scene, static_cast<double>(options.efficacy));
+    if (auto environment = environment_of(options, efficacy, sink)) scene.environment = *std::move(environment);
     const bool has_light = !lacks_light(scene);
     const auto others = std::ranges::stable_partition(
         emitters, [&](const EmitterStrength& emitter) { return names_emitter_of_file(scene, emitter); });

@@ -12,6 +12,7 @@
 
 #include "base/sink.h"
 #include "formats/read_scene.h"
+#include "formats/sun_sky/sun_sky.h"
 #include "scene/scene.h"
 #include "session/set_emitters.h"
 #include "session/survey/default_light.h"
@@ -30,6 +31,9 @@ ReadOptions read_options(const SceneOptions& options);
 
 /// The environment in the syntax of `environment`: a file, or a radiance R,G,B; empty: none.
 std::string environment_text(const SceneOptions& options);
+
+/// The sky of the setting `sun_sky`, which is not empty.
+SunSky sun_sky(const SceneOptions& options);
 
 /// Gives a scene that has passed validate() in place of that of the file, for scenes that are made in memory.
 using ReadScene = std::function<Scene(Sink& sink)>;

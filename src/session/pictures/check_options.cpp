@@ -71,6 +71,7 @@ void check_options(const PictureOptions& options, uint32_t verbs) {
     requested.aperture_radius = std::max(options.scene.camera.aperture.value_or(0), 0.0f);
     check_camera(settings, requested);
     read_options(options.scene);
+    if (!options.scene.sun_sky.empty()) sun_sky(options.scene);
     for (const std::string& emitter : options.scene.emitters) parse_emitter(emitter);
     for (const std::string& material : options.scene.materials) parse_material_change(material);
     check_solution(options.radiosity.solution);

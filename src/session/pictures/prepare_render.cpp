@@ -282,7 +282,8 @@ void record_settings(const PictureOptions& options, const Scene& scene, uint32_t
             name);
     }
     if (!is_own && !choice.places_camera() && options.camera_path.empty()) add(source.by_default, "camera");
-    if (source.has_environment && options.scene.environment.empty()) add(source.by_default, "environment");
+    const bool has_own_sky = !options.scene.environment.empty() || !options.scene.sun_sky.empty();
+    if (source.has_environment && !has_own_sky) add(source.by_default, "environment");
     if (!source.ground.empty() && !options.is_given("ground")) add(source.by_default, "ground");
     if (source.hash.empty()) source.hash = scene_hash(options.scene.scene);
     source.settings = settings_of_frame(options, record, frame);

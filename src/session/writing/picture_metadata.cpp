@@ -73,7 +73,8 @@ PictureOptions used_options(const PictureRecord& record) {
     used.render = settings;
     used.render.filter_radius = filter_radius_of(settings);
     used.scene = record.scene;
-    if (used.scene.environment.empty()) used.scene.environment = record.scene.has_environment ? "made up" : "none";
+    if (used.scene.environment.empty() && used.scene.sun_sky.empty())
+        used.scene.environment = record.scene.has_environment ? "made up" : "none";
     used.time_s = record.scene.time_s;
     if (const auto& shutter = record.scene.shutter) {
         used.shutter = fmt::format("{},{}", shutter->open_s, shutter->close_s);
