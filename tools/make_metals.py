@@ -15,12 +15,18 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 METALS = [  # the name, the file in database/data
-    ("aluminium", "main/Al/nk/Rakic"), ("beryllium", "main/Be/nk/Rakic-LD"), ("brass", "other/alloys/Cu-Zn/nk/Querry-Cu70Zn30"),
-    ("chromium", "main/Cr/nk/Johnson"), ("cobalt", "main/Co/nk/Johnson"), ("copper", "main/Cu/nk/Johnson"), ("gold", "main/Au/nk/Johnson"),
-    ("iron", "main/Fe/nk/Johnson"), ("mercury", "main/Hg/nk/Inagaki"), ("nickel", "main/Ni/nk/Johnson"),
-    ("palladium", "main/Pd/nk/Johnson"), ("platinum", "main/Pt/nk/Rakic-LD"), ("silver", "main/Ag/nk/Johnson"),
-    ("tantalum", "main/Ta/nk/Werner"), ("titanium", "main/Ti/nk/Johnson"), ("tungsten", "main/W/nk/Rakic-LD"),
-    ("vanadium", "main/V/nk/Johnson")]
+    ("aluminium", "main/Al/nk/Rakic"), ("aluminium-antimonide", "main/AlSb/nk/Djurisic"), ("aluminium-arsenide", "main/AlAs/nk/Rakic"),
+    ("beryllium", "main/Be/nk/Rakic-LD"), ("brass", "other/alloys/Cu-Zn/nk/Querry-Cu70Zn30"), ("caesium-iodide", "main/CsI/nk/Querry"),
+    ("carbon", "main/C/nk/Arakawa"), ("chromium", "main/Cr/nk/Johnson"), ("cobalt", "main/Co/nk/Johnson"),
+    ("copper", "main/Cu/nk/Johnson"), ("gold", "main/Au/nk/Johnson"), ("iridium", "main/Ir/nk/Schmitt-MS"), ("iron", "main/Fe/nk/Johnson"),
+    ("lithium", "main/Li/nk/Inagaki"), ("mercury", "main/Hg/nk/Inagaki"), ("molybdenum", "main/Mo/nk/Kirillova"),
+    ("nickel", "main/Ni/nk/Johnson"), ("niobium", "main/Nb/nk/Weaver"), ("palladium", "main/Pd/nk/Johnson"),
+    ("platinum", "main/Pt/nk/Rakic-LD"), ("potassium", "main/K/nk/Smith"), ("rhodium", "main/Rh/nk/Weaver"),
+    ("silicon-carbide", "main/SiC/nk/Larruquert"), ("silver", "main/Ag/nk/Johnson"),
+    ("sodium", "main/Na/nk/Inagaki"), ("tantalum", "main/Ta/nk/Werner"), ("tellurium", "main/Te/nk/Ciesielski"),
+    ("titanium", "main/Ti/nk/Johnson"), ("titanium-carbide", "main/TiC/nk/Pfluger"), ("titanium-nitride", "main/TiN/nk/Pfluger"),
+    ("tungsten", "main/W/nk/Rakic-LD"), ("vanadium", "main/V/nk/Johnson"), ("vanadium-carbide", "main/VC/nk/Pfluger"),
+    ("vanadium-nitride", "main/VN/nk/Pfluger")]
 RGB_FROM_XYZ = ((3.2404542, -1.5371385, -0.4985314), (-0.9692660, 1.8760108, 0.0415560), (0.0556434, -0.2040259, 1.0572252))
 COSINES = [math.cos(math.radians(angle)) for angle in range(0, 90, 5)]
 

@@ -1,19 +1,36 @@
 // Written by tools/make_metals.py from refractiveindex.info (CC0): name, eta, k, file.
 // clang-format off
 {"aluminium", {1.5003f, 0.98485f, 0.60511f}, {7.6497f, 6.548f, 5.3468f}}, // main/Al/nk/Rakic
+{"aluminium-antimonide", {3.8738f, 4.2845f, 4.9729f}, {0.21397f, 2.6357e-07f, 1.2738f}}, // main/AlSb/nk/Djurisic
+{"aluminium-arsenide", {3.1089f, 3.2424f, 3.549f}, {0.021123f, 2.7194e-07f, 0.029568f}}, // main/AlAs/nk/Rakic
 {"beryllium", {3.4558f, 3.339f, 3.0571f}, {3.1775f, 3.1507f, 3.1405f}}, // main/Be/nk/Rakic-LD
 {"brass", {0.46021f, 0.52279f, 1.1255f}, {4.2719f, 2.668f, 1.8105f}}, // other/alloys/Cu-Zn/nk/Querry-Cu70Zn30
+{"caesium-iodide", {1.7327f, 1.7427f, 1.772f}, {5.4686e-08f, 0.0087113f, 0.0048938f}}, // main/CsI/nk/Querry
+{"carbon", {2.4545f, 2.347f, 2.1712f}, {0.72149f, 0.84318f, 0.89323f}}, // main/C/nk/Arakawa
 {"chromium", {3.247f, 3.1147f, 2.2856f}, {3.2865f, 3.3363f, 3.117f}}, // main/Cr/nk/Johnson
 {"cobalt", {2.2579f, 2.0354f, 1.7135f}, {4.2284f, 3.7946f, 3.2381f}}, // main/Co/nk/Johnson
 {"copper", {0.22533f, 1.0447f, 1.2957f}, {3.419f, 2.625f, 2.3624f}}, // main/Cu/nk/Johnson
 {"gold", {0.041301f, 0.49737f, 1.4723f}, {5.653f, 2.256f, 1.7764f}}, // main/Au/nk/Johnson
+{"iridium", {3.0818f, 2.5971f, 2.1478f}, {5.6295f, 5.0782f, 4.3343f}}, // main/Ir/nk/Schmitt-MS
 {"iron", {2.923f, 2.9195f, 2.5464f}, {3.0773f, 2.9372f, 2.75f}}, // main/Fe/nk/Johnson
+{"lithium", {0.19078f, 0.20224f, 0.24415f}, {3.2275f, 2.6159f, 1.9995f}}, // main/Li/nk/Inagaki
 {"mercury", {2.0503f, 1.5195f, 1.0251f}, {5.3122f, 4.606f, 3.7954f}}, // main/Hg/nk/Inagaki
+{"molybdenum", {3.4695f, 3.3612f, 2.7992f}, {3.5234f, 3.6536f, 3.5228f}}, // main/Mo/nk/Kirillova
 {"nickel", {2.0346f, 1.9034f, 1.7288f}, {4.2024f, 3.5703f, 2.8961f}}, // main/Ni/nk/Johnson
+{"niobium", {2.9096f, 2.9109f, 2.621f}, {2.8302f, 2.8865f, 2.8103f}}, // main/Nb/nk/Weaver
 {"palladium", {1.7967f, 1.6219f, 1.3959f}, {4.366f, 3.8119f, 3.2128f}}, // main/Pd/nk/Johnson
 {"platinum", {2.3527f, 2.0754f, 1.8326f}, {4.2399f, 3.668f, 3.0956f}}, // main/Pt/nk/Rakic-LD
+{"potassium", {0.054453f, 0.049236f, 0.042014f}, {1.7842f, 1.4335f, 1.0245f}}, // main/K/nk/Smith
+{"rhodium", {2.1749f, 1.9612f, 1.7258f}, {5.7255f, 4.955f, 4.4017f}}, // main/Rh/nk/Weaver
+{"silicon-carbide", {3.385f, 3.4357f, 3.4898f}, {0.2531f, 0.37908f, 0.56653f}}, // main/SiC/nk/Larruquert
 {"silver", {0.056605f, 0.05502f, 0.043164f}, {4.4918f, 3.549f, 2.5903f}}, // main/Ag/nk/Johnson
+{"sodium", {0.041475f, 0.053567f, 0.078371f}, {2.8686f, 2.276f, 1.7253f}}, // main/Na/nk/Inagaki
 {"tantalum", {1.0638f, 1.1317f, 1.2618f}, {5.9039f, 4.8369f, 3.9117f}}, // main/Ta/nk/Werner
+{"tellurium", {4.4502f, 3.3942f, 2.4152f}, {2.3632f, 2.873f, 2.7098f}}, // main/Te/nk/Ciesielski
 {"titanium", {2.749f, 2.5078f, 2.2403f}, {3.8441f, 3.3974f, 3.0147f}}, // main/Ti/nk/Johnson
+{"titanium-carbide", {3.0776f, 2.9921f, 2.8463f}, {2.7313f, 2.4788f, 2.3919f}}, // main/TiC/nk/Pfluger
+{"titanium-nitride", {1.4154f, 1.2087f, 1.4905f}, {2.9717f, 2.0247f, 1.2521f}}, // main/TiN/nk/Pfluger
 {"tungsten", {3.6944f, 3.442f, 3.3556f}, {2.9422f, 2.7332f, 2.5099f}}, // main/W/nk/Rakic-LD
 {"vanadium", {3.4811f, 3.9617f, 3.6143f}, {2.9835f, 3.0757f, 3.4753f}}, // main/V/nk/Johnson
+{"vanadium-carbide", {3.0487f, 2.9023f, 2.7897f}, {2.5686f, 2.3173f, 2.1639f}}, // main/VC/nk/Pfluger
+{"vanadium-nitride", {2.3945f, 2.2341f, 2.137f}, {2.5558f, 2.1656f, 1.7921f}}, // main/VN/nk/Pfluger

@@ -138,6 +138,10 @@ TEST_CASE("mitsuba: an area emitter emits from the front, and its image is that 
     const MitsubaMaterial image = load_bsdf("<emitter type=\"area\">" + bitmap_of("radiance", "") + "</emitter>");
     CHECK(image.material.emission_texture.has_image());
     CHECK(image.material.emission == grey(1));
+    const MitsubaMaterial bent =
+        load_bsdf("<emitter type=\"area\">" + bitmap_of("radiance", number_of("gamma", 2)) + "</emitter>", "0.6.0");
+    const auto of_bent = static_cast<std::size_t>(bent.material.emission_texture.image);
+    CHECK(bent.scene.images.at(of_bent).rgba_float.pixels[4] == doctest::Approx(0.25)); // 0.5 squared
 }
 
 TEST_CASE("mitsuba: metals by name, by numbers and by nothing") {
@@ -280,6 +284,12 @@ TEST_CASE("mitsuba: twosided, mask, null and mixtures") {
               .messages.left_out()
               .size() == 1);
     CHECK(load_bsdf(bsdf_of("mixturebsdf", string_of("weights", ".5") + red + blue)).messages.left_out().size() == 1);
+    // Parts that differ in more than their colours are named.
+    const std::string thin = bsdf_of("mask", number_of("opacity", 0.25) + blue);
+    const MitsubaMaterial mixed = load_bsdf(bsdf_of("blendbsdf", number_of("weight", 0.5) + red + thin));
+    REQUIRE(mixed.messages.left_out().size() == 1);
+    CHECK(mixed.messages.left_out()[0].find("only the colours of the parts of the bsdf blendbsdf") !=
+          std::string::npos);
 }
 
 TEST_CASE("mitsuba: bitmaps have wraps, filters, places and encodings") {
@@ -396,4 +406,57 @@ TEST_CASE("mitsuba: an emitter without a BSDF is black, but not in version 0.6")
     const std::string lamp = "<emitter type=\"area\"/>";
     CHECK(is_black(mitsuba_material(lamp).base_color));
     CHECK_FALSE(is_black(mitsuba_material(lamp, "0.6.0").base_color));
+}
+
+TEST_CASE("mitsuba: what a shape has twice, or has no use for, is left out by name") {
+    const std::string red = bsdf_of("diffuse", rgb_of("reflectance", "1 0 0"));
+    const MitsubaMaterial two = load_bsdf(red + bsdf_of("conductor"));
+    CHECK(two.material.base_color == Rgb{1, 0, 0});
+    REQUIRE(two.messages.left_out().size() == 1);
+    CHECK(two.messages.left_out()[0].find(
+              "the bsdf conductor is left out, because the shape rectangle has another bsdf") != std::string::npos);
+    const std::string light = "<emitter type=\"area\"/>";
+    CHECK(load_bsdf(light + light).messages.left_out().size() == 1);
+    CHECK(load_bsdf(red + bitmap_of("", "")).messages.left_out().size() == 1);
+    const MitsubaMaterial same =
+        load_bsdf("<bsdf type=\"diffuse\" id=\"a\"/><texture id=\"a\" name=\"t\" type=\"checkerboard\"/>");
+    bool is_named = false;
+    for (const Message& message : same.messages.all())
+        is_named = is_named || message.text.find("another object has the id a") != std::string::npos;
+    CHECK(is_named);
+}
+
+TEST_CASE("mitsuba: a thin principled surface transmits the colours of its texture") {
+    const MitsubaMaterial leaf =
+        load_bsdf(bsdf_of("principledthin", bitmap_of("base_color", "") + number_of("diff_trans", 1)));
+    CHECK(leaf.material.diffuse_transmission_weight == 0.5f);
+    CHECK(leaf.material.diffuse_transmission_color_texture.has_image());
+    CHECK(leaf.material.diffuse_transmission_color_texture.image == leaf.material.base_color_texture.image);
+}
+
+TEST_CASE("mitsuba: colours of vertices are no weights and opacities") {
+    const std::string red = bsdf_of("diffuse", rgb_of("reflectance", "1 0 0"));
+    const auto attribute = [](const char* name) {
+        return fmt::format("<texture name=\"{}\" type=\"mesh_attribute\">{}{}</texture>", name,
+                           string_of("name", "vertex_color"), number_of("scale", 0.25));
+    };
+    const MitsubaMaterial masked = load_bsdf(bsdf_of("mask", attribute("opacity") + red));
+    CHECK(masked.messages.left_out().size() == 1);
+    CHECK(masked.material.alpha == 0.25f);
+    const MitsubaMaterial blended =
+        load_bsdf(bsdf_of("blendbsdf", attribute("weight") + red + bsdf_of("diffuse", rgb_of("reflectance", "0 0 1"))));
+    CHECK(blended.messages.left_out().size() == 1);
+    CHECK(blended.material.base_color == Rgb{0.75f, 0, 0.25f});
+}
+
+TEST_CASE("mitsuba: every metal of its list that has published indices is known by its short name") {
+    for (const char* const name : {"a-C", "Ag", "Al", "AlAs", "AlSb", "Au",   "Be",       "Cr",      "CsI",      "Cu",
+                                   "Hg",  "Ir", "K",  "Li",   "MgO",  "Mo",   "Na_palik", "Nb",      "Ni_palik", "Rh",
+                                   "SiC", "Ta", "Te", "TiC",  "TiN",  "TiO2", "VC",       "V_palik", "VN",       "W"}) {
+        CAPTURE(name);
+        const Material metal = mitsuba_material(bsdf_of("conductor", string_of("material", name)));
+        CHECK(metal.kind == MaterialKind::Conductor);
+        CHECK(metal.eta.g > 0.01f);
+    }
+    CHECK(load_bsdf(bsdf_of("conductor", string_of("material", "HgTe"))).messages.left_out().size() == 1);
 }

@@ -176,6 +176,16 @@ TEST_CASE("mitsuba: a cylinder's u begins where Mitsuba's does, and normal maps 
         CHECK(t.x == doctest::Approx(1));
         CHECK(t.w == 1); // so y is up, where v = 0 is below
     }
+    const std::string bumpy = "<bsdf type=\"normalmap\"><texture name=\"normalmap\" type=\"bitmap\">" +
+                              named_file("n.exr") + "</texture><bsdf type=\"diffuse\"/></bsdf>";
+    const Scene mirrored = load_mitsuba_shapes(
+        folder,
+        shape_of("rectangle", bumpy) +
+            shape_of("rectangle", "<transform name=\"to_world\"><scale x=\"-1\"/></transform>" + bumpy),
+        messages);
+    REQUIRE(mirrored.meshes.size() == 2); // since the bitangent is across normal and tangent in the world
+    CHECK(mirrored.meshes[0].tangents.at(0).w == 1);
+    CHECK(mirrored.meshes[1].tangents.at(0).w == -1);
 }
 
 TEST_CASE("mitsuba: files of meshes are smooth unless they shall not be, and v follows flip_tex_coords") {

@@ -112,6 +112,10 @@ TEST_CASE("mitsuba: a later step of a transform is applied later") {
     check_corner(corner_after("<translate x=\"1\"/><scale value=\"2\"/>", "0.6.0", "toWorld"), {4, 2, 0});
 }
 
+TEST_CASE("mitsuba: nine numbers are a map without a translation, and of texture coordinates one of the plane") {
+    check_corner(corner_after("<matrix value=\"1 0 0 0 2 0 5 0 1\"/>"), {1, 2, 5});
+}
+
 TEST_CASE("mitsuba: a camera looks along +z with +x to the left") {
     const std::string square = "<shape type=\"rectangle\"><transform name=\"to_world\"><translate x=\"3\" "
                                "y=\"1\" z=\"9\"/></transform></shape>";

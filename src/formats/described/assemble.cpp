@@ -101,7 +101,12 @@ struct Assembly {
         if (material.emission != radiance)
             sink.warn({light.location, "the radiance of an area light is kept within 2^40"});
         material.two_sided_emission = light.is_two_sided;
-        if (light.image.has_image()) material.emission_texture = light.image.ref;
+        if (!light.image.has_image()) return;
+        TextureValue image = light.image; // its factor is in the radiance
+        image.factor = grey(1);
+        const Rgb emission = material.emission;
+        set_color(surface, &MaterialParameters::emission, &MaterialParameters::emission_texture, image);
+        material.emission = emission;
     }
 };
 

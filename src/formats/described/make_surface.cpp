@@ -7,7 +7,20 @@ namespace {
 
 using M = MaterialParameters;
 
+/// Returns whether two diffuse surfaces without images differ in nothing but their colours.
+bool looks_like_but_for_color(const Surface& a, const Surface& b) {
+    return a.material.base_diffuse_roughness == b.material.base_diffuse_roughness &&
+           a.material.alpha == b.material.alpha && a.has_heights == b.has_heights &&
+           a.material.normal_texture.has_image() == b.material.normal_texture.has_image() &&
+           a.has_vertex_colors == b.has_vertex_colors;
+}
+
 } // namespace
+
+std::string mixed_by_color(const std::string& mixture) {
+    return "only the colours of the parts of " + mixture +
+           " are mixed; their bumps, roughness, alpha and vertex colours are those of the first";
+}
 
 Surface make_surface(MaterialKind kind) {
     Surface surface;
@@ -93,17 +106,18 @@ MixedSurface mix_surfaces(const Surface& first, const Surface& second, const Tex
     const bool is_diffuse = first.material.kind == MaterialKind::Diffuse &&
                             second.material.kind == MaterialKind::Diffuse && first.images.empty() &&
                             second.images.empty();
+    const bool differs = !looks_like_but_for_color(first, second);
     if (is_diffuse && !of_second.has_image()) {
         Surface surface = first;
         surface.material.base_color = lerp(first.material.base_color, second.material.base_color, share);
-        return {surface, std::nullopt};
+        return {surface, std::nullopt, differs};
     }
     if (is_diffuse) {
         Surface surface = first;
         TextureValue color = of_second.scaled(second.material.base_color - first.material.base_color);
         color.offset += first.material.base_color;
         set_color(surface, &M::base_color, &M::base_color_texture, color);
-        return {surface, std::nullopt};
+        return {surface, std::nullopt, differs};
     }
     MixedSurface mixed{share < 0.5f ? first : second, std::nullopt};
     if (share > 0 && share < 1) mixed.left_out = share < 0.5f ? 1 : 0;

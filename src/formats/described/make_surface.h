@@ -27,7 +27,10 @@ float reflected_inside(float ior);
 struct MixedSurface {
     Surface surface;
     std::optional<std::size_t> left_out; // 0 or 1: of which nothing remains though it has a share
+    bool is_by_color = false;            // only the colours are mixed of parts that differ in more
 };
+/// Says what `is_by_color` means, of a mixture such as "the blendbsdf".
+std::string mixed_by_color(const std::string& mixture);
 /// Mixes two surfaces: exactly if one is no surface or both are diffuse, else as the one with the larger share.
 /// `of_second` is the share of the second one.
 MixedSurface mix_surfaces(const Surface& first, const Surface& second, const TextureValue& of_second);

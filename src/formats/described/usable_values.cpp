@@ -20,6 +20,9 @@ std::string fault_of(const Camera& camera) {
     if (!(camera.fov_y > 0 && camera.fov_y < kPi) ||
         !(camera.ortho_height > 0 && pertev::is_finite(camera.ortho_height)))
         return "its view has no size, or none that is finite";
+    if (!(camera.aperture_radius >= 0 && camera.aperture_radius <= kMaxCoordinate) ||
+        !(camera.focus_distance > 0 && camera.focus_distance <= kMaxCoordinate))
+        return "its aperture or focus is no length";
     return "";
 }
 

@@ -11,6 +11,7 @@
 namespace pertev {
 
 inline constexpr std::size_t kMostSuggestions = 1000;
+inline constexpr std::size_t kMostWithSuggestion = 100; // faults of a file that get a suggestion, since each takes time
 
 /// Returns the name of `known` that needs the fewest changed, missing or surplus letters to become `word`, ignoring the
 /// case of A to Z; empty if even the best one needs more than a third of the word's letters. Only the first

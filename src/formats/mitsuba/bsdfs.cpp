@@ -313,6 +313,7 @@ Surface Bsdfs::mixture(Object& bsdf) {
             sink.leave_out({parts[*mixed.left_out]->location(),
                             fmt::format("{} is left out of {}", parts[*mixed.left_out]->parameters.what(),
                                         bsdf.parameters.what())});
+        if (mixed.is_by_color) sink.leave_out({bsdf.location(), mixed_by_color(bsdf.parameters.what())});
         return mixed.surface;
     }
     const std::vector<double> weights = parse_numbers(bsdf.parameters.text("weights", "", sink));
@@ -328,6 +329,7 @@ Surface Bsdfs::mixture(Object& bsdf) {
         if (mixed.left_out)
             sink.leave_out({bsdf.location(),
                             fmt::format("a part of {} with the smaller share is left out", bsdf.parameters.what())});
+        if (mixed.is_by_color) sink.leave_out({bsdf.location(), mixed_by_color(bsdf.parameters.what())});
         surface = std::move(mixed.surface);
     }
     return surface;

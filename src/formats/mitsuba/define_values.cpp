@@ -1,5 +1,7 @@
 #include "formats/mitsuba/define_values.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "base/message_text.h"
@@ -29,6 +31,18 @@ void DefineValues::set_default(std::string name, std::string value, const FileLo
     values_.try_emplace(std::move(name), std::move(value));
 }
 
+DefineValues::Values::const_iterator DefineValues::longest_in_front_of(std::string_view text) const {
+    while (!text.empty()) {
+        auto found = values_.upper_bound(text);
+        if (found == values_.begin()) break;
+        --found; // names between one in front of the text and the text begin with it, too
+        if (text.starts_with(found->first)) return found;
+        const auto [differs, at] = std::ranges::mismatch(text, found->first);
+        text = text.substr(0, static_cast<std::size_t>(differs - text.begin()));
+    }
+    return values_.end();
+}
+
 std::string DefineValues::put_into(std::string_view text, const FileLocation& from) {
     if (text.find('$') == std::string_view::npos) return std::string(text);
     std::string to;
@@ -37,15 +51,11 @@ std::string DefineValues::put_into(std::string_view text, const FileLocation& fr
         to += text.substr(0, begin);
         if (begin == std::string_view::npos) break;
         text.remove_prefix(begin + 1);
-        const std::pair<const std::string, std::string>* longest = nullptr;
-        for (const auto& row : values_) {
-            if (text.starts_with(row.first) && (longest == nullptr || row.first.size() > longest->first.size()))
-                longest = &row;
-        }
-        if (longest == nullptr)
+        const auto longest = longest_in_front_of(text);
+        if (longest == values_.end())
             throw Error(ErrorCode::BadInput, from,
                         fmt::format("${} has no value; `define` sets one{}", shortened(text),
-                                    did_you_mean(text, first_names(values_))));
+                                    ++missing_ <= kMostWithSuggestion ? did_you_mean(text, first_names(values_)) : ""));
         to += longest->second;
         text.remove_prefix(longest->first.size());
         used_.insert(longest->first);

@@ -26,9 +26,14 @@ public:
     void report_unused() const;
 
 private:
-    std::map<std::string, std::string, std::less<>> values_;
+    using Values = std::map<std::string, std::string, std::less<>>;
+    /// Returns the longest name that the text begins with; the end if there is none.
+    Values::const_iterator longest_in_front_of(std::string_view text) const;
+
+    Values values_;
     std::set<std::string, std::less<>> defined_, used_;
-    std::size_t in_all_ = 0; // bytes of all texts with values in them
+    std::size_t missing_ = 0; // names without a value
+    std::size_t in_all_ = 0;  // bytes of all texts with values in them
     Sink& sink_;
 };
 

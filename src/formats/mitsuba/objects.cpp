@@ -53,7 +53,8 @@ Object& Objects::find(const std::string& id, const FileLocation& from) {
         name = alias->second;
     }
     throw Error(ErrorCode::BadInput, from,
-                fmt::format("there is no object with the id {}{}", shortened(id), did_you_mean(id, first_names(ids_))));
+                fmt::format("there is no object with the id {}{}", shortened(id),
+                            ++missing_ <= kMostWithSuggestion ? did_you_mean(id, first_names(ids_)) : ""));
 }
 
 Depth::Depth(int& depth, const Object& from) : depth_(depth) {

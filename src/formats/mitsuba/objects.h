@@ -22,6 +22,8 @@ public:
     /// The id by which find() knows an object that may have none of its own.
     static std::string id_of(const Object& object);
 
+    /// Returns whether an object has this id, which is not empty.
+    bool has(const std::string& id) const { return ids_.contains(id); }
     /// Returns the object with this id. Throws Error(BadInput) that names `from` if there is none.
     Object& find(const std::string& id, const FileLocation& from);
 
@@ -34,6 +36,7 @@ private:
     std::map<std::string, uint32_t, std::less<>> ids_;
     std::map<std::string, std::string, std::less<>> aliases_;
     std::vector<uint32_t> top_;
+    std::size_t missing_ = 0; // ids that were looked up in vain
 };
 
 /// Counts how deep objects name each other, so that a cycle ends with an error.

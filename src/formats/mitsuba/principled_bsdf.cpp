@@ -44,7 +44,8 @@ Surface Bsdfs::principled(Object& bsdf) {
     if (is_thin) {
         material.diffuse_transmission_weight =
             0.5f * clamp(static_cast<float>(parameters.number("diff_trans", 0, sink)), 0.0f, 2.0f);
-        material.diffuse_transmission_color = material.base_color;
+        set_color(surface, &M::diffuse_transmission_color, &M::diffuse_transmission_color_texture,
+                  color(bsdf, "base_color", 0.5f));
     } else {
         material.coat_weight = 0.25f * number("clearcoat", 0);
         material.coat_roughness = sqrt(lerp(0.1f, 0.001f, number("clearcoat_gloss", 0)));

@@ -154,7 +154,12 @@ private:
         std::string type = snake_case(text(node, "type"));
         const std::string what =
             type.empty() ? fmt::format("the {}", tag) : fmt::format("the {} {}", tag, shortened(type));
-        Object& object = document_.objects.add(tag, std::move(type), text(node, "id"), place_of(node), what);
+        std::string id = text(node, "id");
+        if (document_.objects.has(id))
+            context_.sink.warn({place_of(node), fmt::format("another object has the id {}, too; references are to this "
+                                                            "one",
+                                                            shortened(id))});
+        Object& object = document_.objects.add(tag, std::move(type), std::move(id), place_of(node), what);
         if (parent == nullptr) {
             document_.objects.top().push_back(object.number);
         } else {
@@ -270,6 +275,7 @@ private:
                 if (tag == "rotate") read.angle_deg = numbers(step, "angle", 1, 1)[0];
             } else if (tag == "matrix") {
                 read.matrix = numbers(step, "value", 9, 16);
+                read.is_flat = snake_case(text(node, "name")) == "to_uv";
             } else if (tag == "lookat" || tag == "look_at") {
                 read.origin = numbers(step, "origin", 3, 3);
                 read.target = numbers(step, "target", 3, 3);

@@ -11,7 +11,7 @@ using described::is_finite;
 
 DoubleVec3 vec3_of(const std::vector<double>& numbers) { return {numbers[0], numbers[1], numbers[2]}; }
 
-std::optional<DoubleTransform> of_matrix(const std::vector<double>& m) {
+std::optional<DoubleTransform> of_matrix(const std::vector<double>& m, bool is_flat) {
     DoubleTransform to;
     if (m.size() == 16) {
         to = {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[3], m[7], m[11]}};
@@ -23,7 +23,8 @@ std::optional<DoubleTransform> of_matrix(const std::vector<double>& m) {
         return to;
     }
     if (m.size() != 9) return std::nullopt;
-    to.row0 = {m[0], m[1], 0}, to.row1 = {m[3], m[4], 0}; // a matrix for texture coordinates
+    if (!is_flat) return DoubleTransform{{m[0], m[1], m[2]}, {m[3], m[4], m[5]}, {m[6], m[7], m[8]}, {0, 0, 0}};
+    to.row0 = {m[0], m[1], 0}, to.row1 = {m[3], m[4], 0};
     to.translation = {m[2], m[5], 0};
     return to;
 }
@@ -48,7 +49,7 @@ std::optional<DoubleTransform> look_at(const TransformStep& step) {
 std::optional<DoubleTransform> make_transform(std::string_view kind, const TransformStep& step) {
     std::optional<DoubleTransform> made;
     if (kind == "matrix") {
-        made = of_matrix(step.matrix);
+        made = of_matrix(step.matrix, step.is_flat);
     } else if (kind == "translate") {
         made = described::translation_by(vec3_of(step.vector));
     } else if (kind == "scale") {

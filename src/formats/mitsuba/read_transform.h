@@ -13,7 +13,8 @@ namespace pertev::mitsuba {
 struct TransformStep {
     std::vector<double> vector; // numbers of translate, scale and rotate
     double angle_deg = 0;
-    std::vector<double> matrix; // 16 numbers, row by row, or 9 of two dimensions
+    std::vector<double> matrix; // 16 numbers, row by row, or 9 without a translation
+    bool is_flat = false;       // 9 numbers are those of a map in two dimensions, as of texture coordinates
     std::vector<double> origin, target, up;
 };
 

@@ -1,5 +1,7 @@
 #include "formats/mitsuba/reading.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "base/message_text.h"
@@ -31,6 +33,16 @@ Object* child_of(Object& object, std::string_view tag, Reading& reading) {
         if (found.tag == tag) return &found;
     }
     return nullptr;
+}
+
+std::vector<Object*> objects_without_use(const Object& object, std::initializer_list<std::string_view> used,
+                                         Reading& reading) {
+    std::vector<Object*> found;
+    for (const Child& child : object.children) {
+        Object& other = reading.objects.find(child.id, {object.location().file, child.line});
+        if (std::ranges::find(used, other.tag) == used.end()) found.push_back(&other);
+    }
+    return found;
 }
 
 std::vector<Object*> objects_in(Object& object, std::string_view tag, Reading& reading) {

@@ -24,6 +24,9 @@ DoubleTransform transform_of(Object& object, std::string_view name, Sink& sink);
 /// Returns the texture, spectrum, bsdf or other object `tag` among an object's children without names; null if there
 /// is none. Throws Error(BadInput) if one refers to nothing.
 Object* child_of(Object& object, std::string_view tag, Reading& reading);
+/// Returns the children without names whose tags are none of `used`.
+std::vector<Object*> objects_without_use(const Object& object, std::initializer_list<std::string_view> used,
+                                         Reading& reading);
 /// Returns the objects `tag` in an object, with and without names.
 std::vector<Object*> objects_in(Object& object, std::string_view tag, Reading& reading);
 

@@ -93,11 +93,11 @@ Mesh make_cube() {
 }
 
 uint32_t Shapes::add(const std::string& key, const Object& shape, bool is_reversed, Mesh mesh) {
-    const auto [known, is_new] =
-        shared_.try_emplace(fmt::format("{} {} {} {}", is_reversed, needs_.tangents, needs_.colors, key),
-                            static_cast<uint32_t>(reading_.parts.meshes.size()));
+    const auto [known, is_new] = shared_.try_emplace(
+        fmt::format("{} {} {} {} {}", is_reversed, needs_.tangents, needs_.mirrors, needs_.colors, key),
+        static_cast<uint32_t>(reading_.parts.meshes.size()));
     if (!is_new) return known->second;
-    if (needs_.tangents) with_tangents_.push_back(known->second);
+    if (needs_.tangents) with_tangents_[known->second] = needs_.mirrors;
     ShapeMesh made;
     made.mesh = std::move(mesh);
     made.location = shape.location();
@@ -138,6 +138,7 @@ std::optional<ReadShape> Shapes::read(Object& shape, MeshNeeds needs) {
     Parameters& parameters = shape.parameters;
     Sink& sink = reading_.sink();
     const DoubleTransform to_world = transform_of(shape, "to_world", sink);
+    needs_.mirrors = needs.tangents && (determinant(to_world) < 0) != needs.mirrors;
     const bool is_reversed = parameters.truth("flip_normals", false, sink);
     const std::string& type = shape.type;
     if (type == "obj" || type == "ply" || type == "serialized")
@@ -172,10 +173,17 @@ std::optional<ReadShape> Shapes::read(Object& shape, MeshNeeds needs) {
     return std::nullopt;
 }
 
-void Shapes::read_mesh_file(const FileUse& use, ShapeMesh& to, Sink& sink) const {
+const std::vector<std::byte>& Shapes::serialized(const std::string& file) {
+    const std::lock_guard lock(serialized_mutex_);
+    const auto [entry, is_new] = serialized_.try_emplace(file);
+    if (is_new) entry->second = read_file(file);
+    return entry->second;
+}
+
+void Shapes::read_mesh_file(const FileUse& use, ShapeMesh& to, Sink& sink) {
     bool is_smooth = !use.has_face_normals;
     if (use.kind == 's') {
-        SerializedMesh read = read_serialized(read_file(to.file), use.index, to.file);
+        SerializedMesh read = read_serialized(serialized(to.file), use.index, to.file);
         is_smooth = is_smooth && !read.has_face_normals;
         to.mesh = std::move(read.mesh);
         to.exact = std::move(read.exact);
@@ -203,7 +211,7 @@ void Shapes::read_mesh_file(const FileUse& use, ShapeMesh& to, Sink& sink) const
     if (is_smooth && mesh.normals.empty() && fits) mesh.normals = angle_weighted_normals(mesh);
 }
 
-void set_tangents(Mesh& mesh) {
+void set_tangents(Mesh& mesh, bool mirrors) {
     if (mesh.uv[0].empty() || !mesh.tangents.empty()) return;
     std::vector<Vec3> sums(mesh.positions.size());
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
@@ -217,11 +225,12 @@ void set_tangents(Mesh& mesh) {
         if (!is_finite(along_u)) continue;
         for (int k = 0; k < 3; ++k) sums[corner[k]] += along_u;
     }
+    const float side = mirrors ? -1.0f : 1.0f;
     for (std::size_t i = 0; i < sums.size(); ++i) {
         Vec3 t = sums[i];
         if (!mesh.normals.empty()) t = t - dot(t, mesh.normals[i]) * mesh.normals[i];
         t = normalize(t);
-        mesh.tangents.push_back(is_finite(t) ? Vec4{t.x, t.y, t.z, 1} : Vec4{1, 0, 0, 1});
+        mesh.tangents.push_back(is_finite(t) ? Vec4{t.x, t.y, t.z, side} : Vec4{1, 0, 0, side});
     }
 }
 
@@ -233,7 +242,8 @@ void Shapes::finish() {
             read_mesh_file(files_.at(static_cast<uint32_t>(&shape - first)), shape, sink);
         },
         reading_.sink());
-    for (const uint32_t mesh : with_tangents_) set_tangents(reading_.parts.meshes[mesh].mesh);
+    serialized_.clear();
+    for (const auto& [mesh, mirrors] : with_tangents_) set_tangents(reading_.parts.meshes[mesh].mesh, mirrors);
 }
 
 } // namespace pertev::mitsuba

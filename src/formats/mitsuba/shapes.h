@@ -3,8 +3,10 @@
 // Shapes of Mitsuba as meshes. Equal spheres, disks, cylinders and files share one mesh. The front of a surface is
 // where its normals point; flip_normals turns it round. Texture coordinates are Mitsuba's, whose v points down.
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +25,7 @@ struct ReadShape {
 /// Lists what the surface of a shape needs of its mesh besides its geometry.
 struct MeshNeeds {
     bool tangents = false; // a normal map needs them
+    bool mirrors = false;  // its group is mirrored, so that these lead the other way across
     bool colors = false;   // vertex colours are the surface's
 };
 
@@ -49,18 +52,22 @@ private:
     };
     uint32_t add(const std::string& key, const Object& shape, bool is_reversed, Mesh mesh);
     uint32_t file_mesh(Object& shape, bool is_reversed, const DoubleTransform& to_world);
-    void read_mesh_file(const FileUse& use, ShapeMesh& to, Sink& sink) const;
+    void read_mesh_file(const FileUse& use, ShapeMesh& to, Sink& sink);
+    /// Returns the bytes of a file with many meshes, which is read once. May be called from several threads.
+    const std::vector<std::byte>& serialized(const std::string& file);
 
     Reading& reading_;
     std::map<std::string, uint32_t, std::less<>> shared_; // by what makes them
     MeshNeeds needs_;                                     // needs of the shape that is read
-    std::vector<uint32_t> with_tangents_;                 // meshes of normal maps
+    std::map<uint32_t, bool> with_tangents_;              // meshes of normal maps, and whether they are mirrored
     std::map<uint32_t, FileUse> files_;                   // by mesh
+    std::mutex serialized_mutex_;
+    std::map<std::string, std::vector<std::byte>> serialized_; // by path
 };
 
-/// Sets the tangents of normal maps: Mitsuba's lead along u, and its bitangents are across them and the normals, even
-/// where v runs the other way.
-void set_tangents(Mesh& mesh);
+/// Sets the tangents of normal maps: Mitsuba's lead along u, and its bitangents are across them and the normals in the
+/// world, even where v runs the other way. `mirrors`: the world mirrors the mesh.
+void set_tangents(Mesh& mesh, bool mirrors);
 
 /// Returns the cube from -1 to 1 as Mitsuba has it, and the square from (-1, -1) to (1, 1) that faces +z.
 Mesh make_cube();

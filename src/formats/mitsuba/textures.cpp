@@ -36,7 +36,10 @@ TextureValue Textures::read(Object& texture, ColorUse use) {
         value = product(inner != nullptr ? value_of(*inner, use) : color(texture, "value", use, grey(0.5f)), factor);
     } else if (texture.type == "mesh_attribute" && parameters.text("name", "", sink) == "vertex_color") {
         value = constant(grey(static_cast<float>(parameters.number("scale", 1, sink))));
-        value.is_of_vertices = true;
+        value.is_of_vertices = use != ColorUse::Index;
+        if (!value.is_of_vertices)
+            sink.leave_out({texture.location(), "colours of vertices are those of surfaces, not their weights, "
+                                                "opacities or other numbers; the factor is used"});
     } else {
         const bool is_known = std::ranges::find(kOthers, texture.type) != kOthers.end() || texture.type == kKnown[3];
         sink.leave_out({texture.location(),

@@ -9,6 +9,7 @@
 #include "base/message_text.h"
 #include "formats/described/assemble.h"
 #include "formats/described/make_surface.h"
+#include "formats/described/transforms.h"
 #include "formats/mitsuba/emitters.h"
 
 namespace pertev::mitsuba {
@@ -62,6 +63,18 @@ void World::place(Object& shape, const DoubleTransform& world_from_group) {
                     fmt::format("more than {} instances, the limit for files of this size", most_placed_));
     const std::vector<Object*> bsdfs = objects_in(shape, "bsdf", reading_);
     const std::vector<Object*> emitters = objects_in(shape, "emitter", reading_);
+    const auto leave_out_second = [&](const std::vector<Object*>& parts) {
+        if (parts.size() < 2) return;
+        sink.leave_out(
+            {parts[1]->location(), fmt::format("{} is left out, because {} has another {}", parts[1]->parameters.what(),
+                                               shape.parameters.what(), parts[1]->tag)});
+    };
+    leave_out_second(bsdfs);
+    leave_out_second(emitters);
+    for (const Object* const child :
+         objects_without_use(shape, {"bsdf", "emitter", "medium", "subsurface", "shape"}, reading_))
+        sink.leave_out({child->location(),
+                        fmt::format("{} is left out of {}", child->parameters.what(), shape.parameters.what())});
     Placed placed;
     if (!bsdfs.empty() && !context_.options.geometry_only) placed.surface = bsdfs_.surface_of(*bsdfs.front());
     if (!emitters.empty() && !context_.options.geometry_only) {
@@ -85,7 +98,8 @@ void World::place(Object& shape, const DoubleTransform& world_from_group) {
     placed.medium = media.inside;
     const Surface& surface = parts_.surfaces[placed.surface];
     const bool has_normal_map = surface.material.normal_texture.has_image() && !surface.has_heights;
-    const auto read = shapes_.read(shape, {has_normal_map, surface.has_vertex_colors});
+    const auto read =
+        shapes_.read(shape, {has_normal_map, determinant(world_from_group) < 0, surface.has_vertex_colors});
     if (!read) return;
     shape.parameters.ignore({"silhouette_sampling_weight", "flip_normals"});
     shape.parameters.leave_out_unknown(sink);

@@ -218,6 +218,7 @@ Surface mixture(const MaterialSource& source) {
     if (mixed.left_out)
         source.context.sink.leave_out(
             {place, fmt::format("of the mix the material {} is left out", shortened(parts[*mixed.left_out]))});
+    if (mixed.is_by_color) source.context.sink.leave_out({place, mixed_by_color("the mix")});
     return mixed.surface;
 }
 
