@@ -19,18 +19,18 @@ SunSky sky_of(const std::string& text) {
     return *sky;
 }
 
-Vec3 raised(float elevation_deg, float azimuth_deg) {
+Vec3 raised_sun(float elevation_deg, float azimuth_deg) {
     const float up = elevation_deg * kDegreeOfSky, around = azimuth_deg * kDegreeOfSky;
     return {cos(up) * sin(around), sin(up), -cos(up) * cos(around)};
 }
 
 /// Luminance times solid angle of all pixels, and of that times the direction.
-struct Sum {
+struct LightOfPanorama {
     double light = 0, x = 0, y = 0, z = 0;
 };
-Sum sum_of(const Environment& environment) {
+LightOfPanorama light_of_panorama(const Environment& environment) {
     const Image& image = environment.image;
-    Sum sum;
+    LightOfPanorama sum;
     const auto rows = static_cast<float>(image.height);
     for (uint32_t y = 0; y < image.height; ++y) {
         const float down = kPi * (static_cast<float>(y) + 0.5f) / rows;
@@ -95,7 +95,7 @@ TEST_CASE("the panorama has the sun's light in its direction, and half of it on 
         CAPTURE(text);
         SunSky sky = sky_of(text);
         sky.sky_scale = 0;
-        const Sum sum = sum_of(make_sun_sky(sky, 683));
+        const LightOfPanorama sum = light_of_panorama(make_sun_sky(sky, 683));
         const double all = static_cast<double>(luminance(sun_luminance(sky))) * 6.7967e-5 / 683;
         CHECK(sum.light == doctest::Approx(all).epsilon(1e-3));
         const Vec3 towards =
@@ -105,19 +105,19 @@ TEST_CASE("the panorama has the sun's light in its direction, and half of it on 
     SunSky low = sky_of("0,45");
     low.sky_scale = 0;
     const double all = static_cast<double>(luminance(sun_luminance(low))) * 6.7967e-5;
-    CHECK(sum_of(make_sun_sky(low, 1)).light == doctest::Approx(0.5 * all).epsilon(0.02));
+    CHECK(light_of_panorama(make_sun_sky(low, 1)).light == doctest::Approx(0.5 * all).epsilon(0.02));
 
     SunSky blue = sky_of("45,0");
     blue.sun_scale = 0;
     const Environment environment = make_sun_sky(blue, 683);
     CHECK(environment.image.width == 512);
-    const Sum sum = sum_of(environment);
+    const LightOfPanorama sum = light_of_panorama(environment);
     CHECK(683 * sum.y > 15'000); // illuminance of level ground by the sky alone, lx
     CHECK(683 * sum.y < 40'000);
 }
 
 TEST_CASE("the sun stands where its elevation and azimuth say, and other texts are refused") {
-    CHECK(length(sky_of("30,90").sun - raised(30, 90)) < 1e-6f);
+    CHECK(length(sky_of("30,90").sun - raised_sun(30, 90)) < 1e-6f);
     CHECK(sky_of("0,90").sun.x == doctest::Approx(1).epsilon(1e-6));
     CHECK(sky_of("0,0").sun.z == doctest::Approx(-1).epsilon(1e-6));
     CHECK(sky_of("90,10").sun.y == doctest::Approx(1).epsilon(1e-6));

@@ -41,7 +41,7 @@ Scene scene_of_gltf() {
 }
 
 /// A triangle with a material of two images, a red and a grey one of 2 x 1 texels.
-Scene triangle_with(const Material& material) {
+Scene triangle_to_write(const Material& material) {
     Scene scene;
     Mesh& mesh = scene.meshes.emplace_back();
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -59,7 +59,7 @@ Scene triangle_with(const Material& material) {
 }
 
 /// Compares all numbers, choices and texture slots; images by their texels.
-void check_equal(const Scene& a, const Scene& b) {
+void check_same_material(const Scene& a, const Scene& b) {
     Material of_a = a.materials.at(0), of_b = b.materials.at(0);
     std::vector<float> numbers;
     std::vector<TextureRef> textures;
@@ -90,7 +90,7 @@ void check_equal(const Scene& a, const Scene& b) {
     CHECK(of_a.thin_walled == of_b.thin_walled);
 }
 
-Material glossy() {
+Material glossy_of_gltf() {
     Material material;
     material.kind = MaterialKind::MetallicRoughness;
     material.base_color = {0.25f, 0.5f, 0.75f};
@@ -141,7 +141,7 @@ TEST_CASE("a scene written as glTF renders to the same bytes") {
         of_a.images = read.images, of_b.images = scene.images;
         of_a.materials = {read.materials[read.instances[i].material]};
         of_b.materials = {scene.materials[scene.instances[i].material]};
-        check_equal(of_b, of_a);
+        check_same_material(of_b, of_a);
     }
     CHECK(read.lights[1].cos_inner == scene.lights[1].cos_inner);
     CHECK(read.lights[1].cos_outer == scene.lights[1].cos_outer);
@@ -214,24 +214,24 @@ TEST_CASE("every layer of a material that glTF has is written and read again") {
         {"unlit", [](Material& m) { m.kind = MaterialKind::Unlit, m.metallic = 0; }}};
     for (const auto& [name, change] : changes) {
         CAPTURE(name);
-        Material material = glossy();
+        Material material = glossy_of_gltf();
         change(material);
-        const Scene scene = triangle_with(material);
+        const Scene scene = triangle_to_write(material);
         Messages lost;
         const Scene read = written_and_read(scene, lost);
         CHECK_MESSAGE(lost.left_out().empty(), (lost.left_out().empty() ? "" : lost.left_out().front()));
-        check_equal(scene, read);
+        check_same_material(scene, read);
     }
 }
 
 TEST_CASE("textures in other channels or encodings than glTF's are written again for their slots") {
-    Material material = glossy();
+    Material material = glossy_of_gltf();
     material.roughness_texture = {.image = 1, .channel = 0};
     material.metallic_texture = {.image = 0, .channel = 2};
     material.alpha_mode = AlphaMode::Mask;
     material.alpha_texture = {.image = 0, .channel = 3};
     Messages lost;
-    const Scene read = written_and_read(triangle_with(material), lost);
+    const Scene read = written_and_read(triangle_to_write(material), lost);
     CHECK(lost.left_out().empty());
     const Material& of = read.materials.at(0);
     const auto texel = [&](const TextureRef& texture, std::size_t at, std::size_t channel) {
@@ -244,7 +244,7 @@ TEST_CASE("textures in other channels or encodings than glTF's are written again
 
     material.base_color_texture = {.image = 0, .is_srgb = false};
     material.alpha_texture = {.image = 1, .channel = 3, .m00 = 2};
-    const Scene other = written_and_read(triangle_with(material), lost);
+    const Scene other = written_and_read(triangle_to_write(material), lost);
     REQUIRE(lost.left_out().size() == 2);
     CHECK(other.images[static_cast<std::size_t>(other.materials[0].base_color_texture.image)].rgba8.pixels[0] == 168);
 }
