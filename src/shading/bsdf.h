@@ -8,9 +8,9 @@
 
 namespace pertev {
 
-/// How called functions of stacks get their BSDF. In kernels whose BSDFs are never stacks, the address that such a call
-/// takes would keep all BSDFs in memory, though the call is never made; a copy does not. Kernels for stacks have them
-/// in memory anyway, and there copies are most of what shading reads and writes.
+/// Says whether called functions of stacks get a copy of their BSDF. In kernels whose BSDFs are never stacks, the
+/// address that such a call takes would keep all BSDFs in memory, though the call is never made; a copy does not.
+/// Kernels for stacks have them in memory anyway, and there copies are most of what shading reads and writes.
 enum class BsdfPass : uint8_t { Copied, InPlace };
 
 struct Bsdf {
