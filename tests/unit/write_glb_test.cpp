@@ -256,13 +256,15 @@ TEST_CASE("what glTF lacks is named with its material, camera or scene") {
     scene.cameras[0].name = "front";
     scene.cameras[0].aperture_radius = 0.1f;
     scene.suggested = {{"spp", "64"}};
+    scene.variants = {"blue", "green"};
+    scene.file_scenes = {"one", "two"};
     Messages lost;
     written_and_read(scene, lost);
     std::string all;
     for (const std::string& text : lost.left_out()) all += text + '\n';
-    for (const char* part : {"gold: ", "refraction", "red: ", "roughness of its diffuse",
-                             "lamp: ", "front: ", "aperture", "environment", "spp=64"}) {
+    for (const char* part : {"gold: ", "refraction", "red: ", "roughness of its diffuse", "lamp: ", "front: ",
+                             "aperture", "environment", "spp=64", "variants of materials", "other scenes"}) {
         CHECK_MESSAGE(all.find(part) != std::string::npos, part, " in ", all);
     }
-    CHECK(lost.left_out().size() == 6);
+    CHECK(lost.left_out().size() == 8);
 }

@@ -204,6 +204,8 @@ private:
         if (!scene_.animations.empty())
             lose(fmt::format("{} lost; the scene is written at rest", counted(scene_.animations.size(), "animation")));
         if (!scene_.shapes.empty()) lose("skins and morph targets are lost; the scene is written at rest");
+        if (!scene_.variants.empty()) lose("variants of materials are lost; those that are shown are written");
+        if (scene_.file_scenes.size() > 1) lose("the file's other scenes are lost");
         if (!scene_.suggested.empty()) {
             std::vector<std::string> texts;
             for (const SuggestedSetting& setting : scene_.suggested)
