@@ -1,5 +1,6 @@
 // pertev convert IN OUT: writes a scene as glTF, or a picture in another format, and names what is lost.
 
+#include <filesystem>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -12,13 +13,15 @@
 #include "apps/cli/scene_options.h"
 #include "apps/cli/setting_flags.h"
 #include "base/file_extension.h"
+#include "base/read_file.h"
 #include "base/write_file_atomically.h"
 #include "formats/gltf_writer/write_glb.h"
 #include "formats/read_scene.h"
-#include "image/read_exr.h"
+#include "image/exr_reader.h"
 #include "image/read_image.h"
 #include "image/write_image.h"
 #include "session/opening/strictness.h"
+#include "session/photometry.h"
 
 namespace pertev {
 namespace {
@@ -36,10 +39,16 @@ void name_losses(const std::string& from, const Image& picture, ImageFormat to, 
     const auto lose = [&](const std::string& what) { sink.leave_out({FileLocation{from}, what}); };
     if (lower_case_extension(from) == ".exr") {
         std::vector<std::string> lost;
-        for (const ExrChannel& channel : read_exr(from).channels) {
-            const std::string_view name = channel.name;
-            if (name != "R" && name != "G" && name != "B" && name != "A" && name != "Y") lost.push_back(channel.name);
+        const std::vector<std::byte> bytes = read_file(from);
+        const ExrReader exr(bytes, from);
+        for (std::size_t part = 0; part < exr.part_count(); ++part) {
+            for (const ExrReader::ChannelInfo& channel : exr.channels(part)) {
+                const std::string_view name = channel.name;
+                const bool is_shown = name == "R" || name == "G" || name == "B" || name == "A" || name == "Y";
+                if (part > 0 || !is_shown) lost.push_back(channel.name);
+            }
         }
+        if (exr.metadata().size() > 0) lose("its metadata is lost");
         if (!lost.empty()) lose(fmt::format("channels besides the picture's are lost: {}", fmt::join(lost, " ")));
     }
     const bool has_alpha = picture.channels == 4;
@@ -53,10 +62,18 @@ void name_losses(const std::string& from, const Image& picture, ImageFormat to, 
     if (beyond > 0) lose(fmt::format("{} of its numbers are outside of 0 to 1 and are clipped", beyond));
 }
 
+/// Multiplies colours by alpha, as all formats but PNG have them.
+void premultiply(Image& picture) {
+    for (std::size_t i = 0; picture.channels == 4 && i < picture.pixels.size(); i += 4) {
+        for (std::size_t c = 0; c < 3; ++c) picture.pixels[i + c] *= picture.pixels[i + 3];
+    }
+}
+
 void convert_picture(const ConvertFlags& flags, Reporter& reporter) {
     const std::string& from = flags.scene.scene;
     const ImageFormat to = image_format_for(flags.output);
-    const Image picture = read_image(from, reporter);
+    Image picture = read_image(from, reporter);
+    if (lower_case_extension(from) == ".png") premultiply(picture);
     check_image_output(flags.output, picture.width, picture.height);
     name_losses(from, picture, to, reporter);
     if (flags.strict) refuse_what_is_left_out(reporter, "nothing is written");
@@ -69,6 +86,9 @@ void convert_scene(const ConvertFlags& flags, Reporter& reporter) {
            {"", "", fmt::format("{}: a scene is written as .glb", flags.output)});
     check_writable(flags.output);
     const Scene scene = read_any_scene(flags.scene, reporter);
+    if (const double lumens = lumens_per_watt(flags.scene.scene); lumens != 1) {
+        reporter.notice(fmt::format("glTF counts a watt as 1 lm: `efficacy={:g}` measures the written scene", lumens));
+    }
     const std::vector<std::byte> file = encode_glb(scene, reporter);
     if (flags.strict) refuse_what_is_left_out(reporter, "nothing is written");
     reporter.write_output(flags.output, [&] { write_file_atomically(flags.output, file, reporter); });
@@ -77,6 +97,9 @@ void convert_scene(const ConvertFlags& flags, Reporter& reporter) {
 int convert(ConvertFlags& flags) {
     Reporter reporter(flags.report);
     flags.settings.read(flags, reporter);
+    std::error_code none;
+    refuse(std::filesystem::equivalent(flags.scene.scene, flags.output, none),
+           {"", "", fmt::format("{}: the input would be overwritten", flags.output)});
     if (is_picture_name(flags.scene.scene)) {
         convert_picture(flags, reporter);
     } else {

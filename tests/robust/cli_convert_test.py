@@ -2,6 +2,8 @@
 lights says so."""
 
 import json
+import struct
+import zlib
 
 from cli_run import CliTest, gltf_with_cameras, main, read_exr, read_png, write
 
@@ -55,6 +57,24 @@ class Convert(CliTest):
         lost = self.succeed("convert", "a.exr", "d.png", "--json").events("convert")[0]["left_out"]
         self.assertTrue(any("albedo.R" in text for text in lost), lost)
         self.assertEqual(read_png(self.path("d.png")), read_png(self.path("a.png")))
+        self.refuse(2, "convert", "a.exr", "./a.exr", says=["overwritten"])
+
+    def test_colours_are_multiplied_by_alpha_but_in_png(self):
+        def chunk(kind, data):
+            return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+        rows = zlib.compress(bytes([0, 200, 100, 50, 128, 10, 220, 30, 255]))
+        with open(self.path("a.png"), "wb") as file:
+            file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 2, 1, 8, 6, 0, 0, 0)) + chunk(b"IDAT", rows) + chunk(b"IEND", b""))
+        for source, to in [("a.png", "a.exr"), ("a.exr", "b.png"), ("b.png", "b.exr")]:
+            self.succeed("convert", source, to)
+        first, again = (read_exr(self.path(name))[2] for name in ["a.exr", "b.exr"])
+        self.assertEqual(first, again)
+        self.assertAlmostEqual(first["A"][0][0], 128 / 255, places=6)
+        self.assertAlmostEqual(first["R"][0][0], 0.577580 * 128 / 255, places=5)
+
+    def test_pictures_have_other_formats_without_alpha(self):
+        self.succeed("render", "cornell-box", "-o", "a.exr", *SMALL)
         for name in ["e.jpg", "e.hdr"]:
             self.succeed("convert", "a.exr", name)
             self.assertEqual(self.info(name)["width"], 12)

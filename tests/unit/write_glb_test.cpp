@@ -249,6 +249,28 @@ TEST_CASE("textures in other channels or encodings than glTF's are written again
     CHECK(other.images[static_cast<std::size_t>(other.materials[0].base_color_texture.image)].rgba8.pixels[0] == 168);
 }
 
+TEST_CASE("a scene far from its file's origin is written where the file has it") {
+    Scene scene = triangle_to_write({});
+    scene.origin_in_file = {1e7, -3, 0.5};
+    Messages lost;
+    const Scene read = written_and_read(scene, lost);
+    const DoubleVec3 at = read.origin_in_file + to_double(read.instances.at(0).world_from_local.translation);
+    CHECK(at.x == 1e7);
+    CHECK(at.y == -3);
+    CHECK(at.z == 0.5);
+}
+
+TEST_CASE("media of a scene and of its materials are named where they are lost") {
+    Material cloud;
+    cloud.make_clear_boundary();
+    cloud.medium.sigma_s = {1, 1, 1};
+    Scene scene = triangle_to_write(cloud);
+    scene.medium.sigma_a = {0.5f, 0, 0};
+    Messages lost;
+    encode_glb(scene, lost);
+    CHECK(lost.left_out().size() == 3);
+}
+
 TEST_CASE("what glTF lacks is named with its material, camera or scene") {
     Scene scene = test::make_mixed_scene();
     scene.materials[1].base_diffuse_roughness = 0.5f;

@@ -11,7 +11,8 @@ using M = MaterialParameters;
 bool looks_like_but_for_color(const Surface& a, const Surface& b) {
     return a.material.base_diffuse_roughness == b.material.base_diffuse_roughness &&
            a.material.alpha == b.material.alpha && a.has_heights == b.has_heights &&
-           a.material.normal_texture.has_image() == b.material.normal_texture.has_image() &&
+           a.material.normal_texture.image == b.material.normal_texture.image &&
+           a.material.alpha_texture.image == b.material.alpha_texture.image &&
            a.has_vertex_colors == b.has_vertex_colors;
 }
 

@@ -69,6 +69,8 @@ private:
             lose("the index and the colour of its coat are lost");
         if (m_.is_emitter() && m_.two_sided_emission != m_.double_sided)
             lose("its faces hide and emit alike in glTF; both follow the emission");
+        if (m_.medium.is_there()) lose("the medium within is lost");
+        if (m_.is_clear_boundary) lose("its clear boundary becomes an invisible surface");
         if (m_.priority != 0) lose("its priority among solids is lost");
     }
 

@@ -93,9 +93,10 @@ private:
     void add_node(const Transform& world, const std::string& name, const std::string& members) {
         JsonMembers node;
         if (!name.empty()) node.add("name", json_string(name));
-        if (!(world == Transform())) {
-            const Transform& m = world;
-            const DoubleVec3 t = in_file(m.translation);
+        const Transform& m = world;
+        const DoubleVec3 t = in_file(m.translation);
+        const bool is_turned = !(m.row0 == Vec3{1, 0, 0} && m.row1 == Vec3{0, 1, 0} && m.row2 == Vec3{0, 0, 1});
+        if (is_turned || t.x != 0 || t.y != 0 || t.z != 0) {
             node.add("matrix",
                      fmt::format("[{},{},{},0,{},{},{},0,{},{},{},0,{},{},{},1]", m.row0.x, m.row1.x, m.row2.x,
                                  m.row0.y, m.row1.y, m.row2.y, m.row0.z, m.row1.z, m.row2.z, t.x, t.y, t.z));
@@ -157,6 +158,9 @@ private:
         if (!camera.name.empty()) object.add("name", json_string(camera.name));
         constexpr float kNear = 0.01f, kFar = 1e6f; // the format requires a number, and nothing is clipped
         if (has_parallel_rays(camera.projection)) {
+            if (!(camera.aspect > 0))
+                sink_.leave_out(
+                    fmt::format("{}: its shape follows the picture, which glTF's cannot; it becomes square", owner));
             const float half = 0.5f * camera.ortho_height, aspect = camera.aspect > 0 ? camera.aspect : 1.0f;
             view.add("xmag", json_float(half * aspect)).add("ymag", json_float(half)).add("zfar", json_float(kFar));
             object.add("type", R"("orthographic")").add("orthographic", view.add("znear", json_float(kNear)).text());
@@ -201,6 +205,7 @@ private:
     void name_losses() {
         const auto lose = [&](const std::string& what) { sink_.leave_out(what); };
         if (scene_.environment) lose("the environment is lost; `environment` gives a picture one");
+        if (scene_.medium.is_there()) lose("the medium around the scene is lost");
         if (!scene_.animations.empty())
             lose(fmt::format("{} lost; the scene is written at rest", counted(scene_.animations.size(), "animation")));
         if (!scene_.shapes.empty()) lose("skins and morph targets are lost; the scene is written at rest");

@@ -175,9 +175,8 @@ std::optional<ReadShape> Shapes::read(Object& shape, MeshNeeds needs) {
 
 const std::vector<std::byte>& Shapes::serialized(const std::string& file) {
     const std::lock_guard lock(serialized_mutex_);
-    const auto [entry, is_new] = serialized_.try_emplace(file);
-    if (is_new) entry->second = read_file(file);
-    return entry->second;
+    if (const auto known = serialized_.find(file); known != serialized_.end()) return known->second;
+    return serialized_.emplace(file, read_file(file)).first->second;
 }
 
 void Shapes::read_mesh_file(const FileUse& use, ShapeMesh& to, Sink& sink) {

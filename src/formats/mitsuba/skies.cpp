@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "formats/described/usable_values.h"
 #include "math/portable_math.h"
 
@@ -46,6 +48,11 @@ void set_sky(Object& emitter, Reading& reading, InfiniteLight& light) {
     sky.zenith = is_old ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
     const double turbidity = parameters.number("turbidity", 3, sink);
     sky.turbidity = std::clamp(turbidity, kLeastTurbidity, kMostTurbidity);
+    if (sky.turbidity != turbidity) {
+        sink.warn({emitter.location(),
+                   fmt::format("a turbidity of {:g} is taken as {:g}: the sky's formulas hold from {:g} to {:g}",
+                               turbidity, sky.turbidity, kLeastTurbidity, kMostTurbidity)});
+    }
     const auto scale = [&](const char* name) {
         return static_cast<float>(std::max(parameters.number(name, parameters.number("scale", 1, sink), sink), 0.0));
     };

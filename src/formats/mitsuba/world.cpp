@@ -64,10 +64,11 @@ void World::place(Object& shape, const DoubleTransform& world_from_group) {
     const std::vector<Object*> bsdfs = objects_in(shape, "bsdf", reading_);
     const std::vector<Object*> emitters = objects_in(shape, "emitter", reading_);
     const auto leave_out_second = [&](const std::vector<Object*>& parts) {
-        if (parts.size() < 2) return;
-        sink.leave_out(
-            {parts[1]->location(), fmt::format("{} is left out, because {} has another {}", parts[1]->parameters.what(),
-                                               shape.parameters.what(), parts[1]->tag)});
+        for (std::size_t i = 1; i < parts.size(); ++i) {
+            sink.leave_out({parts[i]->location(),
+                            fmt::format("{} is left out, because {} has another {}", parts[i]->parameters.what(),
+                                        shape.parameters.what(), parts[i]->tag)});
+        }
     };
     leave_out_second(bsdfs);
     leave_out_second(emitters);

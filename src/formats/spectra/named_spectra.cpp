@@ -42,7 +42,6 @@ constexpr ShortName kShortNames[] = {{"a-c", "carbon"},
                                      {"pd", "palladium"},
                                      {"pt", "platinum"},
                                      {"rh", "rhodium"},
-
                                      {"sic", "silicon-carbide"},
                                      {"ta", "tantalum"},
                                      {"te", "tellurium"},

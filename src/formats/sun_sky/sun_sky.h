@@ -1,8 +1,8 @@
 #pragma once
 
 // A clear sky with the sun as a panorama, by closed formulas of the turbidity: Perez' distribution of luminance and
-// chromaticity with the coefficients of Preetham et al., and the sun's radiance through five attenuations of the
-// atmosphere. Below the horizon it is black.
+// chromaticity with the coefficients of Preetham et al., and the sun's radiance through the air, aerosols, ozone
+// and water vapour (mixed gases attenuate only above 750 nm). Below the horizon it is black.
 //
 // Source: Preetham, Shirley, Smits, "A Practical Analytic Model for Daylight", SIGGRAPH 1999, appendices A.1 and A.2.
 
