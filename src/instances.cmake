@@ -284,9 +284,10 @@ pertev_launches(integrators/path/shade_media.cu
   integrators/path/path_stages.h
   STAGES "Shade<kAnyFilm | kMedia, FilmListeners>"
     "Shade<kAnyFilm | kMedia | kLightTree, FilmListeners>")
-pertev_launches(integrators/path/shade_media_of_frames.cu
+pertev_launches(integrators/path/shade_media_parts.cu
   integrators/path/path_stages.h
-  STAGES "Shade<kAllMaterials | kMipMapped | kNested | kMedia, FrameListeners>")
+  STAGES "Shade<kAllMaterials | kMipMapped | kNested | kMedia, FrameListeners>"
+    "Shade<kAllMaterials | kMoving | kMipMapped | kNested | kMedia, LayerListeners>")
 # For motion while the shutter is open, of the camera or of anything else.
 pertev_launches(integrators/path/shade_moving_films.cu
   integrators/path/path_stages.h

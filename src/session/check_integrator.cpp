@@ -120,10 +120,8 @@ void check_reconstruction(const Camera& camera) {
 }
 
 void check_media(const RenderSettings& settings) {
-    if (!has_media(settings.integrator)) return;
-    constexpr std::string_view kWhy = "it does not support scenes with media (`medium`, or that of a material)";
-    refuse(settings.light_paths != nullptr, "lpe", "", std::string(kWhy));
-    refuse(settings.irradiance, "false_color", "illuminance", std::string(kWhy));
+    refuse(settings.irradiance && has_media(settings.integrator), "false_color", "illuminance",
+           "it does not support scenes with media (`medium`, or that of a material)");
 }
 
 std::optional<Remark> why_dark(const RenderSettings& settings, const Scene& scene) {

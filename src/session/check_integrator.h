@@ -21,8 +21,7 @@ void check_camera(const RenderSettings& settings, const Camera& camera);
 /// Throws Error(BadInput) if frames cannot be reconstructed because the lens is not straight.
 void check_reconstruction(const Camera& camera);
 
-/// Throws Error(BadInput) if media fill a part of a scene whose light path tracing separates for layers or irradiance,
-/// which do not know them.
+/// Throws Error(BadInput) if irradiance is requested of a scene with media.
 void check_media(const RenderSettings& settings);
 
 /// Returns why nothing would be lit, because the integrator supports none of the lights (though mirrors may show

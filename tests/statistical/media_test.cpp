@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "image/picture_hash.h"
+#include "render/light_paths/light_path_layers.h"
 #include "session/check_integrator.h"
 #include "session/measure_irradiance.h"
 #include "session/opening/set_medium.h"
@@ -250,4 +252,58 @@ TEST_CASE("bodies that share a face have each its own medium") {
     test::add(scene, test::box({0, -0.25f, 0}, {2, 0.25f, 2}), clear_boundary({}));
     test::add(scene, test::box({0, -0.75f, 0}, {2, 0.25f, 2}), clear_boundary(kAmber));
     check_amber(scene, parallel_view({0, 1, 0}, 1), 1.5);
+}
+
+TEST_CASE("layers of light paths take a medium's scattering as diffuse and add up to the picture") {
+    Scene scene = test::under_sky();
+    scene.medium = {.sigma_s = {0.1f, 0.2f, 0.05f}};
+    test::add(scene, test::box({0, 0, 0}, {1, 0.5f, 1}), clear_boundary(kMilk));
+    scene.instances.back().name = "milk";
+    test::add(scene, test::floor_at(-1, 2), test::white(0.5f));
+    scene.lights = {test::point_light({0, 2, 0}, {8, 8, 8})};
+    std::vector<LightPathExpression> expressions;
+    for (const char* text : {"all=L.*E", "milk=L.*D<'milk'>.*E", "others=L(D<^'milk'>)*E", "glossy=L.*[GS].*E"}) {
+        expressions.push_back(parse_light_path(text));
+    }
+    RenderSettings settings = settings_in_media(8, 8, 6);
+    settings.light_paths = std::make_shared<const LightPathLayers>(bind_to_scene(std::move(expressions), scene));
+    Queue cpu = Queue::make_cpu(), queue = test::requested_queue();
+    const RenderResult result = test::render(cpu, scene, parallel_view({0, 1, 0}, 3), settings);
+    settings.body = PathBody::Wavefront;
+    CHECK(test::render_hash(test::render(queue, scene, parallel_view({0, 1, 0}, 3), settings)) ==
+          test::render_hash(result));
+    double in_milk = 0;
+    for (std::size_t i = 0; i < result.picture.pixels.size(); ++i) {
+        const auto of = [&](const char* name) { return static_cast<double>(layer_named(result, name).pixels[i]); };
+        CHECK(of("all") == doctest::Approx(static_cast<double>(result.picture.pixels[i])).epsilon(1e-5));
+        CHECK(of("milk") + of("others") == doctest::Approx(of("all")).epsilon(1e-5));
+        CHECK(of("glossy") == 0);
+        in_milk += of("milk");
+    }
+    CHECK(in_milk > 0);
+}
+
+TEST_CASE("frames of a medium show it, by the same bytes on each schedule") {
+    Scene scene;
+    Material glowing;
+    glowing.emission = {1, 1, 1};
+    test::add(scene, test::sheet({0, -1, 0}, {0, 0, 4}, {4, 0, 0}), glowing);
+    scene.medium = kAmber;
+    Messages messages;
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Hash128 hashes[2];
+    for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
+        Queue queue = test::requested_queue();
+        RenderSettings settings = settings_in_media(8, 1, 4);
+        settings.body = body;
+        Session session(queue, prepared, parallel_view({0, 1, 0}, 1), settings);
+        session.render_frame(0, ReconstructionSettings());
+        const Image frame = session.frame().picture();
+        for (std::size_t i = 0; i < frame.pixels.size(); ++i) {
+            const double expected = std::exp(-6 * channel_of(kAmber.sigma_a, i % 3));
+            CHECK(static_cast<double>(frame.pixels[i]) == doctest::Approx(expected).epsilon(1e-3));
+        }
+        hashes[body == PathBody::Wavefront ? 1 : 0] = picture_hash(frame);
+    }
+    CHECK(hashes[0] == hashes[1]);
 }

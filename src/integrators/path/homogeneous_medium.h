@@ -18,6 +18,7 @@ namespace pertev {
 struct MediumVertex {
     Vec3 position, direction; // the direction in which the path arrived, unit
     float g;
+    uint32_t instance; // whose medium it is; the number of all instances: the scene's
 
     HD bool scatters_by_delta_alone() const { return false; }
     HD LightContext light_context(float time) const { return {position, time}; }
@@ -81,6 +82,8 @@ struct HomogeneousMedium {
                     length = left / rate, at = part.begin + length;
                     scattered = part.medium->sigma_s, density = sigma_t;
                     vertex.g = part.medium->g;
+                    vertex.instance =
+                        part.solid == nullptr ? scene_.instance_count : scene_.nesting.solids[path.interior.top()];
                 }
                 if (rate > 0) left -= rate * length;
                 sampled += optical_depth(sigma_t, length);

@@ -4,6 +4,7 @@
 // first surface of each path.
 
 #include "integrators/path/film_listener.h"
+#include "integrators/path/medium.h"
 
 namespace pertev {
 
@@ -80,6 +81,16 @@ public:
         }
         state_ = after_scattering(layers(), state_, layers().first_column(met_.instance), is_specular,
                                   sample.is_transmission, diffuse, u);
+    }
+    /// A medium's scattering is diffuse, at the body that it fills.
+    HD void direct(const PathState& path, const MediumVertex& at, Vec3, const ShadowRay& shadow) {
+        if (!layers().is_there()) return;
+        const uint32_t column = layers().first_column(at.instance) + scattering_column(LobeClass::Diffuse, false);
+        shadow_data_ = {shadow.contribution, path.pixel, state_, column, layers().light_of(lights(), shadow.target)};
+    }
+    HD void scattered(const PathState&, const MediumVertex& at, const BsdfSample&) {
+        if (!layers().is_there()) return;
+        state_ = after_scattering(layers(), state_, layers().first_column(at.instance), false, false, grey(1), 0.5f);
     }
     HD void save(PathData& kept) const { kept = {state_}; }
     HD void save_shadow_data(ShadowData& shadow_data) const { shadow_data = shadow_data_; }

@@ -68,8 +68,8 @@ inline Features features_of(ShadingVariant variant) {
 /// a light meter, are by power, which must then hold for the lights that a path hits.
 inline bool uses_light_tree(const PathJob& job) {
     const PictureView& picture = job.picture;
-    const bool is_frame_of_media = picture.scene.has_media != 0 && job.film.frame.is_there(); // has no such code
-    return !picture.camera.is_meter() && !job.film.frame.first_bounce.leaves_direct_light() && !is_frame_of_media &&
+    const bool has_no_code = picture.scene.has_media != 0 && (job.film.frame.is_there() || job.layers.is_there());
+    return !picture.camera.is_meter() && !job.film.frame.first_bounce.leaves_direct_light() && !has_no_code &&
            uses_light_tree(job.settings.light_choice, picture.scene.lights.tree.light_count,
                            picture.scene.motions.is_there());
 }
@@ -119,6 +119,7 @@ using FrameFeatures =
     CompiledFor<kPlainDiffuse, kDiffuse | kMipMapped, kUnstacked | kMipMapped, kAllMaterials | kMipMapped | kNested,
                 kAllMaterials | kMipMapped | kNested | kLightTree, kAllMaterials | kMipMapped | kNested | kMedia>;
 using LayerFeatures = CompiledFor<kUnstacked, kUnstacked | kMoving, kAllMaterials | kMoving | kMipMapped | kNested,
-                                  kAllMaterials | kMoving | kMipMapped | kNested | kLightTree>;
+                                  kAllMaterials | kMoving | kMipMapped | kNested | kLightTree,
+                                  kAllMaterials | kMoving | kMipMapped | kNested | kMedia>;
 
 } // namespace pertev

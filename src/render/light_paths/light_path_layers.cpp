@@ -20,6 +20,7 @@ struct Things {
 Things surfaces_of(const Scene& scene) {
     Things things = {{}, "object, mesh, material or node of the scene"};
     for (const Instance& instance : scene.instances) things.names.push_back(names_of(scene, instance));
+    if (scene.medium.is_there()) things.names.emplace_back(); // scattering in it has no name
     return things;
 }
 

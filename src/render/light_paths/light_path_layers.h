@@ -17,7 +17,7 @@ namespace pertev {
 struct LightPathLayers {
     std::vector<LightPathExpression> expressions; // [layers]
     LightPathAutomaton automaton;
-    std::vector<uint16_t> surface_tags;    // [instances]
+    std::vector<uint16_t> surface_tags;    // [instances], and one of the scene's medium, if it has one
     std::vector<uint16_t> instance_lights; // [instances], below LightPathAutomaton::light_count
     std::vector<uint16_t> scene_lights;    // [Scene::lights], in the same numbering
     uint16_t environment_light = 0;        // in the same numbering
