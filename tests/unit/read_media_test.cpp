@@ -90,8 +90,16 @@ TEST_CASE("pbrt: a subsurface material is a medium in glass, and grids are left 
                         "WorldBegin MakeNamedMedium \"c\" \"string type\" \"uniformgrid\" \"float density\" [1 2]\n"
                         "MediumInterface \"c\" \"\" Material \"interface\" Shape \"sphere\"\n",
                         messages);
-    CHECK(messages.left_out().size() == 2); // the medium, and its use
+    CHECK(messages.left_out().size() == 1);
     CHECK(!cloud.medium.is_there());
+    const Scene later =
+        read_with_media("m.pbrt", "WorldBegin MediumInterface \"m\" \"\" Material \"interface\" Shape \"sphere\"\n"
+                                  "MakeNamedMedium \"m\" \"string type\" \"homogeneous\"\n");
+    CHECK(material_of(later, 0).medium.scatters());
+    Messages unknown;
+    (void)read_with_media("m.pbrt", "WorldBegin MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\"\n",
+                          unknown);
+    CHECK(unknown.left_out().size() == 1);
 }
 
 TEST_CASE("Mitsuba: the sensor's medium is around everything, and interior ones are in shapes") {

@@ -327,8 +327,9 @@ TEST_CASE("mitsuba: what is unknown or unreadable is left out with its line") {
     CHECK(begins_with(mitsuba_left_out("<shape type=\"cube\"><transform name=\"to_world\"><lookat origin=\"0,0,0\" "
                                        "target=\"0,0,0\"/></transform></shape>"),
                       "scene.xml:2: the transform has no inverse"));
-    CHECK(begins_with(mitsuba_left_out("<medium type=\"homogeneous\" id=\"fog\"/>"),
-                      "scene.xml:2: the medium homogeneous is left out"));
+    CHECK(begins_with(mitsuba_left_out("<shape type=\"cube\"><bsdf type=\"null\"/><medium type=\"heterogeneous\" "
+                                       "name=\"interior\"/></shape>"),
+                      "scene.xml:2: media of the type heterogeneous are left out"));
 }
 
 TEST_CASE("mitsuba: broken XML keeps what is in front of the fault, and deep nesting ends") {

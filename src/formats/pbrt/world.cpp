@@ -147,25 +147,31 @@ void World::add_shape(const std::string& type, Parameters& parameters) {
     (open_object_ ? objects_[*open_object_] : parts_.placed).push_back(std::move(placed));
 }
 
+World::NamedMedium& World::medium_called(const std::string& name, const FileLocation& from) {
+    const auto [medium, is_new] = media_.try_emplace(name);
+    if (is_new) {
+        medium->second = {static_cast<uint32_t>(parts_.media.size()), from, false};
+        parts_.media.emplace_back();
+    }
+    return medium->second;
+}
+
 void World::make_named_medium(const std::string& name, Parameters& parameters) {
+    NamedMedium& medium = medium_called(name, parameters.location());
+    medium.is_defined = true;
     const std::string type = parameters.text("type", "", context_.sink);
     if (type != "homogeneous") {
-        for (const Parameter& parameter : parameters.all()) parameters.look_up(parameter.name);
         throw parameters.error(
             fmt::format("the medium {} of the type {} is left out; it is a vacuum", shortened(name), shortened(type)));
     }
-    media_.insert_or_assign(name, static_cast<uint32_t>(parts_.media.size()));
-    parts_.media.push_back(read_medium(parameters, context_));
+    parts_.media[medium.index] = read_medium(parameters, context_);
     parameters.leave_out_unknown(context_.sink);
 }
 
 void World::set_media(const std::string& inside, const std::string& outside, const FileLocation& place) {
     state.inside = inside, state.outside = outside;
     for (const std::string& name : {inside, outside}) {
-        if (name.empty() || media_.contains(name)) continue;
-        throw Error(ErrorCode::BadInput, place,
-                    fmt::format("there is no medium {}{}; it is a vacuum", shortened(name),
-                                did_you_mean(name, first_names(media_))));
+        if (!name.empty()) (void)medium_called(name, place);
     }
 }
 
@@ -176,7 +182,7 @@ bool World::fill(Placed& placed, const FileLocation& from) {
     const auto medium = media_.find(state.inside);
     // A state's media last, so that shapes that let no light in often have one by chance.
     const bool is_entered = is_nothing || parts_.surfaces[state.surface].material.encloses();
-    if (medium != media_.end() && is_entered) placed.medium = medium->second;
+    if (medium != media_.end() && is_entered) placed.medium = medium->second.index;
     if (state.inside != state.outside) {
         inside_.insert(state.inside);
         outside_.try_emplace(state.outside, from);
@@ -186,7 +192,16 @@ bool World::fill(Placed& placed, const FileLocation& from) {
 
 /// Puts the camera's medium around everything, and leaves out media that are only outside of shapes.
 void World::finish_media() {
-    if (const auto medium = media_.find(around_); medium != media_.end()) parts_.around = medium->second;
+    if (const auto medium = media_.find(around_); medium != media_.end()) parts_.around = medium->second.index;
+    for (const auto& [name, medium] : media_) {
+        if (medium.is_defined) continue;
+        std::vector<std::string_view> known;
+        for (const auto& [other, defined] : media_) {
+            if (defined.is_defined) known.push_back(other);
+        }
+        context_.sink.leave_out({medium.from, fmt::format("there is no medium {}{}; it is a vacuum", shortened(name),
+                                                          did_you_mean(name, known))});
+    }
     for (const auto& [name, from] : outside_) {
         if (name.empty() || name == around_ || inside_.contains(name)) continue;
         context_.sink.leave_out({from, fmt::format("the medium {} outside of a shape is left out, because it neither "

@@ -79,7 +79,14 @@ private:
     std::map<std::string, uint32_t, std::less<>> alpha_numbers_;
     std::map<std::string, std::vector<Placed>, std::less<>> objects_;
     std::optional<std::string> open_object_;
-    std::map<std::string, uint32_t, std::less<>> media_;       // indices into Parts::media
+    /// A medium may be used before the file defines it.
+    struct NamedMedium {
+        uint32_t index = 0; // into Parts::media
+        FileLocation from;  // its first use
+        bool is_defined = false;
+    };
+    NamedMedium& medium_called(const std::string& name, const FileLocation& from);
+    std::map<std::string, NamedMedium, std::less<>> media_;
     std::map<std::string, FileLocation, std::less<>> outside_; // media outside of shapes
     std::set<std::string, std::less<>> inside_;
     std::string around_;
