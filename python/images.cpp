@@ -55,8 +55,7 @@ ToneMap curve_of(const std::string& name) {
 void write(const std::string& path, nb::handle array, const std::string& curve, float exposure) {
     const Image image = image_of(array, "picture");
     WriteImageOptions options;
-    options.tone_map = curve_of(curve);
-    options.exposure_stops = exposure;
+    options.display = {curve_of(curve), exposure};
     options.transparent = image.channels == 2 || image.channels == 4;
     const nb::gil_scoped_release unlocked;
     write_image(path, image, options);

@@ -1,10 +1,12 @@
 #include "apps/cli/flag_checks.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 
 #include <fmt/format.h>
 
+#include "base/write_file_atomically.h"
 #include "image/image_format.h"
 #include "settings/parse_values.h"
 
@@ -51,6 +53,15 @@ void refuse_list(const std::string& output) {
     for (std::size_t at = 0; (at = each.find(',', at)) != std::string::npos; at += 4) each.replace(at, 1, " -o ");
     throw Error(ErrorCode::BadInput, "output", output,
                 fmt::format("is the name of one file; give each file its own -o: -o {}", each));
+}
+
+void name_standard_output(const std::string& format, bool is_json, std::vector<std::string>& outputs) {
+    const auto output = std::ranges::find(outputs, "-");
+    refuse(output == outputs.end() && !format.empty(), {"output_format", format, "needs `output=-`"});
+    if (output == outputs.end()) return;
+    refuse(format.empty(), {"output", "-", "needs `output_format`, which a file's name states by its extension"});
+    refuse(is_json, {"output", "-", "cannot be combined with `json`, which takes the standard output"});
+    std::ranges::replace(outputs, "-", standard_output(format).string());
 }
 
 } // namespace pertev

@@ -21,6 +21,10 @@ inline void refuse(bool is_wrong, const Remark& why) {
 /// Refuses "a.png,b.exr", one file name that hardly anybody means. Throws Error(BadInput).
 void refuse_list(const std::string& output);
 
+/// Replaces `-` among the outputs by the standard output in the format of this setting. Throws Error(BadInput) without
+/// a format, with JSON, which takes the standard output, and for a format without `-`.
+void name_standard_output(const std::string& format, bool is_json, std::vector<std::string>& outputs);
+
 /// Accepts a finite number above 0 and at most `high`.
 CLI::Validator number_above_zero(float high = std::numeric_limits<float>::max());
 /// Accepts a whole number in [low, high], in decimal digits.

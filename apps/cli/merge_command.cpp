@@ -23,12 +23,13 @@ struct MergeFlags {
     ReportFlags report;
 };
 
-int merge(const MergeFlags& flags) {
+int merge(MergeFlags& flags) {
     Reporter reporter(flags.report);
     const Stopwatch watch;
     for (const std::string& output : flags.outputs) refuse_list(output);
     PictureOptions options;
     flags.settings.read(options, reporter);
+    name_standard_output(options.output_format, flags.report.json, flags.outputs);
     reporter.set_work("merging");
     MergedPicture picture = merge_picture(flags.parts, flags.is_partial, options, flags.outputs, reporter);
     RenderResult& result = picture.result;

@@ -185,6 +185,7 @@ std::unique_ptr<Ranks> join_ranks(RenderFlags& flags) {
 int render(RenderFlags& flags) {
     Reporter reporter(flags.report);
     flags.settings.read(flags, reporter);
+    name_standard_output(flags.output_format, flags.report.json, flags.outputs);
     const std::unique_ptr<Ranks> ranks = join_ranks(flags);
     if (ranks && ranks->rank() > 0) reporter.silence_events();
     for (const std::string& output : flags.outputs) refuse_list(output);

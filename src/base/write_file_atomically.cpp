@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -32,6 +33,10 @@ public:
 private:
     int fd_;
 };
+
+constexpr std::string_view kStandardOutput = "/dev/stdout."; // which is no folder, so no file has such a name
+
+bool is_standard_output(const fs::path& path) { return path.string().starts_with(kStandardOutput); }
 
 void check(bool ok) {
     if (!ok) throw std::system_error(errno, std::generic_category());
@@ -165,7 +170,18 @@ void replace(const fs::path& target, const fs::path& previous, std::span<const s
 
 } // namespace
 
+fs::path standard_output(const std::string& extension) { return std::string(kStandardOutput) + extension; }
+
 void write_file_atomically(const fs::path& path, std::span<const std::byte> bytes, Sink& sink) {
+    if (is_standard_output(path)) {
+        try {
+            return write_all(STDOUT_FILENO, bytes, sink);
+        } catch (const std::system_error& error) {
+            if (error.code() == std::errc::broken_pipe) return;
+            throw Error(ErrorCode::FileWrite, FileLocation{"standard output"},
+                        fmt::format("cannot write ({})", error.code().message()));
+        }
+    }
     try {
         replace(resolve_target(path), {}, bytes, sink);
     } catch (const std::system_error& error) {
@@ -189,6 +205,7 @@ std::optional<uint64_t> free_disk_bytes(const fs::path& target) {
 }
 
 void check_writable(const fs::path& path) {
+    if (is_standard_output(path)) return;
     try {
         const fs::path target = resolve_target(path);
         const NewFile file(target);

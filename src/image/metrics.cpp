@@ -27,6 +27,20 @@ double square_of_difference(float x, float r) {
 
 double relative_square(float x, float r) { return square_of_difference(x, r) / (double(r) * double(r) + 0.01); }
 
+/// Returns the mean of error(x, r) over pixels and R, G, B; infinite if a value is not finite.
+template <class Error>
+double mean_over(const Image& picture, const Image& reference, const Error& error) {
+    check_comparable(picture, reference);
+    const std::size_t count = std::size_t(picture.width) * picture.height;
+    double sum = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Rgb x = pixel(picture, i), r = pixel(reference, i);
+        if (!is_finite(x) || !is_finite(r)) return kInfinite;
+        sum += error(x.r, r.r) + error(x.g, r.g) + error(x.b, r.b);
+    }
+    return sum / (3 * static_cast<double>(count));
+}
+
 /// Returns the fraction `keep` of the pixels with the least errors, at least one, in ascending order of their errors.
 std::vector<std::size_t> pixels_of_least_error(const std::vector<double>& errors, double keep) {
     PERTEV_CHECK(keep > 0 && keep <= 1);
@@ -141,15 +155,18 @@ TrimmedVariance VarianceOfPictures::over(const std::vector<std::size_t>& pixels)
 }
 
 double mean_squared_error(const Image& picture, const Image& reference) {
-    check_comparable(picture, reference);
-    const std::size_t count = std::size_t(picture.width) * picture.height;
-    double sum = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        const Rgb x = pixel(picture, i), r = pixel(reference, i);
-        if (!is_finite(x) || !is_finite(r)) return kInfinite;
-        sum += square_of_difference(x.r, r.r) + square_of_difference(x.g, r.g) + square_of_difference(x.b, r.b);
-    }
-    return sum / (3 * static_cast<double>(count));
+    return mean_over(picture, reference, square_of_difference);
+}
+
+double mean_absolute_percentage_error(const Image& picture, const Image& reference) {
+    return mean_over(picture, reference,
+                     [](float x, float r) { return std::abs(double(x) - double(r)) / (std::abs(double(r)) + 0.01); });
+}
+
+double symmetric_percentage_error(const Image& picture, const Image& reference) {
+    return mean_over(picture, reference, [](float x, float r) {
+        return std::abs(double(x) - double(r)) / (0.5 * (std::abs(double(x)) + std::abs(double(r))) + 0.01);
+    });
 }
 
 Image block_means(const Image& image, uint32_t side) {

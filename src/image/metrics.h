@@ -55,6 +55,11 @@ private:
 /// Mean of (x - r)^2 over pixels and R, G, B; infinite if a value is not finite. Throws as relative_error.
 double mean_squared_error(const Image& picture, const Image& reference);
 
+/// Mean of |x - r| / (|r| + 0.01) over pixels and R, G, B; infinite if a value is not finite. Throws as relative_error.
+double mean_absolute_percentage_error(const Image& picture, const Image& reference);
+/// Mean of |x - r| / ((|x| + |r|) / 2 + 0.01), which treats both alike; otherwise as the function before.
+double symmetric_percentage_error(const Image& picture, const Image& reference);
+
 /// Mean of all channels and pixels.
 double mean_of(const Image& image);
 /// Mean of two pictures with equal sample counts, which is the picture of all samples.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <deque>
 #include <type_traits>
 
 #include <ImfChannelList.h>
@@ -13,6 +14,7 @@
 #include <ImfIntAttribute.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
+#include <half.h>
 
 #include <fmt/format.h>
 
@@ -84,6 +86,8 @@ private:
     std::size_t width_, before_; // pixels of a row, and from the display's first pixel to the picture's
 };
 
+half to_half(float x) { return half(x != x ? x : std::clamp(x, -float(HALF_MAX), float(HALF_MAX))); }
+
 void add_metadata(Imf::Header& header, const ExrMetadata& metadata) {
     for (const auto& [name, value] : metadata) {
         PERTEV_CHECK(!name.empty() && header.find(name) == header.end());
@@ -110,7 +114,7 @@ void check_exr_row(uint32_t width, std::size_t channels) {
 }
 
 std::vector<std::byte> encode_exr(const Image& picture, std::span<const ExrLayer> layers, const ExrMetadata& metadata,
-                                  const ExrPlace& place) {
+                                  const ExrPlace& place, ExrColors colors) {
     const std::size_t pixels = std::size_t(picture.width) * picture.height;
     PERTEV_CHECK(pixels > 0 && picture.channels >= 1 && picture.channels <= 4);
     PERTEV_CHECK(picture.pixels.size() == pixels * picture.channels);
@@ -119,18 +123,31 @@ std::vector<std::byte> encode_exr(const Image& picture, std::span<const ExrLayer
     for (const ExrLayer& layer : layers) channels += layer.channels.size();
     PERTEV_CHECK(row_bytes(picture.width, channels) <= kMaxRowBytes);
     Builder builder(picture, channels, place);
+    std::deque<std::vector<half>> halves; // which the file is written from
+    const auto add = [&](const std::string& name, const std::vector<float>& values, std::size_t c, std::size_t count,
+                         bool is_color) {
+        if (!is_color || colors == ExrColors::Float)
+            return builder.add(name, Imf::FLOAT, values.data() + c, count * sizeof(float));
+        std::vector<half>& to = halves.emplace_back(pixels);
+        for (std::size_t i = 0; i < pixels; ++i) to[i] = to_half(values[i * count + c]);
+        builder.add(name, Imf::HALF, to.data(), sizeof(half));
+    };
     constexpr const char* kNames[4][4] = {{"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
     for (uint32_t c = 0; c < picture.channels; ++c)
-        builder.add(kNames[picture.channels - 1][c], Imf::FLOAT, picture.pixels.data() + c, picture.channels * 4);
+        add(kNames[picture.channels - 1][c], picture.pixels, c, picture.channels, true);
 
     for (const ExrLayer& layer : layers) {
         const std::size_t count = layer.channels.size();
         std::visit(
             [&](const auto& values) {
                 PERTEV_CHECK(values.size() == pixels * count);
-                const Imf::PixelType type = layer.values.index() == 0 ? Imf::FLOAT : Imf::UINT;
-                for (std::size_t c = 0; c < count; ++c)
-                    builder.add(layer.name + "." + layer.channels[c], type, values.data() + c, count * 4);
+                for (std::size_t c = 0; c < count; ++c) {
+                    const std::string name = layer.name + "." + layer.channels[c];
+                    if constexpr (std::is_same_v<std::decay_t<decltype(values)>, std::vector<float>>)
+                        add(name, values, c, count, layer.is_color);
+                    else
+                        builder.add(name, Imf::UINT, values.data() + c, count * sizeof(uint32_t));
+                }
             },
             layer.values);
     }
@@ -146,8 +163,8 @@ std::vector<std::byte> encode_exr(const Image& picture, std::span<const ExrLayer
 }
 
 void write_exr(const std::filesystem::path& path, const Image& picture, std::span<const ExrLayer> layers,
-               const ExrMetadata& metadata, const ExrPlace& place) {
-    write_file_atomically(path, encode_exr(picture, layers, metadata, place));
+               const ExrMetadata& metadata, const ExrPlace& place, ExrColors colors) {
+    write_file_atomically(path, encode_exr(picture, layers, metadata, place, colors));
 }
 
 } // namespace pertev

@@ -5,7 +5,6 @@
 #include "base/error.h"
 #include "base/file_extension.h"
 #include "base/write_file_atomically.h"
-#include "image/tone_map_image.h"
 #include "image/write_hdr.h"
 #include "image/write_jpeg.h"
 #include "image/write_png.h"
@@ -32,14 +31,17 @@ void check_image_output(const std::filesystem::path& path, uint32_t width, uint3
 void write_image(const std::filesystem::path& path, const Image& linear, const WriteImageOptions& options) {
     switch (image_format_for(path)) {
     case ImageFormat::Exr:
-        return write_exr(path, linear, options.layers, options.metadata, options.place);
+        return write_exr(path, linear, options.layers, options.metadata, options.place, options.numbers.exr_colors);
     case ImageFormat::Hdr:
         return write_hdr(path, linear);
-    case ImageFormat::Png:
-        return write_png(path, tone_map_image(linear, options.tone_map, options.exposure_stops, options.transparent),
-                         options.transparent && linear.channels % 2 == 0);
+    case ImageFormat::Png: {
+        const bool has_alpha = options.transparent && linear.channels % 2 == 0;
+        if (options.numbers.png_has_16_bits)
+            return write_png(path, display_image_16(linear, options.display, options.transparent), has_alpha);
+        return write_png(path, display_image(linear, options.display, options.transparent), has_alpha);
+    }
     case ImageFormat::Jpeg:
-        return write_jpeg(path, tone_map_image(linear, options.tone_map, options.exposure_stops, false));
+        return write_jpeg(path, display_image(linear, options.display, false));
     }
 }
 

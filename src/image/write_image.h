@@ -6,19 +6,25 @@
 #include <filesystem>
 #include <span>
 
+#include "image/display_image.h"
 #include "image/image_format.h"
-#include "image/tone_map.h"
 #include "image/write_exr.h"
 
 namespace pertev {
 
+/// The numbers that files have.
+struct NumberFormats {
+    ExrColors exr_colors = ExrColors::Float;
+    bool png_has_16_bits = false;
+};
+
 struct WriteImageOptions {
-    ToneMap tone_map = ToneMap::Srgb;      // for PNG and JPEG
-    float exposure_stops = 0;              // for PNG and JPEG
+    DisplayTransform display = {};         // for PNG and JPEG
     bool transparent = false;              // keeps alpha in PNG; EXR keeps what the picture has
     std::span<const ExrLayer> layers = {}; // EXR only
     ExrMetadata metadata = {};             // EXR only
     ExrPlace place = {};                   // EXR only
+    NumberFormats numbers = {};
 };
 
 /// The format of a file to be written, by its case-insensitive extension: .exr .png .jpg .jpeg .hdr. Throws

@@ -42,15 +42,24 @@ void append_chunk(Bytes& to, const char* name, const Bytes& data) {
     append_number(to, static_cast<uint32_t>(crc32_z(0, zlib_bytes(to.data() + start), to.size() - start)));
 }
 
+/// Byte `i` of a pixel as a file has it, the high byte of a number first.
+uint8_t byte_of(const uint8_t* rgba, std::size_t i) { return rgba[i]; }
+uint8_t byte_of(const uint16_t* rgba, std::size_t i) {
+    return static_cast<uint8_t>(i % 2 == 0 ? rgba[i / 2] >> 8 : rgba[i / 2] & 255);
+}
+
 /// Writes a row in the form of the file: filter 1 (Sub), then the difference of each byte from that of the pixel to the
 /// left.
-void filter_row(const uint8_t* rgba, uint32_t width, std::size_t channels, std::byte* to) {
+template <class Number>
+void filter_row(const Number* rgba, uint32_t width, std::size_t channels, std::byte* to) {
     *to++ = std::byte{1};
-    uint8_t left[4] = {};
+    constexpr std::size_t kBytes = sizeof(Number);
+    uint8_t left[4 * kBytes] = {};
     for (uint32_t x = 0; x < width; ++x, rgba += 4) {
-        for (std::size_t c = 0; c < channels; ++c) {
-            *to++ = static_cast<std::byte>(rgba[c] - left[c]);
-            left[c] = rgba[c];
+        for (std::size_t i = 0; i < channels * kBytes; ++i) {
+            const uint8_t byte = byte_of(rgba, i);
+            *to++ = static_cast<std::byte>(byte - left[i]);
+            left[i] = byte;
         }
     }
 }
@@ -107,21 +116,21 @@ std::vector<Bytes> deflate_in_parts(const Bytes& bytes, std::size_t part_bytes) 
     return stream;
 }
 
-} // namespace
-
-Bytes encode_png(const Rgba8Image& picture, bool with_alpha) {
-    const std::size_t rgba_bytes = std::size_t(picture.width) * 4, channels = with_alpha ? 4 : 3;
-    PERTEV_CHECK(rgba_bytes > 0 && picture.height > 0 && picture.pixels.size() == rgba_bytes * picture.height);
-    const std::size_t row_bytes = 1 + picture.width * channels;
+template <class Number>
+Bytes encode(uint32_t width, uint32_t height, const std::vector<Number>& pixels, bool with_alpha) {
+    const std::size_t row_numbers = std::size_t(width) * 4, channels = with_alpha ? 4 : 3;
+    PERTEV_CHECK(row_numbers > 0 && height > 0 && pixels.size() == row_numbers * height);
+    const std::size_t row_bytes = 1 + width * channels * sizeof(Number);
     const std::size_t rows = std::max(kPartBytes / row_bytes, std::size_t(1)); // rows of a part
-    Bytes filtered(row_bytes * picture.height);
-    parallel_for(picture.height, rows, [&](uint64_t y) {
-        filter_row(picture.pixels.data() + y * rgba_bytes, picture.width, channels, filtered.data() + y * row_bytes);
+    Bytes filtered(row_bytes * height);
+    parallel_for(height, rows, [&](uint64_t y) {
+        filter_row(pixels.data() + y * row_numbers, width, channels, filtered.data() + y * row_bytes);
     });
-    const unsigned char kind[5] = {8, static_cast<unsigned char>(with_alpha ? 6 : 2), 0, 0, 0}; // bits, RGBA or RGB
+    const unsigned char kind[5] = {8 * sizeof(Number), static_cast<unsigned char>(with_alpha ? 6 : 2), 0, 0,
+                                   0}; // bits, RGBA or RGB
     Bytes header;
-    append_number(header, picture.width);
-    append_number(header, picture.height);
+    append_number(header, width);
+    append_number(header, height);
     append(header, kind, sizeof kind);
     Bytes file;
     append(file, "\x89PNG\r\n\x1a\n", 8);
@@ -132,7 +141,19 @@ Bytes encode_png(const Rgba8Image& picture, bool with_alpha) {
     return file;
 }
 
+} // namespace
+
+Bytes encode_png(const Rgba8Image& picture, bool with_alpha) {
+    return encode(picture.width, picture.height, picture.pixels, with_alpha);
+}
+Bytes encode_png(const Rgba16Image& picture, bool with_alpha) {
+    return encode(picture.width, picture.height, picture.pixels, with_alpha);
+}
+
 void write_png(const std::filesystem::path& path, const Rgba8Image& picture, bool with_alpha) {
+    write_file_atomically(path, encode_png(picture, with_alpha));
+}
+void write_png(const std::filesystem::path& path, const Rgba16Image& picture, bool with_alpha) {
     write_file_atomically(path, encode_png(picture, with_alpha));
 }
 

@@ -77,6 +77,8 @@ void check_integrator(const RenderSettings& settings) {
     const bool is_denoised = settings.denoise != Denoise::None;
     refuse(is_denoised && !makes_frames(settings.integrator), "denoise", name_of(settings.denoise),
            fmt::format("supports {}, not {}", those_that(makes_frames), name));
+    refuse(is_denoised && (settings.sample_layers & kLayerVariance) != 0, "aov", "variance",
+           fmt::format("`denoise={}` does not keep samples apart; leave out one of them", name_of(settings.denoise)));
     refuse(is_denoised && (settings.aovs & kAovDistance) != 0, "aov", "distance",
            fmt::format("`denoise={}` does not support it; its depth is measured along the axis",
                        name_of(settings.denoise)));

@@ -23,6 +23,7 @@ RenderSettings meter_settings(const RenderSettings& picture) {
     meter.filter_radius = 0;
     meter.aovs = meter.sample_layers = 0;
     meter.light_paths = nullptr;
+    meter.light_groups.clear();
     meter.time_kinds = false;
     if (finds_all_light(meter.integrator)) meter.integrator = IntegratorKind::Path; // they give the same light
     meter.path.sampler = SamplerKind::Sobol;

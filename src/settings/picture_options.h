@@ -14,7 +14,7 @@
 
 #include "denoise/reconstruction_settings.h"
 #include "formats/cameras/read_cameras.h"
-#include "image/tone_map.h"
+#include "image/write_image.h"
 #include "radiosity/radiosity_settings.h"
 #include "restir/restir_settings.h"
 #include "settings/camera_choice.h"
@@ -95,9 +95,14 @@ struct PictureOptions {
     std::optional<PictureSize> size;
     std::vector<double> crop; // X,Y,W,H
     std::optional<ToneMap> tone_map;
-    std::string exposure;                                         // auto, or stops
-    float iso = 0, f_number = 0, shutter_s = 0;                   // a physical exposure
-    std::vector<std::string> aovs, lpe, displacement;             // lists of texts
+    std::string lut; // a file
+    LutInput lut_input = LutInput::Display;
+    ExrColors exr_colors = ExrColors::Float;
+    std::string png_bits = "8", output_format;        // 8 or 16; exr, hdr, jpg or png
+    std::string exposure;                             // auto, or stops
+    float iso = 0, f_number = 0, shutter_s = 0;       // a physical exposure
+    std::vector<std::string> aovs, lpe, light_groups; // lists of texts
+    std::vector<std::string> displacement;
     std::string false_color;                                      // luminance or illuminance
     std::string false_color_range;                                // A,B
     std::optional<double> time_s;                                 // none: the scene is at rest

@@ -79,8 +79,8 @@ std::vector<Setting> scene_settings() {
             "The camera-to-world matrix: 16 or 12 numbers row by row.", Counts{{12, 16}}, On{kAimed},
             Excludes{"eye target up camera_path"}, Changes::Camera),
         row("convention", "Camera", "NAME", FIELD(scene.camera.convention),
-            "The axes of camera_pose, and of NeRF's cameras: opengl (y up, looks along -z), opencv (y down, looks "
-            "along z) or blender (opengl's, in a world with z up).",
+            "The axes of camera_pose and of NeRF's cameras: opengl (y up, looks along -z), opencv (y down, along z) or "
+            "blender (opengl's, with z up).",
             Otherwise{"opengl"}, On{kAimed}, Needs{"camera_pose cameras"}, Changes::Camera),
         row("intrinsics", "Camera", "FX,FY,CX,CY", FIELD(scene.camera.intrinsics),
             "Focal lengths and principal point in pixels from the picture's upper left corner, or the nine numbers of "

@@ -13,6 +13,7 @@
 #include "base/value_names.h"
 #include "denoise/reconstruction_settings.h"
 #include "image/tone_map_image.h"
+#include "image/write_image.h"
 #include "radiosity/radiosity_settings.h"
 #include "restir/restir_settings.h"
 #include "settings/camera_choice.h"
@@ -35,6 +36,8 @@ inline constexpr ValueName<LightSelection> kLightSelections[] = {
 inline constexpr ValueName<RestirLight> kRestirLights[] = {
     {RestirLight::Off, "off"}, {RestirLight::Direct, "di"}, {RestirLight::Indirect, "gi"}};
 inline constexpr ValueName<LayersAt> kLayerPlaces[] = {{LayersAt::Samples, "samples"}, {LayersAt::Centre, "centre"}};
+inline constexpr ValueName<LutInput> kLutInputs[] = {{LutInput::Display, "display"}, {LutInput::Light, "light"}};
+inline constexpr ValueName<ExrColors> kExrColors[] = {{ExrColors::Float, "float"}, {ExrColors::Half, "half"}};
 inline constexpr ValueName<Denoise> kDenoisers[] = {
     {Denoise::None, "none"}, {Denoise::Svgf, "svgf"}, {Denoise::Oidn, "oidn"}};
 inline constexpr ValueName<FrameDenoiser> kFrameDenoisers[] = {{FrameDenoiser::Svgf, "svgf"},
@@ -54,6 +57,8 @@ constexpr const auto& names_of_all(MipMaps) { return kMipMapPictures; }
 constexpr const auto& names_of_all(LightSelection) { return kLightSelections; }
 constexpr const auto& names_of_all(RestirLight) { return kRestirLights; }
 constexpr const auto& names_of_all(LayersAt) { return kLayerPlaces; }
+constexpr const auto& names_of_all(LutInput) { return kLutInputs; }
+constexpr const auto& names_of_all(ExrColors) { return kExrColors; }
 constexpr const auto& names_of_all(Denoise) { return kDenoisers; }
 constexpr const auto& names_of_all(FrameDenoiser) { return kFrameDenoisers; }
 constexpr const auto& names_of_all(Projection) { return kProjections; }

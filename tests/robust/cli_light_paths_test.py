@@ -3,7 +3,7 @@
 
 import os
 
-from cli_run import CliTest, main, read_exr
+from cli_run import CliTest, main, read_exr, write
 
 
 def lpe(expressions):
@@ -26,6 +26,33 @@ class Layers(CliTest):
                     whole = channels[channel][y][x]
                     self.assertLessEqual(abs(sum(parts) - whole), 1e-6 * whole)
         self.assertEqual(self.info("x.exr")["pertev.lpe"], "\n".join(expressions))
+
+    def test_light_groups_are_the_light_of_lights_by_name_and_add_up_to_the_picture(self):
+        write(self.path("room.mtl"), "newmtl key\nKe 5 4 3\nnewmtl fill 'a'\nKe 1 2 6\nnewmtl grey\nKd 0.7 0.7 0.7\n")
+        triangles = {"grey": "-4 0 -4 / -4 0 4 / 4 0 4", "key": "0 2 0 / 1 2 0 / 0 2 1", "fill 'a'": "-2 1 -1 / -1 1 -1 / -2 1 0"}
+        text, count = "mtllib room.mtl\n", 0
+        for name, corners in triangles.items():
+            text += f"o {name}\nusemtl {name}\n" + "".join(f"v {corner.strip()}\n" for corner in corners.split("/"))
+            text, count = text + f"f {count + 1} {count + 2} {count + 3}\n", count + 3
+        write(self.path("room.obj"), text)
+        flags = ["room.obj", "--size", "16x12", "--spp", "4", "--device", "cpu", "--eye", "0,1,6", "--target", "0,1,0", "--environment", "0.3,0.2,0.1", "--two-sided-lights"]
+        groups = ["key=key", "fill=fi*", "sky=environment", "rest=^key,environment"]
+        self.succeed("render", *flags, "-o", "plain.exr")
+        self.succeed("render", *flags, "-o", "x.exr", *[flag for group in groups for flag in ("--light-group", group)], "--lpe", "seen=LE")
+        _, _, rows = read_exr(self.path("x.exr"))
+        self.assertEqual(rows["G"], read_exr(self.path("plain.exr"))[2]["G"])
+        for channel in "RGB":
+            for whole, key, fill, sky, rest in zip(*[sum(map(list, rows[name + channel]), []) for name in ("", "key.", "fill.", "sky.", "rest.")]):
+                self.assertLessEqual(abs(key + fill + sky - whole), 1e-6 * whole)
+                self.assertEqual(fill, rest)
+        for name in "key.R", "fill.R", "sky.R":
+            self.assertGreater(max(map(max, rows[name])), 0.05, name)
+        info = self.info("x.exr")
+        self.assertEqual((info["pertev.light_group"], info["pertev.lpe"]), ("\n".join(groups), "seen=LE"))
+        for group, says in {"a=kex": "did you mean \"key\"", "a=": "NAME=LIGHT", "key": "NAME=LIGHT", "a b=key": "letters", "a=key,": "empty", "albedo=key": "another layer", "a=grey": "no light"}.items():
+            self.refuse(2, "render", *flags, "-o", "y.exr", "--light-group", group, says=["--light-group", says])
+        self.refuse(2, "render", *flags, "-o", "y.exr", "--light-group", "a=key", "--integrator", "light", says=["--light-group"])
+        self.refuse(2, "render", *flags, "-o", "y.exr", "--light-group", "a=key", "--lpe", "a=LE", says=["same name"])
 
     def test_each_frame_has_its_layers(self):
         self.succeed("render", "cornell-box", "-o", "f-#.exr", "--turntable", "2", "--size", "8x8", "--spp", "1", "--lpe",

@@ -225,7 +225,7 @@ def read_exr(path):
     channels, rest = [], header["channels"]
     while rest[0]:
         name, rest = rest.split(b"\0", 1)
-        channels.append((name.decode(), {0: "I", 2: "f"}[struct.unpack_from("<i", rest)[0]]))
+        channels.append((name.decode(), {0: "I", 1: "e", 2: "f"}[struct.unpack_from("<i", rest)[0]]))
         rest = rest[16:]
     rows = {name: [None] * height for name, _ in channels}
     blocks = (height + 15) // 16
@@ -233,13 +233,13 @@ def read_exr(path):
         first, size = struct.unpack_from("<2i", data, offset)
         lines = min(16, height - (first - low_y))
         block = data[offset + 8 : offset + 8 + size]
-        if size < 4 * width * len(channels) * lines:
+        if size < sum(struct.calcsize(code) for _, code in channels) * width * lines:
             block = unpack_zip(zlib.decompress(block))
         position = 0
         for line in range(first - low_y, first - low_y + lines):
             for name, code in channels:
                 rows[name][line] = struct.unpack_from(f"<{width}{code}", block, position)
-                position += 4 * width
+                position += struct.calcsize(code) * width
     return width, height, rows
 
 
@@ -250,25 +250,27 @@ def read_png(path):
 
 
 def decode_png(data):
-    """Returns [(r, g, b) of each pixel], row by row, of an 8-bit RGB picture."""
+    """Returns [(r, g, b) of each pixel], row by row, of an RGB picture of 8 or 16 bits."""
     packed, at = b"", 8
     while at < len(data):
         size, kind = struct.unpack_from(">I4s", data, at)
         if kind == b"IHDR":
             width, height, depth, colours = struct.unpack_from(">IIBB", data, at + 8)
-            assert (depth, colours) == (8, 2), "8-bit RGB"
+            assert depth in (8, 16) and colours == 2, "RGB"
         packed += data[at + 8 : at + 8 + size] if kind == b"IDAT" else b""
         at += size + 12
-    raw, pixels, above = zlib.decompress(packed), [], bytearray(3 * width)
+    each = 3 * depth // 8  # bytes of a pixel
+    raw, pixels, above = zlib.decompress(packed), [], bytearray(each * width)
     for y in range(height):
-        start = y * (3 * width + 1)
-        kind, row = raw[start], bytearray(raw[start + 1 : start + 1 + 3 * width])
-        for i in range(3 * width):
-            left, corner = (row[i - 3], above[i - 3]) if i >= 3 else (0, 0)
+        start = y * (each * width + 1)
+        kind, row = raw[start], bytearray(raw[start + 1 : start + 1 + each * width])
+        for i in range(each * width):
+            left, corner = (row[i - each], above[i - each]) if i >= each else (0, 0)
             guess = left + above[i] - corner
             paeth = min((left, above[i], corner), key=lambda value: abs(guess - value))
             row[i] = (row[i] + [0, left, above[i], (left + above[i]) // 2, paeth][kind]) & 255
-        pixels += [tuple(row[i : i + 3]) for i in range(0, 3 * width, 3)]
+        values = struct.unpack(f">{3 * width}{'B' if depth == 8 else 'H'}", row)
+        pixels += [values[i : i + 3] for i in range(0, 3 * width, 3)]
         above = row
     return pixels
 

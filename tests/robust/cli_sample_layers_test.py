@@ -114,7 +114,7 @@ class SampleLayers(CliTest):
 
     def test_layers_of_samples_are_refused_where_they_do_not_exist(self):
         self.refuse(2, "render", "nowhere.obj", "-o", "x.exr", "--aov", "variance", "--denoise", "svgf", says=["--aov", "--denoise"])
-        self.refuse(2, "render", "nowhere.obj", "-o", "x.exr", "--aov", "crypto_object", "--real-time", says=["--aov", "--real-time"])
+        self.refuse(2, "render", "nowhere.obj", "-o", "x-#.exr", "--frames", "0-1", "--aov", "crypto_object", "--real-time", says=["--aov", "--real-time"])
         self.refuse(2, "render", "nowhere.obj", "-o", "x.exr", "--aov", "crypto_objects", says=["--aov"])
         self.refuse(2, "render", "nowhere.obj", "-o", "x.png", "--aov", "uv", says=["--aov", "EXR"])
 

@@ -12,8 +12,8 @@ import time
 from cli_run import FLOOR, PROGRAM, SANITIZED, UNMETERED, CliTest, as_flag, gltf_with_cameras, main, read_exr, write
 
 FLAGS = {
-    "merge": "--denoise --exposure --tone-map --output -o --partial --progress --quiet -q --json",
-    "render": "--output -o --progress --crop --rows --part --part-base --samples --checkpoint --checkpoint-every --records --camera-pose --convention --intrinsics --intrinsics-size --lens --distortion --camera-from --cameras --layers-at --frame-denoiser "
+    "merge": "--denoise --exposure --tone-map --lut --lut-input --exr-colors --png-bits --output-format --output -o --partial --progress --quiet -q --json",
+    "render": "--output -o --progress --crop --light-group --lut --lut-input --exr-colors --png-bits --output-format --rows --part --part-base --samples --checkpoint --checkpoint-every --records --camera-pose --convention --intrinsics --intrinsics-size --lens --distortion --camera-from --cameras --layers-at --frame-denoiser "
               "--allow-path --up-axis --unit --quiet -q --json --strict --camera --eye --target --up --fov --projection "
               "--view-height --aperture --focus --environment --sun-sky --environment-rotation --environment-scale --medium "
               "--two-sided-lights --show-back-faces --size --tone-map --exposure --transparent --aov --spp --time-limit --denoise "
@@ -32,7 +32,7 @@ FLAGS = {
     "info": "--file-scene --variant --define --material --max-texture-size --allow-path --up-axis --unit --settings --quiet -q --json",
     "check": "--file-scene --variant --define --material --max-texture-size --allow-path --up-axis --unit --quiet -q --json",
     "convert": "--file-scene --variant --define --material --max-texture-size --allow-path --up-axis --unit --strict --quiet -q --json",
-    "compare": "--blocks --quiet -q --json",
+    "compare": "--blocks --difference --metric --threshold --quiet -q --json",
     "bench": "--scene --size --spp --device --threads --build --structure --traversal --rta --order --distribution --report --quiet -q --json",
     "bench build": "--scene --runs --compare --device --threads --report --quiet -q --json",
     "bench rays": "--scene --camera --eye --target --up --fov --projection --view-height --camera-pose --convention --intrinsics --intrinsics-size --camera-from --count --runs --check --device --threads --axes --build --structure --traversal --rta --order --distribution --report --quiet -q --json",

@@ -283,3 +283,30 @@ TEST_CASE("two layers of one name, and metadata with a reserved name, fail an as
     CHECK_THROWS_AS(encode_exr(picture, std::vector<ExrLayer>{layer, layer}), std::logic_error);
     CHECK_THROWS_AS(encode_exr(picture, {}, {{"compression", 1}}), std::logic_error);
 }
+
+TEST_CASE("an EXR of half colours rounds to the nearest and stays finite, and other layers keep 32 bits") {
+    const Image picture = {1, 1, 3, {1e6f, 0.1f, -1e9f}};
+    const std::vector<ExrLayer> layers = {{"albedo", {"R", "G", "B"}, std::vector<float>{0.1f, 65519, 2}, true},
+                                          {"depth", {"Z"}, std::vector<float>{1e6f + 0.5f}}};
+    const ExrFile file = read_exr(encode_exr(picture, layers, {}, {}, ExrColors::Half), "half.exr");
+    const auto value = [&](const char* name) { return std::get<0>(file.find(name)->values).front(); };
+    CHECK(value("R") == 65504);
+    CHECK(value("G") == 0.0999755859375f);
+    CHECK(value("B") == -65504);
+    CHECK(value("albedo.R") == 0.0999755859375f);
+    CHECK(value("albedo.G") == 65504);
+    CHECK(value("albedo.B") == 2);
+    CHECK(value("depth.Z") == 1e6f + 0.5f);
+}
+
+TEST_CASE("an EXR of a part has its data window there, in the whole's display window") {
+    const Image part = {2, 3, 1, {1, 2, 3, 4, 5, 6}};
+    for (const auto& [x, y] : {std::pair(3u, 1u), {0u, 0u}, {5u, 2u}}) {
+        const ExrFile file = read_exr(encode_exr(part, {}, {}, {x, y, 7, 5}), "part.exr");
+        REQUIRE(file.width == 7);
+        REQUIRE(file.height == 5);
+        std::vector<float> whole(35);
+        for (uint32_t i = 0; i < 6; ++i) whole[(y + i / 2) * 7 + x + i % 2] = part.pixels[i];
+        CHECK(std::get<0>(file.find("Y")->values) == whole);
+    }
+}

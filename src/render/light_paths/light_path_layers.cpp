@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "scene/names.h"
+#include "render/light_paths/light_names.h"
 
 namespace pertev {
 namespace {
@@ -24,18 +24,7 @@ Things surfaces_of(const Scene& scene) {
     return things;
 }
 
-/// Lists all instances, of which those without emission have no names here; then the lights, then the environment.
-Things lights_of(const Scene& scene) {
-    Things things = {{}, "light of the scene"};
-    for (const Instance& instance : scene.instances) {
-        const Material& material = scene.materials[instance.material];
-        const bool emits = material.is_emissive() || material.kind == MaterialKind::Unlit;
-        things.names.push_back(emits ? names_of(scene, instance) : Names{});
-    }
-    for (const Light& light : scene.lights) things.names.push_back(names_of(scene, light));
-    things.names.push_back(scene.environment ? Names{kEnvironmentName} : Names{});
-    return things;
-}
+Things lights_of(const Scene& scene) { return {names_of_lights(scene), "light of the scene"}; }
 
 /// Finds for each object which of all filters accept it. Filters of the other kind accept nothing.
 class Chooser {

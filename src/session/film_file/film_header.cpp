@@ -72,8 +72,12 @@ std::string json_of_display(const Display& display) {
     for (const auto& [curve, metered] : display.metered)
         stops.push_back(fmt::format(R"("{}":{})", name_of(curve), exact_number(metered)));
     const std::string metered = stops.empty() ? "" : fmt::format(R"(,"metered":{{{}}})", fmt::join(stops, ","));
-    return fmt::format(R"({{"tone_map":"{}","exposure":{}{}{}}})", name_of(display.tone_map),
-                       exact_number(display.exposure_stops), colors, metered);
+    const std::string lut =
+        display.lut_file.empty()
+            ? ""
+            : fmt::format(R"(,"lut":{},"lut_input":"{}")", json_string(display.lut_file), name_of(display.lut_input));
+    return fmt::format(R"({{"tone_map":"{}","exposure":{}{}{}{}}})", name_of(display.tone_map),
+                       exact_number(display.exposure_stops), colors, metered, lut);
 }
 
 template <NamedValue Value>
@@ -91,6 +95,10 @@ Display read_display(const JsonValue& value) {
             if (!curve) throw stops.error("unknown tone map");
             display.metered.emplace_back(*curve, stops.to_float());
         }
+    }
+    if (const auto lut = value.find("lut")) {
+        display.lut_file = lut->to_string();
+        display.lut_input = read_name<LutInput>(value.at("lut_input"));
     }
     if (const auto colors = value.find("false_colors")) {
         display.false_colors =

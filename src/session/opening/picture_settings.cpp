@@ -13,6 +13,7 @@
 #include "session/crop.h"
 #include "session/height_maps.h"
 #include "session/opening/choose_camera.h"
+#include "session/opening/light_groups.h"
 #include "session/sample_range.h"
 #include "settings/value_names.h"
 
@@ -30,10 +31,13 @@ bool is_layer_of_files(const std::string& name) {
 LightPathLayers light_paths(const PictureOptions& options) {
     LightPathLayers layers;
     for (const std::string& text : options.lpe) layers.expressions.push_back(parse_light_path(text));
+    for (const std::string& text : options.light_groups) layers.expressions.push_back(parse_light_group(text));
     check_layers(layers.expressions);
     for (const LightPathExpression& expression : layers.expressions) {
         if (!is_layer_of_files(expression.name)) continue;
-        throw Error(ErrorCode::BadInput, "lpe", expression.name, "files have another layer of this name");
+        const bool is_group = &expression - layers.expressions.data() >= std::ssize(options.lpe);
+        throw Error(ErrorCode::BadInput, is_group ? "light_group" : "lpe", expression.name,
+                    "files have another layer of this name");
     }
     return layers;
 }
@@ -56,7 +60,9 @@ RenderSettings light_settings(const PictureOptions& options) {
         }
     }
     settings.irradiance = options.false_color == "illuminance";
-    if (!options.lpe.empty()) settings.light_paths = std::make_shared<const LightPathLayers>(light_paths(options));
+    if (!options.lpe.empty() || !options.light_groups.empty())
+        settings.light_paths = std::make_shared<const LightPathLayers>(light_paths(options));
+    settings.light_groups = options.light_groups;
     check_integrator(settings);
     height_maps(options);
     return settings;
@@ -75,6 +81,7 @@ void set_size(const PictureOptions& options, const Scene& scene, RenderSettings&
 RenderSettings render_settings(const PictureOptions& options, const Scene& scene) {
     RenderSettings settings = light_settings(options);
     if (settings.light_paths) {
+        check_light_groups(options.light_groups, scene);
         settings.light_paths =
             std::make_shared<const LightPathLayers>(bind_to_scene(settings.light_paths->expressions, scene));
     }

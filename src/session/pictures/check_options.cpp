@@ -1,5 +1,6 @@
 #include "session/pictures/check_options.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -22,6 +23,11 @@ namespace pertev {
 namespace {
 
 void check_real_time(const PictureOptions& options) {
+    const auto layer =
+        std::ranges::find_if(options.aovs, [](const auto& aov) { return sample_layer_named(aov).has_value(); });
+    if (options.real_time && layer != options.aovs.end()) {
+        throw Error(ErrorCode::BadInput, "aov", *layer, "frames with `real_time` do not have this layer");
+    }
     if (!options.real_time || options.render.samples == 1) return;
     throw Error(ErrorCode::BadInput, "spp", fmt::format("{}", options.render.samples),
                 "a frame with `real_time` has one sample per pixel");
@@ -65,6 +71,7 @@ void check_options(const PictureOptions& options, uint32_t verbs) {
     check_real_time(options);
     if (options.reconstruction.used().denoiser == FrameDenoiser::Oidn) OidnLibrary::find("frame_denoiser");
     requested_exposure(options);
+    if (!options.lut.empty()) CubeLut::read(options.lut);
     false_colors(options);
     const RenderSettings settings = light_settings(options);
     Camera requested; // a camera of the scene may have a lens too

@@ -69,6 +69,8 @@ Display choose_display(const PictureOptions& options, Session& session, Sink& si
     if (const auto colors = false_colors(options)) return Display{.false_colors = colors};
     Display display;
     display.tone_map = options.tone_map.value_or(display.tone_map);
+    display.lut_file = options.lut, display.lut_input = options.lut_input;
+    display.read_lut();
     float& stops = display.exposure_stops;
     if (const auto physical = physical_exposure(options)) {
         const double efficacy = efficacy_of(options.scene);

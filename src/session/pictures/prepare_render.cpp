@@ -324,7 +324,8 @@ PictureRecord picture_record(const PictureOptions& options, RenderSetup& ready, 
                             .settings = ready.settings,
                             .device = ready.device_name(),
                             .frame = {},
-                            .display = {}};
+                            .display = {},
+                            .numbers = number_formats(options)};
     record.scene.hash = ready.hash;
     if ((ready.settings.aovs & kAovIds) != 0) name_ids(ready.scene(), record.scene);
     record.scene.made_up = messages.made_up();

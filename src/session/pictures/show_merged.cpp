@@ -36,12 +36,20 @@ void note_given(const std::string& setting, ExrMetadata& origin) {
 } // namespace
 
 void show_merged(const PictureOptions& options, const std::string& film, PictureFacts& facts) {
+    facts.numbers = number_formats(options);
     const bool has_exposure = options.is_given("exposure");
-    if (!has_exposure && !options.is_given("tone_map")) return;
+    const bool has_lut = options.is_given("lut");
+    if (!has_exposure && !options.is_given("tone_map") && !has_lut) {
+        if (facts.display) facts.display->read_lut();
+        return;
+    }
     const Display before = facts.display.value_or(Display{});
     Display display = {.tone_map =
                            options.tone_map.value_or(before.false_colors ? Display{}.tone_map : before.tone_map),
-                       .metered = before.metered};
+                       .metered = before.metered,
+                       .lut_file = has_lut ? options.lut : before.lut_file,
+                       .lut_input = has_lut ? options.lut_input : before.lut_input};
+    display.read_lut();
     const std::optional<float> requested_stops = requested_exposure(options);
     if (requested_stops) {
         display.exposure_stops = *requested_stops;
@@ -58,7 +66,7 @@ void show_merged(const PictureOptions& options, const std::string& film, Picture
     }
     facts.display = display;
     facts.shown = display_metadata(display);
-    for (const char* name : {"tone_map", "exposure"}) {
+    for (const char* name : {"tone_map", "exposure", "lut", "lut_input"}) {
         if (!options.is_given(name)) continue;
         note_given(name, facts.origin);
         for (auto& [entry, value] : facts.origin) {

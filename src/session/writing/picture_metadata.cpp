@@ -82,9 +82,10 @@ PictureOptions used_options(const PictureRecord& record) {
     if (const auto& crop = settings.crop)
         used.crop = {double(crop->x), double(crop->y), double(crop->width), double(crop->height)};
     if (settings.light_paths) {
-        for (const LightPathExpression& layer : settings.light_paths->expressions) {
+        const std::span all(settings.light_paths->expressions);
+        for (const LightPathExpression& layer : all.first(all.size() - settings.light_groups.size()))
             used.lpe.push_back(fmt::format("{}={}", layer.name, layer.text));
-        }
+        used.light_groups = settings.light_groups;
     }
     if (settings.heights) {
         std::set<std::string> heights; // several materials if a name matches more than one
@@ -98,6 +99,7 @@ PictureOptions used_options(const PictureRecord& record) {
     } else {
         used.tone_map = record.display->tone_map;
     }
+    used.lut = record.display->lut_file, used.lut_input = record.display->lut_input;
     return used;
 }
 
@@ -225,6 +227,12 @@ ExrPlace place_of(const RenderSettings& settings) {
 
 } // namespace
 
+NumberFormats number_formats(const PictureOptions& options) { return {options.exr_colors, options.png_bits == "16"}; }
+
+void Display::read_lut() {
+    if (!lut_file.empty()) lut = std::make_shared<const CubeLut>(CubeLut::read(lut_file));
+}
+
 std::optional<float> Display::metered_stops(ToneMap curve) const {
     const auto found = std::ranges::find(metered, curve, &std::pair<ToneMap, float>::first);
     return found == metered.end() ? std::nullopt : std::optional(found->second);
@@ -238,6 +246,7 @@ PictureFacts facts_of(const PictureRecord& record, std::span<const PixelIds> ids
                           .origin = {},
                           .display = record.display,
                           .transparent = record.settings.transparent,
+                          .numbers = record.numbers,
                           .place = place_of(record.settings),
                           .objects = {},
                           .matte_materials = {}};

@@ -9,8 +9,7 @@
 
 #include "denoise/reconstruction_settings.h"
 #include "image/exr_file.h"
-#include "image/tone_map.h"
-#include "image/write_exr.h"
+#include "image/write_image.h"
 #include "restir/restir_settings.h"
 #include "session/opening/choose_camera.h"
 #include "session/opening/open_scene.h"
@@ -66,6 +65,13 @@ struct Display {
     float exposure_stops = 0;
     std::optional<FalseColors> false_colors;             // replaces tones and exposure
     std::vector<std::pair<ToneMap, float>> metered = {}; // stops by each tone map, if the light meter has set them
+    std::string lut_file = {};                           // empty: no table
+    LutInput lut_input = LutInput::Display;
+    std::shared_ptr<const CubeLut> lut = {}; // the contents of that file, once they are read
+
+    DisplayTransform transform() const { return {tone_map, exposure_stops, lut, lut_input}; }
+    /// Reads the table, if there is one. Throws Error(BadInput, OverLimit).
+    void read_lut();
 
     /// Returns the metered stops for a tone map; none if there are none.
     std::optional<float> metered_stops(ToneMap curve) const;
@@ -78,7 +84,11 @@ struct PictureRecord {
     std::string device;
     std::optional<ReconstructedFrame> frame; // none: an ordinary picture of its samples
     std::optional<Display> display;          // none: the picture is not displayed
+    NumberFormats numbers = {};
 };
+
+/// Returns the numbers that files have by these options.
+NumberFormats number_formats(const PictureOptions& options);
 
 /// Returns an entry for each of `settings` that files record, under its name.
 ExrMetadata recorded_settings(const PictureOptions& options, std::span<const Setting> settings);
@@ -112,8 +122,10 @@ struct PictureFacts {
     ExrMetadata origin;             // device, messages, where settings came from; names of ids
     std::optional<Display> display; // none: the picture is not displayed
     bool transparent = false;
-    ExrPlace place;                                    // where a crop lies in the whole picture
-    std::vector<std::string> objects, matte_materials; // names that layers of mattes may show
+    NumberFormats numbers;
+    ExrPlace place; // where a crop lies in the whole picture
+    std::vector<std::string> objects,
+        matte_materials; // names that layers of mattes may show
 };
 /// `ids` are those of the picture; none without a layer of ids.
 PictureFacts facts_of(const PictureRecord& record, std::span<const PixelIds> ids);

@@ -6,7 +6,6 @@
 #include "base/error.h"
 #include "image/false_color.h"
 #include "image/picture_hash.h"
-#include "image/tone_map_image.h"
 #include "image/write_image.h"
 #include "image/write_jpeg.h"
 #include "image/write_png.h"
@@ -43,10 +42,11 @@ std::vector<ExrLayer> take_layers(RenderResult& result) {
         layers.push_back(
             {"noisy",
              has_alpha ? std::vector<std::string>{"R", "G", "B", "A"} : std::vector<std::string>{"R", "G", "B"},
-             result.picture.pixels});
+             result.picture.pixels, true});
     }
     for (FilmLayer& layer : result.layers) {
-        layers.push_back({layer.name, layer.channels, std::move(layer.image.pixels)});
+        const bool is_color = layer.channels == std::vector<std::string>{"R", "G", "B"} && layer.name != "variance";
+        layers.push_back({layer.name, layer.channels, std::move(layer.image.pixels), is_color});
     }
     if (!result.ids.empty()) {
         std::vector<uint32_t> ids;
@@ -115,8 +115,7 @@ std::vector<std::byte> encode_picture(ImageFormat format, const PictureRecord& r
     const Display display = record.display.value_or(Display{});
     if (format == ImageFormat::Png) {
         const bool with_alpha = record.settings.transparent;
-        return encode_png(tone_map_image(beauty_of(result), display.tone_map, display.exposure_stops, with_alpha),
-                          with_alpha);
+        return encode_png(display_image(beauty_of(result), display.transform(), with_alpha), with_alpha);
     }
     PERTEV_CHECK(format == ImageFormat::Exr);
     const PictureFacts facts = facts_of(record, result.ids);
@@ -137,12 +136,12 @@ WrittenPicture write_picture(std::span<const std::string> paths, const PictureFa
                               .layers_hash = hash_of_layers(layers),
                               .denoised_hash = result.denoised ? picture_hash(*result.denoised).hex() : "",
                               .files = {}};
-    const WriteImageOptions options = {.tone_map = display.tone_map,
-                                       .exposure_stops = display.exposure_stops,
+    const WriteImageOptions options = {.display = display.transform(),
                                        .transparent = facts.transparent,
                                        .layers = layers,
                                        .metadata = metadata_of(facts, result, mattes, written.hash),
-                                       .place = facts.place};
+                                       .place = facts.place,
+                                       .numbers = facts.numbers};
     for (const std::string& path : paths) {
         if (is_film_name(path)) continue;
         WrittenFile& file = written.files.emplace_back(WrittenFile{path, ""});
