@@ -23,7 +23,10 @@ CameraView make_camera_view(const Camera& camera, uint32_t width, uint32_t heigh
                        {}};
     view.lens = make_lens_view(camera);
     if (camera.projection != Projection::Perspective) return view;
-    if (const auto& own = camera.intrinsics) {
+    if (is_panorama(view.lens.model)) {
+        const Vec2 half = panorama_half_size(view.lens.model);
+        view.half_width = half.x, view.half_height = half.y;
+    } else if (const auto& own = camera.intrinsics) {
         const auto halves = [](double pixels, uint32_t side) { return static_cast<float>(2 * pixels / side); };
         view.half_width = static_cast<float>(0.5 * own->width / own->focal_x);
         view.half_height = static_cast<float>(0.5 * own->height / own->focal_y);

@@ -73,6 +73,8 @@ LensView make_lens_view(const Camera& camera) {
     lens.model = camera.lens;
     switch (camera.lens) {
     case LensModel::Straight:
+    case LensModel::Equirectangular:
+    case LensModel::Cube:
         break;
     case LensModel::OpenCv: // k1, k2, p1, p2, k3, k4, k5, k6
         lens.k1 = k[0], lens.k2 = k[1], lens.k3 = k[4], lens.k4 = k[5], lens.k5 = k[6], lens.k6 = k[7];
@@ -99,6 +101,9 @@ float half_height_through(const LensView& lens, float half_angle) {
     case LensModel::Straight:
     case LensModel::OpenCv: // without its coefficients
         return tan(half_angle);
+    case LensModel::Equirectangular:
+    case LensModel::Cube:
+        return panorama_half_size(lens.model).y;
     case LensModel::Fisheye:
         break;
     }

@@ -13,6 +13,7 @@
 #include "math/portable_math.h"
 #include "math/vec2.h"
 #include "math/vec3.h"
+#include "render/panorama.h"
 #include "scene/camera.h"
 
 namespace pertev {
@@ -129,19 +130,24 @@ HD inline SeenThroughLens<T> fisheye_direction(const LensView& lens, Vec2Of<T> a
 /// seen where Newton's method ends farther than `tolerance` from it.
 template <class T>
 HD inline SeenThroughLens<T> seen_through_lens(const LensView& lens, Vec2Of<T> at, float tolerance) {
+    if (is_panorama(lens.model)) return {panorama_direction(lens.model, at), MaskOf<T>(at.x == at.x)};
     return lens.model == LensModel::Fisheye ? fisheye_direction(lens, at, tolerance) : undistort(lens, at, tolerance);
 }
 
 /// The picture position at which a lens images a point, and the scale of areas there.
 struct LensProjection {
     Vec2 at;
-    float growth; // area in the picture over that in the view; for a fisheye over the solid angle
+    float growth; // area in the picture over that in the view; of a lens that sees behind, over the solid angle
     bool is_seen;
 };
 
 /// Projects a point of camera space through a distorting lens.
 HD inline LensProjection project_through_lens(const LensView& lens, Vec3 point) {
     const float depth = -point.z;
+    if (is_panorama(lens.model)) {
+        const PanoramaPosition there = panorama_position(lens.model, point);
+        return {there.at, there.growth, is_finite(there.growth)};
+    }
     if (lens.model == LensModel::Fisheye) {
         const float away = sqrt(point.x * point.x + point.y * point.y);
         const float angle = atan2(away, depth);

@@ -10,7 +10,7 @@
 
 namespace pertev {
 
-enum class LensModel : uint8_t { Straight, OpenCv, Fisheye };
+enum class LensModel : uint8_t { Straight, OpenCv, Fisheye, Equirectangular, Cube };
 
 /// Returns whether the lens may image directions beyond 90 degrees from its axis. Then its picture has no plane at
 /// distance 1: areas in it are compared with solid angles, and it has no depth of field.
@@ -20,6 +20,23 @@ HD constexpr bool sees_behind(LensModel lens) {
     case LensModel::OpenCv:
         return false;
     case LensModel::Fisheye:
+    case LensModel::Equirectangular:
+    case LensModel::Cube:
+        break;
+    }
+    return true;
+}
+
+/// Returns whether the lens shows all directions, by a picture of fixed extent: it has neither an angle of view nor
+/// coefficients.
+HD constexpr bool is_panorama(LensModel lens) {
+    switch (lens) {
+    case LensModel::Straight:
+    case LensModel::OpenCv:
+    case LensModel::Fisheye:
+        return false;
+    case LensModel::Equirectangular:
+    case LensModel::Cube:
         break;
     }
     return true;
@@ -30,6 +47,9 @@ constexpr const char* coefficient_names(LensModel lens) {
     switch (lens) {
     case LensModel::Straight:
         break;
+    case LensModel::Equirectangular:
+    case LensModel::Cube:
+        return "no coefficients";
     case LensModel::OpenCv:
         return "k1,k2,p1,p2[,k3[,k4,k5,k6]]";
     case LensModel::Fisheye:
@@ -42,6 +62,8 @@ constexpr const char* coefficient_names(LensModel lens) {
 constexpr bool takes_coefficients(LensModel lens, std::size_t count) {
     switch (lens) {
     case LensModel::Straight:
+    case LensModel::Equirectangular:
+    case LensModel::Cube:
         return count == 0;
     case LensModel::OpenCv:
         return count <= 8;

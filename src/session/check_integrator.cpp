@@ -117,6 +117,12 @@ void check_camera(const RenderSettings& settings, const Camera& camera) {
     refuse(!why.empty(), "integrator", integrator_name(settings), why);
 }
 
+void check_panorama(const RenderSettings& settings, const Camera& camera) {
+    refuse(camera.lens == LensModel::Cube && settings.width != 6 * settings.height, "size",
+           fmt::format("{}x{}", settings.width, settings.height),
+           "`lens=cube` has six square faces in a row, such as 3072x512");
+}
+
 void check_reconstruction(const Camera& camera) {
     refuse(!has_straight_lens(camera), "distortion", "", "real-time frames need a lens without distortion");
 }

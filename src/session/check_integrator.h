@@ -20,6 +20,8 @@ void check_shutter(const RenderSettings& settings);
 void check_camera(const RenderSettings& settings, const Camera& camera);
 /// Throws Error(BadInput) if frames cannot be reconstructed because the lens is not straight.
 void check_reconstruction(const Camera& camera);
+/// Throws Error(BadInput) if a picture of this size cannot hold the faces of the camera's panorama.
+void check_panorama(const RenderSettings& settings, const Camera& camera);
 
 /// Throws Error(BadInput) if irradiance is requested of a scene with media.
 void check_media(const RenderSettings& settings);

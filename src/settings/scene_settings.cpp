@@ -91,8 +91,12 @@ std::vector<Setting> scene_settings() {
             "The picture's size for which intrinsics hold; they scale with width and height.",
             Otherwise{"the picture's own"}, On{kAimed}, Needs{"intrinsics"}, Recorded::AsUsed, Changes::Camera),
         row("lens", "Camera", "NAME", FIELD(scene.camera.lens),
-            "The model of the lens: opencv, or fisheye (Kannala and Brandt, as cv::fisheye).", Otherwise{"opencv"},
-            On{kDistorted}, Excludes{"projection=orthographic fisheye:aperture fisheye:denoise=svgf fisheye:real_time"},
+            "The model of the lens: opencv, fisheye (Kannala and Brandt, as cv::fisheye), or a panorama: "
+            "equirectangular "
+            "(2:1) or cube (six faces in a row).",
+            Otherwise{"opencv"}, On{kDistorted},
+            Excludes{"projection=orthographic fisheye:aperture fisheye:denoise=svgf fisheye:real_time "
+                     "equirectangular:fov cube:fov cube:filter!=box"},
             Recorded::AsUsed, Changes::Camera),
         row("distortion", "Camera", "K1,K2,...", FIELD(scene.camera.distortion),
             "The lens's coefficients: k1,k2,p1,p2[,k3[,k4,k5,k6]], or of a fisheye k1,k2,k3,k4.", Counts{{4, 5, 8}},

@@ -48,7 +48,10 @@ inline constexpr ValueName<Projection> kProjections[] = {{Projection::Perspectiv
 
 inline constexpr ValueName<PoseConvention> kPoseConventions[] = {
     {PoseConvention::OpenGl, "opengl"}, {PoseConvention::OpenCv, "opencv"}, {PoseConvention::Blender, "blender"}};
-inline constexpr ValueName<LensModel> kLensModels[] = {{LensModel::OpenCv, "opencv"}, {LensModel::Fisheye, "fisheye"}};
+inline constexpr ValueName<LensModel> kLensModels[] = {{LensModel::OpenCv, "opencv"},
+                                                       {LensModel::Fisheye, "fisheye"},
+                                                       {LensModel::Equirectangular, "equirectangular"},
+                                                       {LensModel::Cube, "cube"}};
 
 constexpr const auto& names_of_all(PathLight) { return kPathLights; }
 constexpr const auto& names_of_all(SamplerKind) { return kSamplers; }

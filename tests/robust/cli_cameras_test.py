@@ -179,5 +179,52 @@ class ManyCameras(CliTest):
             self.assertEqual([frame["hash"] for frame in frames], [expected], cameras)
 
 
+INSIDE = ["--eye", "0.278,0.4,0.1", "--target", "0.278,0.4,1"]
+
+
+class Panoramas(CliTest):
+    def render_inside(self, output, size, *flags):
+        self.succeed("render", "cornell-box", "-o", output, "--size", size, "--device", "cpu", *INSIDE, *flags)
+        return read_exr(self.path(output))[2]
+
+    def test_a_face_of_a_cube_is_the_view_of_90_degrees_and_an_equirectangular_picture_has_its_middle(self):
+        layers = ["--aov", "position", "--layers-at", "centre", "--spp", "1", "--filter", "box"]
+        cube = self.render_inside("cube.exr", "192x32", "--lens", "cube", *layers)
+        front = self.render_inside("front.exr", "32x32", "--fov", "90", *layers)
+        whole = self.render_inside("whole.exr", "64x32", "--lens", "equirectangular", *layers)
+        for axis in "XYZ":
+            for row, wanted in zip(cube["position." + axis], front["position." + axis]):
+                for x, y in zip(row[:32], wanted):
+                    self.assertAlmostEqual(x, y, delta=1e-4)
+        # The camera looks along z, thus x is on its left.
+        centre = [whole["position." + axis][16][32] for axis in "XYZ"]
+        self.assertAlmostEqual(centre[0], 0.278, delta=0.05)
+        self.assertLess(whole["position.X"][16][48], 0.278)
+        self.assertGreater(whole["position.X"][16][16], 0.278)
+        self.assertGreater(whole["position.Y"][2][32], 0.5)
+        self.assertAlmostEqual(whole["position.Y"][30][32], 0, delta=1e-4)
+
+    def test_paths_from_the_lights_agree_in_panoramas(self):
+        for lens, size in {"equirectangular": "32x16", "cube": "96x16"}.items():
+            flags = ["--lens", lens, "--filter", "box", "--sampler", "independent", "--spp", "64", "--aov", "variance", "--max-depth", "3"]
+            self.render_inside("path.exr", size, *flags)
+            for integrator in "bidirectional", "light":
+                self.render_inside("other.exr", size, *flags, "--integrator", integrator, "--seed", "1")
+                found = self.succeed("compare", "path.exr", "other.exr", "--json").events("compare")[0]
+                self.assertLess(found["p_below"], 0.08, (lens, integrator, found))
+                for x, y in zip(found["mean_98"], found["reference_mean_98"]):
+                    self.assertAlmostEqual(x / y, 1, delta=0.03)
+
+    def test_panoramas_are_refused_where_they_mean_nothing(self):
+        for flags, says in [("--lens cube --filter box --size 100x20", "six"), ("--lens cube --size 96x16", "filter"), ("--lens equirectangular --aperture 0.1", "aperture"),
+                            ("--lens equirectangular --fov 40", "--fov"), ("--lens equirectangular --denoise svgf", "denoise"), ("--lens equirectangular --distortion 0,0,0,0", "distortion"),
+                            ("--lens equirectangular --integrator hybrid", "integrator"), ("--lens panorama", "--lens")]:
+            with self.subTest(flags=flags):
+                self.refuse(2, "render", "cornell-box", "-o", "x.exr", *flags.split(), says=[says])
+        self.render_inside("x.exr", "64x32", "--lens", "equirectangular", "--spp", "1")
+        self.succeed("render", "cornell-box", "-o", "again.exr", "--camera-from", "x.exr", "--spp", "1", "--device", "cpu")
+        self.assertEqual(self.info("again.exr")["pertev.hash"], self.info("x.exr")["pertev.hash"])
+
+
 if __name__ == "__main__":
     main()

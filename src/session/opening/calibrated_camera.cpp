@@ -103,6 +103,7 @@ void set_lens(const CameraChoice& choice, Camera& camera) {
         camera.fov_y = 2 * atan(static_cast<float>(0.5 * own.height / own.focal_y));
     }
     if (choice.lens) camera.lens = *choice.lens;
+    if (is_panorama(camera.lens)) camera.intrinsics.reset(); // a scene's camera may have them
     if (!choice.distortion.empty()) {
         if (camera.lens == LensModel::Straight) camera.lens = LensModel::OpenCv;
         camera.distortion = choice.distortion;

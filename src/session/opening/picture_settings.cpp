@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "image/write_exr.h"
 #include "render/light_paths/light_path_layers.h"
+#include "render/panorama.h"
 #include "render/sample_layers/matte_target.h"
 #include "session/check_integrator.h"
 #include "session/crop.h"
@@ -74,6 +75,10 @@ void set_size(const PictureOptions& options, const Scene& scene, RenderSettings&
         settings.width = size->width, settings.height = size->height;
     } else {
         set_default_size(settings, scene_camera(camera.camera, scene));
+        if (camera.lens && is_panorama(*camera.lens)) {
+            const Vec2 half = panorama_half_size(*camera.lens);
+            settings.width = static_cast<uint32_t>(to_int(half.x / half.y + 0.5f, 1, 6)) * settings.height;
+        }
     }
     set_crop(options, settings);
 }

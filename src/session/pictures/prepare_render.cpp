@@ -75,6 +75,7 @@ MovingCamera camera_of(PictureOptions& options, uint32_t verbs, const std::optio
     MovingCamera camera(options.scene.camera, path, rest, aspect_of(settings.width, settings.height), sink);
     const Camera at_rest = camera.at(rest, std::nullopt);
     check_camera(settings, at_rest);
+    check_panorama(settings, at_rest);
     if (options.real_time || (verbs & (kView | kBenchSequence)) != 0) check_reconstruction(at_rest);
     return camera;
 }
