@@ -87,7 +87,7 @@ void convert_scene(const ConvertFlags& flags, Reporter& reporter) {
     check_writable(flags.output);
     const Scene scene = read_any_scene(flags.scene, reporter);
     if (const double lumens = lumens_per_watt(flags.scene.scene); lumens != 1) {
-        reporter.notice(fmt::format("glTF counts a watt as 1 lm: `efficacy={:g}` measures the written scene", lumens));
+        reporter.note(fmt::format("glTF counts a watt as 1 lm: `efficacy={:g}` measures the written scene", lumens));
     }
     const std::vector<std::byte> file = encode_glb(scene, reporter);
     if (flags.strict) refuse_what_is_left_out(reporter, "nothing is written");

@@ -72,7 +72,7 @@ HD inline void visit_media(const SceneView& scene, InteriorList& list, Vec3 orig
         if (!crosses && leaves) list = {};
         const MaterialParameters* const solid = scene.nesting.is_there() ? filling(scene, list) : nullptr;
         const float end = crosses ? crossing.distance : distance;
-        if (visit(RayPart{solid != nullptr ? &solid->medium : &scene.medium, solid, begin, end}) || !crosses) return;
+        if (visit(RayPart{solid != nullptr ? &solid->medium : scene.medium, solid, begin, end}) || !crosses) return;
         list = solids_behind(scene, list, crossing.instance);
         begin = end;
     }

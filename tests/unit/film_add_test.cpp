@@ -105,7 +105,7 @@ TEST_CASE("a film is restored from the bytes of its targets on any device") {
 namespace {
 
 /// Counts of a test, which are a kind of target that the film does not know.
-class CountTarget : public ElementTarget<uint64_t, AddCounts, 0> {
+class TallyTarget : public ElementTarget<uint64_t, AddCounts, 0> {
 public:
     using ElementTarget::ElementTarget;
     void show(FilmView&) const override {}
@@ -116,7 +116,7 @@ public:
     }
 };
 
-CountTarget& counts_of(const Film& film) { return dynamic_cast<CountTarget&>(*film.targets().back()); }
+TallyTarget& counts_of(const Film& film) { return dynamic_cast<TallyTarget&>(*film.targets().back()); }
 
 } // namespace
 
@@ -124,7 +124,7 @@ TEST_CASE("targets given to a film are added and cleared with its own, and those
     Queue cpu = Queue::make_cpu(), requested = test::requested_queue();
     const auto with_counts = [](Queue& queue, std::size_t count, const char* name) {
         Film film(queue, kWidth, kHeight, 0);
-        film.hold(std::make_unique<CountTarget>(queue, count, name));
+        film.hold(std::make_unique<TallyTarget>(queue, count, name));
         return film;
     };
     Film a = with_counts(requested, 5, "counts");
@@ -153,7 +153,7 @@ TEST_CASE("all films of a session have its additional targets, including films o
     settings.width = kWidth, settings.height = kHeight;
     settings.pass_samples = 1;
     Session session(cpu, prepare_scene(scene, {}, messages), test::mixed_scene_camera(), settings);
-    session.set_targets([&](Film& film) { film.hold(std::make_unique<CountTarget>(cpu, 5, "counts")); });
+    session.set_targets([&](Film& film) { film.hold(std::make_unique<TallyTarget>(cpu, 5, "counts")); });
     session.interrupt_passes(true);
     for (const uint32_t width : {kWidth, kWidth + 1}) {
         settings.width = width;

@@ -90,7 +90,7 @@ fs::path write_obj(const fs::path& folder) {
 TEST_CASE("an OBJ file's pieces, faces, vertices and pictures are read until the sink ends it") {
     const fs::path folder = test::scratch_folder(), path = write_obj(folder);
     test::write_text(folder / "a.mtl", "newmtl m\nmap_Kd a.png\n");
-    write_png(folder / "a.png", {.width = 1, .height = 1, .pixels = {255, 0, 0, 255}}, true);
+    write_png(folder / "a.png", Rgba8Image{.width = 1, .height = 1, .pixels = {255, 0, 0, 255}}, true);
     const int64_t pieces = 2, faces = kTriangles >> 16, corners = 3 * kTriangles >> 16, pictures = 1;
     check_stops(pieces + faces + corners + pictures, [&](Sink& sink) {
         const UseThreads one(1);

@@ -80,11 +80,12 @@ struct Shade {
     uint32_t last; // slot of the first new path, and of the first one that ends after its shadow ray
 
     // Measured (docs/performance.md). For large code, warps that wait for each other fetch it together.
-    static constexpr BlockShape kShape = Listener::template has<LightPaths>     ? BlockShape{128, 1}
-                                         : (kFeatures & kAllMaterials) == 0     ? BlockShape{128, 6}
-                                         : (kFeatures & kLayered) == 0          ? BlockShape{512, 2}
-                                         : Listener::template has<FrameSurface> ? BlockShape{512, 1}
-                                                                                : BlockShape{384, 2};
+    static constexpr BlockShape kShape = Listener::template has<LightPaths> ? BlockShape{128, 1}
+                                         : (kFeatures & kAllMaterials) == 0 ? BlockShape{128, 6}
+                                         : (kFeatures & kLayered) == 0      ? BlockShape{512, 2}
+                                         : Listener::template has<FrameSurface> || (kFeatures & kStacked) != 0
+                                             ? BlockShape{512, 1}
+                                             : BlockShape{384, 2};
 
     HD INLINE_ON_DEVICE void operator()(uint32_t i, bool is_there) const {
         constexpr bool kMoves = (kFeatures & kMoving) != 0;
@@ -145,7 +146,8 @@ private:
     HD InteriorList interior_of(uint32_t pixel, uint32_t slot, bool begins) const {
         if (!begins) return paths.interiors != nullptr ? InteriorList::of_words(paths.interiors[slot]) : InteriorList{};
         const bool has_batch = (kFeatures & kBatched) != 0 && job.picture.batch.is_there();
-        return has_batch ? job.picture.batch.camera_of(pixel).interior : job.picture.camera.interior;
+        if (has_batch) return job.picture.batch.camera_of(pixel).interior;
+        return job.picture.camera.interior;
     }
 };
 

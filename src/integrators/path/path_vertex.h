@@ -210,8 +210,8 @@ HD inline float cone_width(const PathJob& job, const PathState& path, float dist
     if (job.settings.mip_maps != MipMaps::On) return 0;
     constexpr float kShare = 0.25f;
     const bool is_tall = (kFeatures & kBatched) != 0 && job.picture.batch.is_there();
-    const CameraRays& camera = is_tall ? job.picture.batch.camera_of(path.pixel) : job.picture.camera;
-    const float seen = camera.pixel_width(distance);
+    const float seen = is_tall ? job.picture.batch.camera_of(path.pixel).pixel_width(distance)
+                               : job.picture.camera.pixel_width(distance);
     if (path.depth == 0) return seen;
     if (path.bsdf_pdf > 0) return max(seen, kShare * distance / sqrt(path.bsdf_pdf));
     return seen - path.bsdf_pdf;
