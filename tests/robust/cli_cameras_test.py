@@ -202,7 +202,7 @@ class Panoramas(CliTest):
         self.assertLess(whole["position.X"][16][48], 0.278)
         self.assertGreater(whole["position.X"][16][16], 0.278)
         self.assertGreater(whole["position.Y"][2][32], 0.5)
-        self.assertAlmostEqual(whole["position.Y"][30][32], 0, delta=1e-4)
+        self.assertLess(whole["position.Y"][30][32], 0.2)  # the short block
 
     def test_paths_from_the_lights_agree_in_panoramas(self):
         for lens, size in {"equirectangular": "32x16", "cube": "96x16"}.items():
