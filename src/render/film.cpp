@@ -60,6 +60,7 @@ void Film::clear() {
 FilmView Film::view() const {
     FilmView view = {};
     view.window = window_;
+    view.is_first = first_row_ == 0;
     for (const auto& target : targets_) target->show(view);
     if (end_row_ - first_row_ == height()) return view;
     view.window = {.picture_width = width(), .y = first_row_, .width = width(), .height = end_row_ - first_row_};

@@ -29,6 +29,7 @@ struct FilmView {
     PixelWindow window;   // the part of the picture that it covers
     NoisyFrameView frame; // if present, samples go to it, and there are no sums, ids or auxiliary channels; it covers
                           // the whole picture
+    bool is_first;        // it has the film's first row, so what is counted once a film is counted here
     bool is_exclusive;    // on the host: no other thread adds to the pixels to which this view's user adds
 
     HD FixedSum* pixel(uint32_t number) const { return at_slot(window.slot_of(number)); }

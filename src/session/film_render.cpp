@@ -200,12 +200,17 @@ uint32_t FilmRender::render(SampleRange range, Sink& sink) {
             return 0;
         }
         if (added == 0) break;
-        if (is_apart) {
-            into.set_samples({first + done, first + done + added});
-            if (has_moments) take_moments(pictures_.queue(), into);
-            into_film.add(into);
+        try {
+            if (is_apart) {
+                into.set_samples({first + done, first + done + added});
+                if (has_moments) take_moments(pictures_.queue(), into);
+                into_film.add(into);
+            }
+            pictures_.add_first_hits(camera_, settings_, {first + done, first + done + added}, into_film);
+        } catch (...) { // the film may have light of samples that it does not count
+            forget_samples();
+            throw;
         }
-        pictures_.add_first_hits(camera_, settings_, {first + done, first + done + added}, into_film);
         done += added;
         const double seconds = watch.seconds();
         into_film.set_samples({first - before, first + done});

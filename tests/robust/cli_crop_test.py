@@ -35,10 +35,12 @@ class Crop(CliTest):
 
     def test_a_crop_has_the_bytes_of_the_whole_picture_by_every_integrator(self):
         layers = ["--aov", "albedo,normal,depth,position,ids", "--transparent"]
-        for integrator in ["path", "bidirectional", "light", "photon_map", "distributed", "hybrid"]:
+        flags = {"photon_map": ["--photons", "500"], "radiosity": ["--patch-size", "0.4", "--patch-rays", "8"]}
+        flags.update({integrator: ["--ambient", "0.5"] for integrator in ["cast", "whitted", "raster", "reyes"]})
+        for integrator in ["path", "direct", "indirect", "bidirectional", "light", "photon_map", "distributed", "hybrid", "cast", "whitted", "raster", "reyes",
+                           "irradiance_cache", "radiosity"]:
             with self.subTest(integrator=integrator):
-                few = ["--photons", "500"] if integrator == "photon_map" else []
-                self.compare("--integrator", integrator, *few, *(layers if integrator != "light" else []))
+                self.compare("--integrator", integrator, *flags.get(integrator, []), *(layers if integrator != "light" else []))
         self.compare("--lpe", "direct=LDE", "--aov", "depth,ids", "--layers-at", "centre", "--sampler", "independent")
 
     def test_the_files_of_a_crop_say_where_it_is_and_are_exposed_as_the_whole(self):

@@ -2,8 +2,12 @@
 
 #include "render/sample_layers/sample_layers.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
+#include <string>
 
 #include <doctest/doctest.h>
 
@@ -81,7 +85,7 @@ TEST_CASE("metadata of mattes list the names that are shown, by the type's key")
 TEST_CASE("a pixel with more names than fit keeps the same ones in any order "
           "and division of its samples") {
     std::vector<uint32_t> ids;
-    for (uint32_t i = 0; i < 60; ++i) ids.push_back(1 + (i * 7 + i / 5) % 13);
+    for (uint32_t i = 0; i < 60; ++i) ids.push_back(1 + (i * 7 + i / 5) % 23);
     PixelMatte whole = no_mattes(), parts[3] = {no_mattes(), no_mattes(), no_mattes()};
     for (const uint32_t id : ids) whole.take(id, 1);
     for (std::size_t i = 0; i < ids.size(); ++i) parts[i * 5 % 3].take(ids[ids.size() - 1 - i], 1);

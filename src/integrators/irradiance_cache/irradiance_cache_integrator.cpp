@@ -98,7 +98,7 @@ void IrradianceCacheIntegrator::render(uint32_t first, uint32_t count, const Fil
     check_sums(film);
     if (count == 0) return;
     if (!prepare([this](double) { return !is_abandoned(); })) return;
-    if (first == 0 && film.window.x == 0 && film.window.y == 0) report_invalid(film.invalid);
+    if (first == 0 && film.is_first) report_invalid(film.invalid);
     CacheJob job = make_job(0);
     job.film = film;
     job.shows_records = picture_settings_.cache.show_records;

@@ -70,8 +70,7 @@ PhotonJob PhotonMapIntegrator::make_job(uint32_t pass, const FilmView& film) {
     job.film = film;
     job.samples = {film.window, pass, 1};
     // Photons of a pass are the same for all parts of a picture, of which the one with its first pixel counts them.
-    const bool counts = film.window.x == 0 && film.window.y == 0;
-    uint64_t* const invalid = counts ? film.invalid : counted_elsewhere_.data();
+    uint64_t* const invalid = film.is_first ? film.invalid : counted_elsewhere_.data();
     const PhotonMapSettings& map = picture_settings_.map;
     job.pass = {pass, map.photons, {targets_.data(), target_count_}, maps_.clear(), invalid, energy_};
     job.how = map.gather;

@@ -31,14 +31,14 @@ std::array<Rank, kMatteIds> ranks_of(const PixelMatte& pixel) {
 std::vector<FilmLayer> MatteTarget::layers(uint32_t width, uint64_t samples) const {
     const std::vector<PixelMatte> pixels = elements().download();
     std::vector<FilmLayer> layers;
-    for (uint32_t k = 0; k < kMatteIds / kRanksOfLayer; ++k) {
+    for (uint32_t k = 0; k < kMatteRanks / kRanksOfLayer; ++k) {
         FilmLayer& layer = layers.emplace_back(FilmLayer{fmt::format("{}{:02}", name(), k), {"R", "G", "B", "A"}, {}});
         layer.image = {width, static_cast<uint32_t>(pixels.size()) / width, 2 * kRanksOfLayer, {}};
         layer.image.pixels.reserve(pixels.size() * 2 * kRanksOfLayer);
     }
     for (const PixelMatte& pixel : pixels) {
         const std::array<Rank, kMatteIds> ranks = ranks_of(pixel);
-        for (uint32_t k = 0; k < kMatteIds; ++k) {
+        for (uint32_t k = 0; k < kMatteRanks; ++k) {
             std::vector<float>& to = layers[k / kRanksOfLayer].image.pixels;
             to.push_back(std::bit_cast<float>(ranks[k].id));
             to.push_back(samples == 0 ? 0.0f : mean_of({0, ranks[k].samples}, samples));

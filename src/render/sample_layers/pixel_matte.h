@@ -11,7 +11,8 @@
 
 namespace pertev {
 
-inline constexpr uint32_t kMatteIds = 8; // that a pixel keeps; a file has two in a layer
+inline constexpr uint32_t kMatteIds = 16;  // that a pixel keeps
+inline constexpr uint32_t kMatteRanks = 8; // that files have, two in a layer: those that cover most
 inline constexpr uint32_t kNoMatte = ~0u;
 
 /// Ids and their numbers of samples, in the order of ids. kNoMatte follows the last one.

@@ -15,8 +15,8 @@ struct Row {
     uint32_t channels; // numbers of a pixel in an EXR
 };
 constexpr Row kRows[] = {{kLayerUv, "uv", 2},
-                         {kLayerObjects, "crypto_object", 2 * kMatteIds},
-                         {kLayerMaterials, "crypto_material", 2 * kMatteIds},
+                         {kLayerObjects, "crypto_object", 2 * kMatteRanks},
+                         {kLayerMaterials, "crypto_material", 2 * kMatteRanks},
                          {kLayerCount, "samples", 1},
                          {kLayerVariance, "variance", 3}};
 

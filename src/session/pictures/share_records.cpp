@@ -18,8 +18,8 @@ DecidingSettings what_decides(const PictureOptions& options, const PictureRecord
     DecidingSettings settings = deciding_settings(options, record);
     std::erase_if(settings, [](const auto& setting) {
         constexpr std::string_view kOthers[] = {
-            "aov",   "exposure",     "f_number",     "false_color", "false_color_range", "iso",
-            "scene", "shutter_time", "show_records", "spp",         "tone_map",          "layers_at"};
+            "aov",          "exposure",     "f_number", "false_color", "false_color_range", "iso", "scene",
+            "shutter_time", "show_records", "spp",      "tone_map",    "layers_at",         "crop"};
         return std::ranges::find(kOthers, setting.first) != std::end(kOthers);
     });
     return settings;
