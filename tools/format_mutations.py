@@ -72,7 +72,7 @@ MUTATIONS = [
     ("a material's parameter has no range", "unit/set_materials",
      ("src/session/set_materials.cpp", "*value >= least && *value <= most", "*value >= -1e30f")),
     ("an opened scene keeps its materials", "unit/set_materials",
-     ("src/session/opening/open_scene.cpp", "    change_materials(options, scene);\n    if (const", "    if (const")),
+     ("src/session/opening/open_scene.cpp", "    change_materials(options, scene, sink);\n    if (const", "    if (const")),
     ("pbrt: a world of the left hand is not mirrored", "unit/read_pbrt_lights", ("src/formats/pbrt/camera.cpp", "return is_left_handed(view) ? scale_by({-1, 1, 1}) : DoubleTransform();", "return is_left_handed(view) ? DoubleTransform() : DoubleTransform();")),
     ("pbrt: the field of view is that of the height", "unit/read_pbrt_lights", ("src/formats/pbrt/camera.cpp", "aspect >= 1 ? Screen{", "aspect >= 0 ? Screen{")),
     ("pbrt: transforms multiply from the left", "unit/read_pbrt", ("src/formats/pbrt/statements.cpp", "compose(to, transform);", "compose(transform, to);")),
@@ -166,5 +166,6 @@ MUTATIONS = [
     ("mitsuba: corners of serialized meshes are believed", "unit/read_mitsuba_shapes", ("src/formats/mitsuba/read_serialized.cpp", "return i >= vertices;", "return i > UINT32_MAX - 1;")),
     ("glTF's scatter is absorbed besides", "unit/read_media", ("src/formats/gltf/material_layers.cpp", "    material.transmission_depth = 0; // the medium has the whole extinction\n", "")),
     ("pbrt's camera is in the medium inside", "unit/read_media", ("src/formats/pbrt/world.h", "around_ = state.outside;", "around_ = state.inside;")),
+    ("a camera in a body has its medium everywhere", "unit/read_media", ("src/formats/described/described_medium.cpp", "        medium = *outside;\n", "        return at_camera;\n")),
     ("Mitsuba's medium without its scale", "unit/read_media", ("src/formats/mitsuba/media.cpp", "    read.sigma_s = scale * read.sigma_s;\n", "")),
 ]

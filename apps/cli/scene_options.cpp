@@ -23,7 +23,7 @@ CLI::Option* add_scene_name(CLI::App& verb, SceneOptions& options) {
 
 Scene read_any_scene(const SceneOptions& options, Sink& sink) {
     Scene scene = read_scene_and_emitters(options.scene, read_options(options), sink);
-    change_materials(options, scene);
+    change_materials(options, scene, sink);
     return scene;
 }
 

@@ -43,6 +43,7 @@ std::string light_of(const std::string& integrator, const Scene& scene) {
     if (!set_integrator(settings, integrator)) return {};
     if (settings.path.light != PathLight::Path) return fmt::format("only the {} light of path", integrator);
     const IntegratorDescriptor& kind = describe(settings.integrator);
+    if (has_media(scene) && !kind.has_media) return "a vacuum in place of media";
     if (!kind.light_with_caustics.empty() && has_caustics_of_points(scene))
         return std::string(kind.light_with_caustics);
     const bool is_part = !kind.light_if_not_diffuse.empty() && !is_all_diffuse(scene);
@@ -57,7 +58,8 @@ std::string why_no_solution(const Scene& scene) {
 }
 
 std::string default_reference_integrator(const Scene& scene) {
-    return std::string(name_of(has_caustics_of_points(scene) ? IntegratorKind::Bidirectional : IntegratorKind::Path));
+    return std::string(name_of(has_caustics_of_points(scene) && !has_media(scene) ? IntegratorKind::Bidirectional
+                                                                                  : IntegratorKind::Path));
 }
 
 std::string light_lacking(const std::string& integrator, const Scene& scene) {

@@ -63,13 +63,24 @@ public:
             is_known = true;
             if (value != "true" && value != "false") refuse(fmt::format("{} is true or false", key));
             flag = value == "true";
+            if (key == "is_clear_boundary" && !flag) refuse(fmt::format("{} can only be true", key));
         });
-        if (material_.is_clear_boundary) material_.make_clear_boundary();
         set_numbers(key, value, is_known);
         if (!is_known) refuse(fmt::format("there is no {}; there are {}", key, fmt::join(known_names(), ", ")));
     }
 
+    /// Ends the change, after all its keys.
+    void finish(Sink& sink) {
+        if (material_.is_clear_boundary) material_.make_clear_boundary();
+        if (material_.medium.is_there() && !material_.encloses() && sets_medium())
+            sink.leave_out({"material", change_.text, "its medium is left out, because no light enters the material"});
+    }
+
 private:
+    bool sets_medium() const {
+        return std::ranges::any_of(change_.values, [](const auto& of) { return of.first.starts_with("medium_"); });
+    }
+
     [[noreturn]] void refuse(const std::string& why) const {
         throw Error(ErrorCode::BadInput, "material", change_.text, why);
     }
@@ -163,7 +174,7 @@ MaterialChange parse_material_change(std::string_view text) {
     return change;
 }
 
-void set_materials(Scene& scene, std::span<const MaterialChange> changes) {
+void set_materials(Scene& scene, std::span<const MaterialChange> changes, Sink& sink) {
     for (const MaterialChange& change : changes) {
         bool is_found = false;
         std::vector<std::string> names;
@@ -171,7 +182,9 @@ void set_materials(Scene& scene, std::span<const MaterialChange> changes) {
             names.push_back(name_of_material(scene, i));
             if (!matches_name(change.name, names.back())) continue;
             is_found = true;
-            for (const auto& [key, value] : change.values) Changer(change, scene.materials[i]).set(key, value);
+            Changer changer(change, scene.materials[i]);
+            for (const auto& [key, value] : change.values) changer.set(key, value);
+            changer.finish(sink);
         }
         if (is_found) continue;
         std::vector<Names> all;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/sink.h"
 #include "scene/scene.h"
 
 namespace pertev {
@@ -27,7 +28,7 @@ MaterialChange parse_material_change(std::string_view text);
 /// one (scene/metals.h), or `none` to drop a texture. Textures multiply their parameter as before. A Diffuse material
 /// whose reflection is set (metallic, roughness, ior, specular, transmission) becomes MetallicRoughness. Throws for an
 /// unknown name or parameter, and for a value beyond the parameter's range.
-void set_materials(Scene& scene, std::span<const MaterialChange> changes);
+void set_materials(Scene& scene, std::span<const MaterialChange> changes, Sink& sink = nobody());
 
 /// Describes a material as NAME KEY=VALUE ...: its kind, its colour, and what differs from the defaults. A texture has
 /// its image's name.

@@ -33,7 +33,7 @@ void check_rates(Rgb rates, Rgb expected) {
     CHECK(rates.b == doctest::Approx(expected.b).epsilon(1e-4));
 }
 
-/// The material of a glTF file whose only one has these extensions.
+/// Returns the material of a glTF file whose only one has these extensions.
 Material gltf_material(const std::string& extensions) {
     test::GltfBuilder builder;
     builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
@@ -88,18 +88,90 @@ TEST_CASE("pbrt: a subsurface material is a medium in glass, and grids are left 
     const Scene cloud =
         read_with_media("m.pbrt",
                         "WorldBegin MakeNamedMedium \"c\" \"string type\" \"uniformgrid\" \"float density\" [1 2]\n"
-                        "MediumInterface \"c\" \"\" Material \"interface\" Shape \"sphere\"\n",
+                        "MediumInterface \"c\" \"\" Material \"interface\" Shape \"sphere\"\n"
+                        "Material \"diffuse\" Shape \"sphere\"\n",
                         messages);
     CHECK(messages.left_out().size() == 1);
     CHECK(!cloud.medium.is_there());
+    CHECK(cloud.instances.size() == 1); // an interface between vacua is not there
     const Scene later =
         read_with_media("m.pbrt", "WorldBegin MediumInterface \"m\" \"\" Material \"interface\" Shape \"sphere\"\n"
                                   "MakeNamedMedium \"m\" \"string type\" \"homogeneous\"\n");
     CHECK(material_of(later, 0).medium.scatters());
     Messages unknown;
-    (void)read_with_media("m.pbrt", "WorldBegin MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\"\n",
+    (void)read_with_media("m.pbrt",
+                          "WorldBegin MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\"\n"
+                          "Material \"diffuse\" Shape \"sphere\"\n",
                           unknown);
     CHECK(unknown.left_out().size() == 1);
+}
+
+TEST_CASE("pbrt: the medium of a camera in a body is in the body alone, and that outside of it around everything") {
+    const std::string media = "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [1 1 1]\n"
+                              "MakeNamedMedium \"haze\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [2 2 2]\n"
+                              "MediumInterface \"\" \"fog\" Camera \"perspective\" WorldBegin Material \"interface\"\n";
+    const auto body = [](const std::string& inside, const std::string& outside) {
+        return "MediumInterface \"" + inside + "\" \"" + outside + "\" Shape \"sphere\"\n";
+    };
+    CHECK(read_with_media("m.pbrt", media + body("fog", "")).medium == MediumParameters());
+    CHECK(read_with_media("m.pbrt", media + body("fog", "haze")).medium.sigma_s.r == 2);
+    const Scene bubble =
+        read_with_media("m.pbrt", media + body("fog", "haze") + "Material \"dielectric\"\n" + body("", "fog"));
+    CHECK(bubble.medium.sigma_s.r == 2); // glass is no space around
+    const Scene hollow = read_with_media("m.pbrt", media + body("fog", "") + body("", "fog"));
+    CHECK(hollow.medium.sigma_s.r == 1);
+    Messages differing;
+    CHECK(read_with_media("m.pbrt", media + body("fog", "") + body("fog", "haze"), differing).medium.sigma_s.r == 1);
+    CHECK(differing.left_out().size() == 2); // the haze is nowhere
+}
+
+TEST_CASE("pbrt: coefficients are those of pbrt, by name before sigma and reflectance, and what differs is said") {
+    const auto subsurface = [](const std::string& parameters, std::size_t left_out) {
+        Messages messages;
+        const Scene scene =
+            read_with_media("m.pbrt", "WorldBegin Material " + parameters + " Shape \"sphere\"\n", messages);
+        CHECK(messages.left_out().size() == left_out);
+        return material_of(scene, 0).medium;
+    };
+    check_rates(subsurface("\"kdsubsurface\" \"rgb mfp\" [.1 .2 .5] \"float scale\" 2", 0).sigma_t(), {5, 2.5f, 1});
+    check_rates(subsurface("\"kdsubsurface\"", 0).sigma_t(), {1, 1, 1});
+    const MediumParameters marble =
+        subsurface("\"subsurface\" \"string name\" \"Marble\" \"float g\" .5 \"rgb sigma_a\" [1 1 1]", 2);
+    check_rates(marble.sigma_s, {2.19f, 2.62f, 3});
+    CHECK(marble.g == 0);
+    check_rates(subsurface("\"subsurface\" \"rgb sigma_a\" [1 1 1] \"rgb reflectance\" [0 0 0]", 1).sigma_a, {1, 1, 1});
+    check_rates(subsurface("\"subsurface\" \"string name\" \"Marbel\" \"rgb sigma_a\" [1 2 3]", 1).sigma_a, {1, 2, 3});
+    (void)subsurface("\"subsurface\" \"rgb Kr\" [1 1 1] \"rgb Kt\" [.5 1 1]", 1);
+    const Scene leaf = read_with_media(
+        "m.pbrt",
+        "WorldBegin MakeNamedMedium \"m\" \"string type\" \"homogeneous\" MediumInterface \"m\" \"\" Material "
+        "\"diffusetransmission\" Shape \"sphere\"\n");
+    CHECK(material_of(leaf, 0).medium.scatters());
+}
+
+TEST_CASE("Mitsuba: the first sensor's medium counts, and an invisible lamp has none") {
+    const std::string fog = "<medium type='homogeneous' id='fog'/>", ball = "<shape type='sphere'><bsdf type='null'/>";
+    Messages sensors;
+    const Scene first = read_with_media("m.xml",
+                                        "<scene version='3.0.0'>" + fog +
+                                            "<sensor type='perspective'/><sensor type='perspective'><ref name='medium' "
+                                            "id='fog'/></sensor><shape type='sphere'/></scene>",
+                                        sensors);
+    CHECK(sensors.left_out().size() == 1);
+    CHECK(!first.medium.is_there());
+    const Scene inside = read_with_media(
+        "m.xml", "<scene version='3.0.0'>" + fog + "<sensor type='perspective'><ref name='medium' id='fog'/></sensor>" +
+                     ball + "<ref name='interior' id='fog'/></shape></scene>");
+    CHECK(!inside.medium.is_there());
+    CHECK(material_of(inside, 0).medium.is_there());
+    Messages messages;
+    const Scene lamp = read_with_media("m.xml",
+                                       "<scene version='3.0.0'>" + fog + ball +
+                                           "<emitter type='area'/><ref name='interior' id='fog'/></shape></scene>",
+                                       messages);
+    CHECK(messages.left_out().size() == 1);
+    CHECK(!material_of(lamp, 0).is_clear_boundary);
+    CHECK(material_of(lamp, 0).emission.r > 0);
 }
 
 TEST_CASE("Mitsuba: the sensor's medium is around everything, and interior ones are in shapes") {
@@ -149,4 +221,32 @@ TEST_CASE("glTF: volume scatter is a medium whose extinction is the volume's att
     CHECK(wax.encloses());
     CHECK(wax.medium.scatters());
     CHECK(!gltf_material(R"("KHR_materials_transmission":{"transmissionFactor":1},)" + volume).medium.is_there());
+}
+
+TEST_CASE("glTF: an animation of the attenuation of a volume that scatters is left out, and others play") {
+    test::GltfBuilder builder;
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+    builder.add("SCALAR", std::vector<float>{0, 1});
+    builder.add("SCALAR", std::vector<float>{1, 2});
+    const auto read = [&](const std::string& scatter, Messages& messages) {
+        return read_with_media(
+            "m.gltf",
+            builder.json(
+                R"("extensionsUsed":["KHR_animation_pointer"],"nodes":[{"mesh":0}],"meshes":[{"primitives":[)"
+                R"({"material":0,"attributes":{"POSITION":0}}]}],"materials":[{"pbrMetallicRoughness":)"
+                R"({"metallicFactor":0},"extensions":{"KHR_materials_transmission":{"transmissionFactor":1},)"
+                R"("KHR_materials_volume":{"thicknessFactor":1,"attenuationColor":[0.5,0.25,1],)"
+                R"("attenuationDistance":1})" +
+                scatter +
+                R"(}}],"animations":[{"samplers":[{"input":1,"output":2}],"channels":[{"sampler":0,"target":{)"
+                R"("path":"pointer","extensions":{"KHR_animation_pointer":{"pointer":"/materials/0/extensions/)"
+                R"(KHR_materials_volume/attenuationDistance"}}}}]}])"),
+            messages);
+    };
+    Messages plain, scattering;
+    CHECK(read("", plain).animations.at(0).channels.size() == 1);
+    CHECK(plain.left_out().empty());
+    const Scene milk = read(R"(,"KHR_materials_volume_scatter":{"multiscatterColor":[1,1,1]})", scattering);
+    CHECK((milk.animations.empty() || milk.animations[0].channels.empty()));
+    CHECK(scattering.left_out().size() == 1);
 }

@@ -36,6 +36,20 @@ bool refuses_change(const std::string& text, const std::string& why) {
 
 } // namespace
 
+TEST_CASE("a clear boundary stays one whatever else is set, and a medium that no light reaches is reported") {
+    Scene scene = three_materials();
+    change(scene, "gold leaf is_clear_boundary=true alpha=1 alpha_mode=opaque");
+    CHECK(scene.materials[0].is_clear_boundary);
+    CHECK(scene.materials[0].alpha == 0);
+    CHECK(scene.materials[0].alpha_mode == AlphaMode::Mask);
+    CHECK(refuses_change("gold leaf is_clear_boundary=false", "can only be true"));
+    const MaterialChange changes[] = {parse_material_change("gold ring medium_sigma_s=1"),
+                                      parse_material_change("gold leaf medium_sigma_s=1")};
+    Messages messages;
+    set_materials(scene, changes, messages);
+    CHECK(messages.left_out().size() == 1);
+}
+
 TEST_CASE("materials are changed by name, by wildcards, or by number where they have no name") {
     Scene scene = three_materials();
     change(scene, "gold leaf base_color=1,0.5,0.25");

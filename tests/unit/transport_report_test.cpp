@@ -218,6 +218,11 @@ TEST_CASE("each preset is a built-in scene, and three integrators find all of it
     CHECK(light_of("path", glass) == "all but LS+D of point lights");
     CHECK(default_reference_integrator(glass) == "bidirectional");
     CHECK(default_reference_integrator(emitters) == "path");
+    Scene fog = glass;
+    fog.medium.sigma_s = {1, 1, 1};
+    CHECK(light_of("bidirectional", fog) == "a vacuum in place of media");
+    CHECK(light_of("path", fog) == light_of("path", glass));
+    CHECK(default_reference_integrator(fog) == "path");
 }
 
 TEST_CASE("the light transport report lists results and reasons for missing ones") {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -26,6 +27,39 @@ constexpr std::array<Substance, 12> kSubstances = {{{"Apple", {2.29f, 2.39f, 1.9
                                                     {"Skin2", {1.09f, 1.59f, 1.79f}, {0.013f, 0.070f, 0.145f}},
                                                     {"Spectralon", {11.6f, 20.4f, 14.9f}, {0, 0, 0}},
                                                     {"Wholemilk", {2.55f, 3.21f, 3.77f}, {0.0011f, 0.0024f, 0.014f}}}};
+
+using MediumNumber = std::optional<uint32_t>;
+
+/// A shape that light enters, and the media on its sides; none is a vacuum.
+struct Body {
+    MediumNumber inside, outside;
+    bool is_clear;
+    const FileLocation* location;
+};
+
+/// Returns the medium outside of all bodies of the camera's medium, in which the camera then is. It is the camera's if
+/// there are none, if their outsides differ, or if they lie in each other without an end.
+MediumNumber medium_around(MediumNumber at_camera, const std::vector<Body>& bodies, Sink& sink) {
+    if (!at_camera) return {};
+    std::set<MediumNumber> passed;
+    MediumNumber medium = at_camera;
+    while (passed.insert(medium).second) {
+        std::optional<MediumNumber> outside;
+        for (const Body& body : bodies) {
+            // Glass without a medium is no space that could hold the camera's body.
+            if (body.inside != medium || body.outside == medium || (!medium && !body.is_clear)) continue;
+            if (outside && *outside != body.outside) {
+                sink.leave_out({*body.location, "the media outside of shapes that the camera's medium fills differ; it "
+                                                "is taken to be around everything"});
+                return at_camera;
+            }
+            outside = body.outside;
+        }
+        if (!outside) return medium;
+        medium = *outside;
+    }
+    return at_camera;
+}
 
 } // namespace
 
@@ -56,10 +90,54 @@ std::optional<MediumParameters> find_substance(std::string_view name) {
     return MediumParameters{.sigma_a = found->sigma_a, .sigma_s = found->sigma_s};
 }
 
+std::vector<std::string_view> names_of_substances() {
+    std::vector<std::string_view> names;
+    for (const Substance& substance : kSubstances) names.push_back(substance.name);
+    return names;
+}
+
+bool is_entered(const Surface& surface) {
+    return surface.is_nothing || surface.material.encloses() || surface.material.has_diffuse_transmission();
+}
+
+void finish_media(std::optional<uint32_t> at_camera, Sink& sink, Parts& parts) {
+    const auto usable = [&](MediumNumber number) {
+        return number && parts.media[*number].is_there() ? number : std::nullopt;
+    };
+    std::vector<Body> bodies;
+    std::set<MediumNumber> inside;
+    std::erase_if(parts.placed, [&](const Placed& shape) {
+        const Surface& surface = parts.surfaces[shape.surface];
+        const bool is_clear = surface.is_nothing && !shape.area_light;
+        const Body body = {usable(shape.medium), usable(shape.outside), is_clear, &parts.meshes[shape.mesh].location};
+        if (is_clear && !body.inside && !body.outside) return true;
+        if (is_clear || (!surface.is_nothing && is_entered(surface))) {
+            bodies.push_back(body);
+            inside.insert(body.inside);
+        }
+        return false;
+    });
+    at_camera = usable(at_camera);
+    parts.around = medium_around(at_camera, bodies, sink);
+    std::set<MediumNumber> named = {parts.around, at_camera, std::nullopt};
+    for (const Placed& shape : parts.placed) {
+        const MediumNumber outside = usable(shape.outside);
+        if (inside.contains(outside) || !named.insert(outside).second) continue;
+        sink.leave_out({parts.meshes[shape.mesh].location,
+                        "the medium outside of a shape is left out, because it neither fills another shape nor is "
+                        "that of the camera"});
+    }
+}
+
 void fill_surface(const MediumParameters& medium, const FileLocation& location, Sink& sink, Surface& surface) {
     Material& material = surface.material;
     material.medium = medium;
-    if (surface.is_nothing) {
+    if (surface.is_nothing && max_component(material.emission) > 0) { // which a clear boundary could not show
+        material.medium = {};
+        if (medium.is_there())
+            sink.leave_out({location, "the medium inside of a shape is left out, because an invisible surface emits "
+                                      "light there"});
+    } else if (surface.is_nothing) {
         material.make_clear_boundary();
     } else if (medium.is_there() && !material.encloses()) {
         material.medium = {};

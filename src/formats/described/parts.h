@@ -70,8 +70,9 @@ struct PlacedLight {
 struct Placed {
     std::string name;
     uint32_t mesh = 0, surface = 0;
-    std::optional<uint32_t> area_light, alpha, medium; // the medium fills it
-    DoubleTransform world_from_mesh;                   // before ShapeMesh::shape_from_mesh
+    std::optional<uint32_t> area_light, alpha;
+    std::optional<uint32_t> medium, outside; // media that fill it, and on its other side
+    DoubleTransform world_from_mesh;         // before ShapeMesh::shape_from_mesh
 };
 
 struct Parts {

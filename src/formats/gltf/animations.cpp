@@ -235,6 +235,13 @@ std::vector<JsonValue> animations_of(const Document& document, Sink& sink) {
     return elements_or_none(document.root(), "animations", sink);
 }
 
+/// Returns whether the target is the absorption of a solid whose medium has it (KHR_materials_volume_scatter).
+bool attenuates_medium(const Target& target, const Scene& scene) {
+    if (!is_of_material(target.part) || !scene.materials[target.indices[0]].medium.is_there()) return false;
+    return target.numbers == material_numbers("transmission_depth") ||
+           target.numbers == material_numbers("transmission_color");
+}
+
 } // namespace
 
 std::set<uint32_t> nodes_with_animated_weights(const Document& document, std::span<const Clip> clips) {
@@ -276,6 +283,11 @@ void read_animations(const Document& document, Buffers& buffers, const Materials
             const JsonValue json = entry.at("target");
             const std::optional<Target> target = read_target(document, json, materials, scene, sink);
             if (!target || target->indices.empty()) return;
+            if (attenuates_medium(*target, scene)) {
+                sink.leave_out({entry.location(), "the attenuation of a volume that scatters does not change; the "
+                                                  "channel is left out"});
+                return;
+            }
             AnimationChannel channel = read_keys(document, buffers, entry.at("sampler"), samplers, *target, scene);
             channel.target = target->indices[0];
             if (const std::string mended = repair_keys(channel, channel.values.size() / channel.times.size());

@@ -75,28 +75,20 @@ Media::OfShape Media::of_shape(Object& shape) {
         if (medium == nullptr || medium->tag != "medium") continue;
         found.ends_medium = true;
         const auto index = read(*medium);
-        if (!index) continue;
-        if (side == std::string_view("interior")) {
-            found.inside = index;
-            inside_.insert(*index);
-        } else {
-            outside_.try_emplace(*index, shape.location());
-        }
+        (side == std::string_view("interior") ? found.inside : found.outside) = index;
     }
     return found;
 }
 
 void Media::set_around(Object& sensor) {
     const std::vector<Object*> media = objects_in(sensor, "medium", reading_);
-    if (!media.empty() && !reading_.parts.around) reading_.parts.around = read(*media.front());
+    const std::optional<uint32_t> medium = media.empty() ? std::nullopt : read(*media.front());
+    if (!at_sensor_) at_sensor_ = medium;
+    if (medium != *at_sensor_)
+        reading_.sink().leave_out({sensor.location(), "the medium of a sensor is left out, because that of the first "
+                                                      "one differs"});
 }
 
-void Media::finish() {
-    for (const auto& [index, location] : outside_) {
-        if (inside_.contains(index) || reading_.parts.around == index) continue;
-        reading_.sink().leave_out({location, "the medium outside of a shape is left out, because it neither fills "
-                                             "another shape nor is that of the first sensor"});
-    }
-}
+void Media::finish() { described::finish_media(at_sensor_.value_or(std::nullopt), reading_.sink(), reading_.parts); }
 
 } // namespace pertev::mitsuba

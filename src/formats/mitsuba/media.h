@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <set>
 
 #include "formats/mitsuba/reading.h"
 
@@ -13,18 +12,18 @@ namespace pertev::mitsuba {
 
 class Media {
 public:
-    /// Outlives it.
+    /// `reading` outlives it.
     explicit Media(Reading& reading) : reading_(reading) {}
 
     struct OfShape {
-        std::optional<uint32_t> inside; // index into Parts::media
-        bool ends_medium = false;       // it has a medium on either side
+        std::optional<uint32_t> inside, outside; // indices into Parts::media
+        bool ends_medium = false;                // it has a medium on either side
     };
     /// Returns what an object's parameters `interior` and `exterior` name.
     OfShape of_shape(Object& shape);
-    /// Puts the sensor's medium around everything.
+    /// Puts the medium of the first sensor around everything. A later sensor's that differs is left out.
     void set_around(Object& sensor);
-    /// Leaves out the media outside of shapes that fill no other shape and are not around the sensor.
+    /// Finds what is around everything, after all shapes and sensors.
     void finish();
 
 private:
@@ -34,8 +33,7 @@ private:
 
     Reading& reading_;
     std::map<uint32_t, std::optional<uint32_t>> known_; // by the object's number
-    std::map<uint32_t, FileLocation> outside_;          // media by index
-    std::set<uint32_t> inside_;
+    std::optional<std::optional<uint32_t>> at_sensor_;  // the first sensor's; nothing before it
 };
 
 } // namespace pertev::mitsuba

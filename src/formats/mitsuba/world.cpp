@@ -96,7 +96,7 @@ void World::place(Object& shape, const DoubleTransform& world_from_group) {
                                                       shape.parameters.what())});
     const Media::OfShape media = context_.options.geometry_only ? Media::OfShape{} : media_.of_shape(shape);
     if (parts_.surfaces[placed.surface].is_nothing && !placed.area_light && !media.ends_medium) return;
-    placed.medium = media.inside;
+    placed.medium = media.inside, placed.outside = media.outside;
     const Surface& surface = parts_.surfaces[placed.surface];
     const bool has_normal_map = surface.material.normal_texture.has_image() && !surface.has_heights;
     const auto read =

@@ -7,6 +7,7 @@
 #include "base/limits.h"
 #include "base/message_text.h"
 #include "formats/described/assemble.h"
+#include "formats/described/described_medium.h"
 #include "formats/described/transforms.h"
 #include "formats/described/usable_values.h"
 #include "formats/files/closest_name.h"
@@ -128,7 +129,7 @@ std::optional<uint32_t> World::alpha_of(Parameters& parameters) {
 
 void World::add_shape(const std::string& type, Parameters& parameters) {
     Placed placed;
-    if (!fill(placed, parameters.location())) return;
+    if (!fill(placed)) return;
     const auto read = shapes_.read(type, state.is_reversed, parameters);
     if (!read) return;
     placed.mesh = read->mesh;
@@ -175,24 +176,25 @@ void World::set_media(const std::string& inside, const std::string& outside, con
     }
 }
 
-/// Sets the medium of a shape. Returns false if the shape is an interface between equal media, which is not there.
-bool World::fill(Placed& placed, const FileLocation& from) {
-    const bool is_nothing = parts_.surfaces[state.surface].is_nothing;
-    if (context_.options.geometry_only || (state.inside == state.outside && is_nothing)) return !is_nothing;
-    const auto medium = media_.find(state.inside);
-    // A state's media last, so that shapes that let no light in often have one by chance.
-    const bool is_entered = is_nothing || parts_.surfaces[state.surface].material.encloses();
-    if (medium != media_.end() && is_entered) placed.medium = medium->second.index;
-    if (state.inside != state.outside) {
-        inside_.insert(state.inside);
-        outside_.try_emplace(state.outside, from);
-    }
+/// Returns the index of a medium of this name; nothing for a vacuum.
+std::optional<uint32_t> World::medium_index(const std::string& name) const {
+    const auto medium = media_.find(name);
+    return medium != media_.end() ? std::optional(medium->second.index) : std::nullopt;
+}
+
+/// Sets the media of a shape. Returns false if the shape is an interface between equal media, which is not there.
+bool World::fill(Placed& placed) {
+    const Surface& surface = parts_.surfaces[state.surface];
+    if (context_.options.geometry_only || (state.inside == state.outside && surface.is_nothing))
+        return !surface.is_nothing;
+    // MediumInterface holds for later shapes too, so that opaque ones often have a medium inside without meaning it.
+    if (described::is_entered(surface)) placed.medium = medium_index(state.inside);
+    if (state.inside != state.outside) placed.outside = medium_index(state.outside);
     return true;
 }
 
-/// Puts the camera's medium around everything, and leaves out media that are only outside of shapes.
+/// Reports media that nothing defines, and finds what is around everything.
 void World::finish_media() {
-    if (const auto medium = media_.find(around_); medium != media_.end()) parts_.around = medium->second.index;
     for (const auto& [name, medium] : media_) {
         if (medium.is_defined) continue;
         std::vector<std::string_view> known;
@@ -202,12 +204,7 @@ void World::finish_media() {
         context_.sink.leave_out({medium.from, fmt::format("there is no medium {}{}; it is a vacuum", shortened(name),
                                                           did_you_mean(name, known))});
     }
-    for (const auto& [name, from] : outside_) {
-        if (name.empty() || name == around_ || inside_.contains(name)) continue;
-        context_.sink.leave_out({from, fmt::format("the medium {} outside of a shape is left out, because it neither "
-                                                   "fills another shape nor is that of the camera",
-                                                   shortened(name))});
-    }
+    described::finish_media(medium_index(around_), context_.sink, parts_);
 }
 
 void World::begin_object(const std::string& name, const FileLocation& from) {

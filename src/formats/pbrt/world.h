@@ -7,7 +7,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -67,7 +66,8 @@ private:
     uint32_t add_surface(const std::string& type, const std::string& name, Parameters& parameters);
     const Surface* find_surface(const std::string& name, const FileLocation& from);
     DoubleTransform place(const FileLocation& from);
-    bool fill(Placed& placed, const FileLocation& from);
+    bool fill(Placed& placed);
+    std::optional<uint32_t> medium_index(const std::string& name) const;
     void finish_media();
     std::optional<uint32_t> alpha_of(Parameters& parameters);
 
@@ -87,8 +87,6 @@ private:
     };
     NamedMedium& medium_called(const std::string& name, const FileLocation& from);
     std::map<std::string, NamedMedium, std::less<>> media_;
-    std::map<std::string, FileLocation, std::less<>> outside_; // media outside of shapes
-    std::set<std::string, std::less<>> inside_;
     std::string around_;
 };
 

@@ -176,17 +176,17 @@ Scene read_scene_and_emitters(const std::filesystem::path& path, const ReadOptio
     return scene;
 }
 
-void change_materials(const SceneOptions& options, Scene& scene) {
+void change_materials(const SceneOptions& options, Scene& scene, Sink& sink) {
     std::vector<MaterialChange> changes;
     for (const std::string& text : options.materials) changes.push_back(parse_material_change(text));
-    set_materials(scene, changes);
+    set_materials(scene, changes, sink);
 }
 
 Scene open_scene(const SceneOptions& options, Sink& sink, SceneUse use, Ground ground, const ReadScene& read) {
     std::vector<EmitterStrength> emitters;
     for (const std::string& text : options.emitters) emitters.push_back(parse_emitter(text));
     Scene scene = read ? read(sink) : read_scene_and_emitters(options.scene, read_options(options), sink);
-    change_materials(options, scene);
+    change_materials(options, scene, sink);
     if (const uint32_t count = close_gaps(scene); count > 0) {
         sink.note(fmt::format("{} of glass or water {} another one and {} by {} of its size, so that no air is between",
                               count == 1 ? "a solid" : fmt::format("{} solids", count),

@@ -44,7 +44,7 @@ using ReadScene = std::function<Scene(Sink& sink)>;
 Scene open_scene(const SceneOptions& options, Sink& sink, SceneUse use = SceneUse::Picture, Ground ground = Ground::Off,
                  const ReadScene& read = {});
 /// Sets the parameters of materials that the options state.
-void change_materials(const SceneOptions& options, Scene& scene);
+void change_materials(const SceneOptions& options, Scene& scene, Sink& sink);
 /// Opens a scene with all other settings at their defaults.
 Scene open_scene(const std::string& scene, Sink& sink, SceneUse use = SceneUse::Picture);
 
