@@ -50,7 +50,7 @@ HD_CALL inline bool find_next_crossing(const MediumBoundariesView& boundaries, V
     return true;
 }
 
-/// A part of a ray in one medium.
+/// A part of a ray that lies in one medium.
 struct RayPart {
     const MediumParameters* medium;
     const MaterialParameters* solid; // whose medium it is; null: the scene's
@@ -87,7 +87,7 @@ HD inline Rgb transmittance_of(Rgb optical_depth) {
     return {exp(-optical_depth.r), exp(-optical_depth.g), exp(-optical_depth.b)};
 }
 
-/// Returns what the absorption of the part's solid leaves over `distance` metres, besides its medium.
+/// Returns the transmittance of `distance` metres by the absorption of the part's solid, without its medium's.
 HD inline Rgb absorption_of(const RayPart& part, float distance) {
     if (part.solid == nullptr || !part.solid->absorbs()) return {1, 1, 1};
     return transmittance_of_depth(*part.solid, distance);
@@ -107,7 +107,7 @@ HD_CALL inline Rgb transmittance_of_media(const SceneView& scene, InteriorList l
     return absorbed * transmittance_of(depth);
 }
 
-/// Returns that of a ray of any length, up to its t_max.
+/// Returns the transmittance of a ray whose direction may have any length, up to its t_max.
 HD inline Rgb transmittance_of_media(const SceneView& scene, InteriorList list, const Ray& ray) {
     const float size = length(ray.direction);
     return transmittance_of_media(scene, list, ray.origin, ray.direction / size, size * ray.t_max);

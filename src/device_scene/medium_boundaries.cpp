@@ -13,8 +13,10 @@ MediumBoundaries find_medium_boundaries(const PlacedScene& placed) {
     std::vector<BvhTriangle> triangles;
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
-        if (instance.is_hidden || !scene.materials[instance.material].is_clear_boundary) continue;
+        const bool is_boundary = scene.materials[instance.material].is_clear_boundary;
+        if (instance.is_hidden || instance.is_background || !is_boundary) continue;
         const Transform world_from_local = moved_to(instance.world_from_local, placed.centre);
+        const Transform local_from_world = inverse(world_from_local);
         const Mesh& mesh = scene.meshes[instance.mesh];
         for (std::size_t k = 0; k < mesh.indices.size(); k += 3) {
             const uint32_t* const at = mesh.indices.data() + k;
@@ -26,7 +28,7 @@ MediumBoundaries find_medium_boundaries(const PlacedScene& placed) {
             if (is_mirroring(instance.world_from_local)) normal = -normal;
             if (!mesh.normals.empty()) {
                 const Vec3 sum = mesh.normals[at[0]] + mesh.normals[at[1]] + mesh.normals[at[2]];
-                if (dot(transform_transposed(inverse(world_from_local), sum), normal) < 0) normal = -normal;
+                if (dot(transform_transposed(local_from_world, sum), normal) < 0) normal = -normal;
             }
             const auto number = static_cast<uint32_t>(found.triangles.size());
             triangles.push_back({a, number, corner(1), 0, corner(2), 0});

@@ -1,6 +1,7 @@
 #include "device_scene/nest_solids.h"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 #include <tuple>
 #include <unordered_map>
@@ -101,13 +102,14 @@ NestedSolids::NestedSolids(const Scene& scene, Vec3 centre, ClosedMeshes& closed
                            .world_from_local = instance.world_from_local,
                            .local_from_world = inverse(instance.world_from_local),
                            .bounds = world_bounds(scene.meshes[instance.mesh], instance.world_from_local),
-                           .priority = material.priority});
+                           .priority = material.priority,
+                           .is_clear = material.is_clear_boundary});
     }
     const bool keeps_all = has_media(scene);
+    std::sort(solids_.begin(), solids_.end(),
+              [](const Solid& a, const Solid& b) { return a.bounds.lo.x < b.bounds.lo.x; });
     const auto keep_overlapping = [&] {
         if (keeps_all) return;
-        std::sort(solids_.begin(), solids_.end(),
-                  [](const Solid& a, const Solid& b) { return a.bounds.lo.x < b.bounds.lo.x; });
         std::vector<bool> is_kept(solids_.size());
         for (std::size_t i = 0; i < solids_.size(); ++i) {
             for (std::size_t k = i + 1; k < solids_.size() && solids_[k].bounds.lo.x < solids_[i].bounds.hi.x; ++k) {
@@ -127,12 +129,18 @@ NestedSolids::NestedSolids(const Scene& scene, Vec3 centre, ClosedMeshes& closed
     keep_overlapping();
     if (solids_.empty()) return;
     parallel_for(solids_.size(), 1, [&](uint64_t i) {
-        for (const Solid& outer : solids_) {
-            if (&outer != &solids_[i] && holds(outer, solids_[i])) ++solids_[i].depth;
+        const Solid& outer = solids_[i];
+        const auto lo = [](const Solid& solid) { return solid.bounds.lo.x; };
+        for (auto inner = std::ranges::lower_bound(solids_, lo(outer), {}, lo);
+             inner != solids_.end() && lo(*inner) <= outer.bounds.hi.x; ++inner) {
+            if (&outer == &*inner || !holds(outer, *inner, scene.meshes[scene.instances[inner->instance].mesh]))
+                continue;
+            std::atomic_ref(inner->depth).fetch_add(1, std::memory_order_relaxed);
         }
     });
     std::sort(solids_.begin(), solids_.end(), [](const Solid& a, const Solid& b) {
-        return std::tuple(a.priority, a.depth, b.instance) < std::tuple(b.priority, b.depth, a.instance);
+        return std::tuple(a.priority, a.depth, !a.is_clear, b.instance) <
+               std::tuple(b.priority, b.depth, !b.is_clear, a.instance);
     });
     if (solids_.size() > kMostRanks) solids_.resize(kMostRanks); // others are in a vacuum
     ranks_.resize(scene.instances.size());
@@ -164,15 +172,16 @@ bool NestedSolids::holds(const Solid& solid, Vec3 point) const {
     return votes >= 2;
 }
 
-/// Returns whether two of three of its vertices are inside another solid whose box holds the whole of it.
-bool NestedSolids::holds(const Solid& outer, const Solid& inner) const {
-    if (inner.shape == nullptr || !contains(outer.bounds, inner.bounds.lo) || !contains(outer.bounds, inner.bounds.hi))
-        return false;
-    const ClosedMeshes::Shape& shape = *inner.shape;
-    const std::size_t count = shape.indices.size();
+/// Returns whether two of three vertices of its mesh, which may be open, are inside another solid whose box holds the
+/// whole of it.
+bool NestedSolids::holds(const Solid& outer, const Solid& inner, const Mesh& mesh) const {
+    if (!contains(outer.bounds, inner.bounds.lo) || !contains(outer.bounds, inner.bounds.hi)) return false;
+    const std::vector<Vec3>& positions = inner.shape != nullptr ? inner.shape->positions : mesh.positions;
+    const std::vector<uint32_t>& indices = inner.shape != nullptr ? inner.shape->indices : mesh.indices;
+    const std::size_t count = indices.size();
     int votes = 0;
     for (const std::size_t corner : {std::size_t(0), count / 3, 2 * count / 3}) {
-        votes += holds(outer, transform_point(inner.world_from_local, shape.positions[shape.indices[corner]])) ? 1 : 0;
+        votes += holds(outer, transform_point(inner.world_from_local, positions[indices[corner]])) ? 1 : 0;
     }
     return votes >= 2;
 }
@@ -187,13 +196,13 @@ InteriorList NestedSolids::at(Vec3 point) const {
 
 bool NestedSolids::is_nested() const {
     return std::ranges::any_of(solids_, [&](const Solid& inner) {
-        if (inner.shape == nullptr) return false;
+        if (inner.shape == nullptr || inner.is_clear) return false;
         const ClosedMeshes::Shape& shape = *inner.shape;
         const std::size_t step = std::max<std::size_t>(shape.indices.size() / kLookedAt, 1);
         for (std::size_t corner = 0; corner < shape.indices.size(); corner += step) {
             const Vec3 point = transform_point(inner.world_from_local, shape.positions[shape.indices[corner]]);
             for (const Solid& outer : solids_) {
-                if (outer.instance != inner.instance && holds(outer, point)) return true;
+                if (outer.instance != inner.instance && !outer.is_clear && holds(outer, point)) return true;
             }
         }
         return false;

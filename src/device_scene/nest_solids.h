@@ -2,9 +2,9 @@
 
 // Finds the solids of glass or water that lie in each other, and ranks them. A solid is an instance of a closed mesh
 // whose material light enters; it counts here if its box overlaps that of another one. Where several hold a point, the
-// one of the greatest priority fills it, of equal ones that in the most others, then the first of the scene.
-// In a scene with media every solid counts, and so does an open mesh with a medium, which then begins where a ray
-// crosses it and holds no camera.
+// one of the greatest priority fills it, of equal ones that in the most others, then one that is no clear boundary,
+// then the first of the scene. In a scene with media every solid counts, and so does an open mesh with a medium, which
+// then begins where a ray crosses it and holds no camera.
 
 #include <cstdint>
 #include <map>
@@ -45,7 +45,8 @@ public:
     const std::vector<uint16_t>& ranks() const { return ranks_; }
     /// [rank] its instance; the first is none.
     const std::vector<uint32_t>& instances() const { return instances_; }
-    /// Returns whether any of some corners of each solid is inside another one, not only in its box.
+    /// Returns whether any of some corners of each solid is inside another one, not only in its box. Clear boundaries
+    /// do not count.
     bool is_nested() const;
     /// Returns the solids that hold a point of the translated world.
     InteriorList at(Vec3 point) const;
@@ -57,10 +58,11 @@ private:
         Transform world_from_local, local_from_world;     // the scene's coordinates
         Bounds3 bounds;
         float priority = 0;
-        uint32_t depth = 0; // solids that hold it
+        bool is_clear = false; // a clear boundary, which has no interface
+        uint32_t depth = 0;    // solids that hold it
     };
     bool holds(const Solid& solid, Vec3 point) const;
-    bool holds(const Solid& outer, const Solid& inner) const;
+    bool holds(const Solid& outer, const Solid& inner, const Mesh& mesh) const;
 
     std::vector<uint16_t> ranks_;
     std::vector<uint32_t> instances_;

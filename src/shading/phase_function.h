@@ -11,8 +11,7 @@
 
 namespace pertev {
 
-/// Returns the density, 1/sr, of an angle with this cosine between both directions of travel; `g` is the mean cosine,
-/// in
+/// Returns the density, 1/sr, of an angle with this cosine between both directions of travel. The mean cosine `g` is in
 /// (-1, 1).
 HD inline float henyey_greenstein(float g, float cosine) {
     const float size = abs(g), rest = 1.0f - size;

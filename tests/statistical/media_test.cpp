@@ -3,13 +3,19 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
+#include "device_scene/scene_on_device.h"
 #include "image/picture_hash.h"
+#include "integrators/path/medium.h"
 #include "render/light_paths/light_path_layers.h"
 #include "session/check_integrator.h"
 #include "session/measure_irradiance.h"
 #include "session/opening/set_medium.h"
+#include "settings/value_names.h"
 #include "shading/phase_function.h"
 #include "tests/support/estimate.h"
 #include "tests/support/flat_scenes.h"
@@ -29,14 +35,14 @@ Material filled(Material material, const MediumParameters& medium) {
     material.medium = medium;
     return material;
 }
-/// A boundary that only ends its medium.
+/// Returns the material of a boundary that only ends its medium.
 Material clear_boundary(const MediumParameters& medium) {
     Material material = filled({{}, "boundary"}, medium);
     material.make_clear_boundary();
     return material;
 }
 
-/// Orthographic, `height` metres high, from 5 m along `from`.
+/// Returns an orthographic camera, `height` metres high, that looks at the origin from 5 m along `from`.
 Camera parallel_view(Vec3 from, float height) {
     Camera camera;
     camera.projection = Projection::Orthographic;
@@ -201,14 +207,90 @@ TEST_CASE("each schedule renders the same bytes of glass with a medium, in a cle
     CHECK(test::render_hash(test::render(cpu, scene, parallel_view({0, 0, 1}, 3), settings)) == by_tree);
 }
 
+TEST_CASE("a camera in a body begins in its medium, and a solid without a medium in a scene with one absorbs") {
+    Scene scene = test::under_sky();
+    test::add(scene, test::box({0, 0, 0}, {1, 1, 1}), clear_boundary(kAmber));
+    check_amber(scene, parallel_view({0, 0.1f, 0}, 1), 1.5);
+    Material absorbing = test::glass(1);
+    absorbing.transmission_depth = 1;
+    absorbing.transmission_color = transmittance_of(kAmber.sigma_a);
+    Mesh open = test::box({0, 3, 0}, {2, 0.35f, 2});
+    open.indices.resize(open.indices.size() - 3);
+    test::add(scene, open, absorbing);
+    check_amber(scene, parallel_view({0, 1, 0}, 1), 2.7);
+}
+
+TEST_CASE("a scattering far from the origin is within its body") {
+    Scene scene = test::under_sky();
+    test::add(scene, test::box({0, 1024, 1024}, {2, 0.5f, 2}), clear_boundary({.sigma_s = {2e4f, 2e4f, 2e4f}}));
+    test::add(scene, test::box({0, -1024, -1024}, {1, 1, 1}), test::white()); // the centre stays
+    Messages messages;
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Queue queue = Queue::make_cpu();
+    const SceneOnDevice device(queue, prepared);
+    PathJob job = {};
+    job.picture.scene = device.view();
+    constexpr Hit kNone = {kInfinity, 0, 0, kNoHit, kNoHit};
+    double least = 1e9;
+    uint32_t scatterings = 0;
+    for (uint32_t i = 0; i < 4000; ++i) {
+        PathState path = {};
+        path.pixel = i;
+        path.throughput = {1, 1, 1};
+        const float x = 1e-4f * static_cast<float>(i);
+        path.origin = Vec3{x, 1025.3f, 1024 + x} - prepared.centre;
+        path.direction = normalize(Vec3{0.3f, -0.8f, 0.2f + x});
+        MediumVertex vertex;
+        if (!HomogeneousMedium<kAnyFilm | kMedia>(job.picture.scene).scatters(job, path, kNone, vertex)) continue;
+        ++scatterings;
+        least = std::min(least, 1024.5 - static_cast<double>(vertex.position.y + prepared.centre.y));
+    }
+    CHECK(scatterings > 3900);
+    CHECK(least > 0);
+}
+
+TEST_CASE("in a medium lights that are sampled, hit, or both have one mean, by power and by the light tree") {
+    Scene scene;
+    scene.medium = {.sigma_a = {0.05f, 0, 0.1f}, .sigma_s = {0.4f, 0.6f, 0.2f}, .g = 0.3f};
+    test::add(scene, test::floor_at(0, 1), test::white());
+    Material glowing;
+    glowing.emission = {1, 1, 1};
+    glowing.two_sided_emission = true;
+    for (const float x : {-2.2f, 2.2f}) { // below the floor, which does not see them
+        test::add(scene, test::sheet({x, -0.4f, 0}, {0, 0, 2}, {1, 0, 0}), glowing);
+    }
+    Queue queue = test::requested_queue();
+    test::Estimate first[3];
+    for (const LightSelection selection : {LightSelection::Power, LightSelection::Tree}) {
+        for (const LightStrategy strategy : {LightStrategy::BsdfOnly, LightStrategy::Mis, LightStrategy::NeeOnly}) {
+            RenderSettings settings = settings_in_media(16, 256, 3);
+            settings.path.strategy = strategy;
+            settings.path.light_choice = selection;
+            const Image picture = test::render(queue, scene, parallel_view({0, 1, 0}, 1.8f), settings).picture;
+            for (std::size_t channel = 0; channel < 3; ++channel) {
+                CAPTURE(channel);
+                const test::Estimate mean = channel_mean(picture, channel);
+                if (selection == LightSelection::Power && strategy == LightStrategy::BsdfOnly) first[channel] = mean;
+                CHECK(std::abs(mean.mean - first[channel].mean) < 4 * std::hypot(mean.error, first[channel].error));
+                CHECK(mean.error < (strategy == LightStrategy::Mis ? 0.02 : 0.05) * mean.mean);
+            }
+        }
+    }
+}
+
 TEST_CASE("what knows no media says so") {
     Scene scene = test::under_sky();
     scene.medium = kMilk;
+    scene.lights = {test::point_light({0, 2, 0}, {8, 8, 8})};
     RenderSettings settings;
-    settings.integrator = IntegratorKind::Distributed;
-    Messages messages;
-    check_light(settings, scene, messages);
-    CHECK(messages.all().size() == 1);
+    std::vector<std::string> silent;
+    for (const std::string& name : integrator_names()) {
+        set_integrator(settings, name);
+        Messages messages;
+        check_light(settings, scene, messages);
+        if (messages.left_out().empty()) silent.push_back(name);
+    }
+    CHECK(silent == std::vector<std::string>{"path", "direct", "indirect", "hybrid"});
     settings.integrator = IntegratorKind::Path;
     Messages none;
     check_light(settings, scene, none);

@@ -50,6 +50,29 @@ TEST_CASE("of solids in each other the innermost has the greatest rank, of equal
     CHECK(ranks_of(scene) == Ranks{1, 2, 0, 0, 3});
 }
 
+TEST_CASE(
+    "of a clear boundary and glass in equally many solids the glass has the greater rank, also an open boundary") {
+    Scene scene;
+    Material fog;
+    fog.medium.sigma_s = {1, 1, 1};
+    fog.make_clear_boundary();
+    test::add(scene, test::box({0, 0, 0}, {1, 1, 1}), fog);
+    test::add(scene, test::box({1, 0, 0}, {0.5f, 0.5f, 0.5f}), test::glass(1.5f)); // straddles it
+    CHECK(ranks_of(scene) == Ranks{1, 2});
+    CHECK(NestedSolids(scene, {}).at({0.75f, 0, 0}).top() == 2);
+    CHECK_FALSE(NestedSolids(scene, {}).is_nested());
+    Mesh open = test::box({-0.5f, 0, 0}, {0.2f, 0.2f, 0.2f});
+    open.indices.resize(open.indices.size() - 3);
+    test::add(scene, open, fog);
+    CHECK(ranks_of(scene) == Ranks{1, 2, 3});
+    scene.instances[2].is_background = true;
+    CHECK(ranks_of(scene) == Ranks{1, 2, 0});
+    scene.materials[1].medium.sigma_s = {1, 1, 1};
+    for (int i = 0; i < 3; ++i)
+        test::add(scene, test::box({-0.5f, 0, 0}, (0.4f - 0.1f * float(i)) * Vec3{1, 1, 1}), fog);
+    CHECK(ranks_of(scene) == Ranks{1, 2, 0, 3, 4, 5});
+}
+
 TEST_CASE("only closed meshes of glass that light enters are solids, and boxes that touch do not overlap") {
     Scene scene;
     test::add(scene, test::box({0, 0, 0}, {1, 1, 1}), test::glass(1.5f));
@@ -139,6 +162,10 @@ TEST_CASE("integrators that take each solid as in a vacuum say so where solids l
     Scene scene = test::under_sky();
     test::add(scene, test::ball({0, 0, 0}, 1), test::glass(1.5f));
     test::add(scene, test::ball({1.2f, 1.2f, 1.2f}, 1), test::glass(1.5f)); // boxes overlap, balls do not
+    CHECK(left_out(scene, IntegratorKind::Bidirectional) == 0);
+    Material fog;
+    fog.make_clear_boundary();
+    test::add(scene, test::box({0, 0, 0}, {3, 3, 3}), fog);
     CHECK(left_out(scene, IntegratorKind::Bidirectional) == 0);
     test::add(scene, test::ball({0, 0, 0}, 0.5f), test::glass(1.3f));
     for (const IntegratorKind integrator : {IntegratorKind::Bidirectional, IntegratorKind::Light,

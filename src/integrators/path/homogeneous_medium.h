@@ -14,7 +14,7 @@
 
 namespace pertev {
 
-/// A scattering in a medium, with the functions of SurfaceVertex (path_listener.h).
+/// A scattering in a medium. It has the functions of SurfaceVertex (path_listener.h).
 struct MediumVertex {
     Vec3 position, direction; // the direction in which the path arrived, unit
     float g;
@@ -39,8 +39,8 @@ struct MediumVertex {
     HD TriangleId triangle() const { return {}; }
 };
 
-/// Group of the random numbers of the medium along the ray that leaves a path's vertex: colour and distance. Groups of
-/// vertices stay below.
+/// The group of the random numbers that select the colour and the distance along the ray that leaves a path's vertex.
+/// Groups of vertices stay below it.
 inline constexpr uint32_t kGroupMedium = 0x40000000u;
 
 template <Features kFeatures>
@@ -71,7 +71,7 @@ struct HomogeneousMedium {
 
         Rgb depth = {0, 0, 0}, sampled = {0, 0, 0}; // optical depths; the latter of media that scatter
         Rgb scattered = {1, 1, 1}, density = {1, 1, 1}, absorbed = {1, 1, 1};
-        float at = kInfinity;
+        float at = kInfinity, position = 0; // metres along the ray
         visit_media(scene_, path.interior, path.origin, path.direction, distance, leaves, [&](const RayPart& part) {
             const Rgb sigma_t = part.medium->sigma_t();
             float length = part.end - part.begin;
@@ -80,6 +80,7 @@ struct HomogeneousMedium {
                 const bool is_here = rate > 0 && rate * length > left;
                 if (is_here) {
                     length = left / rate, at = part.begin + length;
+                    position = within_part(path, at, part);
                     scattered = part.medium->sigma_s, density = sigma_t;
                     vertex.g = part.medium->g;
                     vertex.instance =
@@ -98,7 +99,7 @@ struct HomogeneousMedium {
         const bool is_lost = !(pdf > 0) || (at >= kFarthest && at < kInfinity); // no light of the scene is there
         if (is_lost) path.throughput = {0, 0, 0};
         if (is_lost || !(at < kInfinity)) return false;
-        vertex.position = path.origin + before_surface(path, at, distance) * path.direction;
+        vertex.position = path.origin + position * path.direction;
         vertex.direction = path.direction;
         return true;
     }
@@ -110,11 +111,13 @@ struct HomogeneousMedium {
 private:
     static constexpr float kFarthest = 0x1p39f; // metres
 
-    /// Keeps a scattering off the surface that ends the ray, because rounding could move it to the other side.
-    HD static float before_surface(const PathState& path, float at, float distance) {
-        if (!(distance < kInfinity)) return at;
-        const float margin = 0x1p-20f * (max_component(abs(path.origin)) + distance);
-        return min(at, max(distance - margin, 0.5f * distance));
+    /// Keeps a scattering off the surfaces that begin and end its part of the ray, because rounding could move it to
+    /// their other side. The path's own vertex, at 0, is on the right side already.
+    HD static float within_part(const PathState& path, float at, const RayPart& part) {
+        const bool ends = part.end < kInfinity;
+        const float margin = 0x1p-20f * (max_component(abs(path.origin)) + (ends ? part.end : at));
+        const float least = part.begin > 0 ? part.begin + margin : 0.0f, most = ends ? part.end - margin : kInfinity;
+        return least < most ? clamp(at, least, most) : 0.5f * (part.begin + part.end);
     }
 
     const SceneView& scene_;

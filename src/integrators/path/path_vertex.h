@@ -130,13 +130,14 @@ HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path
     }
     constexpr bool kIsVacuum = Medium<kFeatures>::kIsVacuum;
     bool is_within = false; // nested solids, by which light is then absorbed
-    if constexpr ((kFeatures & kNested) != 0 && kIsVacuum) {
+    if constexpr ((kFeatures & kNested) != 0) {
         const InteriorList around = interior_towards(scene, path, vertex, light.wi);
         is_within = around.top() != 0;
-        if (is_within) light.radiance = light.radiance * transmittance_within(scene, around, light.distance);
+        if (kIsVacuum && is_within)
+            light.radiance = light.radiance * transmittance_within(scene, around, light.distance);
     }
     if constexpr ((kFeatures & kStacked) != 0) {
-        if (!is_within && (kIsVacuum || !scene.nesting.is_there())) {
+        if (!is_within) {
             light.radiance = light.radiance *
                              transmittance_to_light<variant_of(kFeatures)>(scene, vertex.triangle(), light, path.time);
         }
@@ -243,14 +244,15 @@ HD INLINE_ON_DEVICE bool shade_in_medium(const PathJob& job, PathState& path, co
 }
 
 /// Follows the path to a surface among nested solids: which of them hold it there, what they absorb on the way, and
-/// the surface's interface. Returns whether solids are nested. Media absorb by themselves, without kAbsorbs.
+/// the surface's interface. Returns whether solids are nested. Without kAbsorbs, media have absorbed already, and with
+/// them the solids that fill them, but none without a rank.
 template <bool kAbsorbs>
 HD_CALL inline bool reach_nested_solid(const SceneView& scene, PathState& path, const Hit& hit, Surface& surface) {
     if (!scene.nesting.is_there()) return false;
     const bool enters = dot(path.direction, surface.geometric_normal) < 0;
     path.interior = solids_before(scene, path.interior, hit.instance, enters);
     nest_surface(scene, path.interior, surface);
-    if constexpr (!kAbsorbs) return true;
+    if (!kAbsorbs && path.interior.top() != 0) return true;
     const Rgb passed = transmittance_to_surface(scene, path.interior, path.start, path.direction, hit, path.time);
     path.throughput = path.throughput * passed;
     return true;
