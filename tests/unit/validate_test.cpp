@@ -159,7 +159,8 @@ TEST_CASE("an error for a scene without geometry lists its content") {
 
 TEST_CASE("every parameter of a material is visited and thus checked") {
     MaterialParameters parameters;
-    std::size_t bytes = sizeof parameters.two_sided_emission + sizeof parameters.double_sided;
+    std::size_t bytes =
+        sizeof parameters.two_sided_emission + sizeof parameters.double_sided + sizeof parameters.is_clear_boundary;
     visit_choices(parameters, [&](auto& value, auto&&...) { bytes += sizeof value; });
     bytes += (alignof(float) - bytes % alignof(float)) % alignof(float); // floats follow
     bytes += alignof(float);                                             // for thin_walled and what follows it
