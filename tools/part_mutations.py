@@ -14,7 +14,7 @@ MUTATIONS = [
     ("a film of all rows goes on with the samples of some", "consistency/film_files",
      ("src/settings/render_settings.cpp", "a.first_row == b.first_row && a.end_row == b.end_row &&", "")),
     ("each part of rows counts the invalid photons of all", "consistency/film_files",
-     ("src/integrators/photon_map/photon_map_integrator.cpp", "const bool counts = film.window.x == 0 && film.window.y == 0;", "const bool counts = film.window.x == 0;")),
+     ("src/integrators/photon_map/photon_map_integrator.cpp", "film.is_first ?", "true ?")),
     ("the exposure of a crop is its own", "robust/cli_crop",
      ("src/session/meter_exposure.cpp", "    meter.crop.reset(); // a crop is shown as the whole picture is\n", "")),
     ("a merged crop is at the picture's corner", "robust/cli_crop",
