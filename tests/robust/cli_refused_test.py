@@ -164,7 +164,7 @@ class WhatIsRefused(CliTest):
     def test_a_line_without_verb_scene_or_output_ends_with_2(self):
         self.refuse(2, says=["render"])
         for strange in ["rendr", "--verison", "-x", "rendr cornell-box -o x.png"]:
-            self.refuse(2, *strange.split(), says=[strange.split()[0], "render, merge, view, compare, measure, solve, info, bench, lab"])
+            self.refuse(2, *strange.split(), says=[strange.split()[0], "render, merge, view, compare, measure, solve, info, check, convert, bench, lab"])
         self.refuse(2, "--verison", "info", "cornell-box", says=["--verison"])
         self.refuse(2, "render", "-o", "x.png", says=["SCENE"])
         self.refuse(2, "render", "cornell-box", says=["--output"])
