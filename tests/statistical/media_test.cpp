@@ -87,6 +87,16 @@ test::Estimate channel_mean(const Image& picture, std::size_t channel) {
     return all;
 }
 
+/// Returns a floor at y = -1 that glows with a radiance of 1, and amber around it.
+Scene glowing_floor_in_amber() {
+    Scene scene;
+    Material glowing;
+    glowing.emission = {1, 1, 1};
+    test::add(scene, test::sheet({0, -1, 0}, {0, 0, 4}, {4, 0, 0}), glowing);
+    scene.medium = kAmber;
+    return scene;
+}
+
 } // namespace
 
 TEST_CASE("the phase function is a density with its mean cosine, and sampling follows it") {
@@ -125,11 +135,7 @@ TEST_CASE("a slab absorbs each colour by its thickness, between clear boundaries
 }
 
 TEST_CASE("a medium around everything leaves out the bodies in it, and one with an open surface begins there") {
-    Scene scene;
-    Material glowing;
-    glowing.emission = {1, 1, 1};
-    test::add(scene, test::sheet({0, -1, 0}, {0, 0, 4}, {4, 0, 0}), glowing);
-    scene.medium = kAmber;
+    Scene scene = glowing_floor_in_amber();
     check_amber(scene, parallel_view({0, 1, 0}, 1), 6);
     Scene hollow = scene;
     test::add(hollow, test::box({0, 1, 0}, {2, 0.5f, 2}), clear_boundary({}));
@@ -366,11 +372,7 @@ TEST_CASE("layers of light paths take a medium's scattering as diffuse and add u
 }
 
 TEST_CASE("frames of a medium show it, by the same bytes on each schedule") {
-    Scene scene;
-    Material glowing;
-    glowing.emission = {1, 1, 1};
-    test::add(scene, test::sheet({0, -1, 0}, {0, 0, 4}, {4, 0, 0}), glowing);
-    scene.medium = kAmber;
+    Scene scene = glowing_floor_in_amber();
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     Hash128 hashes[2];
