@@ -346,7 +346,7 @@ compile() {
     local jobs memory_gb
     memory_gb=$(awk '/MemAvailable/ { print int($2 / 1048576) }' /proc/meminfo)
     jobs=$(nproc)
-    ((jobs <= memory_gb * 3 / 5)) || jobs=$((memory_gb * 3 / 5)) # the largest files take 1.7 GB to compile
+    ((jobs <= memory_gb * 2 / 5)) || jobs=$((memory_gb * 2 / 5)) # the largest files take 2.4 GB to compile
     ((jobs >= 1)) || jobs=1
     local targets=(pertev)
     ! $tests || targets=(all)

@@ -29,12 +29,12 @@ function(pertev_unity target batch)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${PERTEV_UNITY} UNITY_BUILD_BATCH_SIZE ${batch})
 endfunction()
 
-# Replaces the files of `list` by files of EXTENSION that include up to 24 of them each (for nvcc 4, because ptxas has one
+# Replaces the files of `list` by files of EXTENSION that include up to 24 of them each (for ptxas 4, because it has one
 # core for a file), since most of the time that such a file takes goes into headers and into functions that they share.
 function(pertev_gather name extension list)
   set(batch 0)
   set(batch_size 24)
-  if(extension STREQUAL "cu")
+  if(extension STREQUAL "cu" AND NOT PERTEV_ONLY_CHECKS_KERNELS)
     set(batch_size 4)
   endif()
   set(files ${${list}})
@@ -98,9 +98,9 @@ function(pertev_check_kernels)
   get_property(modules GLOBAL PROPERTY PERTEV_MODULES_WITH_KERNELS)
   foreach(name IN LISTS modules)
     get_property(files GLOBAL PROPERTY PERTEV_KERNELS_OF_${name})
-    pertev_gather(${name} cu files)
     list(APPEND gathered ${files})
   endforeach()
+  pertev_gather(kernels cu gathered)
   add_library(pertev_kernels OBJECT ${gathered})
   target_link_libraries(pertev_kernels PRIVATE pertev_lab) # for its include folders
   target_include_directories(pertev_kernels PRIVATE ${PROJECT_SOURCE_DIR})

@@ -25,6 +25,14 @@ struct BlockShape {
 template <class Stage>
 concept WholeBlockStage = requires(const Stage& stage) { stage(uint32_t{}, bool{}); };
 
+/// How many consecutive indices of `Stage` a CPU thread runs at least: 256, unless the stage is so cheap that waking a
+/// second thread for them takes longer than they do, and says so by kHostGrain.
+template <class Stage>
+constexpr uint32_t host_grain() {
+    if constexpr (requires { Stage::kHostGrain; }) return Stage::kHostGrain;
+    return 256;
+}
+
 /// Runs stage(i) for each i in [0, count), in no fixed order, after all work queued on the stream before. `name`
 /// appears in errors. Throws Error(DeviceFault) if the launch is refused; a fault inside the stage is thrown by the
 /// next queue.wait(), with this name. On the CPU it returns when done.

@@ -77,7 +77,7 @@ void launch(Queue& queue, const char* name, WorkCount count, const Stage& stage)
     if (count.most == 0 || queue.is_dry_run()) return;
     const Queue::Scope scope(queue, name);
     const UseThreads use(queue.threads());
-    parallel_for(count.value(), 256, [&](uint64_t i) {
+    parallel_for(count.value(), host_grain<Stage>(), [&](uint64_t i) {
         if constexpr (WholeBlockStage<Stage>) {
             stage(static_cast<uint32_t>(i), true);
         } else {

@@ -67,6 +67,8 @@ struct AddFrames {
 
 /// The stage that computes the means of some consecutive channels of each pixel.
 struct ResolveFilm {
+    static constexpr uint32_t kHostGrain = 4096;
+
     FilmView film;
     uint32_t first, channels; // channels of the film
     bool over_hits;           // mean over samples that hit something, 0 if none did
@@ -83,6 +85,8 @@ struct ResolveFilm {
 
 /// The stage that computes the bytes of each pixel for a display.
 struct DisplayFilm {
+    static constexpr uint32_t kHostGrain = 4096;
+
     FilmView film;
     uint64_t samples; // per pixel, > 0
     ToneMap kind;

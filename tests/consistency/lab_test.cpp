@@ -22,7 +22,7 @@ using namespace pertev::test;
 namespace {
 
 /// The mesh's triangles as one instance.
-Scene scene_of(const StressMesh& stress) {
+Scene scene_with(const StressMesh& stress) {
     Scene scene;
     scene.materials.resize(1);
     scene.meshes.resize(1);
@@ -40,7 +40,7 @@ void check_stress_meshes(Queue& queue, uint32_t side) {
     for (const StressMesh& stress : stress_meshes()) {
         if (stress.triangles.empty()) continue;
         CAPTURE(stress.name);
-        const Scene scene = scene_of(stress);
+        const Scene scene = scene_with(stress);
         LabSettings settings = all_combinations(queue.is_cuda(), true);
         settings.width = settings.height = side;
         settings.depth = 3;
@@ -80,7 +80,7 @@ TEST_CASE("CUDA: every combination gives the same hits in stress meshes and in t
 TEST_CASE("inexact tests miss a few rays, which are counted") {
     Queue queue = requested_queue();
     const Vec3 centre = {1.5e5f, 0, -1.5e5f}; // 150 km away, where floats are centimetres apart
-    const Scene scene = scene_of({"soup", make_soup(1500, 1.5e5f), centre});
+    const Scene scene = scene_with({"soup", make_soup(1500, 1.5e5f), centre});
     LabSettings settings;
     for (const TestKind tests : kValuesOf<TestKind>) {
         for (const TraversalKind traversal : {TraversalKind::WhileWhile, TraversalKind::Speculative}) {
@@ -132,7 +132,7 @@ TEST_CASE("Woop's tests traverse instances and differ from exact tests on few ra
 
 TEST_CASE("an interrupted laboratory keeps its measurements") {
     Queue queue = Queue::make_cpu();
-    const Scene scene = scene_of({"torus", triangles_of(make_torus(20, 10), 0), {}});
+    const Scene scene = scene_with({"torus", triangles_of(make_torus(20, 10), 0), {}});
     LabSettings settings = all_combinations(false, false);
     settings.width = settings.height = 16;
     Camera camera;
@@ -148,7 +148,7 @@ TEST_CASE("an interrupted laboratory keeps its measurements") {
 TEST_CASE("the laboratory can be stopped inside each stage of long work and reports its progress") {
     const UseThreads one(1); // the number of rays per piece depends on the threads
     Queue queue = Queue::make_cpu();
-    const Scene scene = scene_of({"torus", triangles_of(make_torus(20, 10), 0), {}});
+    const Scene scene = scene_with({"torus", triangles_of(make_torus(20, 10), 0), {}});
     LabSettings settings = all_combinations(false, false);
     settings.structures = {StructureKind::Binned}, settings.traversals = {TraversalKind::IfIf};
     settings.options.resize(1);

@@ -45,13 +45,13 @@ struct Trees {
           compressed(make_compressed_bvh(bvh)) {}
 };
 
-struct Expected {
+struct ExpectedPair {
     const std::vector<Ray>& rays;
     std::vector<Hit> all, some;
 };
 
 template <template <TraversalOptions> class Traversal, class Tree>
-void check_tree(const Tree& tree, const Expected& expected) {
+void check_tree(const Tree& tree, const ExpectedPair& expected) {
     const auto check = [&]<class OneTraversal>() {
         check_traversal<OneTraversal>(scene_of(tree), expected.rays, expected.all, AcceptAll{});
         check_traversal<OneTraversal>(scene_of(tree), expected.rays, expected.some, AcceptSome{});
@@ -67,8 +67,8 @@ TEST_CASE("traversals of wide and compressed trees match brute force bit for bit
         CAPTURE(c.name);
         const bool million = c.triangles.size() > 100'000; // brute force is slow
         const std::vector<Ray> rays = stress_rays(million ? 40 : static_cast<uint32_t>(effort(1000, 10'000)), c, 91);
-        const Expected expected = {rays, hits_by_brute_force(c.triangles, rays, AcceptAll{}),
-                                   hits_by_brute_force(c.triangles, rays, AcceptSome{})};
+        const ExpectedPair expected = {rays, hits_by_brute_force(c.triangles, rays, AcceptAll{}),
+                                       hits_by_brute_force(c.triangles, rays, AcceptSome{})};
         const Bvh bvh = build_bvh(c.triangles);
         const Trees trees(bvh);
         check_tree<Wide4Traversal>(view_of(trees.wide4), expected);
@@ -115,8 +115,8 @@ TEST_CASE("postponed triangle tests give the same hits") {
     for (const StressMesh& c : stress_meshes()) {
         CAPTURE(c.name);
         const std::vector<Ray> rays = stress_rays(static_cast<uint32_t>(effort(700, 20'000)), c, 17);
-        const Expected expected = {rays, hits_by_brute_force(c.triangles, rays, AcceptAll{}),
-                                   hits_by_brute_force(c.triangles, rays, AcceptSome{})};
+        const ExpectedPair expected = {rays, hits_by_brute_force(c.triangles, rays, AcceptAll{}),
+                                       hits_by_brute_force(c.triangles, rays, AcceptSome{})};
         const CompressedBvh tree = make_compressed_bvh(build_bvh(c.triangles));
         check_tree<TraversalPostponedAtRandom>(view_of(tree), expected);
         check_tree<TraversalPostponedAlways>(view_of(tree), expected);
@@ -128,8 +128,8 @@ TEST_CASE("postponed triangle tests give the same hits") {
 TEST_CASE("leaf sizes and costs of a collapse do not change hits") {
     const StressMesh mesh = stress_meshes()[3];
     const std::vector<Ray> rays = stress_rays(1500, mesh, 12);
-    const Expected expected = {rays, hits_by_brute_force(mesh.triangles, rays, AcceptAll{}),
-                               hits_by_brute_force(mesh.triangles, rays, AcceptSome{})};
+    const ExpectedPair expected = {rays, hits_by_brute_force(mesh.triangles, rays, AcceptAll{}),
+                                   hits_by_brute_force(mesh.triangles, rays, AcceptSome{})};
     for (const int build_leaf : {1, 30}) {
         const Bvh bvh = build_bvh(mesh.triangles, {.max_leaf = build_leaf, .leaf_cost = 0.1f});
         for (const int max_leaf : {1, 2, 7, 100}) {
@@ -152,11 +152,12 @@ TEST_CASE("leaf sizes and costs of a collapse do not change hits") {
 
 namespace {
 
-struct PlacedMeshes {
+struct WidelyPlacedMeshes {
     std::vector<std::vector<BvhTriangle>> meshes;
     std::vector<PlacedBvh> placed;
 
-    PlacedMeshes(std::vector<std::vector<BvhTriangle>> m, const std::vector<Trees>& trees) : meshes(std::move(m)) {
+    WidelyPlacedMeshes(std::vector<std::vector<BvhTriangle>> m, const std::vector<Trees>& trees)
+        : meshes(std::move(m)) {
         Random random(8);
         for (uint32_t i = 0; i < 40; ++i) {
             const uint32_t mesh = i % static_cast<uint32_t>(meshes.size());
@@ -199,7 +200,7 @@ TEST_CASE("traversals of wide and compressed trees over instances match brute fo
                                                           triangles_of(make_sphere(0, {}, 1)), make_soup(2, 0)};
     std::vector<Trees> trees;
     for (const auto& mesh : meshes) trees.emplace_back(build_bvh(mesh));
-    const PlacedMeshes placed(meshes, trees);
+    const WidelyPlacedMeshes placed(meshes, trees);
     const Tlas top = build_tlas(placed.placed);
     const std::vector<Ray> rays = stress_rays(1500, {"torus", meshes[0], {}, 1}, 29);
     std::vector<Hit> expected;

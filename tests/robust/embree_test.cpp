@@ -23,7 +23,7 @@ using namespace pertev::test;
 
 namespace {
 
-struct Tally {
+struct EmbreeTally {
     uint64_t hits = 0, other = 0, unexplained = 0;
 };
 
@@ -31,16 +31,16 @@ struct Tally {
 float edge_distance(float u, float v) { return min(min(u, v), 1 - u - v); }
 
 template <class Traversal, class Tree>
-Tally compare(const TriangleMesh& mesh, const Bvh& bvh, const Tree& tree, uint64_t count) {
+EmbreeTally compare(const TriangleMesh& mesh, const Bvh& bvh, const Tree& tree, uint64_t count) {
     const EmbreeScene embree(mesh);
     SceneTrees<Tree> scene;
     scene.baked = tree;
     const float reach = bvh.bounds.max_abs(), last_place = 4 * (std::nextafterf(reach, kInfinity) - reach);
     constexpr uint64_t kBlock = 10000;
-    std::vector<Tally> tallies((count + kBlock - 1) / kBlock);
+    std::vector<EmbreeTally> tallies((count + kBlock - 1) / kBlock);
     parallel_for(tallies.size(), 1, [&](uint64_t block) {
         Random random(static_cast<uint32_t>(block) * 2654435761u + 5);
-        Tally& tally = tallies[block];
+        EmbreeTally& tally = tallies[block];
         for (uint64_t i = 0; i < kBlock; ++i) {
             Ray ray;
             const Vec3 size = bvh.bounds.size();
@@ -62,8 +62,8 @@ Tally compare(const TriangleMesh& mesh, const Bvh& bvh, const Tree& tree, uint64
             if (!same_t && !on_edge) ++tally.unexplained;
         }
     });
-    Tally sum;
-    for (const Tally& t : tallies) {
+    EmbreeTally sum;
+    for (const EmbreeTally& t : tallies) {
         sum.hits += t.hits;
         sum.other += t.other;
         sum.unexplained += t.unexplained;
@@ -79,7 +79,7 @@ TEST_CASE("hits on a torus agree with Embree's") {
     const uint64_t count = effort(300'000, 10'000'000);
     const TriangleMesh mesh = make_torus(300, 200);
     const Bvh bvh = build_bvh(triangles_of(mesh));
-    const Tally tally = compare<PlainTraversal>(mesh, bvh, view_of(bvh), count);
+    const EmbreeTally tally = compare<PlainTraversal>(mesh, bvh, view_of(bvh), count);
     CHECK(tally.hits > count / 10);
     CHECK(tally.unexplained <= std::max<uint64_t>(1, count / 1'000'000));
 }
@@ -91,7 +91,7 @@ TEST_CASE("hits in Sponza agree with Embree's") {
     const TriangleMesh mesh = read_obj_geometry(*path);
     const Bvh bvh = build_bvh(triangles_of(mesh));
     const auto wide = make_wide_bvh<kWideChildren>(bvh, kSimdCollapse);
-    const Tally tally = compare<Wide8SimdTraversal<TraversalOptions{}>>(mesh, bvh, view_of(wide), count);
+    const EmbreeTally tally = compare<Wide8SimdTraversal<TraversalOptions{}>>(mesh, bvh, view_of(wide), count);
     CHECK(tally.hits > count / 2);
     CHECK(tally.unexplained <= std::max<uint64_t>(1, count / 1'000'000));
 }

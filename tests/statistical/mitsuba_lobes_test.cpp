@@ -22,7 +22,7 @@ struct RecordedByMitsuba {
 
 /// Correlated over independent masking.
 float correlation(const Microfacets& widths, Vec3 wo, Vec3 wi) {
-    const auto lambda = [&](Vec3 w) { return 0.5f * (widths.slope_length(w) / abs(w.z) - 1.0f); };
+    const auto lambda = [&](Vec3 w) { return 0.5f * (widths.slope_length(w) / pertev::abs(w.z) - 1.0f); };
     const float o = lambda(wo), i = lambda(wi);
     return (1.0f + o) * (1.0f + i) / (1.0f + o + i);
 }

@@ -44,7 +44,7 @@ Mesh sheet(float size = 1) {
     return mesh;
 }
 
-uint32_t add(Scene& scene, const Mesh& mesh, bool double_sided, const Transform& place = {}) {
+uint32_t add_sided(Scene& scene, const Mesh& mesh, bool double_sided, const Transform& place = {}) {
     scene.meshes.push_back(mesh);
     scene.materials.push_back({{.double_sided = double_sided, .base_color = grey(0.5f)}, "grey"});
     const auto last = static_cast<uint32_t>(scene.meshes.size() - 1);
@@ -52,7 +52,8 @@ uint32_t add(Scene& scene, const Mesh& mesh, bool double_sided, const Transform&
     return last;
 }
 
-RenderResult render(const Scene& scene, const Camera& camera, PathBody body = PathBody::Loop, uint32_t size = 16) {
+RenderResult render_backs(const Scene& scene, const Camera& camera, PathBody body = PathBody::Loop,
+                          uint32_t size = 16) {
     RenderSettings settings;
     settings.width = settings.height = size;
     settings.samples = 4;
@@ -79,10 +80,10 @@ float darkest(const Image& image) { return *std::ranges::min_element(image.pixel
 TEST_CASE("only camera rays pass the backs of one-sided surfaces, even mirrored, rotated or tiny") {
     Scene scene;
     const Transform mirror = make_scale({1, 1, -1}); // the sheet's front then faces -z, with the node's +z
-    const uint32_t plain = add(scene, sheet(), false), both = add(scene, sheet(), true);
-    const uint32_t mirrored = add(scene, sheet(), false, mirror), tiny = add(scene, sheet(1e-25f), false);
-    const uint32_t sideways = add(scene, sheet(), false, make_scale({-1, 1, 1})); // mirrored, and still facing +z
-    const uint32_t round = add(scene, sheet(), false, make_rotation(0, 1, 0, 0)); // half a turn: it faces -z
+    const uint32_t plain = add_sided(scene, sheet(), false), both = add_sided(scene, sheet(), true);
+    const uint32_t mirrored = add_sided(scene, sheet(), false, mirror), tiny = add_sided(scene, sheet(1e-25f), false);
+    const uint32_t sideways = add_sided(scene, sheet(), false, make_scale({-1, 1, 1})); // mirrored, and still facing +z
+    const uint32_t round = add_sided(scene, sheet(), false, make_rotation(0, 1, 0, 0)); // half a turn: it faces -z
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     Queue queue = Queue::make_cpu();
@@ -106,27 +107,27 @@ TEST_CASE("a closed room stays dark, seen through its walls' backs or from insid
     for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
         Scene scene;
         scene.environment = Environment{};
-        add(scene, turned(cube()), false); // the faces point inwards, as in a room
+        add_sided(scene, turned(cube()), false); // the faces point inwards, as in a room
         const Camera outside = looking({0, 0, 4}, {0, 0, 0}, 0.5f);
-        const RenderResult into = render(scene, outside, body);
+        const RenderResult into = render_backs(scene, outside, body);
         CHECK(brightest(into.picture) == 0);
         CHECK(into.layers[0].image.pixels[0] == doctest::Approx(4.5)); // the far wall
         CHECK(into.hidden_back_share == 1);
         scene.materials[0].double_sided = true;
-        const RenderResult at = render(scene, outside, body);
+        const RenderResult at = render_backs(scene, outside, body);
         CHECK(darkest(at.picture) > 0.2f);
         CHECK(at.layers[0].image.pixels[0] == doctest::Approx(3.5));
         CHECK(at.hidden_back_share == 0);
 
         Scene solid; // the faces point outwards, so the camera and a sheet inside see only backs
         solid.environment = Environment{};
-        add(solid, cube(), false);
-        add(solid, sheet(0.4f), true);
-        const RenderResult inside = render(solid, looking({0, 0, 0.3f}, {0, 0, 0}, 0.5f), body);
+        add_sided(solid, cube(), false);
+        add_sided(solid, sheet(0.4f), true);
+        const RenderResult inside = render_backs(solid, looking({0, 0, 0.3f}, {0, 0, 0}, 0.5f), body);
         CHECK(brightest(inside.picture) == 0);
         CHECK(inside.layers[0].image.pixels[0] == doctest::Approx(0.3));
         CHECK(inside.hidden_back_share == 0);
-        const RenderResult through = render(solid, looking({0, 0, 0.3f}, {0, 0, 1}, 0.5f), body);
+        const RenderResult through = render_backs(solid, looking({0, 0, 0.3f}, {0, 0, 1}, 0.5f), body);
         CHECK(darkest(through.picture) == 1); // looks out through a wall at the sky
         CHECK(through.hidden_back_share == 1);
     }
@@ -135,14 +136,15 @@ TEST_CASE("a closed room stays dark, seen through its walls' backs or from insid
 TEST_CASE("the share of rays through hidden backs depends on scene and view, not on the picture's size") {
     Scene scene;
     scene.environment = Environment{};
-    add(scene, sheet(), false, make_translation({1, 0, 0})); // the right half of the view
+    add_sided(scene, sheet(), false, make_translation({1, 0, 0})); // the right half of the view
     for (const uint32_t size : {1u, 16u, 37u}) {
-        CHECK(render(scene, looking({0, 0, -1}, {0, 0, 0}, 2), PathBody::Loop, size).hidden_back_share == 0.5);
-        CHECK(render(scene, looking({0, 0, -1}, {0, 0, 0}, 2), PathBody::Wavefront, size).hidden_back_share == 0.5);
+        CHECK(render_backs(scene, looking({0, 0, -1}, {0, 0, 0}, 2), PathBody::Loop, size).hidden_back_share == 0.5);
+        CHECK(render_backs(scene, looking({0, 0, -1}, {0, 0, 0}, 2), PathBody::Wavefront, size).hidden_back_share ==
+              0.5);
     }
-    CHECK(render(scene, looking({0, 0, 1}, {0, 0, 0}, 2)).hidden_back_share == 0);
-    add(scene, sheet(), true, make_translation({1, 0, -0.5f})); // stands before the wall, so no ray passes a back
-    CHECK(render(scene, looking({0, 0, -1}, {0, 0, 0}, 2)).hidden_back_share == 0);
+    CHECK(render_backs(scene, looking({0, 0, 1}, {0, 0, 0}, 2)).hidden_back_share == 0);
+    add_sided(scene, sheet(), true, make_translation({1, 0, -0.5f})); // stands before the wall, so no ray passes a back
+    CHECK(render_backs(scene, looking({0, 0, -1}, {0, 0, 0}, 2)).hidden_back_share == 0);
 }
 
 TEST_CASE("a picture's sink gets a notice of hidden backs, and an error states why a picture has no sample") {
@@ -152,7 +154,7 @@ TEST_CASE("a picture's sink gets a notice of hidden backs, and an error states w
     };
     for (const bool double_sided : {false, true}) {
         Scene scene;
-        add(scene, sheet(), double_sided);
+        add_sided(scene, sheet(), double_sided);
         Messages messages;
         const PreparedScene prepared = prepare_scene(scene, {}, messages);
         Queue queue = Queue::make_cpu();

@@ -90,7 +90,7 @@ RenderResult render_with(const Scene& scene, const Camera& camera, const RenderS
 }
 
 double variance_of(const Image& picture) {
-    const double mean = mean_of(picture);
+    const double mean = test::mean_of(picture);
     double sum = 0;
     for (const float value : picture.pixels) sum += std::pow(static_cast<double>(value) - mean, 2);
     return sum / static_cast<double>(picture.pixels.size());
@@ -161,7 +161,7 @@ TEST_CASE("mip-maps: a texture that is finer than the pixels has its mean, and o
     const Checker fine;
     const RenderResult with = render_with(fine.scene, fine.camera, settings_with(MipMaps::On)),
                        without = render_with(fine.scene, fine.camera, settings_with(MipMaps::Off));
-    CHECK(mean_of(with.picture) == doctest::Approx(0.5).epsilon(0.01));
+    CHECK(test::mean_of(with.picture) == doctest::Approx(0.5).epsilon(0.01));
     CHECK(variance_of(with.picture) < 1e-4);
     CHECK(variance_of(without.picture) > 0.2);
 
@@ -187,7 +187,7 @@ TEST_CASE("mip-maps: the cone goes on at a mirror, and widens where light is sca
         add(scene, floor_at(0, 4), is_mirror ? mirror() : white());
         const RenderResult with = render_with(scene, above.camera, settings_with(MipMaps::On)),
                            without = render_with(scene, above.camera, settings_with(MipMaps::Off));
-        CHECK(mean_of(with.picture) == doctest::Approx(mean_of(without.picture)).epsilon(0.1));
+        CHECK(test::mean_of(with.picture) == doctest::Approx(test::mean_of(without.picture)).epsilon(0.1));
         CHECK(variance_of(with.picture) < 0.5 * variance_of(without.picture));
     }
 }
@@ -243,7 +243,7 @@ TEST_CASE("mip-maps: frames are filtered, with ReSTIR and without, unless the se
     };
     for (const RestirLight light : {RestirLight::Off, RestirLight::Direct, RestirLight::Indirect}) {
         const Image filtered = picture_of(MipMaps::Frames, light);
-        CHECK(mean_of(filtered) == doctest::Approx(0.5).epsilon(0.02));
+        CHECK(test::mean_of(filtered) == doctest::Approx(0.5).epsilon(0.02));
         CHECK(variance_of(filtered) < 1e-3);
         CHECK(variance_of(picture_of(MipMaps::Off, light)) > 0.1);
     }

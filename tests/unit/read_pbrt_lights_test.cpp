@@ -18,7 +18,7 @@ using namespace pertev;
 
 namespace {
 
-const std::string kFloor = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2]\n";
+const std::string kFloorText = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2]\n";
 
 Scene load_lit(const std::string& text, Messages& messages) {
     return read_scene(test::write_text(test::scratch_folder() / "lit.pbrt", text), {}, messages);
@@ -39,7 +39,7 @@ void check_near(Vec3 p, Vec3 wanted) { CHECK(length(p - wanted) < 1e-5f); }
 
 /// The emission of the first instance.
 Rgb emission_of(const std::string& light, const std::string& end = "") {
-    const Scene scene = load_lit("WorldBegin\n" + light + "\n" + kFloor + end);
+    const Scene scene = load_lit("WorldBegin\n" + light + "\n" + kFloorText + end);
     return scene.materials[scene.instances[0].material].emission;
 }
 
@@ -111,9 +111,10 @@ TEST_CASE("pbrt: area lights have the radiance that the file states") {
 }
 
 TEST_CASE("pbrt: an area light belongs to its block, and nothing emits through an interface") {
-    const Scene scene = load_lit(
-        "WorldBegin AttributeBegin AreaLightSource \"diffuse\" \"bool twosided\" true\n" + kFloor + "AttributeEnd\n" +
-        kFloor + "AttributeBegin Material \"interface\" AreaLightSource \"diffuse\"\n" + kFloor + "AttributeEnd\n");
+    const Scene scene =
+        load_lit("WorldBegin AttributeBegin AreaLightSource \"diffuse\" \"bool twosided\" true\n" + kFloorText +
+                 "AttributeEnd\n" + kFloorText + "AttributeBegin Material \"interface\" AreaLightSource \"diffuse\"\n" +
+                 kFloorText + "AttributeEnd\n");
     REQUIRE(scene.instances.size() == 2);
     CHECK(scene.materials[scene.instances[0].material].two_sided_emission);
     CHECK(scene.materials[scene.instances[1].material].emission == Rgb{0, 0, 0});
@@ -129,7 +130,7 @@ TEST_CASE("pbrt: lights without a size") {
                  "conedeltaangle\" 15\n"
                  "LightSource \"distant\" \"rgb L\" [3 3 3] \"point3 from\" [0 0 0] \"point3 to\" [0 -2 0]\n"
                  "LightSource \"distant\" \"float illuminance\" 7\n" +
-                 kFloor);
+                 kFloorText);
     REQUIRE(scene.lights.size() == 5);
     CHECK(scene.lights[0].kind == LightKind::Point);
     check_near(scene.lights[0].intensity, {2, 4, 6});
@@ -158,7 +159,7 @@ TEST_CASE("pbrt: a light whose strength or place is no finite number is left out
         CAPTURE(light);
         Messages messages;
         const Scene scene = load_lit("WorldBegin LightSource \"distant\"\nAttributeBegin\n" + light +
-                                         "\nShape \"disk\" AttributeEnd\n" + kFloor,
+                                         "\nShape \"disk\" AttributeEnd\n" + kFloorText,
                                      messages);
         REQUIRE_FALSE(scene.instances.empty());
         CHECK(scene.lights.size() == 1);
@@ -173,7 +174,7 @@ TEST_CASE("pbrt: a light whose strength or place is no finite number is left out
     const Scene scene = load_lit("WorldBegin LightSource \"infinite\" \"rgb L\" [3e38 0 0]\nLightSource \"infinite\" "
                                  "\"rgb L\" [3e38 0 0]\nAreaLightSource \"diffuse\" \"rgb L\" [0 1 0] \"float power\" "
                                  "1e300\n" +
-                                     kFloor,
+                                     kFloorText,
                                  messages);
     CHECK(scene.environment->scale == Rgb{3e38f, 0, 0});
     CHECK(scene.materials[scene.instances[0].material].emission == Rgb{0, 0x1p40f, 0});
@@ -181,17 +182,17 @@ TEST_CASE("pbrt: a light whose strength or place is no finite number is left out
 }
 
 TEST_CASE("pbrt: nothing is made up for a file without light, and infinite lights add up") {
-    const Scene dark = load_lit("WorldBegin\n" + kFloor);
+    const Scene dark = load_lit("WorldBegin\n" + kFloorText);
     REQUIRE(dark.environment);
     CHECK(is_black(dark.environment->scale));
     const Scene lit = load_lit("WorldBegin LightSource \"infinite\" \"rgb L\" [1 2 3] LightSource \"infinite\" \"rgb "
                                "L\" [1 1 1] \"float scale\" 2\n" +
-                               kFloor);
+                               kFloorText);
     check_near(lit.environment->scale, {3, 4, 5});
     // An illuminance of pi is a radiance of 1.
-    check_near(
-        load_lit("WorldBegin LightSource \"infinite\" \"float illuminance\" 3.14159265\n" + kFloor).environment->scale,
-        {1, 1, 1});
+    check_near(load_lit("WorldBegin LightSource \"infinite\" \"float illuminance\" 3.14159265\n" + kFloorText)
+                   .environment->scale,
+               {1, 1, 1});
 }
 
 TEST_CASE("pbrt: the octahedron's middle is +z, its corners -z, and its sides x and y") {
@@ -223,7 +224,7 @@ TEST_CASE("pbrt: pictures of infinite lights face where pbrt has them") {
     write_image(folder / "wide.exr", wide);
     const auto brightest = [&](const std::string& text) {
         Messages messages;
-        const Scene scene = read_scene(test::write_text(folder / "scene.pbrt", text + kFloor), {}, messages);
+        const Scene scene = read_scene(test::write_text(folder / "scene.pbrt", text + kFloorText), {}, messages);
         CHECK(messages.left_out().empty());
         const Image& image = scene.environment->image;
         Vec3 sum;
@@ -268,7 +269,7 @@ TEST_CASE("pbrt: the field of view is that of the shorter side") {
     const auto camera_of = [](const std::string& film, const std::string& parameters,
                               const std::string& type = "perspective") {
         return load_lit("Film \"rgb\" " + film + "\nTranslate 0 0 1 Camera \"" + type + "\" " + parameters +
-                        "\nWorldBegin\n" + kFloor)
+                        "\nWorldBegin\n" + kFloorText)
             .cameras.at(0);
     };
     const std::string wide = "\"integer xresolution\" 200 \"integer yresolution\" 100",
@@ -297,7 +298,7 @@ TEST_CASE("pbrt: the file suggests size, samples, depth, filter and exposure") {
                  "filename\" \"a.exr\"\n"
                  "Sampler \"zsobol\" \"integer pixelsamples\" 32 Integrator \"volpath\" \"integer maxdepth\" 7\n"
                  "PixelFilter \"triangle\" \"float xradius\" 1 \"float yradius\" 1 WorldBegin\n" +
-                 kFloor);
+                 kFloorText);
     CHECK(suggestion(scene, "size") == "300x200");
     CHECK(suggestion(scene, "spp") == "32");
     CHECK(suggestion(scene, "max_depth") == "7");
@@ -305,13 +306,13 @@ TEST_CASE("pbrt: the file suggests size, samples, depth, filter and exposure") {
     CHECK(suggestion(scene, "filter_radius") == "1");
     CHECK(suggestion(scene, "exposure") == "2");
     CHECK(scene.cameras.empty());
-    CHECK(suggestion(load_lit("WorldBegin\n" + kFloor), "max_depth") == "5"); // pbrt's own
+    CHECK(suggestion(load_lit("WorldBegin\n" + kFloorText), "max_depth") == "5"); // pbrt's own
 }
 
 TEST_CASE("pbrt: a light in the camera's coordinates moves with it") {
     const Scene scene = load_lit(
         "Scale -1 1 1 LookAt 3 0 0 4 0 0 0 1 0 Camera \"perspective\" WorldBegin CoordSysTransform \"camera\"\n"
         "LightSource \"point\" \"point3 from\" [0 0 2]\n" +
-        kFloor);
+        kFloorText);
     check_near(scene.lights.at(0).position, {5, 0, 0});
 }

@@ -14,7 +14,7 @@ using namespace pertev;
 
 namespace {
 
-constexpr SamplerKind kKinds[] = {SamplerKind::Sobol, SamplerKind::Independent};
+constexpr SamplerKind kNumberedKinds[] = {SamplerKind::Sobol, SamplerKind::Independent};
 constexpr uint32_t kWidth = 1920;
 
 PathSettings settings_of(SamplerKind kind, uint32_t seed) { return {.sampler = kind, .seed = seed}; }
@@ -45,7 +45,7 @@ TEST_CASE("vertex numbers: bits of eight words are reversed like those of one") 
 
 TEST_CASE("vertex numbers: numbers drawn for eight paths at once equal those drawn on demand") {
     const DrawOnDemand one;
-    for (const SamplerKind kind : kKinds) {
+    for (const SamplerKind kind : kNumberedKinds) {
         for (const uint32_t seed : {0u, 7u}) {
             const PathSettings settings = settings_of(kind, seed);
             for (uint32_t round = 0; round < 20; ++round) {
@@ -113,7 +113,7 @@ TEST_CASE("rays of eight lanes through any filter and of any camera have the bit
 TEST_CASE("vertex numbers: eight paths begun at once equal those begun one by one") {
     CameraRays camera = make_camera_rays(Camera{}, {PixelFilter::Box, 0.5f, nullptr}, kWidth, 1080, {0, 0, 0});
     const MotionKey keys[] = {{{0, 0, 0, 1}, {0, 0, 0}}, {{0, 0.6f, 0, 0.8f}, {3, 0, 0}}};
-    for (const SamplerKind kind : kKinds) {
+    for (const SamplerKind kind : kNumberedKinds) {
         for (const float aperture : {0.0f, 0.1f}) {
             for (const bool is_open : {false, true}) {
                 const PathSettings settings = settings_of(kind, 3);

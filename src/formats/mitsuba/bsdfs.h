@@ -8,10 +8,13 @@
 #include <map>
 #include <string_view>
 
+#include "formats/described/surface.h"
 #include "formats/mitsuba/reading.h"
 #include "formats/mitsuba/textures.h"
 
 namespace pertev::mitsuba {
+
+using described::Surface; // which a device's Surface would hide
 
 class Bsdfs {
 public:

@@ -7,10 +7,13 @@
 #include <string>
 
 #include "formats/described/make_surface.h"
+#include "formats/described/surface.h"
 #include "formats/pbrt/context.h"
 #include "formats/pbrt/textures.h"
 
 namespace pertev::pbrt {
+
+using described::Surface; // which a device's Surface would hide
 
 /// Finds a named material for a mixture, with its location for messages; null after a warning if there is none.
 using FindMaterial = std::function<const Surface*(const std::string& name, const FileLocation& from)>;
