@@ -121,8 +121,10 @@ pertev_launches(denoise/oidn/oidn_stages.cu
     ReadShownFrame
     ShowColor)
 pertev_launches(denoise/picture_denoiser_stages.cu
-  denoise/compose_samples.h denoise/estimate_variance.h denoise/even_pass.h denoise/gather_mirrors.h render/pixel_window.h
+  denoise/compose_samples.h denoise/estimate_variance.h denoise/even_pass.h denoise/finish_sums.h denoise/gather_mirrors.h
+  render/pixel_window.h
   STAGES BeginSums
+    FinishSums
     BeginMirrors
     GuideMirrors
     GatherMirrors

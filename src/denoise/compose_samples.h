@@ -12,29 +12,29 @@ struct ComposeSamples {
     SignalsView signals;  // filtered
     MirrorSums mirrors;   // may be empty
     SignalsView mirrored; // filtered, of `mirrors`
-    float features;       // camera rays of each pixel
+    float first_features; // camera rays of each pixel in the sums of features of the first samples
     bool has_gloss;       // false: that signal is black everywhere
     Float4* picture;      // rgb, W/(sr m2); w is unused
 
     HD void operator()(uint32_t pixel) const {
-        const Float4 met = sums.met[pixel], loose = sums.loose[pixel];
-        Rgb light = rgb_of(met) + rgb_of(sums.diffuse_color[pixel]) * rgb_of(signals.diffuse[pixel]);
-        if (has_gloss) light += rgb_of(sums.gloss_color[pixel]) * rgb_of(signals.gloss[pixel]);
-        light += sums.normal[pixel].w * mirrored_light(mirrors, mirrored, pixel);
+        const float features = first_features + static_cast<float>(sums.exact.at(SampleSums::kFeatures, pixel));
+        const Float4 met = sums.all_met(pixel), loose = sums.loose(pixel);
+        Rgb light = rgb_of(met) + sums.all_diffuse_color(pixel) * rgb_of(signals.diffuse[pixel]);
+        if (has_gloss) light += sums.all_gloss_color(pixel) * rgb_of(signals.gloss[pixel]);
+        light += sums.all_normal(pixel).w * mirrored_light(mirrors, mirrored, pixel);
         Rgb of_neighbours = {0, 0, 0};
         float neighbour_features = 0;
         for (int slot = 0; slot < kNeighbourSurfaces; ++slot) {
-            const Float4 diffuse = sums.neighbour_diffuse[slot][pixel];
-            const uint32_t neighbour = bits_of(diffuse.w);
+            const uint32_t neighbour = bits_of(sums.neighbour_diffuse[slot][pixel].w);
             if (neighbour == kNoHit) break;
-            const Float4 gloss = sums.neighbour_gloss[slot][pixel];
-            of_neighbours += rgb_of(diffuse) * rgb_of(signals.diffuse[neighbour]);
+            const Float4 gloss = sums.all_neighbour_gloss(slot, pixel);
+            of_neighbours += sums.all_neighbour_diffuse(slot, pixel) * rgb_of(signals.diffuse[neighbour]);
             if (has_gloss) of_neighbours += rgb_of(gloss) * rgb_of(signals.gloss[neighbour]);
             of_neighbours += gloss.w * mirrored_light(mirrors, mirrored, neighbour);
             neighbour_features += gloss.w;
         }
         // The more samples of such surfaces the pixel has, the more they count.
-        if (const Float4 own = sums.neighbour[pixel]; own.w > 0) {
+        if (const Float4 own = sums.neighbour(pixel); own.w > 0) {
             of_neighbours = lerp(of_neighbours, (neighbour_features / own.w) * rgb_of(own), own.w / (own.w + kTrusted));
         }
         light += of_neighbours;

@@ -8,7 +8,7 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kVersion = 2;
 
 /// Calls `visit` for each number of the head, in their order.
 template <class Head, class Visit>

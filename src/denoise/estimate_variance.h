@@ -40,7 +40,7 @@ struct EstimateVariance {
                 if (has_gloss) of_gloss.add(gloss_of(at));
             }
         }
-        const float share = noise_share(sums.normal[pixel]);
+        const float share = noise_share(sums.all_normal(pixel));
         out.diffuse[pixel] = of_diffuse.mean(diffuse_of(pixel), kOfDiffuse * share);
         if (has_gloss) out.gloss[pixel] = of_gloss.mean(gloss_of(pixel), kOfGloss * share);
     }

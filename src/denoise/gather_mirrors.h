@@ -13,7 +13,7 @@ struct BeginMirrors {
     HD void operator()(uint32_t pixel) const {
         constexpr Float4 kZero = {0, 0, 0, 0};
         for (const MirrorBranch& branch : mirrors.branches) {
-            branch.end[pixel] = branch.normal[pixel] = branch.light[pixel] = branch.color[pixel] = kZero;
+            branch.end[pixel] = branch.normal[pixel] = branch.color[pixel] = kZero;
             branch.edge[pixel] = {0, 0, 0, float_of(kNoHit)};
         }
         mirrors.seen[pixel] = kZero;

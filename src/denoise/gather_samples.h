@@ -9,7 +9,7 @@
 
 namespace pertev {
 
-/// The stage that copies the guides from a frame of rays through pixels' centres, and clears the sums.
+/// The stage that copies the guides from a frame of rays through pixels' centres, and clears the sums of features.
 struct BeginSums {
     GBufferView centres;
     PictureGuide guide;
@@ -20,10 +20,7 @@ struct BeginSums {
         guide.albedo[pixel] = centres.albedo[pixel];
         guide.object[pixel] = bits_of(centres.hit[pixel].x);
         constexpr Float4 kZero = {0, 0, 0, 0};
-        sums.diffuse[pixel] = sums.gloss[pixel] = sums.neighbour[pixel] = sums.loose[pixel] = kZero;
-        sums.diffuse_share[pixel] = sums.gloss_share[pixel] = sums.normal[pixel] = kZero;
-        sums.squares[pixel] = {0, 0};
-        sums.met[pixel] = sums.diffuse_color[pixel] = sums.gloss_color[pixel] = kZero;
+        sums.normal[pixel] = sums.met[pixel] = sums.diffuse_color[pixel] = sums.gloss_color[pixel] = kZero;
         for (int slot = 0; slot < kNeighbourSurfaces; ++slot) {
             sums.neighbour_diffuse[slot][pixel] = {0, 0, 0, float_of(kNoHit)};
             sums.neighbour_gloss[slot][pixel] = kZero;
@@ -41,7 +38,7 @@ struct SmoothGuide {
 
     HD void operator()(uint32_t pixel) const {
         const Float4 own = guide.normal[pixel];
-        const Vec3 mean = normalize_or(vec3_of(sums.normal[pixel]), vec3_of(own));
+        const Vec3 mean = normalize_or(vec3_of(sums.all_normal(pixel)), vec3_of(own));
         smooth[pixel] = {mean.x, mean.y, mean.z, own.w};
         packed[pixel] = pack({mean, guide.albedo[pixel].w, own.w, guide.object[pixel]});
     }
@@ -123,7 +120,7 @@ HD inline uint32_t nearest_around(uint32_t pixel, uint32_t width, uint32_t heigh
     return kNoHit;
 }
 
-/// The stage that sums the hits of a pixel's camera rays.
+/// The stage that sums the hits of a pixel's first camera rays.
 struct GatherFeatures {
     SampledSurfaces samples;
 
@@ -163,36 +160,70 @@ private:
     }
 };
 
-/// The stage that sums the light of a pixel's samples, whose features have been gathered.
+/// The stage that sums the light of a sample, and its features if they are not among the first ones. What it adds
+/// depends on no other sample but the first ones.
 struct GatherLight {
     SampledSurfaces samples;
     MirrorSums mirrors; // may be empty
+    bool adds_features;
 
     HD void operator()(uint32_t pixel) const {
         const NoisyFrameView& frame = samples.frame;
         const PictureSums& sums = samples.sums;
+        const ExactSums& exact = sums.exact;
+        const Rgb all = frame.light[pixel].w != 0 ? rgb_of(frame.light[pixel]) : Rgb{0, 0, 0},
+                  met = frame.light[pixel].w != 0 ? rgb_of(frame.emission[pixel]) : Rgb{0, 0, 0};
+        const auto add_met = [&] {
+            if (adds_features) SampleSums::Light::add(exact, SampleSums::kMet, pixel, met);
+        };
+        if (adds_features) exact.add(SampleSums::kFeatures, pixel, 1);
         const SampledSurfaces::Found found = samples.found(pixel);
-        if (found.object == kNoHit) return;
+        if (found.object == kNoHit) return add_met();
         if (samples.shows_own(pixel, found)) {
-            SplitLight light = split_light(frame, pixel);
-            light.gloss = take_mirrored(mirrors, frame.mirrors, pixel, light.gloss);
-            const float diffuse = luminance(rgb_of(diffuse_signal(light.diffuse, light.diffuse_divisor))),
-                        gloss = luminance(light.gloss / light.gloss_divisor);
-            SampledSurfaces::add(sums.diffuse[pixel], light.diffuse, 1);
-            SampledSurfaces::add(sums.gloss[pixel], light.gloss);
-            SampledSurfaces::add(sums.diffuse_share[pixel], light.diffuse_divisor, diffuse);
-            SampledSurfaces::add(sums.gloss_share[pixel], light.gloss_divisor, gloss);
-            sums.squares[pixel] = sums.squares[pixel] + Vec2{square(diffuse), square(gloss)};
-            return;
+            add_own(pixel, found.normal);
+            return add_met();
         }
         bool is_free = false;
         const int slot = samples.slot_of(pixel, found, is_free);
-        const bool is_neighbour = !is_free && slot < kNeighbourSurfaces;
-        const Float4 light = frame.light[pixel], emission = frame.emission[pixel];
-        const Rgb all = light.w != 0 ? rgb_of(light) : Rgb{0, 0, 0};
-        const Rgb scattered = light.w != 0 ? all - rgb_of(emission) : Rgb{0, 0, 0};
-        SampledSurfaces::add(is_neighbour ? sums.neighbour[pixel] : sums.loose[pixel], is_neighbour ? scattered : all,
-                             1);
+        if (is_free || slot == kNeighbourSurfaces) {
+            SampleSums::Light::add(exact, SampleSums::kLoose, pixel, all);
+            exact.add(SampleSums::kLooseCount, pixel, 1);
+            if (adds_features) exact.add(SampleSums::kLooseFeatures, pixel, 1);
+            return;
+        }
+        SampleSums::Light::add(exact, SampleSums::kNeighbour, pixel, all - met);
+        exact.add(SampleSums::kNeighbourCount, pixel, 1);
+        if (!adds_features) return;
+        const uint32_t array = PictureSums::of_slot(slot);
+        SampleSums::Color::add(exact, array + SampleSums::kSlotDiffuse, pixel, diffuse_divisor(frame, pixel));
+        SampleSums::Color::add(exact, array + SampleSums::kSlotGloss, pixel, gloss_divisor(frame, pixel));
+        exact.add(array + SampleSums::kSlotCount, pixel, 1);
+        add_met();
+    }
+
+private:
+    /// Adds a sample on the guide's surface.
+    HD void add_own(uint32_t pixel, Vec3 normal) const {
+        const NoisyFrameView& frame = samples.frame;
+        const ExactSums& exact = samples.sums.exact;
+        SplitLight light = split_light(frame, pixel);
+        light.gloss = take_mirrored(mirrors, exact, frame.mirrors, pixel, light.gloss);
+        const float diffuse = luminance(rgb_of(diffuse_signal(light.diffuse, light.diffuse_divisor))),
+                    gloss = luminance(light.gloss / light.gloss_divisor);
+        exact.add(SampleSums::kOwnCount, pixel, 1);
+        SampleSums::Light::add(exact, SampleSums::kDiffuse, pixel, light.diffuse);
+        SampleSums::Light::add(exact, SampleSums::kGloss, pixel, light.gloss);
+        SampleSums::Color::add(exact, SampleSums::kDiffuseShare, pixel, light.diffuse_divisor);
+        SampleSums::Color::add(exact, SampleSums::kGlossShare, pixel, light.gloss_divisor);
+        LightSum::add(exact, SampleSums::kSignals, pixel, diffuse);
+        LightSum::add(exact, SampleSums::kSignals + LightSum::kArrays, pixel, gloss);
+        SquareSum::add(exact, SampleSums::kSquares, pixel, square(diffuse));
+        SquareSum::add(exact, SampleSums::kSquares + SquareSum::kArrays, pixel, square(gloss));
+        if (!adds_features) return;
+        SampleSums::Color::add(exact, SampleSums::kDiffuseColor, pixel, light.diffuse_divisor);
+        SampleSums::Color::add(exact, SampleSums::kGlossColor, pixel, light.gloss_divisor);
+        SampleSums::Color::add(exact, SampleSums::kNormal, pixel, {normal.x, normal.y, normal.z});
+        exact.add(SampleSums::kNormalCount, pixel, 1);
     }
 };
 

@@ -47,7 +47,7 @@ private:
                     continue;
                 }
                 signal += branch.light[at].w;
-                squares += branch.color[at].w;
+                squares += squares_of(k, at);
                 all += count;
                 within += spread(k, at);
                 freedoms += count - 1;
@@ -67,8 +67,9 @@ private:
     }
     HD float spread(int k, uint32_t at) const {
         const MirrorBranch& branch = mirrors.branches[k];
-        return max(branch.color[at].w - square(branch.light[at].w) / sums.diffuse[at].w, 0.0f);
+        return max(squares_of(k, at) - square(branch.light[at].w) / sums.diffuse[at].w, 0.0f);
     }
+    HD float squares_of(int k, uint32_t at) const { return k == 0 ? mirrors.squares[at].x : mirrors.squares[at].y; }
 };
 
 /// A pass of the filter of both signals.

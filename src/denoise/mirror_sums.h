@@ -15,8 +15,9 @@ namespace pertev {
 struct MirrorBranch {
     Float4* end; // end and normal of the ray through the pixel's centre, as in MirrorChainView; no turns: none
     Float4* normal;
-    Float4* light; // sum over samples of the light from the chain's end; of the luminance of the signal
-    Float4* color; // sum over features of the colour that this is divided by; of squares of that luminance
+    Float4* light; // sum over samples of the light from the chain's end, and of the luminance of the signal, which
+                   // FinishSums makes of the exact ones
+    Float4* color; // sum over features of the colour that this is divided by
     Float4* edge;  // sum of the colour of features beyond an edge of the mirror's picture; bits of a pixel beside it
                    // whose guide shows them, kNoHit: none
 
@@ -27,6 +28,7 @@ struct MirrorSums {
     MirrorBranch branches[kBranches];
     Float4*
         seen; // sum over features of emission at the end of both branches; number of features on the guide's surface
+    Vec2* squares; // sums over samples of squares of the luminances of both signals, as `light`
 
     HD bool is_there() const { return seen != nullptr; }
     /// Mean colour of a branch.
@@ -56,9 +58,10 @@ HD inline bool is_guided(const MirrorBranch& guide, uint32_t by, const MirrorCha
            square(dot(vec3_of(own), apart)) <= square(kFlat) * length_squared(apart) + 1e-12f;
 }
 
-/// Takes light of a sample on the guide's surface, which was not scattered by diffuse lobes there, to its branch.
-/// Returns the rest.
-HD inline Rgb take_mirrored(const MirrorSums& sums, const MirrorChainView& chain, uint32_t pixel, Rgb gloss) {
+/// Takes light of a sample on the guide's surface, which was not scattered by diffuse lobes there, to its branch in
+/// `exact`. Returns the rest.
+HD inline Rgb take_mirrored(const MirrorSums& sums, const ExactSums& exact, const MirrorChainView& chain,
+                            uint32_t pixel, Rgb gloss) {
     if (!sums.is_there() || !chain.is_there()) return gloss;
     const uint32_t turns = bits_of(chain.normal[pixel].w);
     if (turns < 2) return gloss;
@@ -72,9 +75,10 @@ HD inline Rgb take_mirrored(const MirrorSums& sums, const MirrorChainView& chain
     const Rgb more = gloss - rgb_of(chain.seen[pixel]);
     const Rgb light = {max(more.r, 0.0f), max(more.g, 0.0f), max(more.b, 0.0f)};
     const float signal = luminance(rgb_of(diffuse_signal(light, sums.color(k, pixel))));
-    Float4 &sum = branch.light[pixel], &color = branch.color[pixel];
-    sum = {sum.x + light.r, sum.y + light.g, sum.z + light.b, sum.w + signal};
-    color.w += square(signal);
+    const uint32_t array = PictureSums::of_branch(k);
+    SampleSums::Light::add(exact, array, pixel, light);
+    LightSum::add(exact, array + SampleSums::kMirrorSignal, pixel, signal);
+    SquareSum::add(exact, array + SampleSums::kMirrorSquare, pixel, square(signal));
     return {0, 0, 0};
 }
 

@@ -1,11 +1,13 @@
 #include "denoise/picture_denoiser.h"
 
+#include <algorithm>
 #include <iterator>
 
 #include "base/error.h"
 #include "denoise/compose_samples.h"
 #include "denoise/estimate_variance.h"
 #include "denoise/even_pass.h"
+#include "denoise/finish_sums.h"
 #include "denoise/gather_mirrors.h"
 #include "device/launch.h"
 
@@ -16,7 +18,7 @@ namespace {
 constexpr int kSteps[] = {1, 2, 4, 8, 16, 32, 4, 2, 1};
 constexpr int kPicturePasses = static_cast<int>(std::size(kSteps));
 constexpr float kPictureTolerance = 4; // EvenPass explains it
-constexpr std::size_t kOfGuide = 4, kOfSums = 10 + 2 * kNeighbourSurfaces, kOfPictureSignals = 6,
+constexpr std::size_t kOfGuide = 4, kOfSums = 8 + 2 * kNeighbourSurfaces, kOfPictureSignals = 6,
                       kOfChain = 4; // numbers of arrays of Float4
 constexpr std::size_t kWidePictureArrays = kOfGuide + kOfSums + kOfPictureSignals + kOfChain;
 
@@ -25,7 +27,8 @@ constexpr std::size_t kWidePictureArrays = kOfGuide + kOfSums + kOfPictureSignal
 PictureDenoiser::PictureDenoiser(Queue& queue, uint32_t width, uint32_t height)
     : queue_(&queue), width_(width), height_(height),
       wide_(queue, (kWidePictureArrays + kOfMirrors) * width * height, "denoised picture"),
-      squares_(queue, std::size_t(width) * height, "denoised picture"),
+      exact_(queue, std::size_t(SampleSums::kArrays) * width * height, "sums of a denoised picture"),
+      squares_(queue, std::size_t(2) * width * height, "denoised picture"),
       objects_(queue, std::size_t(width) * height, "denoised picture") {
     Float4* next = wide_.data();
     const auto take = [&](Float4*& array) {
@@ -33,11 +36,11 @@ PictureDenoiser::PictureDenoiser(Queue& queue, uint32_t width, uint32_t height)
         next += std::size_t(width) * height;
     };
     for (Float4** array :
-         {&guide_.normal,     &guide_.albedo,       &smooth_,           &packed_,           &sums_.diffuse,
-          &sums_.gloss,       &sums_.diffuse_share, &sums_.gloss_share, &sums_.normal,      &sums_.diffuse_color,
-          &sums_.gloss_color, &sums_.neighbour,     &sums_.loose,       &sums_.met,         &from_.diffuse,
-          &from_.gloss,       &to_.diffuse,         &to_.gloss,         &mirrored_.diffuse, &mirrored_.gloss,
-          &mirrors_.seen,     &chain_.end,          &chain_.normal,     &chain_.color,      &chain_.seen}) {
+         {&guide_.normal,     &guide_.albedo,       &smooth_,           &packed_,       &sums_.diffuse,
+          &sums_.gloss,       &sums_.diffuse_share, &sums_.gloss_share, &sums_.normal,  &sums_.diffuse_color,
+          &sums_.gloss_color, &sums_.met,           &from_.diffuse,     &from_.gloss,   &to_.diffuse,
+          &to_.gloss,         &mirrored_.diffuse,   &mirrored_.gloss,   &mirrors_.seen, &chain_.end,
+          &chain_.normal,     &chain_.color,        &chain_.seen}) {
         take(*array);
     }
     for (MirrorBranch& branch : mirrors_.branches) {
@@ -47,7 +50,9 @@ PictureDenoiser::PictureDenoiser(Queue& queue, uint32_t width, uint32_t height)
         take(sums_.neighbour_diffuse[slot]);
         take(sums_.neighbour_gloss[slot]);
     }
+    sums_.exact = {exact_.data(), width * height};
     sums_.squares = squares_.data();
+    mirrors_.squares = squares_.data() + std::size_t(width) * height;
     guide_.object = objects_.data();
 }
 
@@ -58,7 +63,13 @@ void PictureDenoiser::begin(const NoisyFrame& centres, const CameraView& camera,
     camera_ = camera;
     window_ = window;
     has_gloss_ = centres.splits_light();
-    samples_ = features_ = 0;
+    features_ = 0;
+    forget_samples();
+}
+
+void PictureDenoiser::forget_samples() {
+    samples_ = 0;
+    exact_.zero();
 }
 
 SampledSurfaces PictureDenoiser::surfaces_of(const NoisyFrame& frame, const SceneView& scene) const {
@@ -81,19 +92,18 @@ void PictureDenoiser::add_mirrors(const NoisyFrame& frame, const SceneView& scen
     launch_in(*queue_, "gather_mirrors", window_, GatherMirrors{surfaces_of(frame, scene), mirrors_});
 }
 
-void PictureDenoiser::add(const NoisyFrame& frame, const SceneView& scene, uint32_t) {
-    PERTEV_CHECK(features_ >= kFeatures);
-    if (samples_ >= features_) add_features(frame, scene);
-    launch_in(*queue_, "gather_light", window_, GatherLight{surfaces_of(frame, scene), mirrors_if_gloss()});
+void PictureDenoiser::add(const NoisyFrame& frame, const SceneView& scene, uint32_t sample) {
+    PERTEV_CHECK(features_ == kFeatures);
+    launch_in(*queue_, "gather_light", window_,
+              GatherLight{surfaces_of(frame, scene), mirrors_if_gloss(), sample >= kFeatures});
     ++samples_;
 }
 
-/// The arrays that hold what samples have left.
+/// The arrays that hold what samples have left; the sums are last.
 std::vector<PixelWords> PictureDenoiser::gathered() const {
     std::vector<PixelWords> arrays;
     for (Float4* const array :
-         {guide_.normal, guide_.albedo, sums_.diffuse, sums_.gloss, sums_.diffuse_share, sums_.gloss_share,
-          sums_.neighbour, sums_.loose, sums_.normal, sums_.met, sums_.diffuse_color, sums_.gloss_color}) {
+         {guide_.normal, guide_.albedo, sums_.normal, sums_.met, sums_.diffuse_color, sums_.gloss_color}) {
         arrays.push_back({array, 4});
     }
     for (int slot = 0; slot < kNeighbourSurfaces; ++slot) {
@@ -101,19 +111,20 @@ std::vector<PixelWords> PictureDenoiser::gathered() const {
         arrays.push_back({sums_.neighbour_gloss[slot], 4});
     }
     for (const MirrorBranch& branch : mirrors_.branches) {
-        for (Float4* const array : {branch.end, branch.normal, branch.light, branch.color, branch.edge})
-            arrays.push_back({array, 4});
+        for (Float4* const array : {branch.end, branch.normal, branch.color, branch.edge}) arrays.push_back({array, 4});
     }
     arrays.push_back({mirrors_.seen, 4});
-    arrays.push_back({sums_.squares, 2});
     arrays.push_back({guide_.object, 1});
+    for (uint32_t i = 0; i < SampleSums::kArrays; ++i) arrays.push_back({&sums_.exact.at(i, 0), 2});
     return arrays;
 }
 
 DenoiserState PictureDenoiser::state() const {
     const std::size_t pixels = std::size_t(width_) * height_;
-    DenoiserState words(state_words(pixels), kMissingWord);
-    DenoiserHead{samples_, features_, has_gloss_, camera_}.write(words);
+    const DenoiserStateSize size = state_size(pixels);
+    DenoiserState words(size.words, kMissingWord);
+    std::fill(words.end() - static_cast<std::ptrdiff_t>(size.sums), words.end(), 0u);
+    DenoiserHead{std::min(samples_, 1u), features_, has_gloss_, camera_}.write(words); // equal in all parts
     save_pixels(*queue_, gathered(), pixels, std::size_t(window_.y) * width_, window_.count(),
                 std::span(words).subspan(DenoiserHead::kWords));
     return words;
@@ -122,17 +133,16 @@ DenoiserState PictureDenoiser::state() const {
 void PictureDenoiser::restore(const DenoiserState& state) {
     const std::size_t pixels = std::size_t(width_) * height_;
     const DenoiserHead head = DenoiserHead::read(state);
-    bool is_sound = state.size() == state_words(pixels) && head.features >= kFeatures;
+    bool is_sound = state.size() == state_size(pixels).words && head.features == kFeatures;
     const auto check = [&](std::size_t array) { // the array has numbers of pixels that are looked up
         for (std::size_t i = 0; is_sound && i < pixels; ++i) {
             const uint32_t there = state[DenoiserHead::kWords + 4 * (pixels * array + i) + 3];
             is_sound = there == kNoHit || there < pixels;
         }
     };
-    for (std::size_t slot = 0; slot < kNeighbourSurfaces; ++slot) check(12 + 2 * slot);
-    for (std::size_t k = 1; k <= MirrorSums::kBranches; ++k) {
-        check(12 + 2 * kNeighbourSurfaces + k * MirrorSums::kArrays - 1);
-    }
+    constexpr std::size_t kFirstSlot = 6, kFirstBranch = kFirstSlot + 2 * kNeighbourSurfaces; // in gathered()
+    for (std::size_t slot = 0; slot < kNeighbourSurfaces; ++slot) check(kFirstSlot + 2 * slot);
+    for (std::size_t k = 1; k <= MirrorSums::kBranches; ++k) check(kFirstBranch + k * (MirrorSums::kArrays - 1) - 1);
     if (!is_sound) throw Error(ErrorCode::BadInput, "what the denoiser has gathered is damaged");
     // Between begin() and here other rows have guides, which the window's border needs.
     const bool is_part = window_.count() > 0;
@@ -163,6 +173,7 @@ Image PictureDenoiser::apply(Image picture) {
     const uint32_t pixels = width_ * height_;
     SignalsView from = from_, to = to_;
     const PictureGuide smooth = {smooth_, guide_.albedo, guide_.object};
+    launch(*queue_, "finish_sums", pixels, FinishSums{sums_, mirrors_if_gloss()});
     launch(*queue_, "smooth_guide", pixels, SmoothGuide{guide_, sums_, smooth_, packed_});
     launch(*queue_, "estimate_variance", pixels, EstimateVariance{smooth, sums_, from, width_, height_, has_gloss_});
     for (int pass = 0; pass < kPicturePasses; ++pass) {

@@ -1,13 +1,10 @@
 #pragma once
 
 // Denoises a single picture with few samples per pixel, without previous frames: the variance-guided wavelet passes
-// of frames (denoise/reconstruction.h), guided by the hits of rays through pixels' centres. Samples are added one per
-// pixel at a time in the order of their numbers, so that the picture of a samples with b added has the bytes of a +
-// b. Every stage is one function for both devices. The picture is biased: it blurs light where no guide shows an
-// edge.
-//
-// Sums are floats: beyond a hundred thousand samples per pixel their rounding becomes visible, long after noise has
-// vanished.
+// of frames (denoise/reconstruction.h), guided by the hits of rays through pixels' centres. The first samples' hits,
+// which every part of a picture has, decide which surfaces a pixel distinguishes. All else is added exactly
+// (denoise/exact_sums.h), so the parts' order leaves no trace. Every stage is one function for both devices. The
+// picture is biased: it blurs light where no guide shows an edge.
 
 #include "denoise/denoiser.h"
 #include "denoise/gather_samples.h"
@@ -23,22 +20,28 @@ public:
 
     void begin(const NoisyFrame& centres, const CameraView& camera, const PixelWindow& window) override;
     /// Returns kFeatures: samples 0 to kFeatures - 1 are required before any light, so that edges and textures are
-    /// smooth even with few samples.
+    /// smooth even with few samples. Later ones are features too.
     uint32_t feature_samples() const override { return kFeatures; }
     void add_features(const NoisyFrame& frame, const SceneView& scene) override;
     MirrorChainView mirrors() const override { return chain_; }
     void guide_mirrors(const NoisyFrame& frame) override;
     void add_mirrors(const NoisyFrame& frame, const SceneView& scene) override;
     void add(const NoisyFrame& frame, const SceneView& scene, uint32_t sample) override;
+    void forget_samples() override;
     DenoiserState state() const override;
     void restore(const DenoiserState& state) override;
-    static constexpr std::size_t state_words(std::size_t pixels) { return DenoiserHead::kWords + pixels * kPixelWords; }
+    static constexpr DenoiserStateSize state_size(std::size_t pixels) {
+        const std::size_t sums = 2 * SampleSums::kArrays * pixels;
+        return {DenoiserHead::kWords + pixels * kPixelWords + sums, sums};
+    }
     /// Replaces the colours by those of the samples that it got, so it can only be the first step.
     Image apply(Image picture) override;
 
 private:
     static constexpr std::size_t kOfMirrors = MirrorSums::kArrays * MirrorSums::kBranches + 1; // arrays of Float4
-    static constexpr std::size_t kPixelWords = 4 * (12 + 2 * kNeighbourSurfaces + kOfMirrors) + 3;
+    // Words of a pixel in a state, without the sums: the light of mirrors' branches is one of these.
+    static constexpr std::size_t kPixelWords =
+        4 * (6 + 2 * kNeighbourSurfaces + kOfMirrors - MirrorSums::kBranches) + 1;
 
     std::vector<PixelWords> gathered() const;
     void filter_mirrors(SignalsView other);
@@ -50,6 +53,7 @@ private:
     CameraView camera_ = {};
     PixelWindow window_;
     Buffer<Float4> wide_;
+    Buffer<int64_t> exact_;
     Buffer<Vec2> squares_;
     Buffer<uint32_t> objects_;
     PictureGuide guide_ = {};

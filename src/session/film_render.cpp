@@ -132,7 +132,6 @@ uint32_t FilmRender::render(SampleRange range, Sink& sink) {
     const uint32_t count = std::min(range.count(), kMaxSamplesPerPixel - std::min(first, kMaxSamplesPerPixel));
     if (count == 0) return 0;
     if (SharedRender* const sharing = pictures_.sharing()) {
-        PERTEV_CHECK(adds_exactly(settings_.denoise));
         find_hidden_backs(); // while its device is known to work
         Film& into = film();
         SharedSamples added;

@@ -37,14 +37,12 @@ DenoiserStateSize denoiser_state_size(Denoise denoise, uint32_t width, uint32_t 
     case Denoise::None:
         return {};
     case Denoise::Svgf:
-        return {PictureDenoiser::state_words(pixels), 0};
+        return PictureDenoiser::state_size(pixels);
     case Denoise::Oidn:
         return OidnDenoiser::state_size(pixels);
     }
     return {};
 }
-
-bool adds_exactly(Denoise denoise) { return denoise == Denoise::None || denoiser_state_size(denoise, 1, 1).sums > 0; }
 
 DenoisedPicture denoise(Queue& queue, const RenderSettings& settings, Image picture, const DenoiserState& gathered) {
     const auto steps = make_denoisers(queue, settings);

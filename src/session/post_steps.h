@@ -17,9 +17,6 @@ std::vector<std::unique_ptr<Denoiser>> make_denoisers(Queue& queue, const Render
 /// Returns the size of their Denoiser::state; 0 without any.
 DenoiserStateSize denoiser_state_size(Denoise denoise, uint32_t width, uint32_t height);
 
-/// Returns whether what they gather of samples adds up exactly in any order, as a film does.
-bool adds_exactly(Denoise denoise);
-
 /// A picture after its steps, and Denoiser::name of what made it.
 struct DenoisedPicture {
     Image image;

@@ -148,7 +148,8 @@ namespace {
 
 /// Renders the whole picture, and merges parts [first row, end row, first sample, end sample).
 void check_rows(Renders& renders, const std::vector<FilmPart>& parts) {
-    const auto whole = renders.film({0, 5});
+    const SampleRange all = {0, renders.settings.samples};
+    const auto whole = renders.film(all);
     Files files;
     for (const FilmPart& part : parts) {
         renders.settings.first_row = part.first_row, renders.settings.end_row = part.end_row;
@@ -162,8 +163,14 @@ void check_rows(Renders& renders, const std::vector<FilmPart>& parts) {
     const Film film = merge.film(cpu, nobody());
     CHECK(film.part() == whole->film().part());
     CHECK(bytes_of(film) == bytes_of(whole->film()));
-    const ExrMetadata known = FilmFileReader(renders.file({0, 5})).header().facts.origin;
+    const ExrMetadata known = FilmFileReader(renders.file(all)).header().facts.origin;
     CHECK(merge.header().facts.origin == known);
+    if (renders.settings.denoise == Denoise::None) return;
+    Film sums = merge.film(cpu, nobody());
+    const RenderResult result = result_of(merge.header(), sums, cpu);
+    const Image expected = whole->denoised().value();
+    CHECK(result.denoised.value().pixels == expected.pixels);
+    CHECK(result.picture.pixels != expected.pixels);
 }
 
 const std::vector<FilmPart> kBands = {{0, 7, {0, 5}}, {7, 8, {0, 5}}, {8, 20, {0, 5}}},
@@ -193,27 +200,21 @@ TEST_CASE("merged parts by rows, or by rows and samples, have the bytes of one r
     }
 }
 
-TEST_CASE("merged parts by rows are denoised to the bytes of one run, and parts of samples are refused") {
+TEST_CASE("merged parts by samples, by rows or by both are denoised to the bytes of one run") {
     Renders renders;
     renders.settings.denoise = Denoise::Svgf;
     renders.settings.aovs = kAovAlbedo | kAovPosition | kAovIds;
     check_rows(renders, kBands);
-    const Image expected = renders.film({0, 5})->denoised().value();
-    Files files;
-    for (const FilmPart& part : kBands) {
-        renders.settings.first_row = part.first_row, renders.settings.end_row = part.end_row;
-        files.push_back(renders.file(part.samples));
-    }
+    // More samples than every part takes the features of.
+    renders.settings.samples = 20;
+    check_rows(renders, {{0, 7, {3, 20}}, {0, 7, {0, 3}}, {7, 20, {0, 17}}, {7, 20, {17, 19}}, {7, 20, {19, 20}}});
+}
+
+TEST_CASE("a film that no denoiser has gathered for is not denoised") {
+    Renders renders;
+    renders.settings.denoise = Denoise::Svgf;
     Queue cpu = Queue::make_cpu();
-    const FilmMerge merge(files, false);
-    Film film = merge.film(cpu, nobody());
-    const RenderResult result = result_of(merge.header(), film, cpu);
-    REQUIRE(result.denoised.has_value());
-    CHECK(result.denoised->pixels == expected.pixels);
-    CHECK(result.picture.pixels != expected.pixels);
-    renders.settings.first_row = renders.settings.end_row = 0;
-    CHECK(merge_refusal({renders.file({0, 2}), renders.file({2, 5})}).find("`rows`") != std::string::npos);
-    FilmHeader without = merge.header();
+    const FilmHeader without = FilmFileReader(renders.file({0, 1})).header();
     Film empty = without.make_film(cpu);
     empty.set_part(without.part);
     CHECK(!test::bad_input_message([&] { result_of(without, empty, cpu); }).empty());

@@ -153,8 +153,6 @@ class Parts(unittest.TestCase):
         (self.folder / "flipped.pvf").write_bytes(bytes_of[:-30] + bytes([bytes_of[-30] ^ 1]) + bytes_of[-29:])
         self.refused(pertev.InputError, "", lambda: pertev.merge([self.folder / "flipped.pvf", files[1]]))
         for setting, values in [("part", {"part": (3, 2)}), ("part", {"part": "x"}), ("samples", {"samples": (4, 4)}), ("part_base", {"part_base": 0}),
-                                ("denoise", {"denoise": "svgf", "part": (1, 2), "output": self.folder / "x.pvf"}),
-                                ("denoise", {"denoise": "svgf", "samples": (1, 4), "checkpoint": self.folder / "x.pvf"}),
                                 ("output", {"checkpoint": self.folder / "x.pvf", "output": self.folder / "x.pvf"})]:
             with self.subTest(values):
                 self.refused(pertev.InputError, setting, lambda: pertev.render(self.scene, **SMALL, **values))

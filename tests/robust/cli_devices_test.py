@@ -109,7 +109,6 @@ class Devices(CliTest):
         self.assertEqual(program.wait(timeout=PATIENCE_S), 0)
 
     def test_what_one_device_does_alone_is_refused_by_name(self):
-        self.refuse(2, "render", "nowhere.obj", "-o", "x.exr", "--denoise", "svgf", *TWO, says=["--device cpu,cpu", "--denoise svgf"])
         for line in [["measure", "cornell-box", "--at", "0,0,0", "--normal", "0,1,0"], ["lab", "cornell-box", "-o", "report"], ["bench", "--scene", "cornell-box"],
                      ["bench", "render", "--scene", "cornell-box"], ["bench", "noise", "cornell-box"], ["bench", "rays", "--scene", "cornell-box"],
                      ["bench", "frames", "cornell-box", "--integrator", "photon_map"]]:

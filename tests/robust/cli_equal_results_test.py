@@ -15,8 +15,9 @@ PICTURES = {
     "bidirectional": ["--integrator", "bidirectional"],
     "photon map": ["--integrator", "photon_map", "--photons", "4000"],
     "layers and ids": ["--aov", "albedo,normal,depth,position,ids", "--lpe", "diffuse=LD+E", "--transparent"],
+    "denoised": ["--denoise", "svgf"],
 }
-HASHES = ["hash", "layers_hash", "samples", "invalid_samples"]
+HASHES = ["hash", "layers_hash", "denoised_hash", "samples", "invalid_samples"]
 
 
 class EqualResults(CliTest):

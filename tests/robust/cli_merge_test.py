@@ -145,11 +145,11 @@ class Merge(CliTest):
         self.refuse(2, "merge", "a.pvf", "b.pvf", "--partial", "-o", "x.exr", says=["rows 5 to 15"])
         self.refuse(2, "merge", "b.pvf", "c.pvf", "--partial", "-o", "x.exr", says=["rows 0 to 4"])
 
-    def test_parts_by_rows_are_denoised_as_a_whole_picture(self):
+    def test_parts_by_rows_and_samples_are_denoised_as_a_whole_picture(self):
         flags = ["--spp", "4", "--denoise", "svgf", "--aov", "normal", "--exposure", "auto"]
         whole = self.part("whole.exr", "-o", "whole.png", "-o", "whole.pvf", *flags)
-        for name, rows in {"a": "0:5", "b": "5:6", "c": "6:16"}.items():
-            self.part(f"{name}.pvf", *flags, "--rows", rows)
+        for name, part in {"a": ["0:5"], "b": ["5:16", "--part", "1/2"], "c": ["5:16", "--part", "2/2"]}.items():
+            self.part(f"{name}.pvf", *flags, "--rows", *part)
         done = self.merge("c.pvf", "a.pvf", "b.pvf", "-o", "all.exr", "-o", "all.png", "-o", "all.pvf")
         for key in ["hash", "layers_hash", "denoised_hash", "samples"]:
             self.assertEqual(done[key], whole[key], key)
@@ -161,7 +161,7 @@ class Merge(CliTest):
         self.assertEqual(self.merge("all.pvf", "-o", "again.exr", "--denoise", "svgf")["denoised_hash"], whole["denoised_hash"])
         self.refuse(2, "merge", "all.pvf", "-o", "x.exr", "--denoise", "oidn", says=["all.pvf", "--denoise svgf"])
         self.part("alone.pvf", "--spp", "4")
-        self.refuse(2, "merge", "alone.pvf", "-o", "x.exr", "--denoise", "svgf", says=["alone.pvf", "--denoise", "--rows"])
+        self.refuse(2, "merge", "alone.pvf", "-o", "x.exr", "--denoise", "svgf", says=["alone.pvf", "--denoise svgf"])
         self.part("plain.pvf", "--spp", "4", "--aov", "normal", "--exposure", "auto", "--rows", "0:5")
         self.refuse(2, "merge", "b.pvf", "c.pvf", "plain.pvf", "-o", "x.exr", says=["--denoise"])
 
@@ -306,7 +306,7 @@ class Merge(CliTest):
         for flags in ["--part 0/2", "--part 3/2", "--part 1", "--part 1/0", "--part -1/2", "--part 1/2x", "--part 2/2 --part-base 0",
                       "--part-base 1", "--samples 4", "--samples 4:4", "--samples 5:4", "--samples 0:9000000", "--samples 1:2 --spp 4",
                       "--samples 1:2 --part 1/2", "--part 1/2 --time-limit 1", "--samples 0:1 --time-limit 1", "--samples 0:1 --turntable 4",
-                      "--denoise svgf --part 1/2", "--denoise svgf --samples 1:2", "--aov motion", "--rows 4", "--rows 4:4", "--rows 0:17", "--rows 0:8 --integrator light",
+                      "--aov motion", "--rows 4", "--rows 4:4", "--rows 0:17", "--rows 0:8 --integrator light",
                       "--rows 0:8 --integrator bidirectional", "--rows 0:8 --time-limit 1", "--rows 0:8 --turntable 4"]:
             with self.subTest(flags=flags):
                 self.refuse(2, "render", "cornell-box", "-o", "x.pvf", *SMALL, *flags.split(), says=[flags.split()[0]])

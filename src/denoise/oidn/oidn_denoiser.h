@@ -43,7 +43,7 @@ public:
 
 private:
     std::vector<PixelWords> gathered() const;
-    OidnSums sums() const { return {sums_.data(), pixels_}; }
+    ExactSums sums() const { return {sums_.data(), pixels_}; }
 
     Queue& queue_;
     OidnFilter filter_;

@@ -2,6 +2,7 @@
 
 // Stages that make what Open Image Denoise reads, and that read what it made.
 
+#include "denoise/exact_sums.h"
 #include "denoise/shown_color.h"
 #include "render/noisy_frame_view.h"
 #include "trace/intersect/ray.h"
@@ -21,35 +22,21 @@ HD inline OidnGuide oidn_guide(const NoisyFrameView& frame, uint32_t pixel) {
 
 /// Exact sums of guides over samples, from which their order leaves no trace.
 struct OidnSums {
-    static constexpr uint32_t kArrays = 7; // albedo, normal, number of samples
-    static constexpr double kUnit = 0x1p-38;
-
-    int64_t* numbers; // one array after the other, in units of kUnit
-    uint32_t pixels;
-
-    HD int64_t& at(uint32_t array, uint32_t pixel) const { return numbers[std::size_t(array) * pixels + pixel]; }
+    using Guide = SumsOfRgb<SmallSum<1>>;
+    static constexpr uint32_t kAlbedo = 0, kNormal = kAlbedo + Guide::kArrays, kCount = kNormal + Guide::kArrays,
+                              kArrays = kCount + 1; // the last is the number of samples
 };
 
 /// The stage that adds a sample to sums of guides.
 struct AddOidnGuides {
     NoisyFrameView frame;
-    OidnSums sums;
+    ExactSums sums;
 
     HD void operator()(uint32_t pixel) const {
         const OidnGuide guide = oidn_guide(frame, pixel);
-        add(0, pixel, guide.albedo);
-        add(3, pixel, guide.normal);
-        sums.at(6, pixel) += 1;
-    }
-
-private:
-    static constexpr float kMost = 2; // times kMaxSamplesPerPixel it fits 64 bits
-
-    HD void add(uint32_t array, uint32_t pixel, Float4 guide) const {
-        const float values[] = {guide.x, guide.y, guide.z};
-        for (uint32_t i = 0; i < 3; ++i) {
-            sums.at(array + i, pixel) += static_cast<int64_t>(clamp(values[i], -kMost, kMost) * 0x1p38f);
-        }
+        OidnSums::Guide::add(sums, OidnSums::kAlbedo, pixel, rgb_of(guide.albedo));
+        OidnSums::Guide::add(sums, OidnSums::kNormal, pixel, rgb_of(guide.normal));
+        sums.add(OidnSums::kCount, pixel, 1);
     }
 };
 
@@ -57,25 +44,24 @@ private:
 struct FinishOidnGuides {
     const Float4 *first_albedo, *first_normal;
     double first;
-    OidnSums sums;
+    ExactSums sums;
     Float4 *albedo, *normal;
 
     HD void operator()(uint32_t pixel) const {
-        albedo[pixel] = mean(first_albedo[pixel], 0, pixel);
-        normal[pixel] = mean(first_normal[pixel], 3, pixel);
+        albedo[pixel] = mean(first_albedo[pixel], OidnSums::kAlbedo, pixel);
+        normal[pixel] = mean(first_normal[pixel], OidnSums::kNormal, pixel);
     }
 
 private:
     HD Float4 mean(Float4 of_first, uint32_t array, uint32_t pixel) const {
-        const int64_t more = sums.at(6, pixel);
+        const int64_t more = sums.at(OidnSums::kCount, pixel);
         if (more == 0) return of_first;
         const double share = 1.0 / (first + static_cast<double>(more));
-        return {mean(of_first.x, sums.at(array, pixel), share), mean(of_first.y, sums.at(array + 1, pixel), share),
-                mean(of_first.z, sums.at(array + 2, pixel), share), 0};
-    }
-    HD float mean(float of_first, int64_t sum, double share) const {
-        return static_cast<float>((first * static_cast<double>(of_first) + static_cast<double>(sum) * OidnSums::kUnit) *
-                                  share);
+        const auto both = [&](float mean, uint32_t k) {
+            return static_cast<float>((first * static_cast<double>(mean) + SmallSum<1>::get(sums, array + k, pixel)) *
+                                      share);
+        };
+        return {both(of_first.x, 0), both(of_first.y, 1), both(of_first.z, 2), 0};
     }
 };
 

@@ -11,7 +11,6 @@
 #include "base/parallel_for.h"
 #include "device/device_identity.h"
 #include "session/devices/device_names.h"
-#include "session/post_steps.h"
 #include "settings/setting.h"
 
 namespace pertev {
@@ -57,8 +56,6 @@ void check_devices(const PictureOptions& options, uint32_t verbs) {
     const std::string& device = options.machine.device;
     if (!names_several_devices(device)) return;
     if ((verbs & (kRender | kView | kBenchSequence | kBenchFrames)) == 0) refuse_several_devices(device, "this");
-    if (!adds_exactly(options.render.denoise))
-        refuse_several_devices(device, "`denoise=svgf`, which adds floats in the order of samples,");
 }
 
 std::unique_ptr<Queue> open_queue(const MachineOptions& options, Sink& sink) {

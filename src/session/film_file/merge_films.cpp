@@ -10,7 +10,6 @@
 #include "session/film_file/unite_id_names.h"
 #include "session/post_steps.h"
 #include "settings/settings_file.h"
-#include "settings/value_names.h"
 
 namespace pertev {
 namespace {
@@ -68,7 +67,6 @@ FilmMerge::FilmMerge(std::span<const std::string> files, bool is_partial) {
         parts_.push_back({file, reader.header().part, reader.header_hash()});
     }
     refuse_overlaps();
-    refuse_other_samples();
     check_rows(is_partial);
     for (auto& [name, value] : header_.facts.origin) {
         auto* const text = std::get_if<std::string>(&value);
@@ -96,20 +94,6 @@ void FilmMerge::take_header(const std::string& file, const FilmHeader& header) {
     if (comes_first) header_ = header;
     header_.facts.origin = std::move(origin);
     header_.rays = rays, header_.render_seconds = seconds, header_.spp = spp;
-}
-
-/// Refuses parts of samples of a picture whose denoiser adds floats: only the same samples of other rows add up.
-void FilmMerge::refuse_other_samples() const {
-    if (adds_exactly(header_.denoise)) return;
-    const auto first = std::ranges::find_if(parts_, [](const Part& part) { return !part.of.is_empty(); });
-    for (auto part = first; part != parts_.end(); ++part) {
-        if (part->of.is_empty() || part->of.samples == first->of.samples) continue;
-        throw Error(
-            ErrorCode::BadInput, FileLocation{part->file},
-            fmt::format("`denoise={}` needs all samples of a pixel in one file: those here are not those of {}; "
-                        "render parts by `rows`",
-                        name_of(header_.denoise), first->file));
-    }
 }
 
 void FilmMerge::refuse_overlaps() const {

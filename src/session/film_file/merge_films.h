@@ -34,7 +34,6 @@ private:
     };
     void take_header(const std::string& file, const FilmHeader& header);
     void refuse_overlaps() const;
-    void refuse_other_samples() const;
     void check_rows(bool is_partial);
 
     std::vector<Part> parts_;

@@ -13,11 +13,9 @@
 #include "session/opening/open_scene.h"
 #include "session/opening/picture_settings.h"
 #include "session/pictures/choose_display.h"
-#include "session/post_steps.h"
 #include "session/sample_range.h"
 #include "session/set_materials.h"
 #include "settings/check_settings.h"
-#include "settings/value_names.h"
 
 namespace pertev {
 namespace {
@@ -50,15 +48,6 @@ void check_crop(const PictureOptions& options) {
     }
 }
 
-/// Refuses a part without all samples of its pixels to a denoiser that adds floats up in the samples' order.
-void check_denoised_part(const PictureOptions& options) {
-    if (adds_exactly(options.render.denoise)) return;
-    const SampleRange range = sample_range(options);
-    if (range.first == 0 && (range.end == options.render.samples || !options.samples.empty())) return;
-    throw Error(ErrorCode::BadInput, "denoise", std::string(name_of(options.render.denoise)),
-                "it needs all samples of a pixel, in their order; divide this picture by `rows`");
-}
-
 } // namespace
 
 void check_options(const PictureOptions& options, uint32_t verbs) {
@@ -67,7 +56,6 @@ void check_options(const PictureOptions& options, uint32_t verbs) {
     sample_range(options);
     row_range(options);
     check_crop(options);
-    check_denoised_part(options);
     check_real_time(options);
     if (options.reconstruction.used().denoiser == FrameDenoiser::Oidn) OidnLibrary::find("frame_denoiser");
     requested_exposure(options);

@@ -22,7 +22,7 @@ void check_denoiser(const PictureOptions& options, const FilmHeader& header, std
     const std::string_view there = name_of(header.denoise);
     Remark remark(FileLocation{files.front()},
                   header.denoise == Denoise::None
-                      ? "the film lacks what a denoiser gathers; render its parts with `denoise` too, by `rows`"
+                      ? "the film lacks what a denoiser gathers; render its parts with `denoise` too"
                       : fmt::format("the film was rendered with `denoise={}`", there));
     remark.setting = "denoise", remark.value = name_of(options.render.denoise);
     throw Error(ErrorCode::BadInput, std::move(remark));
