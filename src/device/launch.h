@@ -25,8 +25,8 @@ struct BlockShape {
 template <class Stage>
 concept WholeBlockStage = requires(const Stage& stage) { stage(uint32_t{}, bool{}); };
 
-/// How many consecutive indices of `Stage` a CPU thread runs at least: 256, unless the stage is so cheap that waking a
-/// second thread for them takes longer than they do, and says so by kHostGrain.
+/// The least number of consecutive indices of `Stage` that a CPU thread runs. A stage whose calls are so cheap that
+/// waking a second thread for 256 of them takes longer than they do sets kHostGrain.
 template <class Stage>
 constexpr uint32_t host_grain() {
     if constexpr (requires { Stage::kHostGrain; }) return Stage::kHostGrain;

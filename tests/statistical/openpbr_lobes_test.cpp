@@ -23,7 +23,7 @@ MeanWeight light_range(const Make& make, float side = 1) {
     for (const float roughness : kLobeRoughnesses)
         for (const float cosine : kLobeCosines) {
             const MeanWeight mean = mean_weight(make(roughness), direction_at(side * cosine),
-                                                static_cast<uint32_t>(effort(1 << 14, 1 << 20)));
+                                                static_cast<uint32_t>(effort(1 << 13, 1 << 20)));
             least = std::min(least, mean.least());
             largest = std::max(largest, mean.largest());
         }
