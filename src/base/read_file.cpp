@@ -52,4 +52,19 @@ std::string hash_of_file(const std::filesystem::path& path) {
     return hasher.result().hex();
 }
 
+std::string hash_of_files(std::span<const std::filesystem::path> paths) {
+    if (paths.empty()) return "";
+    Hasher hasher;
+    for (const std::filesystem::path& path : paths) {
+        std::string hash;
+        try {
+            hash = hash_of_file(path);
+        } catch (const Error&) { // what refers to it has said so
+        }
+        hasher.add_value(hash.size());
+        hasher.add(std::as_bytes(std::span(hash)));
+    }
+    return hasher.result().hex();
+}
+
 } // namespace pertev

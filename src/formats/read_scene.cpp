@@ -47,8 +47,8 @@ const FormatReader* find_reader(const std::filesystem::path& path) {
     return found == kReaders.end() ? nullptr : &*found;
 }
 
-Scene read_file_or_builtin(const std::filesystem::path& path, const ReadOptions& options, Sink& sink) {
-    const FileAccess access(path, options.allowed_paths);
+Scene read_file_or_builtin(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options,
+                           Sink& sink) {
     if (const auto bytes = builtin_scene(path.string())) {
         if (const auto materials = builtin_materials(path.string())) {
             return read_obj(path, ObjTexts{*bytes, *materials}, access, options, sink);
@@ -62,7 +62,9 @@ Scene read_file_or_builtin(const std::filesystem::path& path, const ReadOptions&
 } // namespace
 
 Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, Sink& sink) {
-    Scene scene = read_file_or_builtin(path, options, sink);
+    const FileAccess access(path, options.allowed_paths);
+    Scene scene = read_file_or_builtin(path, access, options, sink);
+    scene.files = access.found();
     // Formats that have neither, and files that have none.
     if (scene.clips.empty() && !options.animation.empty()) choose_clips(path.string(), {}, options.animation);
     if (scene.file_scenes.empty() && !options.file_scene.empty()) {

@@ -9,6 +9,7 @@
 // (scene/scene_origin.h). It is 0 if the scene is near the file's origin.
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -59,19 +60,20 @@ struct Scene {
     std::vector<Camera> cameras;
     std::vector<Node> nodes; // all nodes of a glTF file by their numbers there, including empty ones
     std::vector<Skin> skins;
-    std::vector<MeshShape> shapes;           // for meshes that morph targets or a skin can deform
-    std::vector<Animation> animations;       // animations that play
-    std::vector<Clip> clips;                 // all animations of the file, in its order
-    std::vector<std::string> file_scenes;    // names of all scenes of the file, in its order
-    uint32_t file_scene = 0;                 // index of this scene in file_scenes
-    std::vector<std::string> variants;       // names of the file's sets of materials
-    std::optional<uint32_t> variant;         // index of the one shown; none: the file's default materials
-    DoubleVec3 origin_in_file = {0, 0, 0};   // origin of all coordinates here, in those of the file, metres
-    bool is_far = false;                     // the scene is over 2^12 of its own sizes away from the file's origin
-    std::vector<SuggestedSetting> suggested; // suggestions of the file: samples, an integrator and its settings, a
-                                             // film
-    std::string no_instances;                // if there are no instances: what the file has instead, and what would
-                                             // be right
+    std::vector<MeshShape> shapes;            // for meshes that morph targets or a skin can deform
+    std::vector<Animation> animations;        // animations that play
+    std::vector<Clip> clips;                  // all animations of the file, in its order
+    std::vector<std::string> file_scenes;     // names of all scenes of the file, in its order
+    uint32_t file_scene = 0;                  // index of this scene in file_scenes
+    std::vector<std::string> variants;        // names of the file's sets of materials
+    std::optional<uint32_t> variant;          // index of the one shown; none: the file's default materials
+    DoubleVec3 origin_in_file = {0, 0, 0};    // origin of all coordinates here, in those of the file, metres
+    bool is_far = false;                      // the scene is over 2^12 of its own sizes away from the file's origin
+    std::vector<SuggestedSetting> suggested;  // suggestions of the file: samples, an integrator and its settings, a
+                                              // film
+    std::vector<std::filesystem::path> files; // files that its own file refers to, in the order of reading
+    std::string no_instances;                 // if there are no instances: what the file has instead, and what would
+                                              // be right
 };
 
 /// World-from-local transform of an object with this transform within a node; relative to `origin`, in the

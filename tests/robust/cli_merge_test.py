@@ -9,7 +9,7 @@ import subprocess
 import unittest
 import zlib
 
-from cli_run import PATIENCE_S, PROGRAM, SANITIZED, CliTest, main
+from cli_run import FLOOR, PATIENCE_S, PROGRAM, SANITIZED, CliTest, main, write
 
 SMALL = ["--size", "20x16", "--device", "cpu"]
 UNMETERED = ["--exposure", "0"]
@@ -286,6 +286,29 @@ class Merge(CliTest):
                 self.refuse(2, "merge", names[0], "other.pvf", names[2], "-o", "x.exr", says=["other.pvf", name])
         self.part("other.pvf", "--spp", "6", "--part", "2/3", scene="blind")
         self.refuse(2, "merge", names[0], "other.pvf", names[2], "-o", "x.exr", says=["other.pvf", "hash of the scene"])
+
+    def test_parts_and_checkpoints_do_not_survive_a_change_of_a_file_that_the_scene_refers_to(self):
+        write(self.path("a.obj"), "mtllib a.mtl\nusemtl grey\nvt 0 0\nvt 1 0\nvt 1 1\n" + FLOOR.replace("f 4 3 2 1", "f 3/3 2/2 1/1"))
+        material = "newmtl grey\nKd 0.5 0.5 0.5\nmap_Kd a.hdr\n"
+        texture, heights = ("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n".encode() + bytes([value, 90, 90, 128]) for value in (90, 40))
+        view = ["--eye", "0,2,0.1", "--target", "0,0,0", "--spp", "2", "--integrator", "reyes", "--displacement", "grey=h.hdr,0.01"]
+        for name, before, after in [("a.mtl", material.encode(), material.replace("0.5", "0.6", 1).encode()),
+                                    ("a.hdr", texture, heights), ("h.hdr", heights, texture)]:
+            with self.subTest(name=name):
+                for file, content in [("a.mtl", material.encode()), ("a.hdr", texture), ("h.hdr", heights)]:
+                    with open(self.path(file), "wb") as output:
+                        output.write(content)
+                self.part("1.pvf", "--part", "1/2", "--checkpoint", "c.pvf", *view, scene="a.obj")
+                self.part("2.pvf", "--part", "2/2", *view, scene="a.obj")
+                self.merge("1.pvf", "2.pvf", "-o", "all.exr")
+                with open(self.path(name), "wb") as output:
+                    output.write(after)
+                self.part("2.pvf", "--part", "2/2", *view, scene="a.obj")
+                says = "hash of displacement" if name == "h.hdr" else "hash of the files"
+                self.refuse(2, "merge", "1.pvf", "2.pvf", "-o", "x.exr", says=["2.pvf", says])
+                self.refuse(2, "render", "a.obj", "-o", "1.pvf", "--part", "1/2", "--checkpoint", "c.pvf", *SMALL, *UNMETERED, *view,
+                            says=["c.pvf", says])
+                os.remove(self.path("c.pvf"))
 
     def test_files_that_are_not_films_or_are_damaged_are_refused(self):
         self.part("film.pvf", "--spp", "1", "-o", "film.exr")

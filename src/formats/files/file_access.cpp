@@ -114,6 +114,13 @@ std::optional<fs::path> FileAccess::find_end_of(const fs::path& name, const File
 }
 
 std::optional<fs::path> FileAccess::find(const FileLocation& from, const std::string& reference, Sink& sink) const {
+    const std::optional<fs::path> file = find_unlisted(from, reference, sink);
+    if (file && found_->known.insert(*file).second) found_->in_order.push_back(*file);
+    return file;
+}
+
+std::optional<fs::path> FileAccess::find_unlisted(const FileLocation& from, const std::string& reference,
+                                                  Sink& sink) const {
     check_is_name(from, reference);
     const fs::path name = portable_path(reference);
     const Located wanted = locate(folder_of(from) / name);

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -31,18 +32,29 @@ public:
     /// `allow_path`, if the only such file is outside.
     std::optional<std::filesystem::path> find(const FileLocation& from, const std::string& reference, Sink& sink) const;
 
+    /// The files that find() has returned, in this order, each once.
+    const std::vector<std::filesystem::path>& found() const { return found_->in_order; }
+
 private:
+    struct Found {
+        std::vector<std::filesystem::path> in_order;
+        std::set<std::filesystem::path> known;
+    };
+
     struct Located {
         bool is_there, is_allowed;
         std::filesystem::path path;
     };
     bool is_allowed(const std::filesystem::path& canonical) const;
     Located locate(const std::filesystem::path& name) const;
+    std::optional<std::filesystem::path> find_unlisted(const FileLocation& from, const std::string& reference,
+                                                       Sink& sink) const;
     std::optional<std::filesystem::path> find_end_of(const std::filesystem::path& name, const FileLocation& from,
                                                      Sink& sink) const;
 
     std::vector<std::filesystem::path> roots_; // canonical
     std::shared_ptr<FolderListing> listing_;   // listing of roots_
+    std::shared_ptr<Found> found_ = std::make_shared<Found>();
 };
 
 } // namespace pertev

@@ -31,9 +31,10 @@ struct RenderSetup {
     Messages of_light, of_camera; // messages of choosing them, which belong to each picture that keeps them
     bool must_choose = false;     // the scene was edited since they were chosen
     uint32_t changed_parts = 0;   // parts of the scene (ScenePart) that have changed since its owner took them
-    std::string hash;      // scene_hash() when it was read, if the setup is kept; empty: records take it themselves
-    double load_s = 0;     // seconds of reading
-    std::size_t bytes = 0; // that rendering takes on the device, as predicted
+    std::string hash;          // scene_hash() when it was read, if the setup is kept; empty: records take it themselves
+    std::string hash_of_files; // hash of the files that the scene's refers to; empty: none
+    double load_s = 0;         // seconds of reading
+    std::size_t bytes = 0;     // that rendering takes on the device, as predicted
     std::shared_ptr<Queue> queue;               // whoever keeps arrays on the device shares it
     std::vector<std::shared_ptr<Queue>> queues; // the devices that render a picture together; the first is `queue`
 

@@ -9,6 +9,7 @@
 
 #include "base/hash.h"
 #include "base/read_file.h"
+#include "session/height_maps.h"
 #include "settings/setting_table.h"
 
 namespace pertev {
@@ -44,6 +45,7 @@ DecidingSettings deciding_settings(const PictureOptions& options, const PictureR
         known != settings.end() ? void(known->second = value) : void(settings.emplace_back(name, value));
     };
     put("hash of the scene's file", record.scene.hash);
+    put("hash of the files that the scene's refers to", record.scene.hash_of_files);
     for (const Setting& setting : all_settings()) {
         if (setting.is_kept && (setting.verbs & kRender) != 0)
             put(setting.name, fmt::format("{}", fmt::join(texts_of(options, setting), " ")));
@@ -58,6 +60,10 @@ DecidingSettings deciding_settings(const PictureOptions& options, const PictureR
     put("hash of camera_path", hash_of_file(options.camera_path));
     put("hash of camera_from", hash_of_file(options.scene.camera.camera_from));
     if (options.camera_list) put("cameras", hash_of_cameras(*options.camera_list));
+    std::vector<std::string> height_maps;
+    for (const std::string& text : options.displacement)
+        height_maps.push_back(hash_of_file(parse_height_map(text).file));
+    put("hash of displacement", fmt::format("{}", fmt::join(height_maps, " ")));
     put("hash of environment", hash_of_file(options.scene.environment));
     return settings;
 }

@@ -25,6 +25,7 @@ struct SceneSource : SceneOptions {
     std::optional<double> time_s;   // time of the picture; none: at rest
     std::optional<Shutter> shutter; // open around that time; none: the picture shows one moment
     std::string hash;               // scene_hash() of settings/settings_file.h; empty if unknown
+    std::string hash_of_files;      // hash of the other files that it refers to; empty if there are none
     std::string settings;           // all given settings, as JSON (settings/settings_file.h); empty if unknown
     // Names of settings that were chosen for want of others, from the scene's file, from a settings file, from flags.
     std::string by_default, by_scene, by_settings, by_caller;
