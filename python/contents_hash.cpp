@@ -3,6 +3,7 @@
 #include <span>
 
 #include "base/hash.h"
+#include "scene/intensity_table.h"
 
 namespace pertev {
 
@@ -47,6 +48,9 @@ std::string hash_of_contents(const Scene& scene) {
         const Vec3 p = light.position, d = light.direction;
         add_all(std::vector{static_cast<float>(light.kind), p.x, p.y, p.z, d.x, d.y, d.z, light.intensity.r,
                             light.intensity.g, light.intensity.b, light.cos_inner, light.cos_outer, light.range});
+        if (!parts_of(light.kind).table) continue;
+        hasher.add_value(light.table->hash);
+        add_all(std::vector{light.up.x, light.up.y, light.up.z, light.is_mirrored ? 1.0f : 0.0f});
     }
     for (const Camera& camera : scene.cameras) {
         add_text(camera.name);

@@ -1,6 +1,13 @@
 """Mutations of readers of files: meshes, materials, textures. See mutations.py."""
 
 MUTATIONS = [
+    ("a quarter of an IES file is repeated, not mirrored", "unit/read_ies", ("src/formats/ies/read_ies.cpp", "return std::abs(180 - angle);", "return angle - 90;")),
+    ("candelas of an IES file forget its multiplier", "unit/read_ies", ("src/formats/ies/read_ies.cpp", "numbers.next(\"candelas\") * factor", "numbers.next(\"candelas\")")),
+    ("photometry of type B has the poles of type A", "unit/read_ies", ("src/formats/ies/read_ies.cpp", "const bool is_a = photometry.type == PhotometryType::A;", "const bool is_a = true;")),
+    ("the ballast-lamp factor counts in all editions of IES files", "unit/read_ies", ("src/formats/ies/read_ies.cpp", "if (is_old) factor *= of_lamp;", "factor *= of_lamp;")),
+    ("a projector shows its picture mirrored", "unit/goniometric_light", ("src/shading/goniometric_light.cpp", "(light.is_mirrored ? -1.0f : 1.0f)", "(light.is_mirrored ? 1.0f : -1.0f)")),
+    ("a table's cell is sampled without its solid angle", "unit/goniometric_light", ("src/shading/goniometric_light.cpp", "* from.measure_of_cell(column, row)", "")),
+    ("power of a goniometric light in pbrt counts its brightest direction", "unit/read_pbrt_lights", ("src/formats/pbrt/lights.cpp", "power / of_1", "power / (4 * kPiExact)")),
     ("a written material forgets its roughness", "unit/write_glb", ("src/formats/gltf_writer/material_writer.cpp", 'members.add_number("roughnessFactor", m_.roughness, 1);', "")),
     ("a written emission has no strength above 1", "unit/write_glb", ("src/formats/gltf_writer/material_writer.cpp", "if (strength != 1)", "if (strength < 1)")),
     ("a written image keeps its encoding in a slot of another", "unit/write_glb",
@@ -85,7 +92,7 @@ MUTATIONS = [
     ("pbrt: a light of pbrt-v4 has its spectrum's values", "unit/read_pbrt_lights", ("src/formats/pbrt/colors.cpp", "context.is_version_3 ? color_of_light(spectrum)", "true ? color_of_light(spectrum)")),
     ("pbrt: a power is that of all triangles", "unit/read_pbrt_lights", ("src/formats/described/assemble.cpp", "of.is_quadric ? 1 :", "true ? 1 :")),
     ("pbrt: a dark file gets a sky", "unit/read_pbrt_lights", ("src/formats/described/assemble.cpp", "if (!scene.environment) scene.environment = Environment", "if (false) scene.environment = Environment")),
-    ("pbrt: the octahedron's lower half is not turned", "unit/read_pbrt_lights", ("src/formats/described/environment.cpp", "        u = 1 - u;\n", "")),
+    ("pbrt: the octahedron's lower half is not turned", "unit/read_pbrt_lights", ("src/math/octahedron.h", "is_below ? 1 - across : along", "is_below ? across : along")),
     ("pbrt: an infinite light ignores its transform", "unit/read_pbrt_lights", ("src/formats/described/assemble.cpp", "inverse(without_translation(compose(scene_from_file, light.world_from_light)));", "inverse(without_translation(scene_from_file));")),
     ("pbrt: remapped roughness is the width", "unit/read_pbrt_materials", ("src/formats/described/surface.cpp", "return sqrt(sqrt(clamp(value, 0.0f, 1.0f)));", "return sqrt(clamp(value, 0.0f, 1.0f));")),
     ("pbrt: roughness along u is that along v", "unit/read_pbrt_materials", ("src/formats/described/make_surface.cpp", "along > across ? 0.0f", "along < across ? 0.0f")),
@@ -137,7 +144,7 @@ MUTATIONS = [
     ("mitsuba: counts of serialized meshes are believed", "unit/read_mitsuba_shapes", ("src/formats/mitsuba/read_serialized.cpp", "if (vertices > taken.left() / (3 * number) || triangles > taken.left() / 12)", "if (false)")),
     ("mitsuba: a serialized file has one mesh", "unit/read_mitsuba_shapes", ("src/formats/mitsuba/read_serialized.cpp", "const uint64_t begin = offset(index)", "const uint64_t begin = offset(0)")),
     ("mitsuba: an envmap is around +z", "unit/read_mitsuba_shapes", ("src/formats/described/environment.cpp", "is_around_y ? atan2(d.x, -d.z)", "false ? atan2(d.x, -d.z)")),
-    ("mitsuba: a spot's inner cone is its outer one", "unit/read_mitsuba_shapes", ("src/formats/mitsuba/emitters.cpp", "0.75 * cutoff", "1.0 * cutoff")),
+    ("mitsuba: a spot's inner cone is its outer one", "unit/read_mitsuba_shapes", ("src/formats/mitsuba/projected_light.cpp", "0.75 * cutoff_deg", "1.0 * cutoff_deg")),
     ("a light of pbrt may have any strength", "unit/read_pbrt_lights",
      ("src/formats/described/assemble.cpp", "if (!is_light(light.intensity)) {", "if (false) {")),
     ("infinite lights add up beyond all floats", "unit/read_pbrt_lights",

@@ -194,7 +194,7 @@ std::vector<std::string> names_of_objects(const Objects& objects) {
 std::vector<std::string> describe_lights(const Scene& scene) {
     std::vector<std::string> lines;
     for (const Light& light : scene.lights) {
-        const char* const kinds[] = {"point", "spot", "directional"}; // in the order of LightKind
+        const char* const kinds[] = {"point", "spot", "directional", "goniometric"}; // in the order of LightKind
         const LightParts parts = parts_of(light.kind);
         const DoubleVec3 at = in_file(scene, light.position);
         const Rgb c = light.intensity;

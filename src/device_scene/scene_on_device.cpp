@@ -1,5 +1,7 @@
 #include "device_scene/scene_on_device.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "device_scene/medium_boundaries.h"
 #include "device_scene/pack_texels.h"
@@ -86,7 +88,8 @@ PartArrays list_instances(const PlacedScene& prepared, Instances& instances, Sce
 
 PartArrays list_materials(const Scene& scene, std::vector<MaterialParameters>& materials, SceneView& view) {
     for (const Material& material : scene.materials) materials.push_back(parameters_for_device(material));
-    view.variant = variant_of(materials);
+    const bool has_tables = std::ranges::any_of(scene.lights, [](const Light& l) { return parts_of(l.kind).table; });
+    view.variant = has_tables ? ShadingVariant::General : variant_of(materials);
     PartArrays arrays;
     arrays.add(materials, view.materials);
     return arrays;

@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "scene/intensity_table.h"
+
 namespace pertev {
 namespace {
 
@@ -141,6 +143,11 @@ Hash128 lights_hash(const Scene& scene) {
         if (parts.cone) {
             hasher.add_value(light.cos_inner);
             hasher.add_value(light.cos_outer);
+        }
+        if (parts.table) {
+            hasher.add_value(light.table->hash);
+            add_bytes(hasher, light.up);
+            hasher.add_value(static_cast<uint32_t>(light.is_mirrored));
         }
     }
     hasher.add_value(static_cast<uint64_t>(scene.lights.size()));

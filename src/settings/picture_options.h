@@ -34,12 +34,12 @@ struct SceneOptions {
     std::string environment; // a file, or "r,g,b"
     std::string sun_sky;     // formats/sun_sky/sun_sky.h
     float environment_rotation_deg = 0, environment_scale = 1;
-    std::string medium;                           // around everything; empty: the file's
-    std::string ground = "auto";                  // auto, on or off
-    std::vector<std::string> emitters, materials; // changes of the scene
-    std::vector<std::string> movable;             // names of instances
-    std::string author, license;                  // the metadata show them
-    float efficacy = 0;                           // lm/W; 0: by the kind of file
+    std::string medium;                                     // around everything; empty: the file's
+    std::string ground = "auto";                            // auto, on or off
+    std::vector<std::string> emitters, materials, profiles; // changes of the scene
+    std::vector<std::string> movable;                       // names of instances
+    std::string author, license;                            // the metadata show them
+    float efficacy = 0;                                     // lm/W; 0: by the kind of file
     bool two_sided_lights = false, show_back_faces = false;
 };
 

@@ -130,6 +130,10 @@ std::vector<Setting> scene_settings() {
             "The amount of light of all lights with this name (* and ? are wildcards) in W, lm, cd, lx or nits, for "
             "example bulb=800lm. It may be given again.",
             On{kScenes}, Mark::OpensScene, Recorded::AsUsed),
+        row("ies", "Lamps", "NAME=FILE", FIELD(scene.profiles),
+            "The IES photometric file of all point and spot lights with this name, which gives them its candelas. It "
+            "may be given again.",
+            On{kScenes}, Mark::OpensScene, Recorded::AsUsed),
         row("efficacy", "Lamps", "LM_PER_W", FIELD(scene.efficacy), "The number of lumens per watt.", Above{0, 1e6},
             Unit{"lm/W"}, Otherwise{"683; 1 for glTF, whose candela, lux and nits are read as watts"}, On{kScenes},
             Mark::OpensScene),

@@ -101,6 +101,21 @@ void add_triangles(const Scene& scene, Vec3 centre, LightSetData& data) {
     }
 }
 
+void add_punctual_lights(const Scene& scene, Vec3 centre, LightSetData& data) {
+    std::map<const IntensityTable*, uint32_t> first_with; // the number of the first light with a table
+    for (const Light& light : scene.lights) {
+        PunctualLight punctual = {light.kind,      light.position - centre, light.direction, light.intensity,
+                                  light.cos_inner, light.cos_outer,         light.range};
+        punctual.number = static_cast<uint32_t>(data.punctual.size());
+        if (parts_of(light.kind).table) {
+            punctual.table = static_cast<uint32_t>(data.goniometric.tables.size());
+            const auto [entry, is_new] = first_with.try_emplace(light.table.get(), punctual.table);
+            punctual.cos_outer = data.goniometric.add(light, entry->second);
+        }
+        data.punctual.push_back(punctual);
+    }
+}
+
 Vec3 middle_of(const EmissiveTriangle& triangle) { return triangle.a + (triangle.ab + triangle.ac) / 3.0f; }
 
 /// A line along which points lie, and whether they do.
@@ -238,9 +253,12 @@ std::vector<TreeLight> list_tree_lights(const LightSetData& data, std::span<cons
         TreeLight& light = lights[triangles + i];
         light.bounds.extend(punctual.position);
         light.axis = punctual.direction;
-        const bool is_spot = punctual.kind == LightKind::Spot;
-        light.emission_angle = is_spot ? acos(clamp(punctual.cos_outer, -1.0f, 1.0f)) : kPi;
+        const bool is_point = punctual.kind == LightKind::Point;
+        light.emission_angle = is_point ? kPi : acos(clamp(punctual.cos_outer, -1.0f, 1.0f));
         light.power = of_punctual[i] > 0 ? kPiDouble * mean_of_channels(punctual.intensity) : 0;
+        if (punctual.kind == LightKind::Goniometric) { // pi times its mean intensity in the cone
+            light.power = 0.5 * of_punctual[i] / static_cast<double>(1 - punctual.cos_outer);
+        }
     }
     return lights;
 }
@@ -280,10 +298,7 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
         }
     }
     add_triangles(scene, centre, data);
-    for (const Light& light : scene.lights) {
-        data.punctual.push_back({light.kind, light.position - centre, light.direction, light.intensity, light.cos_inner,
-                                 light.cos_outer, light.range, static_cast<uint32_t>(data.punctual.size())});
-    }
+    add_punctual_lights(scene, centre, data);
     if (scene.environment) {
         if (environment == nullptr) {
             environment = std::make_shared<const EnvironmentData>(build_environment_light(*scene.environment, sink));
@@ -306,7 +321,7 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
     };
     data.near_count = static_cast<uint32_t>(data.source_powers.size());
     for (const PunctualLight& light : data.punctual) {
-        const double power = punctual_power(light, mean_of_channels(light.intensity), radius);
+        const double power = punctual_power(scene.lights[light.number], mean_of_channels(light.intensity), radius);
         add_source(power, !parts_of(light.kind).position);
     }
     if (data.environment) add_source(environment_power(*data.environment, radius), true);

@@ -2,9 +2,10 @@
 
 // Collects a scene's lights and builds the table that samples them by power. Powers, in W: for a triangle pi area
 // mean emission, twice that if both of its faces emit; for a point light 4 pi intensity; for a spot the part in its
-// cone; for a directional light pi R^2 irradiance, and for the environment 4 pi^2 R^2 mean radiance, with the radius
-// R of the scene. R says little about the light inside a house, so if there are both near and far lights, their
-// shares of the samples are set separately (render/balance_lights.h).
+// cone; for a goniometric light intensity times the integral of its table; for a directional light pi R^2 irradiance,
+// and for the environment 4 pi^2 R^2 mean radiance, with the radius R of the scene. R says little about the light
+// inside a house, so if there are both near and far lights, their shares of the samples are set separately
+// (render/balance_lights.h).
 
 #include <cstdint>
 #include <memory>
@@ -23,6 +24,7 @@ struct LightSetData {
     std::vector<EmissiveTriangle> triangles;
     std::vector<uint32_t> triangle_order, triangle_starts, triangle_guides;
     std::vector<PunctualLight> punctual;
+    GoniometricTables goniometric;
     std::shared_ptr<const RequestedLightTree> tree; // nodes of LightSetView::tree; null before build_light_set
     std::vector<uint32_t> first_light;
     std::vector<SurfaceEmission> emissions;
@@ -63,6 +65,10 @@ void visit_arrays(const LightSetData& data, LightSetView& view, const Visit& vis
     visit(data.triangle_guides, view.triangle_guides);
     visit(data.triangles, view.triangles);
     visit(data.punctual, view.punctual);
+    visit(data.goniometric.tables, view.goniometric.tables);
+    visit(data.goniometric.values, view.goniometric.values);
+    visit(data.goniometric.starts, view.goniometric.starts);
+    visit(data.goniometric.guides, view.goniometric.guides);
     visit(data.first_light, view.first_light);
     visit(data.emissions, view.emissions);
 }

@@ -49,7 +49,7 @@ HD inline bool find_local_light(const LightSetView& view, const EmitterPoint& po
     measure = 1;
     if (point.kind() == SourceKind::Punctual) {
         if (point.index >= view.punctual_count) return false; // from another scene
-        const bool arrives = sample_punctual_light(view.punctual[point.index], 1.0f, context.point, sample);
+        const bool arrives = sample_punctual_light<kLook>(view, point.index, 1.0f, context.point, sample);
         sample.primitive = point.index;
         return arrives;
     }

@@ -95,6 +95,7 @@ struct LightSetView {
     const TextureImageView* images = nullptr;   // [images of the scene]
     const float* linear_from_srgb = nullptr;    // [256]
     EnvironmentView environment;                // if there is one
+    GoniometricTablesView goniometric;          // tables of punctual lights
 
     HD bool has_environment() const { return environment_source != kNoLight; }
     HD bool has_lights() const { return choice.starts != nullptr; }
@@ -207,9 +208,21 @@ HD inline bool triangle_light_at(const LightSetView& view, uint32_t light, float
     return true;
 }
 
-HD inline bool sample_punctual_light(const PunctualLight& light, float pmf, Vec3 from_point, LightSample& sample) {
+/// Samples the punctual light `number`, as sample_light does for `from_point` if it selects it with probability `pmf`.
+/// Returns false if nothing arrives. Tables of goniometric lights count for coated emitters' look alone, which all
+/// scenes with such a light have; for others the light is a point.
+template <EmitterLook kLook>
+HD inline bool sample_punctual_light(const LightSetView& view, uint32_t number, float pmf, Vec3 from_point,
+                                     LightSample& sample) {
+    const PunctualLight& light = view.punctual[number];
     PunctualArrival arrival;
     if (!find_punctual_light(light, from_point, arrival)) return false;
+    if constexpr (kLook == EmitterLook::Coated) {
+        if (light.kind == LightKind::Goniometric) {
+            arrival.irradiance = goniometric_value(view.goniometric, light.table, -arrival.wi) * arrival.irradiance;
+            if (is_black(arrival.irradiance)) return false;
+        }
+    }
     sample = {};
     sample.wi = arrival.wi;
     sample.distance = arrival.distance;
@@ -307,7 +320,7 @@ struct SampleOfKind {
         }
     }
     HD bool punctual(uint32_t number, float pmf) const {
-        const bool arrives = sample_punctual_light(view.punctual[number], pmf, context.point, sample);
+        const bool arrives = sample_punctual_light<kLook>(view, number, pmf, context.point, sample);
         sample.primitive = number;
         return arrives;
     }

@@ -14,6 +14,7 @@
 #include "math/vec2.h"
 #include "math/vec3.h"
 #include "scene/light.h"
+#include "shading/goniometric_light.h"
 
 namespace pertev {
 
@@ -24,6 +25,7 @@ struct PunctualLight {
     Rgb intensity;            // W/sr; Directional: W/m2
     float cos_inner = 1, cos_outer = 0, range = 0;
     uint32_t number = 0; // index in Scene::lights, whose order differs from the table's
+    uint32_t table = 0;  // Goniometric: its table; cos_outer is that of a cone around all of its light
 };
 
 /// Fraction of the intensity at `distance` under a window of `range` metres (0: none).
@@ -33,10 +35,11 @@ HD inline float range_falloff(float range, float distance) {
 
 /// Fraction of a punctual light's intensity at `distance` (metres) in direction `wi` (towards the light), as
 /// KHR_lights_punctual recommends: the spot's cone is a smooth step in the cosine, squared, and the range is a
-/// window.
+/// window. The value of a table is another factor.
 HD inline float punctual_falloff(const PunctualLight& light, Vec3 wi, float distance) {
     switch (light.kind) {
     case LightKind::Point:
+    case LightKind::Goniometric:
         return range_falloff(light.range, distance);
     case LightKind::Spot: {
         const float width = max(0.001f, light.cos_inner - light.cos_outer);
@@ -57,11 +60,12 @@ struct PunctualArrival {
 };
 
 /// Finds the light that arrives at `from_point`. Returns false if nothing arrives: outside a cone or the range, or if
-/// the point is the light's position.
+/// the point is the light's position. The value of a table is another factor.
 HD inline bool find_punctual_light(const PunctualLight& light, Vec3 from_point, PunctualArrival& arrival) {
     switch (light.kind) {
     case LightKind::Point:
-    case LightKind::Spot: {
+    case LightKind::Spot:
+    case LightKind::Goniometric: {
         const Vec3 to_light = light.position - from_point;
         const float distance_squared = length_squared(to_light);
         arrival.distance = sqrt(distance_squared);
@@ -98,6 +102,7 @@ HD inline float depth_of_beam(const PunctualLight& light) {
     case LightKind::Point:
         return 2;
     case LightKind::Spot:
+    case LightKind::Goniometric:
         return 1.0f - light.cos_outer;
     case LightKind::Directional:
         break;
@@ -112,48 +117,60 @@ struct PunctualEmission {
     float pdf;            // 1/sr; Directional: 1/m2, across its direction
 };
 
-/// Density of emit_from for a ray through the scene.
-HD inline float pdf_emission(const PunctualLight& light, const WorldSphere& world) {
+/// Density of emit_from for a ray along `direction` through the scene. `tables` are those of Goniometric lights.
+HD inline float pdf_emission(const PunctualLight& light, const WorldSphere& world, Vec3 direction,
+                             const GoniometricTablesView& tables) {
     switch (light.kind) {
     case LightKind::Point:
         return pdf_uniform_sphere();
     case LightKind::Spot:
         return pdf_uniform_cone(depth_of_beam(light));
+    case LightKind::Goniometric:
+        return pdf_goniometric(tables, light.table, direction);
     case LightKind::Directional:
         break;
     }
     return pdf_disc(world);
 }
 
-/// Distance in metres beyond which a point or spot light gives no light; kInfinity: unlimited.
+/// Distance in metres beyond which a light with a position gives no light; kInfinity: unlimited.
 HD inline float reach_of(const PunctualLight& light) { return light.range > 0 ? light.range : kInfinity; }
 
 /// Samples a ray that leaves the light.
-HD inline PunctualEmission emit_from(const PunctualLight& light, const WorldSphere& world, Vec2 u) {
-    const float pdf = pdf_emission(light, world);
+HD inline PunctualEmission emit_from(const PunctualLight& light, const WorldSphere& world, Vec2 u,
+                                     const GoniometricTablesView& tables) {
     switch (light.kind) {
     case LightKind::Point:
-        return {light.position, sample_uniform_sphere(u), reach_of(light), pdf};
+        return {light.position, sample_uniform_sphere(u), reach_of(light), pdf_uniform_sphere()};
     case LightKind::Spot: {
         const Vec3 local = sample_uniform_cone(u, depth_of_beam(light));
-        return {light.position, normalize(make_frame(light.direction).to_world(local)), reach_of(light), pdf};
+        return {light.position, normalize(make_frame(light.direction).to_world(local)), reach_of(light),
+                pdf_uniform_cone(depth_of_beam(light))};
+    }
+    case LightKind::Goniometric: {
+        PunctualEmission emission = {light.position, {}, reach_of(light), 0};
+        emission.direction = sample_goniometric(tables, light.table, u, emission.pdf);
+        return emission;
     }
     case LightKind::Directional:
         break;
     }
-    return {sample_disc(world, light.direction, u), light.direction, kInfinity, pdf};
+    return {sample_disc(world, light.direction, u), light.direction, kInfinity, pdf_disc(world)};
 }
 
 /// Power of an emission, W, divided by its density and by `pmf`, the probability of the light.
-HD inline Rgb emitted_power(const PunctualLight& light, const PunctualEmission& emission, float pmf) {
-    return (punctual_falloff(light, -emission.direction, 0) / (pmf * emission.pdf)) * light.intensity;
+HD inline Rgb emitted_power(const PunctualLight& light, const PunctualEmission& emission, float pmf,
+                            const GoniometricTablesView& tables) {
+    const float falloff = punctual_falloff(light, -emission.direction, 0);
+    const Rgb intensity = (falloff / (pmf * emission.pdf)) * light.intensity;
+    if (light.kind != LightKind::Goniometric) return intensity;
+    return goniometric_value(tables, light.table, emission.direction) * intensity;
 }
 
-/// Returns the power in watts of a Light or a PunctualLight with this intensity; for a directional light, what enters
-/// a disc of `radius` metres. The edge of a cone is the square of a ramp in the cosine, which contributes a third of
-/// its width.
-template <class AnyLight>
-double punctual_power(const AnyLight& light, double intensity, double radius) {
+/// Returns the power in watts of a light with this intensity; for a directional light, what enters a disc of `radius`
+/// metres. The edge of a cone is the square of a ramp in the cosine, which contributes a third of its width. A table
+/// counts by the mean of its channels.
+inline double punctual_power(const Light& light, double intensity, double radius) {
     constexpr double pi = 3.141592653589793;
     const double inner = static_cast<double>(light.cos_inner), outer = static_cast<double>(light.cos_outer);
     switch (light.kind) {
@@ -161,6 +178,11 @@ double punctual_power(const AnyLight& light, double intensity, double radius) {
         return 2 * pi * intensity * 2;
     case LightKind::Spot:
         return 2 * pi * intensity * ((1 - inner) + std::max(inner - outer, 0.001) / 3);
+    case LightKind::Goniometric: {
+        const Rgb of_1 = light.table->integral;
+        return intensity * (static_cast<double>(of_1.r) + static_cast<double>(of_1.g) + static_cast<double>(of_1.b)) /
+               3;
+    }
     case LightKind::Directional:
         break;
     }

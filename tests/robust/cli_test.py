@@ -19,15 +19,15 @@ FLAGS = {
               "--two-sided-lights --show-back-faces --size --tone-map --exposure --transparent --aov --spp --time-limit --denoise "
               "--integrator --max-depth --ambient --shading --wireframe --seed --sampler --filter --filter-radius --clamp --mip-maps --light-choice --device --threads "
               "--no-bvh-cache --build --structure --traversal --rta --order --distribution --time --frames --fps --camera-path "
-              "--turntable --continue --cuts --lpe --lamp --efficacy --false-color --false-color-range --f-number --shutter-time --iso "
+              "--turntable --continue --cuts --lpe --lamp --ies --efficacy --false-color --false-color-range --f-number --shutter-time --iso "
               "--shutter --shading-rate --displacement --photons --gather --radius --caustic-radius --nearest "
               "--accuracy --hemisphere-rays --show-records --patch-size --subdivisions --contrast --form-factors --patch-rays --hemicube "
               "--solver --tolerance --steps --link-error --max-memory --solution --flat-patches --real-time --restir --restir-history --resolution-scale --history --passes --no-anti-alias "
               "--no-firefly-clamping --no-temporal-gradients --no-history-clamping --no-reconstruction --animation --file-scene --variant --define --movable --material --max-texture-size --ground --author --license --settings",
-    "measure": "--at --normal --spp --max-depth --seed --lamp --efficacy --time --allow-path --up-axis --unit --environment --sun-sky --environment-rotation "
+    "measure": "--at --normal --spp --max-depth --seed --lamp --ies --efficacy --time --allow-path --up-axis --unit --environment --sun-sky --environment-rotation "
                "--environment-scale --medium --two-sided-lights --device --threads --no-bvh-cache --animation --file-scene --variant --define --material --max-texture-size --strict --quiet -q --json",
     "solve radiosity": "--output -o --patch-size --subdivisions --contrast --form-factors --patch-rays --hemicube --solver "
-                       "--tolerance --steps --link-error --max-memory --seed --time --lamp --efficacy --allow-path --up-axis --unit --environment --sun-sky --environment-rotation "
+                       "--tolerance --steps --link-error --max-memory --seed --time --lamp --ies --efficacy --allow-path --up-axis --unit --environment --sun-sky --environment-rotation "
                        "--environment-scale --two-sided-lights --threads --no-bvh-cache --animation --file-scene --variant --define --material --max-texture-size --strict --quiet -q --json",
     "info": "--file-scene --variant --define --material --max-texture-size --allow-path --up-axis --unit --settings --quiet -q --json",
     "check": "--file-scene --variant --define --material --max-texture-size --allow-path --up-axis --unit --quiet -q --json",

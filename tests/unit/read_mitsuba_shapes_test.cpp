@@ -12,6 +12,7 @@
 #include "formats/read_scene.h"
 #include "image/write_image.h"
 #include "math/portable_math.h"
+#include "scene/intensity_table.h"
 #include "tests/support/options.h"
 #include "tests/support/thrown_error.h"
 #include "tests/support/write_text.h"
@@ -327,8 +328,12 @@ TEST_CASE("mitsuba: point, spot and directional emitters") {
     CHECK(scene.lights[0].intensity == Rgb{4, 5, 6});
     CHECK(scene.lights[1].direction.z == doctest::Approx(-1));
     CHECK(scene.lights[1].position.z == doctest::Approx(5));
-    CHECK(scene.lights[1].cos_outer == doctest::Approx(cos(kPi / 6)));
-    CHECK(scene.lights[1].cos_inner == doctest::Approx(cos(kPi / 8))); // three quarters of the angle
+    REQUIRE(scene.lights[1].kind == LightKind::Goniometric);
+    CHECK(scene.lights[1].table->last_angle == doctest::Approx(kPi / 6));
+    const std::vector<float>& ramp = scene.lights[1].table->values.pixels; // linear from three quarters of the angle
+    CHECK(ramp[3 * 768] == 1);
+    CHECK(ramp[3 * 896] == doctest::Approx(0.5));
+    CHECK(ramp[3 * 1024] == doctest::Approx(0).epsilon(1e-5));
     CHECK(scene.lights[2].direction == Vec3{0, -1, 0});
     CHECK(scene.lights[2].intensity == grey(7));
     Messages messages;
@@ -337,6 +342,47 @@ TEST_CASE("mitsuba: point, spot and directional emitters") {
                               messages);
     REQUIRE(messages.left_out().size() == 2);
     CHECK(messages.left_out()[1].find("did you mean \"spot\"?") != std::string::npos);
+}
+
+TEST_CASE("mitsuba: a projector shows its picture upright, with pi times its irradiance") {
+    const fs::path folder = test::scratch_folder();
+    Image wide{.width = 4, .height = 2, .channels = 3, .pixels = std::vector<float>(24, 1.0f)};
+    wide.pixels[0] = 8; // red, upper left
+    write_exr(folder / "picture.exr", wide);
+    const std::string picture = "<texture type=\"bitmap\" name=\"{}\">" + named_file("picture.exr") +
+                                "<string name=\"filter_type\" value=\"nearest\"/></texture>";
+    const std::string look =
+        "<transform name=\"to_world\"><lookat origin=\"0,0,5\" target=\"0,0,0\" up=\"0,1,0\"/></transform>";
+    Messages messages;
+    const Scene scene =
+        load_mitsuba_shapes(folder,
+                            shape_of("rectangle") +
+                                "<emitter type=\"projector\"><float name=\"fov\" value=\"90\"/><float name=\"scale\" "
+                                "value=\"0.5\"/>" +
+                                fmt::format(fmt::runtime(picture), "irradiance") + look +
+                                "</emitter>"
+                                "<emitter type=\"spot\">" +
+                                fmt::format(fmt::runtime(picture), "texture") + look +
+                                "<float name=\"cutoff_angle\" value=\"45\"/></emitter>",
+                            messages);
+    CHECK(messages.left_out() == std::vector<std::string>{});
+    REQUIRE(scene.lights.size() == 2);
+    const Light& projector = scene.lights[0];
+    CHECK(projector.direction.z == doctest::Approx(-1));
+    CHECK(projector.up.y == doctest::Approx(1));
+    CHECK_FALSE(projector.is_mirrored);
+    CHECK(projector.intensity.r == doctest::Approx(4 * kPi));
+    CHECK(projector.table->layout == TableLayout::PictureIrradiance);
+    CHECK(projector.table->half_width == doctest::Approx(1));
+    CHECK(projector.table->half_height == doctest::Approx(0.5));
+    // The picture of a spot is turned by half a circle, square, and falls off in the angle.
+    const Light& spot = scene.lights[1];
+    CHECK(spot.up.y == doctest::Approx(-1));
+    CHECK_FALSE(spot.is_mirrored);
+    CHECK(spot.table->half_width == spot.table->half_height);
+    const Image& values = spot.table->values;
+    CHECK(*values.at(values.width / 2, values.height / 2) > 0.99f / 8);
+    CHECK(*values.at(0, values.height / 2) == doctest::Approx(0).epsilon(0.01));
 }
 
 TEST_CASE("mitsuba: a constant emitter and an envmap are the environment") {

@@ -3,13 +3,15 @@
 
 #include <doctest/doctest.h>
 
-#include "formats/described/environment.h"
 #include "formats/read_scene.h"
 #include "formats/spectra/named_spectra.h"
 #include "formats/spectra/spectrum.h"
 #include "image/write_image.h"
+#include "math/octahedron.h"
 #include "math/portable_math.h"
+#include "scene/intensity_table.h"
 #include "scene/metals.h"
+#include "tests/support/lit_scenes.h"
 #include "tests/support/options.h"
 #include "tests/support/write_text.h"
 
@@ -136,15 +138,76 @@ TEST_CASE("pbrt: lights without a size") {
     check_near(scene.lights[0].intensity, {2, 4, 6});
     check_near(scene.lights[0].position, {1, 5, 0});
     check_near(scene.lights[1].intensity, {1, 1, 1});
-    CHECK(scene.lights[2].kind == LightKind::Spot);
+    REQUIRE(scene.lights[2].kind == LightKind::Goniometric);
     check_near(scene.lights[2].direction, {0, -1, 0});
-    CHECK(scene.lights[2].cos_outer == doctest::Approx(0.5));
-    CHECK(scene.lights[2].cos_inner == doctest::Approx(0.70711));
+    CHECK(scene.lights[2].table->last_angle == doctest::Approx(kPi / 3));
+    const std::vector<float>& ramp = scene.lights[2].table->values.pixels; // 3/4 of the way it begins, in the angle
+    CHECK(ramp[3 * 768] == 1);
+    CHECK(ramp[3 * 769] < 1);
+    const double t =
+        (static_cast<double>(std::cos(0.875f * kPi / 3)) - 0.5) / (std::sqrt(0.5) - 0.5); // pbrt's smooth step
+    CHECK(ramp[3 * 896] == doctest::Approx(t * t * (3 - 2 * t)).epsilon(1e-4));
     CHECK(scene.lights[3].kind == LightKind::Directional);
     check_near(scene.lights[3].direction, {0, -1, 0});
     check_near(scene.lights[3].intensity, {3, 3, 3});
     check_near(scene.lights[4].direction, {0, 0, 1});
     check_near(scene.lights[4].intensity, {7, 7, 7});
+}
+
+TEST_CASE("pbrt: goniometric and projection lights face where pbrt has them") {
+    const fs::path folder = test::scratch_folder();
+    // Three bright pixels: towards +x of the octahedron, which is +x of the light, and +y, which is its +z.
+    Image square{.width = 8, .height = 8, .channels = 3, .pixels = std::vector<float>(192, 0.0f)};
+    for (const std::size_t pixel : {8 * 3 + 7, 8 * 4 + 7, 8 * 7 + 4}) {
+        for (std::size_t channel = 0; channel < 3; ++channel) square.pixels[3 * pixel + channel] = 2;
+    }
+    write_exr(folder / "lamp.exr", square);
+    const std::string file = " \"string filename\" \"lamp.exr\"\n";
+    const auto load = [&](const std::string& light, const std::string& end = "") {
+        Messages messages;
+        Scene scene = read_scene(
+            test::write_text(folder / "lit.pbrt", "WorldBegin Translate 0 5 0\n" + light + kFloor + end), {}, messages);
+        CHECK(messages.left_out() == std::vector<std::string>{});
+        REQUIRE(scene.lights.size() == 1);
+        return scene;
+    };
+    const auto at = [](const Scene& scene, Vec3 offset) { // intensity in a direction of the light's own axes
+        const test::Lights lights(scene);
+        LightSample sample;
+        const Light& light = scene.lights[0];
+        const Vec3 right = (light.is_mirrored ? -1.0f : 1.0f) * cross(light.direction, light.up);
+        const Vec3 to = offset.x * right + offset.y * light.direction + offset.z * light.up;
+        if (!sample_punctual_light<EmitterLook::Coated>(lights.view, 0, 1, light.position + to, sample)) return 0.0f;
+        return sample.radiance.g * length_squared(offset);
+    };
+    const Scene lamp = load("LightSource \"goniometric\" \"rgb I\" [1 3 1]" + file);
+    CHECK(at(lamp, {1, 0, 0}) == doctest::Approx(6));
+    CHECK(at(lamp, {0.1f, 0.05f, 1}) == doctest::Approx(6));
+    CHECK(at(lamp, {-1, 0, 0}) == 0);
+    CHECK(at(lamp, {0, 0, -1}) == 0);
+    CHECK(at(lamp, {0, 1, 0}) == 0);
+    // Its power is 4 pi times the mean.
+    const Scene watts = load("LightSource \"goniometric\" \"float power\" 10" + file);
+    CHECK(at(watts, {1, 0, 0}) == doctest::Approx(10 / (4 * kPi) * 64 / 3));
+    // The picture's upper side is +y of the light, as pbrt-v4 has it; the shorter side has the field of view.
+    Image wide{.width = 4, .height = 2, .channels = 3, .pixels = std::vector<float>(24, 1.0f)};
+    wide.pixels[1] = 7;
+    write_exr(folder / "lamp.exr", wide);
+    const Scene beam = load("LightSource \"projection\" \"float fov\" 90" + file);
+    const Light& light = beam.lights[0];
+    CHECK(light.table->half_height == doctest::Approx(1));
+    CHECK(light.table->half_width == doctest::Approx(2));
+    CHECK(at(beam, {-1.9f, 1, 0.9f}) == doctest::Approx(7));
+    CHECK(at(beam, {1.9f, 1, 0.9f}) == doctest::Approx(1));
+    CHECK(at(beam, {-1.9f, 1, -0.9f}) == doctest::Approx(1));
+    CHECK(at(beam, {-1.9f, 1, 1.1f}) == 0);
+    check_near(light.up, {0, 1, 0});
+    // pbrt-v3 shows the first row below, and its file is a mapname.
+    const Scene old =
+        load("LightSource \"projection\" \"float fov\" 90 \"string mapname\" \"lamp.exr\"\n", "WorldEnd\n");
+    check_near(old.lights[0].up, {0, -1, 0});
+    CHECK(at(old, {-1.9f, 1, 0.9f}) == doctest::Approx(7));
+    CHECK(old.lights[0].is_mirrored != light.is_mirrored);
 }
 
 TEST_CASE("pbrt: a light whose strength or place is no finite number is left out alone, at its line") {
@@ -196,7 +259,6 @@ TEST_CASE("pbrt: nothing is made up for a file without light, and infinite light
 }
 
 TEST_CASE("pbrt: the octahedron's middle is +z, its corners -z, and its sides x and y") {
-    using described::octahedral_place;
     const auto is_at = [](Vec2 p, float x, float y) { return std::abs(p.x - x) < 1e-6f && std::abs(p.y - y) < 1e-6f; };
     CHECK(is_at(octahedral_place({0, 0, 1}), 0.5f, 0.5f));
     CHECK(is_at(octahedral_place({1, 0, 0}), 1, 0.5f));
@@ -209,6 +271,12 @@ TEST_CASE("pbrt: the octahedron's middle is +z, its corners -z, and its sides x 
     const float z = 0.5f, r = sqrt(1 - z * z);
     const Vec2 p = octahedral_place({r, 0, z});
     CHECK(2 * square(2 * p.x - 1) == doctest::Approx(1));
+    // The inverse, in all eight octants.
+    for (int i = 0; i < 64; ++i) {
+        const Vec2 place = {(static_cast<float>(i % 8) + 0.3f) / 8, (static_cast<float>(i / 8) + 0.4f) / 8};
+        const Vec2 back = octahedral_place(octahedral_direction(place));
+        CHECK(is_at(back, place.x, place.y));
+    }
 }
 
 TEST_CASE("pbrt: pictures of infinite lights face where pbrt has them") {

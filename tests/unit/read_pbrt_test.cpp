@@ -203,7 +203,7 @@ TEST_CASE("pbrt: faults of syntax cost their statement or parameter alone") {
           "NamedMaterial \"none\"",
           "ActiveTransform Never",
           "ColorSpace \"none\"",
-          "LightSource \"goniometric\"",
+          "LightSource \"goniometric\" \"string filename\" \"none.exr\"",
           "] [ 1 \"x\""}) {
         CAPTURE(fault);
         Messages messages;

@@ -116,12 +116,14 @@ void set_lights(const Parts& parts, const DoubleTransform& scene_from_file, Sink
         Light light = placed.light;
         light.position = to_float(transform_point(scene_from_file, placed.position));
         light.direction = normalize_safely(transform_vector(turned, light.direction));
+        const LightParts has = parts_of(light.kind);
+        if (has.direction) light.up = normalize_safely(transform_vector(turned, light.up));
+        if (has.direction) light.is_mirrored = light.is_mirrored != is_mirroring(turned);
         if (!is_light(light.intensity)) {
             leave_out_strength("a", placed.location, sink);
             continue;
         }
-        const LightParts has = parts_of(light.kind);
-        if ((has.position && !is_near(light.position)) || (has.direction && !is_finite(light.direction))) {
+        if ((has.position && !is_near(light.position)) || !is_oriented(light)) {
             sink.leave_out(
                 {placed.location, "a light is left out, because it has no direction or lies beyond 2^40 metres"});
             continue;

@@ -9,6 +9,7 @@
 #include "formats/described/transforms.h"
 #include "formats/described/usable_values.h"
 #include "image/read_image.h"
+#include "math/octahedron.h"
 #include "math/portable_math.h"
 
 namespace pertev::described {
@@ -70,18 +71,6 @@ double illuminance_of(const Image& panorama, const DoubleTransform& local_from_s
 }
 
 } // namespace
-
-Vec2 octahedral_place(Vec3 d) {
-    const float x = abs(d.x), y = abs(d.y), root = sqrt(max(1 - abs(d.z), 0.0f));
-    const float share = x == 0 && y == 0 ? 0.0f : atan2(y, x) * (2 / kPi);
-    float v = share * root, u = root - v;
-    if (d.z < 0) {
-        std::swap(u, v);
-        u = 1 - u;
-        v = 1 - v;
-    }
-    return {0.5f + (d.x < 0 ? -0.5f : 0.5f) * u, 0.5f + (d.y < 0 ? -0.5f : 0.5f) * v};
-}
 
 std::optional<Environment> make_environment(const InfiniteLight& light, const DoubleTransform& local_from_scene,
                                             Sink& sink) {

@@ -10,7 +10,8 @@
 namespace pertev::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 23> kRead = {"EXT_lights_image_based",
+constexpr std::array<std::string_view, 24> kRead = {"EXT_lights_ies",
+                                                    "EXT_lights_image_based",
                                                     "EXT_mesh_gpu_instancing",
                                                     "EXT_meshopt_compression",
                                                     "KHR_animation_pointer",

@@ -7,9 +7,8 @@
 #include <fmt/format.h>
 
 #include "base/parallel_for.h"
-#include "base/read_file.h"
+#include "formats/gltf/attached_bytes.h"
 #include "formats/gltf/leave_out.h"
-#include "formats/gltf/uri.h"
 #include "image/decode_image.h"
 #include "image/srgb.h"
 #include "math/portable_math.h"
@@ -37,24 +36,7 @@ using Cube = std::array<Face, 6>; // +x, -x, +y, -y, +z, -z
 Image decode_encoded(const Document& document, Buffers& buffers, const FileAccess& access, const JsonValue& image,
                      Sink& sink) {
     std::vector<std::byte> owned;
-    std::span<const std::byte> bytes;
-    if (const std::optional<JsonValue> view = image.find("bufferView")) {
-        bytes = buffers.view(*view).bytes;
-    } else {
-        const JsonValue uri = image.at("uri");
-        const std::string_view text = uri.to_string();
-        if (is_data_uri(text)) {
-            std::optional<std::vector<std::byte>> data = decode_data_uri(text);
-            if (!data) throw uri.error("the data URI cannot be decoded");
-            owned = *std::move(data);
-        } else {
-            const std::optional<std::string> name = file_name_of_uri(text, document.path());
-            const auto path = name ? access.find(uri.location(), *name, sink) : std::nullopt;
-            if (!path) throw uri.error("there is no such picture");
-            owned = read_file(*path);
-        }
-        bytes = owned;
-    }
+    const std::span<const std::byte> bytes = attached_bytes(document, buffers, access, image, owned, sink);
     std::variant<Rgba8Image, Image> decoded = decode_image(bytes, text_of(image.location()), sink);
     const Rgba8Image* rgba = std::get_if<Rgba8Image>(&decoded);
     if (rgba == nullptr) throw image.error("a face of 8 bits per channel is expected");

@@ -8,6 +8,7 @@
 #include "formats/files/load_textures.h"
 #include "formats/gltf/animations.h"
 #include "formats/gltf/credits.h"
+#include "formats/gltf/ies_lights.h"
 #include "formats/gltf/image_based_light.h"
 #include "formats/gltf/leave_out.h"
 #include "formats/gltf/materials.h"
@@ -89,6 +90,7 @@ Scene read_gltf(const std::filesystem::path& path, std::vector<std::byte> bytes,
     scene.nodes = nodes.take_nodes();
     gltf::read_node_shapes(document, buffers, scene, sink);
     gltf::place_nodes(document, buffers, nodes, meshes, scene, sink);
+    if (!options.geometry_only) gltf::place_ies_lights(document, buffers, access, nodes, scene, sink);
     subtract_centre(scene);
     gltf::read_animations(document, buffers, materials, scene, sink);
     if (!options.geometry_only) gltf::read_image_based_light(document, buffers, access, scene, sink);

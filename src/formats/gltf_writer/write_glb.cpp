@@ -17,6 +17,7 @@
 #include "formats/gltf_writer/texture_writer.h"
 #include "math/frame.h"
 #include "math/portable_math.h"
+#include "scene/intensity_table.h"
 
 namespace pertev {
 namespace glb {
@@ -173,8 +174,13 @@ private:
         add_node(node_of_camera(camera.world_from_camera), "", members);
     }
 
-    void add_light(const Light& light) {
+    void add_light(Light light) {
         JsonMembers object;
+        if (parts_of(light.kind).table) {
+            sink_.leave_out(fmt::format("{}: the table of its intensity is lost; it becomes a point light of its power",
+                                        numbered("light", lights_.size(), light.name, light.origin)));
+            light.intensity = (0.25f / kPi) * (light.table->integral * light.intensity);
+        }
         if (!light.name.empty()) object.add("name", json_string(light.name));
         const float strength = strength_of(light.intensity);
         const Rgb color = (1 / strength) * light.intensity;
@@ -182,6 +188,7 @@ private:
         object.add_number("range", light.range, 0);
         switch (light.kind) {
         case LightKind::Point:
+        case LightKind::Goniometric:
             object.add("type", R"("point")");
             break;
         case LightKind::Directional:

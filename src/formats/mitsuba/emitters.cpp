@@ -7,18 +7,19 @@
 #include <fmt/format.h>
 
 #include "base/message_text.h"
+#include "formats/described/light_tables.h"
 #include "formats/described/transforms.h"
 #include "formats/files/closest_name.h"
+#include "formats/mitsuba/projected_light.h"
 #include "formats/mitsuba/skies.h"
 #include "math/portable_math.h"
 
 namespace pertev::mitsuba {
 namespace {
 
-constexpr std::array<std::string_view, 9> kEmitterTypes = {"area",   "point",  "spot", "directional", "constant",
-                                                           "envmap", "sunsky", "sun",  "sky"};
-constexpr std::array<std::string_view, 4> kOtherEmitterTypes = {"projector", "timed_sunsky", "collimated",
-                                                                "directionalarea"};
+constexpr std::array<std::string_view, 10> kEmitterTypes = {"area",     "point",  "spot",   "projector", "directional",
+                                                            "constant", "envmap", "sunsky", "sun",       "sky"};
+constexpr std::array<std::string_view, 3> kOtherEmitterTypes = {"timed_sunsky", "collimated", "directionalarea"};
 
 Vec3 direction_of(const DoubleTransform& m, DoubleVec3 v) {
     return normalize_safely(to_float(DoubleVec3{dot(m.row0, v), dot(m.row1, v), dot(m.row2, v)}));
@@ -35,8 +36,10 @@ void add_light(Object& emitter, Reading& reading) {
     placed.position = to_world.translation;
     placed.location = emitter.location();
     const bool is_directional = emitter.type == "directional";
-    light.intensity =
-        read_color(emitter, is_directional ? "irradiance" : "intensity", ColorUse::Light, grey(1), reading);
+    if (emitter.type != "projector") {
+        light.intensity =
+            read_color(emitter, is_directional ? "irradiance" : "intensity", ColorUse::Light, grey(1), reading);
+    }
     if (emitter.type == "point") {
         light.kind = LightKind::Point;
         placed.position = parameters.vector("position", sink).value_or(placed.position);
@@ -44,21 +47,12 @@ void add_light(Object& emitter, Reading& reading) {
         light.kind = LightKind::Directional;
         const auto direction = parameters.vector("direction", sink);
         light.direction = direction ? normalize_safely(to_float(*direction)) : direction_of(to_world, {0, 0, 1});
-    } else {
-        light.kind = LightKind::Spot;
-        light.direction = direction_of(to_world, {0, 0, 1});
-        const double cutoff = std::clamp(parameters.number("cutoff_angle", 20, sink), 0.1, 89.9);
-        const double beam = std::clamp(parameters.number("beam_width", 0.75 * cutoff, sink), 0.0, cutoff);
-        light.cos_inner = cos(static_cast<float>(beam) * (kPi / 180));
-        light.cos_outer = min(cos(static_cast<float>(cutoff) * (kPi / 180)), light.cos_inner - kSharpestEdge);
-        parameters.leave_out({"texture"}, "spots project no picture", sink);
-        if (beam < cutoff)
-            sink.warn(
-                {FileLocation{emitter.location().file}, "the edges of spots fall off as those of glTF, not Mitsuba's"});
+    } else if (!(emitter.type == "spot" ? set_spot : set_projector)(emitter, to_world, reading, light)) {
+        return;
     }
     parameters.ignore({"sampling_weight"});
     parameters.leave_out_unknown(sink);
-    reading.parts.lights.push_back(std::move(placed));
+    described::add_light(std::move(placed), reading.parts.lights);
 }
 
 void add_infinite_light(Object& emitter, Reading& reading) {
@@ -91,7 +85,8 @@ void add_infinite_light(Object& emitter, Reading& reading) {
 void add_emitter(Object& emitter, Reading& reading) {
     const std::string& type = emitter.type;
     try {
-        if (type == "point" || type == "spot" || type == "directional") return add_light(emitter, reading);
+        if (type == "point" || type == "spot" || type == "directional" || type == "projector")
+            return add_light(emitter, reading);
         const bool is_sky = type == "sunsky" || type == "sun" || type == "sky";
         if (is_sky || type == "constant" || type == "envmap") return add_infinite_light(emitter, reading);
         if (type == "area") throw emitter.parameters.error("an area emitter is in no shape");

@@ -76,45 +76,9 @@ FilmSize size_of(Object& sensor, Reading& reading, Scene* suggest) {
     return size;
 }
 
-/// Returns the full angle of view across the picture, degrees.
-double angle_of(Object& sensor, const FilmSize& size, Sink& sink) {
-    Parameters& parameters = sensor.parameters;
-    double degrees = parameters.number("fov", 0, sink);
-    std::string axis = parameters.text("fov_axis", "x", sink);
-    std::string focal = parameters.text("focal_length", "", sink);
-    if (!parameters.has("fov")) { // that of a film of 36 x 24 mm
-        if (focal.ends_with("mm")) focal.resize(focal.size() - 2);
-        const std::vector<double> mm = parse_numbers(focal);
-        const double length = mm.size() == 1 && mm[0] > 0 ? mm[0] : 50.0;
-        degrees = static_cast<double>(atan(static_cast<float>(std::sqrt(36.0 * 36 + 24.0 * 24) / (2 * length)))) *
-                  (360.0 / 3.14159265358979323846);
-        axis = "diagonal";
-    }
-    if (!(degrees > 0 && degrees < 180)) {
-        sink.leave_out(
-            {sensor.location(),
-             fmt::format("the fov of a sensor is {} and left out; expected above 0 and below 180", degrees)});
-        degrees = 45;
-    }
-    const double aspect = size.aspect();
-    if (axis == "smaller") axis = aspect > 1 ? "y" : "x";
-    if (axis == "larger") axis = aspect > 1 ? "x" : "y";
-    double tangent = static_cast<double>(tangent_of_half(degrees));
-    if (axis == "y") {
-        tangent *= aspect;
-    } else if (axis == "diagonal") {
-        tangent *= aspect / std::sqrt(aspect * aspect + 1);
-    } else if (axis != "x") {
-        constexpr std::array<std::string_view, 5> kAxes = {"x", "y", "diagonal", "smaller", "larger"};
-        sink.leave_out({sensor.location(), fmt::format("the fov_axis {} is left out; x is used{}", shortened(axis),
-                                                       did_you_mean(axis, kAxes))});
-    }
-    return tangent;
-}
-
 void set_perspective(Object& sensor, const FilmSize& size, Camera& camera, Sink& sink) {
     Parameters& parameters = sensor.parameters;
-    const double across = angle_of(sensor, size, sink), high = across / size.aspect();
+    const double across = tangent_across(sensor, size.aspect(), sink), high = across / size.aspect();
     camera.fov_y = 2 * atan(static_cast<float>(high));
     const double offset_x = parameters.number("principal_point_offset_x", 0, sink),
                  offset_y = parameters.number("principal_point_offset_y", 0, sink);
@@ -213,6 +177,40 @@ void suggest_depth(Object* integrator, Reading& reading, Scene& scene) {
 }
 
 } // namespace
+
+double tangent_across(Object& object, double aspect, Sink& sink) {
+    Parameters& parameters = object.parameters;
+    double degrees = parameters.number("fov", 0, sink);
+    std::string axis = parameters.text("fov_axis", "x", sink);
+    std::string focal = parameters.text("focal_length", "", sink);
+    if (!parameters.has("fov")) { // that of a film of 36 x 24 mm
+        if (focal.ends_with("mm")) focal.resize(focal.size() - 2);
+        const std::vector<double> mm = parse_numbers(focal);
+        const double length = mm.size() == 1 && mm[0] > 0 ? mm[0] : 50.0;
+        degrees = static_cast<double>(atan(static_cast<float>(std::sqrt(36.0 * 36 + 24.0 * 24) / (2 * length)))) *
+                  (360.0 / 3.14159265358979323846);
+        axis = "diagonal";
+    }
+    if (!(degrees > 0 && degrees < 180)) {
+        sink.leave_out(
+            {object.location(), fmt::format("the fov of {} is {} and left out; expected above 0 and below 180",
+                                            parameters.what(), degrees)});
+        degrees = 45;
+    }
+    if (axis == "smaller") axis = aspect > 1 ? "y" : "x";
+    if (axis == "larger") axis = aspect > 1 ? "x" : "y";
+    double tangent = static_cast<double>(tangent_of_half(degrees));
+    if (axis == "y") {
+        tangent *= aspect;
+    } else if (axis == "diagonal") {
+        tangent *= aspect / std::sqrt(aspect * aspect + 1);
+    } else if (axis != "x") {
+        constexpr std::array<std::string_view, 5> kAxes = {"x", "y", "diagonal", "smaller", "larger"};
+        sink.leave_out({object.location(), fmt::format("the fov_axis {} is left out; x is used{}", shortened(axis),
+                                                       did_you_mean(axis, kAxes))});
+    }
+    return tangent;
+}
 
 DoubleTransform scene_from_world(const View& view, Sink& sink) {
     if (view.sensors.empty()) return {};

@@ -20,6 +20,10 @@ struct View {
 /// The map from the file's world to that of the scene.
 DoubleTransform scene_from_world(const View& view, Sink& sink);
 
+/// Returns the tangent of half the angle of view across a picture, whose width is `aspect` times its height, of a
+/// sensor or a projector.
+double tangent_across(Object& object, double aspect, Sink& sink);
+
 /// Adds the cameras, of which the first one's film and sampler suggest settings.
 void add_view(const View& view, Reading& reading, Scene& scene);
 

@@ -6,9 +6,11 @@
 #include <fmt/format.h>
 
 #include "base/message_text.h"
+#include "formats/described/light_tables.h"
 #include "formats/described/usable_values.h"
 #include "formats/files/closest_name.h"
 #include "formats/pbrt/colors.h"
+#include "math/frame.h"
 #include "math/portable_math.h"
 
 namespace pertev::pbrt {
@@ -41,6 +43,94 @@ Rgb strength_of(Parameters& parameters, std::string_view name, std::string_view 
 }
 
 constexpr double kPiExact = 3.14159265358979323846;
+
+void set_spot(Parameters& parameters, const DoubleTransform& world_from_light, const Context& context, Light& light) {
+    Sink& sink = context.sink;
+    light.kind = LightKind::Spot;
+    light.direction = direction_of(parameters, world_from_light, {0, 0, 0}, {0, 0, 1}, sink);
+    const auto angle = [&](std::string_view name, double missing, double least) {
+        return static_cast<float>(std::clamp(parameters.number(name, missing, sink), least, 89.9)) * (kPi / 180);
+    };
+    const float outer = angle("coneangle", 30, 0.1), edge = angle("conedeltaangle", 5, 0);
+    light.cos_inner = cos(max(outer - edge, 0.0f));
+    light.cos_outer = min(cos(outer), light.cos_inner - kSharpestEdge);
+    const double from = static_cast<double>(light.cos_inner), to = static_cast<double>(light.cos_outer);
+    light.intensity = strength_of(parameters, "I", "power", 2 * kPiExact * ((1 - from) + (from - to) / 2), context);
+    if (!(edge > 0)) return;
+    light.up = make_frame(light.direction).tangent;
+    set_table(make_round_table(outer,
+                               [&](float at) {
+                                   const float width = light.cos_inner - light.cos_outer;
+                                   const float t = clamp((cos(at) - light.cos_outer) / width, 0.0f, 1.0f);
+                                   return context.is_version_3 ? square(square(t)) : square(t) * (3 - 2 * t);
+                               }),
+              light);
+}
+
+/// Reads the table of a light with a picture. Returns false, with a warning, if it is left out.
+bool set_picture(bool is_projection, Parameters& parameters, const Context& context, Light& light) {
+    Sink& sink = context.sink;
+    const char* const key = context.is_version_3 ? "mapname" : "filename";
+    const std::string name = parameters.text(key, "", sink);
+    const double fov = std::clamp(parameters.number("fov", context.is_version_3 ? 45 : 90, sink), 0.1, 179.0);
+    IntensityTable table;
+    const auto leave_out = [&](const std::string& why) {
+        sink.leave_out({parameters.location(), why + "; the light is left out"});
+        return false;
+    };
+    if (name.empty()) {
+        if (is_projection && !context.is_version_3) return leave_out("a projection light has no filename");
+        table.values = {.width = 1, .height = 1, .channels = 1, .pixels = {1.0f}};
+    } else {
+        std::optional<std::filesystem::path> path;
+        try {
+            path = context.access.find(base_of(context, parameters.location(), name), name, sink);
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::BadInput) throw;
+            sink.leave_out(error.remark().and_then("; the light is left out"));
+            return false;
+        }
+        if (!path) return leave_out(fmt::format("there is no picture {}", shortened(name)));
+        std::optional<Image> picture = read_light_picture(*path, sink);
+        if (!picture) return false;
+        table.values = *std::move(picture);
+    }
+    table.filter = context.is_version_3 ? TableFilter::Linear : TableFilter::Nearest;
+    Image& values = table.values;
+    if (is_projection) {
+        table.layout = TableLayout::Perspective; // the angle of view is that of the shorter side
+        const double half = static_cast<double>(tan(static_cast<float>(fov) * (kPi / 360)));
+        set_view(half * std::max(static_cast<double>(values.width) / values.height, 1.0), table);
+    } else if (!context.is_version_3) {
+        table.layout = TableLayout::Octahedron;
+        if (values.width != values.height)
+            return leave_out("the picture of a goniometric light is not square, as the equal-area octahedron is");
+        if (values.channels >= 3) { // its colours only average
+            Image grey = {.width = values.width, .height = values.height, .channels = 1, .pixels = {}};
+            for (std::size_t i = 0; i < values.pixels.size(); i += values.channels)
+                grey.pixels.push_back((values.pixels[i] + values.pixels[i + 1] + values.pixels[i + 2]) / 3);
+            values = std::move(grey);
+        }
+    }
+    set_table(std::move(table), light);
+    return true;
+}
+
+/// Reads a goniometric or projection light. Returns false, with a warning, if it is left out.
+bool set_picture_light(bool is_projection, Parameters& parameters, const DoubleTransform& world_from_light,
+                       const Context& context, Light& light) {
+    Rgb strength = scale_of(parameters, context);
+    if (!is_projection || context.is_version_3) strength = strength * light_color(parameters, "I", grey(1), context);
+    light.intensity = strength;
+    // pbrt-v3 shows the first row below.
+    const LightAxes of_projection = {{1, 0, 0}, {0, context.is_version_3 ? -1.0 : 1.0, 0}, {0, 0, 1}};
+    set_axes(is_projection ? of_projection : LightAxes{{1, 0, 0}, {0, 0, 1}, {0, 1, 0}}, world_from_light, light);
+    if (!set_picture(is_projection, parameters, context, light)) return false;
+    const double power = parameters.number("power", 0, context.sink);
+    const double of_1 = static_cast<double>(luminance(light.table->integral));
+    if (power > 0 && of_1 > 0) light.intensity = static_cast<float>(power / of_1) * strength;
+    return true;
+}
 
 } // namespace
 
@@ -110,27 +200,18 @@ std::optional<Light> read_light(const std::string& type, Parameters& parameters,
         place({0, 0, 0});
         light.intensity = strength_of(parameters, "I", "power", 4 * kPiExact, context);
     } else if (type == "spot") {
-        light.kind = LightKind::Spot;
         place({0, 0, 0});
-        light.direction = direction_of(parameters, world_from_light, {0, 0, 0}, {0, 0, 1}, sink);
-        const auto cone = static_cast<float>(std::clamp(parameters.number("coneangle", 30, sink), 0.1, 89.9));
-        const auto edge = static_cast<float>(std::clamp(parameters.number("conedeltaangle", 5, sink), 0.0, 89.9));
-        if (edge > 0)
-            sink.warn({FileLocation{parameters.location().file},
-                       "the edges of spots fall off as those of glTF, darker than pbrt's"});
-        light.cos_inner = cos(max(cone - edge, 0.0f) * (kPi / 180));
-        light.cos_outer = min(cos(cone * (kPi / 180)), light.cos_inner - kSharpestEdge);
-        const double inner = static_cast<double>(light.cos_inner), outer = static_cast<double>(light.cos_outer);
-        light.intensity =
-            strength_of(parameters, "I", "power", 2 * kPiExact * ((1 - inner) + (inner - outer) / 2), context);
+        set_spot(parameters, world_from_light, context, light);
+    } else if (type == "goniometric" || type == "projection") {
+        place({0, 0, 0});
+        if (!set_picture_light(type == "projection", parameters, world_from_light, context, light)) return std::nullopt;
     } else if (type == "distant") {
         light.kind = LightKind::Directional;
         light.direction = direction_of(parameters, world_from_light, {0, 0, 0}, {0, 0, 1}, sink);
         light.intensity = strength_of(parameters, "L", "illuminance", 1, context);
     } else {
-        const bool is_known = std::ranges::find(kKnown, type) != kKnown.end();
         sink.leave_out({parameters.location(), fmt::format("lights of the type {} are left out{}", shortened(type),
-                                                           is_known ? "" : did_you_mean(type, kKnown))});
+                                                           did_you_mean(type, kKnown))});
         return std::nullopt;
     }
     parameters.ignore({"samples", "nsamples"});

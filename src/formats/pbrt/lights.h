@@ -1,7 +1,6 @@
 #pragma once
 
-// Lights of pbrt. Strengths follow colors.h. A spot's edge falls off as that of KHR_lights_punctual, which is darker
-// than pbrt's.
+// Lights of pbrt. Strengths follow colors.h.
 
 #include <optional>
 #include <string>
@@ -20,7 +19,7 @@ std::optional<AreaLight> read_area_light(const std::string& type, Parameters& pa
                                          const Context& context);
 std::optional<InfiniteLight> read_infinite_light(Parameters& parameters, const DoubleTransform& world_from_light,
                                                  const Context& context);
-/// Reads a point, spot or distant light.
+/// Reads a light that is neither an area nor infinite.
 std::optional<Light> read_light(const std::string& type, Parameters& parameters,
                                 const DoubleTransform& world_from_light, const Context& context);
 

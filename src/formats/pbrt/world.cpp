@@ -8,6 +8,7 @@
 #include "base/message_text.h"
 #include "formats/described/assemble.h"
 #include "formats/described/described_medium.h"
+#include "formats/described/light_tables.h"
 #include "formats/described/transforms.h"
 #include "formats/described/usable_values.h"
 #include "formats/files/closest_name.h"
@@ -111,7 +112,8 @@ void World::add_light(const std::string& type, Parameters& parameters) {
     }
     const DoubleVec3 from = parameters.vector("from", context_.sink).value_or(DoubleVec3{0, 0, 0});
     if (auto light = read_light(type, parameters, world_from_light, context_))
-        parts_.lights.push_back({*std::move(light), transform_point(world_from_light, from), parameters.location()});
+        described::add_light({*std::move(light), transform_point(world_from_light, from), parameters.location()},
+                             parts_.lights);
 }
 
 std::optional<uint32_t> World::alpha_of(Parameters& parameters) {

@@ -103,7 +103,9 @@ private:
         const LightSetView& lights = scene.picture.scene.lights;
         if (light.distance == kInfinity) return pdf_disc(scene.world);
         const float inverse = 1.0f / square(light.distance);
-        if (light.is_delta) return inverse * pdf_emission(lights.punctual[light.primitive], scene.world);
+        if (light.is_delta) {
+            return inverse * pdf_emission(lights.punctual[light.primitive], scene.world, -light.wi, lights.goniometric);
+        }
         const uint32_t number = light_of(lights, light.instance, light.primitive);
         return inverse * pdf_emission(lights.triangles[number], dot(light.light_normal, light.wi));
     }

@@ -129,7 +129,8 @@ struct AimFromKind {
         const PunctualLight& light = freely.scene.lights.punctual[number];
         switch (light.kind) {
         case LightKind::Point:
-        case LightKind::Spot: {
+        case LightKind::Spot:
+        case LightKind::Goniometric: {
             if (!(depth_of_cones(targets, light.position) < depth_of_beam(light))) break;
             const Direction direction = draw_direction(targets, light.position, freely.u);
             return freely.punctual(light, {light.position, direction.to, reach_of(light), direction.pdf}, pmf);

@@ -72,7 +72,7 @@ struct TreeVertex {
         LightSample sample;
         const LightSetView& lights = picture.scene.lights;
         if (surface.bsdf.has_delta_only()) return false;
-        if (!sample_punctual_light(lights.punctual[light], 1.0f, surface.position, sample)) return false;
+        if (!sample_punctual_light<emitter_look(kVariant)>(lights, light, 1.0f, surface.position, sample)) return false;
         const BsdfValue all = evaluate_surface<kVariant>(surface, wo(), sample.wi);
         return make_shadow_ray(sample, all.f * sample.radiance, shadow);
     }

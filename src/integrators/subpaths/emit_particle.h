@@ -109,7 +109,7 @@ struct EmitFromKind {
     HD bool punctual(uint32_t number, float pmf) const {
         if (!(pmf > 0)) return false;
         const PunctualLight& light = scene.lights.punctual[number];
-        const PunctualEmission emission = emit_from(light, world, u);
+        const PunctualEmission emission = emit_from(light, world, u, scene.lights.goniometric);
         if (!(emission.pdf > 0) || !is_finite(emission.pdf)) return false;
         particle.is_from_far = !(depth_of_beam(light) > 0);
         particle.mis = {square(1.0f / emission.pdf), 0};
@@ -117,7 +117,7 @@ struct EmitFromKind {
     }
     HD bool punctual(const PunctualLight& light, const PunctualEmission& emission, float pmf) const {
         particle.ray = {emission.from, 0, emission.direction, emission.reach};
-        particle.power = emitted_power(light, emission, pmf);
+        particle.power = emitted_power(light, emission, pmf, scene.lights.goniometric);
         return true;
     }
     HD bool environment(float pmf, SampleBits bits) const {

@@ -354,7 +354,8 @@ void PosedScene::update_lights() {
             }
         }
         Light& now = scene_.lights[i];
-        const bool stays = same_bits(light.position, now.position) && same_bits(light.direction, now.direction);
+        const bool stays = same_bits(light.position, now.position) && same_bits(light.direction, now.direction) &&
+                           same_bits(light.up, now.up) && light.is_mirrored == now.is_mirrored;
         const bool shines_alike = same_bits(light.intensity, now.intensity) && same_bits(light.range, now.range) &&
                                   same_bits(light.cos_inner, now.cos_inner) &&
                                   same_bits(light.cos_outer, now.cos_outer);

@@ -255,6 +255,11 @@ private:
         }
         if (!parts.direction) return;
         light.direction = normalize_safely(light.direction);
+        if (parts.table) {
+            light.up = normalize_safely(light.up);
+            if (!is_oriented(light)) throw bad(of + ": its directions are zero, parallel or not finite");
+            if (light.table == nullptr) throw bad(of + ": it has no table of intensities");
+        }
         if (!is_finite(light.direction)) throw bad(of + ": its direction is zero or not finite");
         if (!parts.cone) return;
         if (!(light.cos_outer >= -1 && light.cos_inner <= 1 && light.cos_outer < light.cos_inner)) {

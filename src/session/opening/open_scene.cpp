@@ -14,6 +14,7 @@
 #include "scene/names.h"
 #include "session/degrees.h"
 #include "session/opening/set_medium.h"
+#include "session/opening/set_profiles.h"
 #include "session/photometry.h"
 #include "session/set_materials.h"
 #include "session/survey/emitter_fronts.h"
@@ -199,6 +200,7 @@ Scene open_scene(const SceneOptions& options, Sink& sink, SceneUse use, Ground g
     if (options.show_back_faces) show_back_faces(scene, sink);
     const double efficacy = lumens_per_watt(options.scene, static_cast<double>(options.efficacy));
     if (auto environment = environment_of(options, efficacy, sink)) scene.environment = *std::move(environment);
+    set_profiles(scene, options.profiles, efficacy, sink);
     const bool has_light = !lacks_light(scene);
     const auto others = std::ranges::stable_partition(
         emitters, [&](const EmitterStrength& emitter) { return names_emitter_of_file(scene, emitter); });

@@ -12,6 +12,7 @@
 #include "session/frame_range.h"
 #include "session/opening/open_scene.h"
 #include "session/opening/picture_settings.h"
+#include "session/opening/set_profiles.h"
 #include "session/pictures/choose_display.h"
 #include "session/sample_range.h"
 #include "session/set_materials.h"
@@ -68,6 +69,7 @@ void check_options(const PictureOptions& options, uint32_t verbs) {
     read_options(options.scene);
     if (!options.scene.sun_sky.empty()) sun_sky(options.scene);
     for (const std::string& emitter : options.scene.emitters) parse_emitter(emitter);
+    for (const std::string& profile : options.scene.profiles) check_profile(profile);
     for (const std::string& material : options.scene.materials) parse_material_change(material);
     check_solution(options.radiosity.solution);
 }

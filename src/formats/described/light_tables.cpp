@@ -1,0 +1,52 @@
+#include "formats/described/light_tables.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "image/read_image.h"
+
+namespace pertev::described {
+
+std::optional<Image> read_light_picture(const std::filesystem::path& path, Sink& sink) {
+    try {
+        return read_image(path, sink);
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::BadInput) throw;
+        sink.leave_out(error.remark().and_then("; the light is left out"));
+    }
+    return std::nullopt;
+}
+
+void set_table(IntensityTable table, Light& light) {
+    float greatest = 0;
+    light.kind = LightKind::Goniometric;
+    light.table = make_intensity_table(std::move(table), greatest);
+    light.intensity = greatest * light.intensity;
+}
+
+void set_view(double half_width, IntensityTable& picture) {
+    picture.half_width = static_cast<float>(half_width);
+    picture.half_height = static_cast<float>(half_width * picture.values.height / picture.values.width);
+}
+
+void set_axes(const LightAxes& axes, const DoubleTransform& world_from_light, Light& light) {
+    const auto turn = [&](DoubleVec3 v) {
+        return normalize_safely(to_float(
+            DoubleVec3{dot(world_from_light.row0, v), dot(world_from_light.row1, v), dot(world_from_light.row2, v)}));
+    };
+    light.direction = turn(axes.forward);
+    light.up = turn(axes.up);
+    light.is_mirrored = dot(cross(light.direction, light.up), turn(axes.right)) < 0;
+}
+
+void add_light(PlacedLight light, std::vector<PlacedLight>& lights) {
+    if (const auto& table = light.light.table; table != nullptr) {
+        const auto same = std::ranges::find_if(lights, [&](const PlacedLight& other) {
+            return other.light.table != nullptr && other.light.table->hash == table->hash;
+        });
+        if (same != lights.end()) light.light.table = same->light.table;
+    }
+    lights.push_back(std::move(light));
+}
+
+} // namespace pertev::described

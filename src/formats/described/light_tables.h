@@ -1,0 +1,36 @@
+#pragma once
+
+// Lights of pbrt and Mitsuba whose intensity follows a table: pictures, and cones with the edges of either renderer.
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "base/sink.h"
+#include "formats/described/parts.h"
+#include "math/double_transform.h"
+#include "scene/intensity_table.h"
+#include "scene/light.h"
+
+namespace pertev::described {
+
+/// Reads the values of a light's table. A picture that cannot be read is left out with the light: nothing.
+std::optional<Image> read_light_picture(const std::filesystem::path& path, Sink& sink);
+
+/// Makes `light` Goniometric with this table, times its intensity, which becomes that where the table is 1.
+void set_table(IntensityTable table, Light& light);
+
+/// Sets the tangents of half the angles of view of a picture by that across it.
+void set_view(double half_width, IntensityTable& picture);
+
+/// The axes of a light's frame in its own coordinates (scene/intensity_table.h).
+struct LightAxes {
+    DoubleVec3 right, up, forward;
+};
+/// Sets the light's directions by its transform.
+void set_axes(const LightAxes& axes, const DoubleTransform& world_from_light, Light& light);
+
+/// Adds a light; one with the same table as one before shares it.
+void add_light(PlacedLight light, std::vector<PlacedLight>& lights);
+
+} // namespace pertev::described
