@@ -59,7 +59,7 @@ std::string hash_of_files(std::span<const std::filesystem::path> paths) {
         std::string hash;
         try {
             hash = hash_of_file(path);
-        } catch (const Error&) { // what refers to it has said so
+        } catch (const Error&) { // its reader has left it out with a warning
         }
         hasher.add_value(hash.size());
         hasher.add(std::as_bytes(std::span(hash)));

@@ -42,6 +42,7 @@ void set_profiles(Scene& scene, std::span<const std::string> texts, double lumen
         const auto [name, file] = parts_of_profile(text);
         float candelas = 0;
         const auto table = make_intensity_table(read_ies(file, sink), candelas);
+        scene.files.emplace_back(file);
         std::vector<Names> all;
         bool is_found = false;
         for (Light& light : scene.lights) {
