@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "formats/files/parse_number.h"
+#include "math/frame.h"
 #include "python/transform_values.h"
 #include "scene/animation.h"
 #include "scene/projection_features.h"
@@ -108,8 +109,13 @@ void set_camera(Scene& scene, uint32_t i, std::span<const double> values) {
 }
 
 Transform placed(const Light& light) {
-    const Vec3 up = std::abs(light.direction.y) < 0.999f ? Vec3{0, 1, 0} : Vec3{0, 0, -1};
+    const bool has_table = parts_of(light.kind).table;
+    const Vec3 up = has_table ? light.up : std::abs(light.direction.y) < 0.999f ? Vec3{0, 1, 0} : Vec3{0, 0, -1};
     Transform world_from_light = look_at({0, 0, 0}, light.direction, up);
+    if (has_table && light.is_mirrored) {
+        for (Vec3* const row : {&world_from_light.row0, &world_from_light.row1, &world_from_light.row2})
+            row->x = -row->x;
+    }
     world_from_light.translation = light.position;
     return world_from_light;
 }
@@ -170,8 +176,12 @@ std::vector<Property> of_lights() {
          .shape = {3},
          .is_there = has_direction,
          .get = [](const Scene& scene, uint32_t i) { return numbers(scene.lights[i].direction); },
-         .set = [](Scene& scene, uint32_t i,
-                   std::span<const double> v) { scene.lights[i].direction = normalize_safely(vec3(v)); },
+         .set =
+             [](Scene& scene, uint32_t i, std::span<const double> v) {
+                 Light& light = scene.lights[i];
+                 light.direction = normalize_safely(vec3(v));
+                 if (!is_oriented(light)) light.up = make_frame(light.direction).tangent;
+             },
          .why_not = [](const Scene&, uint32_t, std::span<const double> v) -> std::string {
              return is_finite(normalize_safely(vec3(v))) ? "" : "expected a direction other than 0";
          }},

@@ -5,6 +5,8 @@ MUTATIONS = [
      ("src/session/film_file/merge_films.cpp", "a.samples.first < b.samples.end &&", "a.samples.first + 1 < b.samples.end &&")),
     ("films of other settings are merged", "consistency/film_files robust/cli_merge",
      ("src/session/film_file/film_header.cpp", "first_difference(before.settings, after.settings)", "first_difference(after.settings, after.settings)")),
+    ("parts of scenes with other textures are merged", "robust/cli_merge",
+     ("src/session/writing/deciding_settings.cpp", ", record.scene.hash_of_files);", ", \"\");")),
     ("merged ids have the names of the first part alone", "consistency/film_files robust/cli_merge",
      ("src/session/film_file/merge_films.cpp", "    unite_id_names(later, origin);\n", "    static_cast<void>(later);\n")),
     ("a part of rows writes to the top rows", "consistency/film_files robust/cli_merge",

@@ -46,6 +46,13 @@ double lumens(const EmitterStrength& emitter) {
     return emitter.value * (emitter.unit == EmitterUnit::Watt ? kLumensPerWatt : 1);
 }
 
+/// Returns the luminous flux of a light, in lumens, that has a luminous intensity of 1 cd and its own colour.
+double lumens_of_candela(const Light& light) {
+    if (!parts_of(light.kind).table) return punctual_power(light, 1, 0);
+    const Rgb color = is_black(light.intensity) ? grey(1) : light.intensity;
+    return static_cast<double>(luminance(light.table->integral * color)) / static_cast<double>(luminance(color));
+}
+
 void set_light(const EmitterStrength& emitter, double lumens_per_watt, Light& light) {
     const auto set = [&](double photometric) {
         light.intensity = with_luminance(emitter, light.intensity, photometric / lumens_per_watt);
@@ -56,7 +63,7 @@ void set_light(const EmitterStrength& emitter, double lumens_per_watt, Light& li
     case EmitterUnit::Watt:
     case EmitterUnit::Lumen:
         if (is_far) break;
-        return set(lumens(emitter) / punctual_power(light, 1, 0));
+        return set(lumens(emitter) / lumens_of_candela(light));
     case EmitterUnit::Candela:
         if (is_far) break;
         return set(emitter.value);
@@ -68,9 +75,10 @@ void set_light(const EmitterStrength& emitter, double lumens_per_watt, Light& li
     }
     refuse(emitter,
            fmt::format("{} is a {}, whose unit must be {}", light.name.empty() ? "the light" : "'" + light.name + "'",
-                       is_far       ? "directional light"
-                       : parts.cone ? "spot light"
-                                    : "point light",
+                       is_far        ? "directional light"
+                       : parts.table ? "goniometric light"
+                       : parts.cone  ? "spot light"
+                                     : "point light",
                        is_far ? "lx" : "W, lm or cd"));
 }
 

@@ -28,8 +28,12 @@ void append_arrays(const IntensityTable& from, GoniometricTable& table, Goniomet
     std::vector<double> of_rows(from.rows());
     std::vector<std::vector<double>> weights(from.rows());
     for (uint32_t row = 0; row < from.rows(); ++row) {
-        for (uint32_t column = 0; column < from.columns(); ++column)
-            weights[row].push_back(total(from.mean_of_cell(column, row)) * from.measure_of_cell(column, row));
+        double measure = 0;
+        for (uint32_t column = 0; column < from.columns(); ++column) {
+            // All cells of a row of angles have one measure.
+            if (column == 0 || from.layout != TableLayout::Angles) measure = from.measure_of_cell(column, row);
+            weights[row].push_back(total(from.mean_of_cell(column, row)) * measure);
+        }
         for (const double weight : weights[row]) of_rows[row] += weight;
     }
     append_cdf(of_rows, to);
@@ -46,6 +50,7 @@ float cosine_of_cone(const IntensityTable& from, const GoniometricTable& table) 
                 const Vec2 at = {static_cast<float>(corner & 1), static_cast<float>(corner >> 1)};
                 least = min(least, direction_in_cell(table, column, row, at).z);
             }
+            if (from.layout == TableLayout::Angles) break; // all cells of a row have one height
         }
     }
     return clamp(least - 0x1p-20f, -1.0f, 1.0f - 0x1p-20f);
@@ -65,8 +70,9 @@ float GoniometricTables::add(const Light& light, uint32_t sharing) {
     table.up = normalize(light.up - dot(light.up, light.direction) * light.direction);
     table.right = (light.is_mirrored ? -1.0f : 1.0f) * cross(table.forward, table.up);
     if (sharing >= tables.size()) append_arrays(from, table, *this);
+    cones.push_back(sharing < cones.size() ? cones[sharing] : cosine_of_cone(from, table));
     tables.push_back(table);
-    return cosine_of_cone(from, table);
+    return cones.back();
 }
 
 } // namespace pertev

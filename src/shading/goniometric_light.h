@@ -214,6 +214,7 @@ struct GoniometricTables {
     std::vector<GoniometricTable> tables;
     std::vector<Rgb> values;
     std::vector<uint32_t> starts, guides;
+    std::vector<float> cones; // cosine of the narrowest cone of each
 
     /// Adds the table of `light` and returns the cosine of the narrowest cone around its direction that holds its
     /// light, below 1. `sharing` is the number of a light with the same IntensityTable, or that of the next.

@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "math/sampling.h"
+#include "session/set_emitters.h"
 #include "tests/support/lit_scenes.h"
 #include "tests/support/random.h"
 
@@ -173,4 +174,17 @@ TEST_CASE("goniometric: a light tree bounds a table by the cone of its light") {
     CHECK(lights.view.punctual[0].cos_outer == doctest::Approx(std::cos(0.4)).epsilon(1e-4));
     CHECK(lights.data.goniometric.values.size() == 1025); // both share the values
     CHECK(lights.data.source_powers[0] == doctest::Approx(2 * 3.14159265 * (1 - std::cos(0.4))).epsilon(1e-4));
+}
+
+TEST_CASE("goniometric: lumens are those of the colours of the table and of the light") {
+    IntensityTable green;
+    green.values = {.width = 1, .height = 1, .channels = 3, .pixels = {0, 1, 0}};
+    Scene scene;
+    scene.lights = {goniometric_light(green)};
+    scene.lights[0].name = "beam";
+    scene.lights[0].intensity = {1, 3, 1};
+    const EmitterStrength emitters[] = {parse_emitter("beam=800lm")};
+    set_emitters(scene, emitters, 683);
+    const Rgb watts = scene.lights[0].table->integral * scene.lights[0].intensity;
+    CHECK(683 * luminance(watts) == doctest::Approx(800).epsilon(1e-4));
 }

@@ -173,11 +173,12 @@ TEST_CASE("KHR_animation_pointer animates nodes, views and lights, and other tar
     };
     const auto document = [&](const std::string& channels) {
         return builder.json(
-            R"("extensionsUsed":["KHR_lights_punctual","KHR_animation_pointer"],"extensions":{"KHR_lights_punctual":)"
-            R"({"lights":[{"type":"point","color":[0.5,1,0.25],"intensity":2}]}},)"
+            R"("extensionsUsed":["KHR_lights_punctual","KHR_animation_pointer","EXT_lights_ies"],"extensions":{)"
+            R"("EXT_lights_ies":{"lights":[{"uri":"data:,TILT=NONE%0A1 1 1 2 1 1 1 0 0 0 1 1 1 0 90 0 9 9"}]},)"
+            R"("KHR_lights_punctual":{"lights":[{"type":"point","color":[0.5,1,0.25],"intensity":2}]}},)"
             R"("cameras":[{"type":"perspective","perspective":{"yfov":1}}],)"
             R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
-            R"("nodes":[{"mesh":0},{"camera":0},{"camera":0},{"extensions":{"KHR_lights_punctual":{"light":0}}}],)"
+            R"("nodes":[{"mesh":0},{"camera":0},{"camera":0},{"extensions":{"KHR_lights_punctual":{"light":0},"EXT_lights_ies":{"light":0}}},{"extensions":{"EXT_lights_ies":{"light":0}}}],)"
             R"("animations":[{"samplers":[)" +
             sampler(1, 2) + "," + sampler(1, 10) + R"(],"channels":[)" + channels + "]}]");
     };
@@ -197,6 +198,8 @@ TEST_CASE("KHR_animation_pointer animates nodes, views and lights, and other tar
     CHECK(channels[1].target == 0);
     CHECK(channels[2].target == 1);
     CHECK(channels[3].part == AnimatedPart::LightIntensity);
+    REQUIRE(scene.lights.size() == 3); // two of EXT_lights_ies
+    CHECK(scene.lights[channels[3].target].kind == LightKind::Point);
     CHECK(channels[3].values == std::vector<float>{0.5f, 1, 0.25f, 0.25f, 0.5f, 0.125f, 0.125f, 0.25f, 0.0625f});
     CHECK(test::has_warning(messages, {"/animations/0/channels/3", "/materials/0/alphaCutoff", "is not animated"}));
     CHECK(test::has_warning(messages, {"/animations/0/channels/4", "/nodes/9/scale"}));

@@ -182,6 +182,26 @@ TEST_CASE("ies: a node's light of EXT_lights_ies shines along -z, and conversion
     CHECK(losses.left_out()[0].find("the table of its intensity is lost") != std::string::npos);
 }
 
+TEST_CASE("ies: conversion makes a spot of a round cone, with the part of full intensity as the inner cone") {
+    const fs::path folder = test::scratch_folder();
+    Scene scene;
+    Light light = {.name = "edge", .kind = LightKind::Goniometric, .direction = {1, 0, 0}, .intensity = {1, 2, 3}};
+    float greatest = 0;
+    light.table = make_intensity_table(
+        make_round_table(0.5f, [](float angle) { return angle <= 0.25f ? 4.0f : 16 * (0.5f - angle); }), greatest);
+    scene.lights = {light};
+    Messages losses;
+    write_glb(folder / "out.glb", scene, losses);
+    CHECK(losses.left_out().size() == 1);
+    const Scene read = read_scene(folder / "out.glb", {}, losses);
+    REQUIRE(read.lights.size() == 1);
+    CHECK(read.lights[0].kind == LightKind::Spot);
+    CHECK(read.lights[0].direction.x == doctest::Approx(1));
+    CHECK(std::acos(read.lights[0].cos_outer) == doctest::Approx(0.5).epsilon(1e-3));
+    CHECK(std::acos(read.lights[0].cos_inner) == doctest::Approx(0.25).epsilon(1e-2));
+    CHECK(read.lights[0].intensity.b == doctest::Approx(3));
+}
+
 TEST_CASE("ies: a setting gives point and spot lights by name the candelas of a file") {
     const std::string file = test::write_text(test::scratch_folder() / "lamp.ies", kRound).string();
     Scene scene;

@@ -165,8 +165,9 @@ TEST_CASE("pbrt: goniometric and projection lights face where pbrt has them") {
     const std::string file = " \"string filename\" \"lamp.exr\"\n";
     const auto load = [&](const std::string& light, const std::string& end = "") {
         Messages messages;
-        Scene scene = read_scene(
-            test::write_text(folder / "lit.pbrt", "WorldBegin Translate 0 5 0\n" + light + kFloor + end), {}, messages);
+        Scene scene =
+            read_scene(test::write_text(folder / "lit.pbrt", "WorldBegin Translate 0 5 0\n" + light + kFloorText + end),
+                       {}, messages);
         CHECK(messages.left_out() == std::vector<std::string>{});
         REQUIRE(scene.lights.size() == 1);
         return scene;

@@ -13,6 +13,7 @@ namespace pertev {
 struct ReadOptions {
     std::vector<std::filesystem::path> allowed_paths; // setting `allow_path`
     bool geometry_only = false;                       // skips textures and materials: every surface is grey
+    bool vertex_colors = false;                       // keeps them even so; such a file refers to no other
     bool two_sided_lights = false;                    // surfaces emit from both faces, whatever the file says
     FileSpace space;                                  // for formats that do not define theirs; others are unaffected
     std::string animation;                            // the animation that plays: a name, an index from 0, or "all";

@@ -126,10 +126,13 @@ std::optional<Target> pointed_at(const Document& document, const JsonValue& json
     }
     const std::vector<JsonValue>& nodes = document.table("nodes");
     const auto holders_of_light = [&](uint32_t number) {
-        return held_by(scene.lights, [&](uint32_t node) {
+        std::vector<uint32_t> holders = held_by(scene.lights, [&](uint32_t node) {
             const auto held = nodes[node].extension("KHR_lights_punctual");
-            return document.index_into("lights", held->at("light")) == number;
+            return held && document.index_into("lights", held->at("light")) == number;
         });
+        // A node may have a light of EXT_lights_ies beside it.
+        std::erase_if(holders, [&](uint32_t light) { return parts_of(scene.lights[light].kind).table; });
+        return holders;
     };
     for (const NumberPart& property : kCameraNumbers) {
         const auto number = index_in(pointer, "/cameras/", property.path, document.table("cameras").size());

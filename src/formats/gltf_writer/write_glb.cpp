@@ -24,6 +24,26 @@ namespace glb {
 namespace {
 
 /// Returns an angle whose cosine is `cosine`, to the bit if a float near it has that.
+/// Returns whether a light is a spot with an edge of its own course, as pbrt's and Mitsuba's are.
+bool is_round_cone(const Light& light) {
+    if (!parts_of(light.kind).table) return false;
+    const IntensityTable& table = *light.table;
+    return table.layout == TableLayout::Angles && table.values.width == 1 && table.first_angle == 0 &&
+           table.last_angle < 0.5f * kPi;
+}
+
+/// Returns the spot of a round cone, whose inner cone is that of full intensity.
+Light spot_of(Light light) {
+    const IntensityTable& table = *light.table;
+    constexpr float full = 0.999f;
+    uint32_t row = 0;
+    while (row + 2 < table.values.height && *table.values.at(0, row + 1) >= full) ++row;
+    const float step = table.last_angle / static_cast<float>(table.values.height - 1);
+    light.kind = LightKind::Spot;
+    light.cos_inner = cos(step * static_cast<float>(row)), light.cos_outer = cos(table.last_angle);
+    return light;
+}
+
 float angle_of(float cosine) {
     const float near = acos(clamp(cosine, -1.0f, 1.0f));
     float below = near, above = near;
@@ -176,7 +196,11 @@ private:
 
     void add_light(Light light) {
         JsonMembers object;
-        if (parts_of(light.kind).table) {
+        if (is_round_cone(light)) {
+            sink_.leave_out(fmt::format("{}: the course of its edge is lost; it becomes a spot light of its cone",
+                                        numbered("light", lights_.size(), light.name, light.origin)));
+            light = spot_of(light);
+        } else if (parts_of(light.kind).table) {
             sink_.leave_out(fmt::format("{}: the table of its intensity is lost; it becomes a point light of its power",
                                         numbered("light", lights_.size(), light.name, light.origin)));
             light.intensity = (0.25f / kPi) * (light.table->integral * light.intensity);

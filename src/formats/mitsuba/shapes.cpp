@@ -188,7 +188,8 @@ void Shapes::read_mesh_file(const FileUse& use, ShapeMesh& to, Sink& sink) {
         to.exact = std::move(read.exact);
     } else {
         ReadOptions options = reading_.context.options;
-        options.geometry_only = !use.has_colors; // Mitsuba takes no materials from it
+        options.geometry_only = true; // Mitsuba takes no materials from it
+        options.vertex_colors = use.has_colors;
         const FileAccess& access = reading_.context.access;
         Scene scene =
             use.kind == 'o' ? read_obj(to.file, access, options, sink) : read_ply(to.file, access, options, sink);

@@ -403,7 +403,7 @@ Scene read_ply(const fs::path& path, const FileAccess& access, const ReadOptions
     Reader reader(bytes, header, file, sink);
     Mesh mesh = reader.run();
     mesh.name = path.stem().string();
-    if (options.geometry_only) mesh.colors.clear();
+    if (options.geometry_only && !options.vertex_colors) mesh.colors.clear();
     TextureLoader loader(access, sink);
     loader.shrink_to(options.max_texture_size);
     Scene scene = make_ply_scene(std::move(mesh), reader.sizes(), reader.of_faces(), header, file, loader, sink);

@@ -60,6 +60,7 @@ DecidingSettings deciding_settings(const PictureOptions& options, const PictureR
     put("hash of camera_path", hash_of_file(options.camera_path));
     put("hash of camera_from", hash_of_file(options.scene.camera.camera_from));
     if (options.camera_list) put("cameras", hash_of_cameras(*options.camera_list));
+    put("hash of lut", hash_of_file(options.lut));
     std::vector<std::string> height_maps;
     for (const std::string& text : options.displacement)
         height_maps.push_back(hash_of_file(parse_height_map(text).file));
