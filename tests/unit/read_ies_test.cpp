@@ -11,6 +11,7 @@
 #include "formats/ies/read_ies.h"
 #include "formats/read_scene.h"
 #include "session/opening/set_profiles.h"
+#include "tests/support/flat_scenes.h"
 #include "tests/support/lit_scenes.h"
 #include "tests/support/options.h"
 #include "tests/support/thrown_error.h"
@@ -185,6 +186,7 @@ TEST_CASE("ies: a node's light of EXT_lights_ies shines along -z, and conversion
 TEST_CASE("ies: conversion makes a spot of a round cone, with the part of full intensity as the inner cone") {
     const fs::path folder = test::scratch_folder();
     Scene scene;
+    test::add(scene, test::floor_at(0, 1), test::white());
     Light light = {.name = "edge", .kind = LightKind::Goniometric, .direction = {1, 0, 0}, .intensity = {1, 2, 3}};
     float greatest = 0;
     light.table = make_intensity_table(
