@@ -3,13 +3,13 @@
 #   tools/check_gpu.sh BIN SCENES [PART ...]
 # BIN is the folder of pertev and pertev_tests (build/bin, or a bundle of tools/make_portable.sh), SCENES the folder of the
 # public test scenes (docs/scenes.md), with those of tools/make_record_scenes.py, without which bench leaves out rays. Parts: tests,
-# python, long, pictures, sanitizers, references, bench, viewer; all without any. Exits 1 when something failed.
+# python, long, pictures, sanitizers, stalls, references, bench, viewer; all without any. Exits 1 when something failed.
 set -uo pipefail
 bin=$1 scenes=$2
 shift 2
 here=$(cd "$(dirname "$0")" && pwd)
 parts=("$@")
-[ ${#parts[@]} -gt 0 ] || parts=(tests python long pictures sanitizers references bench viewer)
+[ ${#parts[@]} -gt 0 ] || parts=(tests python long pictures sanitizers stalls references bench viewer)
 export PERTEV_SCENES=$scenes
 status=0
 
@@ -48,6 +48,7 @@ for part in "${parts[@]}"; do
                 --test-case='the GPU gives the bytes*,pictures and frames of two wavefronts*,frames that split light after*,ray setup has the same bits*,BSDFs have the same bits*,light samples*,every distribution of rays to threads*,the active lanes*,each kind of ray can have*,two queues used*,a picture whose samples are split*,one*two and three devices render*,a device that fails in the middle*,batches by three devices*,a new camera and most*,a GPU builds the bytes*,frames of moving scenes*,a step in time uploads*,a frame with ReSTIR counts*,memory of a denoised render*,pictures of ray trees*,pictures of light subpaths*,hybrid has*kinds of surfaces*,rasterised pictures do not*,pictures of micropolygons do not*,pictures by photon mapping*,pictures by irradiance caching*,pictures of a radiosity*,layers do not depend*,pictures with motion blur*,layers of light paths with motion blur*,blur from camera motion*,every tracer finds the same hits*,a light tree gives the same bytes*,camera rays and shadow rays*,a film of a window has the bytes of that part of the*,two parts of a film stored*,a schedule defined by a test*,a film target defined by a test*'
         done
         ;;
+    stalls) run python3 "$here/check_stalls.py" "$bin/pertev" ;;
     references)
         for script in images/bitterli_cornell_box images/bitterli_water_caustic images/mcguire_cornell_box statistical/sponza_energy; do
             run python3 "$here/../tests/$script.py" "$bin/pertev" --device cuda

@@ -20,29 +20,12 @@ __global__ void __launch_bounds__(128) run_stage(const __grid_constant__ Stage s
 }
 
 template <class Stage>
-__device__ void run_whole_block(const Stage& stage, WorkCount count) {
+__global__ void __launch_bounds__(Stage::kShape.threads, Stage::kShape.wanted)
+    run_whole_blocks(const __grid_constant__ Stage stage, const WorkCount count) {
+    // Not in a function of its own: one that is not inlined reads the stage as any memory, not as constants.
     const uint64_t first = uint64_t(blockIdx.x) * blockDim.x, i = first + threadIdx.x;
     const uint32_t indices = count.value();
     if (first < indices) stage(uint32_t(i), i < indices);
-}
-
-template <class Stage>
-__global__ void __launch_bounds__(Stage::kShape.threads, Stage::kShape.wanted)
-    run_whole_blocks(const __grid_constant__ Stage stage, const WorkCount count) {
-    run_whole_block(stage, count);
-}
-
-/// For stages whose code selects between addresses of their own members and of other memory (kIsCopied): one compiled
-/// by CUDA 13.0 read its constants at an address that only holds within their bank.
-template <class Stage>
-__global__ void __launch_bounds__(Stage::kShape.threads, Stage::kShape.wanted)
-    run_whole_blocks_of_copies(Stage stage, const WorkCount count) {
-    run_whole_block(stage, count);
-}
-template <class Stage>
-constexpr bool is_copied() {
-    if constexpr (requires { Stage::kIsCopied; }) return Stage::kIsCopied;
-    return false;
 }
 #endif
 
@@ -56,11 +39,7 @@ void launch_on_gpu(Queue& queue, const char* name, WorkCount count, const Stage&
     const auto blocks_of = [&](uint64_t threads) { return uint32_t((uint64_t(count.most) + threads - 1) / threads); };
     if constexpr (WholeBlockStage<Stage>) {
         constexpr uint32_t threads = Stage::kShape.threads;
-        if constexpr (is_copied<Stage>()) {
-            run_whole_blocks_of_copies<<<blocks_of(threads), threads, 0, stream>>>(stage, count);
-        } else {
-            run_whole_blocks<<<blocks_of(threads), threads, 0, stream>>>(stage, count);
-        }
+        run_whole_blocks<<<blocks_of(threads), threads, 0, stream>>>(stage, count);
     } else {
         constexpr uint32_t threads = 128;
         run_stage<<<blocks_of(threads), threads, 0, stream>>>(stage, count);

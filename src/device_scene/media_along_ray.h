@@ -50,11 +50,10 @@ HD_CALL inline bool find_next_crossing(const MediumBoundariesView& boundaries, V
     return true;
 }
 
-/// A part of a ray that lies in one medium.
+/// A part of a ray that lies in one medium: that of a solid's material, or of SceneView::surroundings.
 struct RayPart {
-    const MediumParameters* medium;
-    const MaterialParameters* solid; // whose medium it is; null: the scene's
-    float begin, end;                // in multiples of the direction's length
+    const MaterialParameters& material;
+    float begin, end; // in multiples of the direction's length
 };
 
 /// Calls `visit` for each part of a ray up to `distance`, in order, until it returns true. `list` has the solids that
@@ -70,9 +69,11 @@ HD inline void visit_media(const SceneView& scene, InteriorList& list, Vec3 orig
             scene.boundaries.is_there() && find_next_crossing(scene.boundaries, origin, direction, distance, crossing);
         if (crosses) list = solids_before(scene, list, crossing.instance, crossing.enters);
         if (!crosses && leaves) list = {};
-        const MaterialParameters* const solid = scene.nesting.is_there() ? filling(scene, list) : nullptr;
+        // Neither pointer is null, because ptxas 13.0 compares one that may be null too early (tools/check_stalls.py).
+        const MaterialParameters& material =
+            *(list.top() == 0 ? scene.surroundings : scene.materials + material_of_solid(scene, list));
         const float end = crosses ? crossing.distance : distance;
-        if (visit(RayPart{solid != nullptr ? &solid->medium : scene.medium, solid, begin, end}) || !crosses) return;
+        if (visit(RayPart{material, begin, end}) || !crosses) return;
         list = solids_behind(scene, list, crossing.instance);
         begin = end;
     }
@@ -89,8 +90,8 @@ HD inline Rgb transmittance_of(Rgb optical_depth) {
 
 /// Returns the transmittance of `distance` metres by the absorption of the part's solid, without its medium's.
 HD inline Rgb absorption_of(const RayPart& part, float distance) {
-    if (part.solid == nullptr || !part.solid->absorbs()) return {1, 1, 1};
-    return transmittance_of_depth(*part.solid, distance);
+    if (!part.material.absorbs()) return {1, 1, 1};
+    return transmittance_of_depth(part.material, distance);
 }
 
 /// Returns the transmittance of a ray with a unit direction over `distance` metres; `list` has the solids that hold its
@@ -100,7 +101,7 @@ HD_CALL inline Rgb transmittance_of_media(const SceneView& scene, InteriorList l
     Rgb depth = {0, 0, 0}, absorbed = {1, 1, 1};
     visit_media(scene, list, origin, direction, distance, !(distance < kInfinity), [&](const RayPart& part) {
         const float length = part.end - part.begin;
-        depth += optical_depth(part.medium->sigma_t(), length);
+        depth += optical_depth(part.material.medium.sigma_t(), length);
         absorbed = absorbed * absorption_of(part, length);
         return false;
     });

@@ -23,10 +23,13 @@ HD_CALL inline InteriorList solids_behind(const SceneView& scene, InteriorList b
     return before.has(rank) ? before.without(rank) : before.with(rank);
 }
 
+/// Returns the number of the material that fills a point within a solid.
+HD inline uint32_t material_of_solid(const SceneView& scene, InteriorList list) {
+    return scene.instances[scene.nesting.solids[list.top()]].material;
+}
 /// Returns the material that fills a point; null in a vacuum.
 HD inline const MaterialParameters* filling(const SceneView& scene, InteriorList list) {
-    if (list.top() == 0) return nullptr;
-    return scene.materials + scene.instances[scene.nesting.solids[list.top()]].material;
+    return list.top() == 0 ? nullptr : scene.materials + material_of_solid(scene, list);
 }
 
 /// Returns the transmittance of `distance` metres through what fills them; 1 if they do not end.

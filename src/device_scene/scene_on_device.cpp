@@ -239,16 +239,15 @@ void SceneOnDevice::update_nesting(Queue& queue, const PlacedScene& prepared) {
 void SceneOnDevice::update_media(Queue& queue, const PlacedScene& prepared) {
     const MediumBoundaries found = find_medium_boundaries(prepared);
     view_.has_media = has_media(*prepared.scene) ? 1 : 0;
-    view_.medium = nullptr;
+    view_.surroundings = nullptr;
     view_.boundaries = {view_of(found.tree)};
     PartArrays arrays;
     arrays.add(found.tree.nodes, view_.boundaries.tree.nodes);
     arrays.add(found.tree.triangles, view_.boundaries.tree.triangles);
     arrays.add(found.triangles, view_.boundaries.triangles);
-    // In memory, not in the view, of which kernels have constants: nvcc 13.0 does not select between an address of such
-    // a constant and one in memory as it is told (it read through the one that was null).
-    const std::span<const MediumParameters> around(&prepared.scene->medium, view_.has_media);
-    arrays.add(around, view_.medium);
+    std::vector<MaterialParameters> around(view_.has_media);
+    if (!around.empty()) around[0].medium = prepared.scene->medium;
+    arrays.add(around, view_.surroundings);
     arrays.upload(queue, boundaries_, "boundaries of media");
 }
 

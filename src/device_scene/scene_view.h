@@ -65,7 +65,7 @@ struct SceneView {
     MotionsView motions;     // while the shutter is open
     NestingView nesting;     // solids that lie in each other; then `variant` is General
     uint32_t has_media;      // 1 if a medium fills any part of space
-    const MediumParameters* medium; // fills what no solid fills; null without media
+    const MaterialParameters* surroundings; // its medium fills what no solid fills; null without media
     MediumBoundariesView boundaries;
 };
 

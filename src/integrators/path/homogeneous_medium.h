@@ -73,18 +73,19 @@ struct HomogeneousMedium {
         Rgb scattered = {1, 1, 1}, density = {1, 1, 1}, absorbed = {1, 1, 1};
         float at = kInfinity, position = 0; // metres along the ray
         visit_media(scene_, path.interior, path.origin, path.direction, distance, leaves, [&](const RayPart& part) {
-            const Rgb sigma_t = part.medium->sigma_t();
+            const MediumParameters& medium = part.material.medium;
+            const Rgb sigma_t = medium.sigma_t();
             float length = part.end - part.begin;
-            if (part.medium->scatters()) {
+            if (medium.scatters()) {
                 const float rate = selected(sigma_t);
                 const bool is_here = rate > 0 && rate * length > left;
                 if (is_here) {
                     length = left / rate, at = part.begin + length;
                     position = within_part(path, at, part);
-                    scattered = part.medium->sigma_s, density = sigma_t;
-                    vertex.g = part.medium->g;
-                    vertex.instance =
-                        part.solid == nullptr ? scene_.instance_count : scene_.nesting.solids[path.interior.top()];
+                    scattered = medium.sigma_s, density = sigma_t;
+                    vertex.g = medium.g;
+                    const uint32_t rank = path.interior.top();
+                    vertex.instance = rank == 0 ? scene_.instance_count : scene_.nesting.solids[rank];
                 }
                 if (rate > 0) left -= rate * length;
                 sampled += optical_depth(sigma_t, length);

@@ -87,8 +87,6 @@ struct Shade {
                                              ? BlockShape{512, 1}
                                              : BlockShape{384, 2};
 
-    static constexpr bool kIsCopied = (kFeatures & kMedia) != 0; // (launch_body.h)
-
     HD INLINE_ON_DEVICE void operator()(uint32_t i, bool is_there) const {
         constexpr bool kMoves = (kFeatures & kMoving) != 0;
         const RoundAppend lists;
