@@ -68,8 +68,7 @@ void OpenedScene::open(PictureOptions& options, const EditedScene& source, Sink&
         }
     };
     auto made = prepare_render(options, kRender, sink, {}, in_memory);
-    made->hash =
-        source.arrays ? source.hash_of_arrays : scene_hash(source.name); // the file may change while it is open
+    if (source.arrays) made->hash = source.hash_of_arrays;
     parameters_.reset();
     setup_ = std::move(made);
     edits_ = source.edit_count;

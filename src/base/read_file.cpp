@@ -44,26 +44,11 @@ std::string hash_of_file(const std::filesystem::path& path) {
     if (std::error_code ec; !std::filesystem::is_regular_file(path, ec)) return "";
     const InputFile file = open_file(path);
     Hasher hasher;
-    std::vector<std::byte> part(std::size_t(1) << 20);
+    std::vector<std::byte> part(std::size_t(1) << 16); // a scene has many small files, and cleared memory is not free
     while (const std::size_t count = std::fread(part.data(), 1, part.size(), file.get())) {
         hasher.add(std::span(part).first(count));
     }
     if (std::ferror(file.get()) != 0) throw failure(path, "the disk failed");
-    return hasher.result().hex();
-}
-
-std::string hash_of_files(std::span<const std::filesystem::path> paths) {
-    if (paths.empty()) return "";
-    Hasher hasher;
-    for (const std::filesystem::path& path : paths) {
-        std::string hash;
-        try {
-            hash = hash_of_file(path);
-        } catch (const Error&) { // its reader has left it out with a warning
-        }
-        hasher.add_value(hash.size());
-        hasher.add(std::as_bytes(std::span(hash)));
-    }
     return hasher.result().hex();
 }
 

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -23,8 +22,5 @@ std::vector<std::byte> read_file(const std::filesystem::path& path);
 /// Returns the hash of the bytes of `path`, 32 hexadecimal digits; memory does not depend on the file's size. Empty
 /// if there is no such regular file. Throws as read_file() if it cannot be read.
 std::string hash_of_file(const std::filesystem::path& path);
-/// Returns the hash of hash_of_file() of these, wherever they lie; empty if there are none. Those that cannot be read
-/// count as no file.
-std::string hash_of_files(std::span<const std::filesystem::path> paths);
 
 } // namespace pertev

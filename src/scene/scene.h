@@ -71,7 +71,7 @@ struct Scene {
     bool is_far = false;                      // the scene is over 2^12 of its own sizes away from the file's origin
     std::vector<SuggestedSetting> suggested;  // suggestions of the file: samples, an integrator and its settings, a
                                               // film
-    std::vector<std::filesystem::path> files; // files that its own file or settings refer to, in the order of reading
+    std::vector<std::filesystem::path> files; // files that its own file refers to, in the order of reading
     std::string no_instances;                 // if there are no instances: what the file has instead, and what would
                                               // be right
 };

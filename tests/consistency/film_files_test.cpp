@@ -299,7 +299,8 @@ TEST_CASE("overlaps, gaps and parts of other pictures are refused by name") {
 
     renders.settings.path.max_depth = 3;
     const std::string shallow = renders.file({2, 5});
-    CHECK(merge_refusal({a, shallow}).find("`max_depth` is \"3\"") != std::string::npos);
+    const std::string deeper = fmt::format("`max_depth` is \"{}\" there, not \"3\"", RenderSettings().path.max_depth);
+    CHECK(merge_refusal({a, shallow}).find(deeper) != std::string::npos);
     renders.settings.path.max_depth = RenderSettings().path.max_depth;
     renders.settings.aovs = kAovAlbedo;
     CHECK(merge_refusal({a, renders.file({2, 5})}) != "no error");

@@ -144,7 +144,7 @@ class MovingPictures(CliTest):
         self.assertEqual(info["pertev.shutter"], [-0.25, 0.1])
         self.frames("--frames", "0-1", "--fps", "2", "--shutter", "0.1")
         self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-1", "--fps", "2", "--continue",
-                    "--shutter", "0.2", says=['--shutter "0,0.1"'])
+                    "--shutter", "0.2", says=['--shutter is "0,0.1" there'])
         self.frames("--frames", "0-1", "--fps", "2", "--shutter", "0,0.1", "--continue")
 
     def test_an_invalid_shutter_is_refused(self):
@@ -186,16 +186,16 @@ class MovingPictures(CliTest):
         self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-4", "--fps", "3", "--continue",
                     says=["f-###.json: /settings", "--fps"])
         self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-4", "--fps", "2", "--seed", "1",
-                    "--continue", says=['--seed "0"'])
+                    "--continue", says=['--seed is "0" there'])
         self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-4", "--fps", "2", "--integrator",
-                    "distributed", "--continue", says=['--integrator "path"'])
+                    "distributed", "--continue", says=['--integrator is "path" there'])
         for flags, named in ((["--exposure", "0", "--efficacy", "200"], "--efficacy"),
                              (["--false-color", "luminance", "--false-color-range", "1,10"], "--tone-map")):
             self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY[:TINY.index("--exposure")], *flags, "--frames", "0-4",
-                        "--fps", "2", "--continue", says=[f'{named} "'])
+                        "--fps", "2", "--continue", says=[f'{named} is "'])
         write(self.path("m.gltf"), moving_gltf() + " ")
         self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-4", "--fps", "2", "--continue",
-                    says=["f-###.json: "])
+                    says=["f-###.json: ", "hash of the scene's file"])
         write(self.path("f-###.json"), "{")
         self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-4", "--fps", "2", "--continue",
                     says=["f-###.json: "])

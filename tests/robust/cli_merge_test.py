@@ -13,6 +13,7 @@ from cli_run import FLOOR, PATIENCE_S, PROGRAM, SANITIZED, CliTest, main, write
 
 SMALL = ["--size", "20x16", "--device", "cpu"]
 UNMETERED = ["--exposure", "0"]
+LUT = b"LUT_3D_SIZE 2\n" + b"".join(f"{i & 1} {i >> 1 & 1} {i >> 2}\n".encode() for i in range(8))
 
 
 def take_plane(data, at, count):
@@ -90,6 +91,11 @@ class Merge(CliTest):
         for i, name in enumerate(names, 1):
             self.part(name, "--part", f"{i}/{count}", *flags)
         return names
+
+    def write_all(self, files):
+        for name, content in files.items():
+            with open(self.path(name), "wb") as output:
+                output.write(content)
 
     def merge(self, *arguments):
         return self.succeed("merge", *arguments, "--json").events("done")[0]
@@ -289,26 +295,59 @@ class Merge(CliTest):
 
     def test_parts_and_checkpoints_do_not_survive_a_change_of_a_file_that_the_scene_refers_to(self):
         write(self.path("a.obj"), "mtllib a.mtl\nusemtl grey\nvt 0 0\nvt 1 0\nvt 1 1\n" + FLOOR.replace("f 4 3 2 1", "f 3/3 2/2 1/1"))
-        material = "newmtl grey\nKd 0.5 0.5 0.5\nmap_Kd a.hdr\n"
+        material = b"newmtl grey\nKd 0.5 0.5 0.5\nmap_Kd maps/a.hdr\n"
         texture, heights = ("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n".encode() + bytes([value, 90, 90, 128]) for value in (90, 40))
-        view = ["--eye", "0,2,0.1", "--target", "0,0,0", "--spp", "2", "--integrator", "reyes", "--displacement", "grey=h.hdr,0.01"]
-        for name, before, after in [("a.mtl", material.encode(), material.replace("0.5", "0.6", 1).encode()),
-                                    ("a.hdr", texture, heights), ("h.hdr", heights, texture)]:
-            with self.subTest(name=name):
-                for file, content in [("a.mtl", material.encode()), ("a.hdr", texture), ("h.hdr", heights)]:
-                    with open(self.path(file), "wb") as output:
-                        output.write(content)
-                self.part("1.pvf", "--part", "1/2", "--checkpoint", "c.pvf", *view, scene="a.obj")
+        files = {"a.mtl": material, "maps/a.hdr": texture, "h.hdr": heights, "l.cube": LUT}
+        view = ["--eye", "0,2,0.1", "--target", "0,0,0", "--spp", "2", "--integrator", "reyes", "--displacement", "grey=h.hdr,0.01",
+                "--lut", "l.cube"]
+        os.mkdir(self.path("maps"))
+        os.mkdir(self.path("other"))
+        self.write_all(files)
+        self.part("1.pvf", "--part", "1/2", "--checkpoint", "c.pvf", *view, scene="a.obj")
+        header = sums_of(self.read("1.pvf"))[0]["settings"]
+        self.assertEqual({name for name in header if name.startswith("file ")}, {f"file {name}" for name in files})
+        self.assertNotIn(self.folder, json.dumps(header))
+        for name, after, says in [("a.mtl", material.replace(b"0.5", b"0.6", 1), "a.mtl is another file there"),
+                                  ("a.mtl", material.replace(b"a.hdr", b"../h.hdr"), "a.mtl is another file there"),
+                                  ("maps/a.hdr", heights, "maps/a.hdr is another file there"),
+                                  ("maps/a.hdr", None, "maps/a.hdr is read there and not here"),
+                                  ("h.hdr", texture, "h.hdr is another file there"),
+                                  ("l.cube", LUT.replace(b"1 1 1", b"1 1 0"), "l.cube is another file there"),
+                                  ("a.hdr", texture, "")]: # where it is found too
+            with self.subTest(name=name, says=says):
+                self.write_all(files)
+                if says == "" or after is None:
+                    os.remove(self.path("maps/a.hdr"))
+                if after is not None:
+                    with open(self.path(name), "wb") as output:
+                        output.write(after)
                 self.part("2.pvf", "--part", "2/2", *view, scene="a.obj")
-                self.merge("1.pvf", "2.pvf", "-o", "all.exr")
-                with open(self.path(name), "wb") as output:
-                    output.write(after)
-                self.part("2.pvf", "--part", "2/2", *view, scene="a.obj")
-                says = "hash of displacement" if name == "h.hdr" else "hash of the files"
+                if says == "":
+                    self.merge("1.pvf", "2.pvf", "-o", "all.exr")
+                    continue
                 self.refuse(2, "merge", "1.pvf", "2.pvf", "-o", "x.exr", says=["2.pvf", says])
                 self.refuse(2, "render", "a.obj", "-o", "1.pvf", "--part", "1/2", "--checkpoint", "c.pvf", *SMALL, *UNMETERED, *view,
                             says=["c.pvf", says])
-                os.remove(self.path("c.pvf"))
+
+    def test_a_part_is_of_the_files_that_it_has_read(self):
+        write(self.path("a.obj"), "mtllib a.mtl\nusemtl grey\n" + FLOOR)
+        files = {"a.mtl": b"newmtl grey\nKd 0.5 0.5 0.5\n", "l.cube": LUT}
+        self.write_all(files)
+        view = ["--eye", "0,2,0.1", "--target", "0,0,0", "--lut", "l.cube"]
+        program = subprocess.Popen([PROGRAM, "render", "a.obj", "-o", "1.pvf", *SMALL, *UNMETERED, *view, "--spp", "1000000", "--json"],
+                                   cwd=self.folder, env=self.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE)
+        self.addCleanup(program.kill)
+        next(line for line in program.stdout if json.loads(line)["event"] == "progress" and json.loads(line)["samples"] > 0)
+        self.write_all({"a.mtl": b"newmtl grey\nKd 0.1 0.1 0.1\n", "l.cube": LUT.replace(b"1 1 1", b"1 1 0")})
+        program.send_signal(signal.SIGTERM)
+        samples = next(json.loads(line) for line in program.communicate(timeout=PATIENCE_S)[0].decode().splitlines()
+                       if json.loads(line)["event"] == "done")["samples"]
+        more = ["--samples", f"{samples}:{samples + 1}", *view]
+        self.part("2.pvf", *more, scene="a.obj")
+        self.refuse(2, "merge", "1.pvf", "2.pvf", "--partial", "-o", "x.exr", says=["a.mtl is another file there"])
+        self.write_all(files)
+        self.part("2.pvf", *more, scene="a.obj")
+        self.assertEqual(self.merge("1.pvf", "2.pvf", "--partial", "-o", "all.exr")["samples"], samples + 1)
 
     def test_files_that_are_not_films_or_are_damaged_are_refused(self):
         self.part("film.pvf", "--spp", "1", "-o", "film.exr")

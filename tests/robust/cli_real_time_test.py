@@ -247,8 +247,8 @@ class RealTime(CliTest):
                       ["--no-temporal-gradients"], ["--no-reconstruction"]):
             self.refuse_to_render("x", *motion, "--continue", *flags, says=[flags[0], "--continue"])
         self.refuse(2, "render", "m.gltf", "-o", "x/f-##.png", *SMALL, "--spp", "1", *motion, "--continue",
-                    says=['made with --real-time "true"'])
-        self.refuse_to_render("x", "--fps", "4", "--frames", "1-2", "--continue", says=['made with first frame "0"'])
+                    says=['--real-time is "true" there'])
+        self.refuse_to_render("x", "--fps", "4", "--frames", "1-2", "--continue", says=['first frame is "0" there'])
 
     def test_an_interrupt_ends_after_a_whole_frame_and_continuing_gives_the_same_bytes(self):
         self.check_interrupt(signal.SIGINT)

@@ -30,8 +30,7 @@ void Checkpoint::check_header(const std::string& file, const FilmHeader& header)
         throw RefusedGeneration(ErrorCode::BadInput, std::move(remark));
     };
     if (const auto different = film_difference(header, picture_)) {
-        refuse(fmt::format("the checkpoint belongs to another picture: {} is \"{}\" there, not \"{}\"", different->name,
-                           different->before, different->after));
+        refuse("the checkpoint belongs to another picture: " + text_of(*different));
     }
     if (header.part.is_empty()) return;
     const SampleRange there = header.part.samples;

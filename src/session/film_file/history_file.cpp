@@ -45,9 +45,9 @@ KeptFrame HistoryFile::read_generation(const std::string& file) const {
     for (const auto& [name, value] : root.at("settings").members()) before.emplace_back(name, value.to_string());
     if (const auto different = first_difference(before, settings_)) {
         Remark why(FileLocation{file},
-                   fmt::format("the checkpoint belongs to another sequence: {} is \"{}\" there, not \"{}\"; name "
-                               "another file, or delete it to render earlier frames again",
-                               different->name, different->before, different->after));
+                   fmt::format("the checkpoint belongs to another sequence: {}; name another file, or delete it to "
+                               "render earlier frames again",
+                               text_of(*different)));
         why.setting = "checkpoint";
         throw RefusedGeneration(ErrorCode::BadInput, std::move(why));
     }

@@ -80,9 +80,9 @@ void FilmMerge::take_header(const std::string& file, const FilmHeader& header) {
         return;
     }
     if (const auto different = film_difference(header_, header)) {
-        throw Error(ErrorCode::BadInput, FileLocation{file},
-                    fmt::format("this is not a part of the same picture as {}: {} is \"{}\" here and \"{}\" there",
-                                parts_.front().file, different->name, different->after, different->before));
+        throw Error(
+            ErrorCode::BadInput, FileLocation{file},
+            fmt::format("this is not a part of the same picture as {}: {}", parts_.front().file, text_of(*different)));
     }
     const RayCounts rays = header_.rays + header.rays;
     const double seconds = header_.render_seconds + header.render_seconds;

@@ -35,14 +35,13 @@ void set_profile(const std::shared_ptr<const IntensityTable>& table, float watts
 
 } // namespace
 
-void check_profile(const std::string& text) { parts_of_profile(text); }
+std::string file_of_profile(const std::string& text) { return parts_of_profile(text).second; }
 
 void set_profiles(Scene& scene, std::span<const std::string> texts, double lumens_per_watt, Sink& sink) {
     for (const std::string& text : texts) {
         const auto [name, file] = parts_of_profile(text);
         float candelas = 0;
         const auto table = make_intensity_table(read_ies(file, sink), candelas);
-        scene.files.emplace_back(file);
         std::vector<Names> all;
         bool is_found = false;
         for (Light& light : scene.lights) {

@@ -16,7 +16,7 @@ namespace pertev {
 /// file that cannot be read, and a name that no point or spot light has.
 void set_profiles(Scene& scene, std::span<const std::string> texts, double lumens_per_watt, Sink& sink);
 
-/// Throws Error(BadInput) if the text is not NAME=FILE.
-void check_profile(const std::string& text);
+/// Returns the file of a text NAME=FILE. Throws Error(BadInput) for another form.
+std::string file_of_profile(const std::string& text);
 
 } // namespace pertev

@@ -1,13 +1,13 @@
 #include "session/pictures/prepare_render.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include <fmt/format.h>
 
 #include "accel/builders/bvh_cache.h"
 #include "base/error.h"
 #include "base/message_text.h"
-#include "base/read_file.h"
 #include "base/stopwatch.h"
 #include "device_scene/pack_texels.h"
 #include "formats/read_camera_path.h"
@@ -227,7 +227,9 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     Scene scene = open_scene(options.scene, sink, use, ready->ground, in_memory.read);
     if (in_memory.edit) in_memory.edit(scene);
     ready->reading = sink.messages().since(known);
-    ready->hash_of_files = hash_of_files(scene.files);
+    // Files may change from here on.
+    if (!in_memory.read) ready->hash = scene_hash(options.scene.scene);
+    ready->files = files_of_scene(options, scene.files);
     RenderSettings& settings = ready->settings;
     settings.tracers = tracers;
     settings = take_settings(*ready, options, verbs, scene, sink);
@@ -330,7 +332,9 @@ PictureRecord picture_record(const PictureOptions& options, RenderSetup& ready, 
                             .display = {},
                             .numbers = number_formats(options)};
     record.scene.hash = ready.hash;
-    record.scene.hash_of_files = ready.hash_of_files;
+    std::vector<FileOfPicture>& files = record.scene.files = ready.files;
+    std::ranges::copy(files_of_settings(options), std::back_inserter(files));
+    give_own_names(files);
     if ((ready.settings.aovs & kAovIds) != 0) name_ids(ready.scene(), record.scene);
     record.scene.made_up = messages.made_up();
     record.scene.left_out = messages.left_out();

@@ -26,16 +26,16 @@ struct RenderSetup {
     std::optional<MovingCamera> camera; // Never empty after prepare_render().
     std::vector<ListedCamera> list;     // cameras of a file, of which `camera` is the first
     std::optional<MovingScene> moving;
-    Ground ground = Ground::Off;  // whether a ground was added, or might have been
-    Messages reading;             // messages of reading the scene, which belong to each picture of it
-    Messages of_light, of_camera; // messages of choosing them, which belong to each picture that keeps them
-    bool must_choose = false;     // the scene was edited since they were chosen
-    uint32_t changed_parts = 0;   // parts of the scene (ScenePart) that have changed since its owner took them
-    std::string hash;          // scene_hash() when it was read, if the setup is kept; empty: records take it themselves
-    std::string hash_of_files; // hash of the files that the scene's refers to; empty: none
-    double load_s = 0;         // seconds of reading
-    std::size_t bytes = 0;     // that rendering takes on the device, as predicted
-    std::shared_ptr<Queue> queue;               // whoever keeps arrays on the device shares it
+    Ground ground = Ground::Off;      // whether a ground was added, or might have been
+    Messages reading;                 // messages of reading the scene, which belong to each picture of it
+    Messages of_light, of_camera;     // messages of choosing them, which belong to each picture that keeps them
+    bool must_choose = false;         // the scene was edited since they were chosen
+    uint32_t changed_parts = 0;       // parts of the scene (ScenePart) that have changed since its owner took them
+    std::string hash;                 // scene_hash() when it was read
+    std::vector<FileOfPicture> files; // files_of_scene() when it was read
+    double load_s = 0;                // seconds of reading
+    std::size_t bytes = 0;            // that rendering takes on the device, as predicted
+    std::shared_ptr<Queue> queue;     // whoever keeps arrays on the device shares it
     std::vector<std::shared_ptr<Queue>> queues; // the devices that render a picture together; the first is `queue`
 
     const Scene& scene() const { return moving->scene(); }

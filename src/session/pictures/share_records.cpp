@@ -14,12 +14,14 @@ namespace pertev {
 namespace {
 
 /// Returns all that decides the picture, except for what takes samples of the records or shows them.
-DecidingSettings what_decides(const PictureOptions& options, const PictureRecord& record) {
+DecidingSettings what_decides(const PictureOptions& options, PictureRecord record) {
+    std::erase_if(record.scene.files, &FileOfPicture::is_lut);
     DecidingSettings settings = deciding_settings(options, record);
     std::erase_if(settings, [](const auto& setting) {
         constexpr std::string_view kOthers[] = {
-            "aov",          "exposure",     "f_number", "false_color", "false_color_range", "iso", "scene",
-            "shutter_time", "show_records", "spp",      "tone_map",    "layers_at",         "crop"};
+            "aov",      "exposure",  "f_number",     "false_color",  "false_color_range",
+            "iso",      "scene",     "shutter_time", "show_records", "spp",
+            "tone_map", "layers_at", "crop",         "lut",          "lut_input"};
         return std::ranges::find(kOthers, setting.first) != std::end(kOthers);
     });
     return settings;

@@ -76,8 +76,7 @@ std::optional<std::vector<std::byte>> RecordsFile::read() const {
     DecidingSettings there;
     for (const auto& [name, value] : json.root().members()) there.emplace_back(name, value.to_string());
     if (const auto different = first_difference(there, decides_)) {
-        throw damaged(fmt::format("the records belong to another picture: {} is \"{}\" there, not \"{}\"",
-                                  different->name, different->before, different->after));
+        throw damaged("the records belong to another picture: " + text_of(*different));
     }
     const auto contents = hashed.subspan(before + size);
     return std::vector<std::byte>(contents.begin(), contents.end());

@@ -8,8 +8,6 @@
 #include <fmt/ranges.h>
 
 #include "base/hash.h"
-#include "base/read_file.h"
-#include "session/height_maps.h"
 #include "settings/setting_table.h"
 
 namespace pertev {
@@ -31,6 +29,35 @@ auto find_name(auto& settings, const std::string& name) {
     return std::ranges::find(settings, name, [](const auto& setting) -> const std::string& { return setting.first; });
 }
 
+constexpr std::string_view kSceneFile = "hash of the scene's file";
+constexpr std::string_view kFile = "file "; // begins the names of entries that are hashes of files
+
+/// Returns a weight of a difference. Another version may have other settings, and another content of a file explains
+/// other settings and further files; a metered exposure follows any other difference.
+int rank_of(const SettingDifference& difference) {
+    const std::string& name = difference.name;
+    if (name == "version") return 4;
+    const bool is_file = name == kSceneFile || name.starts_with(kFile);
+    if (is_file && !difference.before.empty() && !difference.after.empty()) return 3;
+    return name == "exposure" ? 1 : 2;
+}
+
+/// Returns the settings `before` with the names that files have in `after` if only these differ.
+DecidingSettings with_names_of(const DecidingSettings& after, DecidingSettings before) {
+    const auto is_new = [&, known = before](const auto& entry) {
+        return entry.first.starts_with(kFile) && find_name(known, entry.first) == known.end();
+    };
+    for (const auto& [name, hash] : after) {
+        if (!is_new(std::pair(name, hash))) continue;
+        const auto same = std::ranges::find_if(before, [&](const auto& entry) {
+            return entry.second == hash && entry.first.starts_with(kFile) &&
+                   find_name(after, entry.first) == after.end();
+        });
+        if (same != before.end()) same->first = name;
+    }
+    return before;
+}
+
 std::string value_of(const DecidingSettings& settings, const std::string& name) {
     const auto found = find_name(settings, name);
     return found != settings.end() ? found->second : "";
@@ -44,8 +71,7 @@ DecidingSettings deciding_settings(const PictureOptions& options, const PictureR
         const auto known = find_name(settings, name);
         known != settings.end() ? void(known->second = value) : void(settings.emplace_back(name, value));
     };
-    put("hash of the scene's file", record.scene.hash);
-    put("hash of the files that the scene's refers to", record.scene.hash_of_files);
+    put(std::string(kSceneFile), record.scene.hash);
     for (const Setting& setting : all_settings()) {
         if (setting.is_kept && (setting.verbs & kRender) != 0)
             put(setting.name, fmt::format("{}", fmt::join(texts_of(options, setting), " ")));
@@ -57,33 +83,38 @@ DecidingSettings deciding_settings(const PictureOptions& options, const PictureR
     for (const auto& [name, value] : settings_metadata(record))
         put(name.substr(kPrefix.size()), std::visit([](const auto& v) { return fmt::format("{}", v); }, value));
     put("size", fmt::format("{}x{}", record.settings.width, record.settings.height));
-    put("hash of camera_path", hash_of_file(options.camera_path));
-    put("hash of camera_from", hash_of_file(options.scene.camera.camera_from));
     if (options.camera_list) put("cameras", hash_of_cameras(*options.camera_list));
-    put("hash of lut", hash_of_file(options.lut));
-    std::vector<std::string> height_maps;
-    for (const std::string& text : options.displacement)
-        height_maps.push_back(hash_of_file(parse_height_map(text).file));
-    put("hash of displacement", fmt::format("{}", fmt::join(height_maps, " ")));
-    put("hash of environment", hash_of_file(options.scene.environment));
+    for (const FileOfPicture& file : record.scene.files) put(std::string(kFile) + file.name, file.hash);
     return settings;
 }
 
-std::optional<SettingDifference> first_difference(const DecidingSettings& before, const DecidingSettings& after) {
+std::optional<SettingDifference> first_difference(const DecidingSettings& there, const DecidingSettings& after) {
+    if (there == after) return std::nullopt;
+    const DecidingSettings before = with_names_of(after, there);
     std::optional<SettingDifference> first;
     int weight = 0;
     for (const DecidingSettings* const names : {&after, &before}) {
         for (const auto& [name, value] : *names) {
             SettingDifference difference = {name, value_of(before, name), value_of(after, name)};
-            // Another version may have other settings, and a metered exposure follows any other difference.
-            const int rank = name == "version" ? 3 : name == "exposure" ? 1 : 2;
+            const int rank = rank_of(difference);
             if (difference.before == difference.after || rank <= weight) continue;
-            if (find_setting(name) != nullptr) difference.name = '`' + name + '`';
             first = std::move(difference);
             weight = rank;
         }
     }
     return first;
+}
+
+std::string text_of(const SettingDifference& difference) {
+    const auto& [name, before, after] = difference;
+    if (name.starts_with(kFile)) {
+        const std::string file = name.substr(kFile.size());
+        if (before.empty()) return fmt::format("{} is read here and not there", file);
+        if (after.empty()) return fmt::format("{} is read there and not here", file);
+        return fmt::format("{} is another file there", file);
+    }
+    const std::string shown = find_setting(name) != nullptr ? '`' + name + '`' : name;
+    return fmt::format("{} is \"{}\" there, not \"{}\"", shown, before, after);
 }
 
 } // namespace pertev

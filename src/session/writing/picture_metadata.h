@@ -14,6 +14,7 @@
 #include "session/opening/choose_camera.h"
 #include "session/opening/open_scene.h"
 #include "session/shutter.h"
+#include "session/writing/files_of_picture.h"
 #include "settings/setting_table.h"
 
 namespace pertev {
@@ -21,12 +22,12 @@ namespace pertev {
 /// The options of a scene's opening, as they were used, and facts of the scene. Options that were chosen for the caller
 /// are filled in: the animation, the scene of the file, the variant, and `ground`, which is "on" or empty.
 struct SceneSource : SceneOptions {
-    bool has_environment = false;   // the scene has one, requested or default
-    std::optional<double> time_s;   // time of the picture; none: at rest
-    std::optional<Shutter> shutter; // open around that time; none: the picture shows one moment
-    std::string hash;               // scene_hash() of settings/settings_file.h; empty if unknown
-    std::string hash_of_files;      // hash of the other files that it refers to; empty if there are none
-    std::string settings;           // all given settings, as JSON (settings/settings_file.h); empty if unknown
+    bool has_environment = false;     // the scene has one, requested or default
+    std::optional<double> time_s;     // time of the picture; none: at rest
+    std::optional<Shutter> shutter;   // open around that time; none: the picture shows one moment
+    std::string hash;                 // scene_hash() of settings/settings_file.h; empty if unknown
+    std::vector<FileOfPicture> files; // all others that the picture depends on
+    std::string settings;             // all given settings, as JSON (settings/settings_file.h); empty if unknown
     // Names of settings that were chosen for want of others, from the scene's file, from a settings file, from flags.
     std::string by_default, by_scene, by_settings, by_caller;
     std::vector<std::string> instances, materials; // names by id, for pictures with ids; empty without them

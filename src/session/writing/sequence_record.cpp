@@ -40,9 +40,10 @@ SequenceRecord::Frames SequenceRecord::frames_in(const std::filesystem::path& re
     DecidingSettings before;
     for (const auto& [name, value] : settings.members()) before.emplace_back(name, value.to_string());
     if (const auto different = first_difference(before, settings_)) {
-        Remark why(settings.location(), fmt::format("the existing frames were made with {} \"{}\", not \"{}\"; "
-                                                    "render them again without `continue`, or to other files",
-                                                    different->name, different->before, different->after));
+        Remark why(settings.location(),
+                   fmt::format("the existing frames belong to another sequence: {}; render them again "
+                               "without `continue`, or to other files",
+                               text_of(*different)));
         why.setting = "continue";
         throw Error(ErrorCode::BadInput, std::move(why));
     }
