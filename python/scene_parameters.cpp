@@ -10,9 +10,9 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "formats/files/parse_number.h"
-#include "math/frame.h"
 #include "python/transform_values.h"
 #include "scene/animation.h"
+#include "scene/orient_light.h"
 #include "scene/projection_features.h"
 #include "scene/scene_origin.h"
 #include "session/degrees.h"
@@ -180,7 +180,7 @@ std::vector<Property> of_lights() {
              [](Scene& scene, uint32_t i, std::span<const double> v) {
                  Light& light = scene.lights[i];
                  light.direction = normalize_safely(vec3(v));
-                 if (!is_oriented(light)) light.up = make_frame(light.direction).tangent;
+                 orient_light(light);
              },
          .why_not = [](const Scene&, uint32_t, std::span<const double> v) -> std::string {
              return is_finite(normalize_safely(vec3(v))) ? "" : "expected a direction other than 0";

@@ -17,6 +17,7 @@ SHORT = {  # files that may have so few lines, and why
     "src/base/error.cpp": "keeps {fmt} out of a header that every file includes",
     "src/device/cuda/probe_architecture.h": "its source is CUDA, and those who ask are C++",
     "src/image/srgb_table.h": "those who decode need no function that encodes",
+    "src/math/double_pi.h": "every file includes math/scalar.h, and few compute in double",
     "src/scene/node_number.h": "device code need not include nodes",
 }
 FOLDERS = ["src", "apps", "tests", "tools", "bench", "python", "cmake"]

@@ -5,12 +5,11 @@
 #include <utility>
 
 #include "base/error.h"
+#include "math/double_pi.h"
 #include "math/portable_math.h"
 
 namespace pertev {
 namespace {
-
-constexpr double kPiDouble = 3.141592653589793;
 
 Rgb value_at(const Image& values, uint32_t x, uint32_t y) {
     const float* const p = values.at(x, y);

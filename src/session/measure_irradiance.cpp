@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "math/double_pi.h"
 #include "math/frame.h"
 #include "scene/scene_origin.h"
 #include "session/session.h"
@@ -83,7 +84,7 @@ Irradiance measure_irradiance(Queue& queue, const PreparedScene& scene, const Me
         double sums[3] = {};
         for (std::size_t i = 0; i < picture.pixels.size(); ++i) sums[i % 3] += static_cast<double>(picture.pixels[i]);
         constexpr double kPixels = kMeterSide * kMeterSide;
-        for (double& sum : sums) sum *= 3.14159265358979323846 / kPixels; // radiance of a white surface
+        for (double& sum : sums) sum *= kPiDouble / kPixels; // radiance of a white surface
         for (int k = 0; k < 3; ++k) estimates[k][repeat] = sums[k];
         estimates[3][repeat] = luminance_of(sums);
         const RenderStats stats = session.stats();

@@ -1,8 +1,10 @@
 #pragma once
 
-// Photometry: lumens of a scene's watts, and the exposure of a camera's film.
+// Photometry: lumens of a scene's watts, the colour that stays when they change, and the exposure of a camera's film.
 
 #include <string>
+
+#include "math/rgb.h"
 
 namespace pertev {
 
@@ -12,6 +14,9 @@ inline constexpr double kLumensPerWatt = 683;
 /// Lumens per watt of luminance for a scene of this name, lm/W: 1 for glTF, which states lights in candela, lux and
 /// nits, read as watts one for one (docs/formats.md), else kLumensPerWatt. `requested` overrides it; 0: no override.
 double lumens_per_watt(const std::string& scene, double requested = 0);
+
+/// Returns the colour of an emitter of this strength, of any luminance above 0; that of a black one is white.
+inline Rgb color_of_emitter(Rgb strength) { return is_black(strength) ? grey(1) : strength; }
 
 /// The exposure of a physical camera.
 struct PhysicalExposure {

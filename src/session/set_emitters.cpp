@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "formats/files/parse_number.h"
+#include "math/double_pi.h"
 #include "scene/names.h"
 #include "session/emitter_surface.h"
 #include "session/photometry.h"
@@ -14,8 +15,6 @@
 
 namespace pertev {
 namespace {
-
-constexpr double kPiDouble = 3.141592653589793;
 
 constexpr std::pair<std::string_view, EmitterUnit> kUnits[] = {{"nits", EmitterUnit::Nit}, // the longest first
                                                                {"lm", EmitterUnit::Lumen},
@@ -32,9 +31,9 @@ double luminance_of(Rgb c) {
     return luminance_of(static_cast<double>(c.r), static_cast<double>(c.g), static_cast<double>(c.b));
 }
 
-/// Scales `colour` to this luminance; black becomes white.
+/// Scales `colour` to this luminance.
 Rgb with_luminance(const EmitterStrength& emitter, Rgb colour, double luminance) {
-    if (is_black(colour)) colour = {1, 1, 1};
+    colour = color_of_emitter(colour);
     const double factor = luminance / luminance_of(colour);
     const Rgb result = static_cast<float>(factor) * colour;
     if (!is_finite(result) || max_component(result) > 0x1p40f) refuse(emitter, "the amount of light is too large");
@@ -49,7 +48,7 @@ double lumens(const EmitterStrength& emitter) {
 /// Returns the luminous flux of a light, in lumens, that has a luminous intensity of 1 cd and its own colour.
 double lumens_of_candela(const Light& light) {
     if (!parts_of(light.kind).table) return punctual_power(light, 1, 0);
-    const Rgb color = is_black(light.intensity) ? grey(1) : light.intensity;
+    const Rgb color = color_of_emitter(light.intensity);
     return static_cast<double>(luminance(light.table->integral * color)) / static_cast<double>(luminance(color));
 }
 

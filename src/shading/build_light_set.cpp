@@ -8,14 +8,13 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/parallel_for.h"
+#include "math/double_pi.h"
 #include "math/hilbert_curve.h"
 #include "math/portable_math.h"
 #include "shading/hierarchical_warp.h"
 
 namespace pertev {
 namespace {
-
-constexpr double kPiDouble = 3.141592653589793;
 
 double mean_of_channels(Rgb c) {
     return (static_cast<double>(c.r) + static_cast<double>(c.g) + static_cast<double>(c.b)) / 3.0;

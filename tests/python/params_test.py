@@ -188,6 +188,41 @@ class Params(unittest.TestCase):
         pertev.render(scene, **SMALL)
         self.assertTrue((scene.params["lights/lamp/transform"][:3, 3] == (1, 2, 3)).all())
 
+    def test_lights_turn_with_their_cone_their_table_and_their_picture(self):
+        turned = numpy.array([[0, 1, 0, 0.25], [0, 0, 1, 1.5], [1, 0, 0, 0.5], [0, 0, 0, 1.0]])
+        mirrored = turned @ numpy.diag((-1, 1, 1, 1))
+        ies = pathlib.Path(self.folder.name) / "lamp.ies"
+        ies.write_text("IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 4 1 2 0 0 0\n1 1 50\n0 45 90\n0 90 180 360\n"
+                       "9 5 1\n9 3 0\n9 0 2\n9 5 1\n")
+        picture = pathlib.Path(self.folder.name) / "slide.hdr"
+        picture.write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 3\n" + bytes([90, 9, 9, 130, 9, 90, 9, 130, 9, 9, 90, 130]))
+
+        def room(name, kind, matrix):
+            path = pathlib.Path(self.folder.name) / name
+            numbers = " ".join(str(x) for x in matrix.ravel())
+            inside = '<texture type="bitmap" name="irradiance"><string name="filename" value="slide.hdr"/></texture>' if kind == "projector" else ""
+            path.write_text('<scene version="3.0.0"><sensor type="perspective"><float name="fov" value="80"/></sensor>'
+                            '<shape type="sphere"><float name="radius" value="4"/><boolean name="flip_normals" value="true"/></shape>'
+                            f'<emitter type="{kind}" id="lamp"><transform name="to_world"><matrix value="{numbers}"/></transform>{inside}</emitter></scene>')
+            return str(path)
+
+        for kind, settings in (("spot", {}), ("projector", {}), ("spot", {"ies": f"lamp={ies}"})):
+            for matrix in (turned, mirrored):
+                with self.subTest(kind=kind, settings=settings, mirrored=matrix is mirrored):
+                    scene = pertev.load(room("a.xml", kind, numpy.eye(4)), **settings)
+                    right = pertev.load(room("b.xml", kind, matrix), **settings)
+                    before, expected = pertev.render(scene, **SMALL), pertev.render(right, **SMALL)
+                    scene.params["lights/lamp/transform"] = right.params["lights/lamp/transform"]
+                    self.assertEqual(pertev.render(scene, **SMALL).hash, expected.hash)
+                    self.assertNotEqual(expected.hash, before.hash)
+                    # It shines along -z of its transform, which is +z of Mitsuba's.
+                    numpy.testing.assert_allclose(scene.params["lights/lamp/transform"][:3, 2], -matrix[:3, 2], atol=1e-6)
+                    numpy.testing.assert_allclose(scene.params["lights/lamp/direction"], matrix[:3, 2], atol=1e-6)
+        scene = pertev.load(room("a.xml", "projector", numpy.eye(4)))
+        scene.params["lights/lamp/direction"] = (0, 1, 0) # along its up, which another one replaces
+        self.assertGreater(pertev.render(scene, **SMALL).color.max(), 0)
+        self.assertTrue((scene.params["lights/lamp/direction"] == (0, 1, 0)).all())
+
     def test_unknown_paths_are_refused(self):
         params = pertev.load(self.file()).params
         with self.assertRaisesRegex(KeyError, "materials/gold/roughness"):

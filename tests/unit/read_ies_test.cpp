@@ -129,6 +129,8 @@ TEST_CASE("ies: a damaged file is refused with its line") {
     for (const Fault& fault : {Fault{"", 1, "TILT="},
                                {"not one\n", 2, "TILT="},
                                {changed("100 80 0\n", "100 80\n"), 9, "candelas"},
+                               {changed("100 80", "100 8e38"), 8, "expected at most 2^40"},
+                               {changed("1 -1 2", "1 -1 1e300"), 8, "expected at most 2^40"},
                                {changed("100 80", "100 x80"), 8, "x80 is no number"},
                                {changed("0 45 90", "0 95 90"), 6, "90 after 95"},
                                {changed("0 45 90", "0 45 190"), 7, "vertical angles"},
@@ -218,6 +220,9 @@ TEST_CASE("ies: a setting gives point and spot lights by name the candelas of a 
     LightSample sample; // E = I / r^2 two metres below
     REQUIRE(sample_punctual_light<EmitterLook::Coated>(lights.view, 0, 1, {0, -2, 0}, sample));
     CHECK(sample.radiance.g == doctest::Approx(200.0 / 683 / 4));
+    const std::string both[] = {text, "b*=" + file};
+    CHECK(test::is_about(test::thrown_error([&] { set_profiles(scene, both, 683, messages); }), ErrorCode::BadInput,
+                         "ies", both[1]));
     for (const std::string& wrong : std::vector<std::string>{"sun=" + file, "bulb", "=" + file, "lamp=" + file}) {
         CAPTURE(wrong);
         CHECK(test::is_about(test::thrown_error([&] {

@@ -385,6 +385,54 @@ TEST_CASE("mitsuba: a projector shows its picture upright, with pi times its irr
     CHECK(*values.at(0, values.height / 2) == doctest::Approx(0).epsilon(0.01));
 }
 
+TEST_CASE("mitsuba: what a spot or a projector cannot have is left out at its place") {
+    const fs::path folder = test::scratch_folder();
+    Image slide{.width = 2, .height = 2, .channels = 3, .pixels = std::vector<float>(12, 1.0f)};
+    slide.pixels[0] = slide.pixels[6] = 8; // the left column
+    write_exr(folder / "slide.exr", slide);
+    const auto bitmap = [](const char* name, const std::string& more) {
+        return fmt::format("<texture type=\"bitmap\" name=\"{}\">{}{}</texture>", name, named_file("slide.exr"), more);
+    };
+    const auto wrapped = [&](const char* axis, const char* mode) {
+        return bitmap("irradiance", fmt::format("<string name=\"wrap_mode{}\" value=\"{}\"/>", axis, mode));
+    };
+    struct Case {
+        const char* type;
+        std::string inside;
+        const char* says; // empty: nothing is left out
+    };
+    for (const Case& c : {Case{"spot", "<float name=\"cutoff_angle\" value=\"120\"/>",
+                               "the cutoff_angle of 120 degrees is left out; 89.9 is used"},
+                          {"spot", "<float name=\"beam_width\" value=\"30\"/>", "the beam_width of 30 degrees"},
+                          {"spot", bitmap("texture", "<string name=\"wrap_mode\" value=\"repeat\"/>"), ""},
+                          {"projector", "<transform name=\"to_world\"><scale value=\"2\"/></transform>",
+                           "the scale of a projector's to_world"},
+                          {"projector", "<transform name=\"to_world\"><scale x=\"-1\"/></transform>", ""},
+                          {"projector", wrapped("", "repeat"), "the wrap mode repeat"},
+                          {"projector", wrapped("_u", "repeat"), "the wrap mode repeat"},
+                          {"projector", wrapped("_v", "repeat"), ""}, // its rows are equal
+                          {"projector", wrapped("", "mirror"), ""},
+                          {"projector", wrapped("", "clamp"), ""},
+                          {"projector", bitmap("irradiance", ""), ""}}) {
+        CAPTURE(c.inside);
+        Messages messages;
+        const std::string emitter = fmt::format("<emitter type=\"{}\">{}</emitter>", c.type, c.inside);
+        CHECK(load_mitsuba_shapes(folder, shape_of("rectangle") + emitter, messages).lights.size() == 1);
+        const std::vector<std::string> said = messages.left_out();
+        REQUIRE(said.size() == (*c.says != 0 ? 1 : 0));
+        if (said.empty()) continue;
+        CHECK(said[0].find(c.says) != std::string::npos);
+        CHECK(said[0].find(".xml:") != std::string::npos);
+    }
+    Messages messages; // the file does not ask for the other edge, so there is only a notice
+    (void)load_mitsuba_shapes(
+        folder, shape_of("rectangle") + "<emitter type=\"projector\">" + bitmap("irradiance", "") + "</emitter>",
+        messages);
+    REQUIRE(messages.all().size() == 1);
+    CHECK(messages.all()[0].text.find("the wrap mode repeat") != std::string::npos);
+    CHECK_FALSE(messages.all()[0].is_warning);
+}
+
 TEST_CASE("mitsuba: a constant emitter and an envmap are the environment") {
     const Scene constant = load_mitsuba_shapes(
         shape_of("rectangle") + "<emitter type=\"constant\"><rgb name=\"radiance\" value=\"2\"/></emitter>");

@@ -211,6 +211,21 @@ TEST_CASE("pbrt: goniometric and projection lights face where pbrt has them") {
     CHECK(old.lights[0].is_mirrored != light.is_mirrored);
 }
 
+TEST_CASE("pbrt: the angle of a light that it cannot have is left out at its line") {
+    for (const auto& [light, says] :
+         {std::pair("\"spot\" \"float coneangle\" 120", "the coneangle of 120 degrees is left out; 89.9 is used"),
+          {"\"spot\" \"float conedeltaangle\" -5", "the conedeltaangle of -5 degrees"},
+          {"\"goniometric\" \"float fov\" 179.5", "the fov of 179.5 degrees"}}) {
+        CAPTURE(light);
+        Messages messages;
+        const Scene scene = load_lit(std::string("WorldBegin\nLightSource ") + light + "\n" + kFloorText, messages);
+        CHECK(scene.lights.size() == 1);
+        REQUIRE(messages.left_out().size() == 1);
+        CHECK(messages.left_out()[0].find(says) != std::string::npos);
+        CHECK(messages.left_out()[0].find(":2") != std::string::npos);
+    }
+}
+
 TEST_CASE("pbrt: a light whose strength or place is no finite number is left out alone, at its line") {
     for (const std::string light : {"LightSource \"point\" \"float scale\" 1e30 \"rgb I\" [1e30 1 1]",
                                     "LightSource \"point\" \"float power\" 1e300 \"rgb I\" [0 1 1]",

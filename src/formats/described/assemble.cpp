@@ -12,6 +12,7 @@
 #include "formats/described/image_budget.h"
 #include "formats/described/transforms.h"
 #include "formats/described/usable_values.h"
+#include "math/double_pi.h"
 #include "scene/scene_origin.h"
 
 namespace pertev::described {
@@ -91,7 +92,7 @@ struct Assembly {
         if (light.power > 0) {
             const double area = world_area(mesh, compose(shape.world_from_mesh, of.shape_from_mesh));
             const double shapes = of.is_quadric ? 1 : mesh.triangle_count();
-            const double radiance_of_1 = area * 3.14159265358979323846 * (light.is_two_sided ? 2 : 1);
+            const double radiance_of_1 = area * kPiDouble * (light.is_two_sided ? 2 : 1);
             const double scale = radiance_of_1 > 0 ? light.power * shapes / radiance_of_1 : 0;
             radiance = static_cast<float>(std::min(scale, static_cast<double>(kMaxSampleValue))) * radiance;
         }

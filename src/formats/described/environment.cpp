@@ -9,6 +9,7 @@
 #include "formats/described/transforms.h"
 #include "formats/described/usable_values.h"
 #include "image/read_image.h"
+#include "math/double_pi.h"
 #include "math/octahedron.h"
 #include "math/portable_math.h"
 
@@ -57,10 +58,9 @@ Vec3 direction_at(uint32_t x, uint32_t y, uint32_t width, uint32_t height) {
 double illuminance_of(const Image& panorama, const DoubleTransform& local_from_scene) {
     double sum = 0;
     for (uint32_t y = 0; y < panorama.height; ++y) {
-        const double down = 3.14159265358979323846 * (y + 0.5) / panorama.height;
+        const double down = kPiDouble * (y + 0.5) / panorama.height;
         const auto height = static_cast<double>(sin(static_cast<float>(down)));
-        const double area =
-            height * (2 * 3.14159265358979323846 / panorama.width) * (3.14159265358979323846 / panorama.height);
+        const double area = height * (2 * kPiDouble / panorama.width) * (kPiDouble / panorama.height);
         for (uint32_t x = 0; x < panorama.width; ++x) {
             const double cosine =
                 dot(local_from_scene.row2, to_double(direction_at(x, y, panorama.width, panorama.height)));
@@ -86,8 +86,7 @@ std::optional<Environment> make_environment(const InfiniteLight& light, const Do
     Environment environment;
     environment.scale = light.scale;
     if (light.picture.empty()) {
-        if (light.illuminance > 0)
-            environment.scale = static_cast<float>(light.illuminance / 3.14159265358979323846) * light.scale;
+        if (light.illuminance > 0) environment.scale = static_cast<float>(light.illuminance / kPiDouble) * light.scale;
         return environment;
     }
     const bool is_octahedron = light.layout == PanoramaLayout::Octahedron;

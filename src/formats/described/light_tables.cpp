@@ -1,7 +1,10 @@
 #include "formats/described/light_tables.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "image/read_image.h"
 
@@ -15,6 +18,24 @@ std::optional<Image> read_light_picture(const std::filesystem::path& path, Sink&
         sink.leave_out(error.remark().and_then("; the light is left out"));
     }
     return std::nullopt;
+}
+
+double usable_angle(double degrees, double least, double most, std::string_view name, const FileLocation& location,
+                    Sink& sink) {
+    const double usable = degrees >= least ? std::min(degrees, most) : least; // the least for NaN
+    if (usable != degrees)
+        sink.leave_out({location, fmt::format("the {} of {} degrees is left out; {} is used", name, degrees, usable)});
+    return usable;
+}
+
+bool has_scale(const DoubleTransform& world_from_light) {
+    const auto column = [&](double DoubleVec3::*at) {
+        return DoubleVec3{world_from_light.row0.*at, world_from_light.row1.*at, world_from_light.row2.*at};
+    };
+    const DoubleVec3 x = column(&DoubleVec3::x), y = column(&DoubleVec3::y), z = column(&DoubleVec3::z);
+    const auto differ = [](double a, double b) { return !(std::abs(a - b) < 1e-4); };
+    return differ(dot(x, x), 1) || differ(dot(y, y), 1) || differ(dot(z, z), 1) || differ(dot(x, y), 0) ||
+           differ(dot(y, z), 0) || differ(dot(z, x), 0);
 }
 
 void set_table(IntensityTable table, Light& light) {

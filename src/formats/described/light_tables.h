@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "base/sink.h"
@@ -16,6 +17,14 @@ namespace pertev::described {
 
 /// Reads the values of a light's table. A picture that cannot be read is left out with the light: nothing.
 std::optional<Image> read_light_picture(const std::filesystem::path& path, Sink& sink);
+
+/// Returns the nearest angle in [least, most] that a cone or a picture's view can have, degrees. If that is another
+/// one, it warns that the parameter `name` at `location` is left out.
+double usable_angle(double degrees, double least, double most, std::string_view name, const FileLocation& location,
+                    Sink& sink);
+
+/// Returns whether a transform does more than turn, move and mirror.
+bool has_scale(const DoubleTransform& world_from_light);
 
 /// Makes `light` Goniometric with this table, times its intensity, which becomes that where the table is 1.
 void set_table(IntensityTable table, Light& light);

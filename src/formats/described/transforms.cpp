@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "math/double_pi.h"
 #include "math/portable_math.h"
 
 namespace pertev::described {
@@ -15,7 +16,7 @@ bool is_finite(DoubleVec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) &
 void sine_and_cosine(double degrees, double& sine, double& cosine) {
     const double turned = std::fmod(degrees, 360.0);
     const double quarters = std::nearbyint(turned / 90);
-    const double rest = (turned - 90 * quarters) * (3.14159265358979323846 / 180); // within pi / 4
+    const double rest = (turned - 90 * quarters) * (kPiDouble / 180); // within pi / 4
     // Taylor's series: the first terms left out are below 1e-17.
     double s = 0, c = 0, term = 1;
     for (int n = 0; n < 20; ++n) {

@@ -12,13 +12,14 @@
 #include "base/message_text.h"
 #include "base/read_file.h"
 #include "formats/files/parse_number.h"
+#include "math/double_pi.h"
 #include "math/portable_math.h"
 
 namespace pertev {
 namespace {
 
-constexpr double kPiDouble = 3.14159265358979323846;
 constexpr uint32_t kMostSteps = 1440, kMostValues = 1u << 24;
+constexpr double kMostCandelas = 0x1p40; // the most that `lamp` accepts
 
 /// The numbers of a file, one after the other.
 class Numbers {
@@ -159,6 +160,7 @@ Photometry take_photometry(Numbers& numbers, bool is_old, std::size_t bytes, Sin
     bool any_negative = false;
     for (uint64_t i = 0; i < count; ++i) {
         const double candela = numbers.next("candelas") * factor;
+        if (!(candela <= kMostCandelas)) numbers.fail(fmt::format("{} candelas; expected at most 2^40", candela));
         any_negative |= candela < 0;
         photometry.candelas.push_back(std::max(candela, 0.0));
     }

@@ -18,6 +18,37 @@ namespace {
 constexpr LightAxes kProjectorAxes = {{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 constexpr LightAxes kSpotAxes = {{1, 0, 0}, {0, -1, 0}, {0, 0, 1}};
 
+/// Returns whether a picture's first and last columns differ, or its rows.
+bool has_other_edges(const Image& picture, bool across) {
+    const uint32_t count = across ? picture.height : picture.width;
+    for (uint32_t i = 0; i < count; ++i) {
+        const float* const first = across ? picture.at(0, i) : picture.at(i, 0);
+        const float* const last = across ? picture.at(picture.width - 1, i) : picture.at(i, picture.height - 1);
+        if (!std::equal(first, first + picture.channels, last)) return true;
+    }
+    return false;
+}
+
+/// Reads how a bitmap goes on beyond its edges. A light shows half a pixel of that, the edge's own; if the other edge
+/// would be there, it is left out, with a notice if the file leaves it to Mitsuba's default.
+void report_edges(Object& texture, const IntensityTable& table, Sink& sink) {
+    Parameters& parameters = texture.parameters;
+    const std::string both = parameters.text("wrap_mode", "repeat", sink);
+    for (const bool across : {true, false}) {
+        const char* const name = across ? "wrap_mode_u" : "wrap_mode_v";
+        const std::string mode = parameters.text(name, both, sink);
+        const bool is_edge = mode == "clamp" || mode == "mirror"; // which are the same half a pixel from it
+        if (is_edge || table.filter == TableFilter::Nearest || !has_other_edges(table.values, across)) continue;
+        const bool is_stated = parameters.has(name) || parameters.has("wrap_mode");
+        Remark remark(texture.location(),
+                      fmt::format("the wrap mode {} of a light's picture is left out; its outer half pixels have the "
+                                  "edge's own colours",
+                                  shortened(mode)));
+        if (is_stated) return sink.leave_out(std::move(remark));
+        return sink.note(std::move(remark));
+    }
+}
+
 /// Returns the bitmap of parameter `name`, if that is one, in `table`. Sets `is_missing`, with a warning, if there is
 /// one that cannot be read.
 bool find_picture(Object& emitter, std::string_view name, Reading& reading, IntensityTable& table, bool& is_missing) {
@@ -41,6 +72,7 @@ bool find_picture(Object& emitter, std::string_view name, Reading& reading, Inte
     if (of_texture.text("filter_type", "bilinear", sink) == "nearest") table.filter = TableFilter::Nearest;
     if (of_texture.truth("raw", false, sink))
         sink.leave_out({texture->location(), "raw is left out; the picture's values are decoded as it says itself"});
+    if (name == "irradiance") report_edges(*texture, table, sink); // a spot's edge hides that of its picture
     of_texture.ignore({"wrap_mode", "wrap_mode_u", "wrap_mode_v", "accel", "cache", "format", "mipmap"});
     of_texture.leave_out_unknown(sink);
     is_missing = false;
@@ -95,8 +127,11 @@ Image enlarged(Image from, TableFilter filter) {
 bool set_spot(Object& emitter, const DoubleTransform& to_world, Reading& reading, Light& light) {
     Parameters& parameters = emitter.parameters;
     Sink& sink = reading.sink();
-    const double cutoff_deg = std::clamp(parameters.number("cutoff_angle", 20, sink), 0.1, 89.9);
-    const double beam_deg = std::clamp(parameters.number("beam_width", 0.75 * cutoff_deg, sink), 0.0, cutoff_deg);
+    const auto angle = [&](std::string_view name, double missing, double least, double most) {
+        return usable_angle(parameters.number(name, missing, sink), least, most, name, emitter.location(), sink);
+    };
+    const double cutoff_deg = angle("cutoff_angle", 20, 0.1, 89.9);
+    const double beam_deg = angle("beam_width", 0.75 * cutoff_deg, 0, cutoff_deg);
     const float cutoff = static_cast<float>(cutoff_deg) * (kPi / 180),
                 beam = static_cast<float>(beam_deg) * (kPi / 180);
     set_axes(kSpotAxes, to_world, light);
@@ -129,6 +164,10 @@ bool set_projector(Object& emitter, const DoubleTransform& to_world, Reading& re
         if (is_missing) return false;
         light.intensity = read_color(emitter, "irradiance", ColorUse::Light, grey(1), reading);
         table.values = {.width = 1, .height = 1, .channels = 1, .pixels = {1.0f}};
+    }
+    if (has_scale(to_world)) {
+        sink.leave_out({emitter.location(), "the scale of a projector's to_world is left out; it turns, moves and "
+                                            "mirrors"});
     }
     table.layout = TableLayout::PictureIrradiance;
     // Mitsuba's irradiance is of a plane whose radiance it would be: pi times what arrives at z = 1.

@@ -12,6 +12,7 @@
 #include "formats/described/usable_values.h"
 #include "formats/files/closest_name.h"
 #include "formats/mitsuba/parse_values.h"
+#include "math/double_pi.h"
 #include "math/portable_math.h"
 
 namespace pertev::mitsuba {
@@ -188,7 +189,7 @@ double tangent_across(Object& object, double aspect, Sink& sink) {
         const std::vector<double> mm = parse_numbers(focal);
         const double length = mm.size() == 1 && mm[0] > 0 ? mm[0] : 50.0;
         degrees = static_cast<double>(atan(static_cast<float>(std::sqrt(36.0 * 36 + 24.0 * 24) / (2 * length)))) *
-                  (360.0 / 3.14159265358979323846);
+                  (360.0 / kPiDouble);
         axis = "diagonal";
     }
     if (!(degrees > 0 && degrees < 180)) {

@@ -10,8 +10,9 @@
 #include "formats/described/usable_values.h"
 #include "formats/files/closest_name.h"
 #include "formats/pbrt/colors.h"
-#include "math/frame.h"
+#include "math/double_pi.h"
 #include "math/portable_math.h"
+#include "scene/orient_light.h"
 
 namespace pertev::pbrt {
 namespace {
@@ -42,22 +43,21 @@ Rgb strength_of(Parameters& parameters, std::string_view name, std::string_view 
     return strength;
 }
 
-constexpr double kPiExact = 3.14159265358979323846;
-
 void set_spot(Parameters& parameters, const DoubleTransform& world_from_light, const Context& context, Light& light) {
     Sink& sink = context.sink;
     light.kind = LightKind::Spot;
     light.direction = direction_of(parameters, world_from_light, {0, 0, 0}, {0, 0, 1}, sink);
     const auto angle = [&](std::string_view name, double missing, double least) {
-        return static_cast<float>(std::clamp(parameters.number(name, missing, sink), least, 89.9)) * (kPi / 180);
+        const double degrees = parameters.number(name, missing, sink);
+        return static_cast<float>(usable_angle(degrees, least, 89.9, name, parameters.location(), sink)) * (kPi / 180);
     };
     const float outer = angle("coneangle", 30, 0.1), edge = angle("conedeltaangle", 5, 0);
     light.cos_inner = cos(max(outer - edge, 0.0f));
     light.cos_outer = min(cos(outer), light.cos_inner - kSharpestEdge);
     const double from = static_cast<double>(light.cos_inner), to = static_cast<double>(light.cos_outer);
-    light.intensity = strength_of(parameters, "I", "power", 2 * kPiExact * ((1 - from) + (from - to) / 2), context);
+    light.intensity = strength_of(parameters, "I", "power", 2 * kPiDouble * ((1 - from) + (from - to) / 2), context);
     if (!(edge > 0)) return;
-    light.up = make_frame(light.direction).tangent;
+    light.up = {}; // any does for what is round
     set_table(make_round_table(outer,
                                [&](float at) {
                                    const float width = light.cos_inner - light.cos_outer;
@@ -65,6 +65,7 @@ void set_spot(Parameters& parameters, const DoubleTransform& world_from_light, c
                                    return context.is_version_3 ? square(square(t)) : square(t) * (3 - 2 * t);
                                }),
               light);
+    orient_light(light);
 }
 
 /// Reads the table of a light with a picture. Returns false, with a warning, if it is left out.
@@ -72,7 +73,8 @@ bool set_picture(bool is_projection, Parameters& parameters, const Context& cont
     Sink& sink = context.sink;
     const char* const key = context.is_version_3 ? "mapname" : "filename";
     const std::string name = parameters.text(key, "", sink);
-    const double fov = std::clamp(parameters.number("fov", context.is_version_3 ? 45 : 90, sink), 0.1, 179.0);
+    const double fov = usable_angle(parameters.number("fov", context.is_version_3 ? 45 : 90, sink), 0.1, 179.0, "fov",
+                                    parameters.location(), sink);
     IntensityTable table;
     const auto leave_out = [&](const std::string& why) {
         sink.leave_out({parameters.location(), why + "; the light is left out"});
@@ -198,7 +200,7 @@ std::optional<Light> read_light(const std::string& type, Parameters& parameters,
     if (type == "point") {
         light.kind = LightKind::Point;
         place({0, 0, 0});
-        light.intensity = strength_of(parameters, "I", "power", 4 * kPiExact, context);
+        light.intensity = strength_of(parameters, "I", "power", 4 * kPiDouble, context);
     } else if (type == "spot") {
         place({0, 0, 0});
         set_spot(parameters, world_from_light, context, light);

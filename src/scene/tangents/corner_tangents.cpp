@@ -6,6 +6,7 @@
 #include <map>
 
 #include "base/parallel_for.h"
+#include "math/double_pi.h"
 #include "math/scalar.h"
 
 namespace pertev {
@@ -42,11 +43,10 @@ double arcsine(double y) {
 /// Returns the arc cosine of `x` in [-1, 1], rounded to the nearest float. The one of math/portable_math.h may be 2 ulp
 /// off. That shows where the directions round a vertex cancel, because their sum then depends on the angles' last bits.
 float angle_of_cosine(float x) {
-    constexpr double pi = 3.14159265358979323846;
     const double size = static_cast<double>(abs(x));
-    if (size <= 0.5) return static_cast<float>(pi / 2 - arcsine(static_cast<double>(x)));
+    if (size <= 0.5) return static_cast<float>(kPiDouble / 2 - arcsine(static_cast<double>(x)));
     const double angle = 2 * arcsine(std::sqrt((1 - size) / 2));
-    return static_cast<float>(x > 0 ? angle : pi - angle);
+    return static_cast<float>(x > 0 ? angle : kPiDouble - angle);
 }
 
 /// One triangle's contribution to the mean at one of its corners.

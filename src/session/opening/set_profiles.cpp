@@ -1,13 +1,17 @@
 #include "session/opening/set_profiles.h"
 
+#include <map>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "base/error.h"
 #include "formats/ies/read_ies.h"
-#include "math/frame.h"
 #include "scene/names.h"
+#include "scene/orient_light.h"
+#include "session/photometry.h"
 
 namespace pertev {
 namespace {
@@ -28,8 +32,8 @@ void set_profile(const std::shared_ptr<const IntensityTable>& table, float watts
     if (light.kind == LightKind::Point && light.node == kNoNode) light.direction = {0, -1, 0}, light.up = {0, 0, -1};
     light.kind = LightKind::Goniometric;
     light.table = table;
-    if (!is_oriented(light)) light.up = make_frame(light.direction).tangent;
-    const Rgb color = is_black(light.intensity) ? grey(1) : light.intensity;
+    orient_light(light);
+    const Rgb color = color_of_emitter(light.intensity);
     light.intensity = (watts_per_steradian / luminance(color)) * color;
 }
 
@@ -38,6 +42,7 @@ void set_profile(const std::shared_ptr<const IntensityTable>& table, float watts
 std::string file_of_profile(const std::string& text) { return parts_of_profile(text).second; }
 
 void set_profiles(Scene& scene, std::span<const std::string> texts, double lumens_per_watt, Sink& sink) {
+    std::map<const Light*, std::string> known; // the texts that have set lights
     for (const std::string& text : texts) {
         const auto [name, file] = parts_of_profile(text);
         float candelas = 0;
@@ -48,6 +53,8 @@ void set_profiles(Scene& scene, std::span<const std::string> texts, double lumen
             if (!parts_of(light.kind).position) continue;
             all.push_back(names_of(scene, light));
             if (!has_name(all.back(), name)) continue;
+            const auto [other, is_first] = known.try_emplace(&light, text);
+            if (!is_first) refuse_profile(text, fmt::format("{} sets the same light", other->second));
             set_profile(table, static_cast<float>(static_cast<double>(candelas) / lumens_per_watt), light);
             is_found = true;
         }
