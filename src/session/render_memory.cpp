@@ -53,9 +53,10 @@ std::string advice(const RenderSettings& settings, bool is_cuda, uint64_t textur
         const auto [what, less] = memory(settings, size);
         return fmt::format("{} take {}; {} takes less", what, amount(own), less);
     }
-    return fmt::format("the film of {}x{} pixels{} takes {}: {} smaller `size`{} takes less", window.width,
-                       window.height, layers > 0 ? " and " + counted(layers, "layer") + " of `lpe`" : "", amount(film),
-                       layers > 0 ? "fewer of them or a" : "a", settings.aovs != 0 ? ", or fewer `aov`," : "");
+    return fmt::format("the film of {}x{} pixels{} takes {}: {} smaller `{}`{} takes less", window.width, window.height,
+                       layers > 0 ? " and " + counted(layers, "layer") + " of `lpe`" : "", amount(film),
+                       layers > 0 ? "fewer of them or a" : "a", settings.crop ? "crop" : "size",
+                       settings.aovs != 0 ? ", or fewer `aov`," : "");
 }
 
 } // namespace

@@ -3,7 +3,10 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <cstring>
+#include <memory>
+#include <string_view>
 
 #include "session/film_file/merge_films.h"
 #include "tests/support/options.h"
@@ -125,6 +128,16 @@ TEST_CASE("a film file that is truncated or too long is detected") {
         CHECK(test::is_at(error_of(path, film.substr(0, size)), ErrorCode::BadInput, FileLocation{path.string()}));
     }
     CHECK(test::says(error_of(path, film + '\0'), "1 bytes follow"));
+}
+
+TEST_CASE("a header that a reader would refuse is not written") {
+    const std::size_t size = std::size_t(kMaxFilmHeaderBytes) + 1;
+    const std::unique_ptr<void, decltype(&std::free)> zeros(std::calloc(size, 1), &std::free); // takes no memory unread
+    REQUIRE(zeros);
+    const std::string_view header(static_cast<const char*>(zeros.get()), size);
+    const auto error = test::thrown_error([&] { const BlockFileBytes bytes(kFilmFile, header); });
+    REQUIRE(error);
+    CHECK(error->code() == ErrorCode::OverLimit);
 }
 
 TEST_CASE("a header with valid checksums is read strictly") {

@@ -128,4 +128,12 @@ TEST_CASE("the error for too little memory names the textures where they take th
         CHECK(error->code() == ErrorCode::OutOfMemory);
         CHECK(test::says(error, "max_texture_size") == (textures > 1));
     }
+    RenderSettings cropped;
+    for (const char* const name : {"`size`", "`crop`"}) {
+        CHECK(test::says(test::thrown_error([&] {
+                             check_render_memory(std::size_t(1) << 34, cropped, {1 << 20, true, false}, 0);
+                         }),
+                         name));
+        cropped.crop = PictureCrop{0, 0, 2, 2};
+    }
 }

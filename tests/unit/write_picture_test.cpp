@@ -8,6 +8,7 @@
 #include "image/read_exr.h"
 #include "image/read_image.h"
 #include "image/tone_map_image.h"
+#include "render/sample_layers/matte_names.h"
 #include "session/degrees.h"
 #include "session/session.h"
 #include "session/writing/write_picture.h"
@@ -44,6 +45,16 @@ std::string text_of(const ExrMetadata& metadata, const std::string& name) {
 }
 
 } // namespace
+
+TEST_CASE("the facts of a picture have each name of its mattes once") {
+    Scene scene;
+    scene.instances.resize(3);
+    scene.instances[0].name = scene.instances[2].name = "leaf", scene.instances[1].name = "bark";
+    RenderSettings settings;
+    settings.mattes = std::make_shared<const MatteNames>(scene);
+    const PictureFacts facts = facts_of(small_record(settings), {});
+    CHECK(facts.objects == std::vector<std::string>{"bark", "leaf"});
+}
 
 TEST_CASE("an EXR holds the picture, its layers and its settings") {
     RenderSettings settings;

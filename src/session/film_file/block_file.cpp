@@ -15,7 +15,11 @@ constexpr std::size_t kHashBytes = 16;
 } // namespace
 
 BlockFileBytes::BlockFileBytes(const BlockFileKind& kind, std::string_view json) {
-    PERTEV_CHECK(json.size() <= kMaxFilmHeaderBytes);
+    if (json.size() > kMaxFilmHeaderBytes) { // by names of many things
+        throw Error(ErrorCode::OverLimit,
+                    fmt::format("the header of the {} file takes {} bytes, more than {}; fewer layers of ids take less",
+                                kind.name, json.size(), kMaxFilmHeaderBytes));
+    }
     add(std::as_bytes(std::span(kind.magic)));
     add_value(kind.version);
     add_value(static_cast<uint32_t>(json.size()));

@@ -26,10 +26,10 @@ std::vector<WrittenFile> write_film_files(std::span<const std::string> outputs, 
     std::vector<WrittenFile> written;
     for (const std::string& path : outputs)
         if (is_film_name(path)) written.push_back({path, ""});
-    if (written.empty()) return written;
-    const std::vector<std::byte> bytes = film_file_bytes(header, film);
+    std::vector<std::byte> bytes;
     for (WrittenFile& to : written) {
         try {
+            if (bytes.empty()) bytes = film_file_bytes(header, film);
             write_file_atomically(to.path, bytes);
         } catch (const Error& error) {
             to.failure = error.what();

@@ -220,6 +220,12 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
 
 namespace {
 
+/// Returns the texts in alphabetical order, equal ones once.
+std::vector<std::string> each_once(const std::vector<std::string>& texts) {
+    const std::set<std::string> unique(texts.begin(), texts.end());
+    return {unique.begin(), unique.end()};
+}
+
 ExrPlace place_of(const RenderSettings& settings) {
     if (!settings.crop) return {};
     return {settings.crop->x, settings.crop->y, settings.width, settings.height};
@@ -251,7 +257,7 @@ PictureFacts facts_of(const PictureRecord& record, std::span<const PixelIds> ids
                           .objects = {},
                           .matte_materials = {}};
     if (const auto& mattes = record.settings.mattes)
-        facts.objects = mattes->objects, facts.matte_materials = mattes->materials;
+        facts.objects = each_once(mattes->objects), facts.matte_materials = each_once(mattes->materials);
     std::erase_if(facts.shown, [&](const auto& entry) {
         return std::ranges::find(facts.settings, entry.first, &ExrMetadata::value_type::first) != facts.settings.end();
     });
