@@ -29,7 +29,7 @@ std::string hash_of_contents(const Scene& scene) {
         add_text(material.name);
         visit_choices(material, [&](auto choice, auto&&...) { hasher.add_value(static_cast<uint8_t>(choice)); });
         add_all(std::vector{uint8_t(material.double_sided), uint8_t(material.two_sided_emission),
-                            uint8_t(material.thin_walled)});
+                            uint8_t(material.thin_walled), uint8_t(material.has_relative_ior)});
         visit_parameters(
             material, [&](const float& value, auto&&...) { hasher.add_value(value); },
             [&](const TextureRef& texture, const char*) { hasher.add_value(texture.image); });

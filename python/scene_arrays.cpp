@@ -98,6 +98,7 @@ Material material_of(ArgumentFields& fields, std::vector<TextureImage>& images) 
     fields.flag("double_sided", material.double_sided);
     fields.flag("two_sided_emission", material.two_sided_emission);
     fields.flag("thin_walled", material.thin_walled);
+    fields.flag("has_relative_ior", material.has_relative_ior);
     std::map<std::string_view, std::vector<float*>> numbers;
     std::vector<const char*> names;
     visit_parameters(

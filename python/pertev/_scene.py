@@ -64,7 +64,8 @@ class Scene(_core.Scene):
                  metallic_texture, roughness_texture, normal_texture, alpha_texture, transmission_texture,
                  specular_texture, coat_texture, coat_roughness_texture, coat_normal_texture, fuzz_roughness_texture,
                  anisotropy_texture, thin_film_texture, thin_film_thickness_texture, diffuse_transmission_texture;
-                 alpha_mode, metal_fresnel, microfacet_distribution, energy, fuzz_model; double_sided, two_sided_emission, thin_walled
+                 alpha_mode, metal_fresnel, microfacet_distribution, energy, fuzz_model; double_sided, two_sided_emission, thin_walled,
+                 has_relative_ior
     lights       kind "point", "spot" or "directional"; intensity, position, direction or transform, range; inner_cone and
                  outer_cone in degrees
     environment  a colour, an array of (height, width, 3) as environment maps have it, or a file

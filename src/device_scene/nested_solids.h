@@ -58,9 +58,10 @@ HD_CALL inline void nest_surface(const SceneView& scene, InteriorList before, Su
         bsdf.is_called = true;
         return;
     }
+    const MaterialParameters& material = scene.materials[surface.material];
     const MaterialParameters* around = filling(scene, outside);
-    if (around == nullptr) return;
-    const float scale = 1.0f / around->ior, ior = scene.materials[surface.material].ior / around->ior;
+    if (around == nullptr || material.has_relative_ior) return;
+    const float scale = 1.0f / around->ior, ior = material.ior / around->ior;
     if (bsdf.base.kind == LobeKind::Dielectric) {
         bsdf.base.dielectric.ior = DielectricLobe::usable_ior(ior, bsdf.base.dielectric.alpha);
     }

@@ -39,6 +39,8 @@ enum class MicrofacetEnergy : uint8_t {
     Single,      // it stays lost, as in many other renderers
 };
 
+inline constexpr float kLeastIor = 0x1p-10f, kMostIor = 0x1p10f;
+
 /// MaterialParameters is plain data that is copied to a device unchanged. A new parameter needs a member here, a row
 /// in visit_parameters, its reading, and the code that uses it.
 struct MaterialParameters {
@@ -54,6 +56,8 @@ struct MaterialParameters {
     bool two_sided_emission = false; // otherwise only the front emits; unlit materials show both faces
     bool double_sided = true;        // otherwise camera rays pass through the back; all other rays hit it
     bool is_clear_boundary = false;  // no ray meets it (its alpha is 0); it only ends the medium that it encloses
+    bool has_relative_ior = false;   // ior is over that of what surrounds the solid, which may be another solid; else
+                                     // over that of a vacuum
 
     float alpha = 1;           // [0, 1]; multiplied by the alpha of the base colour texture, the vertex colour and
                                // alpha_texture
@@ -65,7 +69,7 @@ struct MaterialParameters {
 
     float metallic = 0;  // [0, 1]; multiplied by metallic_texture's channel
     float roughness = 1; // [0, 1], perceptual: alpha_ggx = roughness^2; multiplied by roughness_texture's channel
-    float ior = 1.5f;    // for Dielectric and MetallicRoughness: inside over outside, >= 1
+    float ior = 1.5f;    // for Dielectric and MetallicRoughness: inside over outside, > 0; below 1 in a bubble
     float normal_scale = 1;
     float priority = 0; // the solid of the greatest one fills what several enclose (device_scene/nest_solids.h)
 
@@ -188,7 +192,7 @@ void visit_parameters(Parameters& m, const Number& number, const Texture& textur
     number(m.alpha_cutoff, "alpha_cutoff", 0, 0x1p10f);
     number(m.metallic, "metallic", 0, 1);
     number(m.roughness, "roughness", 0, 1);
-    number(m.ior, "ior", 1, 0x1p10f);
+    number(m.ior, "ior", kLeastIor, kMostIor);
     number(m.normal_scale, "normal_scale", -0x1p10f, 0x1p10f);
     number(m.transmission_weight, "transmission_weight", 0, 1);
     number(m.base_diffuse_roughness, "base_diffuse_roughness", 0, 1);

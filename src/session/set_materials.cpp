@@ -31,6 +31,7 @@ void visit_flags(Parameters& m, const Flag& flag) {
     flag(m.two_sided_emission, "two_sided_emission");
     flag(m.thin_walled, "thin_walled");
     flag(m.is_clear_boundary, "is_clear_boundary");
+    flag(m.has_relative_ior, "has_relative_ior");
 }
 
 std::string name_of_material(const Scene& scene, std::size_t index) {

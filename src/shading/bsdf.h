@@ -267,7 +267,7 @@ HD inline Bsdf make_dielectric(float ior, float roughness, Rgb tint) {
     bsdf.base = DielectricLobe{tint, alpha, DielectricLobe::usable_ior(ior, alpha)};
     return bsdf;
 }
-/// Makes glTF's metallic-roughness BSDF: `base_color`, `metallic` and `roughness` in [0, 1]; `ior` >= 1 is that of the
+/// Makes glTF's metallic-roughness BSDF: `base_color`, `metallic` and `roughness` in [0, 1]; `ior` > 0 is that of the
 /// coat.
 HD inline Bsdf make_metallic_roughness(Rgb base_color, float metallic, float roughness, float ior) {
     const float metal = clamp(metallic, 0.0f, 1.0f);

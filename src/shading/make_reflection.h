@@ -11,7 +11,7 @@ namespace pertev {
 struct ReflectionParameters {
     Rgb base_color;                    // [0, 1]
     float metallic = 0, roughness = 1; // [0, 1]
-    float ior = 1.5f;                  // >= 1
+    float ior = 1.5f;                  // > 0
     float weight = 1;                  // specularFactor, [0, 1]
     Rgb color = {1, 1, 1};             // specularColorFactor, >= 0
     float through = 0;                 // share of the diffuse light that goes straight through instead, [0, 1]

@@ -117,6 +117,21 @@ TEST_CASE("a ball of air in glass is as a bubble whose surface is the glass's ow
     CHECK(share_of_difference(whitted_picture(hollow), whitted_picture(nested)) < 1e-3);
 }
 
+TEST_CASE("an index over that of what surrounds a solid counts as it is, in a vacuum and in glass") {
+    // Alone, the bubble is a ball of glass whose front is inwards.
+    Scene bubble = glass_ball(1 / 1.5f), turned = glass_ball(1.5f);
+    turned.meshes[0] = turned_inside_out(turned.meshes[0]);
+    CHECK(share_of_difference(whitted_picture(turned), whitted_picture(bubble)) < 1e-3);
+    for (const float ior : {1.0f, 1.8f}) {
+        Scene stated = glass_ball(1.5f), relative = glass_ball(1.5f);
+        test::add(stated, test::ball({0.1f, 0, 0}, 0.6f), test::glass(ior));
+        test::add(relative, test::ball({0.1f, 0, 0}, 0.6f), test::glass(ior / 1.5f));
+        CHECK(share_of_difference(whitted_picture(stated), whitted_picture(relative)) > 1e-2);
+        relative.materials[1].has_relative_ior = true;
+        CHECK(share_of_difference(whitted_picture(stated), whitted_picture(relative)) < 1e-3);
+    }
+}
+
 TEST_CASE("glass in a hollow of glass vanishes, whether it touches or leaves a small gap") {
     Scene block = under_panorama();
     test::add(block, test::box({0, 0, 0}, {1, 1, 1}), test::glass(1.5f));

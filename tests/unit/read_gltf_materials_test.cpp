@@ -52,6 +52,18 @@ TEST_CASE("every factor of a metallic-roughness material is read") {
     CHECK(!material.base_color_texture.has_image());
 }
 
+TEST_CASE("an index of 0 is infinite, and one below 1 is that of a bubble over what surrounds it") {
+    const auto index = [](const std::string& ior) {
+        return read_material(R"({"extensions":{"KHR_materials_ior":{"ior":)" + ior + "}}}");
+    };
+    CHECK(index("0").ior == kMostIor);
+    CHECK_FALSE(index("0").has_relative_ior);
+    CHECK(index("0.75").ior == 0.75f);
+    CHECK(index("0.75").has_relative_ior);
+    CHECK(index("-1").ior == 1.5f);
+    CHECK_FALSE(index("1.5").has_relative_ior);
+}
+
 TEST_CASE("a material without properties is a white, rough and opaque metal") {
     const Material material = read_material("{}");
     CHECK(material.kind == MaterialKind::MetallicRoughness);

@@ -214,9 +214,25 @@ TEST_CASE("mitsuba: dielectrics by the names of substances and by numbers") {
     CHECK(thin.thin_walled);
     CHECK(thin.transmission_weight == 1);
     CHECK(square((thin.ior - 1) / (thin.ior + 1)) == doctest::Approx(2 * 0.04 / 1.04).epsilon(1e-3));
-    CHECK(!load_bsdf(bsdf_of("dielectric", number_of("int_ior", 1) + number_of("ext_ior", 1.5)))
-               .messages.left_out()
-               .empty());
+}
+
+TEST_CASE("mitsuba: the index of an interface is that inside over that outside, whatever surrounds it") {
+    const std::string bubble = number_of("int_ior", 1) + number_of("ext_ior", 1.5);
+    for (const char* const type : {"dielectric", "roughdielectric"}) {
+        const Material air = mitsuba_material(bsdf_of(type, bubble));
+        CHECK(air.ior == doctest::Approx(1 / 1.5));
+        CHECK(air.has_relative_ior);
+    }
+    CHECK(mitsuba_material(bsdf_of("dielectric")).has_relative_ior);
+    CHECK(mitsuba_material(bsdf_of("principled", number_of("spec_trans", 1))).has_relative_ior);
+    CHECK_FALSE(mitsuba_material(bsdf_of("plastic")).has_relative_ior);
+    // A coat and a pane have no bubbles' side.
+    for (const char* const type : {"plastic", "thindielectric"}) {
+        const MitsubaMaterial inverted = load_bsdf(bsdf_of(type, bubble));
+        CHECK(inverted.messages.left_out().size() == 1);
+        CHECK(inverted.material.ior >= 1.5f);
+    }
+    CHECK(load_bsdf(bsdf_of("dielectric", number_of("int_ior", 1e-9))).material.ior == 1);
 }
 
 TEST_CASE("mitsuba: the colour of plastic is that of the whole, or with nonlinear that beneath the coat") {

@@ -82,11 +82,12 @@ TEST_CASE("mtl: Pc, Pcr and Ps put a coat and a sheen on any base") {
     CHECK(l.messages.left_out().empty());
 }
 
-TEST_CASE("mtl: an index of 1 bends no light, and one that is missing or below 1 is 1.5") {
+TEST_CASE("mtl: an index of 1 bends no light, and one that is missing or 0 is 1.5") {
     const MtlScene l = mtl_scene(test::scratch_folder(), "newmtl none\nKd 0 0 0\nTf 1 1 1\nillum 7\n"
                                                          "newmtl air\nKd 0 0 0\nTf 1 1 1\nNi 1.0\nillum 7\n"
                                                          "newmtl water\nKd 0 0 0\nTf 1 1 1\nNi 1.33\nillum 6\n"
                                                          "newmtl zero\nKd 0 0 0\nTf 1 1 1\nNi 0\nillum 7\n"
+                                                         "newmtl bubble\nKd 0 0 0\nTf 1 1 1\nNi 0.75\nillum 7\n"
                                                          "newmtl matt\nKd 1 0 0\nPr 0.5\nNi 1\n"
                                                          "newmtl plain\nKd 1 0 0\nPr 0.5\n");
     for (const char* glass : {"none", "air", "water", "zero"})
@@ -95,6 +96,9 @@ TEST_CASE("mtl: an index of 1 bends no light, and one that is missing or below 1
     CHECK(l.material("air").ior == 1);
     CHECK(l.material("water").ior == 1.33f);
     CHECK(l.material("zero").ior == 1.5f);
+    CHECK(l.material("bubble").ior == 0.75f);
+    CHECK(l.material("bubble").has_relative_ior);
+    CHECK_FALSE(l.material("water").has_relative_ior);
     CHECK(l.material("matt").ior == 1);
     CHECK(l.material("plain").ior == 1.5f);
 }

@@ -76,6 +76,9 @@ TEST_CASE("pbrt: diffuse, conductor and dielectric have their numbers, and micro
     CHECK(water.roughness == 0);
     CHECK(water.base_color == grey(1));
     CHECK(water.dispersion() == 0);
+    CHECK(water.has_relative_ior); // pbrt's interfaces do not know what surrounds them
+    CHECK(pbrt_material("Material \"dielectric\" \"float eta\" .75").ior == 0.75f);
+    CHECK(pbrt_material("Material \"glass\" \"float eta\" .75").ior == 0.75f);
     const Material glass = pbrt_material("Material \"dielectric\" \"spectrum eta\" \"glass-BK7\"");
     CHECK(glass.ior == doctest::Approx(1.5168));
     CHECK(glass.transmission_dispersion_abbe_number == doctest::Approx(64.17));

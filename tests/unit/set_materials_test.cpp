@@ -117,6 +117,7 @@ TEST_CASE("a change of a material that is not possible is refused with what is")
     CHECK(refuses_change("gold leaf shine=1", "roughness"));
     CHECK(refuses_change("gold leaf roughness=2", "from 0 to 1"));
     CHECK(refuses_change("gold leaf roughness=nan", "from 0 to 1"));
+    CHECK(refuses_change("gold leaf ior=0", "to 1024"));
     CHECK(refuses_change("gold leaf roughness=", "from 0 to 1"));
     CHECK(refuses_change("gold leaf base_color=1,0", "3"));
     CHECK(refuses_change("gold leaf kind=metal", "conductor"));
@@ -131,6 +132,7 @@ TEST_CASE("a change of a material that is not possible is refused with what is")
 TEST_CASE("a material's description is a change that makes the same material") {
     Scene scene = three_materials();
     change(scene, "gold leaf base_color=1,0.5,0.25 metallic=1 roughness=0.123 coat_weight=0.5 thin_walled=false");
+    change(scene, "gold leaf ior=0.75 has_relative_ior=true");
     change(scene, "gold ring kind=conductor alpha_mode=mask k=1,2,3 microfacet_distribution=beckmann energy=single");
     for (std::size_t i = 0; i < 2; ++i) {
         const std::string text = describe_material(scene, i);

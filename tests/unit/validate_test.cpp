@@ -263,12 +263,12 @@ TEST_CASE("faults of materials and images are refused, and numbers out of range 
     const Result clamped = validated([](Scene& s) {
         s.materials[0].base_color = {1.5f, 0.5f, -1};
         s.materials[0].emission.b = -2;
-        s.materials[0].ior = 0.5f;
+        s.materials[0].ior = 0;
     });
     REQUIRE(!clamped.error);
     CHECK(clamped.scene.materials[0].base_color == Rgb{1, 0.5f, 0});
     CHECK(clamped.scene.materials[0].emission == Rgb{0, 0, 0});
-    CHECK(clamped.scene.materials[0].ior == 1);
+    CHECK(clamped.scene.materials[0].ior == kLeastIor);
     REQUIRE(clamped.messages.all().size() == 1);
     CHECK(clamped.messages.all()[0].text.starts_with("file: 4 numbers"));
 }

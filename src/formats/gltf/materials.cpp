@@ -55,7 +55,7 @@ Material Materials::read(const JsonValue& source) {
         if (const auto pbr = source.find("pbrMetallicRoughness")) read_metallic_roughness(*pbr, material);
     });
     read_alpha(source, material);
-    attempt([&] { material.ior = read_ior(source); });
+    attempt([&] { read_ior(source, material); });
     attempt([&] { read_transmission(source, material); });
     attempt([&] { read_dispersion(source, material); });
     attempt([&] { read_anisotropy(source, material); });
@@ -148,14 +148,19 @@ void Materials::read_alpha(const JsonValue& source, Material& material) const {
     attempt_at(source, [&] { material.alpha_cutoff = source.float_or("alphaCutoff", 0.5f); });
 }
 
-float Materials::read_ior(const JsonValue& material) const {
-    constexpr float usual = 1.5f;
-    const std::optional<JsonValue> extension = material.extension("KHR_materials_ior");
-    const float ior = extension ? extension->float_or("ior", usual) : usual;
-    if (ior >= 1) return ior;
-    sink_.warn(
-        {extension->location(), fmt::format("ior {} is not supported; expected at least 1, {} is used", ior, usual)});
-    return usual;
+void Materials::read_ior(const JsonValue& source, Material& material) const {
+    const std::optional<JsonValue> extension = source.extension("KHR_materials_ior");
+    if (!extension) return;
+    const float ior = extension->float_or("ior", material.ior);
+    if (ior == 0) {
+        material.ior = kMostIor; // glTF's 0 is an infinite index, with which everything is reflected
+    } else if (ior >= kLeastIor) {
+        material.ior = ior;
+        material.has_relative_ior = ior < 1; // no substance has that; a bubble has it over what is around it
+    } else {
+        sink_.warn({extension->location(), fmt::format("ior {} is not supported; expected 0 or at least {}, {} is used",
+                                                       ior, kLeastIor, material.ior)});
+    }
 }
 
 TextureRef Materials::read_texture(const JsonValue& parent, std::string_view key, bool is_srgb) {

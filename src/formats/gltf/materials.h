@@ -63,7 +63,7 @@ private:
     void read_scatter(const JsonValue& source, Material& material);
     void read_coat(const JsonValue& source, Material& material);
     void read_fuzz(const JsonValue& source, Material& material);
-    float read_ior(const JsonValue& material) const;
+    void read_ior(const JsonValue& source, Material& material) const;
     TextureRef read_texture(const JsonValue& parent, std::string_view key, bool is_srgb);
     /// Reads a slot that uses one channel of its image, which is linear.
     TextureRef read_channel(const JsonValue& parent, std::string_view key, uint8_t channel);

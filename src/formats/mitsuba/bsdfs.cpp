@@ -172,15 +172,15 @@ float Bsdfs::ior_of(Object& bsdf, const char* name, float missing) {
     return missing;
 }
 
-float Bsdfs::relative_ior(Object& bsdf, const char* substance) {
+float Bsdfs::relative_ior(Object& bsdf, const char* substance, float least) {
     const float inside = ior_of(bsdf, "int_ior", find_ior(substance)),
                 outside = ior_of(bsdf, "ext_ior", find_ior("air"));
     const float ior = inside / outside;
-    if (ior >= 1 && ior <= 0x1p10f) return ior;
-    const float used = ior > 0 && 1 / ior <= 0x1p10f ? 1 / ior : 1.0f;
+    if (ior >= least && ior <= kMostIor) return ior;
+    const float used = least == 1 && ior > 0 && 1 / ior <= kMostIor ? 1 / ior : 1.0f;
     reading_.sink().leave_out(
-        {bsdf.location(), fmt::format("the index of {} is {} inside, below that outside; {} is used",
-                                      bsdf.parameters.what(), ior, used)});
+        {bsdf.location(),
+         fmt::format("the index of {} is {} inside over that outside; {} is used", bsdf.parameters.what(), ior, used)});
     return used;
 }
 
@@ -209,7 +209,8 @@ Surface Bsdfs::dielectric(Object& bsdf) {
     Parameters& parameters = bsdf.parameters;
     const bool is_thin = bsdf.type == "thindielectric";
     Surface surface = make_surface(is_thin ? MaterialKind::MetallicRoughness : MaterialKind::Dielectric);
-    surface.material.ior = relative_ior(bsdf);
+    surface.material.ior = relative_ior(bsdf, "bk7", is_thin ? 1 : kLeastIor);
+    surface.material.has_relative_ior = !is_thin; // Mitsuba's interfaces know both their sides
     surface.material.base_color = grey(1);
     if (bsdf.type == "roughdielectric") read_roughness(bsdf, surface);
     if (is_thin) {

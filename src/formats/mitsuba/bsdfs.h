@@ -42,7 +42,8 @@ private:
     void read_roughness(Object& bsdf, Surface& surface);
     void tint_metal(const Object& bsdf, const TextureValue& tint, Surface& surface);
     float ior_of(Object& bsdf, const char* name, float missing);
-    float relative_ior(Object& bsdf, const char* substance = "bk7"); // by default inside
+    /// Returns the index inside, by default that of `substance`, over that outside. One below `least` is inverted.
+    float relative_ior(Object& bsdf, const char* substance = "bk7", float least = 1);
     void warn_of_backs(const Object& bsdf, const Surface& surface);
     void warn_of_nearest(const Object& bsdf, std::string_view nearest);
     TextureValue color(Object& bsdf, const char* name, float missing) {

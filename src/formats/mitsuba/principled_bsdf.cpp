@@ -41,6 +41,7 @@ Surface Bsdfs::principled(Object& bsdf) {
     }
     material.transmission_weight = number("spec_trans", 0);
     material.thin_walled = is_thin;
+    material.has_relative_ior = !is_thin && material.transmits();
     if (is_thin) {
         material.diffuse_transmission_weight =
             0.5f * clamp(static_cast<float>(parameters.number("diff_trans", 0, sink)), 0.0f, 2.0f);

@@ -21,6 +21,10 @@ float roughness_of(float exponent) { return sqrt(sqrt(2.0f / (max(exponent, 0.0f
 /// glass.
 float index_of(const MtlStatements& from) { return from.ni >= 1 ? from.ni : 1.5f; }
 
+/// Returns the index of glass. One below 1 is a bubble's over that of what is around it; that of no pair of substances
+/// is below a quarter, so it is no index.
+float index_of_glass(const MtlStatements& from) { return from.ni >= 0.25f ? from.ni : index_of(from); }
+
 class Converter {
 public:
     Converter(const fs::path& path, TextureLoader& loader, Sink& sink) : path_(path), loader_(loader), sink_(sink) {}
@@ -88,7 +92,8 @@ private:
         if (is_glass && !has_map_d) {
             to.kind = MaterialKind::Dielectric;
             to.roughness = 0;
-            to.ior = index_of(from);
+            to.ior = index_of_glass(from);
+            to.has_relative_ior = to.ior < 1;
             to.base_color_texture = {};
             const Rgb tf = from.tf;
             to.base_color = is_black(tf) ? grey(1) : Rgb{safe_sqrt(tf.r), safe_sqrt(tf.g), safe_sqrt(tf.b)};

@@ -18,19 +18,20 @@ constexpr float kSubsurfaceIor = 1.33f;
 
 using M = MaterialParameters;
 
-constexpr float kLeastIor = 1, kMostIor = 0x1p10f;
-
-float usable_ior(float ior, const MaterialSource& source) {
-    if (ior >= kLeastIor && ior <= kMostIor) return ior;
+float usable_ior(float ior, float least, const MaterialSource& source) {
+    if (ior >= least && ior <= kMostIor) return ior;
     source.context.sink.warn({source.parameters.location(),
-                              fmt::format("the index of refraction of {} is {}; the nearest from 1 to 1024 is used",
-                                          source.parameters.what(), ior)});
-    return ior >= kLeastIor ? kMostIor : kLeastIor;
+                              fmt::format("the index of refraction of {} is {}; the nearest from {} to {} is used",
+                                          source.parameters.what(), ior, least, kMostIor)});
+    return ior >= least ? kMostIor : least;
 }
 
-void set_ior(const MaterialSource& source, std::string_view name, float Material::*to, Surface& surface) {
+/// Sets an index of at least `least`. That of a solid is over that of what is outside, as pbrt's is.
+void set_ior(const MaterialSource& source, std::string_view name, float Material::*to, Surface& surface,
+             float least = 1) {
     const std::optional<GlassIndex> index = glass_index(source.parameters, name, source.context);
-    surface.material.*to = usable_ior(index ? index->ior : 1.5f, source);
+    surface.material.*to = usable_ior(index ? index->ior : 1.5f, least, source);
+    surface.material.has_relative_ior = surface.material.kind == MaterialKind::Dielectric;
     if (index && index->abbe_number > 0 && to == static_cast<float Material::*>(&M::ior)) {
         surface.material.transmission_dispersion_scale = 1;
         surface.material.transmission_dispersion_abbe_number = index->abbe_number;
@@ -133,7 +134,7 @@ Surface coated_conductor(const MaterialSource& source) {
 Surface dielectric(const MaterialSource& source) {
     Surface surface = make_surface(MaterialKind::Dielectric);
     surface.material.base_color = grey(1);
-    set_ior(source, "eta", &Material::ior, surface);
+    set_ior(source, "eta", &Material::ior, surface, kLeastIor);
     read_roughness(source, 0, "", surface);
     return surface;
 }
@@ -174,7 +175,8 @@ Surface read_subsurface(const MaterialSource& source) {
     Surface surface = make_surface(MaterialKind::Dielectric);
     surface.material.base_color = grey(1);
     surface.material.ior = kSubsurfaceIor;
-    if (source.parameters.has("eta")) set_ior(source, "eta", &Material::ior, surface);
+    surface.material.has_relative_ior = true;
+    if (source.parameters.has("eta")) set_ior(source, "eta", &Material::ior, surface, kLeastIor);
     surface.material.transmission_dispersion_scale = 0;
     read_roughness(source, 0, "", surface);
     surface.material.medium = read_subsurface_medium(source);

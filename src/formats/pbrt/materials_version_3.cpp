@@ -68,17 +68,18 @@ Surface substrate(const MaterialSource& source) {
     return surface;
 }
 
-void set_index(const MaterialSource& source, Surface& surface) {
+void set_index(const MaterialSource& source, float least, Surface& surface) {
     const char* const name = source.parameters.contains("eta") ? "eta" : "index";
     source.parameters.ignore({"eta", "index"});
     const TextureValue index = source.textures.number(source.parameters, name, 1.5f);
     if (index.has_image()) source.parameters.leave_out({name}, "it has no texture; 1.5 is used", source.context.sink);
-    surface.material.ior = index.has_image() ? 1.5f : clamp(index.factor.r, 1.0f, 0x1p10f);
+    surface.material.ior = index.has_image() ? 1.5f : clamp(index.factor.r, least, kMostIor);
 }
 
 Surface glass(const MaterialSource& source) {
     Surface surface = make_surface(MaterialKind::Dielectric);
-    set_index(source, surface);
+    set_index(source, kLeastIor, surface);
+    surface.material.has_relative_ior = true;
     read_roughness(source, 0, "", surface);
     set_color(surface, &M::base_color, &M::base_color_texture, source.textures.color(source.parameters, "Kt", grey(1)));
     const TextureValue kr = source.textures.color(source.parameters, "Kr", grey(1));
@@ -110,7 +111,7 @@ Surface mirror(const MaterialSource& source) {
 Surface uber(const MaterialSource& source) {
     Surface surface = make_surface(MaterialKind::MetallicRoughness);
     Parameters& parameters = source.parameters;
-    set_index(source, surface);
+    set_index(source, 1, surface);
     read_roughness(source, 0.1, "", surface);
     const TextureValue ks = source.textures.color(parameters, "Ks", grey(0.25f));
     set_plastic(source, ks, surface);
@@ -163,7 +164,7 @@ Surface disney(const MaterialSource& source) {
     set_color(surface, &M::base_color, &M::base_color_texture, source.textures.color(parameters, "color", grey(0.5f)));
     set_number(surface, &M::metallic, &M::metallic_texture, source.textures.number(parameters, "metallic", 0));
     set_number(surface, &M::roughness, &M::roughness_texture, source.textures.number(parameters, "roughness", 0.5f));
-    set_index(source, surface);
+    set_index(source, 1, surface);
     const auto number = [&](const char* name, double missing) {
         return clamp(static_cast<float>(parameters.number(name, missing, source.context.sink)), 0.0f, 1.0f);
     };
@@ -171,6 +172,7 @@ Surface disney(const MaterialSource& source) {
     material.coat_roughness = 1 - number("clearcoatgloss", 1);
     material.transmission_weight = number("spectrans", 0);
     material.thin_walled = parameters.truth("thin", false, source.context.sink);
+    material.has_relative_ior = material.transmits() && !material.thin_walled;
     material.fuzz_weight = number("sheen", 0);
     for (const char* const name :
          {"speculartint", "anisotropic", "sheentint", "scatterdistance", "flatness", "difftrans"})
