@@ -99,6 +99,8 @@ MUTATIONS = [
     ("pbrt: an infinite light ignores its transform", "unit/read_pbrt_lights", ("src/formats/described/assemble.cpp", "inverse(without_translation(compose(scene_from_file, light.world_from_light)));", "inverse(without_translation(scene_from_file));")),
     ("pbrt: remapped roughness is the width", "unit/read_pbrt_materials", ("src/formats/described/surface.cpp", "return sqrt(sqrt(clamp(value, 0.0f, 1.0f)));", "return sqrt(clamp(value, 0.0f, 1.0f));")),
     ("pbrt: roughness along u is that along v", "unit/read_pbrt_materials", ("src/formats/described/make_surface.cpp", "along > across ? 0.0f", "along < across ? 0.0f")),
+    ("light passes rough coats unshadowed", "statistical/mitsuba_lobes", ("src/formats/described/rough_coat.cpp", "weight * facets.seen(min(down, 1.0f)) *", "weight *")),
+    ("Mitsuba's light inside plastic is summed without its error", "statistical/mitsuba_lobes", ("src/formats/described/rough_coat.cpp", "if (model == CoatModel::Mitsuba && width > kSmoothWidth)", "if (false)")),
     ("an interface's own index is divided by what surrounds it", "statistical/nested_solids", ("src/device_scene/nested_solids.h", "around == nullptr || material.has_relative_ior", "around == nullptr")),
     ("a bubble's index in Mitsuba is inverted", "unit/read_mitsuba_materials", ("src/formats/mitsuba/bsdfs.cpp", "is_thin ? 1 : kLeastIor", "1")),
     ("pbrt: a coat hides no darkening", "unit/read_pbrt_materials", ("src/formats/described/surface.cpp", "return albedo * (1 - inside) / (1 - albedo * inside);", "return albedo + 0 * inside;")),

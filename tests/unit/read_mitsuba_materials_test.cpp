@@ -240,15 +240,22 @@ TEST_CASE("mitsuba: the colour of plastic is that of the whole, or with nonlinea
     const Material whole = mitsuba_material(bsdf_of("plastic", ior));
     CHECK(whole.kind == MaterialKind::MetallicRoughness);
     CHECK(whole.ior == 1.5f);
-    const float inside = described::reflected_inside(1.5f);
-    const float more = 0.96f / ((1 - inside) * 2.25f); // all directions let in less than the vertical one
-    CHECK(more == doctest::Approx(1.057).epsilon(2e-3));
-    CHECK(whole.base_color.r == doctest::Approx(0.5f * more));
+    CHECK(whole.base_color.r == doctest::Approx(0.5).epsilon(1e-2)); // Schlick lets a little more in
     CHECK(mitsuba_material(bsdf_of("plastic")).ior == doctest::Approx(1.49 / 1.000277));
-    const Material dyed =
-        mitsuba_material(bsdf_of("roughplastic", ior + "<boolean name=\"nonlinear\" value=\"true\"/>"));
-    CHECK(dyed.base_color.r == doctest::Approx(0.5f * (1 - inside) / (1 - 0.5f * inside)));
+    const std::string nonlinear = "<boolean name=\"nonlinear\" value=\"true\"/>";
+    const float inside = described::reflected_inside(1.5f);
+    CHECK(mitsuba_material(bsdf_of("plastic", ior + nonlinear)).base_color.r ==
+          doctest::Approx(0.5f * (1 - inside) / (1 - 0.5f * inside)).epsilon(1e-2));
+    const Material dyed = mitsuba_material(bsdf_of("roughplastic", ior + nonlinear));
     CHECK(dyed.roughness == doctest::Approx(std::sqrt(0.1)));
+    // Light is lost in wide microfacets (statistical/mitsuba_lobes_test.cpp has how much), beneath a texture, too.
+    const std::string wide = number_of("int_ior", 1.5) + number_of("alpha", 0.5) + string_of("distribution", "ggx");
+    const float base =
+        mitsuba_material(bsdf_of("roughplastic", wide + rgb_of("diffuse_reflectance", ".5"))).base_color.r;
+    CHECK(base > 0.2f);
+    CHECK(base < 0.3f);
+    CHECK(mitsuba_material(bsdf_of("roughplastic", wide + bitmap_of("diffuse_reflectance", ""))).base_color.r ==
+          doctest::Approx(2 * base));
 }
 
 TEST_CASE("mitsuba: phong, ward, roughdiffuse and coating are the nearest, with a warning") {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/message_text.h"
+#include "formats/described/rough_coat.h"
 #include "formats/files/closest_name.h"
 #include "formats/pbrt/colors.h"
 #include "formats/pbrt/media.h"
@@ -106,9 +107,8 @@ Surface coated_diffuse(const MaterialSource& source) {
     set_ior(source, "eta", &Material::ior, surface);
     surface.material.transmission_dispersion_scale = 0;
     read_roughness(source, 0, "", surface);
-    set_color(surface, &M::base_color, &M::base_color_texture,
-              source.textures.color(source.parameters, "reflectance", grey(0.5f)), Curve::BeneathCoat,
-              reflected_inside(surface.material.ior));
+    set_coated_color(surface, source.textures.color(source.parameters, "reflectance", grey(0.5f)), CoatModel::Pbrt,
+                     true);
     leave_out_coat_parts(source);
     return surface;
 }
