@@ -44,10 +44,14 @@ SHARED = (("integrators", "ray_tree"), ("integrators", "subpaths"))
 # Where all of them are known.
 KINDS = ("integrators", "kinds")
 
-# Only these files name a kind: the camera, its readers, the table of settings, and the maker of the light meter's camera.
+# Only these files name a kind: of camera, the camera, its readers, the table of settings, and the maker of the light meter's
+# camera; of lens, the lens, its rays, the table of settings, and those who check, measure, open or write a lens.
 NAMED_IN = {"Projection::": {"scene/camera.h", "scene/projection_features.h", "render/camera_view.h", "render/camera_view.cpp",
                              "formats/gltf/camera.cpp", "formats/mitsuba/view.cpp", "formats/pbrt/camera.cpp",
-                             "settings/value_names.h", "session/measure_irradiance.cpp"}}
+                             "settings/value_names.h", "session/measure_irradiance.cpp"},
+            "LensModel::": {"scene/lens_model.h", "scene/camera.h", "render/lens_distortion.h", "render/lens_distortion.cpp",
+                            "render/panorama.h", "formats/gltf_writer/write_glb.cpp", "settings/value_names.h",
+                            "session/check_integrator.cpp", "session/degrees.h", "session/opening/calibrated_camera.cpp"}}
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
 CUDA_HEADER = re.compile(r"^(cuda|cub/|thrust/|cooperative_groups|nccl|device_launch_parameters|curand|nvtx)")
@@ -190,6 +194,8 @@ CASES = [
     ("render/camera_view.h", "case Projection::Cosine:", True),
     ("denoise/filter.h", "case Projection::Cosine:", False),
     ("denoise/filter.h", "// Projection::Cosine", True),
+    ("render/panorama.h", "case LensModel::Cube:", True),
+    ("integrators/path/state.h", "case LensModel::Cube:", False),
 ]
 
 
