@@ -93,6 +93,25 @@ bool write_document(const CLI::App& app, const std::vector<std::string>& words) 
     return true;
 }
 
+struct Verb {
+    std::string_view name;
+    void (*add)(CLI::App& app, int& status);
+};
+constexpr Verb kVerbs[] = {
+    {"render", add_render_command},   {"merge", add_merge_command},     {"view", add_view_command},
+    {"compare", add_compare_command}, {"measure", add_measure_command}, {"solve", add_solve_command},
+    {"info", add_info_command},       {"check", add_check_command},     {"convert", add_convert_command},
+    {"bench", add_bench_command},     {"lab", add_lab_command}};
+
+/// Adds the verb of the line alone where it begins with one, because the flags of all take as long as a small picture.
+void add_verbs(CLI::App& app, const std::vector<std::string>& words, int& status) {
+    const std::string_view first = words.empty() ? std::string_view() : std::string_view(words.front());
+    const bool is_named = std::ranges::find(kVerbs, first, &Verb::name) != std::end(kVerbs);
+    for (const Verb& verb : kVerbs) {
+        if (!is_named || verb.name == first) verb.add(app, status);
+    }
+}
+
 /// Parses the command line, which runs its verb.
 int run(std::vector<std::string> words, bool json) {
     CLI::App app("Pertev: a path tracer for GPUs without ray-tracing hardware, and for CPUs.", "pertev");
@@ -101,17 +120,7 @@ int run(std::vector<std::string> words, bool json) {
         app.set_version_flag("-V,--version", fmt::format("pertev {} ({})", version(), git_commit()));
         app.formatter(std::make_shared<Help>(take_help_group(words)));
         app.require_subcommand(1);
-        add_render_command(app, status);
-        add_merge_command(app, status);
-        add_view_command(app, status);
-        add_compare_command(app, status);
-        add_measure_command(app, status);
-        add_solve_command(app, status);
-        add_info_command(app, status);
-        add_check_command(app, status);
-        add_convert_command(app, status);
-        add_bench_command(app, status);
-        add_lab_command(app, status);
+        add_verbs(app, words, status);
         app.add_flag("--list-devices")->description("Lists the devices that --device names, with their memory.");
         app.add_flag("--man")->description("Prints a man page.");
         app.add_flag("--settings-document")->description("Prints docs/settings.md.");

@@ -13,10 +13,10 @@ struct SeenShares {
     double burnt = 0; // white, beyond 90 times middle grey
 };
 
-/// Evaluates a small picture, 64 x 36 pixels with 16 samples, of the scene at time 0 from its first camera or else
-/// the default one, without a sky, at the exposure found for it. It depends only on the scene and is the same on
-/// every machine. The scene has passed validate(). Throws Error(OverLimit) as prepare_scene() does. `sink` may
-/// end it and hears no messages.
+/// Evaluates a small picture, 64 x 36 pixels with 4 samples, or 16 where 4 leave doubt, of the scene at time 0 from its
+/// first camera or else the default one, without a sky, at the exposure found for it. It depends only on the scene and
+/// is the same on every machine. The scene has passed validate(). Throws Error(OverLimit) as prepare_scene() does.
+/// `sink` may end it and hears no messages.
 SeenShares shares_seen(const Scene& scene, Sink& sink = nobody());
 
 /// Returns whether less than three quarters of the visible surfaces are lit, or over a sixteenth is burnt out, as by

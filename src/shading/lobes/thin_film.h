@@ -84,13 +84,15 @@ HD_CALL inline Rgb film_reflectance(float cos_o, const ThinFilm& film, Rgb base)
     const float kept = exp(-path / kCoherence) * clamp(0.1f * (kFadedPath - path), 0.0f, 1.0f);
     const Amplitudes r(cos_o, cos_f, film.ior, base.r), g(cos_o, cos_f, film.ior, base.g),
         b(cos_o, cos_f, film.ior, base.b);
+    const bool is_grey = base.r == base.g && base.r == base.b; // dielectrics are, for a third of the work
     Rgb passed = {0, 0, 0};
     for (int i = 0; i < kWaves; ++i) {
         const float turns = (kFirstWave + kWaveStep * static_cast<float>(i)) * path;
         float sine, cosine;
         sin_cos_2pi(turns - floor(turns), sine, cosine);
-        passed += weight_of_wave(i) *
-                  Rgb{r.transmittance(cosine, kept), g.transmittance(cosine, kept), b.transmittance(cosine, kept)};
+        Rgb through = grey(r.transmittance(cosine, kept));
+        if (!is_grey) through.g = g.transmittance(cosine, kept), through.b = b.transmittance(cosine, kept);
+        passed += weight_of_wave(i) * through;
     }
     return {clamp(1.0f - passed.r, 0.0f, 1.0f), clamp(1.0f - passed.g, 0.0f, 1.0f), clamp(1.0f - passed.b, 0.0f, 1.0f)};
 }
