@@ -3,7 +3,8 @@
 
 ptxas 13.0 counts too few cycles where CS2R clears a pair of registers that a predicated instruction may write next, as for a pointer
 that is null unless a condition holds. The comparison that follows then finds the pair's former value, and a kernel read through null.
-Prints each read fewer than six cycles after CS2R, and exits 1 if there is one. Stores read their data later and do not count.
+Prints each read fewer than six cycles after CS2R, and exits 1 if there is one. Stores read their data later and do not count; reads
+behind a branch that is taken are not seen.
 Needs cuobjdump and nvdisasm (PyPI: nvidia-cuda-cuobjdump, nvidia-cuda-nvdisasm). The stall cycles of an instruction are bits 105 to
 108 of its two words (Jia et al., "Dissecting the NVIDIA Volta GPU Architecture via Microbenchmarking", 2018, section 2.1).
 """
@@ -17,7 +18,8 @@ import tempfile
 CYCLES = 6  # after which the registers of CS2R are read elsewhere
 LINE = re.compile(r"\s+/\*([0-9a-f]{4,})\*/\s+(@!?U?P\w+\s+)?(\S+)\s*(.*?)\s*;?\s*/\* 0x[0-9a-f]{16} \*/")
 STORES = ("ST", "RED", "ATOM")
-WITHOUT_RESULT = ("ISETP", "FSETP", "DSETP", "HSETP", "PLOP3", "R2P", "BRA", "CALL", "RET")
+ENDS = ("BRA", "BRX", "JMP", "EXIT", "RET")
+WITHOUT_RESULT = ("ISETP", "FSETP", "DSETP", "HSETP", "PLOP3", "R2P", "BRA", "BRX", "CALL", "RET")
 
 
 def registers_read(name, operands):
@@ -32,18 +34,23 @@ def early_read(lines, start):
     pair, cycles = set(), 0
     for i in range(start, len(lines) - 1):
         found = LINE.match(lines[i])
-        if lines[i][:1] in (".", "$"):
-            return None  # another way leads here
         if not found:
             continue
-        _, _, name, operands = found.groups()
+        _, condition, name, operands = found.groups()
         if not pair:
-            first = int(re.match(r"R(\d+)", operands).group(1))
-            pair = {first, first + 1}
+            first = re.match(r"R(\d+)", operands)
+            if not first:
+                return None  # RZ
+            pair = {int(first.group(1)), int(first.group(1)) + 1}
         elif registers_read(name, operands) & pair and not name.startswith(STORES):
             return cycles, f"{name} {operands}"
+        elif not condition:
+            if name.startswith(ENDS):
+                return None
+            if written := re.match(r"R(\d+)\b", operands):
+                pair.discard(int(written.group(1)))
         cycles += max(int(re.search(r"/\* (0x[0-9a-f]{16}) \*/", lines[i + 1]).group(1), 16) >> 41 & 15, 1)
-        if cycles >= CYCLES:
+        if cycles >= CYCLES or not pair:
             return None
     return None
 
@@ -67,7 +74,7 @@ def main():
         codes = sorted(pathlib.Path(folder).glob("*.cubin"))
         for code in codes:
             text = subprocess.run(["nvdisasm", "-c", "-hex", code], stdout=subprocess.PIPE, text=True, check=True).stdout
-            count += text.count(".text.")
+            count += text.count("\n.text.")
             for kernel, cycles, instruction in early_reads(text):
                 kernels.add(kernel)
                 print(f"{kernel}\n    cleared by CS2R, read {cycles} cycles later: {instruction}")

@@ -32,6 +32,18 @@ HD inline const MaterialParameters* filling(const SceneView& scene, InteriorList
     return list.top() == 0 ? nullptr : scene.materials + material_of_solid(scene, list);
 }
 
+/// Returns the index of refraction of what fills a point, over that of a vacuum.
+HD_CALL inline float ior_within(const SceneView& scene, InteriorList list) {
+    float ior = 1;
+    while (list.top() != 0) {
+        const MaterialParameters& material = scene.materials[material_of_solid(scene, list)];
+        ior *= material.ior;
+        if (!material.has_relative_ior) break;
+        list = list.without(list.top()); // the next one surrounds it
+    }
+    return ior;
+}
+
 /// Returns the transmittance of `distance` metres through what fills them; 1 if they do not end.
 HD_CALL inline Rgb transmittance_within(const SceneView& scene, InteriorList list, float distance) {
     const MaterialParameters* solid = filling(scene, list);
@@ -59,9 +71,8 @@ HD_CALL inline void nest_surface(const SceneView& scene, InteriorList before, Su
         return;
     }
     const MaterialParameters& material = scene.materials[surface.material];
-    const MaterialParameters* around = filling(scene, outside);
-    if (around == nullptr || material.has_relative_ior) return;
-    const float scale = 1.0f / around->ior, ior = material.ior / around->ior;
+    if (outside.top() == 0 || material.has_relative_ior) return;
+    const float around = ior_within(scene, outside), scale = 1.0f / around, ior = material.ior / around;
     if (bsdf.base.kind == LobeKind::Dielectric) {
         bsdf.base.dielectric.ior = DielectricLobe::usable_ior(ior, bsdf.base.dielectric.alpha);
     }

@@ -129,6 +129,8 @@ TEST_CASE("an index over that of what surrounds a solid counts as it is, in a va
         CHECK(share_of_difference(whitted_picture(stated), whitted_picture(relative)) > 1e-2);
         relative.materials[1].has_relative_ior = true;
         CHECK(share_of_difference(whitted_picture(stated), whitted_picture(relative)) < 1e-3);
+        for (Scene* scene : {&stated, &relative}) test::add(*scene, test::ball({0.15f, 0, 0}, 0.4f), test::glass(1.7f));
+        CHECK(share_of_difference(whitted_picture(stated), whitted_picture(relative)) < 1e-3);
     }
 }
 

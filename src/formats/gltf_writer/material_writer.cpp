@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/json_text.h"
+#include "math/scalar.h"
 
 namespace pertev::glb {
 namespace {
@@ -72,6 +73,7 @@ private:
         if (m_.medium.is_there()) lose("the medium within is lost");
         if (m_.is_clear_boundary) lose("its clear boundary becomes an invisible surface");
         if (m_.priority != 0) lose("its priority among solids is lost");
+        if (m_.has_relative_ior && m_.ior < 1) lose("glTF has no index of refraction below 1; the bubble gets 1");
     }
 
     /// A measured metal's reflectance at normal incidence.
@@ -123,7 +125,8 @@ private:
         if (m_.kind == MaterialKind::Diffuse) {
             extend("KHR_materials_specular", JsonMembers().add("specularFactor", "0"));
         } else if (m_.kind != MaterialKind::Conductor) {
-            if (m_.ior != 1.5f) extend("KHR_materials_ior", JsonMembers().add_number("ior", m_.ior, 1.5f));
+            const float ior = max(m_.ior, 1.0f);
+            if (ior != 1.5f) extend("KHR_materials_ior", JsonMembers().add_number("ior", ior, 1.5f));
             add_transmission();
         }
         if (is_glossy()) add_reflection();

@@ -1,5 +1,6 @@
 #include "formats/gltf_writer/write_glb.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -237,6 +238,9 @@ private:
         const auto lose = [&](const std::string& what) { sink_.leave_out(what); };
         if (scene_.environment) lose("the environment is lost; `environment` gives a picture one");
         if (scene_.medium.is_there()) lose("the medium around the scene is lost");
+        const bool nests = std::ranges::count_if(scene_.materials, &Material::encloses) > 1;
+        if (nests && std::ranges::any_of(scene_.materials, &Material::has_relative_ior))
+            lose("indices of refraction relative to a surrounding solid are taken as those over a vacuum");
         if (!scene_.animations.empty())
             lose(fmt::format("{} lost; the scene is written at rest", counted(scene_.animations.size(), "animation")));
         if (!scene_.shapes.empty()) lose("skins and morph targets are lost; the scene is written at rest");
