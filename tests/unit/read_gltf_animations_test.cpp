@@ -229,6 +229,7 @@ TEST_CASE("KHR_animation_pointer animates numbers of materials, within their ran
     builder.add("SCALAR", std::vector<float>{0.25f, 2});                    // 2
     builder.add("VEC3", std::vector<float>{0, 0, 0, 0.5f, 0.25f, 1});       // 3
     builder.add("VEC4", std::vector<float>{1, 1, 1, 1, 0, 0.5f, 1, 0.25f}); // 4
+    builder.add("SCALAR", std::vector<float>{0, 1.5f});                     // 5
     const auto channel = [](const std::string& to, int number) {
         return R"({"sampler":)" + std::to_string(number) +
                R"(,"target":{"path":"pointer","extensions":{"KHR_animation_pointer":{"pointer":"/materials/)" + to +
@@ -236,11 +237,12 @@ TEST_CASE("KHR_animation_pointer animates numbers of materials, within their ran
     };
     const auto document = [&](const std::string& channels) {
         return builder.json(
-            R"("extensionsUsed":["KHR_animation_pointer"],"materials":[{},{"emissiveFactor":[1,0.5,0],"extensions":)"
+            R"("extensionsUsed":["KHR_animation_pointer","KHR_materials_ior"],"materials":[{},{"emissiveFactor":[1,0.5,0],"extensions":)"
             R"({"KHR_materials_emissive_strength":{"emissiveStrength":4},"KHR_materials_dispersion":{"dispersion":2}}}],)"
             R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":1}]}],"nodes":[{"mesh":0}],)"
             R"("animations":[{"samplers":[)" +
-            sampler(1, 2) + "," + sampler(1, 3) + "," + sampler(1, 4) + R"(],"channels":[)" + channels + "]}]");
+            sampler(1, 2) + "," + sampler(1, 3) + "," + sampler(1, 4) + "," + sampler(1, 5) + R"(],"channels":[)" +
+            channels + "]}]");
     };
     Messages messages;
     const std::string emission = "1/emissiveFactor",
@@ -286,6 +288,17 @@ TEST_CASE("KHR_animation_pointer animates numbers of materials, within their ran
         test::read_gltf_text(document(channel("1/extensions/KHR_materials_dispersion/dispersion", 0)), messages);
     CHECK(dispersing.animations.at(0).channels.at(0).values == std::vector<float>{0.125f, 1}); // over 20 / 2
     CHECK(dispersing.materials.at(0).transmission_dispersion_abbe_number == 10.0f);
+    PosedScene bending(test::read_gltf_text(document(channel("1/extensions/KHR_materials_ior/ior", 3)), messages));
+    const Material& glass = bending.scene().materials.at(0);
+    bending.set_time(0);
+    CHECK(glass.ior == kMostIor); // that of 0 at rest
+    CHECK_FALSE(glass.has_relative_ior);
+    bending.set_time(0.5);
+    CHECK(glass.ior == 0.75f);
+    CHECK(glass.has_relative_ior);
+    bending.set_time(1);
+    CHECK(glass.ior == 1.5f);
+    CHECK_FALSE(glass.has_relative_ior);
     Messages unused, unknown; // a material that nothing has is not read
     CHECK(test::read_gltf_text(document(channel("0/alphaCutoff", 0)), unused).animations.at(0).channels.empty());
     test::read_gltf_text(document(channel("1/doubleSided", 0) + "," + channel("7/alphaCutoff", 0)), unknown);

@@ -232,7 +232,8 @@ TEST_CASE("mitsuba: the index of an interface is that inside over that outside, 
         CHECK(inverted.messages.left_out().size() == 1);
         CHECK(inverted.material.ior >= 1.5f);
     }
-    CHECK(load_bsdf(bsdf_of("dielectric", number_of("int_ior", 1e-9))).material.ior == 1);
+    CHECK(load_bsdf(bsdf_of("dielectric", number_of("int_ior", 1e-9))).material.ior ==
+          doctest::Approx(1.5046 / 1.000277));
 }
 
 TEST_CASE("mitsuba: the colour of plastic is that of the whole, or with nonlinear that beneath the coat") {
@@ -283,6 +284,11 @@ TEST_CASE("mitsuba: principled has its parameters") {
     CHECK(m.coat_weight == 0.25f);
     CHECK(m.ior == doctest::Approx(1.5));
     CHECK(mitsuba_material(bsdf_of("principled", number_of("eta", 1.33))).ior == 1.33f);
+    const std::string bubble = number_of("eta", 0.75);
+    CHECK(mitsuba_material(bsdf_of("principled", bubble + number_of("spec_trans", 1))).ior == 0.75f);
+    const MitsubaMaterial opaque = load_bsdf(bsdf_of("principled", bubble)); // reflects the same at 0 degrees
+    CHECK(opaque.material.ior == doctest::Approx(1 / 0.75));
+    CHECK(opaque.messages.left_out().size() == 1);
     CHECK(mitsuba_material(bsdf_of("principledthin", number_of("diff_trans", 1))).diffuse_transmission_weight == 0.5f);
 }
 

@@ -403,6 +403,7 @@ TEST_CASE("mitsuba: what a spot or a projector cannot have is left out at its pl
     };
     for (const Case& c : {Case{"spot", "<float name=\"cutoff_angle\" value=\"120\"/>",
                                "the cutoff_angle of 120 degrees is left out; 89.9 is used"},
+                          {"spot", "<float name=\"cutoff_angle\" value=\"90\"/>", ""},
                           {"spot", "<float name=\"beam_width\" value=\"30\"/>", "the beam_width of 30 degrees"},
                           {"spot", bitmap("texture", "<string name=\"wrap_mode\" value=\"repeat\"/>"), ""},
                           {"projector", "<transform name=\"to_world\"><scale value=\"2\"/></transform>",
@@ -424,6 +425,17 @@ TEST_CASE("mitsuba: what a spot or a projector cannot have is left out at its pl
         CHECK(said[0].find(c.says) != std::string::npos);
         CHECK(said[0].find(".xml:") != std::string::npos);
     }
+    slide.pixels[0] = 4; // the rows differ too
+    write_exr(folder / "slide.exr", slide);
+    Messages of_rows;
+    (void)load_mitsuba_shapes(
+        folder, shape_of("rectangle") + "<emitter type=\"projector\">" + wrapped("_v", "repeat") + "</emitter>",
+        of_rows);
+    REQUIRE(of_rows.left_out().size() == 1);
+    CHECK(of_rows.left_out()[0].find("along v") != std::string::npos);
+    CHECK(of_rows.all().size() == 2);
+    slide.pixels[0] = 8;
+    write_exr(folder / "slide.exr", slide);
     Messages messages; // the file does not ask for the other edge, so there is only a notice
     (void)load_mitsuba_shapes(
         folder, shape_of("rectangle") + "<emitter type=\"projector\">" + bitmap("irradiance", "") + "</emitter>",

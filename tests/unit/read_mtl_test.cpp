@@ -88,6 +88,7 @@ TEST_CASE("mtl: an index of 1 bends no light, and one that is missing or 0 is 1.
                                                          "newmtl water\nKd 0 0 0\nTf 1 1 1\nNi 1.33\nillum 6\n"
                                                          "newmtl zero\nKd 0 0 0\nTf 1 1 1\nNi 0\nillum 7\n"
                                                          "newmtl bubble\nKd 0 0 0\nTf 1 1 1\nNi 0.75\nillum 7\n"
+                                                         "newmtl clear\nd 0.5\nTf 1 1 1\nNi 0.75\nillum 2\n"
                                                          "newmtl matt\nKd 1 0 0\nPr 0.5\nNi 1\n"
                                                          "newmtl plain\nKd 1 0 0\nPr 0.5\n");
     for (const char* glass : {"none", "air", "water", "zero"})
@@ -98,6 +99,9 @@ TEST_CASE("mtl: an index of 1 bends no light, and one that is missing or 0 is 1.
     CHECK(l.material("zero").ior == 1.5f);
     CHECK(l.material("bubble").ior == 0.75f);
     CHECK(l.material("bubble").has_relative_ior);
+    CHECK(l.material("clear").kind == MaterialKind::Dielectric);
+    CHECK(l.material("clear").ior == 0.75f);
+    CHECK(l.material("clear").has_relative_ior);
     CHECK_FALSE(l.material("water").has_relative_ior);
     CHECK(l.material("matt").ior == 1);
     CHECK(l.material("plain").ior == 1.5f);

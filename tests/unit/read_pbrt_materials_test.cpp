@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -83,6 +85,34 @@ TEST_CASE("pbrt: diffuse, conductor and dielectric have their numbers, and micro
     CHECK(glass.ior == doctest::Approx(1.5168));
     CHECK(glass.transmission_dispersion_abbe_number == doctest::Approx(64.17));
     CHECK(glass.dispersion() > 0);
+}
+
+TEST_CASE("pbrt: an index that is none is left out for the default, and a bubble's is not one of an opaque surface") {
+    struct Case {
+        const char* material;
+        float ior;
+    };
+    for (const Case& c : {Case{"\"glass\" \"float eta\" 0", 1.5f},
+                          {"\"dielectric\" \"float eta\" 0", 1.5f},
+                          {"\"dielectric\" \"float eta\" -2", 1.5f},
+                          {"\"coateddiffuse\" \"float eta\" 0", 1.5f},
+                          {"\"disney\" \"float eta\" .75", 1}}) {
+        CAPTURE(c.material);
+        const OneMaterial read = load_pbrt_material(std::string("Material ") + c.material);
+        CHECK(read.material.ior == c.ior);
+        const std::vector<std::string> said = read.messages.left_out();
+        CHECK(std::ranges::count_if(said, [](const std::string& text) {
+                  return text.find("the index of refraction") != std::string::npos;
+              }) == 1);
+    }
+    CHECK(pbrt_material("Material \"disney\" \"float eta\" .75 \"float spectrans\" 1").ior == 0.75f);
+}
+
+TEST_CASE("pbrt: a coat that is rough along one direction alone is not smooth") {
+    const Material coat = pbrt_material("Material \"coateddiffuse\" \"float uroughness\" .3 \"float vroughness\" 0");
+    CHECK(coat.roughness == 0);
+    CHECK(coat.energy == MicrofacetEnergy::Single);
+    CHECK(pbrt_material("Material \"coateddiffuse\"").energy == MicrofacetEnergy::Compensated);
 }
 
 TEST_CASE("pbrt: roughness is remapped as each version does, and may differ along u and v") {

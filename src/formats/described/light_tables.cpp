@@ -22,6 +22,7 @@ std::optional<Image> read_light_picture(const std::filesystem::path& path, Sink&
 
 double usable_angle(double degrees, double least, double most, std::string_view name, const FileLocation& location,
                     Sink& sink) {
+    if (most == kWidestCone && degrees > most && degrees <= 90) return most;
     const double usable = degrees >= least ? std::min(degrees, most) : least; // the least for NaN
     if (usable != degrees)
         sink.leave_out({location, fmt::format("the {} of {} degrees is left out; {} is used", name, degrees, usable)});

@@ -83,7 +83,7 @@ Shares shares_at(const Facets& facets, float z, float eta) {
 CoatedBase base_of_coat(const Material& coat, CoatModel model) {
     const float narrow = coat.roughness * coat.roughness, n = coat.ior;
     const float wide = lerp(narrow, 1.0f, square(coat.specular_roughness_anisotropy));
-    const float width = coat.roughness_texture.has_image() ? 0.1f : sqrt(narrow * wide);
+    const float width = coat.roughness_texture.has_image() ? 0.1f : max(sqrt(narrow * wide), 0.5f * wide);
     const Facets facets = {max(width, kSmoothWidth), coat.microfacet_distribution == MicrofacetDistribution::Beckmann};
     const float root = (n - 1) / (n + 1), f90 = coat.specular_weight;
     const float f0 = f90 * min(root * root * max_component(coat.specular_color), 1.0f);
@@ -117,7 +117,7 @@ CoatedBase base_of_coat(const Material& coat, CoatModel model) {
 void set_coated_color(Surface& surface, const TextureValue& color, CoatModel model, bool is_dyed) {
     using M = MaterialParameters;
     Material& material = surface.material;
-    if (!(material.roughness > 0) && !material.roughness_texture.has_image()) {
+    if (!(material.roughness > 0) && !material.has_anisotropy() && !material.roughness_texture.has_image()) {
         // A smooth coat loses nothing, and only so its base has the shape over the angle that it has there.
         material.microfacet_distribution = MicrofacetDistribution::Ggx;
         material.energy = MicrofacetEnergy::Compensated;

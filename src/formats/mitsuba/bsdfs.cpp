@@ -176,9 +176,12 @@ float Bsdfs::ior_of(Object& bsdf, const char* name, float missing) {
 float Bsdfs::relative_ior(Object& bsdf, const char* substance, float least) {
     const float inside = ior_of(bsdf, "int_ior", find_ior(substance)),
                 outside = ior_of(bsdf, "ext_ior", find_ior("air"));
-    const float ior = inside / outside;
+    return usable_ior(bsdf, inside / outside, least, find_ior(substance) / find_ior("air"));
+}
+
+float Bsdfs::usable_ior(Object& bsdf, float ior, float least, float missing) {
     if (ior >= least && ior <= kMostIor) return ior;
-    const float used = least == 1 && ior > 0 && 1 / ior <= kMostIor ? 1 / ior : 1.0f;
+    const float used = least == 1 && ior > 0 && 1 / ior <= kMostIor ? 1 / ior : missing;
     reading_.sink().leave_out(
         {bsdf.location(),
          fmt::format("the index of {} is {} inside over that outside; {} is used", bsdf.parameters.what(), ior, used)});

@@ -42,8 +42,11 @@ private:
     void read_roughness(Object& bsdf, Surface& surface);
     void tint_metal(const Object& bsdf, const TextureValue& tint, Surface& surface);
     float ior_of(Object& bsdf, const char* name, float missing);
-    /// Returns the index inside, by default that of `substance`, over that outside. One below `least` is inverted.
+    /// Returns the index inside, by default that of `substance`, over that outside, if it is usable.
     float relative_ior(Object& bsdf, const char* substance = "bk7", float least = 1);
+    /// Returns the index if it is in [least, kMostIor]. Otherwise it is left out, and its reciprocal is used for one
+    /// that only a bubble can have, else `missing`.
+    float usable_ior(Object& bsdf, float ior, float least, float missing);
     void warn_of_backs(const Object& bsdf, const Surface& surface);
     void warn_of_nearest(const Object& bsdf, std::string_view nearest);
     TextureValue color(Object& bsdf, const char* name, float missing) {

@@ -27,8 +27,11 @@ Surface Bsdfs::principled(Object& bsdf) {
     set_color(surface, &M::base_color, &M::base_color_texture, color(bsdf, "base_color", 0.5f));
     set_number(surface, &M::roughness, &M::roughness_texture, textures_.number(bsdf, "roughness", 0.5f));
     if (!is_thin) set_number(surface, &M::metallic, &M::metallic_texture, textures_.number(bsdf, "metallic", 0));
+    material.transmission_weight = number("spec_trans", 0);
+    material.thin_walled = is_thin;
+    material.has_relative_ior = !is_thin && material.transmits();
     if (parameters.contains("eta")) {
-        material.ior = clamp(ior_of(bsdf, "eta", 1.5f), 1.0f, 0x1p10f);
+        material.ior = usable_ior(bsdf, ior_of(bsdf, "eta", 1.5f), material.has_relative_ior ? kLeastIor : 1, 1.5f);
     } else { // 0.5 is the index of 1.5
         const float root = sqrt(0.08f * number("specular", 0.5f));
         material.ior = 2 / (1 - min(root, 0.99f)) - 1;
@@ -39,9 +42,6 @@ Surface Bsdfs::principled(Object& bsdf) {
         set_roughness(surface, constant(grey(max(width / a, 1e-3f))), constant(grey(max(width * a, 1e-3f))),
                       Curve::RoughnessOfWidth);
     }
-    material.transmission_weight = number("spec_trans", 0);
-    material.thin_walled = is_thin;
-    material.has_relative_ior = !is_thin && material.transmits();
     if (is_thin) {
         material.diffuse_transmission_weight =
             0.5f * clamp(static_cast<float>(parameters.number("diff_trans", 0, sink)), 0.0f, 2.0f);

@@ -41,11 +41,13 @@ void report_edges(Object& texture, const IntensityTable& table, Sink& sink) {
         if (is_edge || table.filter == TableFilter::Nearest || !has_other_edges(table.values, across)) continue;
         const bool is_stated = parameters.has(name) || parameters.has("wrap_mode");
         Remark remark(texture.location(),
-                      fmt::format("the wrap mode {} of a light's picture is left out; its outer half pixels have the "
-                                  "edge's own colours",
-                                  shortened(mode)));
-        if (is_stated) return sink.leave_out(std::move(remark));
-        return sink.note(std::move(remark));
+                      fmt::format("the wrap mode {} along {} of a light's picture is left out; its outer half pixels "
+                                  "have the edge's own colours",
+                                  shortened(mode), across ? 'u' : 'v'));
+        if (is_stated)
+            sink.leave_out(std::move(remark));
+        else
+            sink.note(std::move(remark));
     }
 }
 
@@ -130,7 +132,7 @@ bool set_spot(Object& emitter, const DoubleTransform& to_world, Reading& reading
     const auto angle = [&](std::string_view name, double missing, double least, double most) {
         return usable_angle(parameters.number(name, missing, sink), least, most, name, emitter.location(), sink);
     };
-    const double cutoff_deg = angle("cutoff_angle", 20, 0.1, 89.9);
+    const double cutoff_deg = angle("cutoff_angle", 20, 0.1, kWidestCone);
     const double beam_deg = angle("beam_width", 0.75 * cutoff_deg, 0, cutoff_deg);
     const float cutoff = static_cast<float>(cutoff_deg) * (kPi / 180),
                 beam = static_cast<float>(beam_deg) * (kPi / 180);

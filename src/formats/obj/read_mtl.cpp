@@ -21,9 +21,14 @@ float roughness_of(float exponent) { return sqrt(sqrt(2.0f / (max(exponent, 0.0f
 /// glass.
 float index_of(const MtlStatements& from) { return from.ni >= 1 ? from.ni : 1.5f; }
 
-/// Returns the index of glass. One below 1 is a bubble's over that of what is around it; that of no pair of substances
-/// is below a quarter, so it is no index.
-float index_of_glass(const MtlStatements& from) { return from.ni >= 0.25f ? from.ni : index_of(from); }
+/// Least index of glass. One below 1 is a bubble's over that of what is around it; that of no pair of substances is
+/// below a quarter, so it is no index.
+constexpr float kLeastOfGlass = 0.25f;
+
+float index_of_glass(const MtlStatements& from) { return from.ni >= kLeastOfGlass ? from.ni : index_of(from); }
+
+/// Returns whether glass has its stated index, which bends light.
+bool bends_light(const MtlStatements& from) { return from.ni >= kLeastOfGlass && from.ni != 1; }
 
 class Converter {
 public:
@@ -88,7 +93,7 @@ private:
             return;
         }
         const bool is_glass = from.illum == 6 || from.illum == 7 || ((from.illum == 4 || from.illum == 9) && is_dark) ||
-                              (from.d < 1 && from.ni > 1 && !is_black(from.tf));
+                              (from.d < 1 && bends_light(from) && !is_black(from.tf));
         if (is_glass && !has_map_d) {
             to.kind = MaterialKind::Dielectric;
             to.roughness = 0;

@@ -49,7 +49,8 @@ void set_spot(Parameters& parameters, const DoubleTransform& world_from_light, c
     light.direction = direction_of(parameters, world_from_light, {0, 0, 0}, {0, 0, 1}, sink);
     const auto angle = [&](std::string_view name, double missing, double least) {
         const double degrees = parameters.number(name, missing, sink);
-        return static_cast<float>(usable_angle(degrees, least, 89.9, name, parameters.location(), sink)) * (kPi / 180);
+        return static_cast<float>(usable_angle(degrees, least, kWidestCone, name, parameters.location(), sink)) *
+               (kPi / 180);
     };
     const float outer = angle("coneangle", 30, 0.1), edge = angle("conedeltaangle", 5, 0);
     light.cos_inner = cos(max(outer - edge, 0.0f));
@@ -73,8 +74,7 @@ bool set_picture(bool is_projection, Parameters& parameters, const Context& cont
     Sink& sink = context.sink;
     const char* const key = context.is_version_3 ? "mapname" : "filename";
     const std::string name = parameters.text(key, "", sink);
-    const double fov = usable_angle(parameters.number("fov", context.is_version_3 ? 45 : 90, sink), 0.1, 179.0, "fov",
-                                    parameters.location(), sink);
+    const double stated_fov = parameters.number("fov", context.is_version_3 ? 45 : 90, sink);
     IntensityTable table;
     const auto leave_out = [&](const std::string& why) {
         sink.leave_out({parameters.location(), why + "; the light is left out"});
@@ -101,6 +101,7 @@ bool set_picture(bool is_projection, Parameters& parameters, const Context& cont
     Image& values = table.values;
     if (is_projection) {
         table.layout = TableLayout::Perspective; // the angle of view is that of the shorter side
+        const double fov = usable_angle(stated_fov, 0.1, 179.0, "fov", parameters.location(), sink);
         const double half = static_cast<double>(tan(static_cast<float>(fov) * (kPi / 360)));
         set_view(half * std::max(static_cast<double>(values.width) / values.height, 1.0), table);
     } else if (!context.is_version_3) {

@@ -19,19 +19,11 @@ constexpr float kSubsurfaceIor = 1.33f;
 
 using M = MaterialParameters;
 
-float usable_ior(float ior, float least, const MaterialSource& source) {
-    if (ior >= least && ior <= kMostIor) return ior;
-    source.context.sink.warn({source.parameters.location(),
-                              fmt::format("the index of refraction of {} is {}; the nearest from {} to {} is used",
-                                          source.parameters.what(), ior, least, kMostIor)});
-    return ior >= least ? kMostIor : least;
-}
-
 /// Sets an index of at least `least`. That of a solid is over that of what is outside, as pbrt's is.
 void set_ior(const MaterialSource& source, std::string_view name, float Material::*to, Surface& surface,
-             float least = 1) {
+             float least = 1, float missing = 1.5f) {
     const std::optional<GlassIndex> index = glass_index(source.parameters, name, source.context);
-    surface.material.*to = usable_ior(index ? index->ior : 1.5f, least, source);
+    surface.material.*to = usable_ior(index ? index->ior : missing, least, missing, source);
     surface.material.has_relative_ior = surface.material.kind == MaterialKind::Dielectric;
     if (index && index->abbe_number > 0 && to == static_cast<float Material::*>(&M::ior)) {
         surface.material.transmission_dispersion_scale = 1;
@@ -176,7 +168,7 @@ Surface read_subsurface(const MaterialSource& source) {
     surface.material.base_color = grey(1);
     surface.material.ior = kSubsurfaceIor;
     surface.material.has_relative_ior = true;
-    if (source.parameters.has("eta")) set_ior(source, "eta", &Material::ior, surface, kLeastIor);
+    if (source.parameters.has("eta")) set_ior(source, "eta", &Material::ior, surface, kLeastIor, kSubsurfaceIor);
     surface.material.transmission_dispersion_scale = 0;
     read_roughness(source, 0, "", surface);
     surface.material.medium = read_subsurface_medium(source);
@@ -260,6 +252,16 @@ std::optional<Surface> read_version_4_material(const MaterialSource& source) {
 }
 
 } // namespace
+
+float usable_ior(float ior, float least, float missing, const MaterialSource& source) {
+    if (ior >= least && ior <= kMostIor) return ior;
+    const bool is_index = ior >= kLeastIor && ior <= kMostIor;
+    const float used = is_index ? least : missing;
+    source.context.sink.leave_out(
+        {source.parameters.location(),
+         fmt::format("the index of refraction of {} is {}; {} is used", source.parameters.what(), ior, used)});
+    return used;
+}
 
 void warn_of_nearest(const MaterialSource& source, std::string_view nearest) {
     source.context.sink.warn({FileLocation{source.parameters.location().file},

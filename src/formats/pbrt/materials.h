@@ -41,6 +41,9 @@ void read_roughness(const MaterialSource& source, double missing, std::string_vi
 Surface read_subsurface(const MaterialSource& source);
 /// Reads the bump map or normal map that all materials may have.
 void read_bumps(const MaterialSource& source, Surface& surface);
+/// Returns the index if it is in [least, kMostIor]. Otherwise it is left out, and `least` is used for one that only a
+/// bubble can have, else `missing`.
+float usable_ior(float ior, float least, float missing, const MaterialSource& source);
 /// Warns once that materials of a type are drawn as the nearest one.
 void warn_of_nearest(const MaterialSource& source, std::string_view nearest);
 

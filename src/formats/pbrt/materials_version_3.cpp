@@ -73,7 +73,7 @@ void set_index(const MaterialSource& source, float least, Surface& surface) {
     source.parameters.ignore({"eta", "index"});
     const TextureValue index = source.textures.number(source.parameters, name, 1.5f);
     if (index.has_image()) source.parameters.leave_out({name}, "it has no texture; 1.5 is used", source.context.sink);
-    surface.material.ior = index.has_image() ? 1.5f : clamp(index.factor.r, least, kMostIor);
+    surface.material.ior = index.has_image() ? 1.5f : usable_ior(index.factor.r, least, 1.5f, source);
 }
 
 Surface glass(const MaterialSource& source) {
@@ -164,7 +164,6 @@ Surface disney(const MaterialSource& source) {
     set_color(surface, &M::base_color, &M::base_color_texture, source.textures.color(parameters, "color", grey(0.5f)));
     set_number(surface, &M::metallic, &M::metallic_texture, source.textures.number(parameters, "metallic", 0));
     set_number(surface, &M::roughness, &M::roughness_texture, source.textures.number(parameters, "roughness", 0.5f));
-    set_index(source, 1, surface);
     const auto number = [&](const char* name, double missing) {
         return clamp(static_cast<float>(parameters.number(name, missing, source.context.sink)), 0.0f, 1.0f);
     };
@@ -173,6 +172,7 @@ Surface disney(const MaterialSource& source) {
     material.transmission_weight = number("spectrans", 0);
     material.thin_walled = parameters.truth("thin", false, source.context.sink);
     material.has_relative_ior = material.transmits() && !material.thin_walled;
+    set_index(source, material.has_relative_ior ? kLeastIor : 1, surface);
     material.fuzz_weight = number("sheen", 0);
     for (const char* const name :
          {"speculartint", "anisotropic", "sheentint", "scatterdistance", "flatness", "difftrans"})

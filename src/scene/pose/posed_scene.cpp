@@ -40,16 +40,19 @@ bool same_bits(const T& a, const T& b) {
     return std::memcmp(&a, &b, sizeof(T)) == 0;
 }
 
-/// Sets numbers of a material, by their places in the order of visit_parameters.
+/// Sets numbers of a material, by their places in the order of visit_parameters. An index is as glTF's reader takes it
+/// at rest: 0 is infinite, and one below 1 is over that of what is around.
 void set_numbers(const std::vector<uint8_t>& places, const std::vector<float>& values, MaterialParameters& material) {
     uint8_t place = 0;
     visit_parameters(
         material,
         [&](float& number, const char*, float least, float most) {
             const auto found = std::ranges::find(places, place++);
-            if (found != places.end()) {
-                number = clamp(values[static_cast<std::size_t>(found - places.begin())], least, most);
-            }
+            if (found == places.end()) return;
+            const float value = values[static_cast<std::size_t>(found - places.begin())];
+            const bool is_ior = &number == &material.ior;
+            number = is_ior && value == 0 ? kMostIor : clamp(value, least, most);
+            if (is_ior) material.has_relative_ior = number < 1;
         },
         [](auto&&...) {});
 }
