@@ -15,19 +15,31 @@ constexpr int kLevel = 6, kRawStream = -MAX_WBITS, kMemoryLevel = 9;
 
 Bytef* zlib_bytes(const std::byte* bytes) { return const_cast<Bytef*>(reinterpret_cast<const Bytef*>(bytes)); }
 
-/// Returns the deflated plane; nothing if that is not shorter by more than its size takes.
-std::optional<std::vector<std::byte>> deflate_plane(std::span<const std::byte> plane) {
-    if (plane.size() <= sizeof(uint32_t) + 1) return std::nullopt;
+/// Returns the plane deflated by one of zlib's strategies; nothing if that takes more than `most` bytes.
+std::optional<std::vector<std::byte>> deflate_by(int strategy, std::span<const std::byte> plane, std::size_t most) {
     z_stream stream = {};
-    if (deflateInit2(&stream, kLevel, Z_DEFLATED, kRawStream, kMemoryLevel, Z_DEFAULT_STRATEGY) != Z_OK)
-        throw std::bad_alloc();
-    std::vector<std::byte> shorter(plane.size() - sizeof(uint32_t) - 1);
+    if (deflateInit2(&stream, kLevel, Z_DEFLATED, kRawStream, kMemoryLevel, strategy) != Z_OK) throw std::bad_alloc();
+    std::vector<std::byte> shorter(most);
     stream.next_in = zlib_bytes(plane.data()), stream.avail_in = static_cast<uInt>(plane.size());
     stream.next_out = zlib_bytes(shorter.data()), stream.avail_out = static_cast<uInt>(shorter.size());
     const bool is_shorter = deflate(&stream, Z_FINISH) == Z_STREAM_END;
     shorter.resize(stream.total_out);
     deflateEnd(&stream);
     return is_shorter ? std::optional(std::move(shorter)) : std::nullopt;
+}
+
+/// Returns the deflated plane; nothing if that is not shorter by more than its size takes. Noise, which most planes
+/// are, is shorter without references to what came before.
+std::optional<std::vector<std::byte>> deflate_plane(std::span<const std::byte> plane) {
+    if (plane.size() <= sizeof(uint32_t) + 1) return std::nullopt;
+    std::optional<std::vector<std::byte>> shortest;
+    for (const int strategy : {Z_DEFAULT_STRATEGY, Z_HUFFMAN_ONLY}) {
+        const std::size_t known = shortest ? shortest->size() : plane.size() - sizeof(uint32_t);
+        if (known > 1) {
+            if (auto shorter = deflate_by(strategy, plane, known - 1)) shortest = std::move(shorter);
+        }
+    }
+    return shortest;
 }
 
 bool inflate_plane(std::span<const std::byte> packed, std::span<std::byte> plane) {
