@@ -64,7 +64,8 @@ void add_merge_command(CLI::App& app, int& status) {
         ->allow_extra_args(false)
         ->check(file_name())
         ->required();
-    verb.add_flag("--partial", flags->is_partial, "Makes a picture of the available samples if some are missing.");
+    verb.add_flag("--partial", flags->is_partial,
+                  "Makes a picture of the available samples if every row lacks equally many.");
     const std::string theirs = "that of the parts";
     flags->settings.add(verb, kMerge, {}, all_settings(),
                         {{"denoise", theirs + ", which must not be another"},

@@ -119,15 +119,16 @@ void FilmMerge::check_rows(bool is_partial) {
         throw Error(ErrorCode::BadInput, place, "none of the files contains a sample");
     uint32_t count = 0;
     for (const Band& band : bands) count = std::max(count, band.count());
+    const bool are_even = std::ranges::all_of(bands, [&](const Band& band) { return band.count() == count; });
     uint32_t first = UINT32_MAX;
     for (const Band& band : bands) {
         const SampleRange missing = band.first_missing(header_.spp);
         if (missing.count() > 0 && !is_partial) {
-            throw Error(
-                ErrorCode::BadInput, place,
-                fmt::format(
-                    "samples {} to {} of rows {} to {} are in none of the files; set `partial` to merge without them",
-                    missing.first, missing.end - 1, band.first_row, band.end_row - 1));
+            throw Error(ErrorCode::BadInput, place,
+                        fmt::format("samples {} to {} of rows {} to {} are in none of the files{}", missing.first,
+                                    missing.end - 1, band.first_row, band.end_row - 1,
+                                    are_even ? "; set `partial` to merge without them"
+                                             : ", and no picture can be without them, because other rows have more"));
         }
         if (band.count() != count) {
             throw Error(ErrorCode::BadInput, place,
