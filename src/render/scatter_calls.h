@@ -5,22 +5,9 @@
 // Surface::evaluate and Surface::sample instead, which is faster.
 
 #include "render/particle_scatter.h"
+#include "shading/assume_variant.h"
 
 namespace pertev {
-
-/// Tells the compiler what all BSDFs of a scene's variant have in common, which it cannot see in memory.
-template <ShadingVariant kVariant>
-HD inline void assume_variant([[maybe_unused]] const Bsdf& bsdf) {
-#if defined(__CUDA_ARCH__)
-    if constexpr (has_lobes(kVariant)) {
-        __builtin_assume(bsdf.is_called == (kVariant == ShadingVariant::General));
-    } else {
-        __builtin_assume(bsdf.base.kind == LobeKind::Diffuse);
-        __builtin_assume(bsdf.layer_count == 0);
-        __builtin_assume(!bsdf.is_called);
-    }
-#endif
-}
 
 namespace scatter_call { // the surface is in memory for the call already
 

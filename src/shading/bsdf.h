@@ -236,6 +236,9 @@ private:
         LobeDraw draw = {.u_lobe = u_lobe, .is_beneath = true};
         int i = bsdf.layer_count + 1;
         while (draw.is_beneath && i > 0) draw = bsdf.lobe(--i).draw(wo, draw.u_lobe, u);
+#if defined(__CUDA_ARCH__)
+        __builtin_assume(bsdf.is_called);
+#endif
         BsdfSample sample = bsdf.finish<BsdfPass::InPlace>(draw, bsdf.lobe(i).lobe_class(), wo);
         if (!sample.is_delta()) return sample;
         const LayerTransmittance transmittance = above_in_stack(bsdf, i, wo, sample.wi);

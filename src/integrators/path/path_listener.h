@@ -11,6 +11,7 @@
 #include "integrators/path/path_job.h"
 #include "integrators/path/path_state.h"
 #include "math/float4.h"
+#include "shading/assume_variant.h"
 #include "shading/emitter_point.h"
 
 namespace pertev {
@@ -57,8 +58,14 @@ template <ShadingVariant kVariant>
 struct SurfaceVertexOf : SurfaceVertex {
     static constexpr BsdfPass kPass = kVariant == ShadingVariant::General ? BsdfPass::InPlace : BsdfPass::Copied;
 
-    HD BsdfValue evaluate(Vec3 wi) const { return surface.evaluate<kPass>(wo, wi); }
-    HD BsdfSample sample(float lobe, Vec2 u) const { return surface.sample<kPass>(wo, lobe, u); }
+    HD BsdfValue evaluate(Vec3 wi) const {
+        assume_variant<kVariant>(surface.bsdf);
+        return surface.evaluate<kPass>(wo, wi);
+    }
+    HD BsdfSample sample(float lobe, Vec2 u) const {
+        assume_variant<kVariant>(surface.bsdf);
+        return surface.sample<kPass>(wo, lobe, u);
+    }
 };
 
 /// The depth of lanes for jobs that have none.
