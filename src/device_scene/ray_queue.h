@@ -63,6 +63,7 @@ struct HitQueueView {
     uint32_t* instances = nullptr; // kNoHit: no hit; in an any-hit search otherwise 0
     int32_t step = 1;              // see RayQueueView
 
+    HD uint32_t load_instance(uint32_t i) const { return instances[index(i)]; }
     HD Hit load(uint32_t i) const {
         const Float4 p = records[index(i)];
         return {p.x, p.y, p.z, instances[index(i)], bits_of(p.w)};

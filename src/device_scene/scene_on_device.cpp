@@ -7,6 +7,7 @@
 #include "device_scene/pack_texels.h"
 #include "device_scene/part_arrays.h"
 #include "image/srgb_table.h"
+#include "shading/shading_groups.h"
 
 namespace pertev {
 namespace {
@@ -86,12 +87,19 @@ PartArrays list_instances(const PlacedScene& prepared, Instances& instances, Sce
     return arrays;
 }
 
-PartArrays list_materials(const Scene& scene, std::vector<MaterialParameters>& materials, SceneView& view) {
-    for (const Material& material : scene.materials) materials.push_back(parameters_for_device(material));
+struct Materials {
+    std::vector<MaterialParameters> parameters;
+    std::vector<uint8_t> groups; // SceneView::shading_groups
+};
+
+PartArrays list_materials(const Scene& scene, Materials& materials, SceneView& view) {
+    for (const Material& material : scene.materials) materials.parameters.push_back(parameters_for_device(material));
+    materials.groups = shading_groups(materials.parameters);
     const bool has_tables = std::ranges::any_of(scene.lights, [](const Light& l) { return parts_of(l.kind).table; });
-    view.variant = has_tables ? ShadingVariant::General : variant_of(materials);
+    view.variant = has_tables ? ShadingVariant::General : variant_of(materials.parameters);
     PartArrays arrays;
-    arrays.add(materials, view.materials);
+    arrays.add(materials.parameters, view.materials);
+    arrays.add(materials.groups, view.shading_groups);
     return arrays;
 }
 
@@ -161,7 +169,7 @@ PartArrays list_environment(const EnvironmentData* environment, EnvironmentView&
 } // namespace
 
 ShadingVariant shading_variant(const Scene& scene) {
-    std::vector<MaterialParameters> materials;
+    Materials materials;
     SceneView view = {};
     list_materials(scene, materials, view);
     return view.variant;
@@ -221,7 +229,7 @@ void SceneOnDevice::update_instances(Queue& queue, const PlacedScene& prepared) 
 }
 
 void SceneOnDevice::update_materials(Queue& queue, const Scene& scene) {
-    std::vector<MaterialParameters> materials;
+    Materials materials;
     list_materials(scene, materials, view_).upload(queue, materials_, "materials");
     variant_ = view_.variant;
 }

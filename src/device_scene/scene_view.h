@@ -47,7 +47,8 @@ struct SceneView {
     const OpacityMicromapView* micromaps; // [instance_count]; null: none
     const MeshView* meshes;
     const MaterialParameters* materials;
-    ShadingVariant variant; // shading variant of all materials
+    const uint8_t* shading_groups; // [materials] (shading/shading_groups.h)
+    ShadingVariant variant;        // shading variant of all materials
     const TextureImageView* images;
     const float* linear_from_srgb; // [kSrgbBytes], and [kSrgbWords] if there is an image of depth Srgb16
     LightSetView lights;

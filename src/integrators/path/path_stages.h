@@ -3,6 +3,7 @@
 // Stages of a wavefront of paths, in the order in which path_integrator.cpp launches them. Each does for one index
 // what the CPU's loop does in one line, by the same functions.
 
+#include "device/block_order.h"
 #include "device/launch.h"
 #include "integrators/path/frame_listeners.h"
 #include "integrators/path/generate_path.h"
@@ -10,6 +11,7 @@
 #include "integrators/path/path_queues.h"
 #include "integrators/path/path_vertex.h"
 #include "render/begin_order.h"
+#include "shading/shading_groups.h"
 
 namespace pertev {
 
@@ -68,7 +70,9 @@ private:
     }
 };
 
-/// The stage that shades the hits of paths, with the least code that the features need, for `Listener`.
+/// The stage that shades the hits of paths, with the least code that the features need, for `Listener`. Where
+/// surfaces have several kinds of lobes, a block's paths are sorted by what they hit (after the queues by material of
+/// Laine, Karras and Aila, "Megakernels Considered Harmful", HPG 2013, section 4).
 template <Features kFeatures, class Listener>
 struct Shade {
     PathJob job;
@@ -89,6 +93,9 @@ struct Shade {
 
     HD INLINE_ON_DEVICE void operator()(uint32_t i, bool is_there) const {
         constexpr bool kMoves = (kFeatures & kMoving) != 0;
+        if constexpr ((kFeatures & kLayered) != 0) {
+            i = sorted_in_block<kShape.threads>(i, is_there ? group_of_hit(i) : kBlockKeys - 1);
+        }
         const RoundAppend lists;
         Listener listener(job);
         PathState path;
@@ -97,7 +104,7 @@ struct Shade {
         bool goes_on = false, has_shadow_ray = false;
         if (is_there) {
             const bool begins = i >= round->going_on;
-            const uint32_t slot = begins ? last - (i - round->going_on) : i;
+            const uint32_t slot = slot_of(i);
             path = begins ? paths.load_begun(slot, job.picture.camera) : paths.load(slot);
             const SampleKey of_sample = sample_key<kFeatures>(job, path.pixel, path.sample);
             if ((kFeatures & kStacked) != 0 && !begins) path.start = paths.start_of(slot);
@@ -143,6 +150,15 @@ struct Shade {
     }
 
 private:
+    /// Returns the shading group of the hit of the path at index i; 0 for a miss.
+    HD uint32_t group_of_hit(uint32_t i) const {
+        static_assert(kMaxShadingGroup < kBlockKeys - 1); // the last key is that of threads without a path
+        const SceneView& scene = job.picture.scene;
+        const uint32_t instance = hits.load_instance(slot_of(i));
+        return instance == kNoHit ? 0u : scene.shading_groups[scene.instances[instance].material];
+    }
+    /// Returns the slot of the path at index i: those that continue come first, and those that begin lie at the end.
+    HD uint32_t slot_of(uint32_t i) const { return i >= round->going_on ? last - (i - round->going_on) : i; }
     HD InteriorList interior_of(uint32_t pixel, uint32_t slot, bool begins) const {
         if (!begins) return paths.interiors != nullptr ? InteriorList::of_words(paths.interiors[slot]) : InteriorList{};
         const bool has_batch = (kFeatures & kBatched) != 0 && job.picture.batch.is_there();

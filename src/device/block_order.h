@@ -1,0 +1,46 @@
+#pragma once
+
+// Sorts the indices of a block by small keys, so that the threads of a warp run the same code: a counting sort in
+// shared memory.
+
+#include <cstdint>
+
+#include "base/host_device.h"
+#include "device/atomics.h"
+
+namespace pertev {
+
+/// Number of keys, [0, kBlockKeys), that sorted_in_block() sorts by.
+inline constexpr uint32_t kBlockKeys = 32;
+
+/// Returns the index that the thread with index `i` takes if the indices of its block of kThreads threads are sorted by
+/// their `key`. On the device all threads of the block must call it, at most once; elsewhere it returns `i`. Indices of
+/// the largest key come last.
+template <int kThreads>
+HD inline uint32_t sorted_in_block(uint32_t i, [[maybe_unused]] uint32_t key) {
+#if PERTEV_ON_DEVICE
+    __shared__ uint32_t starts[kBlockKeys]; // counts at first
+    __shared__ uint16_t order[kThreads];
+    if (threadIdx.x < kBlockKeys) starts[threadIdx.x] = 0;
+    __syncthreads();
+    const uint32_t rank = atomicAdd(starts + key, 1u);
+    __syncthreads();
+    if (threadIdx.x < kBlockKeys) { // prefix sums, in one warp
+        const uint32_t count = starts[threadIdx.x];
+        uint32_t sum = count;
+        for (uint32_t step = 1; step < kBlockKeys; step *= 2) {
+            const uint32_t before = __shfl_up_sync(0xffffffffu, sum, step);
+            if (threadIdx.x >= step) sum += before;
+        }
+        starts[threadIdx.x] = sum - count;
+    }
+    __syncthreads();
+    order[starts[key] + rank] = static_cast<uint16_t>(threadIdx.x);
+    __syncthreads();
+    return i - threadIdx.x + order[threadIdx.x];
+#else
+    return i;
+#endif
+}
+
+} // namespace pertev
