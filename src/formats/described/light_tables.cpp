@@ -22,11 +22,16 @@ std::optional<Image> read_light_picture(const std::filesystem::path& path, Sink&
 
 double usable_angle(double degrees, double least, double most, std::string_view name, const FileLocation& location,
                     Sink& sink) {
-    if (most == kWidestCone && degrees > most && degrees <= 90) return most;
     const double usable = degrees >= least ? std::min(degrees, most) : least; // the least for NaN
     if (usable != degrees)
         sink.leave_out({location, fmt::format("the {} of {} degrees is left out; {} is used", name, degrees, usable)});
     return usable;
+}
+
+double usable_cone(double degrees, double least, double most, std::string_view name, const FileLocation& location,
+                   Sink& sink) {
+    const double open = degrees > kWidestCone && degrees <= 90 ? kWidestCone : degrees;
+    return usable_angle(open, least, most, name, location, sink);
 }
 
 bool has_scale(const DoubleTransform& world_from_light) {

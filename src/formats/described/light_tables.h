@@ -18,12 +18,17 @@ namespace pertev::described {
 /// Reads the values of a light's table. A picture that cannot be read is left out with the light: nothing.
 std::optional<Image> read_light_picture(const std::filesystem::path& path, Sink& sink);
 
-constexpr double kWidestCone = 89.9; // degrees; up to 90, which looks the same, it is taken without a word
-
-/// Returns the nearest angle in [least, most] that a cone or a picture's view can have, degrees. If that is another
-/// one, it warns that the parameter `name` at `location` is left out.
+/// Returns the nearest angle in [least, most], degrees. If that is another one, it warns that the parameter `name` at
+/// `location` is left out.
 double usable_angle(double degrees, double least, double most, std::string_view name, const FileLocation& location,
                     Sink& sink);
+
+inline constexpr double kWidestCone = 89.9; // degrees
+
+/// usable_angle() for the half angle of a cone. One up to 90 degrees counts as kWidestCone without a warning, because
+/// it looks the same.
+double usable_cone(double degrees, double least, double most, std::string_view name, const FileLocation& location,
+                   Sink& sink);
 
 /// Returns whether a transform does more than turn, move and mirror.
 bool has_scale(const DoubleTransform& world_from_light);

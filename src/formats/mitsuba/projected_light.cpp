@@ -130,7 +130,7 @@ bool set_spot(Object& emitter, const DoubleTransform& to_world, Reading& reading
     Parameters& parameters = emitter.parameters;
     Sink& sink = reading.sink();
     const auto angle = [&](std::string_view name, double missing, double least, double most) {
-        return usable_angle(parameters.number(name, missing, sink), least, most, name, emitter.location(), sink);
+        return usable_cone(parameters.number(name, missing, sink), least, most, name, emitter.location(), sink);
     };
     const double cutoff_deg = angle("cutoff_angle", 20, 0.1, kWidestCone);
     const double beam_deg = angle("beam_width", 0.75 * cutoff_deg, 0, cutoff_deg);

@@ -49,7 +49,7 @@ void set_spot(Parameters& parameters, const DoubleTransform& world_from_light, c
     light.direction = direction_of(parameters, world_from_light, {0, 0, 0}, {0, 0, 1}, sink);
     const auto angle = [&](std::string_view name, double missing, double least) {
         const double degrees = parameters.number(name, missing, sink);
-        return static_cast<float>(usable_angle(degrees, least, kWidestCone, name, parameters.location(), sink)) *
+        return static_cast<float>(usable_cone(degrees, least, kWidestCone, name, parameters.location(), sink)) *
                (kPi / 180);
     };
     const float outer = angle("coneangle", 30, 0.1), edge = angle("conedeltaangle", 5, 0);
