@@ -165,6 +165,13 @@ struct MaterialParameters {
     bool is_emitter() const { return is_emissive() && kind != MaterialKind::Unlit; }
 };
 
+/// Sets the index of refraction that glTF writes as `ior`, 0 or at least kLeastIor: 0 is an infinite one, with which
+/// everything is reflected. No substance has one below 1; a bubble has it over what is around it.
+inline void set_gltf_ior(MaterialParameters& m, float ior) {
+    m.ior = ior == 0 ? kMostIor : ior;
+    m.has_relative_ior = m.ior < 1;
+}
+
 /// Calls choice(value, name, names) for each choice of a material; `names` lists its values in their order.
 template <class Parameters, class Choice>
 void visit_choices(Parameters& m, const Choice& choice) {

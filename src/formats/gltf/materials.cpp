@@ -152,11 +152,8 @@ void Materials::read_ior(const JsonValue& source, Material& material) const {
     const std::optional<JsonValue> extension = source.extension("KHR_materials_ior");
     if (!extension) return;
     const float ior = extension->float_or("ior", material.ior);
-    if (ior == 0) {
-        material.ior = kMostIor; // glTF's 0 is an infinite index, with which everything is reflected
-    } else if (ior >= kLeastIor) {
-        material.ior = ior;
-        material.has_relative_ior = ior < 1; // no substance has that; a bubble has it over what is around it
+    if (ior == 0 || ior >= kLeastIor) {
+        set_gltf_ior(material, ior);
     } else {
         sink_.warn({extension->location(), fmt::format("ior {} is not supported; expected 0 or at least {}, {} is used",
                                                        ior, kLeastIor, material.ior)});

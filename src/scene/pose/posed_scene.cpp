@@ -40,8 +40,7 @@ bool same_bits(const T& a, const T& b) {
     return std::memcmp(&a, &b, sizeof(T)) == 0;
 }
 
-/// Sets numbers of a material, by their places in the order of visit_parameters. An index is as glTF's reader takes it
-/// at rest: 0 is infinite, and one below 1 is over that of what is around.
+/// Sets numbers of a material, by their places in the order of visit_parameters.
 void set_numbers(const std::vector<uint8_t>& places, const std::vector<float>& values, MaterialParameters& material) {
     uint8_t place = 0;
     visit_parameters(
@@ -50,9 +49,8 @@ void set_numbers(const std::vector<uint8_t>& places, const std::vector<float>& v
             const auto found = std::ranges::find(places, place++);
             if (found == places.end()) return;
             const float value = values[static_cast<std::size_t>(found - places.begin())];
-            const bool is_ior = &number == &material.ior;
-            number = is_ior && value == 0 ? kMostIor : clamp(value, least, most);
-            if (is_ior) material.has_relative_ior = number < 1;
+            if (&number == &material.ior) return set_gltf_ior(material, value == 0 ? 0 : clamp(value, least, most));
+            number = clamp(value, least, most);
         },
         [](auto&&...) {});
 }
