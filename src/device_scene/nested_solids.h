@@ -27,10 +27,6 @@ HD_CALL inline InteriorList solids_behind(const SceneView& scene, InteriorList b
 HD inline uint32_t material_of_solid(const SceneView& scene, InteriorList list) {
     return scene.instances[scene.nesting.solids[list.top()]].material;
 }
-/// Returns the material that fills a point; null in a vacuum.
-HD inline const MaterialParameters* filling(const SceneView& scene, InteriorList list) {
-    return list.top() == 0 ? nullptr : scene.materials + material_of_solid(scene, list);
-}
 
 /// Returns the index of refraction of what fills a point, over that of a vacuum.
 HD_CALL inline float ior_within(const SceneView& scene, InteriorList list) {
@@ -46,9 +42,9 @@ HD_CALL inline float ior_within(const SceneView& scene, InteriorList list) {
 
 /// Returns the transmittance of `distance` metres through what fills them; 1 if they do not end.
 HD_CALL inline Rgb transmittance_within(const SceneView& scene, InteriorList list, float distance) {
-    const MaterialParameters* solid = filling(scene, list);
-    if (solid == nullptr || !solid->absorbs()) return {1, 1, 1};
-    return transmittance_of_depth(*solid, distance);
+    if (list.top() == 0) return {1, 1, 1};
+    const MaterialParameters& solid = scene.materials[material_of_solid(scene, list)];
+    return solid.absorbs() ? transmittance_of_depth(solid, distance) : Rgb{1, 1, 1};
 }
 
 /// Returns that of the ray from `start` that found `hit`; what is no nested solid absorbs as without them.

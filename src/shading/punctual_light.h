@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "base/host_device.h"
+#include "math/double_pi.h"
 #include "math/frame.h"
 #include "math/rgb.h"
 #include "math/sampling.h"
@@ -171,13 +172,12 @@ HD inline Rgb emitted_power(const PunctualLight& light, const PunctualEmission& 
 /// metres. The edge of a cone is the square of a ramp in the cosine, which contributes a third of its width. A table
 /// counts by the mean of its channels.
 inline double punctual_power(const Light& light, double intensity, double radius) {
-    constexpr double pi = 3.141592653589793;
     const double inner = static_cast<double>(light.cos_inner), outer = static_cast<double>(light.cos_outer);
     switch (light.kind) {
     case LightKind::Point:
-        return 2 * pi * intensity * 2;
+        return 2 * kPiDouble * intensity * 2;
     case LightKind::Spot:
-        return 2 * pi * intensity * ((1 - inner) + std::max(inner - outer, 0.001) / 3);
+        return 2 * kPiDouble * intensity * ((1 - inner) + std::max(inner - outer, 0.001) / 3);
     case LightKind::Goniometric: {
         const Rgb of_1 = light.table->integral;
         return intensity * (static_cast<double>(of_1.r) + static_cast<double>(of_1.g) + static_cast<double>(of_1.b)) /
@@ -186,7 +186,7 @@ inline double punctual_power(const Light& light, double intensity, double radius
     case LightKind::Directional:
         break;
     }
-    return pi * radius * radius * intensity;
+    return kPiDouble * radius * radius * intensity;
 }
 
 } // namespace pertev
