@@ -401,20 +401,23 @@ TEST_CASE("mitsuba: what a spot or a projector cannot have is left out at its pl
         std::string inside;
         const char* says; // empty: nothing is left out
     };
-    for (const Case& c : {Case{"spot", "<float name=\"cutoff_angle\" value=\"120\"/>",
-                               "the cutoff_angle of 120 degrees is left out; 89.9 is used"},
-                          {"spot", "<float name=\"cutoff_angle\" value=\"90\"/>", ""},
-                          {"spot", "<float name=\"beam_width\" value=\"30\"/>", "the beam_width of 30 degrees"},
-                          {"spot", bitmap("texture", "<string name=\"wrap_mode\" value=\"repeat\"/>"), ""},
-                          {"projector", "<transform name=\"to_world\"><scale value=\"2\"/></transform>",
-                           "the scale of a projector's to_world"},
-                          {"projector", "<transform name=\"to_world\"><scale x=\"-1\"/></transform>", ""},
-                          {"projector", wrapped("", "repeat"), "the wrap mode repeat"},
-                          {"projector", wrapped("_u", "repeat"), "the wrap mode repeat"},
-                          {"projector", wrapped("_v", "repeat"), ""}, // its rows are equal
-                          {"projector", wrapped("", "mirror"), ""},
-                          {"projector", wrapped("", "clamp"), ""},
-                          {"projector", bitmap("irradiance", ""), ""}}) {
+    for (const Case& c :
+         {Case{"spot", "<float name=\"cutoff_angle\" value=\"120\"/>",
+               "the cutoff_angle of 120 degrees is left out; 89.9 is used"},
+          {"spot", "<float name=\"cutoff_angle\" value=\"90\"/>", ""},
+          {"spot", "<float name=\"beam_width\" value=\"30\"/>", "the beam_width of 30 degrees"},
+          {"spot", bitmap("texture", "<string name=\"wrap_mode\" value=\"repeat\"/>"), ""},
+          {"spot", "<transform name=\"to_world\"><scale value=\"2\"/></transform>", ""},
+          {"spot", "<transform name=\"to_world\"><scale y=\"2\"/></transform>", "the stretch of a light's transform"},
+          {"projector", "<transform name=\"to_world\"><scale value=\"2\"/></transform>",
+           "the scale of a projector's to_world"},
+          {"projector", "<transform name=\"to_world\"><scale x=\"-1\"/></transform>", ""},
+          {"projector", wrapped("", "repeat"), "the wrap mode repeat"},
+          {"projector", wrapped("_u", "repeat"), "the wrap mode repeat"},
+          {"projector", wrapped("_v", "repeat"), ""}, // its rows are equal
+          {"projector", wrapped("", "mirror"), ""},
+          {"projector", wrapped("", "clamp"), ""},
+          {"projector", bitmap("irradiance", ""), ""}}) {
         CAPTURE(c.inside);
         Messages messages;
         const std::string emitter = fmt::format("<emitter type=\"{}\">{}</emitter>", c.type, c.inside);

@@ -203,6 +203,8 @@ TEST_CASE("pbrt: goniometric and projection lights face where pbrt has them") {
     CHECK(at(beam, {-1.9f, 1, -0.9f}) == doctest::Approx(1));
     CHECK(at(beam, {-1.9f, 1, 1.1f}) == 0);
     check_near(light.up, {0, 1, 0});
+    const Scene widest = load("LightSource \"projection\" \"float fov\" 190" + file); // 179 degrees are used
+    CHECK(widest.lights[0].table->half_height == doctest::Approx(114.589).epsilon(1e-3));
     // pbrt-v3 shows the first row below, and its file is a mapname.
     const Scene old =
         load("LightSource \"projection\" \"float fov\" 90 \"string mapname\" \"lamp.exr\"\n", "WorldEnd\n");
@@ -228,6 +230,21 @@ TEST_CASE("pbrt: the angle of a light that it cannot have is left out at its lin
         Messages messages;
         (void)load_lit(std::string("WorldBegin\nLightSource ") + light + "\n" + kFloorText, messages);
         CHECK(messages.left_out().empty());
+    }
+}
+
+TEST_CASE("pbrt: a transform that stretches a light is left out at its line, where it matters") {
+    for (const char* const light : {"spot", "goniometric", "point"}) {
+        for (const char* const scale : {"2 2 2", "-3 3 3", "1 2 1"}) {
+            CAPTURE(light);
+            CAPTURE(scale);
+            Messages messages;
+            (void)load_lit(std::string("WorldBegin\nScale ") + scale + " LightSource \"" + light + "\"\n" + kFloorText,
+                           messages);
+            const bool is_told = light != std::string("point") && scale == std::string("1 2 1");
+            REQUIRE(messages.left_out().size() == (is_told ? 1 : 0));
+            if (is_told) CHECK(messages.left_out()[0].find(":2") != std::string::npos);
+        }
     }
 }
 

@@ -9,6 +9,20 @@
 #include "image/read_image.h"
 
 namespace pertev::described {
+namespace {
+
+DoubleVec3 column(const DoubleTransform& m, double DoubleVec3::*at) { return {m.row0.*at, m.row1.*at, m.row2.*at}; }
+
+/// Returns whether a transform does more than turn, mirror, move and scale all directions to a length whose square this
+/// is.
+bool differs_from_turn(const DoubleTransform& m, double square) {
+    const DoubleVec3 x = column(m, &DoubleVec3::x), y = column(m, &DoubleVec3::y), z = column(m, &DoubleVec3::z);
+    const auto differ = [&](double a, double b) { return !(std::abs(a - b) < 1e-4 * square); };
+    return differ(dot(x, x), square) || differ(dot(y, y), square) || differ(dot(z, z), square) ||
+           differ(dot(x, y), 0) || differ(dot(y, z), 0) || differ(dot(z, x), 0);
+}
+
+} // namespace
 
 std::optional<Image> read_light_picture(const std::filesystem::path& path, Sink& sink) {
     try {
@@ -34,14 +48,13 @@ double usable_cone(double degrees, double least, double most, std::string_view n
     return usable_angle(open, least, most, name, location, sink);
 }
 
-bool has_scale(const DoubleTransform& world_from_light) {
-    const auto column = [&](double DoubleVec3::*at) {
-        return DoubleVec3{world_from_light.row0.*at, world_from_light.row1.*at, world_from_light.row2.*at};
-    };
-    const DoubleVec3 x = column(&DoubleVec3::x), y = column(&DoubleVec3::y), z = column(&DoubleVec3::z);
-    const auto differ = [](double a, double b) { return !(std::abs(a - b) < 1e-4); };
-    return differ(dot(x, x), 1) || differ(dot(y, y), 1) || differ(dot(z, z), 1) || differ(dot(x, y), 0) ||
-           differ(dot(y, z), 0) || differ(dot(z, x), 0);
+bool has_scale(const DoubleTransform& world_from_light) { return differs_from_turn(world_from_light, 1); }
+
+void leave_out_stretch(const DoubleTransform& world_from_light, const FileLocation& location, Sink& sink) {
+    const DoubleVec3 x = column(world_from_light, &DoubleVec3::x);
+    if (differs_from_turn(world_from_light, dot(x, x))) {
+        sink.leave_out({location, "the stretch of a light's transform is left out; it turns, moves and mirrors"});
+    }
 }
 
 void set_table(IntensityTable table, Light& light) {

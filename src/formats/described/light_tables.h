@@ -33,6 +33,9 @@ double usable_cone(double degrees, double least, double most, std::string_view n
 /// Returns whether a transform does more than turn, move and mirror.
 bool has_scale(const DoubleTransform& world_from_light);
 
+/// Warns that a transform does not scale all directions equally. Light that depends on the direction alone would bend.
+void leave_out_stretch(const DoubleTransform& world_from_light, const FileLocation& location, Sink& sink);
+
 /// Makes `light` Goniometric with this table, times its intensity, which becomes that where the table is 1.
 void set_table(IntensityTable table, Light& light);
 

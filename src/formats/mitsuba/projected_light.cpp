@@ -136,6 +136,7 @@ bool set_spot(Object& emitter, const DoubleTransform& to_world, Reading& reading
     const double beam_deg = angle("beam_width", 0.75 * cutoff_deg, 0, cutoff_deg);
     const float cutoff = static_cast<float>(cutoff_deg) * (kPi / 180),
                 beam = static_cast<float>(beam_deg) * (kPi / 180);
+    leave_out_stretch(to_world, emitter.location(), sink);
     set_axes(kSpotAxes, to_world, light);
     IntensityTable picture;
     bool is_missing = false;

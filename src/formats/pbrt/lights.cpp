@@ -204,9 +204,11 @@ std::optional<Light> read_light(const std::string& type, Parameters& parameters,
         light.intensity = strength_of(parameters, "I", "power", 4 * kPiDouble, context);
     } else if (type == "spot") {
         place({0, 0, 0});
+        leave_out_stretch(world_from_light, parameters.location(), sink);
         set_spot(parameters, world_from_light, context, light);
     } else if (type == "goniometric" || type == "projection") {
         place({0, 0, 0});
+        leave_out_stretch(world_from_light, parameters.location(), sink);
         if (!set_picture_light(type == "projection", parameters, world_from_light, context, light)) return std::nullopt;
     } else if (type == "distant") {
         light.kind = LightKind::Directional;
