@@ -81,7 +81,7 @@ std::vector<nb::dict> settings_of_parts() {
 /// `continue`, which is about files.
 std::vector<nb::dict> settings_of(bool frames) {
     std::vector<nb::dict> rows;
-    std::set<std::string, std::less<>> of_sequences = {"frames", "turntable", "cameras"};
+    std::set<std::string, std::less<>> of_sequences = {"frames", "turntable", "cameras", "stereo"};
     for (const Setting& setting : all_settings()) {
         const std::vector<std::string> needs = words_of(setting.needs);
         const auto is_of_sequences = [&](const std::string& name) { return of_sequences.contains(name); };

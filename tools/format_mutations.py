@@ -43,7 +43,7 @@ MUTATIONS = [
     ("a device's 16-bit colours are linear", "unit/pack_texels", ("src/shading/texture_lookup.h", "return {of_words[r], of_words[g], of_words[b], unit_of_word(a)};", "return {unit_of_word(r), of_words[g], of_words[b], unit_of_word(a)};")),
     ("glossiness is roughness", "unit/specular_glossiness", ("src/formats/gltf/specular_glossiness.cpp", "to_byte(1 - glossiness *", "to_byte(glossiness *")),
     ("a specular colour is that of an index of 1.5", "unit/specular_glossiness", ("src/formats/gltf/specular_glossiness.cpp", "(1 / of_index) * specular", "specular")),
-    ("an animated number of a material has no range", "unit/read_gltf_animations", ("src/scene/pose/posed_scene.cpp", "kMostIor : clamp(value, least, most);", "kMostIor : value + 0 * (least + most);")),
+    ("an animated number of a material has no range", "unit/read_gltf_animations", ("src/scene/pose/posed_scene.cpp", "            number = clamp(value, least, most);", "            number = value + 0 * (least + most);")),
     ("an animated emission leaves the lights", "unit/read_gltf_animations", ("src/scene/pose/posed_scene.cpp", "if (!same_bits(shown.emission, material.now.emission)) lights_changed_ = true;", "")),
     ("an animated material forgets what else was set", "unit/read_gltf_animations", ("src/scene/pose/posed_scene.cpp", "    for (MovingMaterial& material : materials_) material.now = material.rest;\n", "")),
     ("the faces of a cubemap are mirrored", "unit/image_based_light", ("src/formats/gltf/image_based_light.cpp", "right = d.z > 0 ? -d.x : d.x", "right = d.z > 0 ? d.x : -d.x")),
@@ -187,4 +187,9 @@ MUTATIONS = [
     ("pbrt's camera is in the medium inside", "unit/read_media", ("src/formats/pbrt/world.h", "around_ = state.outside;", "around_ = state.inside;")),
     ("a camera in a body has its medium everywhere", "unit/read_media", ("src/formats/described/described_medium.cpp", "        medium = *outside;\n", "        return at_camera;\n")),
     ("Mitsuba's medium without its scale", "unit/read_media", ("src/formats/mitsuba/media.cpp", "    read.sigma_s = scale * read.sigma_s;\n", "")),
+    ("both eyes of a stereo pair are the right one", "unit/calibrated_camera robust/cli_cameras", ("src/session/opening/calibrated_camera.cpp", "static_cast<float>(choice.eye_offset) * column(placed, 0)", "abs(static_cast<float>(choice.eye_offset)) * column(placed, 0)")),
+    ("a stereo pair diverges", "unit/calibrated_camera", ("src/session/opening/calibrated_camera.cpp", "camera.intrinsics->centre_x += ", "camera.intrinsics->centre_x -= ")),
+    ("an eye's picture states the target between the eyes", "robust/cli_cameras", ("src/session/writing/picture_metadata.cpp", "choice.eye_offset == 0 ? choice.target : std::nullopt", "choice.target")),
+    ("pbrt: a light that is scaled alike in all directions is stretched", "unit/read_pbrt_lights", ("src/formats/described/light_tables.cpp", "differs_from_turn(world_from_light, dot(x, x))", "differs_from_turn(world_from_light, 1)")),
+    ("materials with other lobes share a shading group", "unit/shading_groups", ("src/shading/shading_groups.cpp", "    add(m.has_coat());\n", "")),
 ]

@@ -57,7 +57,8 @@ std::optional<PartNumber> part_number(const PictureOptions& options) {
 }
 
 bool has_frames(const PictureOptions& options) {
-    return !options.frames.empty() || options.turntable > 0 || !options.cameras.empty() || options.camera_list;
+    return !options.frames.empty() || options.turntable > 0 || !options.cameras.empty() || options.stereo ||
+           options.camera_list;
 }
 
 SampleRange sample_range(const PictureOptions& options) {

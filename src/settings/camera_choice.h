@@ -39,8 +39,10 @@ struct CameraChoice {
     std::optional<PictureSize> intrinsics_size;
     std::optional<LensModel> lens; // not Straight
     std::vector<double> distortion;
-    std::string camera_from;    // an EXR with the metadata of a camera
-    std::optional<float> fov_y; // radians, of that camera; degrees need not give them to the bit
+    double eye_offset = 0;             // metres to the camera's right
+    std::optional<double> convergence; // metres along the view to where pictures of all offsets coincide
+    std::string camera_from;           // an EXR with the metadata of a camera
+    std::optional<float> fov_y;        // radians, of that camera; degrees need not give them to the bit
 
     /// Returns whether it places the camera anywhere but where the scene's own is.
     bool places_camera() const { return eye || !pose.empty() || !camera_from.empty(); }

@@ -109,7 +109,8 @@ struct PictureOptions {
     std::string frames, camera_path, shutter;                     // A-B; a file; [OPEN,]SECONDS
     std::string cuts;                                             // K,K,...
     std::string cameras;                                          // a file or folder of many cameras
-    std::shared_ptr<const std::vector<CameraOfFile>> camera_list; // cameras of that file, once it is read
+    std::optional<double> stereo;                                 // metres between the eyes of a stereo pair
+    std::shared_ptr<const std::vector<CameraOfFile>> camera_list; // cameras of that file and eyes, once it is read
     double fps = 0;
     uint32_t turntable = 0;
     std::string rows, samples; // A:B

@@ -101,6 +101,13 @@ std::vector<Setting> scene_settings() {
         row("distortion", "Camera", "K1,K2,...", FIELD(scene.camera.distortion),
             "The lens's coefficients: k1,k2,p1,p2[,k3[,k4,k5,k6]], or of a fisheye k1,k2,k3,k4.", Counts{{4, 5, 8}},
             On{kDistorted}, Excludes{"projection=orthographic real_time"}, Recorded::AsUsed, Changes::Camera),
+        row("eye_offset", "Camera", "M", FIELD(scene.camera.eye_offset),
+            "How far the camera moves to its right, as the eye of a stereo pair.",
+            Range{-kMaxCoordinate, kMaxCoordinate}, Unit{"m"}, On{kLooking}, Changes::Camera),
+        row("convergence", "Camera", "M", FIELD(scene.camera.convergence),
+            "The distance at which the pictures of a stereo pair coincide.", Above{0, kMaxCoordinate}, Unit{"m"},
+            Otherwise{"infinity: the eyes look in parallel"}, On{kLooking}, Needs{"stereo eye_offset"},
+            Excludes{"projection=orthographic"}, Changes::Camera),
         row("camera_from", "Camera", "FILE", FIELD(scene.camera.camera_from),
             "An EXR of Pertev's whose camera is used, to the bit, unless other settings override it.", On{kAimed},
             Excludes{"camera camera_path"}, Mark::Name, Changes::Camera),
@@ -167,6 +174,10 @@ std::vector<Setting> scene_settings() {
             "output's name becomes the camera's, # its number.",
             Excludes{"frames turntable camera_path camera camera_from eye target up camera_pose real_time"},
             Mark::Name),
+        row("stereo", "Motion", "M", FIELD(stereo),
+            "Renders a stereo pair by cameras this far apart, left and right. {name} in an output's name becomes the "
+            "eye's.",
+            Above{0, kMaxCoordinate}, Unit{"m"}, Excludes{"frames turntable camera_path real_time eye_offset"}),
         row("frames", "Motion", "A-B", FIELD(frames),
             "The first and last frame to render. A run of # in an output's name, as in frame-####.png, becomes the "
             "frame's number.",
@@ -177,7 +188,7 @@ std::vector<Setting> scene_settings() {
         row("fps", "Motion", "F", FIELD(fps), "The number of frames per second; frame k is at k / F seconds.",
             Above{0, 1e6}, Unit{"1/s"}, Otherwise{"24"}, On{kRender | kBenchSequence}, Needs{"frames"}),
         row("continue", "Motion", "", FIELD(goes_on), "An interrupted sequence continues: complete frames are kept.",
-            Needs{"frames turntable cameras"}, Mark::NotKept),
+            Needs{"frames turntable cameras stereo"}, Mark::NotKept),
     };
 }
 

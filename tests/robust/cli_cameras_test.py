@@ -154,6 +154,29 @@ class ManyCameras(CliTest):
             self.assertEqual(read_png(self.path(f"v-{name}.png")), read_png(self.path(f"w-{name}.png")))
         self.refuse(2, *self.many("--part", "4/3", output="v-{name}.png", cameras=cameras), says=["--part 4/3"])
 
+    def test_a_stereo_pair_has_the_pictures_of_its_eyes(self):
+        front = ["render", "cornell-box", *ALONE["front"], "--spp", "1", "--device", "cpu", "--json"]
+        converging = ["--convergence", "0.8"]
+        for flags in [], converging:
+            eyes = self.succeed(*front, *flags, "--stereo", "0.1", "-o", "{name}.exr").events("frame")
+            self.assertEqual([eye["camera"] for eye in eyes], ["left", "right"])
+            alone = [self.succeed(*front, *flags, f"--eye-offset={x}", "-o", "x.exr").events("done")[0]["hash"] for x in (-0.05, 0.05)]
+            self.assertEqual([eye["hash"] for eye in eyes], alone)
+            self.assertNotEqual(*alone)
+        again = self.succeed("render", "cornell-box", "-o", "again.exr", "--camera-from", "right.exr", "--spp", "1", "--device", "cpu",
+                             "--json")
+        self.assertEqual(again.events("done")[0]["hash"], alone[1])
+        left, right = (json.loads(self.succeed("info", f"{eye}.exr", "--settings").stdout)["settings"] for eye in ("left", "right"))
+        for key in "eye", "target":  # both look along the same direction
+            self.assertAlmostEqual(math.dist(left[key], right[key]), 0.1, places=4)
+        self.succeed(*self.many("--stereo", "0.1"))
+        self.assertEqual([name for name in self.files() if "-" in name],
+                         [f"{camera}-{eye}.exr" for camera in ("front", "side") for eye in ("left", "right")])
+        for flags, says in [(["--frames", "0-1"], "--frames"), (["--lens", "cube"], "--eye-offset"),
+                            (["--projection", "orthographic", *converging], "--convergence"), (["--eye-offset", "1"], "--eye-offset")]:
+            with self.subTest(flags=flags):
+                self.refuse(2, *front, "--stereo", "0.1", "-o", "{name}.exr", *flags, says=[says])
+
     def test_an_invalid_file_of_cameras_is_refused_with_the_location(self):
         for camera, says in [({"name": "front"}, "/cameras/1"), ({"spp": 4}, "spp"), ({"fov": 400}, "/cameras/1"),
                              ({"eye": [0, 0, 1], "camera_pose": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]}, "/cameras/1")]:

@@ -13,7 +13,7 @@ from cli_run import FLOOR, PROGRAM, SANITIZED, UNMETERED, CliTest, as_flag, gltf
 
 FLAGS = {
     "merge": "--denoise --exposure --tone-map --lut --lut-input --exr-colors --png-bits --output-format --output -o --partial --progress --quiet -q --json",
-    "render": "--output -o --progress --crop --light-group --lut --lut-input --exr-colors --png-bits --output-format --rows --part --part-base --samples --checkpoint --checkpoint-every --records --camera-pose --convention --intrinsics --intrinsics-size --lens --distortion --camera-from --cameras --layers-at --frame-denoiser "
+    "render": "--output -o --progress --crop --light-group --lut --lut-input --exr-colors --png-bits --output-format --rows --part --part-base --samples --checkpoint --checkpoint-every --records --camera-pose --convention --intrinsics --intrinsics-size --lens --distortion --eye-offset --convergence --camera-from --cameras --stereo --layers-at --frame-denoiser "
               "--allow-path --up-axis --unit --quiet -q --json --strict --camera --eye --target --up --fov --projection "
               "--view-height --aperture --focus --environment --sun-sky --environment-rotation --environment-scale --medium "
               "--two-sided-lights --show-back-faces --size --tone-map --exposure --transparent --aov --spp --time-limit --denoise "

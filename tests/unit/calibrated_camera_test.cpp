@@ -152,6 +152,38 @@ TEST_CASE("intrinsics take the picture's size if they have none, and refuse a pi
     CHECK(test::is_about(error, ErrorCode::BadInput, "intrinsics_size", "640x480"));
 }
 
+TEST_CASE("the eyes of a stereo pair lie beside the camera, and their pictures coincide at the convergence") {
+    CameraChoice choice = {.eye = DoubleVec3{1, 2, 3}, .target = DoubleVec3{1, 2, -7}, .fov_deg = 50.0f, .focus = 4.0f};
+    const Camera middle = made_of(choice);
+    CHECK(!middle.intrinsics);
+    for (const double offset : {-0.25, 0.25}) {
+        choice.eye_offset = offset;
+        choice.convergence.reset();
+        Camera parallel = middle;
+        parallel.world_from_camera.translation.x += static_cast<float>(offset);
+        CHECK(made_of(choice) == parallel);
+        choice.convergence = 5;
+        for (const bool is_calibrated : {false, true}) {
+            CameraChoice of_picture = choice;
+            if (is_calibrated) of_picture.fov_deg.reset(), of_picture.intrinsics = {500, 600, 310, 250};
+            fit_intrinsics({640, 480}, of_picture);
+            const Camera eye = made_of(of_picture);
+            REQUIRE(eye.intrinsics);
+            const double focal = eye.intrinsics->focal_x;
+            CHECK(eye.intrinsics->centre_x == doctest::Approx((is_calibrated ? 310 : 320) + focal * offset / 5));
+            CHECK(eye.intrinsics->centre_y == doctest::Approx(is_calibrated ? 250 : 240));
+            const CameraView view = make_camera_view(eye, 640, 480);
+            const double tangent = 5 * (400 - eye.intrinsics->centre_x) / focal + offset;
+            CHECK(tangent == doctest::Approx(5 * (400 - (is_calibrated ? 310 : 320)) / focal));
+            CHECK(view.half_height == doctest::Approx(0.5 * 480 / eye.intrinsics->focal_y));
+        }
+    }
+    choice.lens = LensModel::Equirectangular;
+    CHECK(test::is_about(test::thrown_error([&] { made_of(choice); }), ErrorCode::BadInput, "eye_offset"));
+    choice.lens = LensModel::Fisheye, choice.distortion = {0, 0, 0, 0};
+    CHECK(test::is_about(test::thrown_error([&] { made_of(choice); }), ErrorCode::BadInput, "convergence"));
+}
+
 TEST_CASE("a fisheye has four coefficients and no depth of field") {
     CameraChoice choice = {.eye = DoubleVec3{0, 0, 1}, .lens = LensModel::Fisheye, .distortion = {0, 0, 0, 0, 0}};
     CHECK(test::is_about(test::thrown_error([&] { made_of(choice); }), ErrorCode::BadInput, "distortion"));

@@ -119,8 +119,31 @@ void set_lens(const CameraChoice& choice, Camera& camera) {
     }
 }
 
+void offset_eye(const CameraChoice& choice, Camera& camera) {
+    if (choice.eye_offset == 0) return;
+    if (is_panorama(camera.lens)) {
+        throw Error(ErrorCode::BadInput, "eye_offset", fmt::format("{}", choice.eye_offset),
+                    "the eyes of a panorama would lie on a circle, which is not supported");
+    }
+    Transform& placed = camera.world_from_camera;
+    placed.translation = placed.translation + static_cast<float>(choice.eye_offset) * column(placed, 0);
+    if (!choice.convergence) return;
+    const auto refuse = [&](const char* why) {
+        throw Error(ErrorCode::BadInput, "convergence", fmt::format("{}", *choice.convergence), why);
+    };
+    if (has_parallel_rays(camera.projection)) refuse("the view is orthographic, whose pictures never coincide");
+    if (!camera.intrinsics) {
+        if (camera.lens != LensModel::Straight) refuse("a lens with distortion needs its `intrinsics`");
+        const PictureSize size = choice.intrinsics_size.value_or(PictureSize{});
+        PERTEV_CHECK(size.width > 0 && size.height > 0);
+        const double focal = 0.5 * size.height / static_cast<double>(tan(0.5f * camera.fov_y));
+        camera.intrinsics = {focal, focal, 0.5 * size.width, 0.5 * size.height, size.width, size.height};
+    }
+    camera.intrinsics->centre_x += camera.intrinsics->focal_x * choice.eye_offset / *choice.convergence;
+}
+
 void fit_intrinsics(PictureSize picture, CameraChoice& choice) {
-    if (choice.intrinsics.empty()) return;
+    if (choice.intrinsics.empty() && !choice.convergence) return;
     if (!choice.intrinsics_size) choice.intrinsics_size = picture;
     const PictureSize own = *choice.intrinsics_size;
     const auto across = [](uint32_t a, uint32_t b) { return static_cast<int64_t>(uint64_t{a} * b); };

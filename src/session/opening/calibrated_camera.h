@@ -16,8 +16,13 @@ Transform placed_by_pose(const CameraChoice& choice, const Scene& scene);
 /// camera's own intrinsics. Throws Error(BadInput).
 void set_lens(const CameraChoice& choice, Camera& camera);
 
-/// Takes `picture` as the size of the choice's intrinsics if none is given. Throws Error(BadInput) if the shapes of the
-/// two differ by more than a pixel, because then one of the focal lengths would change.
+/// Moves `camera` to its right by `choice.eye_offset`, and with `choice.convergence` its principal point, so that what
+/// is at that distance stays where it is in the picture. Lens and place are set already. Throws Error(BadInput).
+void offset_eye(const CameraChoice& choice, Camera& camera);
+
+/// Takes `picture` as the size of the choice's intrinsics, or of what a convergence gives, if none is given. Throws
+/// Error(BadInput) if the shapes of the two differ by more than a pixel, because then one of the focal lengths would
+/// change.
 void fit_intrinsics(PictureSize picture, CameraChoice& choice);
 
 /// Reads the file of `camera_from`, if there is one, and fills in its camera, except for what is given, and the

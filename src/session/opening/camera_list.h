@@ -1,12 +1,14 @@
 #pragma once
 
-// The cameras of a file (formats/cameras/read_cameras.h) as pictures of one scene: camera k makes picture k.
+// The cameras of a file (formats/cameras/read_cameras.h), and the eyes of stereo pairs, as pictures of one scene:
+// camera k makes picture k.
 
 #include "settings/picture_options.h"
 
 namespace pertev {
 
-/// Reads the file of `cameras`, if there is one and it was not read before, into `camera_list`. Throws Error(BadInput).
+/// Reads the file of `cameras`, if there is one and it was not read before, into `camera_list`; with `stereo` each
+/// camera, or the only one, becomes two. Throws Error(BadInput).
 void read_camera_list(PictureOptions& options);
 
 /// Returns the options of the picture by camera `number` alone, without the list. Throws Error(BadInput) for what

@@ -155,6 +155,7 @@ Camera choose_camera(CameraChoice choice, const Scene& scene, float aspect, Sink
     set_lens(choice, camera);
     focus_in_the_middle(choice, scene, camera, sink);
     warn_of_useless_parts(choice, camera, flattened, sink);
+    offset_eye(choice, camera); // both eyes focus on what is in the middle between them
     return camera;
 }
 

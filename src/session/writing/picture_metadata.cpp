@@ -155,7 +155,7 @@ SceneSource source_of(const SceneOptions& options, const Scene& scene) {
 CameraSource source_of(const CameraChoice& choice, const Camera& camera, DoubleVec3 origin) {
     return {.camera = camera,
             .name = choice.camera,
-            .target = choice.target,
+            .target = choice.eye_offset == 0 ? choice.target : std::nullopt, // an eye looks beside the target
             .up = choice.up,
             .fov_deg = choice.fov_deg.value_or(0),
             .origin = origin};
