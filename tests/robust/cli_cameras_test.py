@@ -166,13 +166,16 @@ class ManyCameras(CliTest):
         again = self.succeed("render", "cornell-box", "-o", "again.exr", "--camera-from", "right.exr", "--spp", "1", "--device", "cpu",
                              "--json")
         self.assertEqual(again.events("done")[0]["hash"], alone[1])
-        left, right = (json.loads(self.succeed("info", f"{eye}.exr", "--settings").stdout)["settings"] for eye in ("left", "right"))
-        for key in "eye", "target":  # both look along the same direction
+        left, right = (json.loads(self.succeed("info", f"{eye}.exr", "--json").stdout) for eye in ("left", "right"))
+        for key in "pertev.eye", "pertev.target":  # both look along the same direction
             self.assertAlmostEqual(math.dist(left[key], right[key]), 0.1, places=4)
+        write(self.path("right.json"), self.succeed("info", "right.exr", "--settings").stdout)
+        again = self.succeed("render", "cornell-box", "-o", "again.exr", "--settings", "right.json", "--device", "cpu", "--json")
+        self.assertEqual(again.events("done")[0]["hash"], alone[1])
         self.succeed(*self.many("--stereo", "0.1"))
         self.assertEqual([name for name in self.files() if "-" in name],
                          [f"{camera}-{eye}.exr" for camera in ("front", "side") for eye in ("left", "right")])
-        for flags, says in [(["--frames", "0-1"], "--frames"), (["--lens", "cube"], "--eye-offset"),
+        for flags, says in [(["--frames", "0-1"], "--frames"), (["--lens", "fisheye", *converging], "--convergence"),
                             (["--projection", "orthographic", *converging], "--convergence"), (["--eye-offset", "1"], "--eye-offset")]:
             with self.subTest(flags=flags):
                 self.refuse(2, *front, "--stereo", "0.1", "-o", "{name}.exr", *flags, says=[says])
