@@ -126,13 +126,14 @@ void Reporter::event(const std::string& object) {
 }
 
 void Reporter::result(const std::string& object) {
-    std::vector<std::string> made_up, left_out;
+    std::vector<std::string> made_up, left_out, warnings;
     for (const Message& message : all()) {
         if (message.is_made_up) made_up.push_back(phrase(message.remark));
-        if (message.is_left_out) left_out.push_back(phrase(message.remark));
+        if (message.is_warning) (message.is_left_out ? left_out : warnings).push_back(phrase(message.remark));
     }
-    event(fmt::format(R"({},"made_up":{},"left_out":{}}})", std::string_view(object).substr(0, object.size() - 1),
-                      json_strings(made_up), json_strings(left_out)));
+    event(fmt::format(R"({},"made_up":{},"left_out":{},"warnings":{}}})",
+                      std::string_view(object).substr(0, object.size() - 1), json_strings(made_up),
+                      json_strings(left_out), json_strings(warnings)));
 }
 
 void Reporter::answer(const std::string& lines) {
