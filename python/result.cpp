@@ -98,8 +98,9 @@ nb::bytes png_of_result(const PythonResult& self) {
 }
 
 /// Metadata that are texts of JSON.
-constexpr std::string_view kJsonTexts[] = {"pertev.settings",  "pertev.made_up",   "pertev.left_out",
-                                           "pertev.instances", "pertev.materials", "pertev.reconstruction"};
+constexpr std::string_view kJsonTexts[] = {"pertev.settings",   "pertev.made_up",   "pertev.left_out",
+                                           "pertev.instances",  "pertev.materials", "pertev.reconstruction",
+                                           "pertev.row_samples"};
 
 } // namespace
 
@@ -214,7 +215,7 @@ Arrays share the memory of the result, which lives as long as one of them does, 
         "Seconds that Session::render took until each pixel had its first sample, for tests");
     result.def_prop_ro(
         "samples", [](const PythonResult& self) { return self.result.samples; },
-        "Samples of each pixel; fewer than requested if time_limit ended the render");
+        "Samples of each pixel, or of the rows with the most; fewer than requested if time_limit ended the render");
     result.def_prop_ro(
         "seconds", [](const PythonResult& self) { return self.result.render_seconds; }, "Seconds of rendering alone");
     result.def("__repr__", [](PythonResult& self) {

@@ -139,8 +139,16 @@ void describe_film(const InfoFlags& flags, Facts& facts) {
     const auto range = [](uint32_t first, uint32_t end) { return fmt::format("{}:{}", first, end); };
     facts.add("width", header.width);
     facts.add("height", header.height);
-    facts.add("rows", range(header.part.first_row, header.part.end_row));
-    facts.add("samples", range(header.part.samples.first, header.part.samples.end));
+    if (header.parts.size() == 1) {
+        facts.add("rows", range(header.part().first_row, header.part().end_row));
+        facts.add("samples", range(header.part().samples.first, header.part().samples.end));
+    } else {
+        std::vector<std::string> parts;
+        for (const auto& [first_row, end_row, samples] : header.parts)
+            parts.push_back(
+                fmt::format("rows {}, samples {}", range(first_row, end_row), range(samples.first, samples.end)));
+        facts.add("parts", parts);
+    }
     facts.add("spp", header.spp);
     for (const ExrMetadata* entries : {&header.facts.settings, &header.facts.shown, &header.facts.origin})
         for (const auto& entry : *entries) facts.add(entry, "");

@@ -34,16 +34,19 @@ int merge(MergeFlags& flags) {
     MergedPicture picture = merge_picture(flags.parts, flags.is_partial, options, flags.outputs, reporter);
     RenderResult& result = picture.result;
     reporter.end_progress();
+    reporter.report_messages();
     reporter.set_work("writing");
     WrittenPicture written = write_picture(flags.outputs, picture.facts, result);
     written.files.insert(written.files.end(), picture.films.begin(), picture.films.end());
     report_files(written, reporter);
-    reporter.print(fmt::format("{} spp of {} in {:.2f} s, {}, picture {}", result.samples,
+    const uint32_t least = picture.least_samples;
+    reporter.print(fmt::format("{}{} spp of {} in {:.2f} s, {}, picture {}",
+                               least < result.samples ? fmt::format("{} to ", least) : "", result.samples,
                                counted(flags.parts.size(), "part"), watch.seconds(),
                                counted(result.invalid_samples, "invalid sample"), written.hash));
     reporter.result(fmt::format(
-        R"({{"event":"done","parts":{},"samples":{},"total_seconds":{:.6f},"peak_bytes":{},"invalid_samples":{},{}}})",
-        flags.parts.size(), result.samples, watch.seconds(), peak_memory_bytes(), result.invalid_samples,
+        R"({{"event":"done","parts":{},"samples":{},"least_samples":{},"total_seconds":{:.6f},"peak_bytes":{},"invalid_samples":{},{}}})",
+        flags.parts.size(), result.samples, least, watch.seconds(), peak_memory_bytes(), result.invalid_samples,
         hashes_json(written)));
     refuse_faults(written, result.invalid_samples, false);
     return 0;
@@ -65,7 +68,7 @@ void add_merge_command(CLI::App& app, int& status) {
         ->check(file_name())
         ->required();
     verb.add_flag("--partial", flags->is_partial,
-                  "Makes a picture of the available samples if every row lacks equally many.");
+                  "Makes a picture of the available samples if some are missing. Rows without any are black.");
     const std::string theirs = "that of the parts";
     flags->settings.add(verb, kMerge, {}, all_settings(),
                         {{"denoise", theirs + ", which must not be another"},

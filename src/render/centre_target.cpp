@@ -15,7 +15,7 @@ CentreArrays CentreTarget::arrays() const {
     return arrays;
 }
 
-std::vector<FilmLayer> CentreTarget::layers(uint32_t width, uint64_t samples) const {
+std::vector<FilmLayer> CentreTarget::layers(uint32_t width, const RowSamples& samples) const {
     std::vector<FilmLayer> layers;
     for (const AovGroup& group : kAovTable) {
         if ((aovs_ & group.bit) == 0 || !group.is_summed) continue;
@@ -23,8 +23,12 @@ std::vector<FilmLayer> CentreTarget::layers(uint32_t width, uint64_t samples) co
         const auto channels = static_cast<uint32_t>(layer.channels.size());
         layer.image = {width, static_cast<uint32_t>(pixels_ / width), channels, {}};
         layer.image.pixels.resize(pixels_ * channels);
-        if (samples == 0) continue;
-        queue().copy_to_host(layer.image.pixels.data(), arrays().of(group.bit), pixels_ * channels * sizeof(float));
+        const float* const from = arrays().of(group.bit);
+        samples.visit_pixels(width, pixels_, [&](std::size_t first, std::size_t end, uint64_t count) {
+            if (count == 0) return; // the values are missing
+            queue().copy_to_host(layer.image.pixels.data() + first * channels, from + first * channels,
+                                 (end - first) * channels * sizeof(float));
+        });
     }
     return layers;
 }

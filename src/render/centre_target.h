@@ -20,7 +20,7 @@ public:
     static uint32_t channels(uint32_t aovs) { return film_channel_count(aovs) - kFilmColorChannels; }
 
     void show(FilmView&) const override {}
-    std::vector<FilmLayer> layers(uint32_t width, uint64_t samples) const override;
+    std::vector<FilmLayer> layers(uint32_t width, const RowSamples& samples) const override;
 
 private:
     std::size_t pixels_;

@@ -30,7 +30,8 @@ std::optional<FilmPart> join(const FilmPart& a, const FilmPart& b) {
 
 Film::Film(Queue& queue, uint32_t width, uint32_t height, uint32_t aovs, std::vector<std::string> light_layers,
            LayersAt layers_at)
-    : queue_(&queue), window_{.width = width, .height = height}, end_row_(height), aovs_(aovs), layers_at_(layers_at) {
+    : queue_(&queue), window_{.width = width, .height = height}, end_row_(height), samples_(height), aovs_(aovs),
+      layers_at_(layers_at) {
     const std::size_t pixels = std::size_t(width) * height;
     const auto take = [&]<class Target>(std::unique_ptr<Target> target, const Target*& taken) {
         taken = target.get();
@@ -54,7 +55,13 @@ std::size_t Film::predicted_bytes(uint32_t width, uint32_t height, uint32_t aovs
 
 void Film::clear() {
     for (const auto& target : targets_) target->clear();
-    part_ = {};
+    samples_ = RowSamples(height());
+}
+
+FilmPart Film::part() const {
+    const std::vector<FilmPart> parts = samples_.parts();
+    PERTEV_CHECK(parts.size() <= 1);
+    return parts.empty() ? FilmPart() : parts.front();
 }
 
 FilmView Film::view() const {
@@ -73,10 +80,10 @@ FilmView Film::view() const {
 void Film::add(const Film& other) {
     PERTEV_CHECK(other.window_ == window_ && other.targets_.size() == targets_.size());
     for (std::size_t i = 0; i < targets_.size(); ++i) PERTEV_CHECK(targets_[i]->is_like(*other.targets_[i]));
-    const std::optional<FilmPart> both = join(part_, other.part_);
+    const std::optional<FilmPart> both = join(part(), other.part());
     PERTEV_CHECK(both);
     for (std::size_t i = 0; i < targets_.size(); ++i) targets_[i]->add(*other.targets_[i]);
-    part_ = *both;
+    set_part(*both);
 }
 
 std::vector<PixelIds> Film::ids() const {
@@ -86,15 +93,15 @@ std::vector<PixelIds> Film::ids() const {
 uint64_t Film::invalid_samples() const { return invalid_->elements().download()[0]; }
 
 void Film::picture_into(float* to, uint32_t pixels, bool transparent) const {
-    sums_->resolve_into(to, pixels, part_.samples.count(), 0, transparent ? 4 : 3, false);
+    sums_->resolve_into(to, width(), pixels, samples_, {0, transparent ? 4u : 3u, false});
 }
 
 void Film::layer_into(float* to, uint32_t pixels, AovBits group) const {
     const AovGroup& of = aov_group(group);
     const auto channels = static_cast<uint32_t>(channel_names(of).size());
     if (centres_ == nullptr) {
-        return sums_->resolve_into(to, pixels, part_.samples.count(), channel_offset(aovs_, group), channels,
-                                   of.over_hits);
+        return sums_->resolve_into(to, width(), pixels, samples_,
+                                   {channel_offset(aovs_, group), channels, of.over_hits});
     }
     queue_->copy_on_device(to, centres_->arrays().of(group), std::size_t(pixels) * channels * sizeof(float));
 }
@@ -116,9 +123,9 @@ CentreArrays Film::centres() const {
 }
 
 void Film::display(ToneMap kind, float exposure_stops, bool transparent) {
-    PERTEV_CHECK(part_.samples.count() > 0);
+    PERTEV_CHECK(samples_.most() > 0);
     if (display_ == nullptr) display_ = queue_->make_host_copy(std::size_t(window_.count()) * 4);
-    display_->take(sums_->display(part_.samples.count(), kind, exposure_stops, transparent));
+    display_->take(sums_->display(width(), samples_, kind, exposure_stops, transparent));
     queue_->wait(*display_);
 }
 
@@ -131,7 +138,7 @@ Rgba8Image Film::displayed() const {
 std::vector<FilmLayer> Film::layers() const {
     std::vector<FilmLayer> layers;
     for (const auto& target : targets_) {
-        for (FilmLayer& layer : target->layers(width(), part_.samples.count())) layers.push_back(std::move(layer));
+        for (FilmLayer& layer : target->layers(width(), samples_)) layers.push_back(std::move(layer));
     }
     return layers;
 }

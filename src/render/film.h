@@ -1,18 +1,20 @@
 #pragma once
 
-// The film: targets (render/film_target.h) to which samples are added on a device, and the part of a picture that
-// they hold. The picture depends only on the exact sums (render/sum_target.h) and the number of samples.
+// The film: targets (render/film_target.h) to which samples are added on a device, and the samples of a picture that
+// they hold. The picture depends only on the exact sums (render/sum_target.h) and each row's number of samples.
 
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
 #include "device/buffer.h"
 #include "image/image.h"
 #include "render/centre_arrays.h"
+#include "render/row_samples.h"
 #include "render/sum_target.h"
 
 namespace pertev {
@@ -31,21 +33,6 @@ class InvalidTarget : public ElementTarget<uint64_t, AddCounts, 0> {
 public:
     using ElementTarget::ElementTarget;
     void show(FilmView& view) const override { view.invalid = elements().data(); }
-};
-
-/// Samples [first, end) of each pixel.
-struct SampleRange {
-    uint32_t first = 0, end = 0;
-    uint32_t count() const { return end - first; }
-    bool operator==(const SampleRange&) const = default;
-};
-
-/// A part of a picture: a range of samples of each pixel of the rows [first_row, end_row).
-struct FilmPart {
-    uint32_t first_row = 0, end_row = 0;
-    SampleRange samples;
-    bool is_empty() const { return first_row == end_row || samples.count() == 0; }
-    bool operator==(const FilmPart&) const = default;
 };
 
 class Film {
@@ -96,18 +83,26 @@ public:
 
     /// Sets which samples, of all rows of view(), have been added to it so far.
     void set_samples(SampleRange samples) { set_part({first_row_, end_row_, samples}); }
-    void set_part(FilmPart part) { part_ = part; }
-    const FilmPart& part() const { return part_; }
+    void set_part(const FilmPart& part) {
+        samples_ = RowSamples(height());
+        samples_.add(part);
+    }
+    /// Returns the samples of a film that has one part, as each film of one render; an empty part without samples.
+    /// Throws std::logic_error for several.
+    FilmPart part() const;
+
+    /// Sets which samples each row has.
+    void set_row_samples(RowSamples samples) { samples_ = std::move(samples); }
+    const RowSamples& row_samples() const { return samples_; }
 
     /// Adds the samples of a film of the same size and targets, from any queue, as if this film had taken them
     /// itself. Ids come from the film that holds sample 0. Throws std::logic_error unless the parts are adjacent:
     /// consecutive samples of the same rows, or consecutive rows of the same samples.
     void add(const Film& other);
 
-    /// Returns the mean of all samples: RGB, or RGBA (colour times coverage, coverage) if `transparent`.
-    Image picture(bool transparent) const {
-        return sums_->picture(width(), part_.samples.count(), transparent ? 4 : 3);
-    }
+    /// Returns the mean of all samples: RGB, or RGBA (colour times coverage, coverage) if `transparent`. Rows without
+    /// samples are 0.
+    Image picture(bool transparent) const { return sums_->picture(width(), samples_, transparent ? 4 : 3); }
     /// Computes picture(), and an auxiliary layer of layers(), of the first `pixels` pixels in memory of the film's
     /// device. The work is queued.
     void picture_into(float* to, uint32_t pixels, bool transparent) const;
@@ -130,7 +125,7 @@ private:
     Queue* queue_;
     PixelWindow window_;
     uint32_t first_row_ = 0, end_row_; // rows that view() holds
-    FilmPart part_;
+    RowSamples samples_;
     std::vector<std::unique_ptr<FilmTarget>> targets_; // the film's own targets below come first
     uint32_t aovs_;
     LayersAt layers_at_;

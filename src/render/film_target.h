@@ -17,6 +17,7 @@
 #include "device/peer_copy.h"
 #include "image/image.h"
 #include "render/film_view.h"
+#include "render/row_samples.h"
 
 namespace pertev {
 
@@ -43,8 +44,8 @@ public:
     virtual void add(const FilmTarget& other) = 0;
     /// Replaces the contents by those of `other`, from any queue whose work on them is done. Throws as add().
     virtual void copy(const FilmTarget& other) { set_bytes(other.bytes()); }
-    /// Layers of the picture, for a film that is `width` columns wide and has `samples` samples per pixel.
-    virtual std::vector<FilmLayer> layers(uint32_t width, uint64_t samples) const {
+    /// Layers of the picture, for a film that is `width` columns wide and has these samples.
+    virtual std::vector<FilmLayer> layers(uint32_t width, const RowSamples& samples) const {
         static_cast<void>(width), static_cast<void>(samples);
         return {};
     }

@@ -1,5 +1,6 @@
 #include "render/sum_target.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace pertev {
@@ -28,40 +29,49 @@ bool SumTarget::is_like(const FilmTarget& other) const {
            ElementTarget::is_like(other);
 }
 
-std::vector<FilmLayer> SumTarget::layers(uint32_t width, uint64_t samples) const {
+std::vector<FilmLayer> SumTarget::layers(uint32_t width, const RowSamples& samples) const {
     std::vector<FilmLayer> layers;
     for (const AovGroup& group : kAovTable) {
         if ((aovs_ & group.bit) == 0 || !group.is_summed) continue;
         const std::vector<std::string> channels = channel_names(group);
+        const auto count = static_cast<uint32_t>(channels.size());
         layers.push_back({group.layer, channels,
-                          resolve(width, samples, channel_offset(aovs_, group.bit),
-                                  static_cast<uint32_t>(channels.size()), group.over_hits)});
+                          resolve(width, samples, {channel_offset(aovs_, group.bit), count, group.over_hits})});
     }
     uint32_t first = film_channel_count(aovs_);
     for (const std::string& name : light_layers_) {
-        layers.push_back({name, {"R", "G", "B"}, resolve(width, samples, first, 3, false)});
+        layers.push_back({name, {"R", "G", "B"}, resolve(width, samples, {first, 3, false})});
         first += 3;
     }
     return layers;
 }
 
-const void* SumTarget::display(uint64_t samples, ToneMap kind, float exposure_stops, bool transparent) const {
+const void* SumTarget::display(uint32_t width, const RowSamples& samples, ToneMap kind, float exposure_stops,
+                               bool transparent) const {
     static_assert(kFilmColorChannels * sizeof(float) >= 4);
-    launch(queue(), "display_film", pixels_,
-           DisplayFilm{view(), samples, kind, exposure_scale(exposure_stops), transparent,
-                       reinterpret_cast<uint8_t*>(resolved_.data())});
+    auto* const bytes = reinterpret_cast<uint8_t*>(resolved_.data());
+    samples.visit_pixels(width, pixels_, [&](std::size_t first, std::size_t end, uint64_t count) {
+        // Sums without samples are 0, over any number.
+        launch(queue(), "display_film", static_cast<uint32_t>(end - first),
+               DisplayFilm{view_from(first), std::max<uint64_t>(count, 1), kind, exposure_scale(exposure_stops),
+                           transparent, bytes + 4 * first});
+    });
     return resolved_.data();
 }
 
-void SumTarget::resolve_into(float* to, uint32_t pixels, uint64_t samples, uint32_t first, uint32_t channels,
-                             bool over_hits) const {
-    launch(queue(), "resolve_film", pixels, ResolveFilm{view(), first, channels, over_hits, samples, to});
+void SumTarget::resolve_into(float* to, uint32_t width, uint32_t pixels, const RowSamples& samples,
+                             Channels channels) const {
+    samples.visit_pixels(width, pixels, [&](std::size_t first, std::size_t end, uint64_t count) {
+        launch(queue(), "resolve_film", static_cast<uint32_t>(end - first),
+               ResolveFilm{view_from(first), channels.first, channels.count, channels.over_hits, count,
+                           to + first * channels.count});
+    });
 }
 
-Image SumTarget::resolve(uint32_t width, uint64_t samples, uint32_t first, uint32_t channels, bool over_hits) const {
-    resolve_into(resolved_.data(), pixels_, samples, first, channels, over_hits);
-    Image image{width, pixels_ / width, channels, {}};
-    image.pixels.resize(std::size_t(pixels_) * channels);
+Image SumTarget::resolve(uint32_t width, const RowSamples& samples, Channels channels) const {
+    resolve_into(resolved_.data(), width, pixels_, samples, channels);
+    Image image{width, pixels_ / width, channels.count, {}};
+    image.pixels.resize(std::size_t(pixels_) * channels.count);
     queue().copy_to_host(image.pixels.data(), resolved_.data(), image.pixels.size() * sizeof(float));
     return image;
 }

@@ -19,27 +19,34 @@ public:
     bool is_like(const FilmTarget& other) const override;
     std::size_t stride() const override { return channels_ * sizeof(FixedSum); }
     /// Returns the auxiliary layers, then the light layers.
-    std::vector<FilmLayer> layers(uint32_t width, uint64_t samples) const override;
+    std::vector<FilmLayer> layers(uint32_t width, const RowSamples& samples) const override;
 
+    /// Channels of a pixel that are resolved together.
+    struct Channels {
+        uint32_t first, count;
+        bool over_hits; // mean over samples that hit something
+    };
     /// Returns the means of the first `channels` channels.
-    Image picture(uint32_t width, uint64_t samples, uint32_t channels) const {
-        return resolve(width, samples, 0, channels, false);
+    Image picture(uint32_t width, const RowSamples& samples, uint32_t channels) const {
+        return resolve(width, samples, {0, channels, false});
     }
     /// Computes the bytes of Film::display, four per pixel, and returns where they lie on the device.
-    const void* display(uint64_t samples, ToneMap kind, float exposure_stops, bool transparent) const;
+    const void* display(uint32_t width, const RowSamples& samples, ToneMap kind, float exposure_stops,
+                        bool transparent) const;
 
     /// Computes the means of the first `pixels` pixels on the device.
-    void resolve_into(float* to, uint32_t pixels, uint64_t samples, uint32_t first, uint32_t channels,
-                      bool over_hits) const;
+    void resolve_into(float* to, uint32_t width, uint32_t pixels, const RowSamples& samples, Channels channels) const;
 
     uint32_t aovs() const { return aovs_; }
     const std::vector<std::string>& light_layers() const { return light_layers_; }
 
 private:
-    Image resolve(uint32_t width, uint64_t samples, uint32_t first, uint32_t channels, bool over_hits) const;
-    FilmView view() const {
+    Image resolve(uint32_t width, const RowSamples& samples, Channels channels) const;
+    /// Returns the view of the pixels from number `first` on.
+    FilmView view_from(std::size_t first) const {
         FilmView view = {};
         show(view);
+        view.sums += first * channels_;
         return view;
     }
 

@@ -24,7 +24,7 @@ public:
         header.settings = {{"version", "1.0.0 abc"}, {"seed", "0"}};
         header.width = settings_.width, header.height = settings_.height;
         header.aovs = settings_.aovs, header.layers_at = settings_.layers_at, header.denoise = settings_.denoise;
-        header.part = {0, settings_.height, settings_.range()}, header.spp = settings_.samples;
+        header.parts = {{0, settings_.height, settings_.range()}}, header.spp = settings_.samples;
     }
     FilmRender film() { return {pictures_, test::mixed_scene_camera(), settings_}; }
     Checkpoint checkpoint() const { return {file, header}; }
@@ -103,7 +103,9 @@ TEST_CASE("a checkpoint keeps the previous generation unless it is damaged") {
     Interrupted work({});
     FilmRender film = work.film();
     Checkpoint checkpoint = work.checkpoint();
-    const auto samples_in = [](const std::string& file) { return FilmFileReader(file).header().part.samples.count(); };
+    const auto samples_in = [](const std::string& file) {
+        return FilmFileReader(file).header().part().samples.count();
+    };
     for (const uint32_t end : {1u, 2u, 3u}) {
         REQUIRE(film.render({end - 1, end}) == 1);
         checkpoint.write(film, {});
@@ -180,9 +182,9 @@ TEST_CASE("a checkpoint of another version, setting, part or size is refused wit
     says("`seed` is \"0\" there, not \"7\"");
     work.header.aovs = kAovDepth;
     says("the film is");
-    work.header.part.samples = {2, 6};
+    work.header.parts[0].samples = {2, 6};
     says("begin with number 0, not 2");
-    work.header.part.samples = {0, 3};
+    work.header.parts[0].samples = {0, 3};
     says("up to 4, more than the 3");
     CHECK(!work.refusal());
 }

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
 #include "image/picture_hash.h"
 #include "render/light_paths/light_path_layers.h"
+#include "render/sample_layers/matte_names.h"
 #include "session/film_file/merge_films.h"
 #include "session/film_render.h"
 #include "tests/support/options.h"
@@ -154,7 +156,7 @@ void check_rows(Renders& renders, const std::vector<FilmPart>& parts) {
     for (const FilmPart& part : parts) {
         renders.settings.first_row = part.first_row, renders.settings.end_row = part.end_row;
         files.push_back(renders.file(part.samples));
-        CHECK(FilmFileReader(files.back()).header().part == part);
+        CHECK(FilmFileReader(files.back()).header().part() == part);
     }
     renders.settings.first_row = renders.settings.end_row = 0;
     std::ranges::reverse(files);
@@ -216,7 +218,7 @@ TEST_CASE("a film that no denoiser has gathered for is not denoised") {
     Queue cpu = Queue::make_cpu();
     const FilmHeader without = FilmFileReader(renders.file({0, 1})).header();
     Film empty = without.make_film(cpu);
-    empty.set_part(without.part);
+    empty.set_part(without.part());
     CHECK(!test::bad_input_message([&] { result_of(without, empty, cpu); }).empty());
 }
 
@@ -248,9 +250,122 @@ TEST_CASE("overlaps and gaps of rows are refused by name") {
     CHECK(merge_refusal({top, bottom, over}).find("samples 4 to 4 of rows 8 to 8") != std::string::npos);
     CHECK(merge_refusal({top}).find("samples 0 to 4 of rows 9 to 19") != std::string::npos);
     CHECK(merge_refusal({top, late}).find("samples 0 to 2 of rows 9 to 19") != std::string::npos);
-    CHECK(merge_refusal({bottom}, true).find("rows 0 to 8 have 0 samples") != std::string::npos);
-    CHECK(merge_refusal({top}, true).find("rows 9 to 19 have 0 samples") != std::string::npos);
-    CHECK(merge_refusal({top, late}, true) != "no error"); // a picture has as many samples everywhere
+    for (const Files& some : {Files{bottom}, Files{top}, Files{top, late}})
+        CHECK(merge_refusal(some, true) == "no error");
+    CHECK(merge_refusal({late, over}, true).find("samples 4 to 4 of rows 9 to 11") != std::string::npos);
+}
+
+namespace {
+
+/// Rows 0 to 6 have all samples, 7 to 11 the first two, 12 to 14 none, and the last ones the first three.
+const std::vector<FilmPart> kUneven = {{0, 7, {0, 2}}, {0, 7, {2, 5}}, {7, 12, {0, 2}}, {15, 20, {0, 3}}},
+                            kOthers = {{7, 12, {2, 5}}, {12, 15, {0, 4}}, {12, 15, {4, 5}}, {15, 20, {3, 5}}};
+
+Files files_of_parts(Renders& renders, const std::vector<FilmPart>& parts) {
+    Files files;
+    for (const FilmPart& part : parts) {
+        renders.settings.first_row = part.first_row, renders.settings.end_row = part.end_row;
+        files.push_back(renders.file(part.samples));
+    }
+    renders.settings.first_row = renders.settings.end_row = 0;
+    return files;
+}
+
+std::string file_of_merged(const Files& files) {
+    const FilmMerge merge(files, true);
+    static Queue cpu = Queue::make_cpu();
+    const Files to = {test::scratch_folder() / "merged.pvf"};
+    REQUIRE(write_film_files(to, merge.header(), merge.film(cpu, nobody()))[0].failure == "");
+    return to[0];
+}
+
+/// Checks that rows [first, end) of an image have the bytes of those of another, or are 0 if that is null.
+void check_image_rows(const Image& image, uint32_t first, uint32_t end, const Image* like) {
+    const std::size_t row = std::size_t(image.width) * image.channels;
+    REQUIRE(image.pixels.size() == row * image.height);
+    const std::vector<float> none(row * image.height);
+    const float* const expected = like != nullptr ? like->pixels.data() : none.data();
+    CHECK(std::memcmp(&image.pixels[first * row], expected + first * row, (end - first) * row * sizeof(float)) == 0);
+}
+
+/// Checks rows [first, end) of a result against those of a render with their number of samples.
+void check_rows_of(const RenderResult& result, uint32_t first, uint32_t end, Renders& renders, uint32_t samples) {
+    CAPTURE(first);
+    const auto like = renders.film({0, samples});
+    const RenderResult known = like->result();
+    check_image_rows(result.picture, first, end, samples > 0 ? &known.picture : nullptr);
+    REQUIRE(result.layers.size() == known.layers.size());
+    for (std::size_t i = 0; i < known.layers.size(); ++i) {
+        CAPTURE(known.layers[i].name);
+        check_image_rows(result.layers[i].image, first, end, samples > 0 ? &known.layers[i].image : nullptr);
+    }
+    const std::size_t width = result.picture.width;
+    for (std::size_t i = first * width; !result.ids.empty() && i < end * width; ++i)
+        REQUIRE(result.ids[i].instance == (samples > 0 ? known.ids[i].instance : kNoHit));
+}
+
+/// Merges some parts, then the result with the others.
+void check_uneven(Renders& renders) {
+    Files files = files_of_parts(renders, kUneven), others = files_of_parts(renders, kOthers);
+    static Queue cpu = Queue::make_cpu();
+    const FilmMerge merge(files, true);
+    CHECK((merge.samples().least() == 0 && merge.samples().most() == 5));
+    CHECK(merge.header().parts == std::vector<FilmPart>{{0, 7, {0, 5}}, {7, 12, {0, 2}}, {15, 20, {0, 3}}});
+    Film film = merge.film(cpu, nobody());
+    const RenderResult result = result_of(merge.header(), film, cpu);
+    CHECK(result.samples == 5);
+    if (renders.settings.denoise == Denoise::None) {
+        check_rows_of(result, 0, 7, renders, 5);
+        check_rows_of(result, 7, 12, renders, 2);
+        check_rows_of(result, 12, 15, renders, 0);
+        check_rows_of(result, 15, 20, renders, 3);
+    } else {
+        const Image& image = result.denoised.value();
+        check_image_rows(image, 12, 15, nullptr);
+        CHECK(std::ranges::all_of(image.pixels, [](float x) { return std::isfinite(x); }));
+        CHECK(std::ranges::count(image.pixels, 0.0f) < static_cast<std::ptrdiff_t>(image.pixels.size() / 2));
+    }
+    const std::string some = file_of_merged(files), others_of_all = file_of_merged(others);
+    CHECK(FilmFileReader(some).header().parts == merge.header().parts);
+    std::ranges::reverse(files);
+    CHECK(bytes_of(merged({file_of_merged(files)}, true)) == bytes_of(merged({some}, true)));
+    CHECK(merge_refusal({some}).find("samples 2 to 4 of rows 7 to 11") != std::string::npos);
+    CHECK(merge_refusal({others[0], some, files[0]}, true).find("samples 0 to 2 of rows 15 to 19") !=
+          std::string::npos);
+    others.push_back(some);
+    files.push_back(others_of_all);
+    const auto whole = renders.film({0, 5});
+    for (const Files& all : {others, files, Files{others_of_all, some}}) {
+        Film again = FilmMerge(all, false).film(cpu, nobody());
+        CHECK(bytes_of(again) == bytes_of(whole->film()));
+        if (whole->denoised()) {
+            const RenderResult of_all = result_of(FilmMerge(all, false).header(), again, cpu);
+            CHECK(of_all.denoised.value().pixels == whole->denoised().value().pixels);
+        }
+    }
+}
+
+} // namespace
+
+TEST_CASE("each row of a film whose rows have unequal samples has the bytes of a render with as many") {
+    Renders renders;
+    renders.settings.aovs = kAovAlbedo | kAovNormal | kAovDepth | kAovIds;
+    renders.settings.light_paths =
+        std::make_shared<const LightPathLayers>(bind_to_scene({parse_light_path("once=L.E")}, renders.scene));
+    renders.settings.sample_layers = kFirstHitLayers | kLayerCount | kLayerVariance;
+    renders.settings.mattes = std::make_shared<const MatteNames>(renders.scene);
+    renders.settings.transparent = true;
+    check_uneven(renders);
+    Renders at_centres;
+    at_centres.settings.aovs = kAovAlbedo | kAovDepth | kAovIds;
+    at_centres.settings.layers_at = LayersAt::Centre;
+    check_uneven(at_centres);
+}
+
+TEST_CASE("a film whose rows have unequal samples is denoised, and black where there are none") {
+    Renders renders;
+    renders.settings.denoise = Denoise::Svgf;
+    check_uneven(renders);
 }
 
 TEST_CASE("a merged film has the facts of the part with the first samples, and all samples may be written again") {
@@ -291,11 +406,10 @@ TEST_CASE("overlaps, gaps and parts of other pictures are refused by name") {
     CHECK(merge_refusal({a, b}).find("samples 3 to 4") != std::string::npos);
     CHECK(merge_refusal({none}, true) != "no error");
     for (const Files& files : {Files{a, c}, Files{b, c}, Files{a, b}}) CHECK(merge_refusal(files, true) == "no error");
-    CHECK(FilmMerge(Files{c, a}, true).has_gaps());
-    CHECK(!FilmMerge(Files{c, b}, true).has_gaps());
-    CHECK(FilmMerge(Files{c, b}, true).header().part == FilmPart{0, 20, {2, 5}});
+    CHECK(FilmMerge(Files{c, a}, true).header().parts == std::vector<FilmPart>{{0, 20, {0, 2}}, {0, 20, {3, 5}}});
+    CHECK(FilmMerge(Files{c, b}, true).header().part() == FilmPart{0, 20, {2, 5}});
     const Film film = merged({c, a}, true);
-    CHECK(film.part().samples.count() == 4);
+    CHECK((film.row_samples().least() == 4 && film.row_samples().most() == 4));
 
     renders.settings.path.max_depth = 3;
     const std::string shallow = renders.file({2, 5});

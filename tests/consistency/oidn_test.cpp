@@ -174,7 +174,7 @@ TEST_CASE("parts of rows and samples have the guides of one run, in any order") 
             settings.first_row = of.first_row, settings.end_row = of.end_row;
             FilmRender part(pictures, mixed_scene_camera(), settings);
             REQUIRE(part.render(of.samples) == of.samples.count());
-            header.part = of;
+            header.parts = {of};
             files.push_back(scratch_folder() / "part.pvf");
             const std::vector<std::byte> bytes = film_file_bytes(header, part.film());
             write_file_atomically(files.back(), bytes);

@@ -95,8 +95,17 @@ class Parts(unittest.TestCase):
         files = [self.folder / "a.pvf", self.folder / "b.pvf"]
         error = self.refused(pertev.InputError, "", lambda: pertev.merge(files))
         self.assertEqual(error.file, str(files[0]))
-        self.assertEqual(pertev.merge(files, partial=True).samples, 6)
-        self.refused(pertev.InputError, "output", lambda: pertev.merge(files, partial=True, output=self.folder / "x.pvf"))
+        some = pertev.merge(files, partial=True, output=self.folder / "some.pvf")
+        self.assertEqual((some.samples, "least_spp" in some.info), (6, False))
+        pertev.render(self.scene, samples="3:5", output=self.folder / "c.pvf", **SMALL)
+        self.assertEqual(pertev.merge([self.folder / "c.pvf", self.folder / "some.pvf"]).hash, pertev.render(self.scene, spp=8, **SMALL).hash)
+
+    def test_a_partial_picture_of_rows_says_what_they_have(self):
+        pertev.render(self.scene, spp=3, rows="0:4", output=self.folder / "a.pvf", **SMALL)
+        some = pertev.merge(self.folder / "a.pvf", partial=True)
+        self.assertEqual((some.samples, some.info["least_spp"], some.info["row_samples"]), (3, 0, {"0:4": 3, "4:16": 0}))
+        numpy.testing.assert_array_equal(some.color[:4], pertev.render(self.scene, spp=3, **SMALL).color[:4])
+        self.assertFalse(some.color[4:].any())
 
     def test_a_part_does_not_open_the_scene_again(self):
         pertev.render(self.scene, spp=2, **SMALL)

@@ -147,9 +147,34 @@ class Merge(CliTest):
         self.assertEqual(self.metadata("all.exr"), self.metadata("whole.exr"))
         self.assertEqual(self.read("all.png"), self.read("whole.png"))
         self.assertEqual(self.info("all.pvf")["rows"], "0:16")
-        self.refuse(2, "merge", "a.pvf", "b.pvf", "-o", "x.exr", says=["samples 2 to 3 of rows 5 to 15"])
-        self.refuse(2, "merge", "a.pvf", "b.pvf", "--partial", "-o", "x.exr", says=["rows 5 to 15"])
-        self.refuse(2, "merge", "b.pvf", "c.pvf", "--partial", "-o", "x.exr", says=["rows 0 to 4"])
+        self.refuse(2, "merge", "a.pvf", "b.pvf", "-o", "x.exr", says=["samples 2 to 3 of rows 5 to 15", "--partial"])
+        self.refuse(2, "merge", "b.pvf", "c.pvf", "-o", "x.exr", says=["samples 0 to 3 of rows 0 to 4", "--partial"])
+
+    def test_rows_that_lack_samples_are_merged_without_them_and_named(self):
+        flags = ["--spp", "4", "--aov", "ids,samples,variance,crypto_object", "--transparent", "--exposure", "auto"]
+        whole = self.part("whole.exr", "-o", "whole.png", *flags)
+        for name, part in {"a": "--rows 0:5", "b": "--rows 5:12 --part 1/2", "c": "--rows 5:12 --part 2/2", "d": "--rows 12:16"}.items():
+            self.part(f"{name}.pvf", *flags, *part.split())
+        outcome = self.succeed("merge", "b.pvf", "a.pvf", "--partial", "-o", "some.exr", "-o", "some.png", "-o", "some.pvf", "--json")
+        warnings, done = [event["text"] for event in outcome.events("warning")], outcome.events()[-1]
+        self.assertEqual(warnings, ["the rows have unequal numbers of samples: rows 0 to 4 have 4, rows 5 to 11 have 2, rows 12 to 15 have 0"])
+        self.assertEqual((done["samples"], done["least_samples"], done["warnings"]), (4, 0, warnings))
+        some = self.info("some.exr")
+        self.assertEqual((some["pertev.spp"], some["pertev.least_spp"]), (4, 0))
+        self.assertEqual(json.loads(some["pertev.row_samples"]), {"0:5": 4, "5:12": 2, "12:16": 0})
+        self.assertIn("0 to 4 spp of 2 parts", self.succeed("merge", "a.pvf", "b.pvf", "--partial", "-o", "some.exr").stderr)
+        self.assertEqual(self.info("some.pvf")["parts"], ["rows 0:5, samples 0:4", "rows 5:12, samples 0:2"])
+        self.assertEqual(json.loads(self.succeed("info", "some.exr", "--settings").stdout)["settings"]["spp"], 4)
+        self.refuse(2, "render", "cornell-box", "-o", "x.exr", *SMALL, *flags, "--checkpoint", "some.pvf", says=["some.pvf", "merged film"])
+        self.refuse(2, "merge", "c.pvf", "some.pvf", "-o", "x.exr", says=["samples 0 to 3 of rows 12 to 15", "--partial"])
+        self.refuse(2, "merge", "c.pvf", "some.pvf", "b.pvf", "--partial", "-o", "x.exr", says=["b.pvf", "samples 0 to 1 of rows 5 to 11", "some.pvf"])
+        for order in (["d.pvf", "some.pvf", "c.pvf"], ["some.pvf", "c.pvf", "d.pvf"]):
+            done = self.merge(*order, "-o", "all.exr", "-o", "all.png", "-o", "all.pvf")
+            for key in ["hash", "layers_hash"]:
+                self.assertEqual(done[key], whole[key], key)
+            self.assertEqual((done["samples"], done["least_samples"]), (4, 4))
+            self.assertEqual(self.metadata("all.exr"), self.metadata("whole.exr"))
+            self.assertEqual(self.read("all.png"), self.read("whole.png"))
 
     def test_parts_by_rows_and_samples_are_denoised_as_a_whole_picture(self):
         flags = ["--spp", "4", "--denoise", "svgf", "--aov", "normal", "--exposure", "auto"]
@@ -284,7 +309,8 @@ class Merge(CliTest):
         self.refuse(2, "merge", *names, names[1], "-o", "x.exr", says=[names[1], "samples 2 to 3"])
         done = self.merge(names[0], names[2], "--partial", "-o", "some.exr")
         self.assertEqual(done["samples"], 4)
-        self.refuse(2, "merge", names[0], names[2], "--partial", "-o", "x.pvf", says=["x.pvf"])
+        self.merge(names[0], names[2], "--partial", "-o", "some.pvf")
+        self.assertEqual(self.merge(names[1], "some.pvf", "-o", "all.exr")["hash"], self.merge(*names, "-o", "whole.exr")["hash"])
         for flags, name in [(["--max-depth", "3"], "--max-depth"), (["--seed", "7"], "--seed"), (["--exposure", "1"], "exposure"),
                             (["--size", "16x16"], "--size"), (["--aov", "depth"], "--aov")]:
             with self.subTest(flags=flags):

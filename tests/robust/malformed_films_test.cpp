@@ -55,7 +55,7 @@ std::string small_film(const fs::path& path) {
     FilmHeader header;
     header.settings = {{"seed", "1"}};
     header.width = 5, header.height = 3, header.aovs = kAovIds | kAovDepth;
-    header.part = {0, 3, {0, 2}}, header.spp = 2;
+    header.parts = {{0, 3, {0, 2}}}, header.spp = 2;
     header.facts.settings = {{"pertev.seed", 1}};
     const Film film = header.make_film(queue);
     test::Random random(1);
@@ -176,6 +176,13 @@ TEST_CASE("a header with valid checksums is read strictly") {
                                                           {R"("samples":[0,2])", R"("samples":[0,9000000])"}}) {
         CHECK(code_of(from, to) == ErrorCode::OverLimit);
     }
+    const std::string part = R"("rows":[0,3],"samples":[0,2])";
+    CHECK(!error_of(path, with_header(film, replaced(header, part, R"("parts":[[0,2,0,1],[2,3,0,2]])"))));
+    for (const char* parts :
+         {"", "[0,3,0]", "[0,3,0,0]", "[3,3,0,2]", "[0,2,0,1],[1,3,0,1]", "[0,3,0,1],[0,3,1,2]", "[2,3,0,1],[0,2,0,1]"})
+        CHECK(code_of(part, fmt::format(R"("parts":[{}])", parts)) == ErrorCode::BadInput);
+    for (const char* parts : {"[0,4,0,2]", "[0,3,0,9000000]"})
+        CHECK(code_of(part, fmt::format(R"("parts":[{}])", parts)) == ErrorCode::OverLimit);
     // The targets fit, but no file of this length has so many blocks.
     std::string large = replaced(header, R"("size":[5,3])", R"("size":[65536,16384])");
     for (const uint64_t stride : {80, 12}) {
@@ -183,7 +190,7 @@ TEST_CASE("a header with valid checksums is read strictly") {
                          fmt::format(R"("bytes":{},"stride":{})", (uint64_t(1) << 30) * stride, stride));
     }
     CHECK(test::says(error_of(path, with_header(film, large)), "truncated"));
-    CHECK(test::says(error_of(path, replaced(film, "\x1a\n\x02", "\x1a\n\x03")), "version 3"));
+    CHECK(test::says(error_of(path, replaced(film, "\x1a\n\x02", "\x1a\n\x04")), "version 4"));
 }
 
 TEST_CASE("a reader survives fuzzed headers and blocks with valid checksums") {

@@ -55,7 +55,7 @@ public:
 
     /// One layer: the id and the share of samples of each rank, from the largest share to the smallest. A share of 0
     /// ends the list.
-    std::vector<FilmLayer> layers(uint32_t width, uint64_t samples) const override {
+    std::vector<FilmLayer> layers(uint32_t width, const RowSamples& samples) const override {
         const std::vector<PixelCoverage<kIds>> pixels = this->elements().download();
         FilmLayer layer = {"coverage", {}, {width, static_cast<uint32_t>(pixels.size()) / width, 2 * kIds, {}}};
         for (const PixelCoverage<kIds>& pixel : pixels) {
@@ -67,7 +67,7 @@ public:
             ranks.resize(kIds);
             for (const auto& [count, id] : ranks) {
                 layer.image.pixels.push_back(static_cast<float>(id));
-                layer.image.pixels.push_back(static_cast<float>(count) / static_cast<float>(samples));
+                layer.image.pixels.push_back(static_cast<float>(count) / static_cast<float>(samples.most()));
             }
         }
         return {layer};

@@ -43,7 +43,10 @@ void OidnDenoiser::restore(const DenoiserState& state) {
     const DenoiserHead head = DenoiserHead::read(state);
     if (state.size() != state_size(pixels_).words || head.features != kFeatures)
         throw Error(ErrorCode::BadInput, "what the denoiser has gathered is damaged");
-    restore_pixels(queue_, gathered(), pixels_, 0, pixels_, std::span(state).subspan(DenoiserHead::kWords));
+    DenoiserState words(state.begin() + DenoiserHead::kWords, state.end());
+    // Pixels without samples have the guides of a ray that hits nothing.
+    std::replace(words.begin(), words.begin() + 8 * std::ptrdiff_t{pixels_}, kMissingWord, 0u);
+    restore_pixels(queue_, gathered(), pixels_, 0, pixels_, words);
     samples_ = head.samples, features_ = head.features;
 }
 

@@ -2,7 +2,7 @@
 
 namespace pertev {
 
-std::vector<FilmLayer> UvTarget::layers(uint32_t width, uint64_t) const {
+std::vector<FilmLayer> UvTarget::layers(uint32_t width, const RowSamples&) const {
     const std::vector<UvSum> sums = elements().download();
     FilmLayer layer = {"uv", {"u", "v"}, {width, static_cast<uint32_t>(sums.size()) / width, 2, {}}};
     layer.image.pixels.reserve(2 * sums.size());
@@ -14,7 +14,7 @@ std::vector<FilmLayer> UvTarget::layers(uint32_t width, uint64_t) const {
     return {std::move(layer)};
 }
 
-std::vector<FilmLayer> CountTarget::layers(uint32_t width, uint64_t) const {
+std::vector<FilmLayer> CountTarget::layers(uint32_t width, const RowSamples&) const {
     const std::vector<uint32_t> counts = elements().download();
     FilmLayer layer = {"samples", {"N"}, {width, static_cast<uint32_t>(counts.size()) / width, 1, {}}};
     layer.image.pixels.assign(counts.begin(), counts.end());

@@ -35,7 +35,7 @@ class UvTarget final : public ElementTarget<UvSum, AddUvSums, 0> {
 public:
     UvTarget(Queue& queue, std::size_t pixels) : ElementTarget(queue, pixels, "uv") {}
     void show(FilmView&) const override {}
-    std::vector<FilmLayer> layers(uint32_t width, uint64_t samples) const override;
+    std::vector<FilmLayer> layers(uint32_t width, const RowSamples& samples) const override;
 };
 
 /// Layer `samples`: the number of samples that a pixel has taken, as a float, which is exact up to 2^24.
@@ -43,7 +43,7 @@ class CountTarget final : public ElementTarget<uint32_t, AddSampleCounts, 0> {
 public:
     CountTarget(Queue& queue, std::size_t pixels) : ElementTarget(queue, pixels, "sample counts") {}
     void show(FilmView&) const override {}
-    std::vector<FilmLayer> layers(uint32_t width, uint64_t samples) const override;
+    std::vector<FilmLayer> layers(uint32_t width, const RowSamples& samples) const override;
 };
 
 /// Returns the film's target of this class; null if it has none.

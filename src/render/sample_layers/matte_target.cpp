@@ -28,7 +28,7 @@ std::array<Rank, kMatteIds> ranks_of(const PixelMatte& pixel) {
 
 } // namespace
 
-std::vector<FilmLayer> MatteTarget::layers(uint32_t width, uint64_t samples) const {
+std::vector<FilmLayer> MatteTarget::layers(uint32_t width, const RowSamples& samples) const {
     const std::vector<PixelMatte> pixels = elements().download();
     std::vector<FilmLayer> layers;
     for (uint32_t k = 0; k < kMatteRanks / kRanksOfLayer; ++k) {
@@ -36,14 +36,16 @@ std::vector<FilmLayer> MatteTarget::layers(uint32_t width, uint64_t samples) con
         layer.image = {width, static_cast<uint32_t>(pixels.size()) / width, 2 * kRanksOfLayer, {}};
         layer.image.pixels.reserve(pixels.size() * 2 * kRanksOfLayer);
     }
-    for (const PixelMatte& pixel : pixels) {
-        const std::array<Rank, kMatteIds> ranks = ranks_of(pixel);
-        for (uint32_t k = 0; k < kMatteRanks; ++k) {
-            std::vector<float>& to = layers[k / kRanksOfLayer].image.pixels;
-            to.push_back(std::bit_cast<float>(ranks[k].id));
-            to.push_back(samples == 0 ? 0.0f : mean_of({0, ranks[k].samples}, samples));
+    samples.visit_pixels(width, pixels.size(), [&](std::size_t first, std::size_t end, uint64_t count) {
+        for (std::size_t i = first; i < end; ++i) {
+            const std::array<Rank, kMatteIds> ranks = ranks_of(pixels[i]);
+            for (uint32_t k = 0; k < kMatteRanks; ++k) {
+                std::vector<float>& to = layers[k / kRanksOfLayer].image.pixels;
+                to.push_back(std::bit_cast<float>(ranks[k].id));
+                to.push_back(count == 0 ? 0.0f : mean_of({0, ranks[k].samples}, count));
+            }
         }
-    }
+    });
     return layers;
 }
 

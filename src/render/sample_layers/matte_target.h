@@ -18,7 +18,7 @@ public:
     void show(FilmView&) const override {}
     /// Layers TYPE00 to TYPE03 of two ranks each: R the id and G the share of samples of the first, B and A of the
     /// second. Ranks are in order of decreasing shares, then of ids. A share of 0 ends the list.
-    std::vector<FilmLayer> layers(uint32_t width, uint64_t samples) const override;
+    std::vector<FilmLayer> layers(uint32_t width, const RowSamples& samples) const override;
 };
 
 /// Returns the target of a type; null if the film has none.

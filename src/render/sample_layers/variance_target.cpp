@@ -55,14 +55,15 @@ double variance_of_mean(const Moments& moments, uint64_t samples) {
     return excess > 0 ? excess / (count * count * (count - 1)) : 0;
 }
 
-std::vector<FilmLayer> VarianceTarget::layers(uint32_t width, uint64_t samples) const {
+std::vector<FilmLayer> VarianceTarget::layers(uint32_t width, const RowSamples& samples) const {
     const std::vector<PixelMoments> pixels = elements().download();
     FilmLayer layer = {"variance", {"R", "G", "B"}, {width, static_cast<uint32_t>(pixels.size()) / width, 3, {}}};
     layer.image.pixels.reserve(3 * pixels.size());
-    for (const PixelMoments& pixel : pixels) {
-        for (const Moments& channel : pixel.channels)
-            layer.image.pixels.push_back(static_cast<float>(variance_of_mean(channel, samples)));
-    }
+    samples.visit_pixels(width, pixels.size(), [&](std::size_t first, std::size_t end, uint64_t count) {
+        for (std::size_t i = first; i < end; ++i)
+            for (const Moments& channel : pixels[i].channels)
+                layer.image.pixels.push_back(static_cast<float>(variance_of_mean(channel, count)));
+    });
     return {std::move(layer)};
 }
 

@@ -85,7 +85,7 @@ class VarianceTarget final : public ElementTarget<PixelMoments, AddMoments, 0> {
 public:
     VarianceTarget(Queue& queue, std::size_t pixels) : ElementTarget(queue, pixels, "variance") {}
     void show(FilmView&) const override {}
-    std::vector<FilmLayer> layers(uint32_t width, uint64_t samples) const override;
+    std::vector<FilmLayer> layers(uint32_t width, const RowSamples& samples) const override;
 };
 
 /// Lets a film that holds one sample of each pixel, and has this target, take

@@ -73,16 +73,18 @@ BlockFileReader::BlockFileReader(const std::filesystem::path& path, const BlockF
     if (size_ < magic.size()) throw refuse_other();
     read(std::as_writable_bytes(std::span(magic)));
     if (magic != kind.magic) throw refuse_other();
-    if (const auto version = read_value<uint32_t>(); version != kind.version)
-        throw error(
-            fmt::format("the file has version {} of the format; this program reads version {}", version, kind.version));
+    const auto version = read_value<uint32_t>();
+    if (version < kind.oldest_version || version > kind.version) {
+        throw error(fmt::format("the file has version {} of the format; this program reads versions {} to {}", version,
+                                kind.oldest_version, kind.version));
+    }
     const auto size = read_value<uint32_t>();
     if (size > kMaxFilmHeaderBytes || size > size_) throw error("the header is damaged");
     json_.resize(size);
     read(std::as_writable_bytes(std::span(json_)));
     Hasher hasher;
     hasher.add(std::as_bytes(std::span(magic)));
-    hasher.add_value(kind.version);
+    hasher.add_value(version);
     hasher.add_value(size);
     hasher.add(std::as_bytes(std::span(json_)));
     header_hash_ = check_hash(hasher, "header");

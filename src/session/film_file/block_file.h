@@ -30,7 +30,8 @@ constexpr std::size_t film_block_elements(std::size_t stride) {
 struct BlockFileKind {
     std::string_view magic;
     uint32_t version;
-    std::string_view name; // for people: "film"
+    std::string_view name;             // for people: "film"
+    uint32_t oldest_version = version; // that is read
 };
 
 /// The bytes of a file, in the order of x86, which is the file's.

@@ -32,19 +32,20 @@ void Checkpoint::check_header(const std::string& file, const FilmHeader& header)
     if (const auto different = film_difference(header, picture_)) {
         refuse("the checkpoint belongs to another picture: " + text_of(*different));
     }
-    if (header.part.is_empty()) return;
-    const SampleRange there = header.part.samples;
-    if (header.part.first_row != picture_.part.first_row || header.part.end_row != picture_.part.end_row) {
-        refuse(fmt::format("the checkpoint has the rows {} to {}, not {} to {} (`rows`)", header.part.first_row,
-                           header.part.end_row - 1, picture_.part.first_row, picture_.part.end_row - 1));
+    if (header.parts.size() > 1) refuse("the checkpoint is a merged film, whose rows have unequal samples or gaps");
+    const FilmPart &of = header.part(), &wanted = picture_.part();
+    if (of.is_empty()) return;
+    if (of.first_row != wanted.first_row || of.end_row != wanted.end_row) {
+        refuse(fmt::format("the checkpoint has the rows {} to {}, not {} to {} (`rows`)", of.first_row, of.end_row - 1,
+                           wanted.first_row, wanted.end_row - 1));
     }
-    if (there.first != picture_.part.samples.first) {
-        refuse(fmt::format("the checkpoint's samples begin with number {}, not {} (`part`, `samples`)", there.first,
-                           picture_.part.samples.first));
+    if (of.samples.first != wanted.samples.first) {
+        refuse(fmt::format("the checkpoint's samples begin with number {}, not {} (`part`, `samples`)",
+                           of.samples.first, wanted.samples.first));
     }
-    if (there.end > picture_.part.samples.end) {
-        refuse(fmt::format("the checkpoint has samples up to {}, more than the {} of this picture (`spp`)", there.end,
-                           picture_.part.samples.end));
+    if (of.samples.end > wanted.samples.end) {
+        refuse(fmt::format("the checkpoint has samples up to {}, more than the {} of this picture (`spp`)",
+                           of.samples.end, wanted.samples.end));
     }
 }
 
@@ -53,11 +54,12 @@ std::string Checkpoint::take(const std::string& file, FilmRender& film) const {
     FilmFileReader reader(file);
     const FilmHeader& header = reader.header();
     check_header(file, header);
-    if (header.part.is_empty()) return "";
+    const FilmPart& part = header.part();
+    if (part.is_empty()) return "";
     film.restore(
-        header.part.samples, [&](Film& into) { reader.add_to(into); }, header.rays, header.render_seconds);
-    return fmt::format("resumes from {} of {} samples in {}", header.part.samples.count(),
-                       picture_.part.samples.count(), file);
+        part.samples, [&](Film& into) { reader.add_to(into); }, header.rays, header.render_seconds);
+    return fmt::format("resumes from {} of {} samples in {}", part.samples.count(), picture_.part().samples.count(),
+                       file);
 }
 
 void Checkpoint::restore(FilmRender& film, Sink& sink) {
@@ -74,10 +76,11 @@ void Checkpoint::write(FilmRender& film, PictureFacts facts) {
     header.facts = std::move(facts);
     header.rays = film.rays();
     const Film& sums = film.film();
+    FilmPart& part = header.parts.front();
     if (sums.part().is_empty())
-        header.part.samples.end = header.part.samples.first;
+        part.samples.end = part.samples.first;
     else
-        header.part = sums.part();
+        part = sums.part();
     header.render_seconds = film.stats().render_seconds;
     generations_.write(film_file_bytes(header, sums));
 }

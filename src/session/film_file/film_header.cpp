@@ -124,6 +124,18 @@ std::pair<uint32_t, uint32_t> read_range(const JsonValue& value, uint32_t most) 
     return {first, end};
 }
 
+/// The rows and samples of the film.
+std::string json_of_parts(const std::vector<FilmPart>& parts) {
+    if (parts.size() == 1) {
+        const auto& [first_row, end_row, samples] = parts.front();
+        return fmt::format(R"("rows":[{},{}],"samples":[{},{}])", first_row, end_row, samples.first, samples.end);
+    }
+    std::vector<std::string> texts;
+    for (const auto& [first_row, end_row, samples] : parts)
+        texts.push_back(fmt::format("[{},{},{},{}]", first_row, end_row, samples.first, samples.end));
+    return fmt::format(R"("parts":[{}])", fmt::join(texts, ","));
+}
+
 /// The place of a crop in the whole picture; empty if the film is of the whole.
 std::string json_of_place(const ExrPlace& place) {
     if (place.is_whole()) return "";
@@ -150,6 +162,34 @@ std::pair<uint32_t, uint32_t> read_pair(const JsonValue& value, uint32_t least) 
     const std::vector<JsonValue> numbers = value.elements();
     if (numbers.size() != 2) throw value.error("expected two numbers");
     return {read_number(numbers[0], least, kMaxImageSide), read_number(numbers[1], least, kMaxImageSide)};
+}
+
+/// Reads the part that a film is of, or several in the order of RowSamples::parts().
+std::vector<FilmPart> read_parts(const JsonValue& root, uint32_t height) {
+    const auto list = root.find("parts");
+    if (!list) {
+        const auto [first_row, end_row] = read_range(root.at("rows"), height);
+        const auto [first, end] = read_range(root.at("samples"), kMaxSamplesPerPixel);
+        return {{first_row, end_row, {first, end}}};
+    }
+    std::vector<FilmPart> parts;
+    for (const JsonValue& entry : list->elements()) {
+        const std::vector<JsonValue> ends = entry.elements();
+        if (ends.size() != 4) throw entry.error("expected four numbers");
+        const FilmPart part = {
+            read_number(ends[0], 0, height),
+            read_number(ends[1], 0, height),
+            {read_number(ends[2], 0, kMaxSamplesPerPixel), read_number(ends[3], 0, kMaxSamplesPerPixel)}};
+        const FilmPart before = parts.empty() ? FilmPart() : parts.back();
+        const bool follows =
+            part.first_row >= before.end_row || (part.first_row == before.first_row && part.end_row == before.end_row &&
+                                                 part.samples.first > before.samples.end);
+        if (part.first_row >= part.end_row || part.samples.first >= part.samples.end || !follows)
+            throw entry.error("expected rows and samples that follow those before");
+        parts.push_back(part);
+    }
+    if (parts.empty()) throw list->error("expected a part");
+    return parts;
 }
 
 /// Reads where a film of this size is in its whole picture.
@@ -196,16 +236,16 @@ FilmHeader film_header(const PictureOptions& options, const PictureRecord& recor
                          .light_layers = film.light_layers(),
                          .layers_at = film.layers_at(),
                          .denoise = record.settings.denoise,
-                         .part = film.part(),
+                         .parts = {film.part()},
                          .spp = options.render.samples,
                          .facts = facts,
                          .rays = stats.rays,
                          .render_seconds = stats.render_seconds};
     std::erase_if(header.settings,
                   [](const auto& setting) { return setting.first == "spp" || setting.first == "scene"; });
-    if (header.part.is_empty()) {
-        header.part = record.settings.part();
-        header.part.samples.end = header.part.samples.first;
+    if (FilmPart& part = header.parts.front(); part.is_empty()) {
+        part = record.settings.part();
+        part.samples.end = part.samples.first;
     }
     return header;
 }
@@ -229,11 +269,10 @@ std::string json_of(const FilmHeader& header) {
     for (std::string& name : sample_layer_names(header.sample_layers)) layers.push_back(std::move(name));
     const PictureFacts& facts = header.facts;
     return fmt::format(
-        R"({{"settings":{{{}}},"size":[{},{}]{},"rows":[{},{}],"samples":[{},{}],"spp":{},"layers":{},"light_layers":{},"layers_at":"{}"{}{},"targets":{},)"
+        R"({{"settings":{{{}}},"size":[{},{}]{},{},"spp":{},"layers":{},"light_layers":{},"layers_at":"{}"{}{},"targets":{},)"
         R"("metadata":{},"display_metadata":{},"origin":{},"display":{},"transparent":{},"rays":{{"camera":{},"bounce":{},"shadow":{}}},"seconds":{}}})",
-        fmt::join(settings, ","), header.width, header.height, json_of_place(facts.place), header.part.first_row,
-        header.part.end_row, header.part.samples.first, header.part.samples.end, header.spp, json_strings(layers),
-        json_strings(header.light_layers), name_of(header.layers_at),
+        fmt::join(settings, ","), header.width, header.height, json_of_place(facts.place), json_of_parts(header.parts),
+        header.spp, json_strings(layers), json_strings(header.light_layers), name_of(header.layers_at),
         header.denoise == Denoise::None ? "" : fmt::format(R"(,"denoise":"{}")", name_of(header.denoise)),
         json_of_mattes(facts), json_of_targets(header), json_of_metadata(facts.settings), json_of_metadata(facts.shown),
         json_of_metadata(facts.origin), facts.display ? json_of_display(*facts.display) : "null", facts.transparent,
@@ -247,10 +286,10 @@ FilmHeader read_film_header(const JsonValue& root) {
     std::tie(header.width, header.height) = read_pair(root.at("size"), 1);
     if (uint64_t(header.width) * header.height > kMaxImagePixels)
         throw Error(ErrorCode::OverLimit, root.at("size").location(), "too many pixels");
-    std::tie(header.part.first_row, header.part.end_row) = read_range(root.at("rows"), header.height);
-    const auto [first, end] = read_range(root.at("samples"), kMaxSamplesPerPixel);
-    header.part.samples = {first, end};
-    header.spp = read_number(root.at("spp"), end, kMaxSamplesPerPixel);
+    header.parts = read_parts(root, header.height);
+    uint32_t last = 0;
+    for (const FilmPart& part : header.parts) last = std::max(last, part.samples.end);
+    header.spp = read_number(root.at("spp"), last, kMaxSamplesPerPixel);
     for (const JsonValue& layer : root.at("layers").elements()) {
         if (const auto of_samples = sample_layer_named(layer.to_string())) {
             header.sample_layers |= *of_samples;

@@ -11,9 +11,9 @@
 
 namespace pertev {
 
-inline constexpr std::string_view kFilmFileMagic = "\x89PVF\r\n\x1a\n"; // text converters and 7 bits damage it
-inline constexpr uint32_t kFilmFileVersion = 2;
-inline constexpr BlockFileKind kFilmFile = {kFilmFileMagic, kFilmFileVersion, "film"};
+inline constexpr std::string_view kFilmFileMagic = "\x89PVF\r\n\x1a\n";      // text converters and 7 bits damage it
+inline constexpr uint32_t kFilmFileVersion = 2, kFilmFileOfPartsVersion = 3; // with one part, and with several
+inline constexpr BlockFileKind kFilmFile = {kFilmFileMagic, kFilmFileOfPartsVersion, "film", kFilmFileVersion};
 
 struct FilmHeader {
     DecidingSettings settings; // without the number of samples, and without the name of the scene
@@ -23,12 +23,17 @@ struct FilmHeader {
     std::vector<std::string> light_layers;
     LayersAt layers_at = LayersAt::Samples;
     Denoise denoise = Denoise::None;
-    FilmPart part;    // may be empty
-    uint32_t spp = 0; // samples of the whole picture
+    std::vector<FilmPart> parts = {FilmPart()}; // one, which may be empty, or several, as of RowSamples
+    uint32_t spp = 0;                           // samples of the whole picture
     PictureFacts facts;
     RayCounts rays;            // the rays that the part took
     double render_seconds = 0; // time that the part took
 
+    /// Returns the only part. Throws std::logic_error if there are several.
+    const FilmPart& part() const {
+        PERTEV_CHECK(parts.size() == 1);
+        return parts.front();
+    }
     /// Makes an empty film with all targets of the file.
     Film make_film(Queue& queue) const;
 };

@@ -1,7 +1,7 @@
 #include "session/film_file/merge_films.h"
 
 #include <algorithm>
-#include <set>
+#include <ranges>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -14,48 +14,27 @@
 namespace pertev {
 namespace {
 
-/// Order of parts whose metadata a merged picture has: the first samples, if there are any.
-auto precedence(const FilmPart& part) { return std::tuple(part.is_empty(), part.samples.first, part.first_row); }
+/// Order of films whose metadata a merged picture has: the first samples, if there are any, and of those the first row.
+auto precedence(const FilmHeader& header) {
+    const auto of_part = [](const FilmPart& part) {
+        return std::tuple(part.is_empty(), part.samples.first, part.first_row);
+    };
+    return std::ranges::min(header.parts | std::views::transform(of_part));
+}
 
 bool overlap(const FilmPart& a, const FilmPart& b) {
     return !a.is_empty() && !b.is_empty() && a.first_row < b.end_row && b.first_row < a.end_row &&
            a.samples.first < b.samples.end && b.samples.first < a.samples.end;
 }
 
-/// Samples of the rows between two neighbouring borders.
-struct Band {
-    uint32_t first_row, end_row;
-    std::vector<SampleRange> ranges = {}; // disjoint and in order
-
-    uint32_t count() const {
-        uint32_t sum = 0;
-        for (const SampleRange& range : ranges) sum += range.count();
-        return sum;
-    }
-    /// Returns the first samples of [0, end) that are missing; empty if none is.
-    SampleRange first_missing(uint32_t end) const {
-        uint32_t at = 0;
-        for (const SampleRange& range : ranges) {
-            if (range.first > at) return {at, range.first};
-            at = range.end;
-        }
-        return {at, std::max(at, end)};
-    }
-};
-
-std::vector<Band> bands_of(const std::vector<FilmPart>& parts, uint32_t height) {
-    std::set<uint32_t> borders = {0, height};
-    for (const FilmPart& part : parts) borders.insert({part.first_row, part.end_row});
-    std::vector<Band> bands;
-    for (auto border = borders.begin(); std::next(border) != borders.end(); ++border) {
-        Band& band = bands.emplace_back(Band{*border, *std::next(border)});
-        for (const FilmPart& part : parts) {
-            if (!part.is_empty() && part.first_row <= band.first_row && band.end_row <= part.end_row)
-                band.ranges.push_back(part.samples);
-        }
-        std::ranges::sort(band.ranges, {}, &SampleRange::first);
-    }
-    return bands;
+/// Makes the rows without samples black, of which a denoiser has gathered nothing.
+void blacken_missing(const Film& film, Image& image) {
+    film.row_samples().visit_pixels(film.width(), film.window().count(),
+                                    [&](std::size_t first, std::size_t end, uint32_t samples) {
+                                        if (samples > 0) return;
+                                        std::fill(image.pixels.begin() + std::ptrdiff_t(first * image.channels),
+                                                  image.pixels.begin() + std::ptrdiff_t(end * image.channels), 0.0f);
+                                    });
 }
 
 } // namespace
@@ -64,10 +43,10 @@ FilmMerge::FilmMerge(std::span<const std::string> files, bool is_partial) {
     for (const std::string& file : files) {
         const FilmFileReader reader(file);
         take_header(file, reader.header());
-        parts_.push_back({file, reader.header().part, reader.header_hash()});
+        parts_.push_back({file, reader.header().parts, reader.header_hash()});
     }
-    refuse_overlaps();
-    check_rows(is_partial);
+    take_samples();
+    if (!is_partial) refuse_gaps();
     for (auto& [name, value] : header_.facts.origin) {
         auto* const text = std::get_if<std::string>(&value);
         if (text != nullptr && name == "pertev.settings") *text = with_samples(*text, fmt::format("{}", header_.spp));
@@ -87,7 +66,7 @@ void FilmMerge::take_header(const std::string& file, const FilmHeader& header) {
     const RayCounts rays = header_.rays + header.rays;
     const double seconds = header_.render_seconds + header.render_seconds;
     const uint32_t spp = std::max(header_.spp, header.spp);
-    const bool comes_first = precedence(header.part) < precedence(header_.part);
+    const bool comes_first = precedence(header) < precedence(header_);
     const ExrMetadata& later = comes_first ? header_.facts.origin : header.facts.origin;
     ExrMetadata origin = comes_first ? header.facts.origin : header_.facts.origin;
     unite_id_names(later, origin);
@@ -96,52 +75,42 @@ void FilmMerge::take_header(const std::string& file, const FilmHeader& header) {
     header_.rays = rays, header_.render_seconds = seconds, header_.spp = spp;
 }
 
-void FilmMerge::refuse_overlaps() const {
-    for (std::size_t i = 0; i < parts_.size(); ++i) {
-        for (std::size_t k = 0; k < i; ++k) {
-            if (!overlap(parts_[i].of, parts_[k].of)) continue;
-            const FilmPart &a = parts_[i].of, &b = parts_[k].of;
-            throw Error(ErrorCode::BadInput, FileLocation{parts_[i].file},
+/// Takes the samples of all parts, which must not overlap.
+void FilmMerge::take_samples() {
+    samples_ = RowSamples(header_.height);
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+        for (const FilmPart& part : parts_[i].of)
+            if (!samples_.add(part)) refuse_overlap(i, part);
+    header_.parts = samples_.parts();
+    if (header_.parts.empty())
+        throw Error(ErrorCode::BadInput, FileLocation{parts_.front().file}, "none of the files contains a sample");
+}
+
+/// Names the file before number `number` that has samples of its `part`.
+void FilmMerge::refuse_overlap(std::size_t number, const FilmPart& part) const {
+    for (const Part& before : std::span(parts_).first(number)) {
+        for (const FilmPart& other : before.of) {
+            if (!overlap(part, other)) continue;
+            throw Error(ErrorCode::BadInput, FileLocation{parts_[number].file},
                         fmt::format("the samples {} to {} of rows {} to {} are also in {}",
-                                    std::max(a.samples.first, b.samples.first),
-                                    std::min(a.samples.end, b.samples.end) - 1, std::max(a.first_row, b.first_row),
-                                    std::min(a.end_row, b.end_row) - 1, parts_[k].file));
+                                    std::max(part.samples.first, other.samples.first),
+                                    std::min(part.samples.end, other.samples.end) - 1,
+                                    std::max(part.first_row, other.first_row),
+                                    std::min(part.end_row, other.end_row) - 1, before.file));
         }
     }
 }
 
-void FilmMerge::check_rows(bool is_partial) {
-    std::vector<FilmPart> parts;
-    for (const Part& part : parts_) parts.push_back(part.of);
-    const std::vector<Band> bands = bands_of(parts, header_.height);
-    const FileLocation place = {parts_.front().file};
-    if (std::ranges::all_of(parts, &FilmPart::is_empty))
-        throw Error(ErrorCode::BadInput, place, "none of the files contains a sample");
-    uint32_t count = 0;
-    for (const Band& band : bands) count = std::max(count, band.count());
-    const bool are_even = std::ranges::all_of(bands, [&](const Band& band) { return band.count() == count; });
-    uint32_t first = UINT32_MAX;
-    for (const Band& band : bands) {
+void FilmMerge::refuse_gaps() const {
+    for (const RowSamples::Band& band : samples_.bands()) {
         const SampleRange missing = band.first_missing(header_.spp);
-        if (missing.count() > 0 && !is_partial) {
-            throw Error(ErrorCode::BadInput, place,
-                        fmt::format("samples {} to {} of rows {} to {} are in none of the files{}", missing.first,
-                                    missing.end - 1, band.first_row, band.end_row - 1,
-                                    are_even ? "; set `partial` to merge without them"
-                                             : ", and no picture can be without them, because other rows have more"));
-        }
-        if (band.count() != count) {
-            throw Error(ErrorCode::BadInput, place,
-                        fmt::format("rows {} to {} have {} samples, and others {}", band.first_row, band.end_row - 1,
-                                    band.count(), count));
-        }
-        const uint32_t begin =
-            band.ranges.front().first; // there is one: all bands have as many samples, and some have any
-        if (first == UINT32_MAX) first = begin;
-        has_gaps_ = has_gaps_ || begin != first || band.ranges.back().end - begin != count;
+        if (missing.count() == 0) continue;
+        throw Error(
+            ErrorCode::BadInput, FileLocation{parts_.front().file},
+            fmt::format(
+                "samples {} to {} of rows {} to {} are in none of the files; set `partial` to merge without them",
+                missing.first, missing.end - 1, band.first_row, band.end_row - 1));
     }
-    const uint32_t begin = has_gaps_ ? 0 : first;
-    header_.part = {0, header_.height, {begin, begin + count}};
 }
 
 Film FilmMerge::film(Queue& queue, Sink& sink) const {
@@ -163,13 +132,13 @@ Film FilmMerge::film(Queue& queue, Sink& sink) const {
         reader.add_to(film);
         sink.progress({.doing = "merging", .share = static_cast<double>(++done) / static_cast<double>(parts_.size())});
     }
-    film.set_part(header_.part);
+    film.set_row_samples(samples_);
     return film;
 }
 
 RenderResult result_of(const FilmHeader& header, Film& film, Queue& queue) {
     RenderResult result;
-    result.samples = film.part().samples.count();
+    result.samples = film.row_samples().most();
     result.rays = header.rays;
     result.invalid_samples = film.invalid_samples();
     result.render_seconds = header.render_seconds;
@@ -182,6 +151,7 @@ RenderResult result_of(const FilmHeader& header, Film& film, Queue& queue) {
     DenoiserTarget* const gathered = denoiser_target(film);
     PERTEV_CHECK(gathered != nullptr);
     auto [image, denoiser] = denoise(queue, settings, result.picture, gathered->take());
+    blacken_missing(film, image);
     result.denoised = std::move(image), result.denoiser = std::move(denoiser);
     return result;
 }

@@ -15,34 +15,36 @@ namespace pertev {
 class FilmMerge {
 public:
     /// Reads the headers. Throws Error(BadInput) for parts of different pictures, naming the first difference, for
-    /// parts that overlap, and, unless `is_partial`, if samples are missing; then each row needs as many samples as
-    /// all others. Throws as FilmFileReader.
+    /// parts that overlap or have no sample, and, unless `is_partial`, if samples are missing. Throws as
+    /// FilmFileReader.
     FilmMerge(std::span<const std::string> files, bool is_partial);
 
     /// Returns the header of the merged film. Its metadata are those of the part with the first samples.
     const FilmHeader& header() const { return header_; }
-    /// Returns whether samples between those of the parts are missing, so that no film file can hold all of them.
-    bool has_gaps() const { return has_gaps_; }
+    /// Returns which samples the files have.
+    const RowSamples& samples() const { return samples_; }
     /// Reads and adds all films. Throws as FilmFileReader, and Error(OutOfMemory, Interrupted).
     Film film(Queue& queue, Sink& sink) const;
 
 private:
     struct Part {
         std::string file;
-        FilmPart of;
+        std::vector<FilmPart> of;
         Hash128 header;
     };
     void take_header(const std::string& file, const FilmHeader& header);
-    void refuse_overlaps() const;
-    void check_rows(bool is_partial);
+    void take_samples();
+    void refuse_overlap(std::size_t number, const FilmPart& part) const;
+    void refuse_gaps() const;
 
     std::vector<Part> parts_;
     FilmHeader header_;
-    bool has_gaps_ = false;
+    RowSamples samples_{1};
 };
 
-/// Returns the result of a merged film, as one run has it, denoised on `queue` if its parts were rendered for that.
-/// Throws Error(BadInput) if the film lacks what the denoiser needs, and Error(OutOfMemory, DeviceFault).
+/// Returns the result of a merged film, as one run has it, denoised on `queue` if its parts were rendered for that. Its
+/// number of samples is that of the rows with the most; rows without samples are black. Throws Error(BadInput) if the
+/// film lacks what the denoiser needs, and Error(OutOfMemory, DeviceFault).
 RenderResult result_of(const FilmHeader& header, Film& film, Queue& queue);
 
 } // namespace pertev

@@ -8,7 +8,9 @@
 namespace pertev {
 
 std::vector<std::byte> film_file_bytes(const FilmHeader& header, const Film& film) {
-    BlockFileBytes file(kFilmFile, json_of(header));
+    BlockFileKind kind = kFilmFile;
+    kind.version = header.parts.size() == 1 ? kFilmFileVersion : kFilmFileOfPartsVersion;
+    BlockFileBytes file(kind, json_of(header));
     std::vector<std::byte> block;
     for (const auto& target : film.targets()) {
         const std::size_t stride = target->stride(), most = film_block_elements(stride) * stride;

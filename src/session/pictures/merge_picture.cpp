@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/error.h"
 #include "session/writing/check_outputs.h"
@@ -11,10 +12,43 @@
 namespace pertev {
 namespace {
 
-void refuse_film_with_gaps(std::span<const std::string> outputs) {
-    const auto film = std::ranges::find_if(outputs, is_film_name);
-    if (film == outputs.end()) return;
-    throw Error(ErrorCode::BadInput, "output", *film, "a film file holds no samples with gaps between them");
+/// Rows [first, end) with equal numbers of samples.
+struct CountedRows {
+    uint32_t first, end, samples;
+};
+
+std::vector<CountedRows> counted_rows(const RowSamples& samples) {
+    std::vector<CountedRows> all;
+    for (const RowSamples::Band& band : samples.bands()) {
+        if (!all.empty() && all.back().samples == band.count())
+            all.back().end = band.end_row; // its samples are others
+        else
+            all.push_back({band.first_row, band.end_row, band.count()});
+    }
+    return all;
+}
+
+/// Returns a warning about rows with unequal numbers of samples.
+std::string warning_of(std::span<const CountedRows> rows) {
+    constexpr std::size_t kMostNamed = 8;
+    std::string text = "the rows have unequal numbers of samples: ";
+    for (std::size_t i = 0; i < std::min(rows.size(), kMostNamed); ++i) {
+        const auto& [first, end, samples] = rows[i];
+        text += i == 0 ? "" : ", ";
+        text += end - first == 1 ? fmt::format("row {} has {}", first, samples)
+                                 : fmt::format("rows {} to {} have {}", first, end - 1, samples);
+    }
+    if (rows.size() > kMostNamed)
+        text += fmt::format(", and {} more ranges of rows have others", rows.size() - kMostNamed);
+    return text;
+}
+
+/// Adds which rows have how many samples to what files say.
+void record_rows(std::span<const CountedRows> rows, uint32_t least, ExrMetadata& origin) {
+    std::vector<std::string> counts;
+    for (const auto& [first, end, samples] : rows) counts.push_back(fmt::format(R"("{}:{}":{})", first, end, samples));
+    origin.emplace_back("pertev.least_spp", static_cast<int32_t>(least));
+    origin.emplace_back("pertev.row_samples", fmt::format("{{{}}}", fmt::join(counts, ",")));
 }
 
 void check_denoiser(const PictureOptions& options, const FilmHeader& header, std::span<const std::string> files) {
@@ -35,12 +69,16 @@ MergedPicture merge_picture(std::span<const std::string> files, bool is_partial,
     if (!outputs.empty()) check_outputs(options, outputs, sink); // else the caller shows the picture
     const FilmMerge parts(files, is_partial);
     check_denoiser(options, parts.header(), files);
-    if (parts.has_gaps()) refuse_film_with_gaps(outputs);
     Queue queue = Queue::make_cpu();
     MergedPicture picture;
     FilmHeader header = parts.header();
     show_merged(options, files.front(), header.facts);
     picture.facts = header.facts;
+    picture.least_samples = parts.samples().least();
+    if (const std::vector<CountedRows> rows = counted_rows(parts.samples()); rows.size() > 1) {
+        sink.warn(warning_of(rows));
+        record_rows(rows, picture.least_samples, picture.facts.origin);
+    }
     if (!writes_tone_mapped(outputs)) picture.facts.shown.clear(); // which only film files have
     Film film = parts.film(queue, sink);
     picture.films = write_film_files(outputs, header, film);

@@ -13,15 +13,16 @@ namespace pertev {
 
 struct MergedPicture {
     RenderResult result;
+    uint32_t least_samples = 0;     // samples of the rows with the fewest; result.samples is that of the most
     PictureFacts facts;             // for the outputs
     std::vector<WrittenFile> films; // the film files among the outputs, which have been written
 };
 
 /// Checks the names of the outputs, merges `files`, and writes the film files among the outputs; write_picture() writes
-/// the others. Samples may be missing if it `is_partial`. `options` are those that the caller has given of `denoise`,
-/// which must be the films', `tone_map` and `exposure`; the others are the films'. Throws as check_outputs, FilmMerge
-/// and show_merged, and Error(BadInput) for a film file of samples with gaps, and for films that lack what the denoiser
-/// needs.
+/// the others. Samples may be missing if it `is_partial`: then each pixel is the mean of those of its row, and if rows
+/// have unequal numbers of them, a warning and the facts name these. `options` are those that the caller has given of
+/// `denoise`, which must be the films', `tone_map` and `exposure`; the others are the films'. Throws as check_outputs,
+/// FilmMerge and show_merged, and Error(BadInput) for films that lack what the denoiser needs.
 MergedPicture merge_picture(std::span<const std::string> files, bool is_partial, const PictureOptions& options,
                             std::span<const std::string> outputs, Sink& sink);
 

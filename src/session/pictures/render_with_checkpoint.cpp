@@ -13,7 +13,7 @@ namespace {
 /// Returns the header of the finished film.
 FilmHeader header_of(const PictureOptions& options, const PictureRecord& record, const Film& film) {
     FilmHeader header = film_header(options, record, facts_of(record, {}), {}, film);
-    header.part = record.settings.part();
+    header.parts = {record.settings.part()};
     return header;
 }
 
