@@ -180,6 +180,8 @@ MUTATIONS = [
      ("src/render/centre_target.cpp", "if (count == 0) return;", "static_cast<void>(count);")),
     ("rows without samples are denoised", "consistency/film_files",
      ("src/session/film_file/merge_films.cpp", "    blacken_missing(film, image);\n", "    static_cast<void>(blacken_missing);\n")),
+    ("pixels without samples have guides that are no numbers", "consistency/oidn",
+     ("src/denoise/oidn/oidn_denoiser.cpp", "kMissingWord, 0u);\n    restore", "kMissingWord, kMissingWord);\n    restore")),
     ("a header may have parts that overlap", "robust/malformed_films", ("src/session/film_file/film_header.cpp", " || !follows)", ")")),
     ("a merge does not say which rows lack samples", "robust/cli_merge",
      ("src/session/pictures/merge_picture.cpp", "        sink.warn(warning_of(rows));\n", "        static_cast<void>(warning_of(rows));\n")),

@@ -146,7 +146,7 @@ TEST_CASE("a library that is missing, lacks a function, has no device or is of a
 }
 
 TEST_CASE("parts of rows and samples have the guides of one run, in any order") {
-    const StandIn stand_in;
+    StandIn stand_in;
     if (!stand_in.is_there()) return;
     Queue queue = requested_queue();
     Messages messages;
@@ -168,17 +168,19 @@ TEST_CASE("parts of rows and samples have the guides of one run, in any order") 
     const std::vector<FilmPart> bands = {{0, 5, {0, 23}}, {5, 32, {0, 23}}},
                                 samples = {{0, 32, {0, 3}}, {0, 32, {3, 17}}, {0, 32, {17, 20}}, {0, 32, {20, 23}}},
                                 both = {{0, 5, {0, 23}}, {5, 32, {0, 18}}, {5, 32, {18, 23}}};
-    for (std::vector<FilmPart> parts : {bands, samples, both}) {
+    const auto file_of = [&](const FilmPart& of) {
+        settings.first_row = of.first_row, settings.end_row = of.end_row;
+        FilmRender part(pictures, mixed_scene_camera(), settings);
+        REQUIRE(part.render(of.samples) == of.samples.count());
+        header.parts = {of};
+        const std::string file = scratch_folder() / "part.pvf";
+        const std::vector<std::byte> bytes = film_file_bytes(header, part.film());
+        write_file_atomically(file, bytes);
+        return file;
+    };
+    for (const std::vector<FilmPart>& parts : {bands, samples, both}) {
         std::vector<std::string> files;
-        for (const FilmPart& of : parts) {
-            settings.first_row = of.first_row, settings.end_row = of.end_row;
-            FilmRender part(pictures, mixed_scene_camera(), settings);
-            REQUIRE(part.render(of.samples) == of.samples.count());
-            header.parts = {of};
-            files.push_back(scratch_folder() / "part.pvf");
-            const std::vector<std::byte> bytes = film_file_bytes(header, part.film());
-            write_file_atomically(files.back(), bytes);
-        }
+        for (const FilmPart& of : parts) files.push_back(file_of(of));
         for (int order = 0; order < 2; ++order) {
             const FilmMerge merge(files, false);
             Film all = merge.film(queue, nobody());
@@ -190,6 +192,15 @@ TEST_CASE("parts of rows and samples have the guides of one run, in any order") 
             std::ranges::reverse(files);
         }
     }
+    // The substitute makes each pixel of itself alone.
+    const FilmMerge merge(std::vector<std::string>{file_of({5, 20, {0, 16}}), file_of({20, 32, {0, 23}})}, true);
+    Film some = merge.film(queue, nobody());
+    const Image made = result_of(merge.header(), some, queue).denoised.value();
+    CHECK(stand_in.value("not_finite") == 0);
+    const Image of_fewer = fewer.denoised().value();
+    const std::size_t row = std::size_t(3) * made.width;
+    for (std::size_t i = 0; i < made.pixels.size(); ++i)
+        REQUIRE(made.pixels[i] == (i < 5 * row ? 0.0f : i < 20 * row ? of_fewer.pixels[i] : expected.pixels[i]));
 }
 
 namespace {

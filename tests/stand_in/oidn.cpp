@@ -1,8 +1,9 @@
 // A library with the functions of Open Image Denoise that the renderer calls, by their documented signatures, for
 // tests: a pixel becomes half of its colour plus a quarter of its albedo and an eighth of its normal. It counts
-// objects that were not released, keeps the values that were set, and fails on request. Images are in the host's
-// memory.
+// objects that were not released and numbers of the last picture that are not finite, keeps the values that were set,
+// and fails on request. Images are in the host's memory.
 
+#include <cmath>
 #include <cstddef>
 #include <map>
 #include <string>
@@ -91,11 +92,13 @@ void oidnExecuteFilter(void* filter) {
     if (!made_of.is_committed) fault = 3;
     if (fault != 0) return;
     const Image output = made_of.images["output"], color = made_of.images["color"];
+    values["not_finite"] = 0;
     for (std::size_t y = 0; y < output.height; ++y) {
         for (std::size_t x = 0; x < output.width; ++x) {
             for (int c = 0; c < 3; ++c) {
                 output.at(x, y)[c] = 0.5f * color.at(x, y)[c] + 0.25f * made_of.images["albedo"].at(x, y)[c] +
                                      0.125f * made_of.images["normal"].at(x, y)[c];
+                values["not_finite"] += !std::isfinite(output.at(x, y)[c]);
             }
         }
     }
