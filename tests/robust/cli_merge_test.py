@@ -355,6 +355,25 @@ class Merge(CliTest):
                 self.refuse(2, "render", "a.obj", "-o", "1.pvf", "--part", "1/2", "--checkpoint", "c.pvf", *SMALL, *UNMETERED, *view,
                             says=["c.pvf", says])
 
+    def test_parts_may_have_the_files_of_settings_in_other_folders(self):
+        write(self.path("a.obj"), "usemtl grey\n" + FLOOR)
+        sky, other = ("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n".encode() + bytes([value, 90, 90, 128]) for value in (90, 40))
+        folders = ["one", "another one"]
+        for folder in folders:
+            os.mkdir(self.path(folder))
+            self.write_all({f"{folder}/sky.hdr": sky, f"{folder}/l.cube": LUT, f"{folder}/h.hdr": sky})
+        def part(number, folder):
+            self.part(f"{number}.pvf", "--part", f"{number}/2", "--eye", "0,2,0.1", "--target", "0,0,0", "--spp", "2", "--integrator", "reyes",
+                      "--environment", self.path(f"{folder}/sky.hdr"), "--lut", self.path(f"{folder}/l.cube"),
+                      "--displacement", f"grey={self.path(folder)}/h.hdr,0.01", scene="a.obj")
+        for number, folder in enumerate(folders, 1):
+            part(number, folder)
+        self.merge("1.pvf", "2.pvf", "-o", "all.exr")
+        self.assertNotIn(self.folder, json.dumps(sums_of(self.read("1.pvf"))[0]["settings"]))
+        self.write_all({f"{folders[1]}/sky.hdr": other})
+        part(2, folders[1])
+        self.refuse(2, "merge", "1.pvf", "2.pvf", "-o", "x.exr", says=["2.pvf", "sky.hdr is another file there"])
+
     def test_a_part_is_of_the_files_that_it_has_read(self):
         write(self.path("a.obj"), "mtllib a.mtl\nusemtl grey\n" + FLOOR)
         files = {"a.mtl": b"newmtl grey\nKd 0.5 0.5 0.5\n", "l.cube": LUT}

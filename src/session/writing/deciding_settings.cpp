@@ -1,6 +1,7 @@
 #include "session/writing/deciding_settings.h"
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <variant>
 
@@ -58,6 +59,24 @@ DecidingSettings with_names_of(const DecidingSettings& after, DecidingSettings b
     return before;
 }
 
+/// Settings whose texts contain the path of a file, which counts by its contents; those of the second list have
+/// NAME=FILE.
+constexpr std::array<std::string_view, 4> kFileSettings = {"environment", "camera_path", "camera_from", "lut"};
+constexpr std::array<std::string_view, 2> kNamedFileSettings = {"ies", "displacement"};
+
+bool is_among(std::span<const std::string_view> names, std::string_view name) {
+    return std::ranges::find(names, name) != names.end();
+}
+
+/// Returns the text of a setting without the folder of its file, which another machine has elsewhere.
+std::string without_folder(std::string_view setting, std::string text) {
+    const bool is_named = is_among(kNamedFileSettings, setting);
+    if (!is_named && !is_among(kFileSettings, setting)) return text;
+    const std::size_t begin = is_named ? text.find('=') + 1 : 0; // 0 without one
+    const std::size_t slash = text.rfind('/');
+    return slash == std::string::npos || slash < begin ? text : text.erase(begin, slash + 1 - begin);
+}
+
 std::string value_of(const DecidingSettings& settings, const std::string& name) {
     const auto found = find_name(settings, name);
     return found != settings.end() ? found->second : "";
@@ -73,15 +92,20 @@ DecidingSettings deciding_settings(const PictureOptions& options, const PictureR
     };
     put(std::string(kSceneFile), record.scene.hash);
     for (const Setting& setting : all_settings()) {
-        if (setting.is_kept && (setting.verbs & kRender) != 0)
-            put(setting.name, fmt::format("{}", fmt::join(texts_of(options, setting), " ")));
+        if (!setting.is_kept || (setting.verbs & kRender) == 0) continue;
+        std::vector<std::string> texts = texts_of(options, setting);
+        for (std::string& text : texts) text = without_folder(setting.name, std::move(text));
+        put(setting.name, fmt::format("{}", fmt::join(texts, " ")));
     }
     put("animation", record.scene.animation); // even if the file has only one
     put("file_scene", record.scene.file_scene);
     put("variant", record.scene.variant);
     constexpr std::string_view kPrefix = "pertev.";
-    for (const auto& [name, value] : settings_metadata(record))
-        put(name.substr(kPrefix.size()), std::visit([](const auto& v) { return fmt::format("{}", v); }, value));
+    for (const auto& [key, value] : settings_metadata(record)) {
+        const std::string name = key.substr(kPrefix.size());
+        if (is_among(kNamedFileSettings, name)) continue; // the options have their texts
+        put(name, without_folder(name, std::visit([](const auto& v) { return fmt::format("{}", v); }, value)));
+    }
     put("size", fmt::format("{}x{}", record.settings.width, record.settings.height));
     if (options.camera_list) put("cameras", hash_of_cameras(*options.camera_list));
     for (const FileOfPicture& file : record.scene.files) put(std::string(kFile) + file.name, file.hash);

@@ -17,7 +17,7 @@ namespace pertev {
 using DecidingSettings = std::vector<std::pair<std::string, std::string>>; // names and values
 
 /// Returns all settings, what the metadata of settings_metadata() say of them, which is the same however they were
-/// written, and hashes of all files, which the record has.
+/// written, and hashes of all files, which the record has. Files in settings have names without their folders.
 DecidingSettings deciding_settings(const PictureOptions& options, const PictureRecord& record);
 
 struct SettingDifference {
