@@ -1,13 +1,8 @@
 #pragma once
 
-// Homogeneous media for paths: sampling of the distance to the next scattering, and the vertex there. The distance is
-// sampled for one colour, selected by the path's throughput, and weighted for all by the balance heuristic: the sum of
-// the throughput's colours never grows, so no colour is unbounded where coefficients differ.
-//
-// Source: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., section 14.2; Wilkie et al., "Hero Wavelength
-// Spectral Sampling", EGSR 2014, section 3.3 (one-sample balance heuristic over wavelengths).
+// Homogeneous media for paths: the free flights of device_scene/free_flight.h, and the vertex where one ends.
 
-#include "device_scene/media_along_ray.h"
+#include "device_scene/free_flight.h"
 #include "integrators/path/path_job.h"
 #include "integrators/path/path_state.h"
 #include "shading/phase_function.h"
@@ -39,10 +34,6 @@ struct MediumVertex {
     HD TriangleId triangle() const { return {}; }
 };
 
-/// The group of the random numbers that select the colour and the distance along the ray that leaves a path's vertex.
-/// Groups of vertices stay below it.
-inline constexpr uint32_t kGroupMedium = 0x40000000u;
-
 template <Features kFeatures>
 struct HomogeneousMedium {
     static constexpr bool kIsVacuum = false;
@@ -51,57 +42,16 @@ struct HomogeneousMedium {
     HD explicit HomogeneousMedium(const SceneView& scene) : scene_(scene) {}
 
     HD INLINE_ON_DEVICE bool scatters(const PathJob& job, PathState& path, const Hit& hit, Vertex& vertex) const {
-        const bool leaves = hit.instance == kNoHit;
-        const float distance = leaves ? kInfinity : hit.t;
-        if (!leaves && scene_.nesting.is_there() && scene_.nesting.ranks[hit.instance] != 0) {
-            const float time = (kFeatures & kMoving) != 0 ? path.time : kAtRest;
-            const bool enters = points_inwards(scene_, {hit.instance, hit.primitive}, path.direction, time);
-            path.interior = solids_before(scene_, path.interior, hit.instance, enters);
-        }
-        const Rgb t = path.throughput;
-        const float sum = t.r + t.g + t.b;
-        if (!(sum > 0)) return false;
+        const float time = (kFeatures & kMoving) != 0 ? path.time : kAtRest;
         const SampleKey key = sample_key<kFeatures>(job, path.pixel, path.sample);
         const SampleBits u = sample_bits(job.settings.sampler, key, kGroupMedium + path.depth, Pair::First);
-        const float colour = unit_interval(u.x) * sum;
-        const auto selected = [&](Rgb rates) {
-            return colour < t.r ? rates.r : colour < t.r + t.g ? rates.g : rates.b;
-        };
-        float left = -log(unit_interval(u.y)); // optical depth before the scattering, in the selected colour
-
-        Rgb depth = {0, 0, 0}, sampled = {0, 0, 0}; // optical depths; the latter of media that scatter
-        Rgb scattered = {1, 1, 1}, density = {1, 1, 1}, absorbed = {1, 1, 1};
-        float at = kInfinity, position = 0; // metres along the ray
-        visit_media(scene_, path.interior, path.origin, path.direction, distance, leaves, [&](const RayPart& part) {
-            const MediumParameters& medium = part.material.medium;
-            const Rgb sigma_t = medium.sigma_t();
-            float length = part.end - part.begin;
-            if (medium.scatters()) {
-                const float rate = selected(sigma_t);
-                const bool is_here = rate > 0 && rate * length > left;
-                if (is_here) {
-                    length = left / rate, at = part.begin + length;
-                    position = within_part(path, at, part);
-                    scattered = medium.sigma_s, density = sigma_t;
-                    vertex.g = medium.g;
-                    const uint32_t rank = path.interior.top();
-                    vertex.instance = rank == 0 ? scene_.instance_count : scene_.nesting.solids[rank];
-                }
-                if (rate > 0) left -= rate * length;
-                sampled += optical_depth(sigma_t, length);
-            }
-            depth += optical_depth(sigma_t, length);
-            absorbed = absorbed * absorption_of(part, length);
-            return at < kInfinity;
-        });
-        const Rgb weights = t * density * transmittance_of(sampled);
-        const float pdf = weights.r + weights.g + weights.b;
-        path.throughput = (sum / pdf) * (t * scattered * absorbed * transmittance_of(depth));
-        const bool is_lost = !(pdf > 0) || (at >= kFarthest && at < kInfinity); // no light of the scene is there
-        if (is_lost) path.throughput = {0, 0, 0};
-        if (is_lost || !(at < kInfinity)) return false;
-        vertex.position = path.origin + position * path.direction;
-        vertex.direction = path.direction;
+        MediumPoint point;
+        FlownMedia flown;
+        if (!sample_free_flight(scene_, path.interior, path.origin, path.direction, hit, time, u, path.throughput,
+                                point, flown)) {
+            return false;
+        }
+        vertex = {point.position, path.direction, point.g, point.instance};
         return true;
     }
 
@@ -110,17 +60,6 @@ struct HomogeneousMedium {
     }
 
 private:
-    static constexpr float kFarthest = 0x1p39f; // metres
-
-    /// Keeps a scattering off the surfaces that begin and end its part of the ray, because rounding could move it to
-    /// their other side. The path's own vertex, at 0, is on the right side already.
-    HD static float within_part(const PathState& path, float at, const RayPart& part) {
-        const bool ends = part.end < kInfinity;
-        const float margin = 0x1p-20f * (max_component(abs(path.origin)) + (ends ? part.end : at));
-        const float least = part.begin > 0 ? part.begin + margin : 0.0f, most = ends ? part.end - margin : kInfinity;
-        return least < most ? clamp(at, least, most) : 0.5f * (part.begin + part.end);
-    }
-
     const SceneView& scene_;
 };
 
