@@ -192,6 +192,11 @@ pertev_launches(integrators/bidirectional/camera_subpath_stages.cu
     "ConnectSubpaths<ShadingVariant::General>"
     "ConnectSubpaths<ShadingVariant::Unstacked>"
     "ConnectSubpaths<ShadingVariant::PlainDiffuse>")
+# For media.
+pertev_launches(integrators/bidirectional/camera_media_stages.cu
+  integrators/bidirectional/camera_subpath_stages.h
+  STAGES "ShadeCameraSubpaths<ShadingVariant::General, true>"
+    "ConnectSubpaths<ShadingVariant::General, true>")
 pertev_launches(integrators/cast/shade_cast.cu
   integrators/cast/cast.h integrators/ray_tree/tree_stages.h
   STAGES "ShadeTrees<Cast, MotionVariant::None, ShadingVariant::General>"
@@ -360,7 +365,7 @@ pertev_launches(integrators/reyes/split_stages.cu
     "InWindow<ShadeSamples>")
 pertev_launches(integrators/subpaths/particle_stages.cu
   integrators/subpaths/particle_stages.h
-  STAGES BeginParticles
+  STAGES "BeginParticles<false>"
     BeginCameraSubpaths
     AddSplats
     AddConnections
@@ -369,6 +374,12 @@ pertev_launches(integrators/subpaths/particle_stages.cu
     "ShadeParticles<ShadingVariant::General>"
     "ShadeParticles<ShadingVariant::Unstacked>"
     "ShadeParticles<ShadingVariant::PlainDiffuse>")
+# For media.
+pertev_launches(integrators/subpaths/particle_media_stages.cu
+  integrators/light/shade_seen.h
+  STAGES "BeginParticles<true>"
+    "ShadeParticles<ShadingVariant::General, true>"
+    "ShadeSeen<ShadingVariant::General, true>")
 pertev_launches(integrators/whitted/shade_whitted.cu
   integrators/ray_tree/tree_stages.h integrators/whitted/whitted.h
   STAGES "ShadeTrees<Whitted, MotionVariant::None, ShadingVariant::General>"

@@ -57,6 +57,9 @@ private:
 struct NestingView {
     const uint16_t* ranks = nullptr;  // [instance_count]; 0: no such solid; null: no solids lie in each other
     const uint32_t* solids = nullptr; // [rank] the instance
+    // [light triangles + punctual lights] words of the InteriorList that holds the middle of a light, without the
+    // light's own instance; null unless the scene has media
+    const Uint2* of_lights = nullptr;
 
     HD bool is_there() const { return ranks != nullptr; }
 };

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/parallel_for.h"
+#include "device_scene/interior_of_light.h"
 #include "device_scene/medium_boundaries.h"
 #include "device_scene/pack_texels.h"
 #include "device_scene/part_arrays.h"
@@ -190,6 +192,9 @@ void SceneOnDevice::update(Queue& queue, const PlacedScene& prepared, uint32_t p
     }
     if ((parts & kPartTextures) != 0) update_textures(queue, *prepared.scene);
     if ((parts & kPartLights) != 0) update_lights(queue, prepared); // after the textures, which it reads
+    if ((parts & (kPartGeometry | kPartInstances | kPartMaterials | kPartLights)) != 0) {
+        update_interiors(queue, prepared);
+    }
     if ((parts & kPartEnvironment) != 0) update_environment(queue, prepared);
     update_micromaps(queue, *prepared.scene, parts);
 }
@@ -257,6 +262,27 @@ void SceneOnDevice::update_media(Queue& queue, const PlacedScene& prepared) {
     if (!around.empty()) around[0].medium = prepared.scene->medium;
     arrays.add(around, view_.surroundings);
     arrays.upload(queue, boundaries_, "boundaries of media");
+}
+
+/// Finds the solids that hold each light, whose particles begin in their media.
+void SceneOnDevice::update_interiors(Queue& queue, const PlacedScene& prepared) {
+    view_.nesting.of_lights = nullptr;
+    if (view_.has_media == 0 || nested_.is_empty()) return;
+    const std::vector<EmissiveTriangle>& triangles = prepared.lights.triangles;
+    const std::vector<PunctualLight>& punctual = prepared.lights.punctual;
+    std::vector<Uint2> found(triangles.size() + punctual.size());
+    parallel_for(triangles.size(), 16, [&](uint64_t i) {
+        const EmissiveTriangle& light = triangles[i];
+        const InteriorList list = nested_.at(point_before(light));
+        const uint32_t own = nested_.ranks()[light.instance];
+        found[i] = (own == 0 ? list : list.without(own)).words();
+    });
+    for (std::size_t i = 0; i < punctual.size(); ++i) {
+        found[triangles.size() + i] = nested_.at(punctual[i].position).words();
+    }
+    PartArrays arrays;
+    arrays.add(found, view_.nesting.of_lights);
+    arrays.upload(queue, interiors_, "media of lights");
 }
 
 void SceneOnDevice::update_textures(Queue& queue, const Scene& scene) {

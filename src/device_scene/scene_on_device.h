@@ -70,9 +70,10 @@ private:
     void update_textures(Queue& queue, const Scene& scene);
     void update_lights(Queue& queue, const PlacedScene& prepared);
     void update_environment(Queue& queue, const PlacedScene& prepared);
-    void update_nesting(Queue& queue, const PlacedScene& prepared); // after instances and materials
-    void update_media(Queue& queue, const PlacedScene& prepared);   // after instances and materials
-    void update_shapes(Queue& queue, const PlacedScene& prepared);  // before geometry
+    void update_nesting(Queue& queue, const PlacedScene& prepared);   // after instances and materials
+    void update_media(Queue& queue, const PlacedScene& prepared);     // after instances and materials
+    void update_interiors(Queue& queue, const PlacedScene& prepared); // after nesting and media
+    void update_shapes(Queue& queue, const PlacedScene& prepared);    // before geometry
     void update_poses(const PlacedScene& prepared) { deforming_.set_poses(prepared); }
     void update_micromaps(Queue& queue, const Scene& scene, uint32_t parts); // after all of these
 
@@ -88,7 +89,7 @@ private:
     ShadingVariant variant_ = ShadingVariant::General;     // variant of the materials alone
     std::shared_ptr<const RequestedLightTree> light_tree_; // that of the lights
     Buffer<std::byte> geometry_, instances_, materials_, lights_, light_nodes_, environment_, textures_, nesting_,
-        boundaries_;
+        boundaries_, interiors_;
 };
 
 /// The simplest shading variant that covers the scene.

@@ -36,6 +36,7 @@ struct WorkSize {
     bool splits_light = false;      // a frame (FilmView::frame) separates diffuse light from the rest
     bool records_bounce = false;    // a frame records its first bounce
     bool has_interiors = false;     // solids lie in each other (SceneView::nesting)
+    bool has_media = false;         // a medium fills any part of space
     uint32_t tree_lights = 0;       // lights that a tree holds (LightTreeView::light_count)
 
     uint64_t pixels() const { return uint64_t(width) * height; }
@@ -49,6 +50,7 @@ inline WorkSize size_of(const PictureView& picture, const SceneTracer& tracer, u
             .traverses_on_host = tracer.host_trees() != nullptr,
             .has_times = picture.scene.motions.is_there(),
             .has_interiors = picture.scene.nesting.is_there(),
+            .has_media = picture.scene.has_media != 0,
             .tree_lights = picture.scene.lights.tree.light_count};
 }
 

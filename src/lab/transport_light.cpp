@@ -58,8 +58,7 @@ std::string why_no_solution(const Scene& scene) {
 }
 
 std::string default_reference_integrator(const Scene& scene) {
-    return std::string(name_of(has_caustics_of_points(scene) && !has_media(scene) ? IntegratorKind::Bidirectional
-                                                                                  : IntegratorKind::Path));
+    return std::string(name_of(has_caustics_of_points(scene) ? IntegratorKind::Bidirectional : IntegratorKind::Path));
 }
 
 std::string light_lacking(const std::string& integrator, const Scene& scene) {

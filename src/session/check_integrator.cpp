@@ -152,7 +152,10 @@ std::optional<Remark> why_dark(const RenderSettings& settings, const Scene& scen
 }
 
 void check_light(const RenderSettings& settings, const Scene& scene, Sink& sink) {
-    if (describe(settings.integrator).ignores_nesting && NestedSolids(scene, {}).is_nested()) {
+    const bool nests =
+        !describe(settings.integrator).ignores_nesting || // integrators that know media follow solids in them
+        (has_media(scene) && has_media(settings.integrator));
+    if (!nests && NestedSolids(scene, {}).is_nested()) {
         sink.leave_out({"integrator", std::string(integrator_name(settings)),
                         "solids lie in each other, and it refracts at each as in a vacuum (`integrator=path`, "
                         "whitted and distributed do not)"});

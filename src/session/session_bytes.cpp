@@ -60,6 +60,7 @@ public:
         size.traverses_on_host = can_traverse_on_host(tracers, queue.is_cuda());
         size.has_times = scene.motions != nullptr;
         size.has_interiors = !scene_.nested_solids().is_empty();
+        size.has_media = scene_.view().has_media != 0;
         size.tree_lights = scene_.view().lights.tree.light_count;
         if (uses_light_tree(settings.path.light_choice, size.tree_lights, size.has_times)) {
             scene_.make_light_tree(queue);

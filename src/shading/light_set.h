@@ -51,6 +51,7 @@ struct EmissiveTriangle {
     uint32_t primitive = 0, material = 0; // ids in the scene, as `instance` is
     float pmf = 0;                        // probability that sample_light selects it
 
+    HD Vec3 middle() const { return a + (1.0f / 3.0f) * (ab + ac); }
     /// Returns whether it emits against `wi`, a direction towards it. `normal` is cross(ab, ac).
     HD bool emits_against(Vec3 wi, Vec3 normal) const {
         return is_two_sided != 0 || (dot(normal, wi) < 0) == (is_mirrored == 0);

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -65,16 +66,23 @@ double channel_of(Rgb color, std::size_t channel) {
     return static_cast<double>(channel == 0 ? color.r : channel == 1 ? color.g : color.b);
 }
 
-/// Checks that every pixel is the transmittance of `distance` metres of amber.
-void check_amber(const Scene& scene, const Camera& camera, double distance) {
+constexpr std::array kOfMedia = {IntegratorKind::Path, IntegratorKind::Light, IntegratorKind::Bidirectional};
+
+/// Checks that every pixel is the transmittance of `distance` metres of amber. What light tracing cannot see, it skips.
+void check_amber(const Scene& scene, const Camera& camera, double distance, bool is_in_glass = false) {
     Queue queue = test::requested_queue();
-    for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
-        RenderSettings settings = settings_in_media(3, 2, 8);
-        settings.body = body;
-        const Image picture = test::render(queue, scene, camera, settings).picture;
-        for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
-            const double expected = std::exp(-distance * channel_of(kAmber.sigma_a, i % 3));
-            CHECK(static_cast<double>(picture.pixels[i]) == doctest::Approx(expected).epsilon(1e-4));
+    for (const IntegratorKind kind : kOfMedia) {
+        if (is_in_glass && kind == IntegratorKind::Light) continue;
+        CAPTURE(name_of(kind));
+        for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
+            RenderSettings settings = settings_in_media(3, 2, 8);
+            settings.integrator = kind;
+            settings.body = body;
+            const Image picture = test::render(queue, scene, camera, settings).picture;
+            for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+                const double expected = std::exp(-distance * channel_of(kAmber.sigma_a, i % 3));
+                CHECK(static_cast<double>(picture.pixels[i]) == doctest::Approx(expected).epsilon(1e-4));
+            }
         }
     }
 }
@@ -130,7 +138,7 @@ TEST_CASE("a slab absorbs each colour by its thickness, between clear boundaries
     for (const Material& material : {clear_boundary(kAmber), filled(test::glass(1), kAmber)}) {
         Scene scene = test::under_sky();
         test::add(scene, test::box({0, 0, 0}, {2, 0.35f, 2}), material);
-        check_amber(scene, parallel_view({0, 1, 0}, 1), 0.7);
+        check_amber(scene, parallel_view({0, 1, 0}, 1), 0.7, !material.is_clear_boundary);
     }
 }
 
@@ -142,7 +150,7 @@ TEST_CASE("a medium around everything leaves out the bodies in it, and one with 
     check_amber(hollow, parallel_view({0, 1, 0}, 1), 5);
     hollow.instances.back().material = static_cast<uint32_t>(hollow.materials.size());
     hollow.materials.push_back(test::glass(1));
-    check_amber(hollow, parallel_view({0, 1, 0}, 1), 5);
+    check_amber(hollow, parallel_view({0, 1, 0}, 1), 5, true);
     scene.medium = {};
     test::add(scene, test::sheet({0, 0.5f, 0}, {0, 0, 4}, {4, 0, 0}), clear_boundary(kAmber));
     check_amber(scene, parallel_view({0, 1, 0}, 1), 1.5);
@@ -154,17 +162,23 @@ TEST_CASE("a ball that only scatters shows the radiance of the furnace around it
         CAPTURE(is_clear);
         Scene scene = test::under_sky();
         test::add(scene, test::ball({0, 0, 0}, 1), is_clear ? clear_boundary(kMilk) : filled(test::glass(1.4f), kMilk));
-        for (const LightStrategy strategy : {LightStrategy::Mis, LightStrategy::BsdfOnly}) {
-            RenderSettings settings = settings_in_media(16, 64, 400);
-            settings.path.strategy = strategy;
+        const auto check_furnace = [&](const RenderSettings& settings, double most_error) {
             const Image picture = test::render(queue, scene, parallel_view({0, 0, 1}, 1), settings).picture;
             for (std::size_t channel = 0; channel < 3; ++channel) {
                 CAPTURE(channel);
                 const test::Estimate mean = channel_mean(picture, channel);
                 CHECK(std::abs(mean.mean - 1) < 4 * mean.error + 1e-4);
-                CHECK(mean.error < 0.01);
+                CHECK(mean.error < most_error);
             }
+        };
+        for (const LightStrategy strategy : {LightStrategy::Mis, LightStrategy::BsdfOnly}) {
+            RenderSettings settings = settings_in_media(16, 64, 400);
+            settings.path.strategy = strategy;
+            check_furnace(settings, 0.01);
         }
+        RenderSettings settings = settings_in_media(12, 16, 100);
+        settings.integrator = IntegratorKind::Bidirectional; // few particles hit the ball
+        check_furnace(settings, 0.06);
     }
 }
 
@@ -178,17 +192,21 @@ TEST_CASE("light scattered once in a slab is the integral along the camera's ray
     sun.direction = {0, -1, 0};
     sun.intensity = {1, 1, 1};
     scene.lights = {sun};
-    const Image picture =
-        test::render(queue, scene, parallel_view({0, 1, 0}, 1), settings_in_media(24, 256, 1)).picture;
-    for (std::size_t channel = 0; channel < 3; ++channel) {
-        CAPTURE(channel);
-        const double sigma = channel_of(kHaze.sigma_t(), channel);
-        const double phase = static_cast<double>(henyey_greenstein(kHaze.g, -1));
-        const double expected =
-            channel_of(kHaze.sigma_s, channel) * phase * -std::expm1(-2 * sigma * 0.5) / (2 * sigma);
-        const test::Estimate mean = channel_mean(picture, channel);
-        CHECK(std::abs(mean.mean - expected) < 4 * mean.error);
-        CHECK(mean.error < 0.01 * expected);
+    for (const IntegratorKind kind : kOfMedia) {
+        CAPTURE(name_of(kind));
+        RenderSettings settings = settings_in_media(kind == IntegratorKind::Path ? 24 : 16, 256, 1);
+        settings.integrator = kind;
+        const Image picture = test::render(queue, scene, parallel_view({0, 1, 0}, 1), settings).picture;
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            CAPTURE(channel);
+            const double sigma = channel_of(kHaze.sigma_t(), channel);
+            const double phase = static_cast<double>(henyey_greenstein(kHaze.g, -1));
+            const double expected =
+                channel_of(kHaze.sigma_s, channel) * phase * -std::expm1(-2 * sigma * 0.5) / (2 * sigma);
+            const test::Estimate mean = channel_mean(picture, channel);
+            CHECK(std::abs(mean.mean - expected) < 4 * mean.error);
+            CHECK(mean.error < (kind == IntegratorKind::Path ? 0.01 : 0.03) * expected);
+        }
     }
 }
 
@@ -211,6 +229,73 @@ TEST_CASE("each schedule renders the same bytes of glass with a medium, in a cle
     const Hash128 by_tree = test::render_hash(test::render(queue, scene, parallel_view({0, 0, 1}, 3), settings));
     settings.body = PathBody::Loop;
     CHECK(test::render_hash(test::render(cpu, scene, parallel_view({0, 0, 1}, 3), settings)) == by_tree);
+    for (const IntegratorKind kind : {IntegratorKind::Light, IntegratorKind::Bidirectional}) {
+        CAPTURE(name_of(kind));
+        settings.integrator = kind;
+        settings.body = PathBody::Loop;
+        const Hash128 of_two = test::render_hash(test::render(cpu, scene, parallel_view({0, 0, 1}, 3), settings));
+        Queue one = Queue::make_cpu(Threads(1));
+        CHECK(test::render_hash(test::render(one, scene, parallel_view({0, 0, 1}, 3), settings)) == of_two);
+        settings.body = PathBody::Wavefront;
+        CHECK(test::render_hash(test::render(queue, scene, parallel_view({0, 0, 1}, 3), settings)) == of_two);
+    }
+}
+
+TEST_CASE("in media light tracing and bidirectional path tracing have the means of path tracing") {
+    Scene scene; // lights are in haze, in a cloud, in milk and in a hollow, and the camera in a cloud of its own
+    scene.medium = {.sigma_a = {0.05f, 0.02f, 0}, .sigma_s = {0.1f, 0.2f, 0.4f}, .g = 0.4f};
+    test::add(scene, test::floor_at(-1, 2), test::white(0.6f));
+    test::add(scene, test::box({-0.7f, 0, 0}, {0.6f, 0.7f, 0.6f}),
+              clear_boundary({.sigma_s = {2, 1, 0.5f}, .g = -0.5f}));
+    test::add(scene, test::ball({-0.6f, 0, 0.2f}, 0.3f), clear_boundary({}));
+    test::add(scene, test::box({0, 0.6f, 2.5f}, {0.4f, 0.4f, 0.8f}), clear_boundary({.sigma_s = {0.2f, 0.4f, 0.6f}}));
+    Material rough = filled(test::glass(1.3f), kMilk);
+    rough.roughness = 0.6f;
+    test::add(scene, test::ball({0.8f, -0.3f, 0}, 0.6f), rough);
+    Material glowing;
+    glowing.emission = {2, 3, 4};
+    glowing.two_sided_emission = true;
+    test::add(scene, test::sheet({-0.7f, 0.5f, 0}, {0.2f, 0, 0}, {0, 0, 0.2f}), glowing);
+    test::add(scene, test::sheet({0.8f, -0.3f, 0}, {0.2f, 0, 0}, {0, 0, 0.2f}), glowing);
+    test::add(scene, test::sheet({-0.9f, 0.9f, 0}, {0, 0.4f, 0}, {0, 0, 0.3f}), glowing); // half of it in the cloud
+    scene.lights = {test::point_light({-0.6f, 0, 0.2f}, {1, 2, 1}), test::point_light({0.6f, 1, 0.5f}, {3, 1, 2})};
+    Camera camera;
+    camera.world_from_camera = look_at({0, 0.6f, 2.5f}, {0, 0, 0}, {0, 1, 0});
+    Queue queue = test::requested_queue();
+    constexpr uint32_t kBlock = 4, kSize = 8, kSamples[] = {48, 64, 8}, kBlocks = kSize / kBlock * (kSize / kBlock) * 3;
+    std::vector<test::Estimate> blocks[kOfMedia.size()];
+    for (std::size_t k = 0; k < kOfMedia.size(); ++k) {
+        RenderSettings settings = settings_in_media(kSize, kSamples[k], 6);
+        settings.integrator = kOfMedia[k];
+        std::vector<std::vector<double>> means(kBlocks);
+        for (uint32_t run = 0; run < 12; ++run) {
+            settings.path.seed = 100 * static_cast<uint32_t>(k) + run;
+            const Image picture = test::render(queue, scene, camera, settings).picture;
+            std::vector<double> sums(kBlocks);
+            for (uint32_t i = 0; i < 3 * kSize * kSize; ++i) {
+                const uint32_t x = i / 3 % kSize / kBlock, y = i / 3 / kSize / kBlock;
+                sums[3 * (y * (kSize / kBlock) + x) + i % 3] += static_cast<double>(picture.pixels[i]);
+            }
+            for (uint32_t block = 0; block < kBlocks; ++block) means[block].push_back(sums[block]);
+        }
+        for (const std::vector<double>& of_block : means) {
+            std::size_t i = 0;
+            blocks[k].push_back(test::estimate(of_block.size(), [&] { return of_block[i++]; }));
+        }
+    }
+    for (std::size_t k = 1; k < kOfMedia.size(); ++k) {
+        CAPTURE(name_of(kOfMedia[k]));
+        double largest = 0, sum = 0, error = 0, whole = 0;
+        for (uint32_t block = 0; block < kBlocks; ++block) {
+            const test::Estimate &a = blocks[k][block], &b = blocks[0][block];
+            const double of_difference = std::hypot(a.error, b.error);
+            largest = std::max(largest, std::abs(a.mean - b.mean) / of_difference);
+            sum += a.mean - b.mean, whole += b.mean, error = std::hypot(error, of_difference);
+        }
+        CHECK(largest < 6); // Student's distribution has wide tails for so few runs
+        CHECK(std::abs(sum) < 4 * error);
+        CHECK(error < 0.04 * whole);
+    }
 }
 
 TEST_CASE("a camera in a body begins in its medium, and a solid without a medium in a scene with one absorbs") {
@@ -223,7 +308,7 @@ TEST_CASE("a camera in a body begins in its medium, and a solid without a medium
     Mesh open = test::box({0, 3, 0}, {2, 0.35f, 2});
     open.indices.resize(open.indices.size() - 3);
     test::add(scene, open, absorbing);
-    check_amber(scene, parallel_view({0, 1, 0}, 1), 2.7);
+    check_amber(scene, parallel_view({0, 1, 0}, 1), 2.7, true);
 }
 
 TEST_CASE("a scattering far from the origin is within its body") {
@@ -296,7 +381,7 @@ TEST_CASE("what knows no media says so") {
         check_light(settings, scene, messages);
         if (messages.left_out().empty()) silent.push_back(name);
     }
-    CHECK(silent == std::vector<std::string>{"path", "direct", "indirect", "hybrid"});
+    CHECK(silent == std::vector<std::string>{"path", "direct", "indirect", "hybrid", "light", "bidirectional"});
     settings.integrator = IntegratorKind::Path;
     Messages none;
     check_light(settings, scene, none);

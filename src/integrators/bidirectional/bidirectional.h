@@ -33,25 +33,26 @@ struct BothDirections {
                      BeginCameraSubpaths{job.scene, subpaths, job.samples, job.first});
         schedule.begin_rounds(job.count);
         for (uint32_t round = 0; round <= depth && schedule.has_rays_left(subpaths.counts); ++round) {
-            with_variant(job.scene.picture.scene.variant,
-                         [&]<ShadingVariant kVariant>() { run_round<kVariant>(schedule, job, round); });
+            with_media(job.scene.picture.scene, [&]<ShadingVariant kVariant, bool kInMedia>() {
+                run_round<kVariant, kInMedia>(schedule, job, round);
+            });
         }
     }
 
 private:
-    template <ShadingVariant kVariant, class Schedule>
+    template <ShadingVariant kVariant, bool kInMedia, class Schedule>
     static void run_round(Schedule& schedule, const SubpathJob& job, uint32_t round) {
         const SubpathsView& subpaths = job.subpaths;
         const uint32_t most = schedule.max_rays(), depth = job.scene.settings.max_depth;
         const WorkCount rays = {most, &subpaths.counts->rays};
         schedule.find_hits(round == 0 ? RayKind::Camera : RayKind::Bounce, job, rays, round);
         schedule.run("shade_camera_subpaths", rays,
-                     ShadeCameraSubpaths<kVariant>{job.scene, subpaths, job.film, round});
+                     ShadeCameraSubpaths<kVariant, kInMedia>{job.scene, subpaths, job.film, round});
         add_connections(schedule, job, most, kConnectedAtOnce);
         for (uint32_t first = 0; round + first + 2 <= depth; first += kConnectedAtOnce) {
             const uint32_t pairs = most * kConnectedAtOnce;
             schedule.run("connect_subpaths", {pairs, &subpaths.counts->pairs},
-                         ConnectSubpaths<kVariant>{job.scene, subpaths, first, round});
+                         ConnectSubpaths<kVariant, kInMedia>{job.scene, subpaths, first, round});
             add_connections(schedule, job, pairs, kConnectedAtOnce);
         }
         schedule.run("count_subpaths", 1, CountSubpaths{subpaths.counts, true, 0});

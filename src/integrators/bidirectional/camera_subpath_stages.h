@@ -10,8 +10,9 @@ namespace pertev {
 /// Number of light-subpath vertices that a vertex connects to at once.
 inline constexpr uint32_t kConnectedAtOnce = 4;
 
-/// The stage that shades hits of camera subpaths: emission, next-event estimation, continuation.
-template <ShadingVariant kVariant>
+/// The stage that shades hits of camera subpaths, and scatterings in media: emission, next-event estimation,
+/// continuation. With kInMedia in a scene with media.
+template <ShadingVariant kVariant, bool kInMedia = false>
 struct ShadeCameraSubpaths {
     SubpathScene scene;
     SubpathsView subpaths;
@@ -24,37 +25,86 @@ struct ShadeCameraSubpaths {
         const Ray ray = load_ray(subpaths.rays[round % 2] + i);
         const Hit hit = subpaths.hits().load(i);
         SubpathState state = subpaths.states[subpath];
-        if (hit.instance == kNoHit) return add_background(state, ray);
-        const Surface surface = make_surface<kVariant>(picture.scene, hit, ray.direction);
-        arrive_through_solids<kVariant>(scene, subpaths, i, round, ray, hit, state.throughput);
-        state.mis.arrive(cosine_at(surface, ray.direction), state.is_from_far != 0 ? 1.0f : square(hit.t));
+        if constexpr (kInMedia) {
+            shade_in_media(i, hit, subpath, ray, state);
+        } else {
+            if (hit.instance == kNoHit) return add_background(state, ray);
+            const Surface surface = make_surface<kVariant>(picture.scene, hit, ray.direction);
+            arrive_through_solids<kVariant>(scene, subpaths, i, round, ray, hit, state.throughput);
+            state.mis.arrive(cosine_at(surface, ray.direction), state.is_from_far != 0 ? 1.0f : square(hit.t));
+            state.is_from_far = 0;
+            shade_surface(surface, hit, ray, subpath, state, {});
+        }
+    }
+
+private:
+    HD INLINE_ON_DEVICE void shade_in_media(uint32_t i, const Hit& hit, uint32_t subpath, const Ray& ray,
+                                            SubpathState& state) const {
+        const PictureView& picture = scene.picture;
+        InteriorList list = state.depth() == 0 ? picture.camera.interior : subpaths.load_interior(subpath);
+        const SampleKey key = {state.pixel, state.sample, scene.settings.seed};
+        const SubpathFlight flight = fly(scene, key, state.depth(), ray, hit, false, list, state.throughput);
+        const float squared = flight.distance < kInfinity ? square(flight.distance) : 1.0f;
+        const float way = (state.is_from_far != 0 ? 1.0f : squared) / flight.probability;
         state.is_from_far = 0;
+        if (!flight.is_scattered && hit.instance == kNoHit) {
+            state.mis.arrive(1, 1.0f / flight.probability);
+            return add_background(state, ray);
+        }
+        if (flight.is_scattered) {
+            if (state.depth() == 0) show_behind(state, ray, hit);
+            const MediumEnd end = {flight.point, ray.direction, flight.share};
+            state.mis.arrive(end.density_factor(ray.direction), way);
+            if (is_black(state.throughput) || state.depth() >= scene.settings.max_depth) return;
+            return shade_vertex(end, SubpathVertex::hit_in_medium(end.position()), ray.direction, subpath, state, list);
+        }
+        Surface surface = make_surface<kVariant>(picture.scene, hit, ray.direction);
+        state.throughput =
+            reach_surface(picture.scene, list, subpaths.start_of(i, round), ray.direction, hit, surface) *
+            state.throughput;
+        state.mis.arrive(cosine_at(surface, ray.direction), way);
+        shade_surface(surface, hit, ray, subpath, state, list);
+    }
+    /// Adds the auxiliary channels of the surface behind a medium that has scattered the camera's ray.
+    HD void show_behind(const SubpathState& state, const Ray& ray, const Hit& hit) const {
+        if (hit.instance == kNoHit) return add_no_first_hit(film, state.pixel, state.sample);
+        add_first_hit(film, state.pixel, state.sample, {ray.origin, ray.direction}, hit,
+                      make_surface<kVariant>(scene.picture.scene, hit, ray.direction), scene.picture);
+    }
+    HD INLINE_ON_DEVICE void shade_surface(const Surface& surface, const Hit& hit, const Ray& ray, uint32_t subpath,
+                                           SubpathState& state, InteriorList list) const {
         if (state.depth() == 0) {
-            add_seen(picture, film, state, ray, hit, surface);
+            add_seen(scene.picture, film, state, ray, hit, surface, kInMedia ? state.throughput : Rgb{1, 1, 1});
         } else if (!is_black(surface.emission)) {
             add_light(state, light_densities(hit, ray.direction), surface.emission);
         }
         if (surface.is_unlit || state.depth() >= scene.settings.max_depth) return;
-
+        shade_vertex(SurfaceEnd<kVariant>{surface}, hit, ray.direction, subpath, state, list);
+    }
+    /// Shades a vertex at which the subpath arrives along `direction`; `list` has the solids that hold it there.
+    template <class End>
+    HD INLINE_ON_DEVICE void shade_vertex(const End& end, const Hit& hit, Vec3 direction, uint32_t subpath,
+                                          SubpathState& state, InteriorList list) const {
         const SampleKey key = {state.pixel, state.sample, scene.settings.seed};
-        const Vec3 wo = -ray.direction;
-        if (!surface.bsdf.has_delta_only()) {
-            sample_direct_light(surface, state, wo, key);
+        const Vec3 wo = -direction;
+        if (!end.scatters_by_delta_alone()) {
+            sample_direct_light(end, state, wo, key, list);
             if (state.depth() + 1 < scene.settings.max_depth && subpaths.kept_counts[subpath] > 0) {
                 const uint32_t slot = atomic_add(&subpaths.counts->vertices, 1u);
-                subpaths.present.store(slot, {hit, ray.direction, state.throughput, state.mis});
+                subpaths.present.store(slot, {hit, direction, state.throughput, state.mis});
+                if constexpr (kInMedia) subpaths.present.store_interior(slot, list);
                 subpaths.present_owners[slot] = subpath;
             }
         }
-        continue_subpath(surface, subpath, state, wo, key);
+        continue_subpath(end, subpath, state, wo, key, list);
     }
-
-private:
     HD void add_light(const SubpathState& state, const LightDensities& light, Rgb emission) const {
         add_radiance(film, state.pixel, mis_weight(light.weight_sum(state.mis)) * (state.throughput * emission));
     }
     HD void add_background(const SubpathState& state, const Ray& ray) const {
-        if (state.depth() == 0) return add_seen_background(scene.picture, film, state, ray);
+        if (state.depth() == 0) {
+            return add_seen_background(scene.picture, film, state, ray, kInMedia ? state.throughput : Rgb{1, 1, 1});
+        }
         const LightSetView& lights = scene.picture.scene.lights;
         if (!lights.has_environment()) return;
         const float pdf = pdf_environment(lights, ray.origin, ray.direction);
@@ -70,30 +120,45 @@ private:
     }
 
     /// Samples one point of one light, as path tracing does.
-    HD INLINE_ON_DEVICE void sample_direct_light(const Surface& surface, const SubpathState& state, Vec3 wo,
-                                                 SampleKey key) const {
+    template <class End>
+    HD INLINE_ON_DEVICE void sample_direct_light(const End& end, const SubpathState& state, Vec3 wo, SampleKey key,
+                                                 InteriorList list) const {
         const SceneView& view = scene.picture.scene;
         LightSample light;
         const SampleBits bits = sample_bits(scene.settings.sampler, key, light_group(state.depth()), Pair::Last);
-        if (!sample_light<emitter_look(kVariant)>(view.lights, surface.light_context(wo), bits, light)) return;
-        const BothWays scattered = scatter_both_ways<kVariant>(surface, wo, light.wi);
+        if (!sample_light<emitter_look(kVariant)>(view.lights, end.light_context(wo), bits, light)) return;
+        const BothWays scattered = end.scatter(wo, light.wi);
         if (is_black(scattered.camera.f)) return;
         const uint32_t coin = coin_key(key, state.depth(), true);
         if (light.instance != kNoLight && view.any_alpha != 0 &&
             !AcceptHit{view, {}, {}, coin}.passes_alpha(light.instance, light.primitive, light.b1, light.b2)) {
             return; // transparent part of the light
         }
-        const float found = light.is_delta ? 0.0f : squared_density(scattered.camera.pdf / light.pdf);
-        const float arriving = density_from(light) * cosine_at(surface, light.wi);
+        const TriangleId target = light.is_delta ? TriangleId{} : TriangleId{light.instance, light.primitive};
+        Passage passage;
+        if constexpr (kInMedia) {
+            passage =
+                passage_of_connection(view, interior_towards(view, list, end, wo, light.wi),
+                                      end.origin_towards(light.wi), light.wi, light.distance, end.triangle(), target);
+            if (is_black(passage.transmittance)) return;
+        }
+        float found = light.is_delta ? 0.0f : squared_density(scattered.camera.pdf / light.pdf);
+        float arriving = density_from(light) * end.density_factor(light.wi);
+        if constexpr (kInMedia) {
+            found *= square(passage.probability);
+            arriving *= passage.probability;
+        }
         const float weight =
             mis_weight(found + squared_density(arriving) * state.mis.weight_sum(scattered.particle.pdf));
         Connection connection;
-        connection.ray = ray_to_light(light, surface.position, surface.error, surface.geometric_normal);
-        connection.start = surface.triangle;
-        connection.target = light.is_delta ? TriangleId{} : TriangleId{light.instance, light.primitive};
+        connection.ray = end.ray_to(light);
+        connection.start = end.triangle();
+        connection.target = target;
         connection.key = coin;
-        if constexpr (kVariant == ShadingVariant::General) {
-            light.radiance = light.radiance * transmittance_to_light<kVariant>(view, surface.triangle, light);
+        if constexpr (kInMedia) {
+            light.radiance = light.radiance * passage.transmittance;
+        } else if constexpr (kVariant == ShadingVariant::General) {
+            light.radiance = light.radiance * transmittance_to_light<kVariant>(view, end.triangle(), light);
         }
         connection.light = (weight / light.pdf) * (state.throughput * scattered.camera.f * light.radiance);
         subpaths.queue_connection(atomic_add(&subpaths.counts->connections, 1u), connection, state.pixel);
@@ -110,92 +175,130 @@ private:
         return inverse * pdf_emission(lights.triangles[number], dot(light.light_normal, light.wi));
     }
 
-    HD INLINE_ON_DEVICE void continue_subpath(const Surface& surface, uint32_t subpath, SubpathState& state, Vec3 wo,
-                                              SampleKey key) const {
+    template <class End>
+    HD INLINE_ON_DEVICE void continue_subpath(const End& end, uint32_t subpath, SubpathState& state, Vec3 wo,
+                                              SampleKey key, InteriorList list) const {
         const SubpathSettings& settings = scene.settings;
         const uint32_t choices = camera_group(state.depth(), kSubpathChoices);
-        const ScatterDraw draw =
-            draw_scatter(settings, key, surface.bsdf, camera_group(state.depth(), kSubpathScatter), choices);
-        BsdfSample sample = sample_surface<kVariant>(surface, wo, draw.lobe, draw.u);
-        if (!(sample.pdf > 0) || !survives(settings, key, choices, state.depth() + 1, sample.weight)) return;
+        const ScatterDraw draw = end.draw(settings, key, camera_group(state.depth(), kSubpathScatter), choices);
+        BsdfSample sample = end.sample_camera(wo, draw);
+        if (!(sample.pdf > 0) || !end.survives(settings, key, choices, state.depth() + 1, sample.weight)) return;
         const Vec3 wi = sample.wi;
         if (sample.is_delta()) {
-            state.mis.scatter_by_delta(cosine_at(surface, wi));
+            state.mis.scatter_by_delta(end.density_factor(wi));
         } else {
-            state.mis.scatter(cosine_at(surface, wi), sample.pdf,
-                              scatter_both_ways<kVariant>(surface, wo, wi).particle.pdf);
+            state.mis.scatter(end.density_factor(wi), sample.pdf, end.scatter(wo, wi).particle.pdf);
+        }
+        if constexpr (kInMedia) {
+            subpaths.store_interior(subpath, interior_towards(scene.picture.scene, list, end, wo, wi));
         }
         state.throughput = state.throughput * sample.weight;
         ++state.scatterings;
         subpaths.states[subpath] = state;
-        const Ray ray = {offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wi), 0, wi,
-                         kInfinity};
-        subpaths.queue_ray(atomic_add(&subpaths.counts->next, 1u), subpath, ray, surface.triangle,
+        const Ray ray = {end.origin_towards(wi), 0, wi, kInfinity};
+        subpaths.queue_ray(atomic_add(&subpaths.counts->next, 1u), subpath, ray, end.triangle(),
                            coin_key(key, state.depth(), false), round + 1);
     }
 };
 
-/// An end of a connection between two vertices.
-struct ConnectedEnd {
+/// The solids that hold a vertex, on the side from which its subpath arrived, in code that knows media.
+template <bool kInMedia>
+struct SolidsAround {
+    InteriorList interior;
+};
+template <>
+struct SolidsAround<false> {};
+
+/// A vertex that is connected.
+template <bool kInMedia>
+struct VertexToConnect : SubpathVertex, SolidsAround<kInMedia> {
+    HD VertexToConnect(const SubpathVerticesView& vertices, std::size_t at) : SubpathVertex(vertices.load(at)) {
+        if constexpr (kInMedia) this->interior = vertices.load_interior(at);
+    }
+};
+
+/// An end of a connection between two vertices. Its solids are those on the side of the connection.
+template <bool kInMedia>
+struct ConnectedEnd : SolidsAround<kInMedia> {
     Rgb f;                       // scattered along the connection, per solid angle
     float onwards_density = 0;   // density of the subpath's own continuation along the connection, 1/sr
     float backwards_density = 0; // density of the other subpath's continuation from here backwards, 1/sr
-    float cosine = 0;
-    Vec3 start; // origin of a ray along the connection
+    float density_factor = 0;    // SurfaceEnd::density_factor
+    Vec3 start;                  // origin of a ray along the connection
     TriangleId triangle;
 };
 
-template <ShadingVariant kVariant>
-HD inline ConnectedEnd connect_end(const SceneView& scene, const SubpathVertex& vertex, Vec3 along, bool is_camera) {
-    const Surface surface = make_surface<kVariant>(scene, vertex.hit, vertex.direction);
+template <bool kInMedia, class End>
+HD INLINE_ON_DEVICE ConnectedEnd<kInMedia> connect_vertex(const SceneView& scene, const End& of,
+                                                          const VertexToConnect<kInMedia>& vertex, Vec3 along,
+                                                          bool is_camera) {
     const Vec3 from = -vertex.direction;
-    const BothWays scattered = scatter_both_ways<kVariant>(surface, is_camera ? from : along, is_camera ? along : from);
-    ConnectedEnd end;
-    end.f =
-        is_camera ? scattered.camera.f : (1.0f / squared_index_along(surface, from, along, 1)) * scattered.particle.f;
+    const BothWays scattered = of.scatter(is_camera ? from : along, is_camera ? along : from);
+    ConnectedEnd<kInMedia> end;
+    end.f = is_camera ? scattered.camera.f : (1.0f / of.squared_index_along(from, along, 1)) * scattered.particle.f;
     end.onwards_density = is_camera ? scattered.camera.pdf : scattered.particle.pdf;
     end.backwards_density = is_camera ? scattered.particle.pdf : scattered.camera.pdf;
-    end.cosine = cosine_at(surface, along);
-    end.start = offset_ray_origin(surface.position, surface.error, surface.geometric_normal, along);
-    end.triangle = surface.triangle;
+    end.density_factor = of.density_factor(along);
+    end.start = of.origin_towards(along);
+    end.triangle = of.triangle();
+    if constexpr (kInMedia) end.interior = interior_towards(scene, vertex.interior, of, from, along);
     return end;
 }
 
+template <ShadingVariant kVariant, bool kInMedia>
+HD inline ConnectedEnd<kInMedia> connect_end(const SceneView& scene, const VertexToConnect<kInMedia>& vertex,
+                                             Vec3 along, bool is_camera) {
+    if constexpr (kInMedia) {
+        if (vertex.is_in_medium()) {
+            const MediumEnd end = {medium_point(scene, vertex.interior, vertex.position_in_medium()), vertex.direction};
+            return connect_vertex<kInMedia>(scene, end, vertex, along, is_camera);
+        }
+    }
+    Surface surface = make_surface<kVariant>(scene, vertex.hit, vertex.direction);
+    if constexpr (kInMedia) {
+        if (scene.nesting.is_there()) nest_surface(scene, vertex.interior, surface);
+    }
+    return connect_vertex<kInMedia>(scene, SurfaceEnd<kVariant>{surface}, vertex, along, is_camera);
+}
+
 /// connect_end(), not inlined in device code.
-template <ShadingVariant kVariant>
-HD_CALL inline ConnectedEnd connect_end_by_call(const SceneView& scene, const SubpathVertex& vertex, Vec3 along,
-                                                bool is_camera) {
-    return connect_end<kVariant>(scene, vertex, along, is_camera);
+template <ShadingVariant kVariant, bool kInMedia>
+HD_CALL inline ConnectedEnd<kInMedia>
+connect_end_by_call(const SceneView& scene, const VertexToConnect<kInMedia>& vertex, Vec3 along, bool is_camera) {
+    return connect_end<kVariant, kInMedia>(scene, vertex, along, is_camera);
 }
 
 /// Makes both ends of a connection along a direction from the first, the camera's; false if an end scatters no light.
-template <ShadingVariant kVariant>
-HD inline bool connect_ends(const SceneView& scene, const SubpathVertex (&vertices)[2], Vec3 along,
-                            ConnectedEnd (&ends)[2]) {
+template <ShadingVariant kVariant, bool kInMedia>
+HD inline bool connect_ends(const SceneView& scene, const VertexToConnect<kInMedia> (&vertices)[2], Vec3 along,
+                            ConnectedEnd<kInMedia> (&ends)[2]) {
     if constexpr (kVariant == ShadingVariant::General) {
         // Compiled by CUDA 13.0 with any material inlined, the loop below has accessed memory illegally: it counts in a
         // register of the warp, whose threads part in such a body.
-        ends[0] = connect_end_by_call<kVariant>(scene, vertices[0], along, true);
+        ends[0] = connect_end_by_call<kVariant, kInMedia>(scene, vertices[0], along, true);
         if (is_black(ends[0].f)) return false;
-        ends[1] = connect_end_by_call<kVariant>(scene, vertices[1], -along, false);
+        ends[1] = connect_end_by_call<kVariant, kInMedia>(scene, vertices[1], -along, false);
         return !is_black(ends[1].f);
     } else {
         for (int k = 0; k < 2; ++k) { // one after the other, because a kernel has room for one surface
-            ends[k] = connect_end<kVariant>(scene, vertices[k], k == 0 ? along : -along, k == 0);
+            ends[k] = connect_end<kVariant, kInMedia>(scene, vertices[k], k == 0 ? along : -along, k == 0);
             if (is_black(ends[k].f)) return false;
         }
         return true;
     }
 }
 
-HD inline Vec3 position_of(const SceneView& scene, const Hit& hit) {
+template <bool kInMedia>
+HD inline Vec3 position_of(const SceneView& scene, const SubpathVertex& vertex) {
+    if (kInMedia && vertex.is_in_medium()) return vertex.position_in_medium();
+    const Hit& hit = vertex.hit;
     const InstanceView& instance = scene.instances[hit.instance];
     return world_triangle(instance, scene.meshes[instance.mesh], hit).position;
 }
 
 /// The stage that connects pair i: the current round's vertex i % vertices and vertex first + i / vertices of its
-/// sample's light subpath.
-template <ShadingVariant kVariant>
+/// sample's light subpath. With kInMedia in a scene with media.
+template <ShadingVariant kVariant, bool kInMedia = false>
 struct ConnectSubpaths {
     SubpathScene scene;
     SubpathsView subpaths;
@@ -208,17 +311,25 @@ struct ConnectSubpaths {
         const std::size_t at = subpaths.kept_index(subpath, number);
         if (!subpaths.kept.is_there(at)) return;
         const SceneView& view = scene.picture.scene;
-        const SubpathVertex ends[2] = {subpaths.present.load(present), subpaths.kept.load(at)};
-        const Vec3 way = position_of(view, ends[1].hit) - position_of(view, ends[0].hit);
+        const VertexToConnect<kInMedia> ends[2] = {{subpaths.present, present}, {subpaths.kept, at}};
+        const Vec3 way = position_of<kInMedia>(view, ends[1]) - position_of<kInMedia>(view, ends[0]);
         const float distance_squared = length_squared(way);
         if (!(distance_squared > 0)) return;
         const Vec3 along = way / sqrt(distance_squared);
-        ConnectedEnd connected[2];
-        if (!connect_ends<kVariant>(view, ends, along, connected)) return;
-        const ConnectedEnd &camera = connected[0], &particle = connected[1];
+        ConnectedEnd<kInMedia> connected[2];
+        if (!connect_ends<kVariant, kInMedia>(view, ends, along, connected)) return;
+        const ConnectedEnd<kInMedia>&camera = connected[0], &particle = connected[1];
         const float inverse = 1.0f / distance_squared;
-        const float by_camera = camera.onwards_density * particle.cosine * inverse;
-        const float by_particle = particle.onwards_density * camera.cosine * inverse;
+        float by_camera = camera.onwards_density * particle.density_factor * inverse;
+        float by_particle = particle.onwards_density * camera.density_factor * inverse;
+        Passage passage;
+        if constexpr (kInMedia) {
+            passage = passage_of_connection(view, camera.interior, camera.start, along, sqrt(distance_squared),
+                                            camera.triangle, particle.triangle);
+            if (is_black(passage.transmittance)) return;
+            by_camera *= passage.probability;
+            by_particle *= passage.probability;
+        }
         const float weight =
             mis_weight(squared_density(by_camera) * ends[1].mis.weight_sum(particle.backwards_density) +
                        squared_density(by_particle) * ends[0].mis.weight_sum(camera.backwards_density));
@@ -230,7 +341,9 @@ struct ConnectSubpaths {
         connection.key = coin_key({state.pixel, state.sample, scene.settings.seed ^ kConnectionCoins},
                                   round * 0x1000u + number, true);
         connection.light = (weight * inverse) * (ends[0].throughput * camera.f * particle.f * ends[1].throughput);
-        if constexpr (kVariant == ShadingVariant::General) {
+        if constexpr (kInMedia) {
+            connection.light = connection.light * passage.transmittance;
+        } else if constexpr (kVariant == ShadingVariant::General) {
             connection.light = connection.light * transmittance_of_solid(view, camera.triangle, particle.triangle,
                                                                          along, sqrt(distance_squared), kAtRest);
         }

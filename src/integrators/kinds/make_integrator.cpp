@@ -175,7 +175,8 @@ constexpr std::array kIntegrators = {
         {.value = Kind::Light,
          .name = "light",
          .light = "L((D|G|S)*(D|G))?E: nothing in mirrors or clear glass",
-         .ignores_nesting = true}),
+         .ignores_nesting = true,
+         .has_media = true}),
     row<SubpathIntegrator<BothDirections>, subpath_settings>(
         {.value = Kind::Bidirectional,
          .name = "bidirectional",
@@ -185,6 +186,7 @@ constexpr std::array kIntegrators = {
                   "as mirrors and clear glass show it",
          .finds_all_light = true,
          .ignores_nesting = true,
+         .has_media = true,
          .max_depth = kMaxConnectedDepth}),
     row<PhotonMapIntegrator, photon_map_request>({.value = Kind::PhotonMap,
                                                   .name = "photon_map",

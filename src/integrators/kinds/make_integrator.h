@@ -105,7 +105,8 @@ struct IntegratorDescriptor {
     bool has_mean_ambient = false;
     /// True if it renders nothing in a scene without any light.
     bool needs_any_light = false;
-    /// True if it refracts at each solid as in a vacuum, although solids lie in each other (SceneView::nesting).
+    /// True if it refracts at each solid as in a vacuum, although solids lie in each other (SceneView::nesting), unless
+    /// the scene has media that it knows.
     bool ignores_nesting = false;
     /// True if media absorb and scatter its light (SceneView::has_media).
     bool has_media = false;

@@ -1,7 +1,8 @@
 #pragma once
 
-// Particle tracing, or light tracing: each surface that a particle from a light hits connects to the camera, and
-// unoccluded connections count for the pixels there. Camera rays add directly visible emitters and background.
+// Particle tracing, or light tracing: each surface that a particle from a light hits connects to the camera, and so
+// does each point of a medium that scatters it; unoccluded connections count for the pixels there. Camera rays add
+// directly visible emitters and background, dimmed by media.
 //
 // Source: Dutre, Lafortune, Willems, "Monte Carlo Light Tracing with Direct Computation of Pixel Intensities", 1993.
 //
@@ -26,9 +27,12 @@ struct ParticlesAlone {
         schedule.run("begin_camera_subpaths", job.count,
                      BeginCameraSubpaths{job.scene, job.subpaths, job.samples, job.first});
         schedule.find_hits(RayKind::Camera, job, job.count, 0);
-        with_stacks(job.scene.picture.scene.variant, [&]<ShadingVariant kVariant>() {
-            schedule.run("shade_seen", job.count, ShadeSeen<kVariant>{job.scene, job.subpaths, job.film});
-        });
+        const auto shade = [&]<ShadingVariant kVariant, bool kInMedia>() {
+            schedule.run("shade_seen", job.count, ShadeSeen<kVariant, kInMedia>{job.scene, job.subpaths, job.film});
+        };
+        const SceneView& scene = job.scene.picture.scene;
+        if (scene.has_media != 0) return shade.template operator()<ShadingVariant::General, true>();
+        with_stacks(scene.variant, [&]<ShadingVariant kVariant>() { shade.template operator()<kVariant, false>(); });
     }
 };
 

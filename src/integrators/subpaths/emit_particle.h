@@ -21,6 +21,7 @@ struct Particle {
     Rgb power;        // W, divided by the density of everything that was sampled
     MisSums mis;
     bool is_from_far; // the ray is one of many parallel ones, so the first segment has no distance
+    uint32_t light;   // number of a light with a position, as in NestingView::of_lights; kNoLight: it is from far
 };
 
 /// Density of an emitter's direction with `cosine` to its normal, 1/sr.
@@ -102,6 +103,7 @@ struct EmitFromKind {
         const float pdf = pdf_emission(triangle, local.z);
         if (!(pdf > 0)) return false;
         start_particle(triangle, emission, normal, normalize(make_frame(normal).to_world(local)), particle);
+        particle.light = light;
         particle.power = (local.z / (emission.pdf * pdf)) * emission.radiance_along(scene, triangle, local.z);
         particle.mis = {square(1.0f / pdf), min(square(local.z / (emission.pdf * pdf)), kMaxWeightSum)};
         return true;
@@ -112,6 +114,7 @@ struct EmitFromKind {
         const PunctualEmission emission = emit_from(light, world, u, scene.lights.goniometric);
         if (!(emission.pdf > 0) || !is_finite(emission.pdf)) return false;
         particle.is_from_far = !(depth_of_beam(light) > 0);
+        if (!particle.is_from_far) particle.light = scene.lights.triangle_count + number;
         particle.mis = {square(1.0f / emission.pdf), 0};
         return punctual(light, emission, pmf);
     }
@@ -140,6 +143,7 @@ HD inline bool emit_particle(const SceneView& scene, const WorldSphere& world, S
     if (!(world.radius > 0)) return false;
     particle.start = {};
     particle.is_from_far = false;
+    particle.light = kNoLight;
     return draw_light(scene.lights, u_position, EmitFromKind{scene, world, u, key, particle});
 }
 

@@ -8,7 +8,7 @@
 
 #include "device/atomics.h"
 #include "integrators/subpaths/emit_particle.h"
-#include "integrators/subpaths/subpath_vertex.h"
+#include "integrators/subpaths/subpath_media.h"
 #include "render/begin_order.h"
 #include "render/connect_to_camera.h"
 #include "render/film_view.h"
@@ -85,7 +85,9 @@ HD inline SampleKey particle_sample_key(const SubpathScene& scene, uint32_t pixe
     return {static_cast<uint32_t>(number >> 32), static_cast<uint32_t>(number), scene.settings.seed};
 }
 
-/// The stage that starts the particles of samples `first`, first + 1, ... of `samples` as subpaths 0, 1, ...
+/// The stage that starts the particles of samples `first`, first + 1, ... of `samples` as subpaths 0, 1, ...; with
+/// kInMedia in a scene with media.
+template <bool kInMedia = false>
 struct BeginParticles {
     SubpathScene scene;
     SubpathsView subpaths;
@@ -102,6 +104,7 @@ struct BeginParticles {
         const uint32_t coin = coin_key({state.pixel, state.sample, settings.seed ^ kParticleCoins}, 0, false);
         Particle particle;
         if (!emit_particle(scene.picture.scene, scene.world, bits, direction, coin, particle)) return;
+        if constexpr (kInMedia) begin_in_media(i, particle);
         if (!(max_component(particle.power) > 0)) return;
         state.throughput = particle.power;
         state.mis = particle.mis;
@@ -110,10 +113,22 @@ struct BeginParticles {
         subpaths.squared_indices[i] = 1;
         subpaths.queue_ray(atomic_add(&subpaths.counts->next, 1u), i, particle.ray, particle.start, coin, 0);
     }
+
+private:
+    /// Finds the media that a particle begins in. Light from infinity has passed the scene's own medium.
+    HD void begin_in_media(uint32_t i, Particle& particle) const {
+        const SceneView& view = scene.picture.scene;
+        subpaths.store_interior(
+            i, interior_of_light(view, particle.light, particle.start, particle.ray.origin, particle.ray.direction));
+        if (!particle.is_from_far) return;
+        particle.power =
+            particle.power * transmittance_of(optical_depth(view.surroundings->medium.sigma_t(), kInfinity));
+    }
 };
 
-/// The stage that shades hits of particles: a connection to the camera, a stored vertex, the continuation.
-template <ShadingVariant kVariant>
+/// The stage that shades hits of particles, and scatterings in media: a connection to the camera, a stored vertex, the
+/// continuation.
+template <ShadingVariant kVariant, bool kInMedia = false>
 struct ShadeParticles {
     SubpathScene scene;
     SubpathsView subpaths;
@@ -121,36 +136,71 @@ struct ShadeParticles {
 
     HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
         const Hit hit = subpaths.hits().load(i);
-        if (hit.instance == kNoHit) return;
-        const SubpathSettings& settings = scene.settings;
+        if (!kInMedia && hit.instance == kNoHit) return;
         const uint32_t subpath = subpaths.owners[round % 2][i];
         const Ray ray = load_ray(subpaths.rays[round % 2] + i);
         SubpathState state = subpaths.states[subpath];
-        const Surface surface = make_surface<kVariant>(scene.picture.scene, hit, ray.direction);
-        if (state.depth() == 0) state.throughput = left_at(hit.t, ray.t_max) * state.throughput;
-        arrive_through_solids<kVariant>(scene, subpaths, i, round, ray, hit, state.throughput);
-        if (surface.is_unlit || is_black(state.throughput)) return;
-        state.mis.arrive(cosine_at(surface, ray.direction), state.is_from_far != 0 ? 1.0f : square(hit.t));
-        state.is_from_far = 0;
+        if constexpr (kInMedia) {
+            shade_in_media(i, hit, subpath, ray, state);
+        } else {
+            const Surface surface = make_surface<kVariant>(scene.picture.scene, hit, ray.direction);
+            if (state.depth() == 0) state.throughput = left_at(hit.t, ray.t_max) * state.throughput;
+            arrive_through_solids<kVariant>(scene, subpaths, i, round, ray, hit, state.throughput);
+            if (surface.is_unlit || is_black(state.throughput)) return;
+            state.mis.arrive(cosine_at(surface, ray.direction), state.is_from_far != 0 ? 1.0f : square(hit.t));
+            shade_vertex(SurfaceEnd<kVariant>{surface}, hit, ray.direction, subpath, state, {});
+        }
+    }
 
-        const bool can_be_connected = !surface.bsdf.has_delta_only();
+private:
+    HD INLINE_ON_DEVICE void shade_in_media(uint32_t i, const Hit& hit, uint32_t subpath, const Ray& ray,
+                                            SubpathState& state) const {
+        const SceneView& view = scene.picture.scene;
+        InteriorList list = subpaths.load_interior(subpath);
+        const bool is_from_far = state.is_from_far != 0;
+        const SubpathFlight flight = fly(scene, particle_sample_key(scene, state.pixel, state.sample),
+                                         kGroupLight + state.depth(), ray, hit, is_from_far, list, state.throughput);
+        if (state.depth() == 0) state.throughput = left_at(flight.distance, ray.t_max) * state.throughput;
+        if (is_black(state.throughput)) return;
+        const float way = (is_from_far ? 1.0f : square(flight.distance)) / flight.probability;
+        if (flight.is_scattered) {
+            const MediumEnd end = {flight.point, ray.direction, flight.share};
+            state.mis.arrive(end.density_factor(ray.direction), way);
+            return shade_vertex(end, SubpathVertex::hit_in_medium(end.position()), ray.direction, subpath, state, list);
+        }
+        if (hit.instance == kNoHit) return;
+        Surface surface = make_surface<kVariant>(view, hit, ray.direction);
+        const Rgb passed = reach_surface(view, list, subpaths.start_of(i, round), ray.direction, hit, surface);
+        state.throughput = passed * state.throughput;
+        if (surface.is_unlit || is_black(state.throughput)) return;
+        state.mis.arrive(cosine_at(surface, ray.direction), way);
+        shade_vertex(SurfaceEnd<kVariant>{surface}, hit, ray.direction, subpath, state, list);
+    }
+    /// Shades a vertex at which the subpath arrives along `direction`; `list` has the solids that hold it there.
+    template <class End>
+    HD INLINE_ON_DEVICE void shade_vertex(const End& end, const Hit& hit, Vec3 direction, uint32_t subpath,
+                                          SubpathState& state, InteriorList list) const {
+        state.is_from_far = 0;
+        const bool can_be_connected = !end.scatters_by_delta_alone();
         if (state.depth() < subpaths.capacity.kept) {
             const std::size_t at = subpaths.kept_index(subpath, state.depth());
             if (can_be_connected) {
                 subpaths.kept.store(
-                    at, {hit, ray.direction, (1.0f / subpaths.squared_indices[subpath]) * state.throughput, state.mis});
+                    at, {hit, direction, (1.0f / subpaths.squared_indices[subpath]) * state.throughput, state.mis});
+                if constexpr (kInMedia) subpaths.kept.store_interior(at, list);
             } else {
                 subpaths.kept.store_none(at);
             }
             subpaths.kept_counts[subpath] = state.depth() + 1;
         }
         const SampleKey key = particle_sample_key(scene, state.pixel, state.sample);
-        if (can_be_connected) connect_to_lens(surface, hit, subpath, state, -ray.direction, key);
-        if (state.depth() + 1 < settings.max_depth) continue_subpath(surface, subpath, state, -ray.direction, key);
+        if (can_be_connected) connect_to_lens(end, hit, subpath, state, -direction, key);
+        if (state.depth() + 1 < scene.settings.max_depth) {
+            continue_subpath(end, subpath, state, -direction, key, list);
+        }
     }
-
-private:
-    HD INLINE_ON_DEVICE void connect_to_lens(const Surface& surface, const Hit& hit, uint32_t subpath,
+    template <class End>
+    HD INLINE_ON_DEVICE void connect_to_lens(const End& end, const Hit& hit, uint32_t subpath,
                                              const SubpathState& state, Vec3 wi, SampleKey key) const {
         const SubpathSettings& settings = scene.settings;
         const CameraRays& camera = scene.picture.camera;
@@ -158,67 +208,76 @@ private:
                                                         particle_group(state.depth(), kSubpathScatter), Pair::Last)
                                             : Vec2{};
         CameraConnection seen;
-        if (!connect_to_camera(camera, surface.position, lens, seen)) return;
+        if (!connect_to_camera(camera, end.position(), lens, seen)) return;
         const AcceptHit accept = {scene.picture.scene, {}, {}, 0};
-        if (scene.picture.scene.any_hidden_back != 0 &&
+        if (scene.picture.scene.any_hidden_back != 0 && hit.instance != kMediumInstance &&
             AcceptCameraHit{accept, seen.direction}.hits_hidden_back(hit.instance, hit.primitive)) {
             return; // the camera sees through its back
         }
         const Vec3 wo = -seen.direction;
-        const BothWays scattered = scatter_both_ways<kVariant>(surface, wo, wi);
+        const BothWays scattered = end.scatter(wo, wi);
         if (is_black(scattered.particle.f)) return;
+        Passage passage;
+        if constexpr (kInMedia) {
+            passage = passage_of_connection(scene.picture.scene, camera.interior, seen.from, seen.direction,
+                                            length(end.position() - seen.from), {}, end.triangle());
+            if (is_black(passage.transmittance)) return;
+        }
         float weight = 1;
         if (scene.is_connected) {
-            const float density = seen.density * cosine_at(surface, wo) / seen.distance_squared;
+            float density = seen.density * end.density_factor(wo) / seen.distance_squared;
+            if constexpr (kInMedia) density *= passage.probability;
             weight = mis_weight(squared_density(density) * state.mis.weight_sum(scattered.camera.pdf));
         }
         Connection connection;
         // The ray starts on the camera's side, because camera rays pass through hidden backs.
-        const Vec3 end = offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wo);
-        connection.ray = {seen.from, 0, end - seen.from, 1};
+        connection.ray = {seen.from, 0, end.origin_towards(wo) - seen.from, 1};
         connection.start = {};
-        connection.target = surface.triangle;
+        connection.target = end.triangle();
         connection.key = coin_key({state.pixel, state.sample, settings.seed ^ kParticleCoins}, state.depth(), true);
         connection.light = (weight * seen.density / seen.distance_squared) * (scattered.particle.f * state.throughput);
         connection.light =
-            (1.0f / squared_index_along(surface, wi, wo, subpaths.squared_indices[subpath])) * connection.light;
-        if constexpr (kVariant == ShadingVariant::General) {
-            const Rgb passed = transmittance_of_solid(scene.picture.scene, surface.triangle, {}, wo,
-                                                      length(surface.position - seen.from), kAtRest);
+            (1.0f / end.squared_index_along(wi, wo, subpaths.squared_indices[subpath])) * connection.light;
+        if constexpr (kInMedia) {
+            connection.light = passage.transmittance * connection.light;
+        } else if constexpr (kVariant == ShadingVariant::General) {
+            const Rgb passed = transmittance_of_solid(scene.picture.scene, end.triangle(), {}, wo,
+                                                      length(end.position() - seen.from), kAtRest);
             connection.light = passed * connection.light;
         }
         const uint32_t slot = atomic_add(&subpaths.counts->connections, 1u);
         subpaths.queue_connection(slot, connection, state.pixel);
         subpaths.connection_rasters[slot] = seen.raster;
     }
-    HD INLINE_ON_DEVICE void continue_subpath(const Surface& surface, uint32_t subpath, SubpathState& state, Vec3 wi,
-                                              SampleKey key) const {
+    template <class End>
+    HD INLINE_ON_DEVICE void continue_subpath(const End& end, uint32_t subpath, SubpathState& state, Vec3 wi,
+                                              SampleKey key, InteriorList list) const {
         const SubpathSettings& settings = scene.settings;
         const uint32_t choices = particle_group(state.depth(), kSubpathChoices);
-        const ScatterDraw draw =
-            draw_scatter(settings, key, surface.bsdf, particle_group(state.depth(), kSubpathScatter), choices);
-        BsdfSample sample = sample_particle<kVariant>(surface, wi, draw.lobe, draw.u);
-        if (!(sample.pdf > 0) || !survives(settings, key, choices, state.depth() + 1, sample.weight)) return;
+        const ScatterDraw draw = end.draw(settings, key, particle_group(state.depth(), kSubpathScatter), choices);
+        BsdfSample sample = end.sample_particle(wi, draw);
+        if (!(sample.pdf > 0) || !end.survives(settings, key, choices, state.depth() + 1, sample.weight)) return;
         const Vec3 wo = sample.wi;
         if (scene.is_connected) {
             if (sample.is_delta()) {
-                state.mis.scatter_by_delta(cosine_at(surface, wo));
+                state.mis.scatter_by_delta(end.density_factor(wo));
             } else {
-                state.mis.scatter(cosine_at(surface, wo), sample.pdf,
-                                  scatter_both_ways<kVariant>(surface, wo, wi).camera.pdf);
+                state.mis.scatter(end.density_factor(wo), sample.pdf, end.scatter(wo, wi).camera.pdf);
             }
         }
         if (sample.is_transmission) {
-            subpaths.squared_indices[subpath] = squared_index_beyond(surface, wi, subpaths.squared_indices[subpath]);
+            subpaths.squared_indices[subpath] = end.squared_index_beyond(wi, subpaths.squared_indices[subpath]);
+        }
+        if constexpr (kInMedia) {
+            subpaths.store_interior(subpath, interior_towards(scene.picture.scene, list, end, wi, wo));
         }
         state.throughput = state.throughput * sample.weight;
         ++state.scatterings;
         subpaths.states[subpath] = state;
-        const Ray ray = {offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wo), 0, wo,
-                         kInfinity};
+        const Ray ray = {end.origin_towards(wo), 0, wo, kInfinity};
         const uint32_t coin =
             coin_key({state.pixel, state.sample, settings.seed ^ kParticleCoins}, state.depth(), false);
-        subpaths.queue_ray(atomic_add(&subpaths.counts->next, 1u), subpath, ray, surface.triangle, coin, round + 1);
+        subpaths.queue_ray(atomic_add(&subpaths.counts->next, 1u), subpath, ray, end.triangle(), coin, round + 1);
     }
 };
 
@@ -299,19 +358,19 @@ struct BeginCameraSubpaths {
     }
 };
 
-/// Adds auxiliary channels of the first surface, and its emission.
+/// Adds auxiliary channels of the first surface, and its emission, of which `passed` arrives.
 HD INLINE_ON_DEVICE void add_seen(const PictureView& picture, const FilmView& film, const SubpathState& state,
-                                  const Ray& ray, const Hit& hit, const Surface& surface) {
+                                  const Ray& ray, const Hit& hit, const Surface& surface, Rgb passed = {1, 1, 1}) {
     add_first_hit(film, state.pixel, state.sample, {ray.origin, ray.direction}, hit, surface, picture);
-    if (!is_black(surface.emission)) add_radiance(film, state.pixel, surface.emission);
+    if (!is_black(surface.emission)) add_radiance(film, state.pixel, passed * surface.emission);
 }
-/// Adds the background for a camera ray that hit nothing.
+/// Adds the background for a camera ray that hit nothing, of which `passed` arrives.
 HD inline void add_seen_background(const PictureView& picture, const FilmView& film, const SubpathState& state,
-                                   const Ray& ray) {
+                                   const Ray& ray, Rgb passed = {1, 1, 1}) {
     add_no_first_hit(film, state.pixel, state.sample);
     const LightSetView& lights = picture.scene.lights;
     if (!lights.has_environment() || picture.hides_background(ray.origin)) return;
-    add_radiance(film, state.pixel, environment_radiance(lights.environment, ray.direction));
+    add_radiance(film, state.pixel, passed * environment_radiance(lights.environment, ray.direction));
 }
 
 } // namespace pertev

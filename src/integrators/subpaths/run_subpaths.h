@@ -112,20 +112,32 @@ void with_variant(ShadingVariant variant, const Run& run) {
     run.template operator()<ShadingVariant::Unstacked>();
 }
 
+/// Calls run.operator()<kVariant, kInMedia>() for a scene of either kind.
+template <class Run>
+void with_media(const SceneView& scene, const Run& run) {
+    if (scene.has_media != 0) return run.template operator()<ShadingVariant::General, true>();
+    with_variant(scene.variant, [&]<ShadingVariant kVariant>() { run.template operator()<kVariant, false>(); });
+}
+
 /// Traces all particles of the job to their ends and adds those that the camera sees to the film.
 template <class Schedule>
 void run_particles(Schedule& schedule, const SubpathJob& job) {
     const SubpathsView& subpaths = job.subpaths;
     schedule.run("begin_subpaths", 1, BeginSubpaths{subpaths.counts, 0});
-    schedule.run("begin_particles", job.count, BeginParticles{job.scene, subpaths, job.samples, job.first});
+    const SceneView& scene = job.scene.picture.scene;
+    const auto begin = [&]<bool kInMedia>() {
+        schedule.run("begin_particles", job.count,
+                     BeginParticles<kInMedia>{job.scene, subpaths, job.samples, job.first});
+    };
+    scene.has_media != 0 ? begin.template operator()<true>() : begin.template operator()<false>();
     schedule.run("count_subpaths", 1, CountSubpaths{subpaths.counts, true, 0});
     schedule.begin_rounds(job.count);
     for (uint32_t round = 0; round < job.scene.settings.max_depth && schedule.has_rays_left(subpaths.counts); ++round) {
         const WorkCount rays = {schedule.max_rays(), &subpaths.counts->rays};
         const WorkCount connections = {schedule.max_rays(), &subpaths.counts->connections};
         schedule.find_hits(RayKind::Bounce, job, rays, round);
-        with_variant(job.scene.picture.scene.variant, [&]<ShadingVariant kVariant>() {
-            schedule.run("shade_particles", rays, ShadeParticles<kVariant>{job.scene, subpaths, round});
+        with_media(scene, [&]<ShadingVariant kVariant, bool kInMedia>() {
+            schedule.run("shade_particles", rays, ShadeParticles<kVariant, kInMedia>{job.scene, subpaths, round});
         });
         schedule.find_connections_of_camera(job, connections);
         schedule.run("add_splats", connections, AddSplats{subpaths, job.scene.picture.camera.filter, job.film});

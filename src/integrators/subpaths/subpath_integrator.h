@@ -21,15 +21,22 @@ public:
     void render(uint32_t first, uint32_t count, const FilmView& film) override;
 
 private:
-    static SubpathCapacity capacity_for(const SubpathSettings& settings, std::size_t bytes, uint64_t most) {
-        return capacity_within(bytes, most, [&](uint32_t subpaths) { return Algorithm::capacity(settings, subpaths); });
+    static SubpathCapacity capacity_for(const SubpathSettings& settings, bool has_interiors, std::size_t bytes,
+                                        uint64_t most) {
+        return capacity_within(bytes, most, [&](uint32_t subpaths) {
+            SubpathCapacity capacity = Algorithm::capacity(settings, subpaths);
+            capacity.has_interiors = has_interiors;
+            return capacity;
+        });
     }
 };
 
 template <class Algorithm>
 void SubpathIntegrator<Algorithm>::reserve(const WorkSize& size) {
     if (uses_loop(size)) return;
-    allocate_capacity(capacity_for(settings_, kMaxBytes, std::min<uint64_t>(size.all(), batch_)), "light paths");
+    const bool has_interiors = size.has_interiors && size.has_media;
+    allocate_capacity(capacity_for(settings_, has_interiors, kMaxBytes, std::min<uint64_t>(size.all(), batch_)),
+                      "light paths");
 }
 
 template <class Algorithm>
@@ -39,7 +46,8 @@ void SubpathIntegrator<Algorithm>::render(uint32_t first, uint32_t count, const 
     SubpathJob job = {};
     job.scene = {picture_, picture_settings_, sphere_round(tracer_->bounds()), Algorithm::kIsConnected};
     job.film = film;
-    const SubpathCapacity loop_capacity = capacity_for(picture_settings_, kLoopBytes, kLoopCount);
+    const bool has_interiors = picture_.scene.nesting.is_there() && picture_.scene.has_media != 0;
+    const SubpathCapacity loop_capacity = capacity_for(picture_settings_, has_interiors, kLoopBytes, kLoopCount);
     const auto run = [&](const PixelWindow& window, const auto& stages) {
         job.samples = {window, first, count};
         run_stages(job, 0, job.samples.count(), loop_capacity, count, [&](auto& schedule, const SubpathJob& part) {

@@ -9,6 +9,7 @@
 
 #include "base/host_device.h"
 #include "device_scene/accept_hit.h"
+#include "device_scene/interior_list.h"
 #include "device_scene/ray_queue.h"
 #include "integrators/lay_out_arrays.h"
 #include "math/float4.h"
@@ -78,22 +79,40 @@ struct alignas(16) SubpathState {
 };
 static_assert(sizeof(SubpathState) == 32);
 
-/// A surface that a subpath has hit and that the other subpath may connect to.
+/// Instance of a SubpathVertex in a medium.
+inline constexpr uint32_t kMediumInstance = kNoHit - 1;
+
+/// A surface that a subpath has hit, or a point of a medium that has scattered it, to which the other subpath may
+/// connect.
 struct SubpathVertex {
-    Hit hit;        // without instance if there are only delta lobes, which cannot connect
+    Hit hit;        // without instance if there are only delta lobes, which cannot connect; kMediumInstance with the
+                    // bits of the position in u, v and `primitive` for a point of a medium
     Vec3 direction; // direction of the subpath, unit
     Rgb throughput; // on arrival; for a light subpath divided by the squared index there
     MisSums mis;
+
+    HD bool is_in_medium() const { return hit.instance == kMediumInstance; }
+    HD Vec3 position_in_medium() const { return {hit.u, hit.v, float_of(hit.primitive)}; }
+    HD static Hit hit_in_medium(Vec3 position) {
+        return {0, position.x, position.y, kMediumInstance, bits_of(position.z)};
+    }
 };
 
 struct SubpathVerticesView {
     Float4 *hits, *directions, *throughputs;
+    Uint2* interiors; // null unless solids are nested in a scene with media
 
     HD void store(std::size_t at, const SubpathVertex& vertex) const {
         const Hit& hit = vertex.hit;
         hits[at] = {hit.u, hit.v, float_of(hit.instance), float_of(hit.primitive)};
         directions[at] = {vertex.direction.x, vertex.direction.y, vertex.direction.z, vertex.mis.last};
         throughputs[at] = {vertex.throughput.r, vertex.throughput.g, vertex.throughput.b, vertex.mis.earlier};
+    }
+    HD void store_interior(std::size_t at, InteriorList interior) const {
+        if (interiors != nullptr) interiors[at] = interior.words();
+    }
+    HD InteriorList load_interior(std::size_t at) const {
+        return interiors != nullptr ? InteriorList::of_words(interiors[at]) : InteriorList{};
     }
     HD void store_none(std::size_t at) const { hits[at] = {0, 0, float_of(kNoHit), 0}; }
     HD bool is_there(std::size_t at) const { return bits_of(hits[at].z) != kNoHit; }
@@ -129,15 +148,17 @@ struct SubpathCounts {
 
 /// Sizes of the arrays.
 struct SubpathCapacity {
-    uint32_t count;       // subpaths
-    uint32_t kept;        // stored vertices per light subpath
-    uint32_t connections; // connections per subpath at once
+    uint32_t count;             // subpaths
+    uint32_t kept;              // stored vertices per light subpath
+    uint32_t connections;       // connections per subpath at once
+    bool has_interiors = false; // solids are nested in a scene with media
 };
 
 struct SubpathsView {
     SubpathCapacity capacity;
     SubpathState* states;   // [subpaths]
     float* squared_indices; // [subpaths] for light subpaths: squared index at their vertex, over that at their light
+    Uint2* interiors;       // [subpaths] solids that hold their rays; null unless capacity.has_interiors
 
     // Current rays, contiguous. Rounds alternate between two arrays for them, for the triangles that they leave, and
     // for their owners, the subpaths.
@@ -182,6 +203,13 @@ struct SubpathsView {
         return std::size_t(number) * capacity.count + subpath;
     }
 
+    HD void store_interior(uint32_t subpath, InteriorList interior) const {
+        if (interiors != nullptr) interiors[subpath] = interior.words();
+    }
+    HD InteriorList load_interior(uint32_t subpath) const {
+        return interiors != nullptr ? InteriorList::of_words(interiors[subpath]) : InteriorList{};
+    }
+
     HD void queue_ray(uint32_t slot, uint32_t subpath, const Ray& ray, TriangleId start, uint32_t key,
                       uint32_t round) const {
         store_ray(rays[round % 2] + slot, ray);
@@ -206,6 +234,7 @@ inline std::size_t lay_out(SubpathsView& view, std::byte* memory, const SubpathC
             add_array(vertices.hits, count);
             add_array(vertices.directions, count);
             add_array(vertices.throughputs, count);
+            add_array(vertices.interiors, capacity.has_interiors ? count : 0);
         };
         const std::size_t subpaths = capacity.count, connects = capacity.kept > 0 ? subpaths : 0,
                           connections = subpaths * capacity.connections;
@@ -230,6 +259,7 @@ inline std::size_t lay_out(SubpathsView& view, std::byte* memory, const SubpathC
         add_array(view.connection_keys, connections);
         add_array(view.connection_light, connections);
         add_array(view.connection_rasters, subpaths);
+        add_array(view.interiors, capacity.has_interiors ? subpaths : 0);
         add_array(view.counts, 1);
     });
 }

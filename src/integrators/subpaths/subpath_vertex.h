@@ -70,4 +70,45 @@ HD inline ScatterDraw draw_scatter(const SubpathSettings& settings, SampleKey ke
     return draw;
 }
 
+/// A vertex of a subpath on a surface. MediumEnd (subpath_media.h) has the same functions for one in a medium.
+template <ShadingVariant kVariant>
+struct SurfaceEnd {
+    const Surface& surface;
+
+    HD Vec3 position() const { return surface.position; }
+    HD TriangleId triangle() const { return surface.triangle; }
+    HD bool scatters_by_delta_alone() const { return surface.bsdf.has_delta_only(); }
+    /// Returns what multiplies a density over solid angle at another vertex, besides the squared distance, to give one
+    /// at this vertex.
+    HD float density_factor(Vec3 direction) const { return cosine_at(surface, direction); }
+    HD BothWays scatter(Vec3 wo, Vec3 wi) const { return scatter_both_ways<kVariant>(surface, wo, wi); }
+    HD Vec3 origin_towards(Vec3 direction) const {
+        return offset_ray_origin(surface.position, surface.error, surface.geometric_normal, direction);
+    }
+    HD LightContext light_context(Vec3 wo) const { return surface.light_context(wo); }
+    HD Ray ray_to(const LightSample& light) const {
+        return ray_to_light(light, surface.position, surface.error, surface.geometric_normal);
+    }
+    /// Returns whether the directions `a` and `b` are on one side.
+    HD bool same_side(Vec3 a, Vec3 b) const { return surface.same_side(a, b); }
+    HD ScatterDraw draw(const SubpathSettings& settings, SampleKey key, uint32_t scatter_group,
+                        uint32_t choices_group) const {
+        return draw_scatter(settings, key, surface.bsdf, scatter_group, choices_group);
+    }
+    HD BsdfSample sample_camera(Vec3 wo, const ScatterDraw& draw) const {
+        return sample_surface<kVariant>(surface, wo, draw.lobe, draw.u);
+    }
+    HD BsdfSample sample_particle(Vec3 wi, const ScatterDraw& draw) const {
+        return pertev::sample_particle<kVariant>(surface, wi, draw.lobe, draw.u);
+    }
+    HD bool survives(const SubpathSettings& settings, SampleKey key, uint32_t group, uint32_t vertex,
+                     Rgb& weight) const {
+        return pertev::survives(settings, key, group, vertex, weight);
+    }
+    HD float squared_index_beyond(Vec3 wi, float here) const { return pertev::squared_index_beyond(surface, wi, here); }
+    HD float squared_index_along(Vec3 wi, Vec3 wo, float here) const {
+        return pertev::squared_index_along(surface, wi, wo, here);
+    }
+};
+
 } // namespace pertev
