@@ -24,9 +24,11 @@ struct ComposeSamples {
         light += sums.all_normal(pixel).w * mirrored_light(mirrors, mirrored, pixel);
         Rgb of_neighbours = {0, 0, 0};
         float neighbour_features = 0;
+        bool is_missing = false; // a neighbour, of a row without samples, has neither features nor light
         for (int slot = 0; slot < kNeighbourSurfaces; ++slot) {
             const uint32_t neighbour = bits_of(sums.neighbour_diffuse[slot][pixel].w);
             if (neighbour == kNoHit) break;
+            is_missing = is_missing || !(sums.normal[neighbour].w >= 0);
             const Float4 gloss = sums.all_neighbour_gloss(slot, pixel);
             of_neighbours += sums.all_neighbour_diffuse(slot, pixel) * rgb_of(signals.diffuse[neighbour]);
             if (has_gloss) of_neighbours += rgb_of(gloss) * rgb_of(signals.gloss[neighbour]);
@@ -35,7 +37,8 @@ struct ComposeSamples {
         }
         // The more samples of such surfaces the pixel has, the more they count.
         if (const Float4 own = sums.neighbour(pixel); own.w > 0) {
-            of_neighbours = lerp(of_neighbours, (neighbour_features / own.w) * rgb_of(own), own.w / (own.w + kTrusted));
+            const float trust = is_missing ? 1.0f : own.w / (own.w + kTrusted);
+            of_neighbours = lerp(of_neighbours, (neighbour_features / own.w) * rgb_of(own), trust);
         }
         light += of_neighbours;
         // Samples that fit no guide are used unfiltered. If only rays without light have hit such surfaces, the rest
