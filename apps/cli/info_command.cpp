@@ -147,7 +147,7 @@ void describe_film(const InfoFlags& flags, Facts& facts) {
         for (const auto& [first_row, end_row, samples] : header.parts)
             parts.push_back(
                 fmt::format("rows {}, samples {}", range(first_row, end_row), range(samples.first, samples.end)));
-        facts.add("parts", parts);
+        facts.add_lines("parts", parts);
     }
     facts.add("spp", header.spp);
     for (const ExrMetadata* entries : {&header.facts.settings, &header.facts.shown, &header.facts.origin})

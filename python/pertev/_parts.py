@@ -17,7 +17,7 @@ def merge(files, *, output=(), partial=False, tone_map=None, exposure=None):
 
     files    a file or several, in any order
     output   a file to write, or several: .exr .png .jpg .hdr, or .pvf with all samples
-    partial  True: a picture of the samples that are there, if some are missing, which is black in rows without any
+    partial  True: a picture of the samples that are there, if some are missing; rows without any are black
     tone_map, exposure  as the settings, for .png and .jpg, in place of those of the parts
 
     The picture has the bytes of one render of all samples. Raises InputError for parts that overlap, are missing or are of

@@ -47,7 +47,8 @@ SampleRange RowSamples::Band::first_missing(uint32_t end) const {
     return {at, std::max(at, end)};
 }
 
-/// Makes a row the first one of a band, and returns its number; that of bands for the end of the film.
+/// Makes a row the first one of a band, and returns its number, or the number of bands if the row is the end of
+/// the film.
 std::size_t RowSamples::split_at(uint32_t row) {
     const auto at = std::ranges::lower_bound(bands_, row, {}, &Band::first_row);
     const auto number = static_cast<std::size_t>(at - bands_.begin());

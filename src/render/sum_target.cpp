@@ -51,7 +51,7 @@ const void* SumTarget::display(uint32_t width, const RowSamples& samples, ToneMa
     static_assert(kFilmColorChannels * sizeof(float) >= 4);
     auto* const bytes = reinterpret_cast<uint8_t*>(resolved_.data());
     samples.visit_pixels(width, pixels_, [&](std::size_t first, std::size_t end, uint64_t count) {
-        // Sums without samples are 0, over any number.
+        // The sums of no samples are 0, and so is their mean over one.
         launch(queue(), "display_film", static_cast<uint32_t>(end - first),
                DisplayFilm{view_from(first), std::max<uint64_t>(count, 1), kind, exposure_scale(exposure_stops),
                            transparent, bytes + 4 * first});

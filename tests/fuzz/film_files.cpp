@@ -41,7 +41,8 @@ Bytes fuzz_seed(uint32_t number) {
     header.aovs = number % 2 == 0 ? 0 : kAovNormal | kAovIds;
     header.layers_at = number % 4 == 3 ? LayersAt::Centre : LayersAt::Samples;
     if (number % 5 == 4) header.denoise = Denoise::Svgf;
-    header.part = {0, header.height, {0, 4}}, header.spp = 4;
+    header.parts = {{0, header.height, {0, 4}}}, header.spp = 4;
+    if (number % 3 == 1) header.parts = {{0, 2, {0, 4}}, {2, 4, {0, 1}}, {2, 4, {2, 3}}}; // the last rows have none
     header.facts.settings = {{"pertev.version", std::string("1")}, {"pertev.seed", 7}, {"pertev.fov_y", 0.5f}};
     header.facts.origin = {{"pertev.instances", std::string(R"({"0":"a"})")}, {"pertev.load_seconds", 0.25}};
     if (number % 2 == 0) header.facts.display = Display{ToneMap::Agx, -0.5f, FalseColors{"luminance", "nt", 2, 1, 3}};

@@ -31,7 +31,7 @@ struct BlockFileKind {
     std::string_view magic;
     uint32_t version;
     std::string_view name;             // for people: "film"
-    uint32_t oldest_version = version; // that is read
+    uint32_t oldest_version = version; // the oldest one that is read
 };
 
 /// The bytes of a file, in the order of x86, which is the file's.

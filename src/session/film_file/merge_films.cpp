@@ -27,7 +27,7 @@ bool overlap(const FilmPart& a, const FilmPart& b) {
            a.samples.first < b.samples.end && b.samples.first < a.samples.end;
 }
 
-/// Makes the rows without samples black, of which a denoiser has gathered nothing.
+/// Makes rows without samples black, because a denoiser has no features there.
 void blacken_missing(const Film& film, Image& image) {
     film.row_samples().visit_pixels(film.width(), film.window().count(),
                                     [&](std::size_t first, std::size_t end, uint32_t samples) {
@@ -99,6 +99,7 @@ void FilmMerge::refuse_overlap(std::size_t number, const FilmPart& part) const {
                                     std::min(part.end_row, other.end_row) - 1, before.file));
         }
     }
+    PERTEV_CHECK(false); // a part overlaps none of its own file
 }
 
 void FilmMerge::refuse_gaps() const {

@@ -21,7 +21,7 @@ std::vector<CountedRows> counted_rows(const RowSamples& samples) {
     std::vector<CountedRows> all;
     for (const RowSamples::Band& band : samples.bands()) {
         if (!all.empty() && all.back().samples == band.count())
-            all.back().end = band.end_row; // its samples are others
+            all.back().end = band.end_row; // which has other samples of the same number
         else
             all.push_back({band.first_row, band.end_row, band.count()});
     }
@@ -39,7 +39,7 @@ std::string warning_of(std::span<const CountedRows> rows) {
                                  : fmt::format("rows {} to {} have {}", first, end - 1, samples);
     }
     if (rows.size() > kMostNamed)
-        text += fmt::format(", and {} more ranges of rows have others", rows.size() - kMostNamed);
+        text += fmt::format(", and so on for {} more ranges of rows", rows.size() - kMostNamed);
     return text;
 }
 
@@ -78,6 +78,8 @@ MergedPicture merge_picture(std::span<const std::string> files, bool is_partial,
     if (const std::vector<CountedRows> rows = counted_rows(parts.samples()); rows.size() > 1) {
         sink.warn(warning_of(rows));
         record_rows(rows, picture.least_samples, picture.facts.origin);
+    } else if (picture.least_samples < header.spp) {
+        sink.warn(fmt::format("the picture has {} of {} samples", picture.least_samples, header.spp));
     }
     if (!writes_tone_mapped(outputs)) picture.facts.shown.clear(); // which only film files have
     Film film = parts.film(queue, sink);
