@@ -242,13 +242,14 @@ TEST_CASE("each schedule renders the same bytes of glass with a medium, in a cle
 }
 
 TEST_CASE("in media light tracing and bidirectional path tracing have the means of path tracing") {
-    Scene scene; // lights are in haze, in a cloud, in milk and in a hollow, and the camera in a cloud of its own
-    scene.medium = {.sigma_a = {0.05f, 0.02f, 0}, .sigma_s = {0.1f, 0.2f, 0.4f}, .g = 0.4f};
+    Scene scene; // lights are in haze, in a cloud, in milk and in a hollow, and the camera and the floor in the haze
+    scene.medium = {.sigma_s = {0.02f, 0.01f, 0}};
+    const MediumParameters haze = {.sigma_a = {0.05f, 0.02f, 0}, .sigma_s = {0.1f, 0.2f, 0.4f}, .g = 0.4f};
+    test::add(scene, test::box({0, 0.5f, 0.5f}, {2.5f, 2, 2.7f}), clear_boundary(haze));
     test::add(scene, test::floor_at(-1, 2), test::white(0.6f));
     test::add(scene, test::box({-0.7f, 0, 0}, {0.6f, 0.7f, 0.6f}),
               clear_boundary({.sigma_s = {2, 1, 0.5f}, .g = -0.5f}));
     test::add(scene, test::ball({-0.6f, 0, 0.2f}, 0.3f), clear_boundary({}));
-    test::add(scene, test::box({0, 0.6f, 2.5f}, {0.4f, 0.4f, 0.8f}), clear_boundary({.sigma_s = {0.2f, 0.4f, 0.6f}}));
     Material rough = filled(test::glass(1.3f), kMilk);
     rough.roughness = 0.6f;
     test::add(scene, test::ball({0.8f, -0.3f, 0}, 0.6f), rough);
