@@ -3,6 +3,10 @@
 MUTATIONS = [
     ("films that overlap in one sample are merged", "consistency/film_files",
      ("src/render/row_samples.cpp", "next->first < range.end", "next->first + 1 < range.end")),
+    ("rows beside rows without samples take their light", "robust/cli_merge",
+     ("src/denoise/compose_samples.h", "is_missing = is_missing || !(sums", "is_missing = is_missing && !(sums")),
+    ("parts need the files of settings in the same folder", "robust/cli_merge",
+     ("src/session/writing/deciding_settings.cpp", "for (std::string& text : texts) text = without_folder(setting.name, std::move(text));", "")),
     ("films of other settings are merged", "consistency/film_files robust/cli_merge",
      ("src/session/film_file/film_header.cpp", "first_difference(before.settings, after.settings)", "first_difference(after.settings, after.settings)")),
     ("parts of scenes with other textures are merged", "robust/cli_merge",
