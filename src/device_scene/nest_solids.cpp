@@ -5,6 +5,7 @@
 #include <numeric>
 #include <tuple>
 #include <unordered_map>
+#include <utility>
 
 #include "base/parallel_for.h"
 #include "math/double_vec3.h"
@@ -43,16 +44,8 @@ bool contains(const Bounds3& bounds, Vec3 p) {
            p.z <= bounds.hi.z;
 }
 
-/// Returns +1 or -1 if a line from `from` along `way` meets the triangle, by the side that it meets; else 0.
-int crossing(DoubleVec3 from, DoubleVec3 way, DoubleVec3 a, DoubleVec3 b, DoubleVec3 c) {
-    const DoubleVec3 ab = b - a, ac = c - a, p = cross(way, ac);
-    const double det = dot(ab, p);
-    if (det == 0) return 0;
-    const DoubleVec3 to = from - a, q = cross(to, ab);
-    const double u = dot(to, p) / det, v = dot(way, q) / det, t = dot(ac, q) / det;
-    if (!(u >= 0 && v >= 0 && u + v <= 1 && t > 0)) return 0;
-    return det > 0 ? 1 : -1;
-}
+/// Directions of lines from a point, of which two of three decide, because one may meet an edge.
+constexpr DoubleVec3 kWays[] = {{0.5773, 0.5221, 0.6279}, {-0.3117, 0.8891, -0.3353}, {0.1213, -0.4391, 0.8903}};
 
 } // namespace
 
@@ -82,7 +75,9 @@ bool is_closed(const Mesh& mesh) {
 std::shared_ptr<const ClosedMeshes::Shape> ClosedMeshes::shape_of(const Scene& scene, uint32_t mesh) {
     const auto [found, is_new] = found_.try_emplace(mesh);
     if (is_new && is_closed(scene.meshes[mesh])) {
-        found->second = std::make_shared<const Shape>(Shape{scene.meshes[mesh].positions, scene.meshes[mesh].indices});
+        Shape shape = {scene.meshes[mesh].positions, scene.meshes[mesh].indices, {}};
+        for (const DoubleVec3& way : kWays) shape.lines.emplace_back(shape.positions, shape.indices, way);
+        found->second = std::make_shared<const Shape>(std::move(shape));
     }
     return found->second;
 }
@@ -156,17 +151,9 @@ bool NestedSolids::holds(const Solid& solid, Vec3 point) const {
     if (solid.shape == nullptr || !contains(solid.bounds, point)) return false;
     const ClosedMeshes::Shape& shape = *solid.shape;
     const DoubleVec3 from = to_double(transform_point(solid.local_from_world, point));
-    // Two of three lines decide, because one may meet an edge.
-    constexpr DoubleVec3 kWays[] = {{0.5773, 0.5221, 0.6279}, {-0.3117, 0.8891, -0.3353}, {0.1213, -0.4391, 0.8903}};
     int votes = 0;
-    for (const DoubleVec3& way : kWays) {
-        int count = 0;
-        for (std::size_t i = 0; i < shape.indices.size(); i += 3) {
-            count += crossing(from, way, to_double(shape.positions[shape.indices[i]]),
-                              to_double(shape.positions[shape.indices[i + 1]]),
-                              to_double(shape.positions[shape.indices[i + 2]]));
-        }
-        votes += count != 0 ? 1 : 0;
+    for (const LineCrossings& line : shape.lines) {
+        votes += line.count(shape.positions, shape.indices, from) != 0 ? 1 : 0;
         if (votes == 2) break;
     }
     return votes >= 2;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "device_scene/interior_list.h"
+#include "device_scene/line_crossings.h"
 #include "math/bounds3.h"
 #include "scene/scene.h"
 
@@ -23,6 +24,7 @@ public:
     struct Shape {
         std::vector<Vec3> positions;
         std::vector<uint32_t> indices;
+        std::vector<LineCrossings> lines; // in three directions
     };
     /// Returns the scene's mesh of this number, or null if it is open.
     std::shared_ptr<const Shape> shape_of(const Scene& scene, uint32_t mesh);

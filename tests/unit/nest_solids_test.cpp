@@ -1,10 +1,17 @@
 // Which solids lie in each other, and their ranks (device_scene/nest_solids.h).
 
+#include <cmath>
+#include <tuple>
+#include <vector>
+
 #include <doctest/doctest.h>
 
 #include "device_scene/close_gaps.h"
+#include "device_scene/line_crossings.h"
 #include "device_scene/nest_solids.h"
 #include "session/check_integrator.h"
+#include "tests/support/meshes.h"
+#include "tests/support/random.h"
 #include "tests/support/solid_scenes.h"
 
 using namespace pertev;
@@ -15,6 +22,38 @@ std::vector<uint16_t> ranks_of(const Scene& scene) { return NestedSolids(scene, 
 using Ranks = std::vector<uint16_t>;
 
 } // namespace
+
+TEST_CASE("lines from points in a mesh leave it once more than they enter it, also where triangles are long") {
+    test::TriangleMesh ball = test::make_sphere(4, {1, 2, 3}, 2); // 5,120 triangles
+    test::TriangleMesh rod;                                       // 1,600 triangles, most of them 1 to 2,500
+    constexpr uint32_t kSides = 400;
+    rod.positions = {{0, -50, 0}, {0, 50, 0}};
+    for (uint32_t i = 0; i < kSides; ++i) {
+        const float angle = 2 * kPi * static_cast<float>(i) / kSides;
+        for (const float y : {-50.0f, 50.0f}) rod.positions.push_back({2 * std::cos(angle), y, 2 * std::sin(angle)});
+        const uint32_t a = 2 + 2 * i, b = 2 + 2 * ((i + 1) % kSides);
+        for (const uint32_t corner : {a, a + 1, b, b, a + 1, b + 1, 0u, a, b, 1u, b + 1, a + 1})
+            rod.indices.push_back(corner);
+    }
+    test::Random random(5);
+    for (const auto& [mesh, centre, height] : {std::tuple(&ball, Vec3{1, 2, 3}, 0.0f), {&rod, Vec3{0, 0, 0}, 50.0f}}) {
+        const DoubleVec3 ways[] = {{0.3, 0.2, 0.9}, {0.1, -0.9, 0.2}, {1, 0, 0}};
+        std::vector<LineCrossings> lines;
+        for (const DoubleVec3& way : ways) lines.emplace_back(mesh->positions, mesh->indices, way);
+        int inside = 0;
+        for (int k = 0; k < 2000; ++k) {
+            const Vec3 off = random.point(-2.5f, 2.5f);
+            const Vec3 across = height > 0 ? Vec3{off.x, 0, off.z} : off;
+            if (std::abs(length(across) - 2) < 0.01f) continue; // near the surface
+            const bool is_inside = length(across) < 2;
+            inside += is_inside ? 1 : 0;
+            const DoubleVec3 from = to_double(centre + Vec3{off.x, height > 0 ? 19 * off.y : off.y, off.z});
+            for (const LineCrossings& line : lines)
+                CHECK(std::abs(line.count(mesh->positions, mesh->indices, from)) == (is_inside ? 1 : 0));
+        }
+        CHECK(inside > 200);
+    }
+}
 
 TEST_CASE("a list of solids holds the four greatest ranks, each once") {
     InteriorList list;
