@@ -315,8 +315,6 @@ MUTATIONS = [
      ("src/device_scene/interior_of_light.h", "if (light == kNoLight || scene.nesting.of_lights == nullptr) return {};", "return {};")),
     ("a particle sees the camera through the media of the scene alone", "statistical/media",
      ("src/integrators/subpaths/particle_stages.h", "passage_of_connection(scene.picture.scene, camera.interior,", "passage_of_connection(scene.picture.scene, {},")),
-    ("weights of particles in media forget the extinction", "statistical/media",
-     ("src/integrators/subpaths/particle_stages.h", "state.mis.arrive(end.density_factor(ray.direction), way);", "state.mis.arrive(1, way);")),
     ("connections in media forget what dims them", "statistical/media",
      ("src/integrators/bidirectional/camera_subpath_stages.h", "connection.light = connection.light * passage.transmittance;", "")),
 ]

@@ -78,14 +78,14 @@ HD_CALL inline Passage passage_through_media(const SceneView& scene, InteriorLis
     return {flown.absorbed * transmittance_of(flown.depth), flown.probability()};
 }
 
-/// Samples a free flight along a ray with a unit direction up to `hit`, which is none if it hits no surface, and
-/// weights `throughput`. `list` has the solids that hold its origin, and afterwards its end. Returns whether the ray is
-/// scattered before the hit, and then sets `point`.
+/// Samples a free flight along a ray with a unit direction up to `hit`, or up to its own end at `t_max` metres if it
+/// hits no surface, and weights `throughput`. `list` has the solids that hold its origin, and afterwards its end.
+/// Returns whether the ray is scattered before the hit, and then sets `point`.
 HD INLINE_ON_DEVICE bool sample_free_flight(const SceneView& scene, InteriorList& list, Vec3 origin, Vec3 direction,
-                                            const Hit& hit, float time, SampleBits u, Rgb& throughput,
+                                            const Hit& hit, float t_max, float time, SampleBits u, Rgb& throughput,
                                             MediumPoint& point, FlownMedia& flown) {
     constexpr float kFarthest = 0x1p39f; // metres
-    const bool leaves = hit.instance == kNoHit;
+    const float farthest = hit.instance == kNoHit ? t_max : hit.t;
     list = interior_before(scene, list, direction, hit, time);
     const Rgb t = throughput;
     const float sum = t.r + t.g + t.b;
@@ -96,7 +96,7 @@ HD INLINE_ON_DEVICE bool sample_free_flight(const SceneView& scene, InteriorList
 
     Rgb scattered = {1, 1, 1}, density = {1, 1, 1};
     float at = kInfinity, position = 0; // metres along the ray
-    visit_media(scene, list, origin, direction, leaves ? kInfinity : hit.t, leaves, [&](const RayPart& part) {
+    visit_media(scene, list, origin, direction, farthest, !(farthest < kInfinity), [&](const RayPart& part) {
         const MediumParameters& medium = part.material.medium;
         const Rgb sigma_t = medium.sigma_t();
         float length = part.end - part.begin;

@@ -299,6 +299,27 @@ TEST_CASE("in media light tracing and bidirectional path tracing have the means 
     }
 }
 
+TEST_CASE("media of any size look alike, and a lamp's range ends in a medium as elsewhere") {
+    const auto mean_of = [](IntegratorKind kind, float scale, float range, uint32_t samples) {
+        Scene scene;
+        test::add(scene, test::ball({0, 0, 0}, scale), clear_boundary({.sigma_s = {8 / scale, 4 / scale, 2 / scale}}));
+        scene.lights = {test::point_light({0, 0, 0}, {scale * scale, scale * scale, scale * scale})};
+        scene.lights[0].range = range * scale;
+        Camera camera;
+        camera.world_from_camera = look_at(scale * Vec3{0, 0.2f, 0.55f}, {0, 0, 0}, {0, 1, 0});
+        RenderSettings settings = settings_in_media(8, samples, 6);
+        settings.integrator = kind;
+        Queue queue = test::requested_queue();
+        return channel_mean(test::render(queue, scene, camera, settings).picture, 1).mean;
+    };
+    const double here = mean_of(IntegratorKind::Bidirectional, 1, 0, 16);
+    for (const float scale : {0x1p-10f, 0x1p+17f})
+        CHECK(mean_of(IntegratorKind::Bidirectional, scale, 0, 16) == doctest::Approx(here).epsilon(0.02));
+    const double by_path = mean_of(IntegratorKind::Path, 1, 0.7f, 512);
+    for (const IntegratorKind kind : kOfMedia)
+        CHECK(mean_of(kind, 1, 0.7f, 512) == doctest::Approx(by_path).epsilon(0.1));
+}
+
 TEST_CASE("a camera in a body begins in its medium, and a solid without a medium in a scene with one absorbs") {
     Scene scene = test::under_sky();
     test::add(scene, test::box({0, 0, 0}, {1, 1, 1}), clear_boundary(kAmber));

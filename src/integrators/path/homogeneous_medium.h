@@ -47,8 +47,8 @@ struct HomogeneousMedium {
         const SampleBits u = sample_bits(job.settings.sampler, key, kGroupMedium + path.depth, Pair::First);
         MediumPoint point;
         FlownMedia flown;
-        if (!sample_free_flight(scene_, path.interior, path.origin, path.direction, hit, time, u, path.throughput,
-                                point, flown)) {
+        if (!sample_free_flight(scene_, path.interior, path.origin, path.direction, hit, kInfinity, time, u,
+                                path.throughput, point, flown)) {
             return false;
         }
         vertex = {point.position, path.direction, point.g, point.instance};

@@ -1,10 +1,10 @@
 #pragma once
 
 // Subpaths in scenes with media: their free flights, and their vertices where one ends. In MIS weights a free flight is
-// part of a technique's density: the probability that it passes a segment multiplies both directions' densities, and
-// the extinction at a point of a medium takes the place of the cosine at a surface. The flight samples by the
-// throughput, which the other subpath does not know, so weights have the mean over the colours instead. They add up to
-// 1 for any such numbers.
+// part of a technique's density: the probability that it passes a segment multiplies both directions' densities. The
+// extinction at a point of a medium is part of all techniques' densities, because each samples the point by a flight,
+// so it cancels. The flight samples by the throughput, which the other subpath does not know, so weights have the
+// probability's mean over the colours instead. They add up to 1 for any such number.
 //
 // Sources: Lafortune, Willems, "Rendering Participating Media with Bidirectional Path Tracing", EGWR 1996; Pauly,
 // Kollig, Keller, "Metropolis Light Transport for Participating Media", EGWR 2000, section 3.
@@ -26,9 +26,7 @@ struct MediumEnd {
     HD Vec3 position() const { return point.position; }
     HD TriangleId triangle() const { return {}; }
     HD bool scatters_by_delta_alone() const { return false; }
-    HD float density_factor(Vec3) const {
-        return (1.0f / 3.0f) * (point.sigma_t.r + point.sigma_t.g + point.sigma_t.b);
-    }
+    HD float density_factor(Vec3) const { return 1; }
     HD BothWays scatter(Vec3 wo, Vec3 wi) const {
         const float density = henyey_greenstein(point.g, -dot(wo, wi));
         return {{grey(density), density}, {grey(density), density}};
@@ -116,8 +114,8 @@ HD INLINE_ON_DEVICE SubpathFlight fly(const SubpathScene& scene, SampleKey key, 
     const SampleBits u = sample_bits(scene.settings.sampler, key, kGroupMedium + group, Pair::First);
     SubpathFlight flight = {};
     FlownMedia flown;
-    flight.is_scattered =
-        sample_free_flight(view, list, ray.origin, ray.direction, hit, kAtRest, u, throughput, flight.point, flown);
+    flight.is_scattered = sample_free_flight(view, list, ray.origin, ray.direction, hit, ray.t_max, kAtRest, u,
+                                             throughput, flight.point, flown);
     if (is_light_from_far && view.surroundings->medium.scatters()) {
         flown.sampled += optical_depth(view.surroundings->medium.sigma_t(), kInfinity);
     }

@@ -39,8 +39,9 @@ struct MisSums {
     // and for all techniques that end even earlier, without the density of the step back from the last vertex.
     float earlier = 0;
 
-    /// Updates the weights on arrival at a surface with cosine `cos_in` to its geometric normal at the squared
-    /// distance `distance_squared`, which is 1 for an infinite distance.
+    /// Updates the weights on arrival at a surface with cosine `cos_in` to its geometric normal, or at a point of a
+    /// medium (then 1), at the squared distance `distance_squared`, over the probability that a flight passes it. The
+    /// squared distance is 1 for an infinite one.
     HD void arrive(float cos_in, float distance_squared) {
         const float inverse = 1.0f / max(square(cos_in), 0x1p-60f);
         last = min(last * min(square(distance_squared) * inverse, kMaxWeightSum), kMaxWeightSum);

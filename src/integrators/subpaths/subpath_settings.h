@@ -19,7 +19,7 @@ struct SubpathSettings {
     bool operator==(const SubpathSettings&) const = default;
 };
 
-/// Largest max_depth of `integrator=bidirectional`, because vertices of light subpaths are stored, 48 bytes each.
+/// Largest max_depth of `integrator=bidirectional`, because vertices of light subpaths are stored, 48 to 56 bytes each.
 inline constexpr uint32_t kMaxConnectedDepth = 255;
 
 /// Random numbers of a camera subpath, in groups of four (math/sampler.h), as in path tracing:
