@@ -129,8 +129,8 @@ std::vector<Setting> picture_settings() {
         row("time_limit", "Quality", "SECONDS", FIELD(render.time_limit_s),
             "The time after which the render stops, at the end of a sample. irradiance_cache may stop while it makes "
             "records.",
-            Above{0}, Unit{"s"}, Otherwise{"none"}, Excludes{"frames turntable cameras"}, Mark::NotKept, Mark::Common,
-            Changes::Picture),
+            Above{0}, Unit{"s"}, Otherwise{"none"}, Excludes{"frames turntable cameras stereo"}, Mark::NotKept,
+            Mark::Common, Changes::Picture),
         row("denoise", "Quality", "NAME", FIELD(render.denoise),
             "The denoiser of pictures with few samples, which is biased. EXR output keeps the picture before as the "
             "layer noisy. Bytes of oidn (Open Image Denoise) differ between devices.",
@@ -139,11 +139,11 @@ std::vector<Setting> picture_settings() {
 
         row("rows", "Parts", "A:B", FIELD(rows),
             "The rows of pixels from number A, where the top one is 0, to before B.",
-            Excludes{"integrator=light integrator=bidirectional time_limit frames turntable cameras"}, Mark::NotKept,
-            Changes::Picture),
+            Excludes{"integrator=light integrator=bidirectional time_limit frames turntable cameras stereo"},
+            Mark::NotKept, Changes::Picture),
         row("samples", "Parts", "A:B", FIELD(samples),
             "The samples of each pixel from number A, where the first is 0, to before B.",
-            Excludes{"spp part time_limit frames turntable cameras"}, Mark::NotKept, Changes::Picture),
+            Excludes{"spp part time_limit frames turntable cameras stereo"}, Mark::NotKept, Changes::Picture),
         row("part", "Parts", "I/N", FIELD(part),
             "Part I of N parts of the samples, whose film files (.pvf) are merged, or of the frames.",
             Excludes{"time_limit"}, Mark::NotKept, Changes::Picture),
@@ -160,7 +160,7 @@ std::vector<Setting> picture_settings() {
         row("records", "Parts", "FILE", FIELD(radiosity.records),
             "A file by which parts share irradiance records or the radiosity solution: read if it is there, else "
             "written.",
-            Excludes{"solution frames turntable cameras"}, Mark::NotKept, Changes::Picture),
+            Excludes{"solution frames turntable cameras stereo"}, Mark::NotKept, Changes::Picture),
 
         row("build", "Tracing", "WHICH", FIELD(tracer.build),
             "The quality of the acceleration structure: fast builds fastest, best traces fastest. "

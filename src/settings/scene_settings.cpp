@@ -106,7 +106,7 @@ std::vector<Setting> scene_settings() {
             Range{-kMaxCoordinate, kMaxCoordinate}, Unit{"m"}, On{kLooking}, Changes::Camera),
         row("convergence", "Camera", "M", FIELD(scene.camera.convergence),
             "The distance at which the pictures of a stereo pair coincide.", Above{0, kMaxCoordinate}, Unit{"m"},
-            Otherwise{"infinity: the eyes look in parallel"}, On{kLooking}, Needs{"stereo eye_offset"},
+            Otherwise{"infinity: the eyes look in parallel"}, On{kLooking}, Needs{"stereo eye_offset cameras"},
             Excludes{"projection=orthographic"}, Changes::Camera),
         row("camera_from", "Camera", "FILE", FIELD(scene.camera.camera_from),
             "An EXR of Pertev's whose camera is used, to the bit, unless other settings override it.", On{kAimed},

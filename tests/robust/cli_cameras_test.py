@@ -175,10 +175,12 @@ class ManyCameras(CliTest):
         self.succeed(*self.many("--stereo", "0.1"))
         self.assertEqual([name for name in self.files() if "-" in name],
                          [f"{camera}-{eye}.exr" for camera in ("front", "side") for eye in ("left", "right")])
-        for flags, says in [(["--frames", "0-1"], "--frames"), (["--lens", "fisheye", *converging], "--convergence"),
-                            (["--projection", "orthographic", *converging], "--convergence"), (["--eye-offset", "1"], "--eye-offset")]:
+        for flags, says in [(["--frames", "0-1"], "--frames"), (["--rows", "0:4"], "--rows"), (["--time-limit", "9"], "--time-limit"),
+                            (["--integrator", "irradiance_cache", "--records", "r"], "--records"), (["--lens", "fisheye", *converging], "--convergence"),
+                            (["--projection", "orthographic", *converging], "--convergence"), (["--eye-offset", "1"], "--eye-offset"), (["--convergence", "1e-9"], "--convergence")]:
             with self.subTest(flags=flags):
                 self.refuse(2, *front, "--stereo", "0.1", "-o", "{name}.exr", *flags, says=[says])
+        self.refuse(2, *self.many("--stereo", "0.1", cameras=[FRONT, dict(SIDE, eye_offset=1)]), says=["/cameras/1", "--stereo"])
 
     def test_an_invalid_file_of_cameras_is_refused_with_the_location(self):
         for camera, says in [({"name": "front"}, "/cameras/1"), ({"spp": 4}, "spp"), ({"fov": 400}, "/cameras/1"),

@@ -44,8 +44,8 @@ double usable_angle(double degrees, double least, double most, std::string_view 
 
 double usable_cone(double degrees, double least, double most, std::string_view name, const FileLocation& location,
                    Sink& sink) {
-    const double open = degrees > kWidestCone && degrees <= 90 ? kWidestCone : degrees;
-    return usable_angle(open, least, most, name, location, sink);
+    if (most >= kWidestCone && degrees > most && degrees <= 90) return most;
+    return usable_angle(degrees, least, most, name, location, sink);
 }
 
 bool has_scale(const DoubleTransform& world_from_light) { return differs_from_turn(world_from_light, 1); }

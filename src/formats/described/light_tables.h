@@ -25,8 +25,8 @@ double usable_angle(double degrees, double least, double most, std::string_view 
 
 inline constexpr double kWidestCone = 89.9; // degrees
 
-/// usable_angle() for the half angle of a cone. One up to 90 degrees counts as kWidestCone without a warning, because
-/// it looks the same.
+/// usable_angle() for the half angle of a cone. If `most` is the widest cone, one up to 90 degrees counts as that
+/// without a warning, because it looks the same.
 double usable_cone(double degrees, double least, double most, std::string_view name, const FileLocation& location,
                    Sink& sink);
 

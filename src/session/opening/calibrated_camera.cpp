@@ -38,6 +38,9 @@ double distance_from_rigid(const std::array<DoubleVec3, 3>& axes) {
 /// Returns whether the 3x3 matrix of K has nothing but focal lengths and a principal point.
 bool is_plain(const std::vector<double>& k) { return k[1] == 0 && k[3] == 0 && k[6] == 0 && k[7] == 0 && k[8] == 1; }
 
+/// Returns whether a focal length or a principal point is near a picture with sides of `side` pixels.
+bool is_near(double pixels, uint32_t side) { return ::fabs(pixels) <= 1e6 * side; }
+
 /// Returns the text of an entry under the name of a setting; nothing if there is none.
 std::optional<std::string> entry_of(const ExrFile& file, std::string_view name) {
     for (const auto& [key, value] : file.metadata) {
@@ -93,10 +96,10 @@ void set_lens(const CameraChoice& choice, Camera& camera) {
         PERTEV_CHECK(size.width > 0 && size.height > 0);
         Intrinsics own = {k[0], k[1], k[2], k[3], size.width, size.height};
         if (k.size() == 9) own = {k[0], k[4], k[2], k[5], size.width, size.height};
-        constexpr double kLeast = 1e-6, kMost = 1e6; // limits of focal length and place, in sides of the picture
+        constexpr double kLeast = 1e-6; // focal length, in sides of the picture
         for (const auto& [focal, centre, side] :
              {std::tuple(own.focal_x, own.centre_x, own.width), {own.focal_y, own.centre_y, own.height}}) {
-            if (!(focal >= kLeast * side && focal <= kMost * side && ::fabs(centre) <= kMost * side))
+            if (!(focal >= kLeast * side && is_near(focal, side) && is_near(centre, side)))
                 refuse("expected focal lengths above 0, and a principal point near the picture");
         }
         camera.intrinsics = own;
@@ -127,6 +130,10 @@ void offset_eye(const CameraChoice& choice, Camera& camera) {
     }
     Transform& placed = camera.world_from_camera;
     placed.translation = placed.translation + static_cast<float>(choice.eye_offset) * column(placed, 0);
+    if (max_component(abs(placed.translation)) > kMaxCoordinate) {
+        throw Error(ErrorCode::OverLimit, "eye_offset", fmt::format("{}", choice.eye_offset),
+                    fmt::format("beyond the limit of {:.4g} m from the origin", kMaxCoordinate));
+    }
     if (!choice.convergence) return;
     const auto refuse = [&](const char* why) {
         throw Error(ErrorCode::BadInput, "convergence", fmt::format("{}", *choice.convergence), why);
@@ -140,6 +147,8 @@ void offset_eye(const CameraChoice& choice, Camera& camera) {
         camera.intrinsics = {focal, focal, 0.5 * size.width, 0.5 * size.height, size.width, size.height};
     }
     camera.intrinsics->centre_x += camera.intrinsics->focal_x * choice.eye_offset / *choice.convergence;
+    if (!is_near(camera.intrinsics->centre_x, camera.intrinsics->width))
+        refuse("too near for this distance of the eyes");
 }
 
 void fit_intrinsics(PictureSize picture, CameraChoice& choice) {

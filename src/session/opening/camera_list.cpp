@@ -18,10 +18,14 @@ namespace {
 std::vector<CameraOfFile> eyes_of(const std::vector<CameraOfFile>& cameras, double distance) {
     std::vector<CameraOfFile> eyes;
     for (const CameraOfFile& camera : cameras) {
+        for (const SuggestedSetting& setting : camera.settings) {
+            if (setting.name != "eye_offset") continue;
+            throw Error(ErrorCode::BadInput,
+                        Remark(camera.location, fmt::format("`{}` cannot be combined with `stereo`", setting.name)));
+        }
         for (const auto& [name, offset] : {std::pair("left", -0.5 * distance), {"right", 0.5 * distance}}) {
             CameraOfFile& eye = eyes.emplace_back(camera);
             eye.name = camera.name.empty() ? name : fmt::format("{}-{}", camera.name, name);
-            std::erase_if(eye.settings, [](const SuggestedSetting& setting) { return setting.name == "eye_offset"; });
             eye.settings.push_back({"eye_offset", fmt::format("{}", offset)});
         }
     }

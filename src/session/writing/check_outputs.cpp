@@ -116,9 +116,10 @@ bool writes_tone_mapped(std::span<const std::string> outputs) {
 
 void note_number_signs(const std::string& output, Sink& sink) {
     if (!names_frames(output)) return;
-    sink.note({"output", output,
-               "# is replaced by a frame's number only with `frames` or `turntable`; here it stays in the file's "
-               "name"});
+    sink.note(
+        {"output", output,
+         "# and {name} are replaced only with `frames`, `turntable`, `cameras` or `stereo`; here they stay in the "
+         "file's name"});
 }
 
 void check_outputs(const PictureOptions& options, std::span<const std::string> outputs, Sink& sink) {

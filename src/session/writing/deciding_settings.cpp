@@ -61,7 +61,8 @@ DecidingSettings with_names_of(const DecidingSettings& after, DecidingSettings b
 
 /// Settings whose texts contain the path of a file, which counts by its contents; those of the second list have
 /// NAME=FILE.
-constexpr std::array<std::string_view, 4> kFileSettings = {"environment", "camera_path", "camera_from", "lut"};
+constexpr std::array<std::string_view, 5> kFileSettings = {"environment", "camera_path", "camera_from", "lut",
+                                                           "solution"};
 constexpr std::array<std::string_view, 2> kNamedFileSettings = {"ies", "displacement"};
 
 bool is_among(std::span<const std::string_view> names, std::string_view name) {
