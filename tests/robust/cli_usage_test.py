@@ -100,7 +100,7 @@ class Flags(CliTest):
         self.refuse(2, "solve", "radiosity", "nowhere.obj", "-o", "x.rad,y.rad", says=["-o x.rad -o y.rad"])
         self.refuse(2, "bench", "render", "--scene", "nowhere.obj", "-o", "a.png,b.exr", says=["-o a.png -o b.exr"])
         for line in [["solve", "radiosity", "nowhere.obj", "-o", "x-##.rad"], ["bench", "render", "--scene", "nowhere.obj", "-o", "a-##.png"]]:
-            self.assertIn("# is replaced by", self.refuse(2, *line, says=["nowhere.obj"]).stderr)
+            self.assertIn("# and {name} are replaced", self.refuse(2, *line, says=["nowhere.obj"]).stderr)
 
     def test_an_output_named_twice_is_refused_before_the_scene_is_read(self):
         os.mkdir(self.path("f"))
@@ -116,7 +116,7 @@ class Flags(CliTest):
 
     def test_a_frame_number_in_a_name_without_frames_is_reported(self):
         outcome = self.succeed("render", "cornell-box", "-o", "a-###.png", *SMALL)
-        self.assertIn("-o 'a-###.png': # is replaced by a frame's number only with --frames", outcome.stderr)
+        self.assertIn("-o 'a-###.png': # and {name} are replaced only with --frames", outcome.stderr)
         self.assertEqual(self.files(), ["a-###.png"])
         for name, flags in [("a.png", []), ("b-#.png", ["--frames", "0-0"]), ("c-#.png", ["--turntable", "1"])]:
             self.assertNotIn("# stands", self.succeed("render", "cornell-box", "-o", name, *SMALL, *flags).stderr)
