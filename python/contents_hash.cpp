@@ -57,6 +57,9 @@ std::string hash_of_contents(const Scene& scene) {
         add_transform(camera.world_from_camera);
         add_all(std::vector{static_cast<float>(camera.projection), camera.fov_y, camera.ortho_height, camera.aspect,
                             camera.aperture_radius, camera.focus_distance});
+        const ApertureShape& shape = camera.aperture;
+        if (shape == ApertureShape()) continue; // a disk; earlier versions knew no other shape
+        add_all(std::vector{static_cast<float>(shape.blades), shape.rotation_deg, shape.ratio});
     }
     if (scene.environment) {
         const Rgb scale = scene.environment->scale;

@@ -179,6 +179,14 @@ Camera camera_of(ArgumentFields& fields, DoubleVec3 origin) {
     fields.number("view_height", camera.ortho_height);
     fields.number("aspect", camera.aspect);
     fields.number("aperture", camera.aperture_radius);
+    float blades = 0;
+    fields.number("aperture_blades", blades);
+    if (!(blades >= 0 && blades <= float(kMaxBlades) && blades == std::floor(blades) &&
+          is_blade_count(uint32_t(blades))))
+        refuse_argument(fields.path_of("aperture_blades"), "expected a whole number from 3 to 100, or 0");
+    camera.aperture.blades = uint32_t(blades);
+    fields.number("aperture_rotation", camera.aperture.rotation_deg);
+    fields.number("aperture_ratio", camera.aperture.ratio);
     fields.number("focus", camera.focus_distance);
     return camera;
 }

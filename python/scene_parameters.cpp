@@ -123,10 +123,11 @@ Transform placed(const Light& light) {
 /// A number of things of a scene with a getter and a setter of the thing.
 template <auto Member>
 Property of_member(std::string_view name, double low,
-                   std::function<bool(const Scene&, uint32_t)> is_there = is_anything) {
+                   std::function<bool(const Scene&, uint32_t)> is_there = is_anything, double high = 0x1p40) {
     return {.name = name,
             .shape = {},
             .low = low,
+            .high = high,
             .is_there = std::move(is_there),
             .get = [](const Scene& scene, uint32_t i) { return std::vector{double(Member(scene, i))}; },
             .set = [](Scene& scene, uint32_t i, std::span<const double> v) { Member(scene, i) = float(v[0]); }};
@@ -134,6 +135,8 @@ Property of_member(std::string_view name, double low,
 
 constexpr auto kRange = [](auto& scene, uint32_t i) -> auto& { return scene.lights[i].range; };
 constexpr auto kAperture = [](auto& scene, uint32_t i) -> auto& { return scene.cameras[i].aperture_radius; };
+constexpr auto kRotation = [](auto& scene, uint32_t i) -> auto& { return scene.cameras[i].aperture.rotation_deg; };
+constexpr auto kRatio = [](auto& scene, uint32_t i) -> auto& { return scene.cameras[i].aperture.ratio; };
 constexpr auto kFocus = [](auto& scene, uint32_t i) -> auto& { return scene.cameras[i].focus_distance; };
 constexpr auto kHeight = [](auto& scene, uint32_t i) -> auto& { return scene.cameras[i].ortho_height; };
 
@@ -219,6 +222,20 @@ std::vector<Property> of_cameras() {
                    std::span<const double> v) { scene.cameras[i].fov_y = float(v[0]) * kRadiansPerDegree; }},
         of_member<kHeight>("view_height", 0x1p-20, is_parallel),
         of_member<kAperture>("aperture", 0),
+        {.name = "aperture_blades",
+         .shape = {},
+         .low = 0,
+         .high = kMaxBlades,
+         .is_there = is_anything,
+         .get = [](const Scene& scene, uint32_t i) { return std::vector{double(scene.cameras[i].aperture.blades)}; },
+         .set = [](Scene& scene, uint32_t i,
+                   std::span<const double> v) { scene.cameras[i].aperture.blades = uint32_t(v[0]); },
+         .why_not = [](const Scene&, uint32_t, std::span<const double> v) -> std::string {
+             const bool is_count = v[0] == std::floor(v[0]) && is_blade_count(uint32_t(v[0]));
+             return is_count ? "" : "expected a whole number from 3 to 100, or 0";
+         }},
+        of_member<kRotation>("aperture_rotation", -1e6, is_anything, 1e6),
+        of_member<kRatio>("aperture_ratio", kMinApertureRatio, is_anything, kMaxApertureRatio),
         of_member<kFocus>("focus", 0x1p-40)};
 }
 

@@ -70,7 +70,7 @@ class Scene(_core.Scene):
                  outer_cone in degrees
     environment  a colour, an array of (height, width, 3) as environment maps have it, or a file
     cameras      eye and target (and up), or transform; fov in degrees; projection "perspective" or "orthographic" with
-                 view_height; aperture, focus, aspect
+                 view_height; aperture, aperture_blades, aperture_rotation, aperture_ratio, focus, aspect
     """
 
     def __init__(self, source=None, *, meshes=None, materials=None, instances=None, lights=None, environment=None,

@@ -21,17 +21,30 @@ struct PolarPointOf {
 };
 using PolarPoint = PolarPointOf<float>;
 
-/// A uniform point of the unit disk, in polar form: concentric squares map to concentric circles.
+/// A point of the square (-1, 1)^2 on one of its concentric squares.
+template <class T>
+struct SquarePointOf {
+    T radius;       // half the side of its square; negative left of or below the centre, which rotates it by pi
+    T ratio;        // y / x if `wide`, else x / y: from -1 to 1
+    MaskOf<T> wide; // whether it lies right or left of the centre, not above or below
+};
+
 template <class T = float>
-HD inline PolarPointOf<T> sample_disk_polar(Vec2Of<T> u) {
+HD inline SquarePointOf<T> on_concentric_square(Vec2Of<T> u) {
     const T x = 2.0f * u.x - 1.0f, y = 2.0f * u.y - 1.0f;
     const MaskOf<T> wide = abs(x) > abs(y) || y == 0; // the angle in the centre is 0
     const T radius = select(wide, x, y), other = select(wide, y, x);
+    return {radius, select(radius == 0, T(0.0f), other / radius), wide};
+}
+
+/// A uniform point of the unit disk, in polar form: concentric squares map to concentric circles.
+template <class T = float>
+HD inline PolarPointOf<T> sample_disk_polar(Vec2Of<T> u) {
+    const SquarePointOf<T> p = on_concentric_square(u);
     T sine, cosine;
-    sin_cos_2pi(0.125f * select(radius == 0, T(0.0f), other / radius), sine, cosine);
-    // A negative radius rotates the point by pi.
-    const T sign = copysign(T(1.0f), radius);
-    return {abs(radius), sign * select(wide, cosine, sine), sign * select(wide, sine, cosine)};
+    sin_cos_2pi(0.125f * p.ratio, sine, cosine);
+    const T sign = copysign(T(1.0f), p.radius);
+    return {abs(p.radius), sign * select(p.wide, cosine, sine), sign * select(p.wide, sine, cosine)};
 }
 
 /// A uniform point of the unit disk; density 1/pi by area.
@@ -39,6 +52,27 @@ template <class T = float>
 HD inline Vec2Of<T> sample_uniform_disk_concentric(Vec2Of<T> u) {
     const PolarPointOf<T> p = sample_disk_polar(u);
     return {p.radius * p.cosine, p.radius * p.sine};
+}
+
+/// A regular polygon inscribed in the unit circle, prepared for sampling.
+struct RegularPolygon {
+    float sides = 0, inv_sides = 0;
+    float apothem = 0, side = 0; // distance of a side from the centre, and its length
+    float turn = 0;              // angle of the middle of a side, as a part of a full turn, in [0, 1)
+};
+
+/// A uniform point of a regular polygon; density 1/area. Concentric squares map to concentric polygons, and equal
+/// lengths on each to equal lengths.
+template <class T = float>
+HD inline Vec2Of<T> sample_regular_polygon(const RegularPolygon& polygon, Vec2Of<T> u) {
+    const SquarePointOf<T> p = on_concentric_square(u);
+    const T eighth = 0.125f * p.ratio, half_turn = select(p.radius < 0, T(0.5f), T(0.0f));
+    const T at = (half_turn + select(p.wide, eighth, 0.25f - eighth)) * polygon.sides; // from side to side
+    const T number = portable::round_to_integer(at);
+    T sine, cosine;
+    sin_cos_2pi(fma(number, T(polygon.inv_sides), T(polygon.turn)), sine, cosine);
+    const T out = abs(p.radius) * polygon.apothem, along = abs(p.radius) * ((at - number) * polygon.side);
+    return {out * cosine - along * sine, out * sine + along * cosine};
 }
 
 /// Density z/pi by solid angle; z > 0 for u inside (0, 1)^2.

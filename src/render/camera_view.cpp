@@ -1,8 +1,27 @@
 #include "render/camera_view.h"
 
+#include <cmath>
+
 #include "math/portable_math.h"
+#include "math/portable_trig.h"
 
 namespace pertev {
+namespace {
+
+RegularPolygon blades_of(const ApertureShape& aperture) {
+    if (aperture.blades == 0) return {};
+    const double turns = static_cast<double>(aperture.rotation_deg) / 360;
+    const auto turn = static_cast<float>(turns - std::floor(turns)); // rounds to 1 just below it
+    RegularPolygon polygon = {.sides = static_cast<float>(aperture.blades)};
+    polygon.inv_sides = 1.0f / polygon.sides;
+    float half_side;
+    sin_cos_2pi(0.5f * polygon.inv_sides, half_side, polygon.apothem);
+    polygon.side = 2 * half_side;
+    polygon.turn = turn < 1 ? turn : 0;
+    return polygon;
+}
+
+} // namespace
 
 float half_view_height(const Camera& camera) {
     return camera.projection == Projection::Perspective ? tan(0.5f * camera.fov_y) : 0.5f * camera.ortho_height;
@@ -18,6 +37,8 @@ CameraView make_camera_view(const Camera& camera, uint32_t width, uint32_t heigh
                        1.0f / static_cast<float>(width),
                        1.0f / static_cast<float>(height),
                        camera.aperture_radius,
+                       camera.aperture_radius / camera.aperture.ratio,
+                       blades_of(camera.aperture),
                        camera.focus_distance,
                        {1, 1},
                        {}};

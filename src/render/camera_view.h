@@ -23,6 +23,8 @@ struct CameraView {
     float half_width, half_height; // half size of the view at distance 1 (perspective) or in metres (orthographic)
     float inv_width, inv_height;   // 1 / pixels
     float aperture_radius;         // metres
+    float aperture_width;          // half the width of the aperture's circle, or of its ellipse; metres
+    RegularPolygon blades;         // the aperture in its circle; without sides: a disk
     float focus_distance;          // metres
     Vec2 centre;                   // where the axis meets the picture, in halves of its width and height: usually 1, 1
     LensView lens;
@@ -60,6 +62,14 @@ struct ViewGrowth {
 HD inline ViewGrowth growth_of(const CameraView& camera) { return {has_parallel_rays(camera.projection)}; }
 HD inline float growth_at(const CameraView& camera, float depth) { return growth_of(camera).at(depth); }
 
+/// The point `u` (unit square) of a lens with an aperture, uniform by area; metres from its middle.
+template <class T>
+HD inline Vec2Of<T> sample_aperture(const CameraView& camera, Vec2Of<T> u) {
+    const Vec2Of<T> at =
+        camera.blades.sides > 0 ? sample_regular_polygon(camera.blades, u) : sample_uniform_disk_concentric(u);
+    return {camera.aperture_width * at.x, camera.aperture_radius * at.y};
+}
+
 /// Start and direction of the ray through `pixel` from the point `lens` (unit square) of the lens.
 template <class T>
 HD inline RayLineOf<T> make_camera_line(const CameraView& camera, Vec2Of<T> pixel, Vec2Of<T> lens) {
@@ -86,7 +96,7 @@ HD inline RayLineOf<T> make_camera_line(const CameraView& camera, Vec2Of<T> pixe
     }
     }
     if (camera.aperture_radius > 0) {
-        const Vec2Of<T> on_lens = camera.aperture_radius * sample_uniform_disk_concentric(lens);
+        const Vec2Of<T> on_lens = sample_aperture(camera, lens);
         const Vec3Of<T> focus = origin + camera.focus_distance * direction; // z = -focus_distance
         origin = {origin.x + on_lens.x, origin.y + on_lens.y, 0};
         direction = focus - origin;

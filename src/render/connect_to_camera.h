@@ -46,7 +46,7 @@ HD inline bool connect_to_camera(const CameraRays& camera, Vec3 point, Vec2 u, C
     const Vec3 local = transform_transposed(view.world_from_camera, point - view.world_from_camera.translation);
     const float depth = -local.z;
     if (!(depth > 0 || view.lens.sees_behind()) || camera.is_meter()) return false;
-    const Vec2 lens = camera.has_lens() ? view.aperture_radius * sample_uniform_disk_concentric(u) : Vec2{0, 0};
+    const Vec2 lens = camera.has_lens() ? sample_aperture(view, u) : Vec2{0, 0};
     float x, y; // in the plane at distance 1, or in the orthographic view
     Vec3 from = {lens.x, lens.y, 0};
     const bool is_parallel = !falls_with_distance(camera);

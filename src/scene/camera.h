@@ -52,6 +52,20 @@ struct Intrinsics {
     bool operator==(const Intrinsics&) const = default;
 };
 
+/// The fewest and most blades of an aperture that is no disk.
+inline constexpr uint32_t kMinBlades = 3, kMaxBlades = 100;
+inline constexpr float kMinApertureRatio = 0.01f, kMaxApertureRatio = 100;
+constexpr bool is_blade_count(uint32_t blades) { return blades == 0 || (blades >= kMinBlades && blades <= kMaxBlades); }
+
+/// The shape of a thin lens's aperture, as Cycles defines it. It is inscribed in the circle of the aperture's radius.
+/// The camera looks at it from behind, with +x to the right and +y up.
+struct ApertureShape {
+    uint32_t blades = 0;    // sides of a regular polygon; 0: a disk
+    float rotation_deg = 0; // counter-clockwise; at 0 the middle of a side lies towards +x
+    float ratio = 1;        // height over width: divides the width, in [kMinApertureRatio, kMaxApertureRatio]
+    bool operator==(const ApertureShape&) const = default;
+};
+
 struct Camera {
     std::string name, origin;
     Projection projection = Projection::Perspective;
@@ -63,8 +77,9 @@ struct Camera {
     std::vector<double> distortion;       // coefficients in the lens's order, at most 8; those that lack are 0
     float aspect = 0;                     // width / height in the file; 0: none
     float aperture_radius = 0;            // thin lens, metres; 0 = pinhole
-    float focus_distance = 1;             // metres along -z to the plane in focus
-    uint32_t node = kNoNode;              // index into Scene::nodes
+    ApertureShape aperture;
+    float focus_distance = 1; // metres along -z to the plane in focus
+    uint32_t node = kNoNode;  // index into Scene::nodes
     // Motion while the shutter is open, around the origin, relative to world_from_camera (math/rigid_motion.h),
     // metres in the world. Empty: the camera does not move.
     std::vector<MotionKey> motion;

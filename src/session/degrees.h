@@ -48,7 +48,12 @@ inline void state_lens(const Camera& camera, CameraChoice& choice) {
         choice.view_height = camera.ortho_height;
     }
     choice.aperture = camera.aperture_radius;
-    if (camera.aperture_radius > 0) choice.focus = camera.focus_distance;
+    if (camera.aperture_radius > 0) {
+        const ApertureShape& shape = camera.aperture;
+        choice.focus = camera.focus_distance;
+        if (shape.blades > 0) choice.aperture_blades = shape.blades, choice.aperture_rotation = shape.rotation_deg;
+        if (shape.ratio != 1) choice.aperture_ratio = shape.ratio;
+    }
     if (camera.lens != LensModel::Straight) choice.lens = camera.lens;
     choice.distortion = camera.distortion;
 }

@@ -30,7 +30,10 @@ struct CameraChoice {
     bool is_aimed = false;         // whether aim_camera() has set the target
     std::optional<float> fov_deg;  // full vertical field of view, degrees
     std::optional<float> aperture; // radius of the lens, metres
-    std::optional<float> focus;    // focus distance, metres
+    std::optional<uint32_t> aperture_blades;
+    std::optional<float> aperture_rotation; // degrees
+    std::optional<float> aperture_ratio;
+    std::optional<float> focus; // focus distance, metres
     std::optional<Projection> projection;
     std::optional<float> view_height; // full height of an orthographic view, metres
     std::vector<double> pose;         // world from camera, 16 or 12 numbers by rows, in the coordinates of the file

@@ -2,6 +2,7 @@
 // them, and are black outside the lens's image. With --device cuda a GPU renders, too.
 
 #include <cmath>
+#include <numbers>
 
 #include <doctest/doctest.h>
 
@@ -22,7 +23,7 @@ Camera through(Camera camera, LensModel lens, std::vector<double> distortion) {
     return camera;
 }
 
-/// Lenses over the mixed scene: OpenCV's model with and without a black rim and with an aperture, and a fisheye whose
+/// Lenses over the mixed scene: OpenCV's model with and without a black rim and with blades, and a fisheye whose
 /// corners are black.
 std::vector<Camera> lenses() {
     const Camera plain = test::mixed_scene_camera();
@@ -31,6 +32,7 @@ std::vector<Camera> lenses() {
                                through(plain, LensModel::Fisheye, {0.1, -0.05, 0.02, -0.004})};
     all.push_back(all[0]);
     all.back().aperture_radius = 0.1f;
+    all.back().aperture = {.blades = 5, .rotation_deg = 20, .ratio = 1.5f};
     all[2].intrinsics = Intrinsics{10, 12, 15, 11, 37, 21};
     return all;
 }
@@ -41,6 +43,48 @@ RenderSettings small_settings() {
     settings.aovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds | kAovDistance;
     settings.transparent = true;
     return settings;
+}
+
+/// Returns whether a point of the unit square lies between the blades of an aperture of ratio 1.
+bool is_in_blades(const ApertureShape& shape, double x, double y) {
+    const double step = 2 * std::numbers::pi / shape.blades;
+    for (uint32_t i = 0; i < shape.blades; ++i) {
+        const double angle = double(shape.rotation_deg) * std::numbers::pi / 180 + i * step;
+        if (x * std::cos(angle) + y * std::sin(angle) > std::cos(0.5 * step)) return false;
+    }
+    return true;
+}
+
+/// The picture of a square of radiance 1 before the camera, focused at 1 m: the share of each pixel's rays,
+/// from all points of the aperture, that meet it. By midpoints, in double precision.
+Image expected_bokeh(const Camera& camera, double distance, double half_size, double half_view, uint32_t side) {
+    constexpr int kPoints = 8, kLensPoints = 48;
+    const ApertureShape& shape = camera.aperture;
+    std::vector<double> lens; // x and y
+    for (int i = 0; i < kLensPoints * kLensPoints; ++i) {
+        const double x = 2 * (i % kLensPoints + 0.5) / kLensPoints - 1,
+                     y = 2 * (i / kLensPoints + 0.5) / kLensPoints - 1;
+        if (!is_in_blades(shape, x, y)) continue;
+        const auto radius = double(camera.aperture_radius);
+        lens.insert(lens.end(), {radius / double(shape.ratio) * x, radius * y});
+    }
+    Image picture = {side, side, 3, std::vector<float>(std::size_t(side) * side * 3)};
+    for (uint32_t pixel = 0; pixel < side * side; ++pixel) {
+        std::size_t hits = 0;
+        for (int i = 0; i < kPoints * kPoints; ++i) {
+            const double at_x = pixel % side + (i % kPoints + 0.5) / kPoints,
+                         at_y = pixel / side + (i / kPoints + 0.5) / kPoints;
+            const double x = (2 * at_x / side - 1) * half_view, y = (1 - 2 * at_y / side) * half_view;
+            for (std::size_t k = 0; k < lens.size(); k += 2) {
+                const double hit_x = lens[k] + distance * (x - lens[k]),
+                             hit_y = lens[k + 1] + distance * (y - lens[k + 1]);
+                hits += std::abs(hit_x) < half_size && std::abs(hit_y) < half_size ? 1 : 0;
+            }
+        }
+        const auto share = static_cast<float>(2.0 * double(hits) / (kPoints * kPoints * double(lens.size())));
+        for (int k = 0; k < 3; ++k) picture.pixels[3 * std::size_t(pixel) + std::size_t(k)] = share;
+    }
+    return picture;
 }
 
 } // namespace
@@ -82,15 +126,17 @@ TEST_CASE("small emitters appear where OpenCV projects them, within a tenth of a
         settings.width = 640, settings.height = 360, settings.samples = 64; // half of the calibrated size
         settings.filter = PixelFilter::Box;
         settings.path.max_depth = 0;
-        const Image picture = test::render(queue, scene, camera, settings).picture;
         for (int i = 0; i < 6; ++i) {
             CAPTURE(i);
             const double x = 0.5 * double(calibration.seen[i].x), y = 0.5 * double(calibration.seen[i].y);
+            const PictureCrop crop = {uint32_t(x) - 8, uint32_t(y) - 8, 16, 16};
+            settings.crop = crop;
+            const Image picture = test::render(queue, scene, camera, settings).picture;
             double sum = 0, sum_x = 0, sum_y = 0;
-            for (uint32_t row = uint32_t(y) - 8; row < uint32_t(y) + 8; ++row) {
-                for (uint32_t column = uint32_t(x) - 8; column < uint32_t(x) + 8; ++column) {
+            for (uint32_t row = 0; row < crop.height; ++row) {
+                for (uint32_t column = 0; column < crop.width; ++column) {
                     const double light = double(picture.at(column, row)[0]);
-                    sum += light, sum_x += light * (column + 0.5), sum_y += light * (row + 0.5);
+                    sum += light, sum_x += light * (crop.x + column + 0.5), sum_y += light * (crop.y + row + 0.5);
                 }
             }
             REQUIRE(sum > 3);
@@ -140,6 +186,42 @@ TEST_CASE("light tracing and path tracing agree through a lens") {
         const double by_light = test::mean_of(test::render(queue, scene, camera, settings).picture);
         CHECK(by_light == doctest::Approx(by_paths).epsilon(0.01));
         CHECK(by_paths > 0.01);
+    }
+}
+
+TEST_CASE(
+    "what is small and out of focus shows the blades, upright behind the plane in focus and upside down before it") {
+    constexpr uint32_t kSide = 12;
+    constexpr float kHalfView = 0.3f, kHalfSize = 0.15f; // at the distances 1 and 2
+    Queue queue = test::requested_queue();
+    for (const float distance : {2.0f, 0.5f}) {
+        CAPTURE(distance);
+        const float half_size = kHalfSize * 0.5f * distance;
+        Scene scene;
+        test::add(scene, test::sheet({0, 0, -distance}, {half_size, 0, 0}, {0, half_size, 0}), test::white(0.5f));
+        scene.lights.push_back({.kind = LightKind::Directional, .direction = {0, 0, -1}, .intensity = grey(2 * kPi)});
+        Camera camera;
+        camera.fov_y = 2 * std::atan(kHalfView);
+        camera.aperture_radius = distance > 1 ? 0.4f : 0.2f;
+        camera.aperture = {.blades = 3, .rotation_deg = 75, .ratio = 1.5f};
+        const Image expected = expected_bokeh(camera, distance, half_size, kHalfView, kSide);
+        RenderSettings settings;
+        settings.width = settings.height = kSide, settings.samples = 800;
+        settings.filter = PixelFilter::Box;
+        settings.path.max_depth = 1;
+        for (const IntegratorKind kind : {IntegratorKind::Path, IntegratorKind::Distributed, IntegratorKind::Light,
+                                          IntegratorKind::Bidirectional}) {
+            CAPTURE(static_cast<int>(kind));
+            settings.integrator = kind;
+            const Image picture = test::render(queue, scene, camera, settings).picture;
+            double difference = 0;
+            for (uint32_t y = 0; y < kSide; ++y) {
+                for (uint32_t x = 0; x < kSide; ++x)
+                    difference += std::abs(double(picture.at(x, y)[0]) - double(expected.at(x, y)[0]));
+            }
+            CHECK(difference < 0.06 * kSide * kSide * test::mean_of(expected));
+            CHECK(test::mean_of(picture) == doctest::Approx(test::mean_of(expected)).epsilon(0.01));
+        }
     }
 }
 

@@ -163,6 +163,7 @@ class Arrays(unittest.TestCase):
             "instances/floor/transform": parts(instances={"floor": {"mesh": "floor", "transform": numpy.eye(3)}}),
             "lights/lamp/position": parts(lights={"lamp": {"position": "here"}}),
             "cameras/front/target": parts(cameras={"front": {"eye": (0, 0, 0), "target": (0, 0, 0)}}),
+            "cameras/front/aperture_blades": parts(cameras={"front": {"eye": (0, 0, 1), "target": (0, 0, 0), "aperture_blades": 2}}),
             "environment": parts(environment=numpy.full((4, 8, 3), -1.0)),
             "meshes": parts(meshes=[mesh])}
         wrong_types = parts(meshes={"floor": {**mesh, "faces": FACES.astype(numpy.float32)}})

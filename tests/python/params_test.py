@@ -178,8 +178,14 @@ class Params(unittest.TestCase):
         pertev.render(scene, **SMALL)
         scene.params["cameras/front/fov"] = 60
         scene.params["cameras/front/transform"] = [[1, 0, 0, 0.5], [0, 1, 0, 0.7], [0, 0, 1, 2], [0, 0, 0, 1]]
-        self.assertEqual(pertev.render(scene, **SMALL).hash,
-                         pertev.render(scene, **SMALL, eye=(0.5, 0.7, 2), target=(0.5, 0.7, 0), fov=60).hash)
+        seen = {"eye": (0.5, 0.7, 2), "target": (0.5, 0.7, 0), "fov": 60}
+        self.assertEqual(pertev.render(scene, **SMALL).hash, pertev.render(scene, **SMALL, **seen).hash)
+        lens = {"aperture": 0.2, "aperture_blades": 5, "aperture_rotation": 20, "aperture_ratio": 1.5, "focus": 2}
+        expected = pertev.render(scene, **SMALL, **seen, **lens).hash
+        for name, value in lens.items():
+            self.assertNotEqual(pertev.render(scene, **SMALL).hash, expected, name)
+            scene.params[f"cameras/front/{name}"] = value
+        self.assertEqual(pertev.render(scene, **SMALL).hash, expected)
 
     def test_lights_turn(self):
         scene = pertev.load(self.file())
@@ -238,7 +244,8 @@ class Params(unittest.TestCase):
                             ("materials/gold/roughness", float("nan")), ("materials/gold/roughness", "rough"),
                             ("materials/gold/base_color", 1), ("instances/thing/transform", numpy.zeros((4, 4))),
                             ("instances/thing/transform", numpy.diag((1, 1, 0, 1))), ("lights/lamp/intensity", (-1, 0, 0)),
-                            ("instances/thing/transform", numpy.eye(3)), ("cameras/front/fov", 0)):
+                            ("instances/thing/transform", numpy.eye(3)), ("cameras/front/fov", 0),
+                            ("cameras/front/aperture_blades", 2), ("cameras/front/aperture_blades", 4.5)):
             with self.subTest(path=path, value=value):
                 with self.assertRaises(pertev.InputError) as caught:
                     scene.params[path] = value

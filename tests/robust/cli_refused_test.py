@@ -11,7 +11,7 @@ from cli_run import FLOOR, SANITIZED, CliTest, gltf_with_cameras, limit_addresse
 class WhatIsRefused(CliTest):
     def test_a_bad_flag_or_value_ends_with_2_and_names_the_flag(self):
         for flag in ["--foo", "--spp 0", "--spp -1", "--spp 1.5", "--spp 4294967297", "--fov nan", "--fov 0",
-                     "--fov 180", "--aperture -1", "--aperture nan", "--focus 0", "--focus inf", "--clamp nan",
+                     "--fov 180", "--aperture -1", "--aperture nan", "--aperture-blades 1", "--aperture-blades 2", "--aperture-blades 101", "--aperture-blades 4.5", "--aperture-ratio 0", "--aperture-rotation inf", "--focus 0", "--focus inf", "--clamp nan",
                      "--clamp 0", "--shading-rate 0.1", "--shading-rate 65", "--accuracy 0", "--accuracy 1.1", "--hemisphere-rays 15", "--hemisphere-rays 65537",
                      "--time-limit 0", "--time-limit nan", "--time nan", "--time inf", "--fps 0", "--turntable 0", "--environment-scale nan", "--environment-scale -1",
                      "--environment-rotation inf", "--exposure much", "--exposure inf", "--seed -1",

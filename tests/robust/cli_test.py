@@ -15,7 +15,7 @@ FLAGS = {
     "merge": "--denoise --exposure --tone-map --lut --lut-input --exr-colors --png-bits --output-format --output -o --partial --progress --quiet -q --json",
     "render": "--output -o --progress --crop --light-group --lut --lut-input --exr-colors --png-bits --output-format --rows --part --part-base --samples --checkpoint --checkpoint-every --records --camera-pose --convention --intrinsics --intrinsics-size --lens --distortion --eye-offset --convergence --camera-from --cameras --stereo --layers-at --frame-denoiser "
               "--allow-path --up-axis --unit --quiet -q --json --strict --camera --eye --target --up --fov --projection "
-              "--view-height --aperture --focus --environment --sun-sky --environment-rotation --environment-scale --medium "
+              "--view-height --aperture --aperture-blades --aperture-rotation --aperture-ratio --focus --environment --sun-sky --environment-rotation --environment-scale --medium "
               "--two-sided-lights --show-back-faces --size --tone-map --exposure --transparent --aov --spp --time-limit --denoise "
               "--integrator --max-depth --ambient --shading --wireframe --seed --sampler --filter --filter-radius --clamp --mip-maps --light-choice --device --threads "
               "--no-bvh-cache --build --structure --traversal --rta --order --distribution --time --frames --fps --camera-path "
@@ -257,7 +257,8 @@ class WhatIsRendered(CliTest):
                              ("floor.obj", [*view, "--projection", "orthographic"]),
                              ("floor.obj", [*view, "--projection", "orthographic", "--view-height", "1.7"]),
                              ("floor.obj", [*view, "--aperture", "0.1"]),
-                             ("floor.obj", [*view, "--aperture", "0.1", "--focus", "3", "--filter", "tent"]),
+                             ("floor.obj", [*view, "--aperture", "0.1", "--aperture-blades", "5", "--aperture-rotation", "33.3", "--aperture-ratio",
+                                            "1.7", "--focus", "3", "--filter", "tent"]),
                              ("floor.obj", [*view, "--filter", "gaussian", "--filter-radius", "2.5"]),
                              ("floor.obj", [*view, "--environment-rotation", "70", "--environment-scale", "0.3"]),
                              ("floor.obj", [*view, "--environment", "1,0.5,0.25", "--environment-scale", "3"])]:
@@ -265,7 +266,8 @@ class WhatIsRendered(CliTest):
                 made = self.render(*flags, scene=scene, output="x.exr")
                 told = self.info("x.exr")
                 again = []
-                for name in ["eye", "target", "up", "fov", "projection", "view_height", "aperture", "focus", "filter",
+                for name in ["eye", "target", "up", "fov", "projection", "view_height", "aperture", "aperture_blades",
+                             "aperture_rotation", "aperture_ratio", "focus", "filter",
                              "filter_radius", "environment", "environment_scale", "environment_rotation"]:
                     value = told.get("pertev." + name)
                     if value not in [None, "made up", "none"]:

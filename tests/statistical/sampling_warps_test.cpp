@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -15,11 +16,39 @@ using test::chi_square_of_points;
 
 namespace {
 
-constexpr int kWarpTests = 9; // tests of this file, for the Sidak correction
+constexpr int kWarpTests = 11; // tests of this file, for the Sidak correction
 
 void check(const test::ChiSquareResult& result) { CHECK_MESSAGE(result.passes(kWarpTests), result.describe()); }
 
 double inside_disk(Vec2 p) { return p.x * p.x + p.y * p.y <= 1 ? 0.3183098861837907 : 0; }
+
+RegularPolygon regular_polygon(int sides, double turn) {
+    const double half = 3.141592653589793 / sides;
+    const auto of = [](double x) { return static_cast<float>(x); };
+    return {of(sides), of(1.0 / sides), of(std::cos(half)), of(2 * std::sin(half)), of(turn)};
+}
+
+/// Density of uniform points of a regular polygon in the unit circle, the middle of whose side is at `turn`.
+struct PolygonDensity {
+    std::vector<double> normals; // x and y
+    double apothem, density;
+
+    PolygonDensity(int sides, double turn) {
+        const double step = 6.283185307179586 / sides;
+        for (int i = 0; i < sides; ++i) {
+            const double angle = 6.283185307179586 * turn + i * step;
+            normals.insert(normals.end(), {std::cos(angle), std::sin(angle)});
+        }
+        apothem = std::cos(0.5 * step);
+        density = 1 / (0.5 * sides * std::sin(step));
+    }
+    double operator()(Vec2 p) const {
+        for (std::size_t i = 0; i < normals.size(); i += 2) {
+            if (double(p.x) * normals[i] + double(p.y) * normals[i + 1] > apothem) return 0;
+        }
+        return density;
+    }
+};
 
 } // namespace
 
@@ -72,6 +101,15 @@ TEST_CASE("the incomplete gamma function matches known values") {
 TEST_CASE("points on the disk are uniform") {
     check(chi_square_of_points([](Vec2 u) { return sample_uniform_disk_concentric(u); }, inside_disk, {-1, -1}, {1, 1},
                                {.cells_x = 30, .cells_y = 30}));
+}
+
+TEST_CASE("points on regular polygons are uniform") {
+    for (const auto& [sides, turn] : {std::pair(3, 0.1), std::pair(7, 0.975)}) {
+        const RegularPolygon polygon = regular_polygon(sides, turn);
+        check(chi_square_of_points([&](Vec2 u) { return sample_regular_polygon(polygon, u); },
+                                   PolygonDensity(sides, turn), {-1, -1}, {1, 1},
+                                   {.samples = 200'000, .cells_x = 30, .cells_y = 30}));
+    }
 }
 
 TEST_CASE("points on the triangle are uniform") {

@@ -182,6 +182,11 @@ void check_sampling(LaneChecks& same) {
         same(sample_uniform_triangle(u).y, [&](uint32_t k) { return sample_uniform_triangle(one(k)).y; });
         same(sample_disk_polar(u).cosine, [&](uint32_t k) { return sample_disk_polar(one(k)).cosine; });
         same(sample_disk_polar(u).sine, [&](uint32_t k) { return sample_disk_polar(one(k)).sine; });
+        const RegularPolygon triangle = {3, 1.0f / 3, 0.5f, 1.7320508f, 0.3f};
+        same(sample_regular_polygon(triangle, u).x,
+             [&](uint32_t k) { return sample_regular_polygon(triangle, one(k)).x; });
+        same(sample_regular_polygon(triangle, u).y,
+             [&](uint32_t k) { return sample_regular_polygon(triangle, one(k)).y; });
         same(sample_tent(x.all()), [&](uint32_t k) { return sample_tent(x.one[k]); });
         same(floor(other.all()), [&](uint32_t k) { return pertev::floor(other.one[k]); });
         same(gather<Floats>(y.one, truncate_to_word(other.all())),

@@ -208,6 +208,7 @@ TEST_CASE("the metadata of a picture give its camera back to the bit") {
         CHECK(again.aspect == 0);
     }
     camera.aperture_radius = 0.01f, camera.focus_distance = 3.3f;
+    camera.aperture = {.blades = 5, .rotation_deg = 33.3f, .ratio = 1.7f};
     camera.intrinsics = Intrinsics{500.1, 550.7, 310, 250.3, 640, 480};
     camera.lens = LensModel::OpenCv;
     camera.distortion = {-0.28, 0.07, 0.001, -0.0005, 0.02};
@@ -218,6 +219,7 @@ TEST_CASE("the metadata of a picture give its camera back to the bit") {
     CHECK(again.lens == camera.lens);
     CHECK(again.distortion == camera.distortion);
     CHECK(again.aperture_radius == camera.aperture_radius);
+    CHECK(again.aperture == camera.aperture);
     CHECK(again.focus_distance == camera.focus_distance);
 
     SUBCASE("other settings override a picture's camera") {

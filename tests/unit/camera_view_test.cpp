@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <doctest/doctest.h>
 
@@ -98,6 +99,48 @@ TEST_CASE("with a thin lens all rays of a pixel meet in the focus plane and cove
         }
         CHECK(widest <= 0.25 * (1 + 1e-5));
         CHECK(widest > 0.245);
+    }
+}
+
+TEST_CASE("blades make the lens a regular polygon that turns with its rotation and narrows with its ratio") {
+    struct Shape {
+        uint32_t blades;
+        float rotation_deg, ratio;
+    };
+    for (const Shape shape : {Shape{3, 0, 1}, Shape{5, 100, 2}, Shape{6, -30, 0.5f}, Shape{0, 20, 2}}) {
+        CAPTURE(shape.blades);
+        Camera camera;
+        camera.aperture_radius = 0.25f;
+        camera.aperture = {shape.blades, shape.rotation_deg, shape.ratio};
+        const CameraView view = make_camera_view(camera, 64, 64);
+        const auto start = [&](float u, float v) {
+            const Vec3 from = make_camera_ray(view, {32, 32}, {u, v}).origin;
+            return Vec2{4 * shape.ratio * from.x, 4 * from.y}; // in the unit circle
+        };
+        const double step = 2 * std::numbers::pi / std::max(shape.blades, 3u);
+        const double apothem = shape.blades > 0 ? std::cos(0.5 * step) : 1;
+        std::vector<double> farthest(std::max(shape.blades, 3u)), corners = farthest;
+        double longest_step = 0;
+        for (int i = 0; i <= 400; ++i) {
+            for (int k = 0; k <= 400; ++k) {
+                const float u = static_cast<float>(i) / 400, v = static_cast<float>(k) / 400;
+                const Vec2 at = start(u, v);
+                for (std::size_t side = 0; side < farthest.size(); ++side) {
+                    const double angle = double(shape.rotation_deg) * std::numbers::pi / 180 + double(side) * step;
+                    const auto along = [&](double a) {
+                        return double(at.x) * std::cos(a) + double(at.y) * std::sin(a);
+                    };
+                    farthest[side] = std::max(farthest[side], along(angle));
+                    corners[side] = std::max(corners[side], along(angle + 0.5 * step));
+                }
+                if (i == 400 || k == 400) continue;
+                for (const Vec2 near : {start(u + 0.0025f, v), start(u, v + 0.0025f)})
+                    longest_step = std::max(longest_step, std::hypot(double(near.x - at.x), double(near.y - at.y)));
+            }
+        }
+        for (const double reach : farthest) CHECK(reach == doctest::Approx(apothem).epsilon(1e-4));
+        for (const double reach : corners) CHECK(reach == doctest::Approx(1).epsilon(0.01));
+        CHECK(longest_step < 4 * 0.0025 * 1.5); // near points stay near
     }
 }
 

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "math/portable_math.h"
+#include "session/degrees.h"
 #include "session/opening/choose_camera.h"
 #include "session/opening/open_scene.h"
 #include "tests/support/options.h"
@@ -59,6 +60,25 @@ TEST_CASE("a lens without a focus distance focuses on the middle of the picture 
     CHECK(choose({.camera = "second", .aperture = 0.1f}).focus_distance == 9);
     CHECK(choose({.eye = DoubleVec3{0, 0, 4}, .target = DoubleVec3{0, 0, 2}, .aperture = 0.1f}).focus_distance == 2);
     CHECK(choose({.aperture = 0.1f, .focus = 7.0f}).focus_distance == 7);
+}
+
+TEST_CASE("the shape of an aperture is taken, and a part of it without effect is warned of") {
+    const CameraChoice shaped = {.aperture = 0.1f, .aperture_blades = 6, .aperture_rotation = 15, .aperture_ratio = 2};
+    CHECK(choose(shaped).aperture == ApertureShape{6, 15, 2});
+    CameraChoice stated;
+    state_lens(choose(shaped), stated);
+    CHECK(choose(stated).aperture == choose(shaped).aperture);
+    const auto warned_of = [](CameraChoice choice) {
+        Messages messages;
+        choose_camera(choice, make_scene(), 1, messages);
+        std::string all;
+        for (const auto& message : messages.all()) all += message.remark.setting + " ";
+        return all;
+    };
+    CHECK(warned_of({.aperture_blades = 5, .aperture_rotation = 9, .aperture_ratio = 2}) ==
+          "aperture_blades aperture_rotation aperture_ratio ");
+    CHECK(warned_of({.aperture = 1.0f, .aperture_rotation = 9, .focus = 2.0f}) == "aperture_rotation ");
+    CHECK(warned_of({.aperture = 1.0f, .aperture_blades = 5, .aperture_rotation = 9, .focus = 2.0f}).empty());
 }
 
 TEST_CASE("an orthographic view of a perspective camera has the same height at its target") {

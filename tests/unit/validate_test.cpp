@@ -281,6 +281,10 @@ TEST_CASE("faults of cameras and lights are refused") {
     check_refused("field of view", E::BadInput, camera([](Camera& c) { c.fov_y = 3.2f; }));
     check_refused("singular", E::BadInput, camera([](Camera& c) { c.world_from_camera = make_scale({0, 1, 1}); }));
     check_refused("aperture", E::BadInput, camera([](Camera& c) { c.aperture_radius = kNan; }));
+    check_refused("2 blades", E::BadInput, camera([](Camera& c) { c.aperture.blades = 2; }));
+    check_refused("101 blades", E::BadInput, camera([](Camera& c) { c.aperture.blades = 101; }));
+    check_refused("rotated", E::BadInput, camera([](Camera& c) { c.aperture.rotation_deg = kNan; }));
+    check_refused("ratio", E::BadInput, camera([](Camera& c) { c.aperture.ratio = 0; }));
     check_refused("focus", E::BadInput, camera([](Camera& c) { c.focus_distance = 0; }));
     check_refused("aspect", E::BadInput, camera([](Camera& c) { c.aspect = -1; }));
     check_refused("2^40", E::OverLimit, camera([](Camera& c) { c.world_from_camera.translation.x = 1e20f; }));

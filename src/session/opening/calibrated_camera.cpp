@@ -122,6 +122,13 @@ void set_lens(const CameraChoice& choice, Camera& camera) {
     }
 }
 
+void check_aperture(const CameraChoice& choice) {
+    const uint32_t blades = choice.aperture_blades.value_or(0);
+    if (is_blade_count(blades)) return;
+    throw Error(ErrorCode::BadInput, "aperture_blades", fmt::format("{}", blades),
+                fmt::format("expected from {} to {}, or 0 for a disk", kMinBlades, kMaxBlades));
+}
+
 void offset_eye(const CameraChoice& choice, Camera& camera) {
     if (choice.eye_offset == 0) return;
     if (is_panorama(camera.lens)) {
@@ -197,7 +204,10 @@ void apply_camera_from(PictureOptions& options) {
         const std::optional<std::string> radians = entry_of(file, "fov_y");
         if (radians && !is_given("fov")) choice.fov_y = parse_number("fov_y", *radians);
     }
-    for (const char* name : {"view_height", "aperture", "focus", "lens", "distortion"}) take(name);
+    for (const char* name : {"view_height", "aperture", "lens", "distortion"}) take(name);
+    if (choice.aperture != 0.0f) {
+        for (const char* name : {"aperture_blades", "aperture_rotation", "aperture_ratio", "focus"}) take(name);
+    }
     if (!has_angle) choice.lens.reset(), choice.distortion.clear();
     if (!options.size && !choice.intrinsics_size) options.size = PictureSize{file.width, file.height};
 }

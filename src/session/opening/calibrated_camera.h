@@ -16,6 +16,9 @@ Transform placed_by_pose(const CameraChoice& choice, const Scene& scene);
 /// camera's own intrinsics. Throws Error(BadInput).
 void set_lens(const CameraChoice& choice, Camera& camera);
 
+/// Throws Error(BadInput) if no aperture has as many blades as the choice.
+void check_aperture(const CameraChoice& choice);
+
 /// Moves `camera` to its right by `choice.eye_offset`, and with `choice.convergence` its principal point, so that what
 /// is at that distance stays where it is in the picture. Lens and place are set already. Throws Error(BadInput).
 void offset_eye(const CameraChoice& choice, Camera& camera);

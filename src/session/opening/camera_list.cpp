@@ -64,6 +64,7 @@ PictureOptions options_of_camera(const PictureOptions& options, uint32_t number,
         if (!is_of_cameras) refuse(Remark(name, text, "not a setting of a camera"));
         try {
             set_value(own, *setting, {&text, 1});
+            check_aperture(own.scene.camera);
         } catch (const Error& error) {
             refuse(error.remark());
         }

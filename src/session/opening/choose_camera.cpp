@@ -1,6 +1,7 @@
 #include "session/opening/choose_camera.h"
 
 #include <charconv>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -99,8 +100,16 @@ void warn_of_useless_parts(const CameraChoice& choice, const Camera& camera, boo
     if (choice.fov_deg && !is_perspective && (!flattened || choice.view_height)) {
         sink.warn({"fov", "", "the camera is orthographic; set `view_height` instead"});
     }
-    if (choice.focus && camera.aperture_radius == 0) {
-        sink.warn({"focus", "", "the lens has no aperture, so everything is in focus; set `aperture`"});
+    const std::pair<const char*, bool> of_lens[] = {{"focus", choice.focus.has_value()},
+                                                    {"aperture_blades", choice.aperture_blades.has_value()},
+                                                    {"aperture_rotation", choice.aperture_rotation.has_value()},
+                                                    {"aperture_ratio", choice.aperture_ratio.has_value()}};
+    for (const auto& [name, is_given] : of_lens) {
+        if (!is_given || camera.aperture_radius > 0) continue;
+        sink.warn({name, "", "the lens has no aperture, so everything is in focus; set `aperture`"});
+    }
+    if (choice.aperture_rotation && camera.aperture_radius > 0 && camera.aperture.blades == 0) {
+        sink.warn({"aperture_rotation", "", "the aperture is a disk; set `aperture_blades`"});
     }
 }
 
@@ -146,6 +155,10 @@ Camera choose_camera(CameraChoice choice, const Scene& scene, float aspect, Sink
     place_camera(choice, scene, camera);
     if (choice.fov_deg) camera.fov_y = choice.fov_y.value_or(*choice.fov_deg * kRadiansPerDegree);
     if (choice.aperture) camera.aperture_radius = *choice.aperture;
+    check_aperture(choice); // that of a picture's metadata, too
+    if (choice.aperture_blades) camera.aperture.blades = *choice.aperture_blades;
+    if (choice.aperture_rotation) camera.aperture.rotation_deg = *choice.aperture_rotation;
+    if (choice.aperture_ratio) camera.aperture.ratio = *choice.aperture_ratio;
     if (choice.focus) camera.focus_distance = *choice.focus;
     const Camera before = camera;
     if (choice.projection) camera.projection = *choice.projection;

@@ -10,6 +10,7 @@
 #include "session/check_integrator.h"
 #include "session/crop.h"
 #include "session/frame_range.h"
+#include "session/opening/calibrated_camera.h"
 #include "session/opening/open_scene.h"
 #include "session/opening/picture_settings.h"
 #include "session/opening/set_profiles.h"
@@ -63,6 +64,7 @@ void check_options(const PictureOptions& options, uint32_t verbs) {
     if (!options.lut.empty()) CubeLut::read(options.lut);
     false_colors(options);
     const RenderSettings settings = light_settings(options);
+    check_aperture(options.scene.camera);
     Camera requested; // a camera of the scene may have a lens too
     requested.aperture_radius = std::max(options.scene.camera.aperture.value_or(0), 0.0f);
     check_camera(settings, requested);
