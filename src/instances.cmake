@@ -321,7 +321,7 @@ pertev_launches(integrators/photon_map/photon_stages.cu
   integrators/photon_map/gather_stages.h integrators/photon_map/order_photons.h integrators/photon_map/photon_stages.h
   integrators/photon_map/photon_targets.h
   STAGES FindSpecular
-    BeginPhotons
+    "BeginPhotons<false>"
     NumberPhotons
     OrderPhotons
     MakeBuckets
@@ -334,6 +334,12 @@ pertev_launches(integrators/photon_map/photon_stages.cu
     "ShadeGather<ShadingVariant::General>"
     "ShadeGather<ShadingVariant::Unstacked>"
     "ShadeGather<ShadingVariant::PlainDiffuse>")
+# For media.
+pertev_launches(integrators/photon_map/photon_media_stages.cu
+  integrators/photon_map/gather_stages.h integrators/photon_map/photon_stages.h
+  STAGES "BeginPhotons<true>"
+    "ShadePhotons<ShadingVariant::General, true>"
+    "ShadeGather<ShadingVariant::General, true>")
 pertev_launches(integrators/radiosity/shade_radiosity.cu
   integrators/radiosity/radiosity.h integrators/ray_tree/tree_stages.h
   STAGES "ShadeTrees<Radiosity, MotionVariant::None, ShadingVariant::General>"

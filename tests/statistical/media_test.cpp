@@ -59,6 +59,7 @@ RenderSettings settings_in_media(uint32_t size, uint32_t samples, uint32_t max_d
     settings.path.max_depth = max_depth;
     settings.path.roulette_depth = 1000;
     settings.path.light_choice = LightSelection::Power;
+    settings.photon_map = {.photons = 400, .radius = 0.1f};
     return settings;
 }
 
@@ -66,7 +67,8 @@ double channel_of(Rgb color, std::size_t channel) {
     return static_cast<double>(channel == 0 ? color.r : channel == 1 ? color.g : color.b);
 }
 
-constexpr std::array kOfMedia = {IntegratorKind::Path, IntegratorKind::Light, IntegratorKind::Bidirectional};
+constexpr std::array kOfMedia = {IntegratorKind::Path, IntegratorKind::Light, IntegratorKind::Bidirectional,
+                                 IntegratorKind::PhotonMap};
 
 /// Checks that every pixel is the transmittance of `distance` metres of amber. What light tracing cannot see, it skips.
 void check_amber(const Scene& scene, const Camera& camera, double distance, bool is_in_glass = false) {
@@ -226,10 +228,7 @@ TEST_CASE("each schedule renders the same bytes of glass with a medium, in a cle
     settings.body = PathBody::Wavefront;
     CHECK(test::render_hash(test::render(queue, scene, parallel_view({0, 0, 1}, 3), settings)) == loop);
     settings.path.light_choice = LightSelection::Tree;
-    const Hash128 by_tree = test::render_hash(test::render(queue, scene, parallel_view({0, 0, 1}, 3), settings));
-    settings.body = PathBody::Loop;
-    CHECK(test::render_hash(test::render(cpu, scene, parallel_view({0, 0, 1}, 3), settings)) == by_tree);
-    for (const IntegratorKind kind : {IntegratorKind::Light, IntegratorKind::Bidirectional}) {
+    for (const IntegratorKind kind : kOfMedia) {
         CAPTURE(name_of(kind));
         settings.integrator = kind;
         settings.body = PathBody::Loop;
@@ -241,7 +240,7 @@ TEST_CASE("each schedule renders the same bytes of glass with a medium, in a cle
     }
 }
 
-TEST_CASE("in media light tracing and bidirectional path tracing have the means of path tracing") {
+TEST_CASE("in media light tracing, bidirectional path tracing and photon mapping have the means of path tracing") {
     Scene scene; // lights are in haze, in a cloud, in milk and in a hollow, and the camera and the floor in the haze
     scene.medium = {.sigma_s = {0.02f, 0.01f, 0}};
     const MediumParameters haze = {.sigma_a = {0.05f, 0.02f, 0}, .sigma_s = {0.1f, 0.2f, 0.4f}, .g = 0.4f};
@@ -263,7 +262,7 @@ TEST_CASE("in media light tracing and bidirectional path tracing have the means 
     Camera camera;
     camera.world_from_camera = look_at({0, 0.6f, 2.5f}, {0, 0, 0}, {0, 1, 0});
     Queue queue = test::requested_queue();
-    constexpr uint32_t kBlock = 4, kSize = 8, kSamples[] = {48, 64, 8}, kBlocks = kSize / kBlock * (kSize / kBlock) * 3;
+    constexpr uint32_t kBlock = 4, kSize = 8, kSamples[] = {48, 64, 8, 16}, kBlocks = 3 * 4;
     std::vector<test::Estimate> blocks[kOfMedia.size()];
     for (std::size_t k = 0; k < kOfMedia.size(); ++k) {
         RenderSettings settings = settings_in_media(kSize, kSamples[k], 6);
@@ -317,7 +316,8 @@ TEST_CASE("media of any size look alike, and a lamp's range ends in a medium as 
         CHECK(mean_of(IntegratorKind::Bidirectional, scale, 0, 16) == doctest::Approx(here).epsilon(0.02));
     const double by_path = mean_of(IntegratorKind::Path, 1, 0.7f, 512);
     for (const IntegratorKind kind : kOfMedia)
-        CHECK(mean_of(kind, 1, 0.7f, 512) == doctest::Approx(by_path).epsilon(0.1));
+        CHECK(mean_of(kind, 1, 0.7f, kind == IntegratorKind::PhotonMap ? 128 : 512) ==
+              doctest::Approx(by_path).epsilon(0.1));
 }
 
 TEST_CASE("a camera in a body begins in its medium, and a solid without a medium in a scene with one absorbs") {
@@ -396,14 +396,14 @@ TEST_CASE("what knows no media says so") {
     scene.medium = kMilk;
     scene.lights = {test::point_light({0, 2, 0}, {8, 8, 8})};
     RenderSettings settings;
-    std::vector<std::string> silent;
+    std::string silent;
     for (const std::string& name : integrator_names()) {
         set_integrator(settings, name);
         Messages messages;
         check_light(settings, scene, messages);
-        if (messages.left_out().empty()) silent.push_back(name);
+        if (messages.left_out().empty()) silent += name + " ";
     }
-    CHECK(silent == std::vector<std::string>{"path", "direct", "indirect", "hybrid", "light", "bidirectional"});
+    CHECK(silent == "path direct indirect hybrid light bidirectional photon_map ");
     settings.integrator = IntegratorKind::Path;
     Messages none;
     check_light(settings, scene, none);

@@ -18,6 +18,7 @@
 #include "tests/support/radiosity_scenes.h"
 #include "tests/support/render_scenes.h"
 #include "tests/support/room_with_ball.h"
+#include "tests/support/solid_scenes.h"
 
 using namespace pertev;
 
@@ -179,6 +180,33 @@ TEST_CASE("an emitter on the floor has at most path tracing's noise from millime
         CHECK(photons < 1.5 * path);
         CHECK(by_photons == doctest::Approx(by_path).epsilon(0.01));
     }
+}
+
+TEST_CASE("fog shows the light that glass focuses from a point light, as by bidirectional path tracing") {
+    Scene scene;
+    Material fog;
+    fog.make_clear_boundary();
+    fog.medium = {.sigma_a = {0.1f, 0, 0}, .sigma_s = {0.4f, 0.8f, 1.6f}, .g = 0.3f};
+    test::add(scene, test::box({0, 0, 0}, {1, 1, 1}), fog);
+    test::add(scene, test::ball({0, 0.3f, 0}, 0.4f), test::glass(1.5f));
+    scene.lights = {test::point_light({0.1f, 0.9f, 0}, {1, 1, 1})};
+    Camera camera;
+    camera.projection = Projection::Orthographic;
+    camera.ortho_height = 0.4f;
+    camera.world_from_camera = look_at({0, -0.35f, 3}, {0, -0.35f, 0}, {0, 1, 0}); // below the ball
+    Queue queue = test::requested_queue();
+    const auto mean_by = [&](IntegratorKind integrator, uint32_t samples) {
+        RenderSettings settings;
+        settings.width = settings.height = 8;
+        settings.samples = samples;
+        settings.path.max_depth = 5;
+        settings.integrator = integrator;
+        settings.photon_map = {.photons = 2000, .radius = 0.1f};
+        return test::mean_of(test::render(queue, scene, camera, settings).picture);
+    };
+    const double by_both = mean_by(IntegratorKind::Bidirectional, 256);
+    CHECK(mean_by(IntegratorKind::PhotonMap, 128) == doctest::Approx(by_both).epsilon(0.03));
+    CHECK(mean_by(IntegratorKind::Path, 64) < 0.8 * by_both);
 }
 
 TEST_CASE("tiny radii and coincident photons do not divide by zero") {

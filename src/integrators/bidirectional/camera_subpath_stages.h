@@ -52,7 +52,7 @@ private:
             return add_background(state, ray);
         }
         if (flight.is_scattered) {
-            if (state.depth() == 0) show_behind(state, ray, hit);
+            if (state.depth() == 0) add_behind_medium<kVariant>(picture, film, state, ray, hit);
             const MediumEnd end = {flight.point, ray.direction, flight.share};
             state.mis.arrive(end.density_factor(ray.direction), way);
             if (is_black(state.throughput) || state.depth() >= scene.settings.max_depth) return;
@@ -64,12 +64,6 @@ private:
             state.throughput;
         state.mis.arrive(cosine_at(surface, ray.direction), way);
         shade_surface(surface, hit, ray, subpath, state, list);
-    }
-    /// Adds the auxiliary channels of the surface behind a medium that has scattered the camera's ray.
-    HD void show_behind(const SubpathState& state, const Ray& ray, const Hit& hit) const {
-        if (hit.instance == kNoHit) return add_no_first_hit(film, state.pixel, state.sample);
-        add_first_hit(film, state.pixel, state.sample, {ray.origin, ray.direction}, hit,
-                      make_surface<kVariant>(scene.picture.scene, hit, ray.direction), scene.picture);
     }
     HD INLINE_ON_DEVICE void shade_surface(const Surface& surface, const Hit& hit, const Ray& ray, uint32_t subpath,
                                            SubpathState& state, InteriorList list) const {

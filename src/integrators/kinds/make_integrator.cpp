@@ -196,6 +196,7 @@ constexpr std::array kIntegrators = {
                                                   .finds_all_light = true,
                                                   .needs_any_light = true,
                                                   .ignores_nesting = true,
+                                                  .has_media = true,
                                                   .max_depth = kMaxPhotonDepth,
                                                   .check = check_photons,
                                                   .memory = memory_of_photons}),

@@ -32,9 +32,10 @@ struct GatheredSums {
 
 /// Sizes of the arrays.
 struct GatherCapacity {
-    uint32_t count;   // subpaths
-    uint32_t nearest; // photons per subpath; 0: all within a radius count
-    bool can_share;   // several threads may share a lookup
+    uint32_t count;             // subpaths
+    uint32_t nearest;           // photons per subpath; 0: all within a radius count
+    bool can_share;             // several threads may share a lookup
+    bool has_interiors = false; // solids are nested in a scene with media
 };
 
 struct GatherView {

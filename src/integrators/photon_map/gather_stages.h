@@ -7,6 +7,9 @@
 //   all other      is looked up in the global map too; or, with final gathering, found by continuing once to the next
 //                  diffuse surface, where all of it is looked up. If that is nearer than the radius, the subpath
 //                  continues once more, because a map blurs nearby detail.
+// In a medium, L M is sampled by a shadow ray, L S+ M of lights without size is looked up (medium_photons.h), and all
+// other light is found by continuing as in path tracing. Maps of surfaces are thus all that blurs: flights in
+// homogeneous media are cheap, and a map of all photons in them would need many to be as smooth.
 // Each light path is found in exactly one of these ways. Where a subpath ends, an extra ray looks for emitters,
 // because a shadow ray finds the strong light of a close emitter with a low density, which would give bright spots
 // (Veach 1997, section 9.2). It is seldom traced if the emitter of the shadow ray is far. If the subpath continues by
@@ -15,7 +18,10 @@
 //
 // Source: Jensen, "Global Illumination using Photon Maps", 1996, section 5.
 
+#include <type_traits>
+
 #include "integrators/photon_map/estimate_radiance.h"
+#include "integrators/photon_map/medium_photons.h"
 #include "integrators/subpaths/particle_stages.h"
 #include "shading/power_heuristic.h"
 
@@ -43,9 +49,21 @@ struct BeginGather {
     }
 };
 
-/// The stage that shades hits of camera subpaths.
-template <ShadingVariant kVariant>
-struct ShadeGather {
+/// The part of the stage for media.
+struct GatherInMedia {
+    PhotonMapView in_media; // medium_photons.h
+};
+struct GatherInVacuum {};
+
+/// Returns the part `of` of a throughput after a flight that has changed the throughput from `before` to `after`.
+HD inline Rgb part_after_flight(Rgb of, Rgb before, Rgb after) {
+    const auto part = [](float x, float whole, float left) { return whole > 0 ? x / whole * left : 0.0f; };
+    return {part(of.r, before.r, after.r), part(of.g, before.g, after.g), part(of.b, before.b, after.b)};
+}
+
+/// The stage that shades hits of camera subpaths and, with kInMedia in a scene with media, their scatterings there.
+template <ShadingVariant kVariant, bool kInMedia = false>
+struct ShadeGather : std::conditional_t<kInMedia, GatherInMedia, GatherInVacuum> {
     SubpathScene scene;
     SubpathsView subpaths;
     GatherView gather;
@@ -63,16 +81,37 @@ struct ShadeGather {
         GatherState gather_state = gather.gather_state_of(subpath);
         const bool searches_emitters = gather.marks[subpath] == kSearchesEmitters;
         const bool sees_emitters_whole = (gather.marks[subpath] & kSeesEmittersWhole) != 0;
+        InteriorList list;
+        if constexpr (kInMedia) {
+            list = state.depth() == 0 ? picture.camera.interior : subpaths.load_interior(subpath);
+            const SampleKey key = {state.pixel, state.sample, scene.settings.seed};
+            const Rgb before = state.throughput;
+            const SubpathFlight flight = fly(scene, key, state.depth(), ray, hit, false, list, state.throughput);
+            gather_state.past_mirrors = part_after_flight(gather_state.past_mirrors, before, state.throughput);
+            if (flight.is_scattered) {
+                if (state.depth() == 0) add_behind_medium<kVariant>(picture, film, state, ray, hit);
+                if (searches_emitters) return; // photons have that light
+                if (sees_emitters_whole) state.throughput = gather_state.past_mirrors;
+                return shade_in_medium({flight.point, ray.direction, flight.share}, subpath, state, key, list);
+            }
+        }
         if (hit.instance == kNoHit) {
             if (!searches_emitters) add_background(state, gather_state, ray);
             return;
         }
         if (searches_emitters && light_of(picture.scene.lights, hit.instance, hit.primitive) == kNoLight) return;
-        const Surface surface = make_surface<kVariant>(picture.scene, hit, ray.direction);
-        arrive_through_solids<kVariant>(scene, subpaths, i, round, ray, hit, state.throughput,
-                                        gather_state.past_mirrors);
+        Surface surface = make_surface<kVariant>(picture.scene, hit, ray.direction);
+        if constexpr (kInMedia) {
+            const Rgb passed =
+                reach_surface(picture.scene, list, subpaths.start_of(i, round), ray.direction, hit, surface);
+            state.throughput = passed * state.throughput;
+            gather_state.past_mirrors = passed * gather_state.past_mirrors;
+        } else {
+            arrive_through_solids<kVariant>(scene, subpaths, i, round, ray, hit, state.throughput,
+                                            gather_state.past_mirrors);
+        }
         if (state.depth() == 0) {
-            add_seen(picture, film, state, ray, hit, surface);
+            add_seen(picture, film, state, ray, hit, surface, kInMedia ? state.throughput : Rgb{1, 1, 1});
         } else if (!is_black(surface.emission)) {
             const uint32_t light = light_of(picture.scene.lights, hit.instance, hit.primitive);
             const bool may_be_drawn = gather_state.pdf > 0 && light != kNoLight;
@@ -92,24 +131,19 @@ struct ShadeGather {
         const bool is_near = gather_state.pdf > 0 && hit.t < near;
         const bool turns = is_diffuse && how == PhotonGather::Final && (gather.marks[subpath] == 0 || is_near);
         const bool may_search = is_diffuse && !is_glossy && !turns;
-        const Vertex vertex = {surface,
-                               -ray.direction,
-                               is_diffuse,
-                               is_glossy,
-                               turns,
-                               may_search,
-                               {state.pixel, state.sample, scene.settings.seed}};
-        const float nearness = is_diffuse || is_glossy ? sample_direct_light(vertex, state) : 0.0f;
+        const Vertex vertex = {-ray.direction, is_diffuse, is_glossy,
+                               turns,          may_search, {state.pixel, state.sample, scene.settings.seed}};
+        const SurfaceEnd<kVariant> end = {surface};
+        const float nearness = is_diffuse || is_glossy ? sample_direct_light(end, vertex, state, list) : 0.0f;
         if (is_diffuse && depth + 2 <= max_depth) {
             gather.store(atomic_add(&subpaths.counts->vertices, 1u),
                          {hit, ray.direction, state.throughput, state.pixel, depth, !turns});
         }
-        continue_subpath(vertex, subpath, state, gather_state, nearness);
+        continue_subpath(end, vertex, subpath, state, gather_state, nearness, list);
     }
 
 private:
     struct Vertex {
-        const Surface& surface;
         Vec3 wo;
         bool is_diffuse, is_glossy;
         bool turns;      // the subpath continues by diffuse lobes too
@@ -125,7 +159,9 @@ private:
                      (gather_state.pdf > 0 ? weight * state.throughput : gather_state.past_mirrors) * emission);
     }
     HD void add_background(const SubpathState& state, const GatherState& gather_state, const Ray& ray) const {
-        if (state.depth() == 0) return add_seen_background(scene.picture, film, state, ray);
+        if (state.depth() == 0) {
+            return add_seen_background(scene.picture, film, state, ray, kInMedia ? state.throughput : Rgb{1, 1, 1});
+        }
         const LightSetView& lights = scene.picture.scene.lights;
         if (!lights.has_environment()) return;
         add_light(state, gather_state, environment_radiance(lights.environment, ray.direction),
@@ -133,14 +169,15 @@ private:
     }
 
     /// Samples one point of one light, as path tracing does. Returns its nearness_of(), or 0.
-    HD INLINE_ON_DEVICE float sample_direct_light(const Vertex& vertex, const SubpathState& state) const {
+    template <class End>
+    HD INLINE_ON_DEVICE float sample_direct_light(const End& end, const Vertex& vertex, const SubpathState& state,
+                                                  InteriorList list) const {
         const SceneView& view = scene.picture.scene;
-        const Surface& surface = vertex.surface;
         LightSample light;
         const SampleBits bits = sample_bits(scene.settings.sampler, vertex.key, light_group(state.depth()), Pair::Last);
-        if (!sample_light<emitter_look(kVariant)>(view.lights, surface.light_context(vertex.wo), bits, light)) return 0;
+        if (!sample_light<emitter_look(kVariant)>(view.lights, end.light_context(vertex.wo), bits, light)) return 0;
         const float nearness = nearness_of(light);
-        const BsdfValue all = evaluate_surface<kVariant>(surface, vertex.wo, light.wi);
+        const BsdfValue all = end.scatter_camera(vertex.wo, light.wi);
         if (is_black(all.f)) return nearness;
         const uint32_t coin = coin_key(vertex.key, state.depth(), true);
         if (light.instance != kNoLight && view.any_alpha != 0 &&
@@ -148,12 +185,19 @@ private:
             return nearness; // transparent part of the light
         }
         Connection connection;
-        connection.ray = ray_to_light(light, surface.position, surface.error, surface.geometric_normal);
-        connection.start = surface.triangle;
+        connection.ray = end.ray_to(light);
+        connection.start = end.triangle();
         connection.target = light.is_delta ? TriangleId{} : TriangleId{light.instance, light.primitive};
         connection.key = coin;
-        if constexpr (kVariant == ShadingVariant::General) {
-            light.radiance = light.radiance * transmittance_to_light<kVariant>(view, surface.triangle, light);
+        if constexpr (kInMedia) {
+            const Vec3 from = end.origin_towards(light.wi);
+            const Passage passage =
+                passage_of_connection(view, interior_towards(view, list, end, vertex.wo, light.wi), from, light.wi,
+                                      light.distance, end.triangle(), connection.target);
+            if (is_black(passage.transmittance)) return nearness;
+            light.radiance = light.radiance * passage.transmittance;
+        } else if constexpr (kVariant == ShadingVariant::General) {
+            light.radiance = light.radiance * transmittance_to_light<kVariant>(view, end.triangle(), light);
         }
         connection.light = (1.0f / light.pdf) * (state.throughput * drawn_share(vertex, light, all) * light.radiance);
         subpaths.queue_connection(atomic_add(&subpaths.counts->connections, 1u), connection, state.pixel);
@@ -172,10 +216,34 @@ private:
         return power_heuristic(light.pdf, all.pdf) * all.f;
     }
 
-    /// Continues or ends the subpath. `nearness` is the result of sample_direct_light.
-    HD INLINE_ON_DEVICE void continue_subpath(const Vertex& vertex, uint32_t subpath, SubpathState& state,
-                                              GatherState gather_state, float nearness) const {
-        const Surface& surface = vertex.surface;
+    /// Shades a scattering in a medium. Behind it the subpath finds all light, as behind a diffuse surface that turns.
+    HD INLINE_ON_DEVICE void shade_in_medium(const MediumEnd& end, uint32_t subpath, SubpathState& state, SampleKey key,
+                                             InteriorList list) const {
+        const SubpathSettings& settings = scene.settings;
+        if (is_black(state.throughput) || state.depth() >= settings.max_depth) return;
+        const Vertex vertex = {-end.along, false, false, true, false, key};
+        sample_direct_light(end, vertex, state, list);
+        if constexpr (kInMedia) add_caustics(end, vertex.wo, state);
+        const uint32_t choices = camera_group(state.depth(), kSubpathChoices);
+        const ScatterDraw draw = end.draw(settings, key, camera_group(state.depth(), kSubpathScatter), choices);
+        BsdfSample sample = end.sample_camera(vertex.wo, draw);
+        if (!(sample.pdf > 0) || !end.survives(settings, key, choices, state.depth() + 1, sample.weight)) return;
+        gather.marks[subpath] = 1;
+        state.throughput = state.throughput * sample.weight;
+        if constexpr (kInMedia) subpaths.store_interior(subpath, list);
+        queue_next(end, subpath, state, {state.throughput, sample.pdf}, sample.wi, key);
+    }
+    HD void add_caustics(const MediumEnd& end, Vec3 wo, const SubpathState& state) const {
+        const uint32_t others = state.depth() + 1;
+        if (others >= scene.settings.max_depth) return;
+        const Rgb light = radiance_of_photons(this->in_media, end, wo, scene.settings.max_depth - others, film.invalid);
+        if (!is_black(light)) add_radiance(film, state.pixel, state.throughput * light);
+    }
+    /// Continues or ends the subpath at a surface. `nearness` is the result of sample_direct_light.
+    HD INLINE_ON_DEVICE void continue_subpath(const SurfaceEnd<kVariant>& end, const Vertex& vertex, uint32_t subpath,
+                                              SubpathState& state, GatherState gather_state, float nearness,
+                                              InteriorList list) const {
+        const Surface& surface = end.surface;
         const SubpathSettings& settings = scene.settings;
         const uint32_t choices = camera_group(state.depth(), kSubpathChoices);
         const ScatterDraw draw =
@@ -206,13 +274,20 @@ private:
                         sample.is_delta() ? 0.0f : sample.pdf};
         if (!sample.is_delta() && vertex.turns) gather.marks[subpath] = 1;
         state.throughput = state.throughput * sample.weight;
+        if constexpr (kInMedia) {
+            subpaths.store_interior(subpath, interior_towards(scene.picture.scene, list, end, vertex.wo, wi));
+        }
+        queue_next(end, subpath, state, gather_state, wi, vertex.key);
+    }
+    template <class End>
+    HD INLINE_ON_DEVICE void queue_next(const End& end, uint32_t subpath, SubpathState& state,
+                                        const GatherState& gather_state, Vec3 wi, SampleKey key) const {
         ++state.scatterings;
         subpaths.states[subpath] = state;
         gather.store_gather_state(subpath, gather_state);
-        const Ray ray = {offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wi), 0, wi,
-                         kInfinity};
-        subpaths.queue_ray(atomic_add(&subpaths.counts->next, 1u), subpath, ray, surface.triangle,
-                           coin_key(vertex.key, state.depth(), false), round + 1);
+        const Ray ray = {end.origin_towards(wi), 0, wi, kInfinity};
+        subpaths.queue_ray(atomic_add(&subpaths.counts->next, 1u), subpath, ray, end.triangle(),
+                           coin_key(key, state.depth(), false), round + 1);
     }
 
     /// Returns 0 if no ray looks for emitters; otherwise the factor that compensates for those that do not.

@@ -2,6 +2,7 @@
 
 #include "integrators/photon_map/photon_map_settings.h"
 #include "integrators/photon_map/photon_targets.h"
+#include "math/portable_pow.h"
 #include "math/scalar.h"
 
 namespace pertev {
@@ -9,29 +10,33 @@ namespace pertev {
 namespace {
 
 /// Returns the sizes of the arrays. `in_loop` means those of a CPU thread, which shares no long lookups.
-GatherCapacity gather_capacity(uint32_t subpaths, const PhotonMapSettings& map, bool in_loop) {
-    return {subpaths, map.nearest, !in_loop && map.search == PhotonSearch::Grid && map.nearest == 0};
+GatherCapacity gather_capacity(uint32_t subpaths, const PhotonMapSettings& map, bool in_loop, bool has_interiors) {
+    return {subpaths, map.nearest, !in_loop && map.search == PhotonSearch::Grid && map.nearest == 0, has_interiors};
 }
 
 } // namespace
 
 GatherCapacity PhotonMapIntegrator::loop_capacity() const {
     constexpr std::size_t kLoopBytes = std::size_t(1) << 18; // per thread, so that it fits the cache
-    return capacity_within(kLoopBytes, kLoopCount,
-                           [&](uint32_t subpaths) { return gather_capacity(subpaths, picture_settings_.map, true); });
+    const bool has_interiors = picture_.scene.nesting.is_there() && picture_.scene.has_media != 0;
+    return capacity_within(kLoopBytes, kLoopCount, [&](uint32_t subpaths) {
+        return gather_capacity(subpaths, picture_settings_.map, true, has_interiors);
+    });
 }
 
 void PhotonMapIntegrator::reserve(const WorkSize& size) {
     const PhotonMapSettings& map = settings_.map;
-    maps_.allocate(map, settings_.subpaths.max_depth);
+    maps_.allocate(map, settings_.subpaths.max_depth, size.has_media);
     targets_.grow(queue_, kMaxTargets, "targets of photons");
     counted_elsewhere_.grow(queue_, 1, "invalid photons");
     if (uses_loop(size)) return;
     const uint64_t subpaths =
         std::max<uint64_t>(size.pixels(), 2 * uint64_t(map.photons)); // camera subpaths or photons
-    allocate_capacity(capacity_within(kMaxBytes, std::min<uint64_t>(subpaths, batch_),
-                                      [&](uint32_t count) { return gather_capacity(count, map, false); }),
-                      "subpaths of photon mapping");
+    const bool has_interiors = size.has_interiors && size.has_media;
+    allocate_capacity(
+        capacity_within(kMaxBytes, std::min<uint64_t>(subpaths, batch_),
+                        [&](uint32_t count) { return gather_capacity(count, map, false, has_interiors); }),
+        "subpaths of photon mapping");
 }
 
 void PhotonMapIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) {
@@ -98,19 +103,29 @@ void PhotonMapIntegrator::render_pass(uint32_t pass, const FilmView& film) {
                });
     const float shrunk = radius_of_pass(pass), largest = length(world_.centre) + world_.radius;
     job.near = max(shrunk * global_radius_, kMinPhotonRadius);
-    job.maps = maps_.build(job.near, max(shrunk * caustic_radius_, kMinPhotonRadius), largest, pass, subpaths.seed,
-                           stopping_sink());
+    const float caustic = max(shrunk * caustic_radius_, kMinPhotonRadius);
+    const float in_media = max(radius_in_media_of_pass(pass) * kRadiusInMedia * caustic_radius_, kMinPhotonRadius);
+    job.maps = maps_.build({job.near, caustic, in_media}, largest, pass, subpaths.seed, stopping_sink());
+    job.in_media = maps_.in_media();
     run_stages(job, 0, job.samples.count(), loop_capacity(), 1, [this](auto& schedule, const PhotonJob& part) {
         if (!is_abandoned()) run_gather(schedule, part);
     });
     rays_.camera += job.samples.count();
 }
 
-float radius_of_pass(uint32_t pass) {
-    constexpr double kAlpha = 2.0 / 3.0;
-    double squared = 1; // a product of doubles in a fixed order has the same bits everywhere
-    for (uint32_t i = 1; i <= pass; ++i) squared *= (i + kAlpha) / (i + 1.0);
-    return sqrt(static_cast<float>(squared));
+namespace {
+
+/// Returns the product over i = 1 .. pass of (i + alpha) / (i + 1), in a fixed order, so its bits are the same
+/// everywhere.
+float shrinking_product(double alpha, uint32_t pass) {
+    double product = 1;
+    for (uint32_t i = 1; i <= pass; ++i) product *= (i + alpha) / (i + 1.0);
+    return static_cast<float>(product);
 }
+
+} // namespace
+
+float radius_of_pass(uint32_t pass) { return sqrt(shrinking_product(2.0 / 3.0, pass)); }
+float radius_in_media_of_pass(uint32_t pass) { return pow(shrinking_product(4.0 / 7.0, pass), 1.0f / 3.0f); }
 
 } // namespace pertev

@@ -49,6 +49,7 @@ inline constexpr uint64_t kMaxStored = (1u << 30) - 1; // photons of a pass that
 inline constexpr float kMinPhotonRadius = 1e-9f;
 inline constexpr float kRadiusOfScene = 1.0f / 50; // fraction of the radius of a sphere around the scene
 inline constexpr float kCausticRadius = 1.0f / 4;  // fraction of the global map's radius
+inline constexpr float kRadiusInMedia = 2;         // over the caustic map's radius, because photons fill a volume
 
 /// Returns whether the photons of paths with up to max_depth scatterings can be stored.
 constexpr bool photons_fit(uint32_t photons, uint32_t max_depth) {
@@ -59,5 +60,8 @@ constexpr bool photons_fit(uint32_t photons, uint32_t max_depth) {
 /// noise. Its square is the product over i = 1 .. pass of (i + a) / (i + 1), a = 2/3. Source: Knaus, Zwicker,
 /// "Progressive Photon Mapping: A Probabilistic Approach", 2011, equation 15.
 float radius_of_pass(uint32_t pass);
+/// Returns that radius in media, where the cube of the radius is the product with a = 4/7. Then the squared errors by
+/// blur and by noise both fall with the passes to the power -4/7.
+float radius_in_media_of_pass(uint32_t pass);
 
 } // namespace pertev

@@ -39,23 +39,27 @@ HD inline Vec3 unpack_normal(uint32_t bits) {
 
 /// Sort key of a photon: its order is (path, scatterings).
 HD inline uint64_t photon_key(uint32_t path, uint32_t scatterings) { return uint64_t(path) << 8 | scatterings; }
+inline constexpr uint64_t kKeyInMedium = uint64_t(1) << 33; // photons in media come last
+inline constexpr int kKeyBits = 34;
+static_assert((uint64_t(2 * kMaxPhotons) << 8) <= kKeyInMedium && kMaxPhotonDepth < 1 << 8);
 
 struct PhotonsView {
-    // Position, with 1 in a map, or 0 if it was removed (order_photons.h); wi, bits of the normal; power, bits of the
-    // scatterings.
+    // Position, with 1 in a map, or 0 if it was removed (order_photons.h); wi, bits of the normal, or the medium;
+    // power, bits of the scatterings.
     Float4 *positions, *ways, *powers;
 
-    HD void store(std::size_t at, const Photon& photon) const {
+    HD void store(std::size_t at, const Photon& photon, uint32_t place) const {
         const Vec3 p = photon.position, wi = photon.wi;
         positions[at] = {p.x, p.y, p.z, 0};
-        ways[at] = {wi.x, wi.y, wi.z, float_of(pack_normal(photon.normal))};
+        ways[at] = {wi.x, wi.y, wi.z, float_of(place)};
         powers[at] = {photon.power.r, photon.power.g, photon.power.b, float_of(photon.scatterings)};
     }
     HD PhotonsView from(uint32_t first) const { return {positions + first, ways + first, powers + first}; }
 };
 
 struct PhotonCounts {
-    uint32_t stored, caustic; // in both maps; in the caustic map
+    uint32_t stored, caustic; // in all maps; in the caustic map
+    uint32_t in_media;        // in the map of medium_photons.h
 };
 
 /// Photons as they are stored, in arbitrary order.
@@ -67,8 +71,15 @@ struct StoredPhotonsView {
     HD void add(const Photon& photon, bool is_caustic) const {
         const uint32_t at = atomic_add(&counts->stored, 1u);
         if (is_caustic) atomic_add(&counts->caustic, 1u);
-        photons.store(at, photon);
+        photons.store(at, photon, pack_normal(photon.normal));
         keys[at] = photon_key(photon.path, photon.scatterings);
+    }
+    /// Adds a photon that `medium` has scattered. Its normal does not count.
+    HD void add_in_medium(const Photon& photon, uint32_t medium) const {
+        const uint32_t at = atomic_add(&counts->stored, 1u);
+        atomic_add(&counts->in_media, 1u);
+        photons.store(at, photon, medium);
+        keys[at] = kKeyInMedium | photon_key(photon.path, photon.scatterings);
     }
 };
 

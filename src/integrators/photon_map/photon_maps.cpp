@@ -28,7 +28,7 @@ std::size_t max_starts(uint64_t capacity) { return std::bit_ceil(capacity) + 1; 
 
 } // namespace
 
-void PhotonMaps::allocate(const PhotonMapSettings& settings, uint32_t max_depth) {
+void PhotonMaps::allocate(const PhotonMapSettings& settings, uint32_t max_depth, bool has_media) {
     const uint64_t of_kind = capacity_of_kind(settings, max_depth), capacity = 2 * of_kind;
     const uint64_t in_maps = capacity_of_maps(settings, max_depth);
     search_ = settings.search;
@@ -43,6 +43,7 @@ void PhotonMaps::allocate(const PhotonMapSettings& settings, uint32_t max_depth)
         order_[k].grow(queue_, capacity, "order of photons");
         starts_[k].grow(queue_, max_starts(k == 0 ? in_maps - of_kind : of_kind), "hash grid over photons");
     }
+    if (has_media) starts_[2].grow(queue_, max_starts(of_kind), "hash grid over photons");
     if (queue_.is_cuda()) {
         scratch_.grow(queue_, sort_scratch_bytes(queue_, static_cast<uint32_t>(capacity)),
                       "scratch memory for sorting photons");
@@ -62,15 +63,15 @@ StoredPhotonsView PhotonMaps::clear() {
     return {{stored_[0].data(), stored_[1].data(), stored_[2].data()}, keys_[0].data(), counts_.data()};
 }
 
-const PhotonMapsView& PhotonMaps::build(float global_radius, float caustic_radius, float largest, uint32_t pass,
-                                        uint32_t seed, Sink& sink) {
+const PhotonMapsView& PhotonMaps::build(const PhotonRadii& radii, float largest, uint32_t pass, uint32_t seed,
+                                        Sink& sink) {
     queue_.copy_to_host(&found_, counts_.data(), sizeof found_);
     PERTEV_CHECK(found_.stored <= capacity_);
     const uint32_t all = found_.stored;
     const PhotonsView stored = {stored_[0].data(), stored_[1].data(), stored_[2].data()};
     launch(queue_, "number photons", all, NumberPhotons{order_[0].data()});
-    sort_photons(queue_, scratch_, keys_[0].data(), order_[0].data(), keys_[1].data(), order_[1].data(), all, 34);
-    const uint32_t other = all - found_.caustic; // these come first
+    sort_photons(queue_, scratch_, keys_[0].data(), order_[0].data(), keys_[1].data(), order_[1].data(), all, kKeyBits);
+    const uint32_t on_surfaces = all - found_.in_media, other = on_surfaces - found_.caustic; // these come first
     launch(queue_, "order photons", all, OrderPhotons{stored, ordered(), order_[1].data()});
     if (global_has_all_) {
         launch(queue_, "order photons", found_.caustic,
@@ -80,17 +81,22 @@ const PhotonMapsView& PhotonMaps::build(float global_radius, float caustic_radiu
     PhotonMapsView& maps = view_;
     maps = {};
     maps.global_has_all = global_has_all_;
-    maps.global.count = global_has_all_ ? all : other;
-    maps.global.radius = global_radius;
+    maps.global.count = global_has_all_ ? on_surfaces : other;
+    maps.global.radius = radii.global;
     maps.global.photons = ordered();
     maps.caustic.count = found_.caustic;
-    maps.caustic.radius = caustic_radius;
-    maps.caustic.photons = ordered().from(maps.global.count);
-    PhotonMapView* const both[] = {&maps.global, &maps.caustic};
-    for (int k = 0; k < 2; ++k) {
-        if (both[k]->count == 0) continue;
-        fill_grid(*both[k], stored_[k].data(), starts_[k], largest, pass, seed);
-        if (search_ != PhotonSearch::Grid) build_trees(*both[k], k == 0 ? 0 : maps.global.count, sink);
+    const uint32_t first_caustic = global_has_all_ ? all : other;
+    maps.caustic.radius = radii.caustic;
+    maps.caustic.photons = ordered().from(first_caustic);
+    in_media_ = {};
+    in_media_.count = found_.in_media;
+    in_media_.radius = radii.in_media;
+    in_media_.photons = ordered().from(on_surfaces);
+    PhotonMapView* const each[] = {&maps.global, &maps.caustic, &in_media_};
+    for (int k = 0; k < 3; ++k) {
+        if (each[k]->count == 0) continue;
+        fill_grid(*each[k], stored_[k].data(), starts_[k], largest, pass, seed);
+        if (search_ != PhotonSearch::Grid && k < 2) build_trees(*each[k], k == 0 ? 0 : first_caustic, sink);
     }
     return maps;
 }

@@ -120,6 +120,7 @@ struct AimFromKind {
         const float cosine = dot(normal, direction.to);
         if (!(cosine > 0)) return false; // the target is behind the emitter
         start_particle(triangle, emission, normal, direction.to, freely.particle);
+        freely.particle.light = light;
         freely.particle.power =
             (cosine / (emission.pdf * direction.pdf)) * emission.radiance_along(freely.scene, triangle, cosine);
         return true;
@@ -133,11 +134,13 @@ struct AimFromKind {
         case LightKind::Goniometric: {
             if (!(depth_of_cones(targets, light.position) < depth_of_beam(light))) break;
             const Direction direction = draw_direction(targets, light.position, freely.u);
+            freely.particle.light = freely.scene.lights.triangle_count + number;
             return freely.punctual(light, {light.position, direction.to, reach_of(light), direction.pdf}, pmf);
         }
         case LightKind::Directional: {
             if (!are_narrow()) break;
             const Start start = draw_start(targets, freely.world, light.direction, freely.u);
+            freely.particle.is_from_far = true;
             return freely.punctual(light, {start.from, light.direction, kInfinity, start.pdf}, pmf);
         }
         }
@@ -151,6 +154,7 @@ struct AimFromKind {
         if (!(pdf > 0)) return false;
         const Start start = draw_start(targets, freely.world, -sample.wi, freely.u);
         freely.particle.ray = {start.from, 0, -sample.wi, kInfinity};
+        freely.particle.is_from_far = true;
         freely.particle.power = (1.0f / (pdf * start.pdf)) * sample.radiance;
         return true;
     }
@@ -169,6 +173,8 @@ HD inline bool aim_particle(const SceneView& scene, const PhotonTargetsView& tar
     if (!(world.radius > 0)) return false;
     particle.start = {};
     particle.is_from_far = false;
+    particle.light = kNoLight;
+    particle.is_punctual = false;
     return draw_light(scene.lights, u_position, aim::AimFromKind{{scene, world, u, key, particle}, targets});
 }
 

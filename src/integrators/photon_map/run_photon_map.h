@@ -14,13 +14,14 @@ struct PhotonJob : SubpathJob {
     GatherView gather;
     PhotonPass pass;
     PhotonMapsView maps; // for camera subpaths only
+    PhotonMapView in_media;
     PhotonGather how;
     PhotonSearch search;
     float near; // metres, ShadeGather::near
 };
 
 inline std::size_t lay_out(PhotonJob& job, std::byte* memory, const GatherCapacity& capacity) {
-    const std::size_t of_subpaths = lay_out(job.subpaths, memory, {capacity.count, 0, 1});
+    const std::size_t of_subpaths = lay_out(job.subpaths, memory, {capacity.count, 0, 1, capacity.has_interiors});
     return of_subpaths + lay_out(job.gather, memory != nullptr ? memory + of_subpaths : nullptr, capacity);
 }
 
@@ -29,16 +30,21 @@ template <class Schedule>
 void run_photons(Schedule& schedule, const PhotonJob& job) {
     const SubpathsView& subpaths = job.subpaths;
     schedule.run("begin_subpaths", 1, BeginSubpaths{subpaths.counts, 0});
-    schedule.run("begin_photons", job.count,
-                 BeginPhotons{job.scene, subpaths, job.gather, job.pass, static_cast<uint32_t>(job.first)});
+    const SceneView& scene = job.scene.picture.scene;
+    const auto begin = [&]<bool kInMedia>() {
+        const auto first = static_cast<uint32_t>(job.first);
+        schedule.run("begin_photons", job.count,
+                     BeginPhotons<kInMedia>{job.scene, subpaths, job.gather, job.pass, first});
+    };
+    scene.has_media != 0 ? begin.template operator()<true>() : begin.template operator()<false>();
     schedule.run("count_subpaths", 1, CountSubpaths{subpaths.counts, true, 0});
     schedule.begin_rounds(job.count);
     for (uint32_t round = 0; round < job.scene.settings.max_depth && schedule.has_rays_left(subpaths.counts); ++round) {
         const WorkCount rays = {schedule.max_rays(), &subpaths.counts->rays};
         schedule.find_hits(RayKind::Bounce, job, rays, round);
-        with_variant(job.scene.picture.scene.variant, [&]<ShadingVariant kVariant>() {
+        with_media(scene, [&]<ShadingVariant kVariant, bool kInMedia>() {
             schedule.run("shade_photons", rays,
-                         ShadePhotons<kVariant>{job.scene, subpaths, job.gather, job.pass, round});
+                         ShadePhotons<kVariant, kInMedia>{job.scene, subpaths, job.gather, job.pass, round});
         });
         schedule.run("count_subpaths", 1, CountSubpaths{subpaths.counts, true, 0});
     }
@@ -80,9 +86,11 @@ void run_gather(Schedule& schedule, const PhotonJob& job) {
         const WorkCount connections = {schedule.max_rays(), &subpaths.counts->connections};
         const WorkCount lookups = {schedule.max_rays(), &subpaths.counts->vertices};
         schedule.find_hits(round == 0 ? RayKind::Camera : RayKind::Bounce, job, rays, round);
-        with_variant(job.scene.picture.scene.variant, [&]<ShadingVariant kVariant>() {
-            schedule.run("shade_gather", rays,
-                         ShadeGather<kVariant>{job.scene, subpaths, job.gather, job.film, job.how, job.near, round});
+        with_media(job.scene.picture.scene, [&]<ShadingVariant kVariant, bool kInMedia>() {
+            ShadeGather<kVariant, kInMedia> shade = {{},       job.scene, subpaths, job.gather,
+                                                     job.film, job.how,   job.near, round};
+            if constexpr (kInMedia) shade.in_media = job.in_media;
+            schedule.run("shade_gather", rays, shade);
             estimate_radiance<kVariant>(schedule, job, lookups);
         });
         schedule.find_connections(job, connections);

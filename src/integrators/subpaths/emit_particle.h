@@ -22,6 +22,7 @@ struct Particle {
     MisSums mis;
     bool is_from_far; // the ray is one of many parallel ones, so the first segment has no distance
     uint32_t light;   // number of a light with a position, as in NestingView::of_lights; kNoLight: it is from far
+    bool is_punctual; // the light has no size
 };
 
 /// Density of an emitter's direction with `cosine` to its normal, 1/sr.
@@ -121,6 +122,7 @@ struct EmitFromKind {
     HD bool punctual(const PunctualLight& light, const PunctualEmission& emission, float pmf) const {
         particle.ray = {emission.from, 0, emission.direction, emission.reach};
         particle.power = emitted_power(light, emission, pmf, scene.lights.goniometric);
+        particle.is_punctual = true;
         return true;
     }
     HD bool environment(float pmf, SampleBits bits) const {
@@ -144,6 +146,7 @@ HD inline bool emit_particle(const SceneView& scene, const WorldSphere& world, S
     particle.start = {};
     particle.is_from_far = false;
     particle.light = kNoLight;
+    particle.is_punctual = false;
     return draw_light(scene.lights, u_position, EmitFromKind{scene, world, u, key, particle});
 }
 

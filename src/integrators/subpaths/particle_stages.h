@@ -104,7 +104,7 @@ struct BeginParticles {
         const uint32_t coin = coin_key({state.pixel, state.sample, settings.seed ^ kParticleCoins}, 0, false);
         Particle particle;
         if (!emit_particle(scene.picture.scene, scene.world, bits, direction, coin, particle)) return;
-        if constexpr (kInMedia) begin_in_media(i, particle);
+        if constexpr (kInMedia) begin_in_media(scene.picture.scene, subpaths, i, particle);
         if (!(max_component(particle.power) > 0)) return;
         state.throughput = particle.power;
         state.mis = particle.mis;
@@ -112,17 +112,6 @@ struct BeginParticles {
         subpaths.states[i] = state;
         subpaths.squared_indices[i] = 1;
         subpaths.queue_ray(atomic_add(&subpaths.counts->next, 1u), i, particle.ray, particle.start, coin, 0);
-    }
-
-private:
-    /// Finds the media that a particle begins in. Light from infinity has passed the scene's own medium.
-    HD void begin_in_media(uint32_t i, Particle& particle) const {
-        const SceneView& view = scene.picture.scene;
-        subpaths.store_interior(
-            i, interior_of_light(view, particle.light, particle.start, particle.ray.origin, particle.ray.direction));
-        if (!particle.is_from_far) return;
-        particle.power =
-            particle.power * transmittance_of(optical_depth(view.surroundings->medium.sigma_t(), kInfinity));
     }
 };
 
@@ -363,6 +352,14 @@ HD INLINE_ON_DEVICE void add_seen(const PictureView& picture, const FilmView& fi
                                   const Ray& ray, const Hit& hit, const Surface& surface, Rgb passed = {1, 1, 1}) {
     add_first_hit(film, state.pixel, state.sample, {ray.origin, ray.direction}, hit, surface, picture);
     if (!is_black(surface.emission)) add_radiance(film, state.pixel, passed * surface.emission);
+}
+/// Adds the auxiliary channels of the surface behind a medium that has scattered the camera's ray.
+template <ShadingVariant kVariant>
+HD INLINE_ON_DEVICE void add_behind_medium(const PictureView& picture, const FilmView& film, const SubpathState& state,
+                                           const Ray& ray, const Hit& hit) {
+    if (hit.instance == kNoHit) return add_no_first_hit(film, state.pixel, state.sample);
+    add_first_hit(film, state.pixel, state.sample, {ray.origin, ray.direction}, hit,
+                  make_surface<kVariant>(picture.scene, hit, ray.direction), picture);
 }
 /// Adds the background for a camera ray that hit nothing, of which `passed` arrives.
 HD inline void add_seen_background(const PictureView& picture, const FilmView& film, const SubpathState& state,

@@ -27,6 +27,7 @@ struct MediumEnd {
     HD TriangleId triangle() const { return {}; }
     HD bool scatters_by_delta_alone() const { return false; }
     HD float density_factor(Vec3) const { return 1; }
+    HD BsdfValue scatter_camera(Vec3 wo, Vec3 wi) const { return scatter(wo, wi).camera; }
     HD BothWays scatter(Vec3 wo, Vec3 wi) const {
         const float density = henyey_greenstein(point.g, -dot(wo, wi));
         return {{grey(density), density}, {grey(density), density}};
@@ -94,6 +95,17 @@ HD_CALL inline Passage passage_of_connection(const SceneView& scene, InteriorLis
             passage.transmittance * transmittance_of_solid(scene, start, end, direction, distance, kAtRest);
     }
     return passage;
+}
+
+/// Stores the solids that hold the beginning of a particle's ray. Light from infinity has passed the scene's own
+/// medium.
+HD inline void begin_in_media(const SceneView& scene, const SubpathsView& subpaths, uint32_t subpath,
+                              Particle& particle) {
+    const Ray& ray = particle.ray;
+    subpaths.store_interior(subpath,
+                            interior_of_light(scene, particle.light, particle.start, ray.origin, ray.direction));
+    if (!particle.is_from_far) return;
+    particle.power = particle.power * transmittance_of(optical_depth(scene.surroundings->medium.sigma_t(), kInfinity));
 }
 
 /// A free flight of a subpath.

@@ -82,6 +82,7 @@ struct SurfaceEnd {
     /// at this vertex.
     HD float density_factor(Vec3 direction) const { return cosine_at(surface, direction); }
     HD BothWays scatter(Vec3 wo, Vec3 wi) const { return scatter_both_ways<kVariant>(surface, wo, wi); }
+    HD BsdfValue scatter_camera(Vec3 wo, Vec3 wi) const { return evaluate_surface<kVariant>(surface, wo, wi); }
     HD Vec3 origin_towards(Vec3 direction) const {
         return offset_ray_origin(surface.position, surface.error, surface.geometric_normal, direction);
     }
