@@ -19,7 +19,7 @@
 
 namespace pertev {
 
-/// Power balance of photons, for tests: powers summed over the three colours, W.
+/// Power balance of photons in scenes without media, for tests: powers summed over the three colours, W.
 struct PhotonEnergy {
     FixedSum emitted;
     FixedSum escaped;   // hit nothing
