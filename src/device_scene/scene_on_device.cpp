@@ -314,7 +314,7 @@ void SceneOnDevice::make_light_tree(Queue& queue) {
     if (view_.lights.tree.nodes != nullptr || view_.lights.tree.light_count == 0) return;
     const LightTreeData& data = light_tree_->get();
     PartArrays arrays;
-    arrays.add(data.nodes, view_.lights.tree.nodes);
+    arrays.add(std::span<const LightTreeNode>(data.nodes), view_.lights.tree.nodes);
     arrays.add(data.leaf_of_light, view_.lights.tree.leaf_of_light);
     arrays.upload(queue, light_nodes_, "light tree");
 }

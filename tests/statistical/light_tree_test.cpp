@@ -195,7 +195,7 @@ TEST_CASE("lights at ever smaller distances make a tree that is deep but has eac
 
 TEST_CASE("a light tree does not depend on the number of threads") {
     const std::vector<TreeLight> lights = test::make_dust(100'000).tree_lights();
-    std::vector<LightTreeNode> nodes[2];
+    RawVector<LightTreeNode> nodes[2];
     for (const int threads : {1, 3}) {
         const UseThreads use(threads);
         nodes[threads / 2] = build_light_tree(lights).nodes;

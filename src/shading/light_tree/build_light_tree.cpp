@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <numeric>
+#include <optional>
 #include <utility>
 
 #include "base/parallel_for.h"
@@ -13,7 +16,7 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kMostBins = 12, kChunk = 1u << 14, kParallel = 1u << 12, kFewest = 4;
+constexpr uint32_t kChunk = 1u << 14, kParallel = 1u << 12, kFewest = 4;
 constexpr int kMaxDepth = 64; // beyond, ranges are halved
 constexpr uint32_t kHilbert = 32;
 
@@ -27,8 +30,8 @@ Vec3 vec3(Floats4 v) { return {v[0], v[1], v[2]}; }
 
 /// A light of a tree that is being built.
 struct Item {
-    Floats4 lo, hi;
-    Floats4 sum; // normal, or 0 if light leaves in all directions or from both faces; power
+    Floats4 lo, hi; // and, last, the angle of emission, twice
+    Floats4 sum;    // normal, or 0 if light leaves in all directions or from both faces; power
     uint32_t light;
 
     Floats4 centre() const { return 0.5f * (lo + hi); }
@@ -137,18 +140,39 @@ uint32_t pack_angles(const Cone& cone) {
     return bits(n) | bits(sine) << 12 | bits(e) << 24 | (cone.has_two_sides ? 1u << 31 : 0u);
 }
 
+/// A range of items, in one of two buffers, and the bounds of their centres if they are known.
+struct Range {
+    Item* items; // its buffer, in which it begins at begin
+    uint32_t begin, end;
+    std::optional<Centres> centres;
+
+    uint32_t size() const { return end - begin; }
+    bool is_large() const { return size() > 4 * kChunk; } // worth several threads
+};
+
+uint32_t chunks_of(uint64_t size) { return static_cast<uint32_t>((size + kChunk - 1) / kChunk); }
+
+/// Runs body(chunk, from, to) over the chunks of a range in parallel.
+template <class Body>
+void for_chunks(uint32_t begin, uint32_t end, const Body& body) {
+    parallel_for(chunks_of(end - begin), 1, [&](uint64_t chunk) {
+        const auto from = static_cast<uint32_t>(begin + chunk * kChunk);
+        body(chunk, from, std::min(end, from + kChunk));
+    });
+}
+
 class Builder {
 public:
     Builder(std::span<const TreeLight> lights, LightTreeData& data) : lights_(lights), data_(data) {}
 
     void build() {
-        collect();
+        const Range all = collect();
         data_.leaf_of_light.assign(lights_.size(), 0);
-        if (items_.empty()) return;
-        const auto count = static_cast<uint32_t>(items_.size());
-        data_.nodes.resize(2 * static_cast<std::size_t>(count));
-        if (count > kParallel) other_.resize(count);
-        build_range(0, count, kLightTreeRoot, 2, 0);
+        if (all.size() == 0) return;
+        data_.nodes.resize(2 * static_cast<std::size_t>(all.size()));
+        data_.nodes[0] = {};
+        if (all.is_large()) other_ = std::make_unique_for_overwrite<Item[]>(all.size());
+        build_range(all, kLightTreeRoot, 2, 0);
     }
 
 private:
@@ -159,33 +183,44 @@ private:
         float power;
     };
 
-    void collect() {
-        std::vector<double> powers(lights_.size());
-        for (std::size_t i = 0; i < lights_.size(); ++i) {
-            powers[i] = has_leaf(lights_[i]) ? lights_[i].power : 0;
-        }
+    /// Makes the items. Memory is first written in parallel, because the system's clearing of it would take as long as
+    /// the rest of a large build.
+    Range collect() {
+        const auto lights = static_cast<uint32_t>(lights_.size());
+        std::vector<double> powers(lights);
+        std::vector<uint32_t> first(chunks_of(lights) + 1);
+        for_chunks(0, lights, [&](uint64_t chunk, uint32_t from, uint32_t to) {
+            for (uint32_t i = from; i < to; ++i) {
+                powers[i] = has_leaf(lights_[i]) ? lights_[i].power : 0;
+                first[chunk + 1] += powers[i] > 0 ? 1 : 0;
+            }
+        });
         double sum = 0;
         for (const double power : powers) sum += power;
-        std::size_t count = 0;
-        std::vector<uint32_t> position(lights_.size());
-        for (std::size_t i = 0; i < lights_.size(); ++i) {
-            position[i] = static_cast<uint32_t>(count);
-            count += powers[i] > 0 ? 1 : 0;
-        }
-        items_.resize(count);
-        parallel_for(lights_.size(), 4096, [&](uint64_t i) {
-            if (!(powers[i] > 0)) return;
-            const TreeLight& light = lights_[i];
-            const bool has_axis = light.emission_angle < kPi && !light.has_two_sides;
-            const float power = max(static_cast<float>(powers[i] / sum), 0x1p-60f);
-            items_[position[i]] = {floats4(light.bounds.lo), floats4(light.bounds.hi),
-                                   floats4(has_axis ? light.axis : Vec3{}, power), static_cast<uint32_t>(i)};
+        std::partial_sum(first.begin(), first.end(), first.begin());
+        items_ = std::make_unique_for_overwrite<Item[]>(first.back());
+        std::vector<Centres> centres(first.size());
+        for_chunks(0, lights, [&](uint64_t chunk, uint32_t from, uint32_t to) {
+            uint32_t at = first[chunk];
+            for (uint32_t i = from; i < to; ++i) {
+                if (!(powers[i] > 0)) continue;
+                const TreeLight& light = lights_[i];
+                const bool has_axis = light.emission_angle < kPi && !light.has_two_sides;
+                const float power = max(static_cast<float>(powers[i] / sum), 0x1p-60f);
+                items_[at] = {floats4(light.bounds.lo, light.emission_angle),
+                              floats4(light.bounds.hi, light.emission_angle),
+                              floats4(has_axis ? light.axis : Vec3{}, power), i};
+                centres[chunk].extend(items_[at++].centre());
+            }
         });
-        for (const Item& item : items_) all_.extend(vec3(item.centre()));
+        for (const Centres& part : centres) centres[0].extend(part);
+        all_ = {vec3(centres[0].lo), vec3(centres[0].hi)};
+        return {items_.get(), 0, first.back(), centres[0]};
     }
 
     Cone cone_of(const Item& item) const {
-        const TreeLight& light = lights_[item.light];
+        if (item.sum[0] != 0 || item.sum[1] != 0 || item.sum[2] != 0) return {vec3(item.sum), 0, item.lo[3], false};
+        const TreeLight& light = lights_[item.light]; // read only here: it is in no cache
         const bool is_isotropic = !(light.emission_angle < kPi);
         return {light.axis, is_isotropic ? kPi : 0.0f, light.emission_angle, light.has_two_sides};
     }
@@ -206,22 +241,22 @@ private:
         node.next = next;
     }
 
-    /// Builds the subtree over items [begin, end) at node `at`, with the nodes below it from `below` on.
-    Built build_range(uint32_t begin, uint32_t end, uint32_t at, uint32_t below, int depth) {
-        const uint32_t size = end - begin;
-        if (size == 1) {
-            const Item& item = items_[begin];
-            const Built built = {lights_[item.light].bounds, cone_of(item), item.power()};
+    /// Builds the subtree over a range at node `at`, with the nodes below it from `below` on.
+    Built build_range(const Range& range, uint32_t at, uint32_t below, int depth) {
+        if (range.size() == 1) {
+            const Item& item = range.items[range.begin];
+            const Built built = {{vec3(item.lo), vec3(item.hi)}, cone_of(item), item.power()};
             data_.leaf_of_light[item.light] = at;
             store(at, built, LightTreeNode::kLeaf | item.light);
             return built;
         }
-        const uint32_t middle = split(begin, end, depth);
-        const uint32_t of_left = middle - begin;
+        const auto [lower, upper] = split(range, depth);
         Built left, right;
-        const auto build_left = [&] { left = build_range(begin, middle, below, below + 2, depth + 1); };
-        const auto build_right = [&] { right = build_range(middle, end, below + 1, below + 2 * of_left, depth + 1); };
-        if (size >= kParallel) {
+        const auto build_left = [&, &half = lower] { left = build_range(half, below, below + 2, depth + 1); };
+        const auto build_right = [&, &half = upper, next = below + 2 * lower.size()] {
+            right = build_range(half, below + 1, next, depth + 1);
+        };
+        if (range.size() >= kParallel) {
             parallel_invoke(build_left, build_right);
         } else {
             build_left();
@@ -239,36 +274,54 @@ private:
         return levels;
     }
 
-    uint32_t split(uint32_t begin, uint32_t end, int depth) {
-        const uint32_t size = end - begin;
+    using Halves = std::array<Range, 2>;
+
+    static Halves halves_at(const Range& range, uint32_t middle) {
+        return {Range{range.items, range.begin, middle, {}}, Range{range.items, middle, range.end, {}}};
+    }
+
+    Halves split(const Range& range, int depth) {
+        const uint32_t size = range.size();
+        Item* const items = range.items + range.begin;
         if (size == 2) {
-            order_pair(begin);
-            return begin + 1;
+            order_pair(items);
+            return halves_at(range, range.begin + 1);
         }
-        if (levels_needed(size) >= kMaxDepth - depth) return begin + size / 2;
-        if (size <= kFewest) return split_few(begin, size);
-        const uint32_t bins = size >= 64 ? kMostBins : size >= 16 ? 8u : 4u;
-        const Split best = find_split(begin, end, bins);
-        if (best.axis < 0) return begin + size / 2;
+        const uint32_t half = range.begin + size / 2;
+        if (levels_needed(size) >= kMaxDepth - depth) return halves_at(range, half);
+        if (size <= kFewest) return halves_at(range, range.begin + split_few(items, size));
+        if (size < 16) return split_by_bins<4>(range);
+        return size < 64 ? split_by_bins<8>(range) : split_by_bins<12>(range);
+    }
+
+    template <std::size_t count>
+    using Bins = std::array<std::array<Measure, count>, 3>;
+
+    template <std::size_t count>
+    Halves split_by_bins(const Range& range) {
+        const uint32_t size = range.size();
+        Item* const items = range.items + range.begin;
+        const Centres centres = range.centres ? *range.centres : centres_of(items, size);
+        std::vector<Bins<count>> of_chunk(range.is_large() ? chunks_of(size) : 0);
+        const Split best = find_split(range, centres, of_chunk);
+        if (best.axis < 0) return halves_at(range, range.begin + size / 2);
         bool lower_first = true;
         if (size >= kHilbert) {
             lower_first = hilbert_position(best.lower, all_) <= hilbert_position(best.upper, all_);
         }
-        const auto is_left = [&](const Item& item) { return (best.bin_of(item, bins) < best.bin) == lower_first; };
-        const uint32_t middle =
-            size > 4 * kChunk ? partition_in_chunks(begin, end, is_left) : partition(begin, end, is_left);
-        return middle;
+        const auto is_left = [&](const Item& item) { return (best.bin_of(item, count) < best.bin) == lower_first; };
+        if (!range.is_large()) return halves_at(range, range.begin + partition(items, size, is_left));
+        return partition_in_chunks(range, best, lower_first, of_chunk, is_left);
     }
 
-    void order_pair(uint32_t begin) {
-        const Vec3 apart = vec3(items_[begin + 1].centre() - items_[begin].centre()), size = abs(apart);
+    static void order_pair(Item* items) {
+        const Vec3 apart = vec3(items[1].centre() - items[0].centre()), size = abs(apart);
         const int axis = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
-        if (component(apart, axis) < 0) std::swap(items_[begin], items_[begin + 1]);
+        if (component(apart, axis) < 0) std::swap(items[0], items[1]);
     }
 
-    /// Tries every way to divide three or four items.
-    uint32_t split_few(uint32_t begin, uint32_t size) {
-        Item* const items = items_.data() + begin;
+    /// Tries every way to divide three or four items. Returns the number of the first half's.
+    static uint32_t split_few(Item* items, uint32_t size) {
         uint32_t best = 1;
         float least = kInfinity;
         for (uint32_t set = 1; set < 1u << (size - 1); ++set) { // the last item is never in it
@@ -283,19 +336,17 @@ private:
         for (uint32_t i = 0; i < size; ++i) {
             if ((best >> i & 1) != 0) items[at++] = copy[i];
         }
-        const uint32_t middle = begin + at;
+        const uint32_t middle = at;
         for (uint32_t i = 0; i < size; ++i) {
             if ((best >> i & 1) == 0) items[at++] = copy[i];
         }
         return middle;
     }
 
-    using Bins = std::array<std::array<Measure, kMostBins>, 3>;
-
-    void fill_bins(Bins& bins, uint32_t begin, uint32_t end, Floats4 lo, Floats4 scale, uint32_t count) const {
+    template <std::size_t count>
+    static void fill_bins(Bins<count>& bins, std::span<const Item> items, Floats4 lo, Floats4 scale) {
         const int last = static_cast<int>(count) - 1;
-        for (uint32_t i = begin; i < end; ++i) {
-            const Item& item = items_[i];
+        for (const Item& item : items) {
             const Floats4 at = (item.centre() - lo) * scale;
             for (int axis = 0; axis < 3; ++axis) {
                 bins[static_cast<std::size_t>(axis)][static_cast<std::size_t>(to_int(at[axis], 0, last))].add(item);
@@ -303,37 +354,30 @@ private:
         }
     }
 
-    Split find_split(uint32_t begin, uint32_t end, uint32_t count) const {
+    static Centres centres_of(const Item* items, uint32_t size) {
         Centres centres;
-        const uint32_t chunks = (end - begin + kChunk - 1) / kChunk;
-        if (chunks > 4) {
-            std::vector<Centres> of_chunk(chunks);
-            parallel_for(chunks, 1, [&](uint64_t chunk) {
-                const auto from = static_cast<uint32_t>(begin + chunk * kChunk);
-                for (uint32_t i = from; i < std::min(end, from + kChunk); ++i)
-                    of_chunk[chunk].extend(items_[i].centre());
-            });
-            for (const Centres& bounds : of_chunk) centres.extend(bounds);
-        } else {
-            for (uint32_t i = begin; i < end; ++i) centres.extend(items_[i].centre());
-        }
+        for (uint32_t i = 0; i < size; ++i) centres.extend(items[i].centre());
+        return centres;
+    }
+
+    /// Returns the best split of a range between bins. Fills `of_chunk` if the range is large.
+    template <std::size_t count>
+    static Split find_split(const Range& range, const Centres& centres, std::vector<Bins<count>>& of_chunk) {
         const Vec3 size = vec3(centres.hi - centres.lo);
         const auto scale_of = [&](float side) { return side > 0 ? static_cast<float>(count) / side : 0.0f; };
         const Floats4 scale = {scale_of(size.x), scale_of(size.y), scale_of(size.z), 0};
-        Bins bins;
-        if (chunks > 4) {
-            std::vector<Bins> of_chunk(chunks);
-            parallel_for(chunks, 1, [&](uint64_t chunk) {
-                const auto from = static_cast<uint32_t>(begin + chunk * kChunk);
-                fill_bins(of_chunk[chunk], from, std::min(end, from + kChunk), centres.lo, scale, count);
+        Bins<count> bins;
+        if (range.is_large()) {
+            for_chunks(range.begin, range.end, [&](uint64_t chunk, uint32_t from, uint32_t to) {
+                fill_bins(of_chunk[chunk], {range.items + from, range.items + to}, centres.lo, scale);
             });
-            for (const Bins& part : of_chunk) {
+            for (const Bins<count>& part : of_chunk) {
                 for (std::size_t axis = 0; axis < 3; ++axis) {
                     for (std::size_t b = 0; b < count; ++b) bins[axis][b].add(part[axis][b]);
                 }
             }
         } else {
-            fill_bins(bins, begin, end, centres.lo, scale, count);
+            fill_bins(bins, {range.items + range.begin, range.items + range.end}, centres.lo, scale);
         }
         Split best;
         for (int axis = 0; axis < 3; ++axis) {
@@ -341,7 +385,7 @@ private:
             if (!(side > 0)) continue;
             const float regular = max_component(size) / side; // against thin boxes
             const auto& row = bins[static_cast<std::size_t>(axis)];
-            std::array<Measure, kMostBins> above;
+            std::array<Measure, count> above;
             Measure sum;
             for (uint32_t b = count; b-- > 1;) {
                 if (row[b].count > 0) sum.add(row[b]);
@@ -360,54 +404,53 @@ private:
         return best;
     }
 
+    /// Puts the left items first, and returns their number.
     template <class IsLeft>
-    uint32_t partition(uint32_t begin, uint32_t end, const IsLeft& is_left) {
+    static uint32_t partition(Item* items, uint32_t size, const IsLeft& is_left) {
+        uint32_t begin = 0, end = size;
         while (begin < end) {
-            if (is_left(items_[begin])) {
+            if (is_left(items[begin])) {
                 ++begin;
             } else {
-                std::swap(items_[begin], items_[--end]);
+                std::swap(items[begin], items[--end]);
             }
         }
         return begin;
     }
 
-    template <class IsLeft>
-    uint32_t partition_in_chunks(uint32_t begin, uint32_t end, const IsLeft& is_left) {
-        const uint32_t chunks = (end - begin + kChunk - 1) / kChunk;
-        std::vector<uint32_t> lefts(chunks);
-        const auto range_of = [&](uint64_t chunk) {
-            const auto from = static_cast<uint32_t>(begin + chunk * kChunk);
-            return std::pair(from, std::min(end, from + kChunk));
-        };
-        parallel_for(chunks, 1, [&](uint64_t chunk) {
-            const auto [from, to] = range_of(chunk);
-            for (uint32_t i = from; i < to; ++i) lefts[chunk] += is_left(items_[i]) ? 1 : 0;
-        });
-        uint32_t middle = begin;
-        for (const uint32_t count : lefts) middle += count;
-        std::vector<uint32_t> left_at(chunks), right_at(chunks);
-        uint32_t left = begin, right = middle;
-        for (uint32_t chunk = 0; chunk < chunks; ++chunk) {
-            left_at[chunk] = left, right_at[chunk] = right;
-            const auto [from, to] = range_of(chunk);
-            left += lefts[chunk], right += to - from - lefts[chunk];
+    /// Copies a large range into the other buffer, the left items first. The bins of its chunks have their numbers.
+    template <std::size_t count, class IsLeft>
+    Halves partition_in_chunks(const Range& range, const Split& best, bool lower_first,
+                               const std::vector<Bins<count>>& of_chunk, const IsLeft& is_left) {
+        Item* const to = range.items == items_.get() ? other_.get() : items_.get();
+        std::vector<uint32_t> left_at(of_chunk.size() + 1, range.begin);
+        for (std::size_t chunk = 0; chunk < of_chunk.size(); ++chunk) {
+            const auto& row = of_chunk[chunk][static_cast<std::size_t>(best.axis)];
+            const uint32_t split = best.bin, from = lower_first ? 0 : split, end = lower_first ? split : count;
+            left_at[chunk + 1] = left_at[chunk];
+            for (uint32_t bin = from; bin < end; ++bin) left_at[chunk + 1] += row[bin].count;
         }
-        parallel_for(chunks, 1, [&](uint64_t chunk) {
-            const auto [from, to] = range_of(chunk);
-            uint32_t l = left_at[chunk], r = right_at[chunk];
-            for (uint32_t i = from; i < to; ++i) other_[is_left(items_[i]) ? l++ : r++] = items_[i];
+        const uint32_t middle = left_at.back();
+        std::vector<std::array<Centres, 2>> centres(of_chunk.size());
+        for_chunks(range.begin, range.end, [&](uint64_t chunk, uint32_t begin, uint32_t end) {
+            uint32_t left = left_at[chunk], right = middle + (begin - range.begin) - (left - range.begin);
+            for (uint32_t i = begin; i < end; ++i) {
+                const Item& item = range.items[i];
+                const bool goes_left = is_left(item);
+                to[goes_left ? left++ : right++] = item;
+                centres[chunk][goes_left ? 0 : 1].extend(item.centre());
+            }
         });
-        parallel_for(chunks, 1, [&](uint64_t chunk) {
-            const auto [from, to] = range_of(chunk);
-            std::copy(other_.begin() + from, other_.begin() + to, items_.begin() + from);
-        });
-        return middle;
+        Halves halves = {Range{to, range.begin, middle, Centres()}, Range{to, middle, range.end, Centres()}};
+        for (const auto& part : centres) {
+            for (std::size_t side = 0; side < 2; ++side) halves[side].centres->extend(part[side]);
+        }
+        return halves;
     }
 
     std::span<const TreeLight> lights_;
     LightTreeData& data_;
-    std::vector<Item> items_, other_;
+    std::unique_ptr<Item[]> items_, other_;
     Bounds3 all_; // bounds of the centres
 };
 

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "base/raw_vector.h"
 #include "math/bounds3.h"
 #include "shading/light_tree/light_tree_view.h"
 
@@ -25,7 +26,7 @@ struct TreeLight {
 };
 
 struct LightTreeData {
-    std::vector<LightTreeNode> nodes;    // empty: no light has power
+    RawVector<LightTreeNode> nodes;      // empty: no light has power
     std::vector<uint32_t> leaf_of_light; // [lights]
 
     uint32_t light_count() const { return static_cast<uint32_t>(nodes.size() / 2); }
