@@ -55,14 +55,15 @@ struct Intrinsics {
 /// The fewest and most blades of an aperture that is no disk.
 inline constexpr uint32_t kMinBlades = 3, kMaxBlades = 100;
 inline constexpr float kMinApertureRatio = 0.01f, kMaxApertureRatio = 100;
+inline constexpr float kMaxApertureRotation = 1e6f; // degrees, either way
 constexpr bool is_blade_count(uint32_t blades) { return blades == 0 || (blades >= kMinBlades && blades <= kMaxBlades); }
 
-/// The shape of a thin lens's aperture, as Cycles defines it. It is inscribed in the circle of the aperture's radius.
-/// The camera looks at it from behind, with +x to the right and +y up.
+/// The shape of a thin lens's aperture, as Cycles defines it: inscribed in the circle of the aperture's radius, and
+/// then divided in its width by `ratio`. The camera looks at it from behind, with +x to the right and +y up.
 struct ApertureShape {
     uint32_t blades = 0;    // sides of a regular polygon; 0: a disk
     float rotation_deg = 0; // counter-clockwise; at 0 the middle of a side lies towards +x
-    float ratio = 1;        // height over width: divides the width, in [kMinApertureRatio, kMaxApertureRatio]
+    float ratio = 1;        // height over width, in [kMinApertureRatio, kMaxApertureRatio]
     bool operator==(const ApertureShape&) const = default;
 };
 

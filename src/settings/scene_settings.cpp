@@ -74,8 +74,9 @@ std::vector<Setting> scene_settings() {
             "The sides, from 3, of a regular polygon in the aperture's circle; 0 is a disk.", Range{0, kMaxBlades},
             Otherwise{"0"}, On{kLooking}, Excludes{"aperture=0"}, Recorded::AsUsed, Changes::Camera),
         row("aperture_rotation", "Camera", "DEG", FIELD(scene.camera.aperture_rotation),
-            "Rotates the blades counter-clockwise; with 0 a side's middle is right.", Range{-1e6, 1e6}, Unit{"degrees"},
-            Otherwise{"0"}, On{kLooking}, Excludes{"aperture=0 aperture_blades=0"}, Recorded::AsUsed, Changes::Camera),
+            "Rotates the blades counter-clockwise; with 0 a side's middle is right.",
+            Range{-kMaxApertureRotation, kMaxApertureRotation}, Unit{"degrees"}, Otherwise{"0"}, On{kLooking},
+            Excludes{"aperture=0 aperture_blades=0"}, Recorded::AsUsed, Changes::Camera),
         // The least ratio is kMinApertureRatio before it is rounded to a float.
         row("aperture_ratio", "Camera", "RATIO", FIELD(scene.camera.aperture_ratio),
             "The aperture's height over its width, which it divides.", Range{0.01, kMaxApertureRatio}, Otherwise{"1"},

@@ -229,6 +229,8 @@ TEST_CASE("the metadata of a picture give its camera back to the bit") {
         CHECK(!turned.intrinsics);
         CHECK(turned.distortion == camera.distortion);
         CHECK(turned.aperture_radius == 0);
+        const Camera round = read_back(file, {{"aperture_blades", "0"}});
+        CHECK(round.aperture == ApertureShape{.ratio = 1.7f}); // a disk has no rotation
         const Camera flat = read_back(file, {{"projection", "orthographic"}});
         CHECK((flat.projection == Projection::Orthographic && flat.distortion.empty() && !flat.intrinsics));
     }

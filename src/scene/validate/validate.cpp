@@ -239,10 +239,12 @@ private:
             throw bad(fmt::format("{}: its aperture has {} blades; expected from {} to {}, or 0 for a disk", of,
                                   shape.blades, kMinBlades, kMaxBlades));
         }
-        if (!is_finite(shape.rotation_deg) || !(shape.ratio >= kMinApertureRatio && shape.ratio <= kMaxApertureRatio)) {
-            throw bad(fmt::format("{}: its aperture is rotated by {} degrees and its ratio is {}; expected a finite "
-                                  "angle, and a ratio from {} to {}",
-                                  of, shape.rotation_deg, shape.ratio, kMinApertureRatio, kMaxApertureRatio));
+        if (!(abs(shape.rotation_deg) <= kMaxApertureRotation) ||
+            !(shape.ratio >= kMinApertureRatio && shape.ratio <= kMaxApertureRatio)) {
+            throw bad(fmt::format("{}: its aperture is rotated by {} degrees and its ratio is {}; expected at most {} "
+                                  "degrees, and a ratio from {} to {}",
+                                  of, shape.rotation_deg, shape.ratio, kMaxApertureRotation, kMinApertureRatio,
+                                  kMaxApertureRatio));
         }
         if (!(camera.focus_distance > 0 && camera.focus_distance <= kMaxCoordinate)) {
             throw bad(fmt::format("{}: its focus distance is {}; expected above 0", of, camera.focus_distance));

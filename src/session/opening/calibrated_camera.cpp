@@ -206,7 +206,8 @@ void apply_camera_from(PictureOptions& options) {
     }
     for (const char* name : {"view_height", "aperture", "lens", "distortion"}) take(name);
     if (choice.aperture != 0.0f) {
-        for (const char* name : {"aperture_blades", "aperture_rotation", "aperture_ratio", "focus"}) take(name);
+        for (const char* name : {"aperture_blades", "aperture_ratio", "focus"}) take(name);
+        if (choice.aperture_blades != 0u) take("aperture_rotation"); // a disk has none
     }
     if (!has_angle) choice.lens.reset(), choice.distortion.clear();
     if (!options.size && !choice.intrinsics_size) options.size = PictureSize{file.width, file.height};
