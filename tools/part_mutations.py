@@ -300,6 +300,7 @@ MUTATIONS = [
     ("a light tree that misses the first leaf to the right", "statistical/light_tree", ("src/shading/light_tree/light_tree.h", "leaf >= right.next", "leaf > right.next")),
     ("a number that keeps its place in the right half of a light tree", "statistical/light_tree statistical/chosen_by_tree", ("src/shading/light_tree/light_tree.h", "number -= is_right ? of_left : 0;", "")),
     ("a light tree that forgets the other face", "statistical/light_tree", ("src/shading/light_tree/light_tree.h", "select(cone.has_two_sides, abs(along), along)", "along")),
+    ("a light tree whose large ranges lose a light of each chunk", "statistical/light_tree", ("src/shading/light_tree/build_light_tree.cpp", "for (uint32_t bin = from; bin < end; ++bin)", "for (uint32_t bin = from + 1; bin < end; ++bin)")),
     ("a light tree of cones too narrow", "statistical/light_tree", ("src/shading/light_tree/build_light_tree.cpp", "both.normals = 0.5f * (a.normals + between + b.normals);", "both.normals = 0.25f * (a.normals + between + b.normals);")),
     ("a light tree with children in any order", "statistical/light_tree", ("src/shading/light_tree/light_tree.h", "const bool is_right = number >= of_left;", "const bool is_right = number < width - of_left;")),
     ("a ray that hits a light has the density by power", "statistical/chosen_by_tree", ("src/shading/chosen_by_tree.h", "cdf_pmf(numbers_of_near(view)) * pmf_in_tree(view.tree, receiver(context), light)", "view.triangles[light].pmf")),

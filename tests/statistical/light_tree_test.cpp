@@ -193,15 +193,24 @@ TEST_CASE("lights at ever smaller distances make a tree that is deep but has eac
     CHECK(sum == doctest::Approx(1).epsilon(1e-5));
 }
 
-TEST_CASE("a light tree does not depend on the number of threads") {
+TEST_CASE("a light tree that several threads build has each light, and does not depend on their number") {
     const std::vector<TreeLight> lights = test::make_dust(100'000).tree_lights();
-    RawVector<LightTreeNode> nodes[2];
+    LightTreeData trees[2];
     for (const int threads : {1, 3}) {
         const UseThreads use(threads);
-        nodes[threads / 2] = build_light_tree(lights).nodes;
+        trees[threads / 2] = build_light_tree(lights);
     }
-    REQUIRE(nodes[0].size() == 200'000);
-    CHECK(std::memcmp(nodes[0].data() + 1, nodes[1].data() + 1, (nodes[0].size() - 1) * sizeof(LightTreeNode)) == 0);
+    const auto& [one, three] = trees;
+    REQUIRE(one.nodes.size() == 200'000);
+    REQUIRE(three.nodes.size() == 200'000);
+    CHECK(std::memcmp(one.nodes.data(), three.nodes.data(), one.nodes.size() * sizeof(LightTreeNode)) == 0);
+    CHECK(one.leaf_of_light == three.leaf_of_light);
+    uint32_t found = 0;
+    for (uint32_t i = 0; i < 100'000; ++i) {
+        const LightTreeNode& leaf = one.nodes[one.leaf_of_light[i]];
+        found += leaf.is_leaf() && leaf.light() == i ? 1 : 0;
+    }
+    CHECK(found == 100'000);
 }
 
 TEST_CASE("a draw from a light tree has little variance, and at most that of a published tree") {

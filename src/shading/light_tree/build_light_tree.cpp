@@ -170,7 +170,7 @@ public:
         data_.leaf_of_light.assign(lights_.size(), 0);
         if (all.size() == 0) return;
         data_.nodes.resize(2 * static_cast<std::size_t>(all.size()));
-        data_.nodes[0] = {};
+        data_.nodes[0] = {}; // no node is there
         if (all.is_large()) other_ = std::make_unique_for_overwrite<Item[]>(all.size());
         build_range(all, kLightTreeRoot, 2, 0);
     }
