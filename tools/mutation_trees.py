@@ -141,7 +141,8 @@ class Tree:
     def ninja(self, targets):
         """Error text, or nothing."""
         status, text = self.runner.run(["ninja", "-C", self.build, "-k", "0", "-j", self.runner.count, *targets])
-        return None if status == 0 else "\n".join([line for line in text.splitlines() if "error" in line] + [text[-1500:]])
+        bad = [line for line in text.splitlines() if re.search(r"\berror\b|undefined reference|cannot find", line) and not line.startswith("[")]
+        return None if status == 0 else "\n".join(bad + [text[-1500:]])
 
     def configure(self, *settings):
         status, text = self.runner.run(["cmake", "-G", "Ninja", "-S", self.path, "-B", self.build, *settings])

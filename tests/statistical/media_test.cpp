@@ -12,6 +12,7 @@
 #include "device_scene/scene_on_device.h"
 #include "image/picture_hash.h"
 #include "integrators/path/medium.h"
+#include "integrators/photon_map/photon_map_settings.h"
 #include "render/light_paths/light_path_layers.h"
 #include "session/check_integrator.h"
 #include "session/measure_irradiance.h"
@@ -23,7 +24,6 @@
 #include "tests/support/options.h"
 #include "tests/support/random.h"
 #include "tests/support/solid_scenes.h"
-#include "tests/support/thrown_error.h"
 
 using namespace pertev;
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "image/metrics.h"
 #include "session/session.h"
 #include "tests/support/lit_scenes.h"
 #include "tests/support/render_scenes.h"

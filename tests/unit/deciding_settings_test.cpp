@@ -1,5 +1,6 @@
 // Which of several differences between two renders is named, and the names of files.
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,7 @@
 
 #include "session/writing/deciding_settings.h"
 #include "session/writing/files_of_picture.h"
+#include "tests/support/options.h"
 #include "tests/support/write_text.h"
 
 namespace fs = std::filesystem;

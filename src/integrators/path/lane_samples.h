@@ -35,7 +35,8 @@ public:
         pixels_[count_++] = pixel;
     }
 
-    /// Passes each path to `take`, in the order in which they were added, and becomes empty.
+    /// Passes to `take` a function that makes each path, in the order in which they were added, and becomes empty. A
+    /// path is thus made where it is kept: a copy of one just made waits for its stores.
     template <class Take>
     void begin(const Take& take) {
         alignas(64) float rows[kLanes][8];
@@ -47,7 +48,7 @@ public:
             const float time = camera_->is_open ? unit_interval(times[i]) : kAtRest;
             const float* const row = rows[i];
             const Ray ray = camera_->ray({{row[0], row[1], row[2]}, {row[3], row[4], row[5]}}, time);
-            take(begin_path(*camera_, pixels_[i], keys_.sample[i], ray, time));
+            take([&] { return begin_path(*camera_, pixels_[i], keys_.sample[i], ray, time); });
         }
         count_ = 0;
     }

@@ -1,6 +1,8 @@
 // Body of path_loop.h. The file that includes it names the number type of camera rays and of packets: `Floats` is
 // Floats8 or Floats16. All of it is in anonymous namespaces, so that a file for AVX-512 keeps it to itself.
 
+#include <new>
+
 #include "device_scene/find_hits.h"
 #include "integrators/path/host_shading.h"
 #include "integrators/path/lane_samples.h"
@@ -117,7 +119,11 @@ public:
 
     bool is_full() const { return count_ == kPaths; }
     bool is_empty() const { return count_ == 0; }
-    void add(const PathState& path) { paths_[count_++] = path; }
+    /// Adds the path that `make` returns.
+    template <class Make>
+    void add(const Make& make) {
+        ::new (paths_ + count_++) PathState(make());
+    }
 
     /// Advances each path to its next vertex. Paths that were added since the last call start at the camera.
     void advance(RayCounts& counts) {
@@ -232,8 +238,8 @@ void render_group(const PathJob& job, const LoopTrees& trees, const BeginOrder& 
                   RayCounts& counts) {
     PathGroup<Listener> group(job, trees);
     LaneSamples<Floats> samples(job.picture.camera, job.settings, job.picture.batch);
-    const auto trace = [&](const PathState& path) {
-        group.add(path);
+    const auto trace = [&](const auto& make) {
+        group.add(make);
         while (group.is_full()) group.advance(counts);
     };
     for (uint32_t i = range.begin; i < range.end; ++i) {
