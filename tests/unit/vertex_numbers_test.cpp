@@ -125,7 +125,8 @@ TEST_CASE("vertex numbers: eight paths begun at once equal those begun one by on
                     for (uint32_t i = 0; i < count; ++i) samples.add(path_of(i, count).pixel, path_of(i, count).sample);
                     CHECK(samples.is_full() == (count == kWords));
                     uint32_t i = 0;
-                    samples.begin([&](const PathState& path) {
+                    samples.begin([&](const auto& make) {
+                        const PathState path = make();
                         const PathState from = path_of(i++, count);
                         const PathState expected = generate_path(camera, settings, from.pixel, from.sample);
                         CHECK(path.pixel == expected.pixel);
