@@ -158,7 +158,7 @@ class Merge(CliTest):
         whole, some = (read_exr(self.path(name))[2] for name in ("alone.exr", "some.exr"))
         for row in range(20, 24):
             light = [sum(of["G"][row][2:46]) for of in (some, whole)]
-            self.assertAlmostEqual(light[0] / light[1], 1, delta=0.1, msg=row)
+            self.assertAlmostEqual(light[0] / light[1], 1, delta=0.06, msg=row)
 
     def test_rows_that_lack_samples_are_merged_without_them_and_named(self):
         flags = ["--spp", "4", "--aov", "ids,samples,variance,crypto_object", "--transparent", "--exposure", "auto"]
@@ -212,7 +212,8 @@ class Merge(CliTest):
         again = self.part("b.exr", "--spp", "5", *flags)
         self.assertEqual(again["hash"], self.part("d.pvf", "-o", "d.exr", "--spp", "5", "--rows", "3:9")["hash"])
         self.assertEqual((self.info("c.pvf")["rows"], self.info("c.pvf")["samples"]), ("3:9", "0:5"))
-        self.refuse(2, "render", "cornell-box", "-o", "x.exr", *SMALL, "--spp", "5", "--rows", "3:8", "--checkpoint", "c.pvf", says=["--checkpoint", "rows"])
+        self.refuse(2, "render", "cornell-box", "-o", "x.exr", *SMALL, *UNMETERED, "--spp", "5", "--rows", "3:8", "--checkpoint", "c.pvf",
+                    says=["--checkpoint", "has the rows 3 to 8, not 3 to 7"])
 
     def test_lines_and_progress_name_the_part(self):
         flags = ["render", "cornell-box", "-o", "x.pvf", *SMALL, "--spp", "4", "--part", "2/3", "--rows", "0:8"]
@@ -244,7 +245,8 @@ class Merge(CliTest):
         for made in (["--exposure", "auto"], ["--exposure", "0.5", "--tone-map", "neutral"]):
             for i in (1, 2):
                 self.part(f"{i}.pvf", "--spp", "2", "--part", f"{i}/2", *made)
-            for shown in (["--tone-map", "aces"], ["--exposure", "1.25"], ["--tone-map", "srgb", "--exposure", "-2"]):
+            # The meter's exposure for linear light differs from that for agx, for aces hardly.
+            for shown in (["--tone-map", "srgb"], ["--exposure", "1.25"], ["--tone-map", "aces", "--exposure", "-2"]):
                 with self.subTest(made=made, shown=shown):
                     as_one = [*(made[:2] if "--exposure" not in shown else []), *(made[2:] if "--tone-map" not in shown else []), *shown]
                     self.part("whole.exr", "-o", "whole.png", "--spp", "2", *as_one)

@@ -5,7 +5,6 @@
 
 #include <doctest/doctest.h>
 
-#include "session/devices/machine.h"
 #include "session/writing/check_outputs.h"
 #include "settings/setting_table.h"
 #include "tests/support/options.h"
@@ -27,7 +26,6 @@ std::optional<Error> refusal(const Values& values, uint32_t verb = kRender) {
     return test::thrown_error([&] {
         const PictureOptions options = options_of(values);
         check_options(options, verb);
-        check_devices(options, verb);
     });
 }
 

@@ -8,6 +8,7 @@
 #include "formats/read_scene.h"
 #include "image/srgb.h"
 #include "image/write_image.h"
+#include "image/write_png.h"
 #include "math/portable_math.h"
 #include "scene/metals.h"
 #include "tests/support/options.h"
@@ -26,13 +27,14 @@ struct MitsubaMaterial {
 };
 
 /// Reads a file whose only shape is a square with the BSDF `bsdf`, in a folder with the pictures a.exr (two pixels of
-/// 0.25 and 0.5) and a.png (one of 128).
+/// 0.25 and 0.5), a.png (one of 128) and veil.png (one of 128 with alpha 51).
 MitsubaMaterial load_bsdf(const std::string& bsdf, const std::string& version = "3.0.0") {
     const fs::path folder = test::scratch_folder();
     write_image(folder / "a.exr",
                 Image{.width = 2, .height = 1, .channels = 3, .pixels = {0.25f, 0.25f, 0.25f, 0.5f, 0.5f, 0.5f}});
     const float linear = srgb_decode(128 / 255.0f);
     write_image(folder / "a.png", Image{.width = 1, .height = 1, .channels = 3, .pixels = {linear, linear, linear}});
+    write_png(folder / "veil.png", Rgba8Image{1, 1, {128, 128, 128, 51}}, true);
     test::write_text(folder / "a.spd", "# nm value\n400 .2\n500 .8\n600 .1\n700 .4\n");
     MitsubaMaterial read;
     read.scene =
@@ -353,9 +355,11 @@ TEST_CASE("mitsuba: numbers of encoded pictures are decoded, and alpha channels 
         load_bsdf(bsdf_of("roughconductor", string_of("material", "Au") + bitmap_of("alpha", "", "a.png")));
     const float linear = srgb_decode(128 / 255.0f);
     CHECK(mitsuba_texel(rough, rough.material.roughness_texture, 0, 0) == doctest::Approx(std::sqrt(linear)));
-    const MitsubaMaterial masked = load_bsdf(bsdf_of("mask", bitmap_of("opacity", "", "a.png") + bsdf_of("diffuse")));
-    CHECK(mitsuba_texel(masked, masked.material.alpha_texture, 0, 0) == doctest::Approx(linear));
-    CHECK(masked.material.alpha_texture.channel == 0);
+    for (const char* file : {"a.png", "veil.png"}) {
+        const MitsubaMaterial masked = load_bsdf(bsdf_of("mask", bitmap_of("opacity", "", file) + bsdf_of("diffuse")));
+        CHECK(mitsuba_texel(masked, masked.material.alpha_texture, 0, 0) == doctest::Approx(linear));
+        CHECK(masked.material.alpha_texture.channel == 0);
+    }
 }
 
 TEST_CASE("mitsuba: a checkerboard begins with color0, and scale multiplies") {

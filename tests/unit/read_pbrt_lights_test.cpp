@@ -108,6 +108,9 @@ TEST_CASE("pbrt: area lights have the radiance that the file states") {
                {1, 2, 3});
     // 10 W from each of the triangles, of area 1/2: 10 / (pi / 2).
     check_near(emission_of("AreaLightSource \"diffuse\" \"float power\" 10"), grey(6.3662f));
+    const Scene of_two = load_lit("WorldBegin\nAreaLightSource \"diffuse\" \"float power\" 10\nShape \"trianglemesh\" "
+                                  "\"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0] \"integer indices\" [0 1 2 1 3 2]\n");
+    check_near(of_two.materials[of_two.instances[0].material].emission, grey(6.3662f));
     check_near(emission_of("AreaLightSource \"diffuse\" \"float power\" 10 \"bool twosided\" true"), grey(3.1831f));
     check_near(emission_of("Scale 2 2 2 AreaLightSource \"diffuse\" \"float power\" 10"), grey(6.3662f / 4));
 }

@@ -306,6 +306,8 @@ TEST_CASE("pbrt: lists of attributes, which each statement copies, have a limit 
     CHECK(left_out_at(messages, 2).empty());
     CHECK_FALSE(left_out_at(messages, 3).empty());
     CHECK_FALSE(left_out_at(messages, 4).empty());
+    const Scene too_late = load_pbrt("WorldBegin\n" + attribute("b") + attribute("alpha") + kFlat, messages);
+    CHECK(too_late.materials[too_late.instances[0].material].alpha == 1);
 }
 
 TEST_CASE("pbrt: a camera without a usable view is left out alone") {

@@ -238,14 +238,15 @@ TEST_CASE("variance is temporal, or spatial where the history is short") {
 namespace {
 
 /// Returns the tested pixel of a picture with `own` at the centre of `around`, and a history of `old` to the left of
-/// column kStageHalf + 2. The light has been steady for `frames` frames, of which 8 are enough.
-float shown_after(float own, float around, float old, bool is_near_moving, float frames = 7) {
+/// column kStageHalf + 2. The light has been steady for `frames` frames, of which 8 are enough, and the pixels were at
+/// rest for `at_rest` frames before.
+float shown_after(float own, float around, float old, bool is_near_moving, float frames = 7, float at_rest = 6) {
     std::vector<Float4> picture(kStagePixels, Float4{around, 0, 0, 5}), before(kStagePixels, Float4{0, 0, 0, 0}),
         shown(kStagePixels);
     std::vector<Vec2> was_at;
     for (uint32_t i = 0; i < kStagePixels; ++i) {
         was_at.push_back({static_cast<float>(i % kStageSide) + 0.5f, static_cast<float>(i / kStageSide) + 0.5f});
-        before[i].w = frames - 1; // at rest
+        before[i].w = at_rest;
         if (i % kStageSide < kStageHalf + 2) before[i].x = old;
     }
     picture[kLeftOfBorder].x = own;
@@ -270,8 +271,10 @@ TEST_CASE(
     CHECK(shown_after(0.9f, 0.5f, 0.1f, false) == doctest::Approx(0.4187 + 0.1 * (0.9 - 0.4187)).epsilon(0.001));
     CHECK(shown_after(0.5f, 0.5f, 0.9f, false) == doctest::Approx(0.5));
     // Under steady light the history is right, unless the surface moves.
-    CHECK(shown_after(0.5f, 0.5f, 0.9f, false, 8) == doctest::Approx(0.9 + 0.1 * (0.5 - 0.9)));
-    CHECK(shown_after(0.9f, 0.5f, 0.5f, true, 8) == shown_after(0.9f, 0.5f, 0.5f, true));
+    CHECK(shown_after(0.5f, 0.5f, 0.9f, false, 8, 7) == doctest::Approx(0.9 + 0.1 * (0.5 - 0.9)));
+    CHECK(shown_after(0.9f, 0.5f, 0.5f, true, 8, 7) == shown_after(0.9f, 0.5f, 0.5f, true));
+    // Where light has changed, a long rest does not help.
+    CHECK(shown_after(0.5f, 0.5f, 0.9f, false, 3, 7) == doctest::Approx(0.5));
     // The history where the nearest pixel came from is black. It has moved by six pixels, so old colours are clamped
     // to half a deviation, and current ones have a weight of 0.4.
     CHECK(shown_after(0.9f, 0.5f, 0.5f, true) == doctest::Approx(0.4816 + 0.4 * (0.9 - 0.4816)).epsilon(0.001));
@@ -299,6 +302,23 @@ float shown_on_line(float own, float old, float frames, Contact contact) {
 }
 
 } // namespace
+
+TEST_CASE("light is steady after enough frames, or at once where the scene is that of the frame before") {
+    const std::vector<Float4> means(kStagePixels, Float4{0, 0, 0, 3}), guide(kStagePixels);
+    SteadyLight steady = {means.data(), guide.data(), kStageSide, kStageSide, 8};
+    CHECK_FALSE(steady.is_around({1, 1}, kStageSide, kStageSide));
+    steady.may_change = false;
+    CHECK(steady.is_around({1, 1}, kStageSide, kStageSide));
+}
+
+TEST_CASE("the signal of a black channel is that of the others, and that of a black surface is unknown") {
+    const Float4 red = diffuse_signal({0.25f, 0.5f, 0.25f}, {0.5f, 0, 0.125f});
+    CHECK(red.x == 0.5f);
+    CHECK(red.y == 1.25f); // the mean
+    CHECK(red.z == 2);
+    CHECK(red.w == 0);
+    CHECK(diffuse_signal({0.25f, 0.5f, 0.25f}, {0, 0, 0}).w == kUnknownSignal);
+}
 
 TEST_CASE("where contacts are known, thin gaps do not fade, and no shown mean is longer than that of its light") {
     for (const Contact contact : {Contact::Open, Contact::Covered}) {

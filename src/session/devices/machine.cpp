@@ -52,12 +52,6 @@ Queues queues_of(const std::vector<NamedDevice>& devices, const Threads& threads
 
 } // namespace
 
-void check_devices(const PictureOptions& options, uint32_t verbs) {
-    const std::string& device = options.machine.device;
-    if (!names_several_devices(device)) return;
-    if ((verbs & (kRender | kView | kBenchSequence | kBenchFrames)) == 0) refuse_several_devices(device, "this");
-}
-
 std::unique_ptr<Queue> open_queue(const MachineOptions& options, Sink& sink) {
     return StartingMachine(options, sink).take();
 }

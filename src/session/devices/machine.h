@@ -14,8 +14,6 @@
 
 namespace pertev {
 
-/// Throws Error(BadInput) if the options name several devices for what one does alone.
-void check_devices(const PictureOptions& options, uint32_t verbs);
 /// Returns the queue of the named device, with its own threads if their number is given. `auto` is the first working
 /// CUDA device, else the CPU with a notice of the reason; `cpu` never touches CUDA. Throws Error(BadInput) with the
 /// reason if the device cannot be used, and if several are named.

@@ -56,7 +56,6 @@ void check(PictureOptions& options, uint32_t verbs) {
     if (options.real_time && !options.is_given("spp")) options.render.samples = 1;
     if (!options.samples.empty()) options.render.samples = sample_range(options).end;
     check_options(options, verbs);
-    check_devices(options, verbs);
 }
 
 /// Returns the picture's settings, after `options` have taken what the scene's file suggests.
