@@ -152,6 +152,8 @@ MUTATIONS = [
     ("mitsuba: counts of serialized meshes are believed", "unit/read_mitsuba_shapes", ("src/formats/mitsuba/read_serialized.cpp", "if (vertices > taken.left() / (3 * number) || triangles > taken.left() / 12)", "if (false)")),
     ("mitsuba: a serialized file has one mesh", "unit/read_mitsuba_shapes", ("src/formats/mitsuba/read_serialized.cpp", "const uint64_t begin = offset(index)", "const uint64_t begin = offset(0)")),
     ("mitsuba: an envmap is around +z", "unit/read_mitsuba_shapes", ("src/formats/described/environment.cpp", "is_around_y ? atan2(d.x, -d.z)", "false ? atan2(d.x, -d.z)")),
+    ("mitsuba: an envmap's rows are blurred by ours, which lie between", "unit/read_mitsuba_shapes images/mitsuba_tests",
+     ("src/formats/described/environment.cpp", "4 * pixels <= kMostPixels ? 4 : 2 * pixels <= kMostPixels ? 2 : 1", "1")),
     ("mitsuba: the scale of a projector is left out silently", "unit/read_mitsuba_shapes", ("src/formats/mitsuba/projected_light.cpp", "if (has_scale(to_world)) {", "if (false) {")),
     ("a later profile of a light replaces an earlier one", "unit/read_ies", ("src/session/opening/set_profiles.cpp", "if (!is_first) refuse_profile", "if (false) refuse_profile")),
     ("a light turned from Python is never mirrored", "python/params",

@@ -478,14 +478,17 @@ TEST_CASE("mitsuba: a constant emitter and an envmap are the environment") {
         }
         return most + 1; // the border between the brightest two columns, of 8
     };
-    // The upper rows differ: the second row of ours, at 67.5 degrees from +y, is 9/8 rows of Mitsuba's from its first.
+    // The upper rows differ: of our 12 rows the first, fourth and fifth are 1/8, 7/8 and 9/8 rows of Mitsuba's from its
+    // first.
     for (std::size_t i = 0; i < 3 * 8; ++i) picture.pixels[i] = 0;
     write_image(folder / "rows.exr", picture);
     Messages messages;
     const Scene rows = load_mitsuba_shapes(
         folder, shape_of("rectangle") + "<emitter type=\"envmap\">" + named_file("rows.exr") + "</emitter>", messages);
-    CHECK(rows.environment->image.pixels[0] == doctest::Approx(3 / 8.0));
-    CHECK(rows.environment->image.pixels[3 * 8] == doctest::Approx(1));
+    CHECK(rows.environment->image.height == 12);
+    CHECK(rows.environment->image.pixels[0] == doctest::Approx(1 / 8.0));
+    CHECK(rows.environment->image.pixels[3 * 8 * 3] == doctest::Approx(7 / 8.0));
+    CHECK(rows.environment->image.pixels[3 * 8 * 4] == doctest::Approx(1));
     CHECK(brightest("") == 6); // +x is at three quarters of our panoramas
     CHECK(brightest("<transform name=\"to_world\"><rotate y=\"1\" angle=\"90\"/></transform>") == 4); // +x turns to -z
 }
