@@ -50,7 +50,7 @@ for part in "${parts[@]}"; do
         ;;
     stalls) run python3 "$here/check_stalls.py" "$bin/pertev" ;;
     references)
-        for script in images/bitterli_cornell_box images/bitterli_water_caustic images/mcguire_cornell_box statistical/sponza_energy; do
+        for script in images/bitterli_scenes images/mitsuba_tests images/bitterli_water_caustic images/mcguire_cornell_box statistical/sponza_energy; do
             run python3 "$here/../tests/$script.py" "$bin/pertev" --device cuda
         done
         ;;

@@ -15,6 +15,9 @@ import time
 import unittest
 import zlib
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../support"))
+from read_exr import read_exr  # noqa: E402,F401
+
 # Sanitized programs are slow and reserve terabytes of addresses.
 SANITIZED = "--sanitized" in sys.argv
 PROGRAM = os.path.abspath(next(argument for argument in sys.argv[1:] if not argument.startswith("-")))
@@ -207,42 +210,6 @@ def gltf_with_cameras():
         "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," + positions}]})
 
 
-def read_exr(path):
-    """Returns {channel: [[value of each column] of each row]} and the size of an EXR that pertev wrote (scanlines, ZIP)."""
-    with open(path, "rb") as file:
-        data = file.read()
-    assert data[:8] == struct.pack("<II", 20000630, 2), "one part of lines"
-    at, header = 8, {}
-    while data[at]:
-        name, kind, rest = data[at:].split(b"\0", 2)
-        at += len(name) + len(kind) + 2
-        size = struct.unpack_from("<i", data, at)[0]
-        header[name.decode()] = data[at + 4 : at + 4 + size]
-        at += 4 + size
-    assert header["compression"] == b"\3", "ZIP"
-    low_x, low_y, high_x, high_y = struct.unpack("<4i", header["dataWindow"])
-    width, height = high_x - low_x + 1, high_y - low_y + 1
-    channels, rest = [], header["channels"]
-    while rest[0]:
-        name, rest = rest.split(b"\0", 1)
-        channels.append((name.decode(), {0: "I", 1: "e", 2: "f"}[struct.unpack_from("<i", rest)[0]]))
-        rest = rest[16:]
-    rows = {name: [None] * height for name, _ in channels}
-    blocks = (height + 15) // 16
-    for offset in struct.unpack_from(f"<{blocks}Q", data, at + 1):
-        first, size = struct.unpack_from("<2i", data, offset)
-        lines = min(16, height - (first - low_y))
-        block = data[offset + 8 : offset + 8 + size]
-        if size < sum(struct.calcsize(code) for _, code in channels) * width * lines:
-            block = unpack_zip(zlib.decompress(block))
-        position = 0
-        for line in range(first - low_y, first - low_y + lines):
-            for name, code in channels:
-                rows[name][line] = struct.unpack_from(f"<{width}{code}", block, position)
-                position += struct.calcsize(code) * width
-    return width, height, rows
-
-
 def read_png(path):
     """Reads a PNG file and returns the result of decode_png."""
     with open(path, "rb") as file:
@@ -273,17 +240,6 @@ def decode_png(data):
         pixels += [values[i : i + 3] for i in range(0, 3 * width, 3)]
         above = row
     return pixels
-
-
-def unpack_zip(packed):
-    """Inverts OpenEXR's differences between bytes, then its split into even and odd bytes."""
-    values, last = bytearray(len(packed)), 128
-    for i, byte in enumerate(packed):
-        last = byte if i == 0 else (last + byte - 128) & 255
-        values[i] = last
-    half, out = (len(values) + 1) // 2, bytearray(len(values))
-    out[0::2], out[1::2] = values[:half], values[half:]
-    return bytes(out)
 
 
 def main():

@@ -27,17 +27,24 @@ def last_event(program, arguments, *events):
 
 
 class ReferenceJob:
-    """`effort` is "ci", "long" (--long or PERTEV_LONG_TESTS=1) or "cuda" (--device cuda)."""
+    """`effort` is "ci", "long" (--long or PERTEV_LONG_TESTS=1) or "cuda" (--device cuda); `spp` is a number or None; `only` has the
+    names of the scenes to compare."""
 
-    def __init__(self, description):
+    def __init__(self, description, only=()):
         parser = argparse.ArgumentParser(description=description)
         parser.add_argument("pertev", help="the program")
         parser.add_argument("--device", default="cpu", help="cpu or cuda")
         parser.add_argument("--long", action="store_true", help="the long setting, on the CPU")
+        parser.add_argument("--spp", type=int, help="samples a pixel instead of those of the setting")
+        if only:
+            parser.add_argument("--only", action="append", choices=list(only), help="compares this scene, or several; without it, all")
+            parser.add_argument("--results", help="a JSON file for what was found (tools/measurement.py)")
         arguments = parser.parse_args()
         self.program, self.device = arguments.pertev, arguments.device
         is_long = arguments.long or os.environ.get("PERTEV_LONG_TESTS") == "1"
         self.effort = "cuda" if self.device.startswith("cuda") else "long" if is_long else "ci"
+        self.spp, self.only = arguments.spp, getattr(arguments, "only", None) or list(only)
+        self.results, self.threads = getattr(arguments, "results", None), os.cpu_count()
         self.failures = 0
 
     @staticmethod
