@@ -203,6 +203,11 @@ pertev_launches(integrators/cast/shade_cast.cu
     "ShadeTrees<Cast, MotionVariant::None, ShadingVariant::Unstacked>"
     "ShadeTrees<Cast, MotionVariant::Perhaps, ShadingVariant::General>"
     "ShadeTrees<Cast, MotionVariant::Perhaps, ShadingVariant::Unstacked>")
+# For lights that are selected by a tree.
+pertev_launches(integrators/distributed/shade_distributed_by_tree.cu
+  integrators/distributed/distributed.h integrators/ray_tree/tree_stages.h
+  STAGES "ShadeTrees<Distributed, MotionVariant::Perhaps, ShadingVariant::General, ChosenByTree>"
+    "ShadeTrees<Distributed, MotionVariant::Perhaps, ShadingVariant::Unstacked, ChosenByTree>")
 pertev_launches(integrators/distributed/shade_distributed.cu
   integrators/distributed/distributed.h integrators/ray_tree/tree_stages.h
   STAGES "ShadeTrees<Distributed, MotionVariant::None, ShadingVariant::General>"
@@ -235,6 +240,11 @@ pertev_launches(integrators/irradiance_cache/cache_stages.cu
     "DrawRecords<ShadingVariant::General>"
     "DrawRecords<ShadingVariant::Unstacked>"
     "DrawRecords<ShadingVariant::PlainDiffuse>")
+# For lights that are selected by a tree.
+pertev_launches(integrators/irradiance_cache/cache_tree_stages.cu
+  integrators/irradiance_cache/cache_stages.h
+  STAGES "ShadeCacheSubpaths<ShadingVariant::General, ChosenByTree>"
+    "ShadeCacheSubpaths<ShadingVariant::Unstacked, ChosenByTree>")
 pertev_launches(integrators/light/shade_seen.cu
   integrators/light/shade_seen.h
   STAGES "ShadeSeen<ShadingVariant::General>"
@@ -340,6 +350,12 @@ pertev_launches(integrators/photon_map/photon_media_stages.cu
   STAGES "BeginPhotons<true>"
     "ShadePhotons<ShadingVariant::General, true>"
     "ShadeGather<ShadingVariant::General, true>")
+# For lights that are selected by a tree.
+pertev_launches(integrators/photon_map/photon_tree_stages.cu
+  integrators/photon_map/gather_stages.h
+  STAGES "ShadeGather<ShadingVariant::General, false, ChosenByTree>"
+    "ShadeGather<ShadingVariant::Unstacked, false, ChosenByTree>"
+    "ShadeGather<ShadingVariant::General, true, ChosenByTree>")
 pertev_launches(integrators/radiosity/shade_radiosity.cu
   integrators/radiosity/radiosity.h integrators/ray_tree/tree_stages.h
   STAGES "ShadeTrees<Radiosity, MotionVariant::None, ShadingVariant::General>"

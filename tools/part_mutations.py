@@ -305,7 +305,7 @@ MUTATIONS = [
     ("lanes of the light tree share the first one's way", "consistency/light_tree", ("src/integrators/path/light_lanes.inl", "rows[lane] = &tree_.nodes[next[lane] + child].centre.x;", "rows[lane] = &tree_.nodes[next[0] + child].centre.x;")),
     ("lanes forget the normal for the light tree", "consistency/light_tree", ("src/integrators/path/shade_lanes.inl", "if (has_tree) path.normal = {normal.x[lane], normal.y[lane], normal.z[lane]};", "")),
     ("lanes weigh hits of lights by power", "consistency/light_tree", ("src/integrators/path/shade_lanes.inl", "add_surface_emission<kPlainDiffuse | kLightTree>(", "add_surface_emission<kPlainDiffuse>(")),
-    ("few lights are selected by a tree", "consistency/light_tree", ("src/integrators/path/path_settings.h", "return lights > kFewLights && !has_times;", "return lights > 0 && !has_times;")),
+    ("few lights are selected by a tree", "consistency/light_tree", ("src/shading/light_selection.h", "return lights > kFewLights && !has_times;", "return lights > 0 && !has_times;")),
     ("colours of a medium are weighted by that of the sampled distance alone", "statistical/media",
      ("src/device_scene/free_flight.h", "const float pdf = weights.r + weights.g + weights.b;", "const float pdf = 3 * weights.r;")),
     ("a medium scatters at another place than it is weighted for", "statistical/media",

@@ -67,7 +67,7 @@ void PictureRenderer::update_other_devices(const PreparedScene& scene, uint32_t 
 PictureView PictureRenderer::view_of(const Camera& camera, const RenderSettings& settings) {
     if (settings.path.mip_maps == MipMaps::On) scene_.make_mip_maps();
     const SceneView& scene = scene_.view();
-    if (uses_light_tree(settings.path.light_choice, scene.lights.tree.light_count, scene.motions.is_there())) {
+    if (uses_light_tree(settings, scene.lights.tree.light_count, scene.motions.is_there())) {
         scene_.make_light_tree();
     }
     PictureView picture = {scene,

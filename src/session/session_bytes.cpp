@@ -62,7 +62,7 @@ public:
         size.has_interiors = !scene_.nested_solids().is_empty();
         size.has_media = scene_.view().has_media != 0;
         size.tree_lights = scene_.view().lights.tree.light_count;
-        if (uses_light_tree(settings.path.light_choice, size.tree_lights, size.has_times)) {
+        if (uses_light_tree(settings, size.tree_lights, size.has_times)) {
             scene_.make_light_tree(queue);
         }
         if (size.samples > 0) integrator_ = make_integrator(queue, settings);

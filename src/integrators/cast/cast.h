@@ -11,6 +11,7 @@ namespace pertev {
 struct Cast {
     static constexpr uint32_t kMaxBranches = 0; // continuation rays per vertex
     static constexpr bool kHasShutter = true;
+    static constexpr bool kSelectsLights = false;
 
     /// Number of shadow rays of a vertex: one for each point, spot and directional light.
     HD static uint32_t shadow_rays(const LightSetView& lights) { return lights.punctual_count; }

@@ -17,6 +17,7 @@ namespace pertev {
 struct Distributed {
     static constexpr uint32_t kMaxBranches = 3;
     static constexpr bool kHasShutter = true;
+    static constexpr bool kSelectsLights = true;
     static constexpr MinWeight kMinWeight = {0x1p-4f, WeakRays::ByChance};
 
     HD static uint32_t shadow_rays(const LightSetView&) { return 1; }

@@ -84,8 +84,9 @@ struct CacheSubpathsView {
 
 /// The sizes of the arrays.
 struct CacheCapacity {
-    uint32_t count; // paths
-    uint32_t cells; // cells of hemispheres
+    uint32_t count;           // paths
+    uint32_t cells;           // cells of hemispheres
+    bool has_normals = false; // lights are selected by a tree
 };
 
 /// Places the arrays in one piece of memory (lay_out_arrays).

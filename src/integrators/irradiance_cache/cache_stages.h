@@ -49,8 +49,8 @@ struct BeginCacheSubpaths {
     }
 };
 
-/// The stage that shades the hits of paths.
-template <ShadingVariant kVariant>
+/// The stage that shades the hits of paths. `Choice` selects lights (shading/light_set.h).
+template <ShadingVariant kVariant, class Choice = ChosenByPower>
 struct ShadeCacheSubpaths {
     SubpathScene scene;
     SubpathsView subpaths;
@@ -80,8 +80,7 @@ struct ShadeCacheSubpaths {
             const uint32_t light =
                 cache_state.pdf > 0 ? light_of(picture.scene.lights, hit.instance, hit.primitive) : kNoLight;
             add_light(subpath, state, cache_state, surface.emission,
-                      light != kNoLight ? pdf_light_hit(picture.scene.lights, light, ray.origin, surface.position)
-                                        : 0.0f);
+                      light != kNoLight ? pdf_of_hit(light, subpath, ray.origin, surface.position) : 0.0f);
         }
         const uint32_t depth = state.depth();
         if (surface.is_unlit || depth >= scene.settings.max_depth) return;
@@ -107,6 +106,11 @@ private:
         SampleKey key;
     };
 
+    /// Returns the density with which a shadow ray would have been sampled to the point of a light that the path hit.
+    HD float pdf_of_hit(uint32_t light, uint32_t subpath, Vec3 from, Vec3 point) const {
+        const LightContext before = light_context_before<Choice>(subpaths, subpath, from);
+        return pdf_light_hit<Choice>(scene.picture.scene.lights, light, before, point);
+    }
     HD bool adds_light() const { return film.sums != nullptr; }
     HD uint32_t film_index(uint32_t subpath, const SubpathState& state) const {
         return is_hemisphere ? first_cell + subpath : state.pixel;
@@ -138,7 +142,8 @@ private:
         if (surface.bsdf.has_delta_only() || is_black(state.throughput)) return;
         LightSample light;
         const SampleBits bits = sample_bits(scene.settings.sampler, vertex.key, light_group(state.depth()), Pair::Last);
-        if (!sample_light<emitter_look(kVariant)>(view.lights, surface.light_context(vertex.wo), bits, light)) return;
+        const LightContext context = surface.light_context(vertex.wo);
+        if (!sample_light<emitter_look(kVariant), Choice>(view.lights, context, bits, light)) return;
         const BsdfValue scattered = evaluate_surface<kVariant>(surface, vertex.wo, light.wi);
         if (is_black(scattered.f)) return;
         const uint32_t coin = coin_key(vertex.key, state.depth(), true);
@@ -186,6 +191,7 @@ private:
         ++state.scatterings;
         subpaths.states[subpath] = state;
         cache.store_cache_state(subpath, cache_state);
+        store_light_normal<Choice>(subpaths, subpath, SurfaceEnd<kVariant>{surface}, vertex.wo);
         if (!sample.is_delta()) cache.aims[subpath] = SubpathAim::GoOn;
         if (!sample.is_delta() && !adds_light()) return; // nothing more can contribute
         const Vec3 wi = sample.wi;

@@ -38,7 +38,8 @@ void IrradianceCacheIntegrator::reserve(const WorkSize& size) {
     const uint64_t most =
         std::min<uint64_t>({wanted, batch_, kMaxBytes / (bytes_of({kMinCount, kMinCount}) / kMinCount)});
     const auto subpaths = static_cast<uint32_t>(std::max<uint64_t>(most, cells));
-    allocate_capacity({subpaths, subpaths}, "subpaths of irradiance caching");
+    const bool has_normals = uses_light_tree(settings_.subpaths.light_choice, size.tree_lights, size.has_times);
+    allocate_capacity({subpaths, subpaths, has_normals}, "subpaths of irradiance caching");
 }
 
 void IrradianceCacheIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) {
@@ -200,7 +201,7 @@ void IrradianceCacheIntegrator::make_hemispheres_in_loop(const HostTrees& trees,
     const uint32_t cells = job.hemispheres.grid.cells();
     trace_ranges(end - begin, 1, [&](uint64_t from, uint64_t to) {
         CacheJob part = job;
-        Thread thread(trees, part, {kLoopCount, cells});
+        Thread thread(trees, part, {kLoopCount, cells, uses_light_tree(part.scene)});
         part.film = film_of_cells(part.cache, counts_.data() + kInvalid, cells);
         for (uint64_t i = begin + from; i < begin + to; ++i) {
             part.hemispheres.begin = static_cast<uint32_t>(i);

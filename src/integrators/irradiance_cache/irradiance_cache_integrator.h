@@ -57,7 +57,7 @@ private:
     void make_hemispheres_in_loop(const HostTrees& trees, const CacheJob& job, uint64_t begin, uint64_t end);
     template <class Run>
     void run_subpaths(const CacheJob& job, uint64_t begin, uint64_t end, const Run& run) {
-        run_stages(job, begin, end, {kLoopCount, 0}, 1, run);
+        run_stages(job, begin, end, {kLoopCount, 0, uses_light_tree(job.scene)}, 1, run);
     }
     void report_invalid(uint64_t* invalid);
 

@@ -29,7 +29,7 @@ struct CacheJob : SubpathJob {
 };
 
 inline std::size_t lay_out(CacheJob& job, std::byte* memory, const CacheCapacity& capacity) {
-    const std::size_t of_subpaths = lay_out(job.subpaths, memory, {capacity.count, 0, 1});
+    const std::size_t of_subpaths = lay_out(job.subpaths, memory, {capacity.count, 0, 1, false, capacity.has_normals});
     return of_subpaths + lay_out(job.cache, memory != nullptr ? memory + of_subpaths : nullptr, capacity);
 }
 
@@ -51,15 +51,15 @@ void run_cache_rounds(Schedule& schedule, const CacheJob& job) {
         schedule.find_hits(round == 0 && !kIsHemisphere ? RayKind::Camera : RayKind::Bounce, job, rays, round);
         if (kIsHemisphere && round == 0)
             schedule.run("store_distances", rays, StoreDistances{subpaths, job.cache, first});
-        with_variant(job.scene.picture.scene.variant, [&]<ShadingVariant kVariant>() {
+        with_choice(job.scene, [&]<ShadingVariant kVariant, class Choice>() {
             if (kSubpaths == CacheSubpaths::Picture && job.shows_records) {
                 schedule.run(
                     "draw_records", rays,
                     DrawRecords<kVariant>{job.scene, subpaths, job.cache, job.records, job.film, job.mark, round});
             }
             schedule.run("shade_cache_subpaths", rays,
-                         ShadeCacheSubpaths<kVariant>{job.scene, subpaths, job.cache, job.film, job.mirrored,
-                                                      kIsHemisphere, first, round});
+                         ShadeCacheSubpaths<kVariant, Choice>{job.scene, subpaths, job.cache, job.film, job.mirrored,
+                                                              kIsHemisphere, first, round});
             if (kSubpaths == CacheSubpaths::Picture) {
                 schedule.run(
                     "look_up_light", lookups,

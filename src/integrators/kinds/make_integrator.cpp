@@ -28,6 +28,7 @@ RayTreeSettings tree_settings(const IntegratorSettings& settings) {
     return {.max_depth = settings.path.max_depth,
             .sampler = settings.path.sampler,
             .seed = settings.path.seed,
+            .light_choice = settings.path.light_choice,
             .has_ambient = settings.ambient.has_value(),
             .ambient = settings.ambient.value_or(Rgb{0, 0, 0}),
             .radiosity = {}}; // its integrator adds the radiosity
@@ -41,7 +42,8 @@ SubpathSettings subpath_settings(const IntegratorSettings& settings) {
     return {.max_depth = settings.path.max_depth,
             .roulette_depth = settings.path.roulette_depth,
             .sampler = settings.path.sampler,
-            .seed = settings.path.seed};
+            .seed = settings.path.seed,
+            .light_choice = settings.path.light_choice};
 }
 
 PhotonMapRequest photon_map_request(const IntegratorSettings& settings) {
@@ -125,7 +127,8 @@ constexpr std::array kIntegrators = {
          .finds_all_light = true,
          .has_shutter = true,
          .renders_batches = true,
-         .has_media = true}),
+         .has_media = true,
+         .selects_lights = true}),
     row<PathIntegrator, path_request>({.value = Kind::Hybrid,
                                        .name = "hybrid",
                                        .light = kAll,
@@ -135,7 +138,8 @@ constexpr std::array kIntegrators = {
                                        .has_light_path_layers = true,
                                        .finds_all_light = true,
                                        .rasterises_camera = true,
-                                       .has_media = true}),
+                                       .has_media = true,
+                                       .selects_lights = true}),
     row<RayTreeIntegrator<Cast>, tree_settings>({.value = Kind::Cast,
                                                  .name = "cast",
                                                  .light = "L(D|G)E of point lights; emitters seen",
@@ -155,6 +159,7 @@ constexpr std::array kIntegrators = {
                                                         .name = "distributed",
                                                         .light = "L(D|G|S)?(G|S)*E: one bounce off what is rough",
                                                         .has_shutter = true,
+                                                        .selects_lights = true,
                                                         .max_depth = kMaxTreeDepth}),
     row<RasterIntegrator, raster_settings>({.value = Kind::Raster,
                                             .name = "raster",
@@ -197,6 +202,7 @@ constexpr std::array kIntegrators = {
                                                   .needs_any_light = true,
                                                   .ignores_nesting = true,
                                                   .has_media = true,
+                                                  .selects_lights = true,
                                                   .max_depth = kMaxPhotonDepth,
                                                   .check = check_photons,
                                                   .memory = memory_of_photons}),
@@ -208,6 +214,7 @@ constexpr std::array kIntegrators = {
          .settings = "accuracy hemisphere_rays show_records records",
          .finds_all_light = true,
          .ignores_nesting = true,
+         .selects_lights = true,
          .memory = memory_of_records}),
     row<RadiosityIntegrator, radiosity_settings>(
         {.value = Kind::Radiosity,

@@ -110,6 +110,8 @@ struct IntegratorDescriptor {
     bool ignores_nesting = false;
     /// True if media absorb and scatter its light (SceneView::has_media).
     bool has_media = false;
+    /// True if its next-event estimation selects one light of many (PathSettings::light_choice).
+    bool selects_lights = false;
     /// True if the scene's light is solved before the first sample (radiosity/).
     bool is_solved = false;
     /// The largest PathSettings::max_depth.
@@ -138,10 +140,16 @@ inline bool rasterises_camera(IntegratorKind kind) { return describe(kind).raste
 inline bool has_shutter(IntegratorKind kind) { return describe(kind).has_shutter; }
 inline bool needs_punctual_lights(IntegratorKind kind) { return describe(kind).needs_punctual_lights; }
 inline bool has_media(IntegratorKind kind) { return describe(kind).has_media; }
+inline bool selects_lights(IntegratorKind kind) { return describe(kind).selects_lights; }
 inline bool is_solved(IntegratorKind kind) { return describe(kind).is_solved; }
 inline uint32_t max_depth(IntegratorKind kind) { return describe(kind).max_depth; }
 inline uint32_t samples_at_once(const IntegratorSettings& settings, uint64_t pixels) {
     return describe(settings.integrator).samples_at_once(pixels);
+}
+
+/// Returns whether the integrator selects lights by a tree, which holds `lights`.
+inline bool uses_light_tree(const IntegratorSettings& settings, uint32_t lights, bool has_times) {
+    return selects_lights(settings.integrator) && uses_light_tree(settings.path.light_choice, lights, has_times);
 }
 
 /// Returns whether the settings `a` and `b` give the same samples.

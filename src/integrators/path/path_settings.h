@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "math/sampler.h"
+#include "shading/light_selection.h"
 
 namespace pertev {
 
@@ -29,27 +30,6 @@ enum class PathBody : uint8_t { Loop, Wavefront };
 /// The pictures that use coarser levels of textures, by the width of what a ray stands for: real-time frames
 /// (settings_of_frames), all or none.
 enum class MipMaps : uint8_t { Frames, On, Off };
-
-/// Selection of lights for next-event estimation: by a tree for each receiver (shading/light_tree/), by power, or by
-/// the tree where there are many lights.
-enum class LightSelection : uint8_t { Auto, Tree, Power };
-
-/// The most lights with a position that Auto selects by power: a step down a tree costs more than tables do.
-inline constexpr uint32_t kFewLights = 256;
-
-/// Returns whether lights are selected by a tree, which holds `lights`. It does not know lights that move while the
-/// shutter is open.
-inline bool uses_light_tree(LightSelection selection, uint32_t lights, bool has_times) {
-    switch (selection) {
-    case LightSelection::Auto:
-        return lights > kFewLights && !has_times;
-    case LightSelection::Tree:
-        return lights > 0 && !has_times;
-    case LightSelection::Power:
-        break;
-    }
-    return false;
-}
 
 /// Optional parts of a path in flight in the queues of a wavefront, which take memory there.
 struct PathParts {

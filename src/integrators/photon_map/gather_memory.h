@@ -36,6 +36,7 @@ struct GatherCapacity {
     uint32_t nearest;           // photons per subpath; 0: all within a radius count
     bool can_share;             // several threads may share a lookup
     bool has_interiors = false; // solids are nested in a scene with media
+    bool has_normals = false;   // lights are selected by a tree
 };
 
 struct GatherView {

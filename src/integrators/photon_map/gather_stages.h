@@ -62,7 +62,8 @@ HD inline Rgb part_after_flight(Rgb of, Rgb before, Rgb after) {
 }
 
 /// The stage that shades hits of camera subpaths and, with kInMedia in a scene with media, their scatterings there.
-template <ShadingVariant kVariant, bool kInMedia = false>
+/// `Choice` selects lights (shading/light_set.h).
+template <ShadingVariant kVariant, bool kInMedia = false, class Choice = ChosenByPower>
 struct ShadeGather : std::conditional_t<kInMedia, GatherInMedia, GatherInVacuum> {
     SubpathScene scene;
     SubpathsView subpaths;
@@ -117,7 +118,7 @@ struct ShadeGather : std::conditional_t<kInMedia, GatherInMedia, GatherInVacuum>
             const bool may_be_drawn = gather_state.pdf > 0 && light != kNoLight;
             if (sees_emitters_whole && !may_be_drawn) state.throughput = gather_state.past_mirrors;
             add_light(state, gather_state, surface.emission,
-                      may_be_drawn ? pdf_light_hit(picture.scene.lights, light, ray.origin, surface.position) : 0.0f);
+                      may_be_drawn ? pdf_of_hit(light, subpath, ray.origin, surface.position) : 0.0f);
         }
         const uint32_t depth = state.depth(), max_depth = scene.settings.max_depth;
         if (searches_emitters || surface.is_unlit || depth >= max_depth) return;
@@ -151,6 +152,12 @@ private:
         SampleKey key;
     };
 
+    /// Returns the density with which a shadow ray would have been sampled to the point of a light that the subpath
+    /// hit.
+    HD float pdf_of_hit(uint32_t light, uint32_t subpath, Vec3 from, Vec3 point) const {
+        const LightContext before = light_context_before<Choice>(subpaths, subpath, from);
+        return pdf_light_hit<Choice>(scene.picture.scene.lights, light, before, point);
+    }
     /// Adds light that the subpath hit. `light_pdf` is the density with which a shadow ray would have been sampled
     /// there.
     HD void add_light(const SubpathState& state, const GatherState& gather_state, Rgb emission, float light_pdf) const {
@@ -175,7 +182,8 @@ private:
         const SceneView& view = scene.picture.scene;
         LightSample light;
         const SampleBits bits = sample_bits(scene.settings.sampler, vertex.key, light_group(state.depth()), Pair::Last);
-        if (!sample_light<emitter_look(kVariant)>(view.lights, end.light_context(vertex.wo), bits, light)) return 0;
+        const LightContext context = end.light_context(vertex.wo);
+        if (!sample_light<emitter_look(kVariant), Choice>(view.lights, context, bits, light)) return 0;
         const float nearness = nearness_of(light);
         const BsdfValue all = end.scatter_camera(vertex.wo, light.wi);
         if (is_black(all.f)) return nearness;
@@ -230,6 +238,7 @@ private:
         if (!(sample.pdf > 0) || !end.survives(settings, key, choices, state.depth() + 1, sample.weight)) return;
         gather.marks[subpath] = 1;
         state.throughput = state.throughput * sample.weight;
+        store_light_normal<Choice>(subpaths, subpath, end, vertex.wo);
         if constexpr (kInMedia) subpaths.store_interior(subpath, list);
         queue_next(end, subpath, state, {state.throughput, sample.pdf}, sample.wi, key);
     }
@@ -274,6 +283,7 @@ private:
                         sample.is_delta() ? 0.0f : sample.pdf};
         if (!sample.is_delta() && vertex.turns) gather.marks[subpath] = 1;
         state.throughput = state.throughput * sample.weight;
+        store_light_normal<Choice>(subpaths, subpath, end, vertex.wo);
         if constexpr (kInMedia) {
             subpaths.store_interior(subpath, interior_towards(scene.picture.scene, list, end, vertex.wo, wi));
         }

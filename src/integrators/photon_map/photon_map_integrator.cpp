@@ -10,18 +10,21 @@ namespace pertev {
 namespace {
 
 /// Returns the sizes of the arrays. `in_loop` means those of a CPU thread, which shares no long lookups.
-GatherCapacity gather_capacity(uint32_t subpaths, const PhotonMapSettings& map, bool in_loop, bool has_interiors) {
-    return {subpaths, map.nearest, !in_loop && map.search == PhotonSearch::Grid && map.nearest == 0, has_interiors};
+GatherCapacity gather_capacity(uint32_t subpaths, const PhotonMapRequest& settings, const WorkSize& size,
+                               bool in_loop) {
+    const PhotonMapSettings& map = settings.map;
+    return {subpaths, map.nearest, !in_loop && map.search == PhotonSearch::Grid && map.nearest == 0,
+            size.has_interiors && size.has_media,
+            uses_light_tree(settings.subpaths.light_choice, size.tree_lights, size.has_times)};
 }
 
 } // namespace
 
 GatherCapacity PhotonMapIntegrator::loop_capacity() const {
     constexpr std::size_t kLoopBytes = std::size_t(1) << 18; // per thread, so that it fits the cache
-    const bool has_interiors = picture_.scene.nesting.is_there() && picture_.scene.has_media != 0;
-    return capacity_within(kLoopBytes, kLoopCount, [&](uint32_t subpaths) {
-        return gather_capacity(subpaths, picture_settings_.map, true, has_interiors);
-    });
+    const WorkSize size = size_of(picture_, *tracer_, 1);
+    return capacity_within(kLoopBytes, kLoopCount,
+                           [&](uint32_t subpaths) { return gather_capacity(subpaths, picture_settings_, size, true); });
 }
 
 void PhotonMapIntegrator::reserve(const WorkSize& size) {
@@ -32,11 +35,9 @@ void PhotonMapIntegrator::reserve(const WorkSize& size) {
     if (uses_loop(size)) return;
     const uint64_t subpaths =
         std::max<uint64_t>(size.pixels(), 2 * uint64_t(map.photons)); // camera subpaths or photons
-    const bool has_interiors = size.has_interiors && size.has_media;
-    allocate_capacity(
-        capacity_within(kMaxBytes, std::min<uint64_t>(subpaths, batch_),
-                        [&](uint32_t count) { return gather_capacity(count, map, false, has_interiors); }),
-        "subpaths of photon mapping");
+    allocate_capacity(capacity_within(kMaxBytes, std::min<uint64_t>(subpaths, batch_),
+                                      [&](uint32_t count) { return gather_capacity(count, settings_, size, false); }),
+                      "subpaths of photon mapping");
 }
 
 void PhotonMapIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) {

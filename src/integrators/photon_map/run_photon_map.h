@@ -21,7 +21,8 @@ struct PhotonJob : SubpathJob {
 };
 
 inline std::size_t lay_out(PhotonJob& job, std::byte* memory, const GatherCapacity& capacity) {
-    const std::size_t of_subpaths = lay_out(job.subpaths, memory, {capacity.count, 0, 1, capacity.has_interiors});
+    const std::size_t of_subpaths =
+        lay_out(job.subpaths, memory, {capacity.count, 0, 1, capacity.has_interiors, capacity.has_normals});
     return of_subpaths + lay_out(job.gather, memory != nullptr ? memory + of_subpaths : nullptr, capacity);
 }
 
@@ -86,9 +87,9 @@ void run_gather(Schedule& schedule, const PhotonJob& job) {
         const WorkCount connections = {schedule.max_rays(), &subpaths.counts->connections};
         const WorkCount lookups = {schedule.max_rays(), &subpaths.counts->vertices};
         schedule.find_hits(round == 0 ? RayKind::Camera : RayKind::Bounce, job, rays, round);
-        with_media(job.scene.picture.scene, [&]<ShadingVariant kVariant, bool kInMedia>() {
-            ShadeGather<kVariant, kInMedia> shade = {{},       job.scene, subpaths, job.gather,
-                                                     job.film, job.how,   job.near, round};
+        with_media_and_choice(job.scene, [&]<ShadingVariant kVariant, bool kInMedia, class Choice>() {
+            ShadeGather<kVariant, kInMedia, Choice> shade = {{},       job.scene, subpaths, job.gather,
+                                                             job.film, job.how,   job.near, round};
             if constexpr (kInMedia) shade.in_media = job.in_media;
             schedule.run("shade_gather", rays, shade);
             estimate_radiance<kVariant>(schedule, job, lookups);

@@ -14,6 +14,7 @@ namespace pertev {
 struct Radiosity {
     static constexpr uint32_t kMaxBranches = 2;
     static constexpr bool kHasShutter = false;
+    static constexpr bool kSelectsLights = false;
     static constexpr MinWeight kMinWeight = {0x1p-10f, WeakRays::LeftOut};
 
     HD static uint32_t shadow_rays(const LightSetView&) { return 0; }

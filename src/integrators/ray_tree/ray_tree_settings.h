@@ -7,6 +7,7 @@
 #include "math/rgb.h"
 #include "math/sampler.h"
 #include "radiosity/radiosity_view.h"
+#include "shading/light_selection.h"
 
 namespace pertev {
 
@@ -14,6 +15,7 @@ struct RayTreeSettings {
     uint32_t max_depth = 16; // scatterings between light and camera: 0 emission only, 1 direct light
     SamplerKind sampler = SamplerKind::Sobol;
     uint32_t seed = 0;
+    LightSelection light_choice = LightSelection::Power; // for integrators that sample one of all lights
     // Radiance that reaches every diffuse surface from all directions, W/(sr m2), in place of diffuse
     // interreflection; for integrators with such a term.
     bool has_ambient = false; // `ambient` was given; otherwise the integrator's default applies

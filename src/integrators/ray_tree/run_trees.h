@@ -90,16 +90,26 @@ private:
     std::unique_ptr<bool[]> met_;
 };
 
-/// Runs ShadeTrees with the least code that the picture needs. The loop has one variant of motion alone.
+/// Returns whether lights are selected by a tree.
+template <class Algorithm>
+bool uses_light_tree(const RayTreeSettings& settings, uint32_t lights, bool has_times) {
+    return Algorithm::kSelectsLights && uses_light_tree(settings.light_choice, lights, has_times);
+}
+
+/// Runs ShadeTrees with the least code that the picture needs. The loop, and code for a light tree, have one variant of
+/// motion alone.
 template <class Algorithm, class Schedule>
 void shade_trees(Schedule& schedule, const TreeJob& job, WorkCount rays, uint32_t round, uint32_t first, bool is_last) {
-    const auto shade_as = [&]<MotionVariant kMotion>() {
+    const auto shade_as = [&]<MotionVariant kMotion, class Choice = ChosenByPower>() {
         with_stacks(job.picture.scene.variant, [&]<ShadingVariant kVariant>() {
             schedule.run("shade_trees", rays,
-                         ShadeTrees<Algorithm, kMotion, kVariant>{job.picture, job.settings, job.film, job.trees, round,
-                                                                  first, is_last});
+                         ShadeTrees<Algorithm, kMotion, kVariant, Choice>{job.picture, job.settings, job.film,
+                                                                          job.trees, round, first, is_last});
         });
     };
+    if constexpr (Algorithm::kSelectsLights) {
+        if (job.trees.normals != nullptr) return shade_as.template operator()<MotionVariant::Perhaps, ChosenByTree>();
+    }
     if constexpr (Schedule::kIsLoop) {
         shade_as.template operator()<MotionVariant::Perhaps>();
     } else {

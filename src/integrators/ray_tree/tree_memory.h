@@ -23,13 +23,14 @@ inline constexpr uint32_t kShadowsAtOnce = 4;
 
 /// A pending or current ray.
 struct PendingRay {
-    Vec3 origin, direction; // unit direction
-    Rgb weight = {1, 1, 1}; // factor of its radiance in the sample
-    float bsdf_pdf = 0;     // density with which `direction` was sampled, 1/sr; 0 if it is the only possible
-                            // direction
-    uint32_t depth = 0;     // scatterings between it and the camera
-    TriangleId start;       // triangle that it leaves
-    InteriorList interior;  // nested solids that hold it, if any are nested
+    Vec3 origin, direction;  // unit direction
+    Rgb weight = {1, 1, 1};  // factor of its radiance in the sample
+    float bsdf_pdf = 0;      // density with which `direction` was sampled, 1/sr; 0 if it is the only possible
+                             // direction
+    uint32_t depth = 0;      // scatterings between it and the camera
+    TriangleId start;        // triangle that it leaves
+    InteriorList interior;   // nested solids that hold it, if any are nested
+    Vec3 normal = {0, 0, 0}; // normal of the context that selected a light where it starts, if a tree did
 };
 
 /// A shadow ray; `contribution` counts if it is unoccluded.
@@ -66,6 +67,7 @@ struct TreesView {
     Float4* weights;      // weight, bits of the start's instance
     uint32_t* primitives; // primitive of the start
     Uint2* interiors;     // null unless solids are nested
+    Vec3* normals;        // null unless lights are selected by a tree
 
     // The current rays, contiguous. Rounds alternate between two arrays for their owners, the trees.
     Ray* rays;
@@ -116,13 +118,15 @@ struct TreesView {
         weights[at] = {ray.weight.r, ray.weight.g, ray.weight.b, float_of(ray.start.instance)};
         primitives[at] = ray.start.primitive;
     }
-    /// load_ray and store_ray leave this out; code for solids calls it.
+    /// load_ray and store_ray leave this and the normals out; code for solids calls it.
     HD InteriorList load_interior(uint32_t tree, uint32_t slot) const {
         return interiors != nullptr ? InteriorList::of_words(interiors[entry(tree, slot)]) : InteriorList{};
     }
     HD void store_interior(uint32_t tree, uint32_t slot, InteriorList interior) const {
         if (interiors != nullptr) interiors[entry(tree, slot)] = interior.words();
     }
+    HD void store_normal(uint32_t tree, uint32_t slot, Vec3 normal) const { normals[entry(tree, slot)] = normal; }
+    HD Vec3 load_normal(uint32_t tree, uint32_t slot) const { return normals[entry(tree, slot)]; }
     /// Stores `ray` of `tree` at `slot` of the current rays. `key` is its key for blended surfaces, and `time` that of
     /// all rays of the tree.
     HD void queue_ray(uint32_t slot, uint32_t tree, const PendingRay& ray, uint32_t key, float time,
@@ -149,6 +153,7 @@ struct TreeCapacity {
     uint32_t entries;   // rays per stack
     bool has_times;     // rays have a time
     bool has_interiors; // solids are nested
+    bool has_normals;   // lights are selected by a tree
 };
 
 /// Places the arrays in one piece of memory (lay_out_arrays).
@@ -162,6 +167,7 @@ inline std::size_t lay_out(TreesView& view, std::byte* memory, const TreeCapacit
         add_array(view.weights, stacked);
         add_array(view.primitives, stacked);
         add_array(view.interiors, capacity.has_interiors ? stacked : 0);
+        add_array(view.normals, capacity.has_normals ? stacked : 0);
         add_array(view.rays, trees);
         add_array(view.starts, trees);
         add_array(view.keys, trees);

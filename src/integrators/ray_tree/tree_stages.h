@@ -51,8 +51,8 @@ HD_CALL inline void reach_nested_solid(const SceneView& scene, PendingRay& ray, 
 /// The stage that shades hits of the current rays. The vertex's shadow rays from `first_shadow` on are queued, at most
 /// kShadowsAtOnce; the stage runs again until all have been. The first run adds emission; the last one (`is_last`)
 /// pushes the continuation rays on the stack, in place of the ray that ended there. `kMotion` is None if no shutter is
-/// open; code for both cases would keep surfaces in memory.
-template <class Algorithm, MotionVariant kMotion, ShadingVariant kVariant>
+/// open; code for both cases would keep surfaces in memory. `Choice` selects lights (shading/light_set.h).
+template <class Algorithm, MotionVariant kMotion, ShadingVariant kVariant, class Choice = ChosenByPower>
 struct ShadeTrees {
     PictureView picture;
     RayTreeSettings settings;
@@ -67,6 +67,9 @@ struct ShadeTrees {
         state.shadows = 0;
         PendingRay ray = trees.load_ray(tree, state.pending);
         const Hit hit = trees.hits().load(i);
+        if constexpr (Choice::kReadsNormal) {
+            if (ray.bsdf_pdf > 0) ray.normal = trees.load_normal(tree, state.pending);
+        }
         if constexpr (kVariant == ShadingVariant::General) {
             ray.interior = trees.load_interior(tree, state.pending);
             if (hit.instance != kNoHit && !picture.scene.nesting.is_there()) {
@@ -114,17 +117,18 @@ private:
                               time);
             }
             if (!is_black(surface.emission)) {
-                const float light_pdf = ray.bsdf_pdf > 0 ? pdf_direct(scene, moves, {ray.origin, time}, surface) : 0.0f;
+                const LightContext before(ray.origin, ray.normal, false, time);
+                const float light_pdf = ray.bsdf_pdf > 0 ? pdf_direct<Choice>(scene, moves, before, surface) : 0.0f;
                 add_emission(state, ray, surface.emission, light_pdf);
             }
         }
         if (surface.is_unlit || ray.depth >= settings.max_depth) return;
-        const TreeVertex<kVariant> vertex = {picture, settings, trees, tree,  state,
-                                             ray,     surface,  time,  moves, {hit.u, hit.v}};
+        const TreeVertex<kVariant, Choice> vertex = {picture, settings, trees, tree,  state,
+                                                     ray,     surface,  time,  moves, {hit.u, hit.v}};
         sample_direct_lights(vertex);
         if (is_last) Algorithm::follow(vertex);
     }
-    HD void sample_direct_lights(const TreeVertex<kVariant>& vertex) const {
+    HD void sample_direct_lights(const TreeVertex<kVariant, Choice>& vertex) const {
         const uint32_t all = Algorithm::shadow_rays(picture.scene.lights);
         const uint32_t key = tree_key(vertex.state, settings.seed, vertex.number(), true);
         uint32_t slots[kShadowsAtOnce] = {};

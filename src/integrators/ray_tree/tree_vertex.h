@@ -10,6 +10,7 @@
 #include "integrators/ray_tree/tree_memory.h"
 #include "render/picture_view.h"
 #include "render/scatter_calls.h"
+#include "shading/chosen_by_tree.h"
 #include "shading/power_heuristic.h"
 
 namespace pertev {
@@ -42,7 +43,7 @@ HD inline float time_of(const CameraRays& camera, const RayTreeSettings& setting
     return camera.time(settings.sampler, sample_key(settings, tree.pixel, tree.sample));
 }
 
-template <ShadingVariant kVariant>
+template <ShadingVariant kVariant, class Choice>
 struct TreeVertex {
     const PictureView& picture;
     const RayTreeSettings& settings;
@@ -77,14 +78,15 @@ struct TreeVertex {
         return make_shadow_ray(sample, all.f * sample.radiance, shadow);
     }
 
-    /// Requests one point of one light, sampled by power, including emitters and the environment. A glossy ray may
+    /// Requests one point of one light that Choice selects, including emitters and the environment. A glossy ray may
     /// hit these too, so what glossy lobes scatter of them is weighted by the power heuristic.
     HD bool make_drawn_shadow_ray(TreeShadowRay& shadow) const {
         if (surface.bsdf.has_delta_only()) return false;
         const uint32_t of = number() == 0 ? uint32_t(kGroupCamera) : group(kTreeScatter);
         LightSample sample;
         const SampleBits u = sample_bits(settings.sampler, key(), of, Pair::Last);
-        if (!draw_direct<emitter_look(kVariant)>(picture.scene, moves, surface.light_context(wo(), time), u, sample)) {
+        constexpr EmitterLook kLook = emitter_look(kVariant);
+        if (!draw_direct<kLook, Choice>(picture.scene, moves, surface.light_context(wo(), time), u, sample)) {
             return false;
         }
         const BsdfValue all = evaluate_surface<kVariant>(surface, wo(), sample.wi);
@@ -163,6 +165,9 @@ private:
         child.start = surface.triangle;
         if constexpr (kVariant == ShadingVariant::General) {
             trees.store_interior(tree, state.pending, interior_towards(wi));
+        }
+        if constexpr (Choice::kReadsNormal) {
+            trees.store_normal(tree, state.pending, surface.light_context(wo(), time).normal);
         }
         trees.store_ray(tree, state.pending++, child);
     }

@@ -8,6 +8,7 @@
 #include "device_scene/find_hits.h"
 #include "integrators/subpaths/particle_stages.h"
 #include "integrators/two_schedules.h"
+#include "shading/with_stacks.h"
 
 namespace pertev {
 
@@ -117,6 +118,30 @@ template <class Run>
 void with_media(const SceneView& scene, const Run& run) {
     if (scene.has_media != 0) return run.template operator()<ShadingVariant::General, true>();
     with_variant(scene.variant, [&]<ShadingVariant kVariant>() { run.template operator()<kVariant, false>(); });
+}
+
+/// Calls run.operator()<kVariant, Choice>() with the materials' variant and the class that selects lights
+/// (shading/light_set.h). The light tree has kernels for surfaces with lobes alone.
+template <class Run>
+void with_choice(const SubpathScene& scene, const Run& run) {
+    const ShadingVariant variant = scene.picture.scene.variant;
+    if (uses_light_tree(scene)) {
+        with_stacks(variant, [&]<ShadingVariant kVariant>() { run.template operator()<kVariant, ChosenByTree>(); });
+    } else {
+        with_variant(variant, [&]<ShadingVariant kVariant>() { run.template operator()<kVariant, ChosenByPower>(); });
+    }
+}
+
+/// Calls run.operator()<kVariant, kInMedia, Choice>() for a scene of either kind, as with_choice does.
+template <class Run>
+void with_media_and_choice(const SubpathScene& scene, const Run& run) {
+    if (scene.picture.scene.has_media == 0) {
+        return with_choice(scene, [&]<ShadingVariant kVariant, class Choice>() {
+            run.template operator()<kVariant, false, Choice>();
+        });
+    }
+    if (uses_light_tree(scene)) return run.template operator()<ShadingVariant::General, true, ChosenByTree>();
+    run.template operator()<ShadingVariant::General, true, ChosenByPower>();
 }
 
 /// Traces all particles of the job to their ends and adds those that the camera sees to the film.

@@ -153,6 +153,7 @@ struct SubpathCapacity {
     uint32_t kept;              // stored vertices per light subpath
     uint32_t connections;       // connections per subpath at once
     bool has_interiors = false; // solids are nested in a scene with media
+    bool has_normals = false;   // lights are selected by a tree
 };
 
 struct SubpathsView {
@@ -160,6 +161,8 @@ struct SubpathsView {
     SubpathState* states;   // [subpaths]
     float* squared_indices; // [subpaths] for light subpaths: squared index at their vertex, over that at their light
     Uint2* interiors;       // [subpaths] solids that hold their rays; null unless capacity.has_interiors
+    Vec3* normals;          // [subpaths] normals of the contexts that selected lights where their rays start; null
+                            // unless capacity.has_normals
 
     // Current rays, contiguous. Rounds alternate between two arrays for them, for the triangles that they leave, and
     // for their owners, the subpaths.
@@ -261,6 +264,7 @@ inline std::size_t lay_out(SubpathsView& view, std::byte* memory, const SubpathC
         add_array(view.connection_light, connections);
         add_array(view.connection_rasters, subpaths);
         add_array(view.interiors, capacity.has_interiors ? subpaths : 0);
+        add_array(view.normals, capacity.has_normals ? subpaths : 0);
         add_array(view.counts, 1);
     });
 }

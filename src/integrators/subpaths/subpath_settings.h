@@ -7,6 +7,7 @@
 #include "math/sampler.h"
 #include "math/vec3.h"
 #include "render/camera_rays.h"
+#include "shading/light_selection.h"
 
 namespace pertev {
 
@@ -15,6 +16,8 @@ struct SubpathSettings {
     uint32_t roulette_depth = 3; // first vertex of a subpath (counted from 1) at which Russian roulette may end it
     SamplerKind sampler = SamplerKind::Sobol;
     uint32_t seed = 0;
+    LightSelection light_choice =
+        LightSelection::Power; // next-event estimation has it; particles leave lights by power
 
     bool operator==(const SubpathSettings&) const = default;
 };

@@ -8,6 +8,7 @@
 #include "integrators/subpaths/subpath_settings.h"
 #include "render/picture_view.h"
 #include "render/scatter_calls.h"
+#include "shading/chosen_by_tree.h"
 
 namespace pertev {
 
@@ -18,6 +19,25 @@ struct SubpathScene {
     WorldSphere world;
     bool is_connected; // subpaths connect and contributions have MIS weights; else there are only particles
 };
+
+/// Returns whether next-event estimation selects lights by a tree.
+inline bool uses_light_tree(const SubpathScene& scene) {
+    const SceneView& view = scene.picture.scene;
+    return uses_light_tree(scene.settings.light_choice, view.lights.tree.light_count, view.motions.is_there());
+}
+
+/// Stores the normal of the context by which `end` selects lights for the direction `wo`, before a ray leaves there.
+template <class Choice, class End>
+HD inline void store_light_normal(const SubpathsView& subpaths, uint32_t subpath, const End& end, Vec3 wo) {
+    if constexpr (Choice::kReadsNormal) subpaths.normals[subpath] = end.light_context(wo).normal;
+}
+/// Returns the context with which next-event estimation selected a light where the subpath's ray begins, except for the
+/// offset of the ray's origin.
+template <class Choice>
+HD inline LightContext light_context_before(const SubpathsView& subpaths, uint32_t subpath, Vec3 origin) {
+    if constexpr (Choice::kReadsNormal) return {origin, subpaths.normals[subpath], false, kAtRest};
+    return {origin};
+}
 
 /// A surface's scattering between two directions, for a camera subpath (light along wi to wo) and for a particle
 /// (from wi, along wo); each is the other's reverse.

@@ -13,6 +13,7 @@ namespace pertev {
 struct Whitted {
     static constexpr uint32_t kMaxBranches = 2;
     static constexpr bool kHasShutter = true;
+    static constexpr bool kSelectsLights = false;
     static constexpr MinWeight kMinWeight = {0x1p-10f, WeakRays::LeftOut};
 
     HD static uint32_t shadow_rays(const LightSetView& lights) { return lights.punctual_count; }
