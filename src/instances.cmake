@@ -168,6 +168,12 @@ pertev_launches(restir/direct_stages.cu
     "FromPixel<AddDirectLight<ShadingVariant::General>>"
     "FromPixel<AddDirectLight<ShadingVariant::Unstacked>>"
     "FromPixel<AddDirectLight<ShadingVariant::Diffuse>>")
+# For lights that are selected by a tree.
+pertev_launches(restir/tree_candidates.cu
+  restir/initial_candidates.h render/row_band.h
+  STAGES "FromPixel<SampleInitialCandidates<ShadingVariant::General, ChosenByTree>>"
+    "FromPixel<SampleInitialCandidates<ShadingVariant::Unstacked, ChosenByTree>>"
+    "FromPixel<SampleInitialCandidates<ShadingVariant::Diffuse, ChosenByTree>>")
 pertev_launches(restir/indirect_stages.cu
   restir/add_indirect_light.h restir/initial_gi_reservoirs.h restir/reuse_reservoirs.h render/row_band.h
   STAGES "FromPixel<MakeInitialGiReservoirs<ShadingVariant::General>>"
@@ -295,6 +301,7 @@ pertev_launches(integrators/path/shade_light_tree_films.cu
 pertev_launches(integrators/path/shade_light_tree_parts.cu
   integrators/path/path_stages.h
   STAGES "Shade<kAllMaterials | kMipMapped | kNested | kLightTree, FrameListeners>"
+    "Shade<kAllMaterials | kMipMapped | kNested | kLightTree, ReuseListeners>"
     "Shade<kAllMaterials | kMoving | kMipMapped | kNested | kLightTree, LayerListeners>")
 # For media.
 pertev_launches(integrators/path/shade_media.cu

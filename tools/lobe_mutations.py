@@ -7,6 +7,8 @@ MUTATIONS = [
      ("src/integrators/ray_tree/tree_vertex.h", "surface.light_context(wo(), time).normal", "{}")),
     ("a subpath forgets the normal by which a light was selected", "statistical/selected_lights",
      ("src/integrators/subpaths/subpath_vertex.h", "= end.light_context(wo).normal;", "= {};")),
+    ("the light that a path hits counts for ReSTIR as if power had selected it", "statistical/restir",
+     ("src/restir/initial_candidates.h", "light.pdf = pdf_of_found<Choice>", "light.pdf = pdf_of_found<ChosenByPower>")),
     ("a light tree weighs a spot by its flux", "statistical/chosen_by_tree",
      ("src/shading/build_light_set.cpp", "of_punctual[i] > 0 ? kPiDouble * mean_of_channels(punctual.intensity) : 0;", "of_punctual[i];")),
     ("fuzz that takes one direction's fit alone", "statistical/bsdf_energy", ("src/shading/lobes/fuzz_lobe.h", "2.0f * (there * back) / both * cos_i", "there * cos_i")),

@@ -9,10 +9,12 @@
 #include "render/picture_view.h"
 #include "restir/light_reservoir.h"
 #include "restir/ris_selection.h"
+#include "shading/chosen_by_tree.h"
 
 namespace pertev {
 
-template <ShadingVariant kVariant>
+/// `Choice` selects lights (shading/light_set.h). A reservoir keeps the point alone, so reuse does not depend on it.
+template <ShadingVariant kVariant, class Choice = ChosenByPower>
 struct SampleInitialCandidates {
     SceneView scene;
     PixelSurfaces here;
@@ -35,8 +37,9 @@ struct SampleInitialCandidates {
         for (uint32_t k = 0; k < candidates; ++k) {
             const SampleKey candidate = {key.stream, key.sample * candidates + k, key.seed};
             LightSample light;
-            if (!sample_light<emitter_look(kVariant)>(scene.lights, receiver.light_context(),
-                                                      sample_bits(here.sampler, candidate, kGroupCandidates), light)) {
+            if (!sample_light<emitter_look(kVariant), Choice>(scene.lights, receiver.light_context(),
+                                                              sample_bits(here.sampler, candidate, kGroupCandidates),
+                                                              light)) {
                 continue;
             }
             const BsdfValue value = receiver.evaluate(light.wi);
@@ -51,6 +54,9 @@ struct SampleInitialCandidates {
         const EmitterPoint point = met[pixel];
         if (find_light<emitter_look(kVariant)>(scene.lights, point, receiver.light_context(), light, measure)) {
             const BsdfValue value = receiver.evaluate(light.wi);
+            if constexpr (Choice::kReadsNormal) {
+                light.pdf = pdf_of_found<Choice>(scene.lights, point, receiver.light_context(), light);
+            }
             if (selection.takes(luminance(value.f * light.radiance) / (drawn * light.pdf + value.pdf))) {
                 reservoir.point = point;
                 reservoir.source = 0;

@@ -88,7 +88,8 @@ uint64_t Restir::rays() const {
 }
 
 void Restir::add(const NoisyFrame& frame, const PictureView& picture, const SampleNumbers& numbers, SceneTracer& tracer,
-                 const PreviousScene& before, const ChangedLight& change, const RestirSettings& settings) {
+                 const PreviousScene& before, const ChangedLight& change, const RestirSettings& settings,
+                 LightSelection selection) {
     PERTEV_CHECK(frame.width() == width_ && frame.height() == height_);
     const NoisyFrameView& noisy = frame.view();
     const FilmView film = frame.film_view();
@@ -113,11 +114,16 @@ void Restir::add(const NoisyFrame& frame, const PictureView& picture, const Samp
             launch_in_band(*queue_, "initial_gi_reservoirs", rows_, width_,
                            MakeInitialGiReservoirs<kVariant>{scene, here, film, fresh_bounces});
         });
-    with_textures(scene.variant, [&]<ShadingVariant kVariant>() {
-        launch_in_band(
-            *queue_, "initial_candidates", rows_, width_,
-            SampleInitialCandidates<kVariant>{scene, here, met_.data(), fresh, receivers_.data(), settings.candidates});
-    });
+    const auto sample_candidates = [&]<class Choice>() {
+        with_textures(scene.variant, [&]<ShadingVariant kVariant>() {
+            launch_in_band(*queue_, "initial_candidates", rows_, width_,
+                           SampleInitialCandidates<kVariant, Choice>{scene, here, met_.data(), fresh, receivers_.data(),
+                                                                     settings.candidates});
+        });
+    };
+    const bool is_by_tree = uses_light_tree(selection, scene.lights.tree.light_count, scene.motions.is_there());
+    is_by_tree ? sample_candidates.template operator()<ChosenByTree>()
+               : sample_candidates.template operator()<ChosenByPower>();
     here.stored = receivers_.data();
     test_visibility(scene, here, fresh, tracer, 0);
     if (has_history_ && settings.history > 0) {

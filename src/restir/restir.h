@@ -20,6 +20,7 @@
 #include "restir/bounce_reservoir.h"
 #include "restir/restir_settings.h"
 #include "restir/reuse_reservoirs.h"
+#include "shading/light_selection.h"
 #include "tracer/scene_tracer.h"
 
 namespace pertev {
@@ -54,9 +55,11 @@ public:
     FirstBounceView first_bounce() const;
 
     /// Adds to `frame` the light that its samples omitted; they must have filled first_bounce(). `before` has the
-    /// positions in the previous frame, `change` the light that has changed since. Throws Error(DeviceFault).
+    /// positions in the previous frame, `change` the light that has changed since. `selection` is that of the samples'
+    /// lights, and of the candidates. Throws Error(DeviceFault).
     void add(const NoisyFrame& frame, const PictureView& picture, const SampleNumbers& numbers, SceneTracer& tracer,
-             const PreviousScene& before, const ChangedLight& change, const RestirSettings& settings);
+             const PreviousScene& before, const ChangedLight& change, const RestirSettings& settings,
+             LightSelection selection);
 
     /// Number of rays that the last add() traced. Waits for it.
     uint64_t rays() const;

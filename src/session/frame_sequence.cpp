@@ -148,7 +148,7 @@ bool FrameSequence::render_rows(const FrameTask& task, RowExchange* others, Sink
         sharing_timer_.start();
         const ChangedLight changed = {change.share, change.width, change.height, change.columns, change.rows};
         shared->add(frame, light, {path.sampler, number, path.seed, path.mip_maps == MipMaps::On}, scene.tracer(),
-                    before, changed, restir);
+                    before, changed, restir, path.light_choice);
         sharing_timer_.stop();
     }
     if (change.guide != nullptr) {

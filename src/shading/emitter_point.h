@@ -82,6 +82,16 @@ HD inline bool find_light(const LightSetView& view, const EmitterPoint& point, c
     return true;
 }
 
+/// Density with which sample_light samples, for `context`, the point that find_light has found, 1/sr; `found` is its
+/// light. Lights without size are out of reach.
+template <class Choice>
+HD inline float pdf_of_found(const LightSetView& view, const EmitterPoint& point, const LightContext& context,
+                             const LightSample& found) {
+    if (point.kind() != SourceKind::Triangle) return found.pdf;
+    const uint32_t light = light_of(view, point.instance, point.index);
+    return pdf_light_hit<Choice>(view, light, context, found.light_point);
+}
+
 /// Direction and end of a shadow ray from `from` to `point`, whose light is known to arrive somewhere: find_light
 /// without textures, coats and the environment's image. Returns false if nothing can arrive.
 HD inline bool find_light_end(const LightSetView& view, const EmitterPoint& point, Vec3 from, LightSample& sample) {

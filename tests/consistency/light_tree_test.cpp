@@ -143,7 +143,7 @@ TEST_CASE("each picture of a batch by a light tree has the hash of a single rend
     }
 }
 
-TEST_CASE("frames by a light tree have the same bytes on both devices, and follow lights that move") {
+TEST_CASE("frames by a light tree have the same bytes on both devices, with ReSTIR too, and follow lights that move") {
     Messages messages;
     Scene scene = mixed_scene(Surfaces::Mixed);
     const PreparedScene before = prepare_scene(scene, {}, messages);
@@ -153,21 +153,26 @@ TEST_CASE("frames by a light tree have the same bytes on both devices, and follo
     const PreparedScene after = update_scene(before, scene, update, messages);
     const PreparedScene fresh = prepare_scene(scene, {.centre = before.centre}, messages);
     Queue queue = test::requested_queue(), cpu = Queue::make_cpu();
+    RestirSettings restir;
     const auto frame_of = [&](Queue& on, const PreparedScene& first, LightSelection choice, PathBody body) {
         RenderSettings settings = tree_settings(1);
         settings.path.light_choice = choice;
         settings.body = body;
         Session session(on, first, test::mixed_scene_camera(), settings);
-        session.render_frame(0, {}, {});
+        session.render_frame(0, {}, restir);
         session.update_scene(after, parts_of(update));
         session.cut();
-        session.render_frame(0, {}, {});
+        session.render_frame(0, {}, restir);
         return picture_hash(session.frame().picture());
     };
-    const Hash128 frame = frame_of(cpu, before, LightSelection::Tree, PathBody::Loop);
-    CHECK(frame_of(cpu, fresh, LightSelection::Tree, PathBody::Wavefront) == frame);
-    CHECK(frame_of(queue, before, LightSelection::Tree, PathBody::Wavefront) == frame);
-    CHECK(frame_of(cpu, before, LightSelection::Power, PathBody::Loop) != frame);
+    for (const RestirLight light : {RestirLight::Off, RestirLight::Direct, RestirLight::Indirect}) {
+        CAPTURE(static_cast<int>(light));
+        restir.light = light;
+        const Hash128 frame = frame_of(cpu, before, LightSelection::Tree, PathBody::Loop);
+        CHECK(frame_of(cpu, fresh, LightSelection::Tree, PathBody::Wavefront) == frame);
+        CHECK(frame_of(queue, before, LightSelection::Tree, PathBody::Wavefront) == frame);
+        CHECK(frame_of(cpu, before, LightSelection::Power, PathBody::Loop) != frame);
+    }
 }
 
 TEST_CASE("a light tree is built where it is used, also for a session that began without") {

@@ -25,6 +25,7 @@ struct RestirCase {
     std::string name;
     Scene scene;
     Camera camera;
+    LightSelection selection = LightSelection::Power;
 };
 
 RestirCase builtin_case(const std::string& name) {
@@ -81,11 +82,13 @@ std::vector<RestirCase> restir_cases() {
     all.push_back(sky_case());
     all.push_back(lights_case());
     all.push_back(builtin_case("many-lights"));
+    all.back().selection = LightSelection::Tree;
     return all;
 }
 
-RenderSettings restir_settings() {
+RenderSettings restir_settings(LightSelection selection = LightSelection::Power) {
     RenderSettings settings;
+    settings.path.light_choice = selection;
     settings.width = kRestirWidth, settings.height = kRestirHeight;
     settings.path.max_depth = 3;
     settings.path.mip_maps = MipMaps::Off; // the pictures compared have none
@@ -161,7 +164,7 @@ TEST_CASE("without history the mean over frames with ReSTIR equals the path trac
         Messages messages;
         const PreparedScene prepared = prepare_scene(c.scene, {}, messages);
         Queue queue = requested_queue();
-        Session session(queue, prepared, c.camera, restir_settings());
+        Session session(queue, prepared, c.camera, restir_settings(c.selection));
         // The samples are the same, so the light that ReSTIR leaves to paths has the same noise.
         const auto frames = static_cast<uint32_t>(effort(384, 8192));
         const Image emitted = emitted_light(session, frames);

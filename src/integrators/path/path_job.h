@@ -64,12 +64,12 @@ inline Features features_of(ShadingVariant variant) {
     return kAllMaterials;
 }
 
-/// Returns whether the job's vertices select lights by a tree. ReSTIR's candidates for the first one, and the draws of
-/// a light meter, are by power, which must then hold for the lights that a path hits.
+/// Returns whether the job's vertices select lights by a tree. The draws of a light meter are by power, which must then
+/// hold for the lights that a path hits.
 inline bool uses_light_tree(const PathJob& job) {
     const PictureView& picture = job.picture;
     const bool has_no_code = picture.scene.has_media != 0 && (job.film.frame.is_there() || job.layers.is_there());
-    return !picture.camera.is_meter() && !job.film.frame.first_bounce.leaves_direct_light() && !has_no_code &&
+    return !picture.camera.is_meter() && !has_no_code &&
            uses_light_tree(job.settings.light_choice, picture.scene.lights.tree.light_count,
                            picture.scene.motions.is_there());
 }
@@ -114,7 +114,8 @@ using FilmFeatures =
                 kUnstacked | kMoving | kBatched, kAnyFilm, kUnstacked | kLightTree, kAnyFilm | kLightTree,
                 kAnyFilm | kMedia, kAnyFilm | kMedia | kLightTree>;
 using ReuseFeatures = // frames that leave light to ReSTIR
-    CompiledFor<kPlainDiffuse, kDiffuse | kMipMapped, kUnstacked | kMipMapped, kAllMaterials | kMipMapped | kNested>;
+    CompiledFor<kPlainDiffuse, kDiffuse | kMipMapped, kUnstacked | kMipMapped, kAllMaterials | kMipMapped | kNested,
+                kAllMaterials | kMipMapped | kNested | kLightTree>;
 using FrameFeatures =
     CompiledFor<kPlainDiffuse, kDiffuse | kMipMapped, kUnstacked | kMipMapped, kAllMaterials | kMipMapped | kNested,
                 kAllMaterials | kMipMapped | kNested | kLightTree, kAllMaterials | kMipMapped | kNested | kMedia>;
