@@ -203,6 +203,12 @@ pertev_launches(integrators/bidirectional/camera_media_stages.cu
   integrators/bidirectional/camera_subpath_stages.h
   STAGES "ShadeCameraSubpaths<ShadingVariant::General, true>"
     "ConnectSubpaths<ShadingVariant::General, true>")
+# For lights that are selected by a tree.
+pertev_launches(integrators/bidirectional/camera_tree_stages.cu
+  integrators/bidirectional/camera_subpath_stages.h
+  STAGES "ShadeCameraSubpaths<ShadingVariant::General, false, ChosenByTree>"
+    "ShadeCameraSubpaths<ShadingVariant::Unstacked, false, ChosenByTree>"
+    "ShadeCameraSubpaths<ShadingVariant::General, true, ChosenByTree>")
 pertev_launches(integrators/cast/shade_cast.cu
   integrators/cast/cast.h integrators/ray_tree/tree_stages.h
   STAGES "ShadeTrees<Cast, MotionVariant::None, ShadingVariant::General>"
@@ -409,6 +415,14 @@ pertev_launches(integrators/subpaths/particle_media_stages.cu
   STAGES "BeginParticles<true>"
     "ShadeParticles<ShadingVariant::General, true>"
     "ShadeSeen<ShadingVariant::General, true>")
+# For bidirectional's lights that are selected by a tree.
+pertev_launches(integrators/subpaths/particle_tree_stages.cu
+  integrators/subpaths/particle_stages.h
+  STAGES "BeginParticles<false, true>"
+    "BeginParticles<true, true>"
+    "ShadeParticles<ShadingVariant::General, false, ChosenByTree>"
+    "ShadeParticles<ShadingVariant::Unstacked, false, ChosenByTree>"
+    "ShadeParticles<ShadingVariant::General, true, ChosenByTree>")
 pertev_launches(integrators/whitted/shade_whitted.cu
   integrators/ray_tree/tree_stages.h integrators/whitted/whitted.h
   STAGES "ShadeTrees<Whitted, MotionVariant::None, ShadingVariant::General>"

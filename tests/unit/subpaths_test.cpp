@@ -119,3 +119,49 @@ TEST_CASE("light tracing misses mirror images, bidirectional path tracing does n
     CHECK(seen_below(scene, IntegratorKind::Light, 16) == 0);
     CHECK(seen_below(scene, IntegratorKind::Bidirectional, 16) == doctest::Approx(path).epsilon(1e-6));
 }
+
+TEST_CASE("weights of all techniques of a light path add up to 1, however next-event estimation selects the light") {
+    test::Random random(11);
+    for (int i = 0; i < 200; ++i) {
+        const auto any = [&](float least, float most) { return least + (most - least) * random.unit(); };
+        // The path's vertices are a light, two surfaces and the camera. Segments are numbered from the light on,
+        // cosines by surface and segment, densities of a surface by the side from which its subpath arrives.
+        const float squares[] = {any(0.1f, 9), any(0.1f, 9), any(0.1f, 9)};
+        const float cos_light = any(0.1f, 1),
+                    cosines[2][2] = {{any(0.1f, 1), any(0.1f, 1)}, {any(0.1f, 1), any(0.1f, 1)}};
+        const float of_camera[] = {any(0.1f, 3), any(0.1f, 3)}, of_light[] = {any(0.1f, 3), any(0.1f, 3)};
+        const float at_lens = any(1, 9), emission = any(0.1f, 3), position = any(0.01f, 9);
+        const float ratio = i % 2 == 0 ? 1 : any(0, 30);
+
+        MisSums light = {square(1 / emission), square(cos_light / (position * emission))};
+        light.arrive(cosines[0][0], squares[0]);
+        light.select_light(ratio);
+        const MisSums light_at_first = light;
+        light.scatter(cosines[0][1], of_light[0], of_camera[0]);
+        light.arrive(cosines[1][0], squares[1]);
+        const float seen = at_lens * cosines[1][1] / squares[2];
+        const float by_lens = mis_weight(squared_density(seen) * light.weight_sum(of_camera[1]));
+
+        MisSums camera = {square(1 / at_lens), 0};
+        camera.arrive(cosines[1][1], squares[2]);
+        const float onwards = of_camera[1] * cosines[0][1] / squares[1];
+        const float backwards = of_light[0] * cosines[1][0] / squares[1];
+        const float by_connection = mis_weight(squared_density(onwards) * light_at_first.weight_sum(of_camera[0]) +
+                                               squared_density(backwards) * camera.weight_sum(of_light[1]));
+        camera.scatter(cosines[1][0], of_camera[1], of_light[1]);
+        camera.arrive(cosines[0][1], squares[1]);
+        float by_sampled_light = 0;
+        if (ratio > 0) {
+            const float sampled = ratio * position * squares[0] / cos_light;
+            const float arriving = emission / squares[0] * cosines[0][0] / ratio;
+            by_sampled_light = mis_weight(squared_density(of_camera[0] / sampled) +
+                                          squared_density(arriving) * camera.weight_sum(of_light[0]));
+        }
+        camera.scatter(cosines[0][0], of_camera[0], of_light[0]);
+        camera.arrive(cos_light, squares[0]);
+        const LightDensities hit = {position, emission, ratio};
+        const float by_hit = mis_weight(hit.weight_sum_by_tree(camera));
+        CHECK(by_lens + by_connection + by_sampled_light + by_hit == doctest::Approx(1).epsilon(1e-4));
+        if (ratio == 1) CHECK(by_hit == doctest::Approx(mis_weight(hit.weight_sum(camera))).epsilon(1e-5));
+    }
+}

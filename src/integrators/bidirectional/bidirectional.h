@@ -25,7 +25,7 @@ struct BothDirections {
 
     template <class Schedule>
     static void render(Schedule& schedule, const SubpathJob& job) {
-        run_particles(schedule, job);
+        run_particles<kIsConnected>(schedule, job);
         const SubpathsView& subpaths = job.subpaths;
         const uint32_t depth = job.scene.settings.max_depth;
         schedule.run("begin_subpaths", 1, BeginSubpaths{subpaths.counts, job.count});
@@ -33,21 +33,21 @@ struct BothDirections {
                      BeginCameraSubpaths{job.scene, subpaths, job.samples, job.first});
         schedule.begin_rounds(job.count);
         for (uint32_t round = 0; round <= depth && schedule.has_rays_left(subpaths.counts); ++round) {
-            with_media(job.scene.picture.scene, [&]<ShadingVariant kVariant, bool kInMedia>() {
-                run_round<kVariant, kInMedia>(schedule, job, round);
+            with_media_and_choice(job.scene, [&]<ShadingVariant kVariant, bool kInMedia, class Choice>() {
+                run_round<kVariant, kInMedia, Choice>(schedule, job, round);
             });
         }
     }
 
 private:
-    template <ShadingVariant kVariant, bool kInMedia, class Schedule>
+    template <ShadingVariant kVariant, bool kInMedia, class Choice, class Schedule>
     static void run_round(Schedule& schedule, const SubpathJob& job, uint32_t round) {
         const SubpathsView& subpaths = job.subpaths;
         const uint32_t most = schedule.max_rays(), depth = job.scene.settings.max_depth;
         const WorkCount rays = {most, &subpaths.counts->rays};
         schedule.find_hits(round == 0 ? RayKind::Camera : RayKind::Bounce, job, rays, round);
         schedule.run("shade_camera_subpaths", rays,
-                     ShadeCameraSubpaths<kVariant, kInMedia>{job.scene, subpaths, job.film, round});
+                     ShadeCameraSubpaths<kVariant, kInMedia, Choice>{job.scene, subpaths, job.film, round});
         add_connections(schedule, job, most, kConnectedAtOnce);
         for (uint32_t first = 0; round + first + 2 <= depth; first += kConnectedAtOnce) {
             const uint32_t pairs = most * kConnectedAtOnce;

@@ -11,8 +11,8 @@ namespace pertev {
 inline constexpr uint32_t kConnectedAtOnce = 4;
 
 /// The stage that shades hits of camera subpaths, and scatterings in media: emission, next-event estimation,
-/// continuation. With kInMedia in a scene with media.
-template <ShadingVariant kVariant, bool kInMedia = false>
+/// continuation. With kInMedia in a scene with media. `Choice` selects lights (shading/light_set.h).
+template <ShadingVariant kVariant, bool kInMedia = false, class Choice = ChosenByPower>
 struct ShadeCameraSubpaths {
     SubpathScene scene;
     SubpathsView subpaths;
@@ -70,7 +70,8 @@ private:
         if (state.depth() == 0) {
             add_seen(scene.picture, film, state, ray, hit, surface, kInMedia ? state.throughput : Rgb{1, 1, 1});
         } else if (!is_black(surface.emission)) {
-            add_light(state, light_densities(hit, ray.direction), surface.emission);
+            const LightContext before = light_context_before<Choice>(subpaths, subpath, ray.origin);
+            add_light(state, light_densities(hit, ray.direction, before), surface.emission);
         }
         if (surface.is_unlit || state.depth() >= scene.settings.max_depth) return;
         shade_vertex(SurfaceEnd<kVariant>{surface}, hit, ray.direction, subpath, state, list);
@@ -93,7 +94,8 @@ private:
         continue_subpath(end, subpath, state, wo, key, list);
     }
     HD void add_light(const SubpathState& state, const LightDensities& light, Rgb emission) const {
-        add_radiance(film, state.pixel, mis_weight(light.weight_sum(state.mis)) * (state.throughput * emission));
+        const float others = Choice::kReadsNormal ? light.weight_sum_by_tree(state.mis) : light.weight_sum(state.mis);
+        add_radiance(film, state.pixel, mis_weight(others) * (state.throughput * emission));
     }
     HD void add_background(const SubpathState& state, const Ray& ray) const {
         if (state.depth() == 0) {
@@ -104,13 +106,14 @@ private:
         const float pdf = pdf_environment(lights, ray.origin, ray.direction);
         add_light(state, {pdf, pdf_disc(scene.world)}, environment_radiance(lights.environment, ray.direction));
     }
-    HD LightDensities light_densities(const Hit& hit, Vec3 direction) const {
+    /// `before` is the context of the vertex before the hit.
+    HD LightDensities light_densities(const Hit& hit, Vec3 direction, const LightContext& before) const {
         const LightSetView& lights = scene.picture.scene.lights;
         const uint32_t light = light_of(lights, hit.instance, hit.primitive);
         if (light == kNoLight) return {}; // only this subpath can find it
         const EmissiveTriangle& triangle = lights.triangles[light];
         const float cosine = dot(normalize(cross(triangle.ab, triangle.ac)), direction);
-        return {pdf_position(triangle), pdf_emission(triangle, cosine)};
+        return {pdf_position(triangle), pdf_emission(triangle, cosine), selection_ratio<Choice>(lights, before, light)};
     }
 
     /// Samples one point of one light, as path tracing does.
@@ -120,7 +123,8 @@ private:
         const SceneView& view = scene.picture.scene;
         LightSample light;
         const SampleBits bits = sample_bits(scene.settings.sampler, key, light_group(state.depth()), Pair::Last);
-        if (!sample_light<emitter_look(kVariant)>(view.lights, end.light_context(wo), bits, light)) return;
+        const LightContext context = end.light_context(wo);
+        if (!sample_light<emitter_look(kVariant), Choice>(view.lights, context, bits, light)) return;
         const BothWays scattered = end.scatter(wo, light.wi);
         if (is_black(scattered.camera.f)) return;
         const uint32_t coin = coin_key(key, state.depth(), true);
@@ -138,6 +142,7 @@ private:
         }
         float found = light.is_delta ? 0.0f : squared_density(scattered.camera.pdf / light.pdf);
         float arriving = density_from(light) * end.density_factor(light.wi);
+        if constexpr (Choice::kReadsNormal) arriving /= selection_ratio<Choice>(view.lights, context, light);
         if constexpr (kInMedia) {
             found *= square(passage.probability);
             arriving *= passage.probability;
@@ -186,6 +191,7 @@ private:
         if constexpr (kInMedia) {
             subpaths.store_interior(subpath, interior_towards(scene.picture.scene, list, end, wo, wi));
         }
+        store_light_normal<Choice>(subpaths, subpath, end, wo);
         state.throughput = state.throughput * sample.weight;
         ++state.scatterings;
         subpaths.states[subpath] = state;

@@ -192,6 +192,7 @@ constexpr std::array kIntegrators = {
          .finds_all_light = true,
          .ignores_nesting = true,
          .has_media = true,
+         .selects_lights = true,
          .max_depth = kMaxConnectedDepth}),
     row<PhotonMapIntegrator, photon_map_request>({.value = Kind::PhotonMap,
                                                   .name = "photon_map",

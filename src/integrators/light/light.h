@@ -23,7 +23,7 @@ struct ParticlesAlone {
 
     template <class Schedule>
     static void render(Schedule& schedule, const SubpathJob& job) {
-        run_particles(schedule, job);
+        run_particles<kIsConnected>(schedule, job);
         schedule.run("begin_camera_subpaths", job.count,
                      BeginCameraSubpaths{job.scene, job.subpaths, job.samples, job.first});
         schedule.find_hits(RayKind::Camera, job, job.count, 0);

@@ -8,6 +8,7 @@
 
 #include "device/atomics.h"
 #include "integrators/subpaths/emit_particle.h"
+#include "integrators/subpaths/selection_ratio.h"
 #include "integrators/subpaths/subpath_media.h"
 #include "render/begin_order.h"
 #include "render/connect_to_camera.h"
@@ -86,8 +87,8 @@ HD inline SampleKey particle_sample_key(const SubpathScene& scene, uint32_t pixe
 }
 
 /// The stage that starts the particles of samples `first`, first + 1, ... of `samples` as subpaths 0, 1, ...; with
-/// kInMedia in a scene with media.
-template <bool kInMedia = false>
+/// kInMedia in a scene with media. With kKeepsLights, each subpath knows its light.
+template <bool kInMedia = false, bool kKeepsLights = false>
 struct BeginParticles {
     SubpathScene scene;
     SubpathsView subpaths;
@@ -111,13 +112,14 @@ struct BeginParticles {
         state.is_from_far = particle.is_from_far ? 1 : 0;
         subpaths.states[i] = state;
         subpaths.squared_indices[i] = 1;
+        if constexpr (kKeepsLights) subpaths.lights[i] = particle.light;
         subpaths.queue_ray(atomic_add(&subpaths.counts->next, 1u), i, particle.ray, particle.start, coin, 0);
     }
 };
 
 /// The stage that shades hits of particles, and scatterings in media: a connection to the camera, a stored vertex, the
-/// continuation.
-template <ShadingVariant kVariant, bool kInMedia = false>
+/// continuation. `Choice` selects the lights of next-event estimation (shading/light_set.h).
+template <ShadingVariant kVariant, bool kInMedia = false, class Choice = ChosenByPower>
 struct ShadeParticles {
     SubpathScene scene;
     SubpathsView subpaths;
@@ -170,6 +172,12 @@ private:
     HD INLINE_ON_DEVICE void shade_vertex(const End& end, const Hit& hit, Vec3 direction, uint32_t subpath,
                                           SubpathState& state, InteriorList list) const {
         state.is_from_far = 0;
+        if constexpr (Choice::kReadsNormal) {
+            // The first vertex scatters to the side from which the light comes, or to both.
+            const LightContext context = end.light_context(-direction);
+            const uint32_t light = state.depth() == 0 ? subpaths.lights[subpath] : kNoLight;
+            state.mis.select_light(selection_ratio<Choice>(scene.picture.scene.lights, context, light));
+        }
         const bool can_be_connected = !end.scatters_by_delta_alone();
         if (state.depth() < subpaths.capacity.kept) {
             const std::size_t at = subpaths.kept_index(subpath, state.depth());

@@ -144,26 +144,41 @@ void with_media_and_choice(const SubpathScene& scene, const Run& run) {
     run.template operator()<ShadingVariant::General, true, ChosenByPower>();
 }
 
-/// Traces all particles of the job to their ends and adds those that the camera sees to the film.
-template <class Schedule>
+/// Traces all particles of the job to their ends and adds those that the camera sees to the film. With kIsConnected,
+/// their MIS weights know how next-event estimation selects lights.
+template <bool kIsConnected, class Schedule>
 void run_particles(Schedule& schedule, const SubpathJob& job) {
     const SubpathsView& subpaths = job.subpaths;
     schedule.run("begin_subpaths", 1, BeginSubpaths{subpaths.counts, 0});
     const SceneView& scene = job.scene.picture.scene;
-    const auto begin = [&]<bool kInMedia>() {
+    const auto begin = [&]<bool kInMedia, bool kKeepsLights>() {
         schedule.run("begin_particles", job.count,
-                     BeginParticles<kInMedia>{job.scene, subpaths, job.samples, job.first});
+                     BeginParticles<kInMedia, kKeepsLights>{job.scene, subpaths, job.samples, job.first});
     };
-    scene.has_media != 0 ? begin.template operator()<true>() : begin.template operator()<false>();
+    const auto begin_as = [&]<bool kKeepsLights>() {
+        scene.has_media != 0 ? begin.template operator()<true, kKeepsLights>()
+                             : begin.template operator()<false, kKeepsLights>();
+    };
+    if constexpr (kIsConnected) {
+        uses_light_tree(job.scene) ? begin_as.template operator()<true>() : begin_as.template operator()<false>();
+    } else {
+        begin_as.template operator()<false>();
+    }
     schedule.run("count_subpaths", 1, CountSubpaths{subpaths.counts, true, 0});
     schedule.begin_rounds(job.count);
     for (uint32_t round = 0; round < job.scene.settings.max_depth && schedule.has_rays_left(subpaths.counts); ++round) {
         const WorkCount rays = {schedule.max_rays(), &subpaths.counts->rays};
         const WorkCount connections = {schedule.max_rays(), &subpaths.counts->connections};
         schedule.find_hits(RayKind::Bounce, job, rays, round);
-        with_media(scene, [&]<ShadingVariant kVariant, bool kInMedia>() {
-            schedule.run("shade_particles", rays, ShadeParticles<kVariant, kInMedia>{job.scene, subpaths, round});
-        });
+        const auto shade = [&]<ShadingVariant kVariant, bool kInMedia, class Choice = ChosenByPower>() {
+            schedule.run("shade_particles", rays,
+                         ShadeParticles<kVariant, kInMedia, Choice>{job.scene, subpaths, round});
+        };
+        if constexpr (kIsConnected) {
+            with_media_and_choice(job.scene, shade);
+        } else {
+            with_media(scene, shade);
+        }
         schedule.find_connections_of_camera(job, connections);
         schedule.run("add_splats", connections, AddSplats{subpaths, job.scene.picture.camera.filter, job.film});
         schedule.run("count_subpaths", 1, CountSubpaths{subpaths.counts, true, 0});

@@ -21,11 +21,13 @@ public:
     void render(uint32_t first, uint32_t count, const FilmView& film) override;
 
 private:
-    static SubpathCapacity capacity_for(const SubpathSettings& settings, bool has_interiors, std::size_t bytes,
+    static SubpathCapacity capacity_for(const SubpathSettings& settings, const WorkSize& size, std::size_t bytes,
                                         uint64_t most) {
         return capacity_within(bytes, most, [&](uint32_t subpaths) {
             SubpathCapacity capacity = Algorithm::capacity(settings, subpaths);
-            capacity.has_interiors = has_interiors;
+            capacity.has_interiors = size.has_interiors && size.has_media;
+            capacity.has_normals =
+                Algorithm::kIsConnected && uses_light_tree(settings.light_choice, size.tree_lights, size.has_times);
             return capacity;
         });
     }
@@ -34,9 +36,7 @@ private:
 template <class Algorithm>
 void SubpathIntegrator<Algorithm>::reserve(const WorkSize& size) {
     if (uses_loop(size)) return;
-    const bool has_interiors = size.has_interiors && size.has_media;
-    allocate_capacity(capacity_for(settings_, has_interiors, kMaxBytes, std::min<uint64_t>(size.all(), batch_)),
-                      "light paths");
+    allocate_capacity(capacity_for(settings_, size, kMaxBytes, std::min<uint64_t>(size.all(), batch_)), "light paths");
 }
 
 template <class Algorithm>
@@ -46,8 +46,8 @@ void SubpathIntegrator<Algorithm>::render(uint32_t first, uint32_t count, const 
     SubpathJob job = {};
     job.scene = {picture_, picture_settings_, sphere_round(tracer_->bounds()), Algorithm::kIsConnected};
     job.film = film;
-    const bool has_interiors = picture_.scene.nesting.is_there() && picture_.scene.has_media != 0;
-    const SubpathCapacity loop_capacity = capacity_for(picture_settings_, has_interiors, kLoopBytes, kLoopCount);
+    const WorkSize size = size_of(picture_, *tracer_, count);
+    const SubpathCapacity loop_capacity = capacity_for(picture_settings_, size, kLoopBytes, kLoopCount);
     const auto run = [&](const PixelWindow& window, const auto& stages) {
         job.samples = {window, first, count};
         run_stages(job, 0, job.samples.count(), loop_capacity, count, [&](auto& schedule, const SubpathJob& part) {
@@ -58,7 +58,8 @@ void SubpathIntegrator<Algorithm>::render(uint32_t first, uint32_t count, const 
     rays_.camera += job.samples.count();
     // Particles of the pixels around the window may be seen in it.
     for (const PixelWindow& window : windows_around(film.window, picture_.camera.height)) {
-        run(window, [](auto& schedule, const SubpathJob& part) { run_particles(schedule, part); });
+        run(window,
+            [](auto& schedule, const SubpathJob& part) { run_particles<Algorithm::kIsConnected>(schedule, part); });
     }
 }
 

@@ -54,6 +54,9 @@ struct MisSums {
         earlier = min(by * weight_sum(reverse_pdf), kMaxWeightSum);
         last = min(1.0f / square(pdf), kMaxWeightSum);
     }
+    /// Updates the weights of a light subpath on arrival at its first vertex, for which next-event estimation selects
+    /// the light with `ratio` times the probability of its emission.
+    HD void select_light(float ratio) { last = min(last * squared_density(ratio), kMaxWeightSum); }
     HD void scatter_by_delta(float cos_out) {
         earlier = earlier * square(cos_out);
         last = 0;
@@ -163,6 +166,8 @@ struct SubpathsView {
     Uint2* interiors;       // [subpaths] solids that hold their rays; null unless capacity.has_interiors
     Vec3* normals;          // [subpaths] normals of the contexts that selected lights where their rays start; null
                             // unless capacity.has_normals
+    uint32_t* lights;       // [subpaths] Particle::light of light subpaths; null unless capacity.has_normals and they
+                            // are kept
 
     // Current rays, contiguous. Rounds alternate between two arrays for them, for the triangles that they leave, and
     // for their owners, the subpaths.
@@ -265,6 +270,7 @@ inline std::size_t lay_out(SubpathsView& view, std::byte* memory, const SubpathC
         add_array(view.connection_rasters, subpaths);
         add_array(view.interiors, capacity.has_interiors ? subpaths : 0);
         add_array(view.normals, capacity.has_normals ? subpaths : 0);
+        add_array(view.lights, capacity.has_normals ? connects : 0);
         add_array(view.counts, 1);
     });
 }
