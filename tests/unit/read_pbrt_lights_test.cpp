@@ -414,6 +414,19 @@ TEST_CASE("pbrt: the file suggests size, samples, depth, filter and exposure") {
     CHECK(suggestion(scene, "exposure") == "2");
     CHECK(scene.cameras.empty());
     CHECK(suggestion(load_lit("WorldBegin\n" + kFloorText), "max_depth") == "5"); // pbrt's own
+    // The time of the shutter and the film's speed are the exposure; sensors of pbrt have that of the observer.
+    const std::string shutter = "Camera \"perspective\" \"float shutteropen\" .25 \"float shutterclose\" .5 ";
+    CHECK(suggestion(load_lit(shutter + "Film \"rgb\" WorldBegin\n" + kFloorText), "exposure") == "-2");
+    CHECK(suggestion(load_lit(shutter + "Film \"rgb\" WorldBegin\n" + kFloorText + "WorldEnd\n"), "exposure").empty());
+    const auto left_out = [](const char* film) {
+        Messages messages;
+        (void)load_lit(std::string("Film \"rgb\" ") + film + " WorldBegin\n" + kFloorText, messages);
+        return messages.left_out().size();
+    };
+    CHECK(left_out("\"string sensor\" \"cie1931\" \"float whitebalance\" 6500") == 0);
+    CHECK(left_out("\"string sensor\" \"nikon_d850\"") == 1);
+    CHECK(left_out("\"string sensor\" \"nikon\"") == 1);
+    CHECK(left_out("\"string sensor\" \"nikon_d850\" \"float whitebalance\" 3000") == 2);
 }
 
 TEST_CASE("pbrt: a light in the camera's coordinates moves with it") {

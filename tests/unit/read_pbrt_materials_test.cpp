@@ -167,41 +167,6 @@ TEST_CASE("pbrt: coats, panes and sheets are the nearest materials") {
     CHECK(sheet.specular_weight == 0);
 }
 
-TEST_CASE("pbrt: mixtures are exact where one material can be both") {
-    const std::string two = "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" \"rgb reflectance\" [.2 .2 .2]\n"
-                            "MakeNamedMaterial \"b\" \"string type\" \"diffuse\" \"rgb reflectance\" [.6 .6 .6]\n"
-                            "MakeNamedMaterial \"c\" \"string type\" \"conductor\"\n";
-    CHECK(
-        pbrt_material(two + "Material \"mix\" \"string materials\" [\"a\" \"b\"] \"float amount\" .25").base_color.r ==
-        doctest::Approx(0.3));
-    // The amount is that of the first in pbrt-v3.
-    CHECK(
-        pbrt_material(
-            two +
-                "Material \"mix\" \"string namedmaterial1\" \"a\" \"string namedmaterial2\" \"b\" \"float amount\" .25",
-            "WorldEnd\n")
-            .base_color.r == doctest::Approx(0.5));
-    const Material hole =
-        pbrt_material(two + "Material \"mix\" \"string materials\" [\"interface\" \"b\"] \"float amount\" .75");
-    CHECK(hole.alpha == 0.75f);
-    CHECK(hole.alpha_mode == AlphaMode::Blend);
-    CHECK(
-        pbrt_material(two + "Material \"mix\" \"string materials\" [\"b\" \"interface\"] \"float amount\" .75").alpha ==
-        0.25f);
-    const OneMaterial other =
-        load_pbrt_material(two + "Material \"mix\" \"string materials\" [\"a\" \"c\"] \"float amount\" .75");
-    CHECK(other.messages.left_out().size() == 1);
-    CHECK(other.material.kind == MaterialKind::Conductor);
-    const OneMaterial none = load_pbrt_material("Material \"mix\" \"string materials\" [\"a\"]");
-    CHECK(none.messages.left_out().size() == 1);
-    CHECK(none.material.base_color == grey(0.5f));
-    const OneMaterial masked =
-        load_pbrt_material(two + "Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"a.exr\"\n"
-                                 "Material \"mix\" \"string materials\" [\"a\" \"b\"] \"texture amount\" \"t\"");
-    CHECK(pbrt_texel(masked.scene, masked.material.base_color_texture, 0.2f, 0.5f) == doctest::Approx(0.3));
-    CHECK(pbrt_texel(masked.scene, masked.material.base_color_texture, 0.8f, 0.5f) == doctest::Approx(0.4));
-}
-
 TEST_CASE("pbrt: materials of version 3") {
     CHECK(pbrt_material("Material \"matte\" \"rgb Kd\" [.1 .2 .3]", "WorldEnd\n").base_color == Rgb{0.1f, 0.2f, 0.3f});
     CHECK(pbrt_material("Material \"matte\" \"color Kd\" [.1 .2 .3] \"float sigma\" 20").base_diffuse_roughness > 0);

@@ -7,9 +7,11 @@
 
 #include "base/limits.h"
 #include "formats/described/bumps.h"
+#include "formats/described/color_by_normals.h"
 #include "formats/described/described_medium.h"
 #include "formats/described/environment.h"
 #include "formats/described/image_budget.h"
+#include "formats/described/mix_surfaces.h"
 #include "formats/described/transforms.h"
 #include "formats/described/usable_values.h"
 #include "math/double_pi.h"
@@ -168,6 +170,8 @@ void set_environment(const Parts& parts, const DoubleTransform& scene_from_file,
 
 Scene assemble(Parts parts, const DoubleTransform& scene_from_world, uint64_t file_bytes, std::string_view expected,
                TextureLoader& loader, Sink& sink) {
+    separate_mixtures(parts, sink);
+    color_by_normals(parts, file_bytes, sink);
     Scene scene;
     DoubleBounds3 box;
     std::vector<DoubleTransform> transforms;
@@ -229,7 +233,7 @@ Scene assemble(Parts parts, const DoubleTransform& scene_from_world, uint64_t fi
     }
     loader.load_into(scene, file_bytes);
     ImageBudget budget(justified_bytes(4 * kFreeImageBytes, file_bytes));
-    Bumps bumps(budget, scene);
+    Bumps bumps(budget, parts.made, scene);
     std::vector<const Surface*> surfaces;
     for (const Surface& surface : assembly.surfaces) surfaces.push_back(&surface);
     for (std::size_t i = 0; i < surfaces.size(); ++i) {

@@ -28,6 +28,22 @@ TextureImage linear_image(const TextureImage& from, bool is_srgb, float exponent
     return to;
 }
 
+/// Returns an image of which each pixel is a square of many.
+TextureImage enlarged(const TextureImage& from) {
+    constexpr uint32_t kTimes = 32;
+    const Image& image = from.rgba_float;
+    TextureImage to;
+    to.name = from.name;
+    to.rgba_float = {.width = kTimes * image.width, .height = kTimes * image.height, .channels = 4, .pixels = {}};
+    for (uint32_t y = 0; y < to.rgba_float.height; ++y) {
+        for (uint32_t x = 0; x < to.rgba_float.width; ++x) {
+            const float* const pixel = image.pixels.data() + 4 * (std::size_t(y / kTimes) * image.width + x / kTimes);
+            to.rgba_float.pixels.insert(to.rgba_float.pixels.end(), pixel, pixel + 4);
+        }
+    }
+    return to;
+}
+
 /// Returns the area that the triangles cover in texture coordinates.
 double texture_area(const Mesh& mesh) {
     double sum = 0;
@@ -53,11 +69,12 @@ double world_area(const Mesh& mesh, const DoubleTransform& world_from_mesh) {
     return sum;
 }
 
-int32_t Bumps::normals_of(const TextureRef& heights, float exponent) {
+int32_t Bumps::normals_of(const TextureRef& heights, float exponent, int32_t made) {
     const auto [number, is_new] =
-        numbers_.try_emplace({heights.image, heights.is_srgb, exponent, heights.wrap_s}, kNoImage);
+        numbers_.try_emplace({heights.image, made, heights.is_srgb, exponent, heights.wrap_s}, kNoImage);
     if (!is_new) return number->second;
-    const TextureImage& from = scene_.images[static_cast<std::size_t>(heights.image)];
+    const TextureImage from = made >= 0 ? enlarged(made_[static_cast<std::size_t>(made)])
+                                        : scene_.images[static_cast<std::size_t>(heights.image)];
     budget_.charge(from);
     TextureImage normals = normals_of_heights(linear_image(from, heights.is_srgb, exponent), 'm', heights.wrap_s);
     number->second = static_cast<int32_t>(scene_.images.size());
@@ -68,14 +85,15 @@ int32_t Bumps::normals_of(const TextureRef& heights, float exponent) {
 void Bumps::set(const TextureValue& heights, const Mesh& mesh, const DoubleTransform& world_from_mesh,
                 Material& material) {
     TextureRef& ref = material.normal_texture;
-    if (!ref.has_image()) return;
+    if (!ref.has_image() && heights.made < 0) return;
+    if (heights.made >= 0) ref.filter = TextureFilter::Linear;
     const double repeats = static_cast<double>(abs(ref.m00 * ref.m11));
     const double covered = texture_area(mesh) * repeats, area = world_area(mesh, world_from_mesh);
     if (!(covered > 0 && area > 0)) {
         ref = {};
         return;
     }
-    ref.image = normals_of(ref, heights.exponent);
+    ref.image = normals_of(ref, heights.exponent, heights.made);
     ref.is_srgb = false;
     const Image& normals = scene_.images[static_cast<std::size_t>(ref.image)].rgba_float;
     const double width = normals.width, height = normals.height;

@@ -1,11 +1,13 @@
 #pragma once
 
 // Heights of pbrt and Mitsuba as normal maps. Their heights are metres, and their texture coordinates follow the mesh;
-// a normal map here has one strength, that of the mesh's mean size of the texture.
+// a normal map here has one strength, that of the mesh's mean size of the texture. The steps of a checkerboard are
+// slopes of a sixteenth of a check.
 
 #include <cstdint>
 #include <map>
 #include <tuple>
+#include <vector>
 
 #include "formats/described/image_budget.h"
 #include "formats/described/texture_value.h"
@@ -20,19 +22,22 @@ double world_area(const Mesh& mesh, const DoubleTransform& world_from_mesh);
 /// Normals of height maps, each made once.
 class Bumps {
 public:
-    /// Both outlive it.
-    Bumps(ImageBudget& budget, Scene& scene) : budget_(budget), scene_(scene) {}
+    /// All outlive it; `made` are images that are not from files.
+    Bumps(ImageBudget& budget, const std::vector<TextureImage>& made, Scene& scene)
+        : budget_(budget), made_(made), scene_(scene) {}
 
     /// Replaces the image of material.normal_texture, which has the heights, by their normals, and sets the strength
-    /// that they have on `mesh`. The image of `heights` is decoded there.
+    /// that they have on `mesh`. The image of `heights` is decoded there, or
+    /// one of those made.
     void set(const TextureValue& heights, const Mesh& mesh, const DoubleTransform& world_from_mesh, Material& material);
 
 private:
-    int32_t normals_of(const TextureRef& heights, float exponent);
+    int32_t normals_of(const TextureRef& heights, float exponent, int32_t made);
 
     ImageBudget& budget_;
+    const std::vector<TextureImage>& made_;
     Scene& scene_;
-    std::map<std::tuple<int32_t, bool, float, Wrap>, int32_t> numbers_; // by image, encoding and wrap
+    std::map<std::tuple<int32_t, int32_t, bool, float, Wrap>, int32_t> numbers_; // by image, encoding and wrap
 };
 
 } // namespace pertev::described

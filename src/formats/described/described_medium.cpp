@@ -97,7 +97,10 @@ std::vector<std::string_view> names_of_substances() {
 }
 
 bool is_entered(const Surface& surface) {
-    return surface.is_nothing || surface.material.encloses() || surface.material.has_diffuse_transmission();
+    const auto is_body = [](const Surface& part) {
+        return part.is_nothing || part.material.encloses() || part.material.has_diffuse_transmission();
+    };
+    return is_body(surface) || std::ranges::any_of(surface.beneath, is_body);
 }
 
 void finish_media(std::optional<uint32_t> at_camera, Sink& sink, Parts& parts) {

@@ -7,21 +7,7 @@ namespace {
 
 using M = MaterialParameters;
 
-/// Returns whether two diffuse surfaces without images differ in nothing but their colours.
-bool looks_like_but_for_color(const Surface& a, const Surface& b) {
-    return a.material.base_diffuse_roughness == b.material.base_diffuse_roughness &&
-           a.material.alpha == b.material.alpha && a.has_heights == b.has_heights &&
-           a.material.normal_texture.image == b.material.normal_texture.image &&
-           a.material.alpha_texture.image == b.material.alpha_texture.image &&
-           a.has_vertex_colors == b.has_vertex_colors;
-}
-
 } // namespace
-
-std::string mixed_by_color(const std::string& mixture) {
-    return "only the colours of the parts of " + mixture +
-           " are mixed; their bumps, roughness, alpha and vertex colours are those of the first";
-}
 
 Surface make_surface(MaterialKind kind) {
     Surface surface;
@@ -58,6 +44,17 @@ void set_thin_pane(Surface& surface) {
     material.thin_walled = true;
 }
 
+void tint_thin_pane(Surface& surface, const TextureValue& reflected, const TextureValue& transmitted) {
+    Material& material = surface.material;
+    const float most = reflected.has_image() ? 1.0f : clamp(max_component(reflected.factor), 0.0f, 1.0f);
+    material.specular_weight = most;
+    if (most > 0) set_color(surface, &M::specular_color, &M::specular_color_texture, reflected.scaled(grey(1 / most)));
+    // The wall transmits all but what it reflects; there, the untinted reflection is lost.
+    const float root = (material.ior - 1) / (material.ior + 1), whole = root * root;
+    const float rest = (1 - whole) / (1 - most * whole);
+    set_color(surface, &M::base_color, &M::base_color_texture, transmitted.scaled(grey(rest)));
+}
+
 void set_roughness(Surface& surface, const TextureValue& u, const TextureValue& v, Curve curve) {
     Material& material = surface.material;
     if (u.has_image() || v.has_image()) {
@@ -88,41 +85,6 @@ float reflected_inside(float ior) {
         sum += reflected * 2 * cosine / kSteps;
     }
     return sum;
-}
-
-MixedSurface mix_surfaces(const Surface& first, const Surface& second, const TextureValue& of_second) {
-    if (first.is_nothing || second.is_nothing) {
-        if (first.is_nothing && second.is_nothing) return {first, std::nullopt};
-        Surface surface = first.is_nothing ? second : first;
-        TextureValue alpha = of_second;
-        if (second.is_nothing) {
-            alpha = of_second.scaled(grey(-1));
-            alpha.offset += grey(1);
-            if (!alpha.has_image()) alpha = constant(grey(1 - of_second.factor.r));
-        }
-        set_alpha(surface, alpha);
-        return {surface, std::nullopt};
-    }
-    const float share = of_second.has_image() ? 0.5f : clamp(of_second.factor.r, 0.0f, 1.0f);
-    const bool is_diffuse = first.material.kind == MaterialKind::Diffuse &&
-                            second.material.kind == MaterialKind::Diffuse && first.images.empty() &&
-                            second.images.empty();
-    const bool differs = !looks_like_but_for_color(first, second);
-    if (is_diffuse && !of_second.has_image()) {
-        Surface surface = first;
-        surface.material.base_color = lerp(first.material.base_color, second.material.base_color, share);
-        return {surface, std::nullopt, differs};
-    }
-    if (is_diffuse) {
-        Surface surface = first;
-        TextureValue color = of_second.scaled(second.material.base_color - first.material.base_color);
-        color.offset += first.material.base_color;
-        set_color(surface, &M::base_color, &M::base_color_texture, color);
-        return {surface, std::nullopt, differs};
-    }
-    MixedSurface mixed{share < 0.5f ? first : second, std::nullopt};
-    if (share > 0 && share < 1) mixed.left_out = share < 0.5f ? 1 : 0;
-    return mixed;
 }
 
 } // namespace pertev::described

@@ -3,7 +3,7 @@
 namespace pertev::described {
 
 TextureValue product(const TextureValue& a, const TextureValue& b) {
-    if (!a.has_image()) return b.scaled(a.factor);
+    if (!a.varies()) return b.scaled(a.factor);
     return a.scaled(b.has_image() ? b.factor + b.offset : b.factor);
 }
 

@@ -6,7 +6,7 @@
 
 namespace pertev::described {
 
-/// Returns a * b. If both have images, only that of `a` counts.
+/// Returns a * b. If both vary from place to place, only `a` does.
 TextureValue product(const TextureValue& a, const TextureValue& b);
 
 /// Returns an image of 2 x 2 pixels, of which the upper left one is `odd`.

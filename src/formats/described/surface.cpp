@@ -65,7 +65,7 @@ TextureImage changed_image(const TextureImage& from, const ImageChange& change, 
             value = converted(change.curve, change.amount, change.offset[c] + change.factor[c] * value);
             to.rgba_float.pixels[4 * i + c] = max(value, 0.0f);
         }
-        to.rgba_float.pixels[4 * i + 3] = texel_value(from, i, 3);
+        to.rgba_float.pixels[4 * i + 3] = change.is_opaque ? 1.0f : texel_value(from, i, 3);
     });
     return to;
 }
@@ -113,6 +113,16 @@ float converted(Curve curve, float amount, float value) {
 
 void set_color(Surface& surface, Rgb MaterialParameters::*color, TextureSlot slot, const TextureValue& value,
                Curve curve, float amount) {
+    if (color == &MaterialParameters::base_color) {
+        surface.by_normal.reset();
+        if (value.by_normal && !value.has_image()) {
+            NormalMix mix = *value.by_normal;
+            mix.curve = curve, mix.amount = amount;
+            surface.by_normal = std::make_shared<NormalMix>(mix);
+            surface.material.base_color = grey(1); // times the colours of the vertices
+            return;
+        }
+    }
     surface.material.*color =
         value.has_image() ? put_image(surface, slot, value, curve, amount) : converted(curve, amount, value.factor);
 }
@@ -159,6 +169,10 @@ void finish_images(const std::vector<const Surface*>& surfaces, std::vector<Text
                 continue;
             }
             change.decodes = decodes;
+            // The colour's alpha would count as an opacity.
+            change.is_opaque = use.slot == &MaterialParameters::base_color_texture &&
+                               scene.materials[i].alpha_mode != AlphaMode::Opaque &&
+                               has_alpha(scene.images[static_cast<std::size_t>(ref.image)]);
             if (change.is_identity()) continue;
             const auto [number, is_new] = numbers.try_emplace({ref.image, ref.is_srgb, change}, kNoImage);
             if (is_new) {

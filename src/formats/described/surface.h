@@ -4,6 +4,7 @@
 
 #include <array>
 #include <compare>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -14,26 +15,15 @@
 
 namespace pertev::described {
 
-/// The conversion of a value after factor and offset.
-enum class Curve {
-    None,
-    RoughnessOfWidth,    // a microfacet width: roughness is its root
-    RoughnessOfRoot,     // pbrt-v4's remapped roughness, of which the width is the root
-    RoughnessOfVersion3, // pbrt-v3's remapped roughness
-    BeneathCoat,         // the albedo of a diffuse surface beneath a smooth coat that reflects `amount` from inside
-};
-
-/// Returns `value` converted; those of roughness are Pertev's, the root of the width.
-float converted(Curve curve, float amount, float value);
-
 /// The changes of an image's texels before a material uses it.
 struct ImageChange {
     float exponent = 1;
     std::array<float, 3> factor = {1, 1, 1}, offset = {0, 0, 0};
     Curve curve = Curve::None;
     float amount = 0;
-    bool is_alpha = false; // the alpha channel counts if it varies, else the first
-    bool decodes = false;  // numbers are sRGB-encoded; slots decode only colours
+    bool is_alpha = false;  // the alpha channel counts if it varies, else the first
+    bool decodes = false;   // numbers are sRGB-encoded; slots decode only colours
+    bool is_opaque = false; // the alpha channel is 1, because it is no opacity
     auto operator<=>(const ImageChange&) const = default;
     bool is_identity() const { return *this == ImageChange(); }
 };
@@ -44,6 +34,7 @@ struct SlotImage {
     TextureSlot slot = nullptr;
     int32_t made = -1; // index into Parts::made; else the slot has an image of the loader
     ImageChange change;
+    bool operator==(const SlotImage&) const = default;
 };
 
 struct Surface {
@@ -53,6 +44,9 @@ struct Surface {
     std::vector<SlotImage> images;
     TextureValue heights; // metres along the normal, if it has an image
     bool has_heights = false;
+    std::shared_ptr<const NormalMix> by_normal; // the base colour, by the direction of the surface
+    // Further surfaces in the same place, for rays that pass the alpha of this one and of those before them.
+    std::vector<Surface> beneath;
 };
 
 /// Sets a colour and its texture.

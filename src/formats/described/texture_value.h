@@ -4,11 +4,37 @@
 // offset can express it.
 
 #include <cstdint>
+#include <memory>
 
+#include "math/double_transform.h"
 #include "math/rgb.h"
 #include "scene/texture.h"
 
 namespace pertev::described {
+
+/// The conversion of a value after factor and offset.
+enum class Curve {
+    None,
+    RoughnessOfWidth,    // a microfacet width: roughness is its root
+    RoughnessOfRoot,     // pbrt-v4's remapped roughness, of which the width is the root
+    RoughnessOfVersion3, // pbrt-v3's remapped roughness
+    BeneathCoat,         // the albedo of a diffuse surface beneath a smooth coat that reflects `amount` from inside
+};
+
+/// Returns `value` converted; those of roughness are Pertev's, the root of the width.
+float converted(Curve curve, float amount, float value);
+
+/// Two colours mixed by the direction of a surface: the first with the share |normal . direction|.
+struct NormalMix {
+    DoubleVec3 direction; // unit, in the world of the file
+    Rgb first, second;
+    Curve curve = Curve::None; // converts the mixed colour
+    float amount = 0;
+    Rgb mean() const {
+        const Rgb sum = 0.5f * (first + second);
+        return {converted(curve, amount, sum.r), converted(curve, amount, sum.g), converted(curve, amount, sum.b)};
+    }
+};
 
 /// The value of a texture: offset + factor * texel. Without an image it is `factor`.
 struct TextureValue {
@@ -18,14 +44,19 @@ struct TextureValue {
     float exponent = 1;         // the gamma of the stored values; applied before factor and offset
     bool ignores_alpha = false; // an opacity is that of the colour, even if the image has an alpha channel
 
-    bool is_of_vertices = false; // the colours of a mesh's vertices, times factor
+    bool is_of_vertices = false;                // the colours of a mesh's vertices, times factor
+    std::shared_ptr<const NormalMix> by_normal; // the value by direction, of which `factor` is the mean
 
     bool has_image() const { return ref.has_image() || made >= 0; }
+    bool varies() const { return has_image() || by_normal != nullptr; }
     /// Returns the same value times `color`.
     TextureValue scaled(Rgb color) const {
         TextureValue value = *this;
         value.factor = color * value.factor;
         value.offset = color * value.offset;
+        if (by_normal)
+            value.by_normal = std::make_shared<NormalMix>(
+                NormalMix{by_normal->direction, color * by_normal->first, color * by_normal->second});
         return value;
     }
 };

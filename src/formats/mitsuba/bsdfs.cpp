@@ -8,6 +8,7 @@
 
 #include "base/message_text.h"
 #include "formats/described/make_surface.h"
+#include "formats/described/mix_surfaces.h"
 #include "formats/described/rough_coat.h"
 #include "formats/files/closest_name.h"
 #include "formats/mitsuba/parse_values.h"
@@ -52,9 +53,12 @@ uint32_t Bsdfs::surface_of(Object& bsdf) {
     has_two_sides_ = false;
     (void)textures_.took_vertex_colors();
     Surface surface = read(bsdf);
-    surface.has_vertex_colors = textures_.took_vertex_colors();
-    warn_of_backs(bsdf, surface);
-    surface.material.name = bsdf.id.empty() ? bsdf.type : bsdf.id;
+    const bool has_vertex_colors = textures_.took_vertex_colors();
+    for_each_part(surface, [&](Surface& part) { warn_of_backs(bsdf, part); });
+    if (surface.beneath.empty()) { // parts of a mixture have their own
+        surface.has_vertex_colors = surface.has_vertex_colors || has_vertex_colors;
+        surface.material.name = bsdf.id.empty() ? bsdf.type : bsdf.id;
+    }
     surface.material.origin = fmt::format("{}:{}", bsdf.location().file, bsdf.location().line);
     const auto number = static_cast<uint32_t>(reading_.parts.surfaces.size());
     reading_.parts.surfaces.push_back(std::move(surface));
@@ -63,11 +67,11 @@ uint32_t Bsdfs::surface_of(Object& bsdf) {
 }
 
 /// Warns once that a surface reflects from its back, too.
-void Bsdfs::warn_of_backs(const Object& bsdf, const Surface& surface) {
-    const Material& material = surface.material;
+void Bsdfs::warn_of_backs(const Object& bsdf, const Surface& part) {
+    const Material& material = part.material;
     const bool is_black = material.kind == MaterialKind::Diffuse && max_component(material.base_color) == 0;
     const bool has_back = material.kind == MaterialKind::Dielectric || material.transmits() ||
-                          material.has_diffuse_transmission() || surface.is_nothing;
+                          material.has_diffuse_transmission() || part.is_nothing;
     if (has_back || is_black || has_two_sides_) return;
     reading_.sink().warn(
         {FileLocation{bsdf.location().file},
@@ -223,6 +227,10 @@ Surface Bsdfs::dielectric(Object& bsdf) {
     }
     const TextureValue transmitted = color(bsdf, "specular_transmittance", 1),
                        reflected = color(bsdf, "specular_reflectance", 1);
+    if (is_thin) {
+        tint_thin_pane(surface, reflected, transmitted);
+        return surface;
+    }
     set_color(surface, &M::base_color, &M::base_color_texture, transmitted);
     if (reflected.has_image() || !(reflected.factor == grey(1)))
         parameters.leave_out({"specular_reflectance"}, "glass reflects as its index says", reading_.sink());
@@ -262,19 +270,19 @@ Surface Bsdfs::glossy(Object& bsdf) {
 }
 
 Surface Bsdfs::coating(Object& bsdf) {
-    Surface surface = nested(bsdf);
-    Material& material = surface.material;
-    if (material.kind == MaterialKind::Diffuse) {
-        material.kind = MaterialKind::MetallicRoughness;
-        material.specular_weight = 0;
-    }
-    material.coat_weight = 1;
-    material.coat_ior = relative_ior(bsdf);
-    if (bsdf.type == "roughcoating") {
-        Surface coat = make_surface(MaterialKind::MetallicRoughness);
-        read_roughness(bsdf, coat);
+    Surface surface = nested(bsdf), coat = make_surface(MaterialKind::MetallicRoughness);
+    const float ior = relative_ior(bsdf);
+    if (bsdf.type == "roughcoating") read_roughness(bsdf, coat);
+    for_each_part(surface, [&](Surface& part) {
+        Material& material = part.material;
+        if (material.kind == MaterialKind::Diffuse) {
+            material.kind = MaterialKind::MetallicRoughness;
+            material.specular_weight = 0;
+        }
+        material.coat_weight = 1;
+        material.coat_ior = ior;
         material.coat_roughness = coat.material.roughness;
-    }
+    });
     bsdf.parameters.leave_out({"sigma_a", "thickness"}, "coats absorb nothing", reading_.sink());
     if (color(bsdf, "specular_reflectance", 1).factor.r != 1)
         bsdf.parameters.leave_out({"specular_reflectance"}, "coats reflect as their index says", reading_.sink());
@@ -291,6 +299,29 @@ Surface Bsdfs::transmitter(Object& bsdf) {
     return surface;
 }
 
+/// Reads a part of a mixture, with a name and vertex colours of its own.
+Surface Bsdfs::part(Object& bsdf) {
+    (void)textures_.took_vertex_colors();
+    Surface surface = read(bsdf);
+    if (!surface.beneath.empty()) return surface;
+    surface.has_vertex_colors = textures_.took_vertex_colors();
+    if (surface.material.name.empty()) surface.material.name = bsdf.id.empty() ? bsdf.type : bsdf.id;
+    return surface;
+}
+
+/// Mixes a surface with a BSDF of which it has the share `weight`.
+Surface Bsdfs::mix(Object& bsdf, const Surface& first, Object& second, const TextureValue& weight) {
+    const Surface other = part(second);
+    const MixedSurface mixed = mix_surfaces(first, other, weight);
+    if (mixed.left_out) {
+        const std::string& name = (*mixed.left_out == 0 ? first : other).material.name;
+        reading_.sink().leave_out(
+            {*mixed.left_out == 0 ? bsdf.location() : second.location(),
+             fmt::format("the part {} of {} is left out, because {}", name, bsdf.parameters.what(), mixed.reason)});
+    }
+    return mixed.surface;
+}
+
 Surface Bsdfs::mixture(Object& bsdf) {
     const std::vector<Object*> parts = objects_in(bsdf, "bsdf", reading_);
     Sink& sink = reading_.sink();
@@ -302,29 +333,25 @@ Surface Bsdfs::mixture(Object& bsdf) {
             if (Object* const texture = child_of(bsdf, "texture", reading_))
                 weight = textures_.value_of(*texture, ColorUse::Index);
         }
-        const MixedSurface mixed = mix_surfaces(read(*parts[0]), read(*parts[1]), weight);
-        if (mixed.left_out)
-            sink.leave_out({parts[*mixed.left_out]->location(),
-                            fmt::format("{} is left out of {}", parts[*mixed.left_out]->parameters.what(),
-                                        bsdf.parameters.what())});
-        if (mixed.is_by_color) sink.leave_out({bsdf.location(), mixed_by_color(bsdf.parameters.what())});
-        return mixed.surface;
+        return mix(bsdf, part(*parts[0]), *parts[1], weight);
     }
     const std::vector<double> weights = parse_numbers(bsdf.parameters.text("weights", "", sink));
     if (weights.size() != parts.size())
         throw bsdf.parameters.error(
             fmt::format("{} has {} weights for {} BSDFs", bsdf.parameters.what(), weights.size(), parts.size()));
-    Surface surface = read(*parts[0]);
+    Surface surface = part(*parts[0]);
     double sum = weights[0];
     for (std::size_t i = 1; i < parts.size(); ++i) {
         sum += weights[i];
         const float share = sum > 0 ? static_cast<float>(weights[i] / sum) : 0.0f;
-        MixedSurface mixed = mix_surfaces(surface, read(*parts[i]), constant(grey(share)));
-        if (mixed.left_out)
-            sink.leave_out({bsdf.location(),
-                            fmt::format("a part of {} with the smaller share is left out", bsdf.parameters.what())});
-        if (mixed.is_by_color) sink.leave_out({bsdf.location(), mixed_by_color(bsdf.parameters.what())});
-        surface = std::move(mixed.surface);
+        surface = mix(bsdf, surface, *parts[i], constant(grey(share)));
+    }
+    if (sum >= 0 && sum < 1 - 1e-5) { // the rest of the light is lost
+        Surface black = make_surface(MaterialKind::Diffuse);
+        black.material.base_color = grey(0);
+        black.material.name = "black";
+        black.has_vertex_colors = surface.has_vertex_colors;
+        surface = mix_surfaces(surface, black, constant(grey(static_cast<float>(1 - sum)))).surface;
     }
     return surface;
 }
@@ -336,7 +363,11 @@ Surface Bsdfs::mask(Object& bsdf) {
         if (Object* const texture = child_of(bsdf, "texture", reading_))
             opacity = textures_.value_of(*texture, ColorUse::Index);
     }
-    set_alpha(surface, opacity);
+    if (!set_opacity(surface, opacity))
+        reading_.sink().leave_out(
+            {bsdf.location(), fmt::format("the opacity of {} is only near, because textures decide "
+                                          "what is beneath it too",
+                                          bsdf.parameters.what())});
     return surface;
 }
 
@@ -346,18 +377,18 @@ Surface Bsdfs::bumpy(Object& bsdf) {
     std::vector<Object*> maps = objects_in(bsdf, "texture", reading_);
     if (maps.size() != 1) throw bsdf.parameters.error(fmt::format("{} has no texture", bsdf.parameters.what()));
     TextureValue map = textures_.value_of(*maps[0], ColorUse::Index);
-    if (map.made >= 0) {
-        sink.leave_out({bsdf.location(), "bumps need an image"});
-        return surface;
-    }
     if (!map.has_image()) return surface;
     if (bsdf.type == "normalmap") {
+        if (map.made >= 0) {
+            sink.leave_out({bsdf.location(), "a map of normals needs an image"});
+            return surface;
+        }
         map.ref.is_srgb = false;
-        surface.material.normal_texture = map.ref;
+        for_each_part(surface, [&](Surface& part) { part.material.normal_texture = map.ref; });
         return surface;
     }
-    surface.heights = map.scaled(grey(static_cast<float>(bsdf.parameters.number("scale", 1, sink))));
-    surface.has_heights = true;
+    const TextureValue heights = map.scaled(grey(static_cast<float>(bsdf.parameters.number("scale", 1, sink))));
+    for_each_part(surface, [&](Surface& part) { part.heights = heights, part.has_heights = true; });
     return surface;
 }
 

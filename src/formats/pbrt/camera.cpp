@@ -11,6 +11,7 @@
 #include "formats/described/transforms.h"
 #include "formats/described/usable_values.h"
 #include "formats/files/closest_name.h"
+#include "formats/spectra/spectrum.h"
 #include "math/portable_math.h"
 
 namespace pertev::pbrt {
@@ -27,6 +28,45 @@ struct Screen {
 
 float tangent_of_half(double degrees) { return tan(static_cast<float>(degrees) * (kPi / 360)); }
 
+constexpr std::array<std::string_view, 18> kSensors = {
+    "cie1931",       "canon_eos_100d",    "canon_eos_1dx_mkii", "canon_eos_200d",     "canon_eos_200d_mkii",
+    "canon_eos_5d",  "canon_eos_5d_mkii", "canon_eos_5d_mkiii", "canon_eos_5d_mkiv",  "canon_eos_5ds",
+    "canon_eos_m",   "nikon_d810",        "nikon_d850",         "hasselblad_l1d_20c", "sony_ilce_6400",
+    "sony_ilce_7m3", "sony_ilce_7rm3",    "sony_ilce_9"};
+
+/// Reads the sensor. pbrt fits each so that light of the white balance's temperature is white and as bright as for the
+/// observer, so that it changes no exposure, and of the colours only those that its filters see otherwise.
+void read_sensor(Parameters& film, Sink& sink) {
+    const std::string sensor = film.text("sensor", "cie1931", sink);
+    const double kelvins = film.number("whitebalance", 0, sink);
+    if (std::ranges::find(kSensors, sensor) == kSensors.end()) {
+        sink.leave_out({film.location(), fmt::format("the sensor {} is left out; colours are those of the observer{}",
+                                                     shortened(sensor), did_you_mean(sensor, kSensors))});
+    } else if (sensor != kSensors.front()) {
+        sink.leave_out({film.location(), fmt::format("the filters of the sensor {} are left out; colours are those of "
+                                                     "the observer, at the same exposure",
+                                                     sensor)});
+    }
+    constexpr double kWhiteOfRec709 = 6500;
+    if (!(kelvins > 0) || kelvins == kWhiteOfRec709) return;
+    const Rgb white = color_of_unit_light(black_body(std::clamp(kelvins, 1000.0, 25000.0)));
+    sink.leave_out(
+        {film.location(),
+         fmt::format("the white balance of {:.6g} K is left out; such light has about the colour {:.2f},{:.2f},"
+                     "{:.2f}, where pbrt shows white",
+                     kelvins, white.r, white.g, white.b)});
+}
+
+/// Returns how long the shutter of a camera is open; 1 if that is no time.
+double shutter_time(View& view, Sink& sink) {
+    if (!view.camera) return 1;
+    Parameters& camera = view.camera->parameters;
+    const double seconds = camera.number("shutterclose", 1, sink) - camera.number("shutteropen", 0, sink);
+    if (seconds > 0) return seconds;
+    sink.leave_out({camera.location(), "the shutter of a camera, which does not open, is left out of the exposure"});
+    return 1;
+}
+
 FilmSize read_film(View& view, const Context& context, Scene& scene) {
     Sink& sink = context.sink;
     FilmSize size;
@@ -37,17 +77,15 @@ FilmSize read_film(View& view, const Context& context, Scene& scene) {
     size.height = std::clamp<int64_t>(film.integer("yresolution", size.height, sink), 1, kMaxImageSide);
     scene.suggested.push_back({"size", fmt::format("{}x{}", size.width, size.height)});
     film.leave_out({"cropwindow", "pixelbounds"}, "the whole picture is rendered", sink);
-    const double iso = film.number("iso", 100, sink), seconds = film.number("exposuretime", 1, sink);
+    const double iso = film.number("iso", 100, sink);
+    const double seconds = context.is_version_3 ? 1 : shutter_time(view, sink);
     const double exposure = film.number("scale", 1, sink) * iso / 100 * seconds;
     if (exposure > 0 && exposure != 1)
         scene.suggested.push_back({"exposure", fmt::format("{:.6g}", log2(static_cast<float>(exposure)))});
     const double most = film.number(context.is_version_3 ? "maxsampleluminance" : "maxcomponentvalue", 0, sink);
     if (most > 0 && most < 1e30) scene.suggested.push_back({"clamp", fmt::format("{:.6g}", most)});
-    if (const std::string sensor = film.text("sensor", "cie1931", sink); sensor != "cie1931")
-        sink.leave_out({film.location(),
-                        fmt::format("the sensor {} is left out; colours are those of an observer", shortened(sensor))});
-    film.ignore(
-        {"filename", "savefp16", "diagonal", "whitebalance", "lambdamin", "lambdamax", "nbuckets", "coordinatesystem"});
+    read_sensor(film, sink);
+    film.ignore({"filename", "savefp16", "diagonal", "lambdamin", "lambdamax", "nbuckets", "coordinatesystem"});
     film.leave_out_unknown(sink);
     return size;
 }

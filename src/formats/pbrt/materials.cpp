@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/message_text.h"
+#include "formats/described/mix_surfaces.h"
 #include "formats/described/rough_coat.h"
 #include "formats/files/closest_name.h"
 #include "formats/pbrt/colors.h"
@@ -191,7 +192,7 @@ Surface mixture(const MaterialSource& source) {
     for (const char* const name : {"namedmaterial1", "namedmaterial2"}) { // pbrt-v3
         if (source.parameters.has(name)) parts.push_back(source.parameters.text(name, "", source.context.sink));
     }
-    const TextureValue amount = source.textures.color(source.parameters, "amount", grey(0.5f));
+    TextureValue amount = source.textures.color(source.parameters, "amount", grey(0.5f));
     if (parts.size() != 2) throw source.parameters.error("a mix needs two materials");
     const FileLocation& place = source.parameters.location();
     const Surface* first = source.find(parts[0], place);
@@ -202,17 +203,15 @@ Surface mixture(const MaterialSource& source) {
         return *left;
     }
     // In pbrt-v4 `amount` is the share of the second; in v3 it is that of the first.
-    TextureValue of_second = amount;
-    if (names == nullptr) {
-        of_second = amount.scaled(grey(-1));
-        of_second.offset += amount.has_image() ? grey(1) : grey(0);
-        if (!amount.has_image()) of_second.factor = grey(1 - amount.factor.r);
+    const Rgb c = amount.factor;
+    if (!amount.has_image() && !(c.r == c.g && c.g == c.b)) {
+        source.context.sink.leave_out({place, "the colour of the amount of a mix is left out; its mean counts"});
+        amount = constant(grey((c.r + c.g + c.b) / 3));
     }
-    const MixedSurface mixed = mix_surfaces(*first, *second, of_second);
+    const MixedSurface mixed = mix_surfaces(*first, *second, names == nullptr ? one_less(amount) : amount);
     if (mixed.left_out)
-        source.context.sink.leave_out(
-            {place, fmt::format("of the mix the material {} is left out", shortened(parts[*mixed.left_out]))});
-    if (mixed.is_by_color) source.context.sink.leave_out({place, mixed_by_color("the mix")});
+        source.context.sink.leave_out({place, fmt::format("of the mix the material {} is left out, because {}",
+                                                          shortened(parts[*mixed.left_out]), mixed.reason)});
     return mixed.surface;
 }
 
@@ -298,10 +297,6 @@ void read_bumps(const MaterialSource& source, Surface& surface) {
         if (!source.parameters.has(name)) continue;
         const TextureValue heights = source.textures.number(source.parameters, name, 0);
         if (!heights.has_image()) continue; // a constant height changes nothing
-        if (heights.made >= 0) {
-            source.parameters.leave_out({name}, "bumps need an image", sink);
-            continue;
-        }
         surface.heights = heights;
         surface.has_heights = true;
     }
@@ -315,6 +310,7 @@ void read_bumps(const MaterialSource& source, Surface& surface) {
 Surface read_material(const MaterialSource& source) {
     const std::string& type = source.type;
     Sink& sink = source.context.sink;
+    (void)source.textures.took_by_normal();
     try {
         std::optional<Surface> surface = read_version_4_material(source);
         if (!surface) {
@@ -323,7 +319,11 @@ Surface read_material(const MaterialSource& source) {
             surface = read_version_3_material({type, source.parameters, source.textures, of_version_3, source.find});
         }
         if (surface) {
-            read_bumps(source, *surface);
+            if (type != "mix") read_bumps(source, *surface); // a mix has those of its parts
+            if (source.textures.took_by_normal() > (surface->by_normal ? 1 : 0))
+                sink.leave_out({source.parameters.location(),
+                                "the direction of a directionmix is left out of all but base colours; both are mixed "
+                                "evenly"});
             source.parameters.leave_out_unknown(sink);
             return *std::move(surface);
         }

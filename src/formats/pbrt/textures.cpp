@@ -1,6 +1,7 @@
 #include "formats/pbrt/textures.h"
 
 #include <array>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -13,7 +14,7 @@
 
 namespace pertev::pbrt {
 void Textures::define(const std::string& name, const std::string& kind, const std::string& type,
-                      Parameters& parameters) {
+                      const DoubleTransform& world_from_texture, Parameters& parameters) {
     const bool is_color = kind == "spectrum" || kind == "color";
     if (!is_color && kind != "float") {
         context_.sink.leave_out(
@@ -21,11 +22,12 @@ void Textures::define(const std::string& name, const std::string& kind, const st
                                                 shortened(name), shortened(kind))});
         return;
     }
-    textures_.insert_or_assign(name, value_of(type, is_color, parameters));
+    textures_.insert_or_assign(name, value_of(type, is_color, world_from_texture, parameters));
     parameters.leave_out_unknown(context_.sink);
 }
 
-TextureValue Textures::value_of(const std::string& type, bool is_color, Parameters& parameters) {
+TextureValue Textures::value_of(const std::string& type, bool is_color, const DoubleTransform& world_from_texture,
+                                Parameters& parameters) {
     if (type == "imagemap") return image_map(parameters);
     if (type == "constant") return part(parameters, "value", is_color, 1);
     if (type == "checkerboard") return checkerboard(is_color, parameters);
@@ -33,21 +35,15 @@ TextureValue Textures::value_of(const std::string& type, bool is_color, Paramete
         const bool is_version_3 = parameters.contains("tex1") || parameters.contains("tex2");
         const TextureValue a = part(parameters, is_version_3 ? "tex1" : "tex", is_color, 1);
         const TextureValue b = part(parameters, is_version_3 ? "tex2" : "scale", is_color, 1);
-        if (a.has_image() && b.has_image())
+        if (a.varies() && b.varies())
             context_.sink.leave_out(
-                {parameters.location(), "the second image of a product of two textures is left out"});
+                {parameters.location(), "the second of two textures that vary is left out of a product"});
         return product(a, b);
     }
-    if (type == "mix" || type == "directionmix") {
-        if (type == "directionmix") {
-            parameters.leave_out({"dir"}, "both textures are mixed evenly", context_.sink);
-            if (!parameters.contains("dir"))
-                context_.sink.leave_out({parameters.location(),
-                                         "the direction of directionmix is left out; both textures are mixed evenly"});
-        }
+    if (type == "directionmix") return direction_mix(is_color, world_from_texture, parameters);
+    if (type == "mix") {
         const TextureValue a = part(parameters, "tex1", is_color, 0), b = part(parameters, "tex2", is_color, 1);
-        const TextureValue amount = type == "mix" ? part(parameters, "amount", false, 0.5f) : constant(grey(0.5f));
-        return mixture(a, b, amount, parameters);
+        return mixture(a, b, part(parameters, "amount", false, 0.5f), parameters);
     }
     constexpr std::array<std::string_view, 6> kKnown = {"imagemap", "constant", "checkerboard",
                                                         "scale",    "mix",      "directionmix"};
@@ -59,6 +55,26 @@ TextureValue Textures::value_of(const std::string& type, bool is_color, Paramete
                                             is_known ? "" : did_you_mean(type, kKnown))});
     parameters = Parameters(parameters.location(), parameters.what()); // nothing of it is unknown
     return constant(grey(0.5f));
+}
+
+TextureValue Textures::direction_mix(bool is_color, const DoubleTransform& world_from_texture, Parameters& parameters) {
+    const TextureValue first = part(parameters, "tex1", is_color, 0), second = part(parameters, "tex2", is_color, 1);
+    const DoubleVec3 stated = parameters.vector("dir", context_.sink).value_or(DoubleVec3{0, 1, 0});
+    DoubleTransform turned = world_from_texture;
+    turned.translation = {0, 0, 0};
+    const DoubleVec3 direction = transform_point(turned, stated);
+    TextureValue value = mixture(first, second, constant(grey(0.5f)), parameters);
+    const double length = std::sqrt(dot(direction, direction));
+    const bool are_numbers = !first.has_image() && !second.has_image() && !first.by_normal && !second.by_normal;
+    if (are_numbers && length > 0 && std::isfinite(length)) {
+        value.by_normal = std::make_shared<NormalMix>(
+            NormalMix{{direction.x / length, direction.y / length, direction.z / length}, first.factor, second.factor});
+    } else {
+        context_.sink.leave_out({parameters.location(),
+                                 "the direction of a directionmix is left out, because it mixes more than two colours "
+                                 "or has no length; both are mixed evenly"});
+    }
+    return value;
 }
 
 TextureValue Textures::part(Parameters& parameters, std::string_view name, bool is_color, float missing) {
@@ -169,8 +185,10 @@ TextureValue Textures::checkerboard(bool is_color, Parameters& parameters) {
 TextureValue Textures::mixture(const TextureValue& a, const TextureValue& b, const TextureValue& amount,
                                const Parameters& parameters) {
     const int images = int(a.has_image()) + int(b.has_image()) + int(amount.has_image());
-    if (images == 0) return constant(lerp(a.factor, b.factor, amount.factor.g));
     const auto left_out = [&](const char* what) { context_.sink.leave_out({parameters.location(), what}); };
+    if (a.by_normal || b.by_normal || amount.by_normal)
+        left_out("the direction of a directionmix in a mixture is left out");
+    if (images == 0) return constant(lerp(a.factor, b.factor, amount.factor.g));
     if (amount.has_image() && images == 1) {
         TextureValue value = amount.scaled(b.factor - a.factor);
         value.offset += a.factor;
@@ -192,7 +210,10 @@ TextureValue Textures::mixture(const TextureValue& a, const TextureValue& b, con
 
 TextureValue Textures::look_up(const Parameters& parameters, const Parameter& parameter, Rgb missing) {
     const std::string& name = parameter.texts.front();
-    if (const auto found = textures_.find(name); found != textures_.end()) return found->second;
+    if (const auto found = textures_.find(name); found != textures_.end()) {
+        took_by_normal_ += found->second.by_normal ? 1 : 0;
+        return found->second;
+    }
     if (!context_.options.geometry_only) {
         context_.sink.leave_out(
             {parameters.location_of(parameter),

@@ -7,11 +7,13 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "formats/described/parameters.h"
 #include "formats/described/texture_value.h"
 #include "formats/pbrt/context.h"
+#include "math/double_transform.h"
 #include "math/rgb.h"
 #include "scene/texture.h"
 
@@ -22,19 +24,24 @@ public:
     /// Both outlive it; images that are not from files are added to `made`.
     Textures(const Context& context, std::vector<TextureImage>& made) : context_(context), made_(made) {}
 
-    /// Reads a statement Texture "name" "kind" "type".
-    void define(const std::string& name, const std::string& kind, const std::string& type, Parameters& parameters);
+    /// Reads a statement Texture "name" "kind" "type" with the present transform.
+    void define(const std::string& name, const std::string& kind, const std::string& type,
+                const DoubleTransform& world_from_texture, Parameters& parameters);
 
     /// Returns the colour of a parameter, a reflectance or a texture of them.
     TextureValue color(Parameters& parameters, std::string_view name, Rgb missing);
     /// Returns the number of a parameter, or a texture of numbers, which are in all channels.
     TextureValue number(Parameters& parameters, std::string_view name, float missing);
+    /// Returns how many values since the last call depend on the direction of the surface.
+    int took_by_normal() { return std::exchange(took_by_normal_, 0); }
     /// Returns the image with this file's name, as a texture of v upwards.
     TextureValue image_file(const FileLocation& from, const std::string& name);
 
 private:
     TextureValue look_up(const Parameters& parameters, const Parameter& parameter, Rgb missing);
-    TextureValue value_of(const std::string& type, bool is_color, Parameters& parameters);
+    TextureValue value_of(const std::string& type, bool is_color, const DoubleTransform& world_from_texture,
+                          Parameters& parameters);
+    TextureValue direction_mix(bool is_color, const DoubleTransform& world_from_texture, Parameters& parameters);
     TextureValue part(Parameters& parameters, std::string_view name, bool is_color, float missing);
     TextureValue image_map(Parameters& parameters);
     TextureValue checkerboard(bool is_color, Parameters& parameters);
@@ -45,6 +52,7 @@ private:
     const Context& context_;
     std::map<std::string, TextureValue, std::less<>> textures_;
     std::vector<TextureImage>& made_;
+    int took_by_normal_ = 0;
 };
 
 } // namespace pertev::pbrt

@@ -41,7 +41,7 @@ DoubleTransform World::place(const FileLocation& from) {
 void World::add_texture(const std::string& name, const std::string& kind, const std::string& type,
                         Parameters& parameters) {
     if (context_.options.geometry_only) return;
-    textures_.define(name, kind, type, parameters);
+    textures_.define(name, kind, type, state.transforms[0], parameters);
     alpha_numbers_.erase(alpha_key(name)); // shapes from here on have the new one
 }
 
@@ -49,7 +49,11 @@ const Surface* World::find_surface(const std::string& name, const FileLocation& 
     if (const auto found = named_surfaces_.find(name); found != named_surfaces_.end())
         return &parts_.surfaces[found->second];
     if (name == "interface" || name.empty()) {
-        static const Surface nothing{.material = {}, .is_nothing = true, .images = {}, .heights = {}};
+        static const Surface nothing = [] {
+            Surface surface;
+            surface.is_nothing = true;
+            return surface;
+        }();
         return &nothing;
     }
     context_.sink.leave_out({from, fmt::format("there is no material {}{}", shortened(name),
@@ -63,7 +67,7 @@ uint32_t World::add_surface(const std::string& type, const std::string& name, Pa
         return find_surface(other, from);
     };
     Surface surface = read_material({type, parameters, textures_, context_, find});
-    surface.material.name = name;
+    if (surface.beneath.empty()) surface.material.name = name; // parts of a mixture have their own
     surface.material.origin = fmt::format("{}:{}", parameters.location().file, parameters.location().line);
     keep_usable(surface.material, parameters.location(), context_.sink);
     parts_.surfaces.push_back(std::move(surface));

@@ -1,0 +1,230 @@
+// Mixtures of materials of pbrt and Mitsuba: one material, or surfaces in one place. What they show is tested in
+// tests/statistical/mixed_surfaces_test.cpp.
+
+#include <cmath>
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include "formats/read_scene.h"
+#include "image/write_image.h"
+#include "math/portable_math.h"
+#include "tests/support/options.h"
+#include "tests/support/write_text.h"
+
+using namespace pertev;
+
+namespace {
+
+struct MixtureRead {
+    Scene scene;
+    Material material;
+    Messages messages;
+};
+
+/// Reads a face with a material of pbrt, or a square with a BSDF of Mitsuba, in a folder with the picture a.exr (two
+/// pixels of 0.25 and 0.5).
+MixtureRead load_mixture(const std::string& text, const std::string& end = "") {
+    const std::filesystem::path folder = test::scratch_folder();
+    write_image(folder / "a.exr",
+                Image{.width = 2, .height = 1, .channels = 3, .pixels = {0.25f, 0.25f, 0.25f, 0.5f, 0.5f, 0.5f}});
+    const bool is_xml = text.starts_with("<");
+    const std::string scene =
+        is_xml ? fmt::format("<scene version=\"3.0.0\"><shape type=\"rectangle\">{}</shape></scene>", text)
+               : "WorldBegin\n" + text +
+                     "\nShape \"trianglemesh\" \"point3 P\" [0 0 0 2 0 0 0 2 0] \"point2 uv\" [0 0 1 0 0 1] \"integer "
+                     "indices\" [0 1 2]\n" +
+                     end;
+    MixtureRead read;
+    read.scene = read_scene(test::write_text(folder / (is_xml ? "scene.xml" : "scene.pbrt"), scene), {}, read.messages);
+    if (!read.scene.instances.empty()) read.material = read.scene.materials[read.scene.instances[0].material];
+    return read;
+}
+
+Material mixture_material(const std::string& text, const std::string& end = "") {
+    const MixtureRead read = load_mixture(text, end);
+    CHECK(read.messages.left_out() == std::vector<std::string>{});
+    return read.material;
+}
+
+/// The nearest pixel of a texture's image at a u.
+float mixture_texel(const Scene& scene, const TextureRef& ref, float u, float) {
+    const Image& image = scene.images.at(static_cast<std::size_t>(ref.image)).rgba_float;
+    return image.pixels.at(4 * static_cast<std::size_t>(u * static_cast<float>(image.width)));
+}
+
+/// The materials of the shapes in their order, each with its alpha.
+std::string stack_of(const Scene& scene) {
+    std::string text;
+    for (const Instance& instance : scene.instances) {
+        const Material& m = scene.materials[instance.material];
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", m.name,
+                            m.alpha_texture.has_image() ? "image" : fmt::format("{:.6g}", m.alpha));
+    }
+    return text;
+}
+
+} // namespace
+
+TEST_CASE("pbrt: mixtures are exact where one material can be both") {
+    const std::string two = "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" \"rgb reflectance\" [.2 .2 .2]\n"
+                            "MakeNamedMaterial \"b\" \"string type\" \"diffuse\" \"rgb reflectance\" [.6 .6 .6]\n"
+                            "MakeNamedMaterial \"c\" \"string type\" \"conductor\"\n";
+    CHECK(mixture_material(two + "Material \"mix\" \"string materials\" [\"a\" \"b\"] \"float amount\" .25")
+              .base_color.r == doctest::Approx(0.3));
+    // The amount is that of the first in pbrt-v3.
+    CHECK(
+        mixture_material(
+            two +
+                "Material \"mix\" \"string namedmaterial1\" \"a\" \"string namedmaterial2\" \"b\" \"float amount\" .25",
+            "WorldEnd\n")
+            .base_color.r == doctest::Approx(0.5));
+    const Material hole =
+        mixture_material(two + "Material \"mix\" \"string materials\" [\"interface\" \"b\"] \"float amount\" .75");
+    CHECK(hole.alpha == 0.75f);
+    CHECK(hole.alpha_mode == AlphaMode::Blend);
+    CHECK(mixture_material(two + "Material \"mix\" \"string materials\" [\"b\" \"interface\"] \"float amount\" .75")
+              .alpha == 0.25f);
+    // Unlike materials are surfaces in one place, of which the upper ones have an alpha.
+    const MixtureRead other =
+        load_mixture(two + "Material \"mix\" \"string materials\" [\"a\" \"c\"] \"float amount\" .75");
+    CHECK(other.messages.left_out().empty());
+    CHECK(stack_of(other.scene) == "a 0.25, c 1");
+    REQUIRE(other.scene.instances.size() == 2);
+    CHECK(other.scene.instances[0].mesh == other.scene.instances[1].mesh);
+    const std::string nested = two +
+                               "MakeNamedMaterial \"ac\" \"string type\" \"mix\" \"string materials\" [\"a\" \"c\"]\n"
+                               "MakeNamedMaterial \"d\" \"string type\" \"coateddiffuse\"\n";
+    CHECK(stack_of(load_mixture(nested + "Material \"mix\" \"string materials\" [\"ac\" \"d\"] \"float amount\" "
+                                         ".5")
+                       .scene) == "a 0.25, c 0.333333, d 1");
+    CHECK(stack_of(load_mixture(nested + "Material \"mix\" \"string materials\" [\"ac\" \"interface\"] \"float "
+                                         "amount\" .5")
+                       .scene) == "a 0.25, c 0.333333");
+    CHECK(stack_of(load_mixture(nested + "Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"a.exr\" "
+                                         "Material \"mix\" \"string materials\" [\"ac\" \"d\"] \"texture "
+                                         "amount\" \"t\"")
+                       .scene) == "d image, a 0.5, c 1");
+    // A light is sampled on each surface, so a shape that emits keeps one.
+    const MixtureRead lamp = load_mixture(two + "AreaLightSource \"diffuse\" Material \"mix\" \"string materials\" "
+                                                "[\"a\" \"c\"] \"float amount\" .75");
+    CHECK(lamp.messages.left_out().size() == 1);
+    CHECK(stack_of(lamp.scene) == "c 1");
+    // Two bodies of glass in one place would each enclose the other.
+    const MixtureRead bodies = load_mixture("MakeNamedMaterial \"e\" \"string type\" \"dielectric\"\n"
+                                            "MakeNamedMaterial \"f\" \"string type\" \"dielectric\" \"float eta\" 1.2\n"
+                                            "Material \"mix\" \"string materials\" [\"e\" \"f\"] \"float amount\" .75");
+    CHECK(bodies.messages.left_out().size() == 1);
+    CHECK(stack_of(bodies.scene) == "mix 1");
+    const MixtureRead none = load_mixture("Material \"mix\" \"string materials\" [\"a\"]");
+    CHECK(none.messages.left_out().size() == 1);
+    CHECK(none.material.base_color == grey(0.5f));
+    const MixtureRead masked =
+        load_mixture(two + "Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"a.exr\"\n"
+                           "Material \"mix\" \"string materials\" [\"a\" \"b\"] \"texture amount\" \"t\"");
+    CHECK(mixture_texel(masked.scene, masked.material.base_color_texture, 0.2f, 0.5f) == doctest::Approx(0.3));
+    CHECK(mixture_texel(masked.scene, masked.material.base_color_texture, 0.8f, 0.5f) == doctest::Approx(0.4));
+}
+
+TEST_CASE("pbrt: mixtures in which one number differs are one material") {
+    const auto mixed = [](const char* first, const char* second, const char* amount) {
+        const MixtureRead read = load_mixture(
+            fmt::format("Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"a.exr\" MakeNamedMaterial \"a\" "
+                        "\"string type\" {}\nMakeNamedMaterial \"b\" \"string type\" {}\nMaterial \"mix\" \"string "
+                        "materials\" [\"a\" \"b\"] {}",
+                        first, second, amount));
+        CHECK(read.messages.left_out() == std::vector<std::string>{});
+        CHECK(read.scene.instances.size() == 1);
+        return read;
+    };
+    const char *const bare = "\"conductor\" \"spectrum eta\" \"metal-Cu-eta\" \"spectrum k\" \"metal-Cu-k\"",
+                      *const coated = "\"coatedconductor\" \"float conductor.roughness\" 0",
+                      *const leaf = "\"diffusetransmission\" \"rgb reflectance\" [.1 .4 .1] \"rgb transmittance\" "
+                                    "[.3 .6 .1]";
+    CHECK(mixed(bare, coated, "\"float amount\" .25").material.coat_weight == 0.25f);
+    CHECK(mixed(coated, bare, "\"float amount\" .25").material.coat_weight == 0.75f);
+    const MixtureRead placed = mixed(bare, coated, "\"texture amount\" \"t\"");
+    CHECK(placed.material.coat_weight == 1);
+    CHECK(mixture_texel(placed.scene, placed.material.coat_texture, 0.8f, 0.5f) == 0.5f);
+    const Material sheet = mixed(leaf, "\"diffuse\" \"rgb reflectance\" [.5 0 .5]", "\"float amount\" .5").material;
+    const float far = sheet.diffuse_transmission_weight;
+    CHECK((1 - far) * sheet.base_color.r == doctest::Approx(0.3));
+    CHECK((1 - far) * sheet.base_color.g == doctest::Approx(0.2));
+    CHECK(far * sheet.diffuse_transmission_color.g == doctest::Approx(0.3));
+    CHECK(far * sheet.diffuse_transmission_color.b == doctest::Approx(0.05));
+    const MixtureRead veil = mixed("\"diffuse\" \"rgb reflectance\" [.5 0 .5]",
+                                   "\"diffusetransmission\" \"rgb reflectance\" [0 0 0]", "\"texture amount\" \"t\"");
+    CHECK(veil.material.base_color == Rgb{0.5f, 0, 0.5f});
+    CHECK(veil.material.diffuse_transmission_color == grey(0.25f));
+    CHECK(mixture_texel(veil.scene, veil.material.diffuse_transmission_texture, 0.8f, 0.5f) == 0.5f);
+}
+
+TEST_CASE("pbrt: a directionmix is the colour of each face") {
+    const auto color_of = [](const char* before, const char* between) {
+        const MixtureRead read = load_mixture(
+            fmt::format("{} Texture \"t\" \"spectrum\" \"directionmix\" \"rgb tex1\" [.8 .4 0] \"rgb tex2\" [0 .2 .4] "
+                        "\"vector3 dir\" [0 3 4]\nIdentity {} Material \"diffuse\" \"texture reflectance\" \"t\"",
+                        before, between));
+        CHECK(read.messages.left_out() == std::vector<std::string>{});
+        const Vec4 color = read.scene.meshes.at(0).colors.at(1);
+        CHECK(read.material.base_color == grey(1));
+        return Rgb{color.x, color.y, color.z};
+    };
+    const auto check = [](Rgb color, Rgb wanted) {
+        CHECK(color.r == doctest::Approx(wanted.r).epsilon(1e-5));
+        CHECK(color.g == doctest::Approx(wanted.g).epsilon(1e-5));
+        CHECK(color.b == doctest::Approx(wanted.b).epsilon(1e-5));
+    };
+    check(color_of("", ""), {0.64f, 0.36f, 0.08f}); // the face is across z
+    check(color_of("", "Rotate 90 1 0 0"), {0.48f, 0.32f, 0.16f});
+    check(color_of("Rotate 90 0 1 0", ""), {0, 0.2f, 0.4f}); // the direction turns with the texture
+    check(color_of("", "Scale 1 1 -5"), {0.64f, 0.36f, 0.08f});
+    const MixtureRead rough = load_mixture(
+        "Texture \"t\" \"float\" \"directionmix\" \"float tex1\" .2 \"float tex2\" .4 Material \"conductor\" "
+        "\"texture roughness\" \"t\" \"bool remaproughness\" false");
+    CHECK(rough.messages.left_out().size() == 1);
+    CHECK(rough.material.roughness == doctest::Approx(std::sqrt(0.3)));
+}
+
+TEST_CASE("mitsuba: parts that differ in more than a number are surfaces in one place") {
+    const auto bsdf_of = [](const std::string& type, const std::string& inner = "") {
+        return fmt::format("<bsdf type=\"{}\">{}</bsdf>", type, inner);
+    };
+    const auto number_of = [](const char* name, double value) {
+        return fmt::format("<float name=\"{}\" value=\"{}\"/>", name, value);
+    };
+    const auto bitmap_of = [](const char* name) {
+        return fmt::format("<texture name=\"{}\" type=\"bitmap\"><string name=\"filename\" value=\"a.exr\"/></texture>",
+                           name);
+    };
+    const std::string red = bsdf_of("diffuse", "<rgb name=\"reflectance\" value=\"1 0 0\"/>"),
+                      blue = bsdf_of("diffuse");
+    const auto alphas_of = [](const std::string& bsdf) {
+        const MixtureRead read = load_mixture(bsdf);
+        CHECK(read.messages.left_out() == std::vector<std::string>{});
+        std::vector<float> alphas;
+        for (const Instance& instance : read.scene.instances)
+            alphas.push_back(read.scene.materials[instance.material].alpha);
+        return alphas;
+    };
+    const std::string thin = bsdf_of("mask", number_of("opacity", 0.25) + blue);
+    const auto blend_of = [&](double weight, const std::string& parts) {
+        return bsdf_of("blendbsdf", number_of("weight", weight) + parts);
+    };
+    CHECK(alphas_of(blend_of(0.25, red + bsdf_of("dielectric"))) == std::vector<float>{0.75f, 1});
+    CHECK(alphas_of(blend_of(0.5, red + thin)) == std::vector<float>{0.5f, 0.25f}); // 0.375 pass both
+    CHECK(alphas_of(bsdf_of("mask", number_of("opacity", 0.5) + blend_of(0.5, red + bsdf_of("conductor")))) ==
+          std::vector<float>{0.25f, 1 / 3.0f});
+    const MixtureRead placed = load_mixture(bsdf_of("blendbsdf", bitmap_of("weight") + red + bsdf_of("conductor")));
+    CHECK(placed.messages.left_out() == std::vector<std::string>{});
+    REQUIRE(placed.scene.instances.size() == 2);
+    CHECK(placed.material.kind == MaterialKind::Conductor);
+    CHECK(mixture_texel(placed.scene, placed.material.alpha_texture, 0.9f, 0.1f) == 0.5f);
+    const MixtureRead unlike = load_mixture(bsdf_of(
+        "blendbsdf", bitmap_of("weight") + thin +
+                         bsdf_of("mask", bitmap_of("opacity") + bsdf_of("conductor")))); // a product of textures
+    CHECK(unlike.messages.left_out().size() == 1);
+    const std::string placed_parts = bsdf_of("blendbsdf", bitmap_of("weight") + red + bsdf_of("conductor"));
+    CHECK(load_mixture(bsdf_of("mask", number_of("opacity", 0.5) + placed_parts)).messages.left_out().size() == 1);
+    CHECK(load_mixture(bsdf_of("mask", bitmap_of("opacity") + placed_parts)).messages.left_out().size() == 1);
+}
