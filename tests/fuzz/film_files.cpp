@@ -1,6 +1,5 @@
 // Fuzz target of film files (docs/film_file.md). An input is taken for a film file whose checksums are made right. It
-// is refused by an Error, or it is a film, which keeps its bytes in a file. libFuzzer calls LLVMFuzzerTestOneInput;
-// tests/fuzz/mutate.cpp stands in where there is none.
+// is refused by an Error, or it is a film, which keeps its bytes in a file.
 
 #include "base/error.h"
 #include "session/film_file/merge_films.h"
@@ -34,7 +33,7 @@ std::optional<std::pair<FilmHeader, Film>> read_film(const Bytes& bytes) {
 
 } // namespace
 
-Bytes fuzz_seed(uint32_t number) {
+Bytes film_seed(uint32_t number) {
     FilmHeader header;
     header.settings = {{"size", "9x5"}, {"seed", "0"}};
     header.width = 9, header.height = 5 + number % 3;
@@ -59,22 +58,16 @@ Bytes fuzz_seed(uint32_t number) {
     return film_file_bytes(header, film);
 }
 
-void fuzz_input(std::span<const std::byte> input, bool& is_read) {
+bool read_film_input(std::span<const std::byte> input) {
     Bytes bytes(input.begin(), input.end());
     repair(kFilmFile, bytes);
     const auto film = read_film(bytes);
-    is_read = film.has_value();
-    if (!is_read) return;
+    if (!film) return false;
     const Bytes again = film_file_bytes(film->first, film->second);
     const auto same = read_film(again);
     require(same.has_value());
     require(film_file_bytes(same->first, same->second) == again);
+    return true;
 }
 
 } // namespace pertev
-
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, std::size_t size) {
-    bool is_read = false;
-    pertev::fuzz_input({reinterpret_cast<const std::byte*>(data), size}, is_read);
-    return 0;
-}

@@ -100,7 +100,7 @@ std::optional<KeptFrame> read_history(const Bytes& bytes, uint32_t kind) {
 
 } // namespace
 
-Bytes fuzz_seed(uint32_t number) {
+Bytes history_seed(uint32_t number) {
     static std::array<Bytes, kKinds> made;
     Bytes& seed = made[number % kKinds];
     if (!seed.empty()) return seed;
@@ -112,8 +112,8 @@ Bytes fuzz_seed(uint32_t number) {
     return seed;
 }
 
-void fuzz_input(std::span<const std::byte> input, bool& is_read) {
-    is_read = false;
+bool read_history_input(std::span<const std::byte> input) {
+    bool is_read = false;
     Bytes bytes(input.begin(), input.end());
     repair(kHistoryFile, bytes);
     Hasher hasher;
@@ -131,12 +131,7 @@ void fuzz_input(std::span<const std::byte> input, bool& is_read) {
         forge(random, forged);
         goes_on(kind, std::move(forged));
     }
+    return is_read;
 }
 
 } // namespace pertev
-
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, std::size_t size) {
-    bool is_read = false;
-    pertev::fuzz_input({reinterpret_cast<const std::byte*>(data), size}, is_read);
-    return 0;
-}

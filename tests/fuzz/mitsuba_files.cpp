@@ -90,15 +90,15 @@ std::string serialized_seed(uint16_t version) {
 
 } // namespace
 
-std::vector<std::byte> fuzz_seed(uint32_t number) {
+std::vector<std::byte> mitsuba_seed(uint32_t number) {
     const uint32_t choice = number % (kTexts.size() + 2);
     if (choice < kTexts.size()) return bytes_of_text(kTexts[choice]);
     return bytes_of_text(serialized_seed(static_cast<uint16_t>(choice - kTexts.size() + 3)));
 }
 
-void fuzz_input(std::span<const std::byte> input, bool& is_read) {
+bool read_mitsuba_input(std::span<const std::byte> input) {
     static const std::filesystem::path path = input_path("mitsuba", "input.xml");
-    is_read = reads([&] {
+    return reads([&] {
         if (input.size() > 1 && input[0] == std::byte{0x1C} && input[1] == std::byte{4}) {
             (void)mitsuba::read_serialized(input, 0, "input.serialized");
             return true;
@@ -110,9 +110,3 @@ void fuzz_input(std::span<const std::byte> input, bool& is_read) {
 }
 
 } // namespace pertev
-
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, std::size_t size) {
-    bool is_read = false;
-    pertev::fuzz_input({reinterpret_cast<const std::byte*>(data), size}, is_read);
-    return 0;
-}

@@ -1,6 +1,6 @@
-// Makes inputs for a fuzz target where there is no libFuzzer: `fuzz_film_files [SECONDS [SEED]]`. An input that aborts
-// is left in the working folder as fuzz-input.pvf. With the name of a file in place of seconds it runs that input
-// alone.
+// Makes inputs for a fuzz target where there is no libFuzzer: `fuzz_readers TARGET [SECONDS [SEED [CORPUS]]]` first
+// reads a file, or all of a folder, then changed seeds. An input that aborts is left in the working folder as
+// fuzz-input. `fuzz_readers TARGET --seeds FOLDER` writes the seeds, `fuzz_readers` lists the targets.
 
 #include <algorithm>
 #include <csignal>
@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <random>
+#include <string>
 #include <string_view>
 
 #include "base/read_file.h"
@@ -21,7 +22,7 @@ using Bytes = std::vector<std::byte>;
 Bytes g_input;
 
 extern "C" void keep_input(int number) {
-    if (std::FILE* const file = std::fopen("fuzz-input.pvf", "wb")) {
+    if (std::FILE* const file = std::fopen("fuzz-input", "wb")) {
         std::fwrite(g_input.data(), 1, g_input.size(), file);
         std::fclose(file);
     }
@@ -84,31 +85,71 @@ void mutate(std::mt19937_64& random, Bytes& bytes) {
 
 } // namespace
 
-int main(int count, char** arguments) {
-    if (count == 2 && std::filesystem::exists(arguments[1])) {
-        bool is_read = false;
-        pertev::fuzz_input(pertev::read_file(arguments[1]), is_read);
-        std::printf("%s\n", is_read ? "read" : "refused");
-        return 0;
+namespace {
+
+const pertev::FuzzTarget* find_target(std::string_view name) {
+    for (const pertev::FuzzTarget& target : pertev::fuzz_targets()) {
+        if (name == target.name) return &target;
     }
-    const double seconds = count > 1 ? std::atof(arguments[1]) : 2;
-    std::mt19937_64 random(count > 2 ? std::strtoull(arguments[2], nullptr, 10) : 1);
+    for (const pertev::FuzzTarget& target : pertev::fuzz_targets()) std::printf("%s\n", target.name);
+    return nullptr;
+}
+
+/// Reads every file of a folder, or the one file.
+uint64_t replay(const pertev::FuzzTarget& target, const std::filesystem::path& corpus) {
+    if (!std::filesystem::exists(corpus)) return 0;
+    if (!std::filesystem::is_directory(corpus)) {
+        g_input = pertev::read_file(corpus);
+        std::printf("%s\n", target.read(g_input) ? "read" : "refused");
+        return 1;
+    }
+    uint64_t count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(corpus)) {
+        g_input = pertev::read_file(entry.path());
+        target.read(g_input);
+        ++count;
+    }
+    return count;
+}
+
+/// Writes the seeds of a target into a folder.
+int write_seeds(const pertev::FuzzTarget& target, const std::filesystem::path& folder) {
+    std::filesystem::create_directories(folder);
+    for (uint32_t kind = 0; kind < target.kinds; ++kind) {
+        const Bytes seed = target.seed(kind);
+        const auto path = folder / ("seed-" + std::to_string(kind));
+        std::FILE* const file = std::fopen(path.c_str(), "wb");
+        if (file == nullptr || std::fwrite(seed.data(), 1, seed.size(), file) != seed.size()) return 1;
+        std::fclose(file);
+    }
+    return 0;
+}
+
+} // namespace
+
+int main(int count, char** arguments) {
+    const pertev::FuzzTarget* const target = find_target(count > 1 ? arguments[1] : "");
+    if (target == nullptr) return count > 1 ? 2 : 0;
     for (const int number : {SIGABRT, SIGSEGV}) std::signal(number, &keep_input);
-    constexpr uint32_t kSeeds = 12;
+    if (count == 4 && std::string_view(arguments[2]) == "--seeds") return write_seeds(*target, arguments[3]);
+    const uint64_t replayed = count > 4 ? replay(*target, arguments[4]) : 0;
+    const double seconds = count > 2 ? std::atof(arguments[2]) : 2;
+    std::mt19937_64 random(count > 3 ? std::strtoull(arguments[3], nullptr, 10) : 1);
     const pertev::Stopwatch watch;
     uint64_t runs = 0, read = 0;
-    for (; watch.seconds() < seconds; ++runs) {
-        g_input = pertev::fuzz_seed(static_cast<uint32_t>(runs % kSeeds));
-        if (runs >= kSeeds) mutate(random, g_input);
-        bool is_read = false;
-        pertev::fuzz_input(g_input, is_read);
+    const uint64_t least = seconds > 0 ? uint64_t(4) * target->kinds : 0; // on a slow machine too
+    for (; watch.seconds() < seconds || runs < least; ++runs) {
+        g_input = target->seed(static_cast<uint32_t>(runs % target->kinds));
+        if (runs >= target->kinds) mutate(random, g_input);
+        const bool is_read = target->read(g_input);
         read += is_read ? 1 : 0;
-        if (runs < kSeeds && !is_read) {
+        if (runs < target->kinds && !is_read) {
             std::fprintf(stderr, "seed %llu is refused\n", static_cast<unsigned long long>(runs));
             return 1;
         }
     }
-    std::printf("%llu inputs, of which %llu were read\n", static_cast<unsigned long long>(runs),
+    std::printf("%s: %llu inputs of the corpus, %llu others, of which %llu were read\n", target->name,
+                static_cast<unsigned long long>(replayed), static_cast<unsigned long long>(runs),
                 static_cast<unsigned long long>(read));
-    return read > kSeeds && read < runs ? 0 : 1; // else nothing behind the checksums was reached
+    return seconds == 0 || (read > target->kinds && read < runs) ? 0 : 1; // else nothing behind checksums was reached
 }

@@ -59,11 +59,11 @@ constexpr std::array<std::string_view, 8> kTexts = {
 
 } // namespace
 
-std::vector<std::byte> fuzz_seed(uint32_t number) { return bytes_of_text(kTexts[number % kTexts.size()]); }
+std::vector<std::byte> pbrt_seed(uint32_t number) { return bytes_of_text(kTexts[number % kTexts.size()]); }
 
-void fuzz_input(std::span<const std::byte> input, bool& is_read) {
+bool read_pbrt_input(std::span<const std::byte> input) {
     static const std::filesystem::path path = input_path("pbrt", "input.pbrt");
-    is_read = reads([&] {
+    return reads([&] {
         Messages messages;
         Scene scene = read_pbrt(path, input, FileAccess(path, {}), {}, messages);
         return check_scene(scene, path.string(), messages);
@@ -71,9 +71,3 @@ void fuzz_input(std::span<const std::byte> input, bool& is_read) {
 }
 
 } // namespace pertev
-
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, std::size_t size) {
-    bool is_read = false;
-    pertev::fuzz_input({reinterpret_cast<const std::byte*>(data), size}, is_read);
-    return 0;
-}

@@ -2,10 +2,13 @@
 
 // Inputs of fuzz targets that are taken for the text of a scene (formats/described).
 
+#include <unistd.h>
+
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,11 +24,18 @@ inline std::vector<std::byte> bytes_of_text(std::string_view text) {
     return bytes;
 }
 
-/// Returns the path of an input in a folder that stays empty.
+/// Returns the path of an input in a folder of this process that has no other file.
 inline std::filesystem::path input_path(std::string_view format, std::string_view name) {
-    std::filesystem::path folder = std::filesystem::temp_directory_path() / ("pertev-fuzz-" + std::string(format));
+    std::filesystem::path folder = std::filesystem::temp_directory_path() /
+                                   ("pertev-fuzz-" + std::string(format) + "-" + std::to_string(::getpid()));
     std::filesystem::create_directories(folder);
     return folder / name;
+}
+
+inline void write_bytes(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+    std::FILE* const file = std::fopen(path.c_str(), "wb");
+    if (file == nullptr || std::fwrite(bytes.data(), 1, bytes.size(), file) != bytes.size()) std::abort();
+    std::fclose(file);
 }
 
 /// Calls read() and returns what it does; false if it refuses the input by an Error of damaged or too large input.
