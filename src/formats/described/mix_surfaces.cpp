@@ -189,7 +189,7 @@ void separate_mixtures(Parts& parts, Sink& sink) {
             const auto [known, is_new] = main_parts.try_emplace(shape.surface, 0);
             if (is_new) {
                 known->second = add(main_part(parts.surfaces[shape.surface]));
-                sink.leave_out({parts.meshes[shape.mesh].location,
+                sink.leave_out({parts.area_lights[*shape.area_light].location,
                                 fmt::format("the mixture of materials of a shape that emits light is left out; it is "
                                             "that of {}",
                                             parts.surfaces[known->second].material.name)});
