@@ -286,7 +286,7 @@ def compare_in_ci(job, name, folder):
 
 
 COLUMNS = (("scene", "scene", None), ("spp", "samples", None), ("rel_mse", "relMSE", None), ("ours", "our noise", None),
-           ("theirs", "the reference's", None), ("ratio", "relMSE over their sum", None), ("largest", "largest error of a block", "%"),
+           ("theirs", "the reference's", None), ("ratio", "relMSE over both noises", None), ("largest", "largest error of a block", "%"),
            ("median", "median", "%"), ("beyond", "blocks beyond the bound", None), ("blocks", "blocks", None))
 
 
@@ -300,6 +300,8 @@ def main():
                 compare(job, name, pathlib.Path(folder), rows)
             elif SCENES[name].ci:
                 compare_in_ci(job, name, pathlib.Path(folder))
+            else:
+                print(f"skipped: {name} needs --long, --spp or a GPU")
     if job.results:
         measurement.write_measurement(job.results, job.program, "Against Bitterli's references", COLUMNS, rows, job.device, job.threads)
     job.end()

@@ -4,7 +4,7 @@
 All is in CIE XYZ, because Mitsuba computed its variances there and wrote them with the matrix of colours to RGB, where
 they mean nothing (its test converts them back, too). A pixel's z is the difference over the square root of the sum of:
 
-- our variance: of the mean, from the layer `variance` of independent samples, at most that of fully correlated R, G, B,
+- our variance: of the mean, from the layer `variance` of independent samples, as if R, G, B were fully correlated,
   and at least the reference's sample variance over our samples. Without the latter, a pixel of which our samples
   missed a rare part (an edge, a highlight) would have no variance;
 - the reference's sample variance over its samples;

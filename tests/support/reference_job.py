@@ -47,14 +47,13 @@ class ReferenceJob:
         self.results, self.threads = getattr(arguments, "results", None), os.cpu_count()
         self.failures = 0
 
-    @staticmethod
-    def scene(relative):
-        """A file under the folder that PERTEV_SCENES names; ends the test as skipped where it is not there."""
+    def scene(self, relative):
+        """A file under the folder that PERTEV_SCENES names; where it is not there, ends the test, as skipped if nothing failed before."""
         root = os.environ.get("PERTEV_SCENES")
         path = pathlib.Path(root or "", relative)
         if not root or not path.is_file():
             print(f"skipped: {path} is not there (set PERTEV_SCENES, see docs/scenes.md)")
-            sys.exit(SKIPPED)
+            sys.exit(1 if self.failures else SKIPPED)
         return path
 
     def run(self, event, *arguments):

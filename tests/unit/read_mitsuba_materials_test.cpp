@@ -490,15 +490,3 @@ TEST_CASE("mitsuba: colours of vertices are no weights and opacities") {
     CHECK(blended.messages.left_out().size() == 1);
     CHECK(blended.material.base_color == Rgb{0.75f, 0, 0.25f});
 }
-
-TEST_CASE("mitsuba: every metal of its list that has published indices is known by its short name") {
-    for (const char* const name : {"a-C", "Ag", "Al", "AlAs", "AlSb", "Au",   "Be",       "Cr",      "CsI",      "Cu",
-                                   "Hg",  "Ir", "K",  "Li",   "MgO",  "Mo",   "Na_palik", "Nb",      "Ni_palik", "Rh",
-                                   "SiC", "Ta", "Te", "TiC",  "TiN",  "TiO2", "VC",       "V_palik", "VN",       "W"}) {
-        CAPTURE(name);
-        const Material metal = mitsuba_material(bsdf_of("conductor", string_of("material", name)));
-        CHECK(metal.kind == MaterialKind::Conductor);
-        CHECK(metal.eta.g > 0.01f);
-    }
-    CHECK(load_bsdf(bsdf_of("conductor", string_of("material", "HgTe"))).messages.left_out().size() == 1);
-}

@@ -415,3 +415,22 @@ TEST_CASE("mitsuba: a sky has its sun where the file says, about the axis that p
         mitsuba_left_out("<emitter type=\"sky\"><vector name=\"sun_direction\" x=\"0\" y=\"0\" z=\"-1\"/></emitter>");
     CHECK(below.size() == 1);
 }
+
+TEST_CASE("mitsuba: every metal of its list that has published indices is known by its short name") {
+    const auto metal_of = [](const std::string& name) {
+        return in_scene("<shape type=\"rectangle\"><bsdf type=\"conductor\"><string name=\"material\" value=\"" + name +
+                        "\"/></bsdf></shape>");
+    };
+    for (const char* const name : {"a-C", "Ag", "Al", "AlAs", "AlSb", "Au",   "Be",       "Cr",      "CsI",      "Cu",
+                                   "Hg",  "Ir", "K",  "Li",   "MgO",  "Mo",   "Na_palik", "Nb",      "Ni_palik", "Rh",
+                                   "SiC", "Ta", "Te", "TiC",  "TiN",  "TiO2", "VC",       "V_palik", "VN",       "W"}) {
+        CAPTURE(name);
+        const Scene scene = load_mitsuba(metal_of(name));
+        const Material& metal = scene.materials.at(scene.instances.at(0).material);
+        CHECK(metal.kind == MaterialKind::Conductor);
+        CHECK(metal.eta.g > 0.01f);
+    }
+    Messages messages;
+    (void)load_mitsuba(metal_of("HgTe"), messages);
+    CHECK(messages.left_out().size() == 1);
+}

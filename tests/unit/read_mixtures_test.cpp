@@ -159,6 +159,21 @@ TEST_CASE("pbrt: mixtures in which one number differs are one material") {
     CHECK(mixture_texel(veil.scene, veil.material.diffuse_transmission_texture, 0.8f, 0.5f) == 0.5f);
 }
 
+TEST_CASE("pbrt: parts whose heights differ stay apart, and equal ones keep the colours of faces") {
+    const std::string heights = "Texture \"h\" \"float\" \"checkerboard\" \"float tex1\" 0 \"float tex2\" .1\n"
+                                "Texture \"i\" \"float\" \"checkerboard\" \"float tex1\" 0 \"float tex2\" .2\n"
+                                "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" \"texture displacement\" \"h\"\n"
+                                "MakeNamedMaterial \"b\" \"string type\" \"diffuse\" \"texture displacement\" \"i\"\n";
+    CHECK(stack_of(load_mixture(heights + "Material \"mix\" \"string materials\" [\"a\" \"b\"]").scene) ==
+          "a 0.5, b 1");
+    const std::string faces =
+        "Texture \"t\" \"spectrum\" \"directionmix\" \"rgb tex1\" [.8 .4 0] \"rgb tex2\" [0 .2 .4]\n"
+        "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" \"texture reflectance\" \"t\"\n";
+    // Equal parts keep the colours of faces.
+    CHECK_FALSE(
+        load_mixture(faces + "Material \"mix\" \"string materials\" [\"a\" \"a\"]").scene.meshes.at(0).colors.empty());
+}
+
 TEST_CASE("pbrt: a directionmix is the colour of each face") {
     const auto color_of = [](const char* before, const char* between) {
         const MixtureRead read = load_mixture(

@@ -417,6 +417,7 @@ TEST_CASE("pbrt: the file suggests size, samples, depth, filter and exposure") {
     // The time of the shutter and the film's speed are the exposure; sensors of pbrt have that of the observer.
     const std::string shutter = "Camera \"perspective\" \"float shutteropen\" .25 \"float shutterclose\" .5 ";
     CHECK(suggestion(load_lit(shutter + "Film \"rgb\" WorldBegin\n" + kFloorText), "exposure") == "-2");
+    CHECK(suggestion(load_lit(shutter + "WorldBegin\n" + kFloorText), "exposure") == "-2");
     CHECK(suggestion(load_lit(shutter + "Film \"rgb\" WorldBegin\n" + kFloorText + "WorldEnd\n"), "exposure").empty());
     const auto left_out = [](const char* film) {
         Messages messages;

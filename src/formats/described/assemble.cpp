@@ -170,7 +170,7 @@ void set_environment(const Parts& parts, const DoubleTransform& scene_from_file,
 
 Scene assemble(Parts parts, const DoubleTransform& scene_from_world, uint64_t file_bytes, std::string_view expected,
                TextureLoader& loader, Sink& sink) {
-    separate_mixtures(parts, sink);
+    separate_mixtures(parts, file_bytes, sink);
     color_by_normals(parts, file_bytes, sink);
     Scene scene;
     DoubleBounds3 box;

@@ -47,7 +47,8 @@ std::vector<float> numbers_of(const Surface& surface) {
         [&](const TextureRef& ref, const char*) { add(ref); });
     if (surface.has_heights) {
         add(surface.heights.ref);
-        numbers.insert(numbers.end(), {surface.heights.factor.r, surface.heights.exponent});
+        numbers.insert(numbers.end(),
+                       {surface.heights.factor.r, surface.heights.exponent, static_cast<float>(surface.heights.made)});
     }
     return numbers;
 }
@@ -107,6 +108,7 @@ void agree_on_unused(Surface& surface, const Surface& other) {
 bool is_sheet(const Surface& surface) {
     const Material& m = surface.material;
     if (m.base_diffuse_roughness > 0 || m.has_coat() || m.has_fuzz()) return false;
+    if (has_image_of(surface, &M::diffuse_transmission_texture)) return false;
     return m.kind == MaterialKind::Diffuse ||
            (m.kind == MaterialKind::MetallicRoughness && m.metallic == 0 && m.specular_weight == 0 &&
             !has_image_of(surface, &M::metallic_texture) && !m.transmits());
@@ -179,7 +181,7 @@ std::optional<Surface> mix_in_one_block(const Surface& first, const Surface& sec
         return same;
     }
     constexpr TextureSlot kColors = &M::base_color_texture;
-    if (is_linear_in_color(a.material) && !has_image_of(a, kColors) && !has_image_of(b, kColors)) {
+    if (is_linear_in_color(a.material) && !a.by_normal && !has_image_of(a, kColors) && !has_image_of(b, kColors)) {
         Surface same = b;
         same.material.base_color = a.material.base_color;
         if (are_equal(a, same)) {

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "base/error.h"
+#include "base/limits.h"
 #include "formats/described/described_medium.h"
 
 namespace pertev::described {
@@ -15,7 +18,7 @@ using M = MaterialParameters;
 
 constexpr std::string_view kProductOfTextures = "its share is a product of textures";
 
-/// The surface and those beneath it, one by one; none of an interface.
+/// Returns the surface and those beneath it one by one; nothing for an interface.
 std::vector<Surface> parts_of(Surface surface) {
     if (surface.is_nothing) return {};
     std::vector<Surface> beneath = std::exchange(surface.beneath, {});
@@ -24,7 +27,7 @@ std::vector<Surface> parts_of(Surface surface) {
     return parts;
 }
 
-/// The first part with the others beneath it.
+/// Stacks the other parts beneath the first.
 Surface stacked(std::vector<Surface> parts) {
     Surface surface = std::move(parts.front());
     surface.beneath.assign(std::move_iterator(parts.begin() + 1), std::move_iterator(parts.end()));
@@ -90,13 +93,21 @@ Surface put_over(Surface top, const TextureValue& share, Surface others) {
     return top;
 }
 
+/// Returns which part has the medium of the shape, because two coincident ones would enclose it twice: the body of
+/// glass, or else the first that light enters, or else the first.
+uint32_t body_of(std::span<const Surface> parts) {
+    const auto body = std::ranges::find_if(parts, [](const Surface& part) { return part.material.encloses(); });
+    const auto entered = body != parts.end() ? body : std::ranges::find_if(parts, is_entered);
+    return entered == parts.end() ? 0 : static_cast<uint32_t>(entered - parts.begin());
+}
+
 std::size_t entered_parts(const Surface& surface) {
     std::size_t count = surface.material.encloses() ? 1 : 0;
     for (const Surface& part : surface.beneath) count += part.material.encloses() ? 1 : 0;
     return count;
 }
 
-/// The part that shows most of a mixture, of those that light enters if there are some.
+/// Returns the part with the largest share, one that light enters if there is one.
 Surface main_part(const Surface& surface) {
     std::vector<Surface> parts = parts_of(surface);
     std::size_t best = 0;
@@ -140,7 +151,7 @@ bool set_opacity(Surface& surface, const TextureValue& opacity) {
         }
     }
     for_each_part(surface, [&](Surface& part) { set_alpha(part, opacity); });
-    return !has_image || (!opacity.has_image() && opacity.factor.r == 1);
+    return !opacity.has_image() && (!has_image || opacity.factor.r == 1);
 }
 
 MixedSurface mix_surfaces(const Surface& first, const Surface& second, TextureValue of_second) {
@@ -172,7 +183,7 @@ MixedSurface mix_surfaces(const Surface& first, const Surface& second, TextureVa
     return nearest(kProductOfTextures);
 }
 
-void separate_mixtures(Parts& parts, Sink& sink) {
+void separate_mixtures(Parts& parts, uint64_t file_bytes, Sink& sink) {
     std::map<std::pair<uint32_t, std::optional<uint32_t>>, uint32_t> first_parts; // by surface and alpha
     std::map<uint32_t, uint32_t> main_parts;
     const auto add = [&](Surface surface) {
@@ -210,13 +221,20 @@ void separate_mixtures(Parts& parts, Sink& sink) {
             for (Surface& part : parts_of(std::move(surface))) add(std::move(part));
         }
         shape.alpha.reset();
-        const bool is_body = is_entered(parts.surfaces[shape.surface]);
+        const uint32_t body = body_of(std::span(parts.surfaces).subspan(known->second, count));
         for (uint32_t i = 0; i < count; ++i) {
             Placed one = shape;
             one.surface = known->second + i;
-            if (is_body && !is_entered(parts.surfaces[one.surface])) one.medium.reset();
+            if (i != body) one.medium.reset();
             placed.push_back(std::move(one));
         }
+    }
+    const uint64_t most = std::min<uint64_t>(kMaxInstances, justified_bytes(kFreeMeshBytes, file_bytes) /
+                                                                (sizeof(Instance) + sizeof(Placed)));
+    if (placed.size() > most) {
+        throw Error(
+            ErrorCode::OverLimit, parts.meshes[placed.back().mesh].location,
+            fmt::format("mixtures of materials make more than {} instances, the limit for files of this size", most));
     }
     parts.placed = std::move(placed);
 }

@@ -46,7 +46,8 @@ void for_each_part(Surface& surface, const Change& change) {
 }
 
 /// Places the surfaces beneath others as shapes of their own. A shape that emits light keeps one of them, with a
-/// warning, because light would be sampled on each.
-void separate_mixtures(Parts& parts, Sink& sink);
+/// warning, because light would be sampled on each. Throws Error(OverLimit) for more shapes than files of `file_bytes`
+/// justify.
+void separate_mixtures(Parts& parts, uint64_t file_bytes, Sink& sink);
 
 } // namespace pertev::described

@@ -70,7 +70,15 @@ double shutter_time(View& view, Sink& sink) {
 FilmSize read_film(View& view, const Context& context, Scene& scene) {
     Sink& sink = context.sink;
     FilmSize size;
-    if (!view.film) return size;
+    const double seconds = context.is_version_3 ? 1 : shutter_time(view, sink);
+    const auto suggest_exposure = [&](double exposure) {
+        if (exposure > 0 && exposure != 1)
+            scene.suggested.push_back({"exposure", fmt::format("{:.6g}", log2(static_cast<float>(exposure)))});
+    };
+    if (!view.film) {
+        suggest_exposure(seconds);
+        return size;
+    }
     Parameters& film = view.film->parameters;
     if (context.is_version_3) size = {640, 480};
     size.width = std::clamp<int64_t>(film.integer("xresolution", size.width, sink), 1, kMaxImageSide);
@@ -78,10 +86,7 @@ FilmSize read_film(View& view, const Context& context, Scene& scene) {
     scene.suggested.push_back({"size", fmt::format("{}x{}", size.width, size.height)});
     film.leave_out({"cropwindow", "pixelbounds"}, "the whole picture is rendered", sink);
     const double iso = film.number("iso", 100, sink);
-    const double seconds = context.is_version_3 ? 1 : shutter_time(view, sink);
-    const double exposure = film.number("scale", 1, sink) * iso / 100 * seconds;
-    if (exposure > 0 && exposure != 1)
-        scene.suggested.push_back({"exposure", fmt::format("{:.6g}", log2(static_cast<float>(exposure)))});
+    suggest_exposure(film.number("scale", 1, sink) * iso / 100 * seconds);
     const double most = film.number(context.is_version_3 ? "maxsampleluminance" : "maxcomponentvalue", 0, sink);
     if (most > 0 && most < 1e30) scene.suggested.push_back({"clamp", fmt::format("{:.6g}", most)});
     read_sensor(film, sink);
