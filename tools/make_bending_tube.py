@@ -77,7 +77,7 @@ def make(rings, segments):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) not in (2, 4):
+    if len(sys.argv) not in (2, 4) or sys.argv[1].startswith("-"):
         sys.exit(__doc__)
     rings, segments = (int(sys.argv[2]), int(sys.argv[3])) if len(sys.argv) == 4 else (512, 256)
     with open(sys.argv[1], "w", encoding="utf-8") as out:

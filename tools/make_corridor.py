@@ -59,6 +59,6 @@ def write(target):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
+    if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
         sys.exit(__doc__)
     write(pathlib.Path(sys.argv[1]))

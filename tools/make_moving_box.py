@@ -43,6 +43,6 @@ def main(out, has_mirror):
 
 if __name__ == "__main__":
     arguments = [argument for argument in sys.argv[1:] if argument != "--mirror"]
-    if len(arguments) != 1:
+    if len(arguments) != 1 or arguments[0].startswith("-"):
         sys.exit(__doc__)
     main(arguments[0], "--mirror" in sys.argv)

@@ -58,7 +58,7 @@ def exr(lines: list) -> bytes:
 
 
 def main() -> int:
-    if len(sys.argv) != 2:
+    if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
         print(__doc__, file=sys.stderr)
         return 2
     with open(sys.argv[1], "wb") as file:

@@ -12,7 +12,7 @@ ends, and exits 1 unless every mutation was noticed by all tests named for it.
 
 Runs of several days or machines make one: `--shard I/N` takes every Nth mutation from the Ith on, and `--results FILE` appends a
 line for each that was tried, with its commit. A later run with that file skips those noticed before whose text, files and tests
-have the same bytes.
+have the same bytes. bench/results/mutations.jsonl is such a file, of the latest runs.
 """
 
 import argparse

@@ -1,6 +1,6 @@
 // Makes inputs for a fuzz target where there is no libFuzzer: `fuzz_readers TARGET [SECONDS [SEED [CORPUS]]]` first
 // reads a file, or all of a folder, then changed seeds. An input that aborts is left in the working folder as
-// fuzz-input. `fuzz_readers TARGET --seeds FOLDER` writes the seeds, `fuzz_readers` lists the targets.
+// fuzz-input-TARGET. `fuzz_readers TARGET --seeds FOLDER` writes the seeds, `fuzz_readers` lists the targets.
 
 #include <algorithm>
 #include <csignal>
@@ -20,9 +20,10 @@ namespace {
 using Bytes = std::vector<std::byte>;
 
 Bytes g_input;
+std::string g_input_file = "fuzz-input-";
 
 extern "C" void keep_input(int number) {
-    if (std::FILE* const file = std::fopen("fuzz-input", "wb")) {
+    if (std::FILE* const file = std::fopen(g_input_file.c_str(), "wb")) {
         std::fwrite(g_input.data(), 1, g_input.size(), file);
         std::fclose(file);
     }
@@ -130,6 +131,7 @@ int write_seeds(const pertev::FuzzTarget& target, const std::filesystem::path& f
 int main(int count, char** arguments) {
     const pertev::FuzzTarget* const target = find_target(count > 1 ? arguments[1] : "");
     if (target == nullptr) return count > 1 ? 2 : 0;
+    g_input_file += target->name;
     for (const int number : {SIGABRT, SIGSEGV}) std::signal(number, &keep_input);
     if (count == 4 && std::string_view(arguments[2]) == "--seeds") return write_seeds(*target, arguments[3]);
     const uint64_t replayed = count > 4 ? replay(*target, arguments[4]) : 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Inputs of fuzz targets that are taken for the text of a scene (formats/described).
+// Inputs of fuzz targets, as text or as files.
 
 #include <unistd.h>
 

@@ -203,6 +203,8 @@ def compare(job, name, folder, rows):
     both = Comparison(read_exr(picture), read_exr(mean)[2], read_exr(variance)[2], samples, squares, BLUR if name in PANORAMAS else 0.0)
     from_noise = f"{both.count:.0f}" if both.count != DEFAULT_COUNT else f"not estimated, {both.count} taken"
     print(f"       {name}: samples of the reference: {from_noise} (its share of the noise: {both.share:.2f}, of {both.terms} differences)")
+    if both.count != DEFAULT_COUNT:  # an error of ours that looks like noise would make it small
+        job.check(f"{name}: samples of the reference", both.count, DEFAULT_COUNT / 2, 2 * DEFAULT_COUNT)
     verdict = both.verdict()
     for what, p in zip(("least p-value", "number of p-values below 0.01", "means"), verdict):
         job.check(f"{name}: probability of the {what}", p, LEAST_P, 1)
