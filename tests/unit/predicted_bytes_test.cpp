@@ -116,6 +116,12 @@ TEST_CASE("every integrator predicts its memory for an impossibly large picture 
         WorkSize small = huge;
         small.width = small.height = 8;
         CHECK(predicted_bytes(settings, small, true) < predicted_bytes(settings, huge, true));
+        // A light tree needs the normal of a path's last vertex.
+        const std::size_t by_power = predicted_bytes(settings, small, true);
+        settings.path.light_choice = LightSelection::Tree;
+        CHECK(predicted_bytes(settings, small, true) == by_power);
+        small.tree_lights = 1000;
+        CHECK((predicted_bytes(settings, small, true) > by_power) == integrator.selects_lights);
     }
     CHECK(peak_kib() - before < 50'000);
 }

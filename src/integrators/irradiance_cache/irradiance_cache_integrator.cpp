@@ -35,10 +35,10 @@ void IrradianceCacheIntegrator::reserve(const WorkSize& size) {
     // The wavefront holds the picture's samples or all rays of some records, at least of one.
     const uint32_t cells = cells_of(settings_.cache);
     const uint64_t wanted = std::max<uint64_t>(size.pixels(), uint64_t(cells) * 64);
-    const uint64_t most =
-        std::min<uint64_t>({wanted, batch_, kMaxBytes / (bytes_of({kMinCount, kMinCount}) / kMinCount)});
-    const auto subpaths = static_cast<uint32_t>(std::max<uint64_t>(most, cells));
     const bool has_normals = uses_light_tree(settings_.subpaths.light_choice, size.tree_lights, size.has_times);
+    const uint64_t most =
+        std::min<uint64_t>({wanted, batch_, kMaxBytes / (bytes_of({kMinCount, kMinCount, has_normals}) / kMinCount)});
+    const auto subpaths = static_cast<uint32_t>(std::max<uint64_t>(most, cells));
     allocate_capacity({subpaths, subpaths, has_normals}, "subpaths of irradiance caching");
 }
 
