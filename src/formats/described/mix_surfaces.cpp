@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "base/limits.h"
 #include "formats/described/described_medium.h"
 
 namespace pertev::described {
@@ -229,8 +228,7 @@ void separate_mixtures(Parts& parts, uint64_t file_bytes, Sink& sink) {
             placed.push_back(std::move(one));
         }
     }
-    const uint64_t most = std::min<uint64_t>(kMaxInstances, justified_bytes(kFreeMeshBytes, file_bytes) /
-                                                                (sizeof(Instance) + sizeof(Placed)));
+    const uint64_t most = max_placed(file_bytes);
     if (placed.size() > most) {
         throw Error(
             ErrorCode::OverLimit, parts.meshes[placed.back().mesh].location,

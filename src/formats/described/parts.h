@@ -2,6 +2,7 @@
 
 // All that the reader of a described scene has read, before it becomes a scene (formats/described/assemble.h).
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/limits.h"
 #include "formats/described/surface.h"
 #include "formats/described/texture_value.h"
 #include "formats/sun_sky/sun_sky.h"
@@ -16,6 +18,7 @@
 #include "scene/light.h"
 #include "scene/medium.h"
 #include "scene/mesh.h"
+#include "scene/scene.h"
 
 namespace pertev::described {
 
@@ -74,6 +77,12 @@ struct Placed {
     std::optional<uint32_t> medium, outside; // media that fill it, and on its other side
     DoubleTransform world_from_mesh;         // before ShapeMesh::shape_from_mesh
 };
+
+/// Returns the most instances of a scene whose files have `file_bytes`.
+inline uint64_t max_placed(uint64_t file_bytes) {
+    return std::min<uint64_t>(kMaxInstances,
+                              justified_bytes(kFreeMeshBytes, file_bytes) / (sizeof(Instance) + sizeof(Placed)));
+}
 
 struct Parts {
     std::vector<ShapeMesh> meshes;

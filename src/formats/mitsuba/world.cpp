@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "base/limits.h"
 #include "base/message_text.h"
 #include "formats/described/assemble.h"
 #include "formats/described/make_surface.h"
@@ -114,8 +113,7 @@ void World::place(Object& shape, const DoubleTransform& world_from_group) {
 }
 
 Scene World::finish(uint64_t file_bytes) {
-    most_placed_ = std::min<uint64_t>(kMaxInstances, justified_bytes(kFreeMeshBytes, file_bytes) /
-                                                         (sizeof(Instance) + sizeof(Placed)));
+    most_placed_ = described::max_placed(file_bytes);
     for (const uint32_t number : std::vector<uint32_t>(objects_.top())) {
         Object& object = objects_.at(number);
         context_.sink.check_at(number);

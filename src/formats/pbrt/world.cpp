@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "base/limits.h"
 #include "base/message_text.h"
 #include "formats/described/assemble.h"
 #include "formats/described/described_medium.h"
@@ -233,8 +232,7 @@ void World::add_instance(const std::string& name, const FileLocation& from, uint
         throw Error(ErrorCode::BadInput, from,
                     fmt::format("there is no object {}{}", shortened(name), did_you_mean(name, first_names(objects_))));
     }
-    const uint64_t most = std::min<uint64_t>(kMaxInstances, justified_bytes(kFreeMeshBytes, file_bytes) /
-                                                                (sizeof(Instance) + sizeof(Placed)));
+    const uint64_t most = described::max_placed(file_bytes);
     if (parts_.placed.size() + object->second.size() > most) {
         throw Error(ErrorCode::OverLimit, from,
                     fmt::format("more than {} instances, the limit for files of this size", most));
