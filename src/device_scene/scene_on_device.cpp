@@ -45,6 +45,17 @@ struct Instances {
     std::vector<uint32_t> first_triangle; // see SceneView
 };
 
+/// Returns Instance::layers_above; 0 if the layers no longer have the same triangles.
+uint16_t layers_above(const Scene& scene, std::size_t instance) {
+    const auto triangles = [&](std::size_t i) { return scene.meshes[scene.instances[i].mesh].triangle_count(); };
+    const uint32_t count = scene.instances[instance].layers_above;
+    if (count > instance || count > UINT16_MAX) return 0;
+    for (uint32_t k = 1; k <= count; ++k) {
+        if (triangles(instance - k) != triangles(instance)) return 0;
+    }
+    return static_cast<uint16_t>(count);
+}
+
 PartArrays list_instances(const PlacedScene& prepared, Instances& instances, SceneView& view) {
     const Scene& scene = *prepared.scene;
     view.any_alpha = 0;
@@ -72,7 +83,8 @@ PartArrays list_instances(const PlacedScene& prepared, Instances& instances, Sce
         instances.passing[i / 32] |= uint32_t(has_alpha | hides_back) << i % 32;
         instances.views.push_back({world_from_local, inverse(world_from_local), instance.mesh, instance.material,
                                    has_alpha, hides_back, uint16_t(is_mirroring(world_from_local)),
-                                   uint16_t(instance.is_hidden), prepared.is_baked[i] ? 1u : 0u});
+                                   uint16_t(instance.is_hidden), uint16_t(prepared.is_baked[i] ? 1 : 0),
+                                   layers_above(scene, i)});
     }
     instances.first_triangle.push_back(static_cast<uint32_t>(view.triangle_count));
     if (view.triangle_count > UINT32_MAX) instances.first_triangle.clear();

@@ -12,6 +12,7 @@
 #include "math/vec2.h"
 #include "math/vec3.h"
 #include "math/vec4.h"
+#include "shading/light_selection.h"
 #include "shading/light_set.h"
 #include "shading/shading_variant.h"
 #include "shading/texture_lookup.h"
@@ -34,11 +35,12 @@ struct InstanceView {
     Transform local_from_world;
     uint32_t mesh;
     uint32_t material;
-    uint16_t has_alpha;   // 1 if alpha may reject a hit
-    uint16_t hides_back;  // 1 if camera rays pass through the back
-    uint16_t is_mirrored; // 1 if world_from_local reverses winding
-    uint16_t is_hidden;   // 1 if it does not exist and world_from_local is undefined
-    uint32_t is_baked;    // 1 if its triangles are traversed in the world, 0 if in its own space
+    uint16_t has_alpha;    // 1 if alpha may reject a hit
+    uint16_t hides_back;   // 1 if camera rays pass through the back
+    uint16_t is_mirrored;  // 1 if world_from_local reverses winding
+    uint16_t is_hidden;    // 1 if it does not exist and world_from_local is undefined
+    uint16_t is_baked;     // 1 if its triangles are traversed in the world, 0 if in its own space
+    uint16_t layers_above; // Instance::layers_above
 };
 
 struct SceneView {
@@ -90,6 +92,11 @@ HD inline TriangleIndices triangle_indices(const MeshView& mesh, uint32_t primit
 template <class T>
 HD T interpolate(const T* values, TriangleIndices i, float u, float v) {
     return (1.0f - u - v) * values[i.a] + u * values[i.b] + v * values[i.c];
+}
+
+/// Returns whether next-event estimation selects the scene's lights by its tree.
+inline bool uses_light_tree(LightSelection selection, const SceneView& scene) {
+    return uses_light_tree(selection, scene.lights.tree.light_count, scene.motions.is_there());
 }
 
 } // namespace pertev

@@ -121,7 +121,7 @@ void Restir::add(const NoisyFrame& frame, const PictureView& picture, const Samp
                                                                      settings.candidates});
         });
     };
-    const bool is_by_tree = uses_light_tree(selection, scene.lights.tree.light_count, scene.motions.is_there());
+    const bool is_by_tree = uses_light_tree(selection, scene);
     is_by_tree ? sample_candidates.template operator()<ChosenByTree>()
                : sample_candidates.template operator()<ChosenByPower>();
     here.stored = receivers_.data();

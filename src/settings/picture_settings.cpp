@@ -124,7 +124,7 @@ std::vector<Setting> picture_settings() {
             "The pictures whose textures are filtered by mip-maps: real-time frames, all (on) or none.",
             Of{integrators_that(makes_frames)}, On{kLooking}, Recorded::Changed, Changes::Picture),
         row("light_choice", "Quality", "NAME", FIELD(render.path.light_choice),
-            "The choice of a light at each point: by a tree, power, or the tree for more than 256 lights (auto). "
+            "The choice of a light at each point: by a tree, by power, or by the tree for more than 256 lights (auto). "
             "Particles leave lights by power.",
             Of{integrators_that(selects_lights)}, On{kLooking | kBenchRender}, Recorded::Changed, Changes::Picture),
         row("time_limit", "Quality", "SECONDS", FIELD(render.time_limit_s),

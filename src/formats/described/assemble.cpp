@@ -224,6 +224,7 @@ Scene assemble(Parts parts, const DoubleTransform& scene_from_world, uint64_t fi
         instance.material = material;
         instance.world_from_local = to_float(transform);
         instance.is_hidden = is_singular(instance.world_from_local);
+        instance.layers_above = shape.layers_above;
         scene.instances.push_back(std::move(instance));
     }
     if (scene.instances.empty()) {

@@ -224,6 +224,7 @@ void separate_mixtures(Parts& parts, uint64_t file_bytes, Sink& sink) {
         for (uint32_t i = 0; i < count; ++i) {
             Placed one = shape;
             one.surface = known->second + i;
+            one.layers_above = i;
             if (i != body) one.medium.reset();
             placed.push_back(std::move(one));
         }

@@ -75,6 +75,7 @@ struct Placed {
     uint32_t mesh = 0, surface = 0;
     std::optional<uint32_t> area_light, alpha;
     std::optional<uint32_t> medium, outside; // media that fill it, and on its other side
+    uint32_t layers_above = 0;               // Instance::layers_above
     DoubleTransform world_from_mesh;         // before ShapeMesh::shape_from_mesh
 };
 

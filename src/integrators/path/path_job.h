@@ -69,9 +69,7 @@ inline Features features_of(ShadingVariant variant) {
 inline bool uses_light_tree(const PathJob& job) {
     const PictureView& picture = job.picture;
     const bool has_no_code = picture.scene.has_media != 0 && (job.film.frame.is_there() || job.layers.is_there());
-    return !picture.camera.is_meter() && !has_no_code &&
-           uses_light_tree(job.settings.light_choice, picture.scene.lights.tree.light_count,
-                           picture.scene.motions.is_there());
+    return !picture.camera.is_meter() && !has_no_code && uses_light_tree(job.settings.light_choice, picture.scene);
 }
 
 /// Returns the features that the job needs. A moving camera's depth is along its axis at the ray's time.

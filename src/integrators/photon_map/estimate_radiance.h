@@ -83,13 +83,14 @@ private:
     struct Receiver {
         const Surface& surface;
         Vec3 wo, normal;
-        uint32_t max_scatterings;
+        uint32_t max_scatterings, owner;
     };
 
     HD Receiver receiver_of(const Lookup& lookup, const Surface& surface) const {
         const Vec3 wo = -lookup.direction;
         // Maximum number of scatterings of a photon; the surface itself adds one.
-        return {surface, wo, normal_towards(surface, wo), scene.settings.max_depth - lookup.scatterings - 1};
+        return {surface, wo, normal_towards(surface, wo), scene.settings.max_depth - lookup.scatterings - 1,
+                owner_of(scene.picture.scene, lookup.hit.instance)};
     }
     HD bool needs_caustic(const Lookup& lookup) const { return !lookup.wants_all || !maps.global_has_all; }
     HD bool is_crowded(const Lookup& lookup, Vec3 at) const {
@@ -116,7 +117,8 @@ private:
     /// Scattered power f(wo, wi) power of photon `number`, W/sr.
     HD static Rgb reflected_light(const PhotonMapView& map, const Receiver& receiver, uint32_t number) {
         const Float4 power = map.photons.powers[number], way = map.photons.ways[number];
-        if (bits_of(power.w) > receiver.max_scatterings) return {};
+        if (PhotonsView::scatterings(power) > receiver.max_scatterings) return {};
+        if (PhotonsView::owner(power) != receiver.owner) return {};
         if (!(dot(unpack_normal(bits_of(way.w)), receiver.normal) > 0.7071f)) return {};
         const Vec3 wi = {way.x, way.y, way.z};
         const float cosine = abs(dot(wi, receiver.surface.geometric_normal));

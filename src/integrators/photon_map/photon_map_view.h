@@ -9,6 +9,7 @@
 #include "accel/nearest_points.h"
 #include "accel/octree/point_octree.h"
 #include "device/atomics.h"
+#include "device_scene/accept_hit.h"
 #include "integrators/photon_map/photon_map_settings.h"
 #include "math/float4.h"
 #include "math/random.h"
@@ -25,7 +26,14 @@ struct Photon {
     Rgb power;     // W, for the total power of all lights in a pass, divided by the square of the refractive index
                    // there
     uint32_t path, scatterings;
+    uint32_t owner; // result of owner_of
 };
+
+/// Identifies the instance of a surface that paths meet by chance; 0 for any other. Photons on the former are those of
+/// the surface alone, over the chance to meet it: a lookup, which is met by the same chance, then sees it once.
+HD inline uint32_t owner_of(const SceneView& scene, uint32_t instance) {
+    return is_met_by_chance(scene, instance) ? (instance & 0x7fffffu) + 1 : 0;
+}
 
 /// Packs the components with 10 bits each.
 HD inline uint32_t pack_normal(Vec3 normal) {
@@ -45,15 +53,17 @@ static_assert((uint64_t(2 * kMaxPhotons) << 8) <= kKeyInMedium && kMaxPhotonDept
 
 struct PhotonsView {
     // Position, with 1 in a map, or 0 if it was removed (order_photons.h); wi, bits of the normal, or the medium;
-    // power, bits of the scatterings.
+    // power, bits of the owner and the scatterings.
     Float4 *positions, *ways, *powers;
 
     HD void store(std::size_t at, const Photon& photon, uint32_t place) const {
         const Vec3 p = photon.position, wi = photon.wi;
         positions[at] = {p.x, p.y, p.z, 0};
         ways[at] = {wi.x, wi.y, wi.z, float_of(place)};
-        powers[at] = {photon.power.r, photon.power.g, photon.power.b, float_of(photon.scatterings)};
+        powers[at] = {photon.power.r, photon.power.g, photon.power.b, float_of(photon.owner << 8 | photon.scatterings)};
     }
+    HD static uint32_t owner(Float4 power) { return bits_of(power.w) >> 8; }
+    HD static uint32_t scatterings(Float4 power) { return bits_of(power.w) & 0xffu; }
     HD PhotonsView from(uint32_t first) const { return {positions + first, ways + first, powers + first}; }
 };
 

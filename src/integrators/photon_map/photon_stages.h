@@ -113,7 +113,7 @@ struct ShadePhotons {
             pass.add_energy(&PhotonEnergy::arrived, arrived);
             const Surface surface = make_surface<kVariant>(scene.picture.scene, hit, ray.direction);
             if (state.depth() == 0) state.throughput = left_at(hit.t, ray.t_max) * state.throughput;
-            shade_surface(surface, ray.direction, subpath, state, arrived, {});
+            shade_surface(surface, hit, ray.direction, subpath, state, arrived, {});
         }
     }
 
@@ -137,32 +137,36 @@ private:
         const Rgb arrived = state.throughput;
         pass.add_energy(&PhotonEnergy::arrived, arrived);
         state.throughput = left * state.throughput;
-        shade_surface(surface, ray.direction, subpath, state, arrived, list);
+        shade_surface(surface, hit, ray.direction, subpath, state, arrived, list);
     }
     /// Shades a surface at which the photon arrives along `direction`, with the power `arrived` before the end of a
     /// light's range; `list` has the solids that hold it there.
-    HD INLINE_ON_DEVICE void shade_surface(const Surface& surface, Vec3 direction, uint32_t subpath,
+    HD INLINE_ON_DEVICE void shade_surface(const Surface& surface, const Hit& hit, Vec3 direction, uint32_t subpath,
                                            SubpathState& state, Rgb arrived, InteriorList list) const {
         const bool is_caustic = pass.is_caustic(state.pixel);
         const bool is_kept = state.depth() > 0 && (is_caustic || gather.marks[subpath] != 0) && !surface.is_unlit &&
                              surface.bsdf.has(LobeClass::Diffuse);
         if (!is_kept) pass.add_energy(&PhotonEnergy::left_none, arrived);
         if (surface.is_unlit || is_black(state.throughput)) return;
-        if (is_kept) keep(surface, subpath, state, -direction, is_caustic);
+        if (is_kept) keep(surface, hit, subpath, state, -direction, is_caustic);
         if (state.depth() + 1 < scene.settings.max_depth && !(is_caustic && !surface.bsdf.has_delta())) {
             continue_subpath(surface, subpath, state, -direction, is_caustic, list);
         }
     }
-    HD void keep(const Surface& surface, uint32_t subpath, const SubpathState& state, Vec3 wi, bool is_caustic) const {
+    HD void keep(const Surface& surface, const Hit& hit, uint32_t subpath, const SubpathState& state, Vec3 wi,
+                 bool is_caustic) const {
         // Camera subpaths carry radiance over the squared index (shading/lobes/bsdf_sample.h), photons carry power.
-        const Rgb power = (1.0f / gather.index_squared(subpath)) * state.throughput;
+        Rgb power = (1.0f / gather.index_squared(subpath)) * state.throughput;
+        const SceneView& view = scene.picture.scene;
+        const uint32_t owner = owner_of(view, hit.instance);
+        if (owner != 0) power = (1.0f / chance_to_meet(view, hit.instance, hit.primitive, hit.u, hit.v)) * power;
         if (!(max_component(power) <= kMaxSampleValue)) {
             atomic_add(pass.invalid, 1);
             return;
         }
         const Vec3 normal = surface.geometric_normal;
         pass.stored.add(
-            {surface.position, wi, dot(normal, wi) < 0 ? -normal : normal, power, state.pixel, state.depth()},
+            {surface.position, wi, dot(normal, wi) < 0 ? -normal : normal, power, state.pixel, state.depth(), owner},
             is_caustic);
     }
     HD INLINE_ON_DEVICE void continue_subpath(const Surface& surface, uint32_t subpath, SubpathState& state, Vec3 wi,
@@ -197,7 +201,7 @@ private:
             atomic_add(pass.invalid, 1);
             return;
         }
-        pass.stored.add_in_medium({end.position(), -end.along, {}, power, state.pixel, state.depth()}, medium);
+        pass.stored.add_in_medium({end.position(), -end.along, {}, power, state.pixel, state.depth(), 0}, medium);
     }
     /// Scatters a global photon in a medium; a caustic one ends there.
     HD INLINE_ON_DEVICE void scatter_in_medium(const MediumEnd& end, uint32_t subpath, SubpathState& state,

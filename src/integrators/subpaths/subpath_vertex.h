@@ -22,8 +22,7 @@ struct SubpathScene {
 
 /// Returns whether next-event estimation selects lights by a tree.
 inline bool uses_light_tree(const SubpathScene& scene) {
-    const SceneView& view = scene.picture.scene;
-    return uses_light_tree(scene.settings.light_choice, view.lights.tree.light_count, view.motions.is_there());
+    return uses_light_tree(scene.settings.light_choice, scene.picture.scene);
 }
 
 /// Stores the normal of the context by which `end` selects lights for the direction `wo`, before a ray leaves there.
