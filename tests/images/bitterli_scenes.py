@@ -202,7 +202,7 @@ def prepared(job, name, arrays):
 @dataclasses.dataclass
 class Errors:
     whole: float  # relMSE, mean of our two pictures
-    rel_mse: float  # the same without the edges of emitters
+    rel_mse: float  # relMSE without the edges of emitters
     ours: float  # relMSE by our noise, likewise
     reference: float  # relMSE by the reference's noise
     largest: float  # largest error of a block that is not left out
