@@ -76,6 +76,8 @@ MUTATIONS = [
      ("src/image/write_png.cpp", "i % 2 == 0 ? rgba[i / 2] >> 8", "i % 2 == 1 ? rgba[i / 2] >> 8")),
     ("a table is interpolated along the wrong edges", "unit/cube_lut",
      ("src/image/cube_lut.cpp", "return share[a] > share[b];", "return share[a] < share[b];")),
+    ("curves of a table are steps", "unit/cube_lut",
+     ("src/image/cube_lut.cpp", "curves_[at.cell + 1].*channel", "curves_[at.cell].*channel")),
     ("a merge forgets the table", "robust/cli_outputs",
      ("src/session/pictures/show_merged.cpp", "if (facts.display) facts.display->read_lut();", "")),
     ("a threshold is met by larger errors", "robust/cli_outputs",

@@ -144,11 +144,14 @@ constexpr std::array<std::string_view, 2> kIes = {
     "IESNA:LM-63-2002\n[TEST] a lamp\nTILT=NONE\n1 -1 1 3 1 1 2 0 0 0\n1 1 50\n0 45 90\n0\n100 80 0\n",
     "IESNA91\nTILT=INCLUDE\n1\n2\n0 90\n1 .5\n2 1000 .5 3 3 1 1 .1 .1 .1\n1.1 1 50\n0 90 180\n0 45 90\n1 2 3 4 5 6 7 8 "
     "9\n"};
-constexpr std::array<std::string_view, 2> kCube = {
+constexpr std::array<std::string_view, 3> kCube = {
     "TITLE \"a\"\n# a table\nLUT_3D_SIZE 2\nDOMAIN_MIN 0 0 0\nDOMAIN_MAX 1 2 1\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 "
     "1\n0 1 "
     "1\n1 1 1\n",
-    "LUT_3D_SIZE 2\n0 0 0\n.5 -1 0\n0 1e3 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n"};
+    "LUT_3D_SIZE 2\n0 0 0\n.5 -1 0\n0 1e3 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n",
+    "LUT_1D_SIZE 2\nLUT_1D_INPUT_RANGE -1 4\nLUT_3D_SIZE 2\nLUT_3D_INPUT_RANGE 0 2\n0 0 0\n2 1 3\n0 0 0\n.5 -1 0\n0 1 "
+    "0\n1 1 0\n"
+    "0 0 1\n1 0 1\n0 1 1\n1 1 1\n"};
 constexpr std::array<std::string_view, 3> kCameras = {
     R"({"cameras":[{"name":"front","eye":[0,1,5],"target":[0,1,0],"fov":40},{"eye":[1,2,3],"lens":"fisheye"}],"up":[0,1,0]})",
     R"({"camera_angle_x":0.7,"frames":[{"file_path":"a","transform_matrix":[[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]}]})",

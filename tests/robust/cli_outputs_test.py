@@ -97,7 +97,7 @@ class Tables(CliTest):
 
     def test_a_damaged_table_is_refused_with_its_line(self):
         good = cube(2, lambda r, g, b: (r, g, b))
-        for text, says in {good[:-12]: "cut off", good + "0 0 0\n": ":13", good.replace("LUT_3D_SIZE 2", "LUT_3D_SIZE 1"): ":3", good.replace("LUT_3D", "LUT_1D"): "one dimension",
+        for text, says in {good[:-12]: "cut off", good + "0 0 0\n": ":13", good.replace("LUT_3D_SIZE 2", "LUT_3D_SIZE 1"): ":3", good.replace("LUT_3D", "LUT_1D"): ":7",
                            "0 0 0\n" + good: ":1", good.replace("TITLE", "TITEL"): "TITEL", "": "LUT_3D_SIZE", good.replace("1.0 1.0 1.0", "1.0 nan 1.0"): "three numbers",
                            good.replace("LUT_3D_SIZE 2", "LUT_3D_SIZE 2\nDOMAIN_MAX 0 1 1"): "DOMAIN_MIN"}.items():
             write(self.path("bad.cube"), text)

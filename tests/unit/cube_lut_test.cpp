@@ -1,4 +1,4 @@
-// Tables of three dimensions, p-values, and 16 bits.
+// Look-up tables, p-values, and 16 bits.
 
 #include "image/cube_lut.h"
 
@@ -53,6 +53,35 @@ TEST_CASE("between its points a table is interpolated over tetrahedra along the 
     CHECK(to.r == doctest::Approx(0.25f));
     CHECK(to.g == doctest::Approx(0.25f)); // trilinear: 0.09375
     CHECK(to.b == doctest::Approx(0.75f));
+}
+
+TEST_CASE("curves are linear between their points, clamp to their range, and shape light for the table after them") {
+    const auto parsed = [](const std::string& text) {
+        return CubeLut::parse(std::as_bytes(std::span(text)), "x.cube");
+    };
+    const std::string curves = "0 1 -2\n1 0 -2\n4 0 6\n";
+    for (const char* range : {"LUT_1D_INPUT_RANGE 1 3\n", "DOMAIN_MIN 1 1 1\nDOMAIN_MAX 3 3 3\n"}) {
+        const CubeLut lut = parsed(std::string("LUT_1D_SIZE 3\n") + range + curves);
+        CHECK(lut.side() == 0);
+        const Rgb inside = lut({1.5f, 1.25f, 2.5f}), outside = lut({0, 9, NAN});
+        CHECK(inside.r == 0.5f);
+        CHECK(inside.g == 0.75f);
+        CHECK(inside.b == 2);
+        CHECK(outside.r == 0);
+        CHECK(outside.g == 0);
+        CHECK(outside.b == -2);
+    }
+    // The table inverts what the curves leave of its range [0, 2].
+    const std::string sizes = "LUT_1D_SIZE 3\nLUT_1D_INPUT_RANGE 0 2\nLUT_3D_SIZE 2\nLUT_3D_INPUT_RANGE 0 2\n";
+    const CubeLut both = parsed(sizes + curves + "1 1 1\n0 1 1\n1 0 1\n0 0 1\n1 1 0\n0 1 0\n1 0 0\n0 0 0\n");
+    const Rgb shaped = both({0.5f, 0.5f, 1.25f});
+    CHECK(shaped.r == 0.75f); // 1 - 0.5 / 2
+    CHECK(shaped.g == 0.75f);
+    CHECK(shaped.b == 1); // the curve has 0
+    for (const std::string& bad : {sizes + curves, "DOMAIN_MIN 0 0 0\n" + sizes + curves, curves + sizes, sizes + sizes,
+                                   std::string("LUT_1D_SIZE 2\nLUT_1D_INPUT_RANGE 1 1\n0 0 0\n1 1 1\n"),
+                                   std::string("LUT_1D_SIZE 65537\n"), std::string("LUT_3D_INPUT_RANGE 0\n")})
+        CHECK_THROWS(parsed(bad));
 }
 
 TEST_CASE("16 bits keep what 8 bits round, with alpha, before and after a table") {
