@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 
 #include "formats/read_scene.h"
@@ -8,6 +9,7 @@
 #include "session/survey/default_light.h"
 #include "session/survey/surroundings.h"
 #include "tests/support/options.h"
+#include "tests/support/random.h"
 
 using namespace pertev;
 
@@ -87,6 +89,45 @@ TEST_CASE("rays find the nearest triangle and its side, even through a mirrored 
     CHECK(!hit.is_front);
     const SurveyRay away = {{-5, 0, 0}, {-1, 0, 0}};
     CHECK(!cast_rays(scene, {&away, 1})[0].is_hit());
+}
+
+TEST_CASE("rays find the same hits in any order of triangles, which decides those that they skip together") {
+    test::Random random(9);
+    Scene scene;
+    Mesh sorted;
+    for (uint32_t i = 0; i < 600; ++i) { // small neighbours along a spiral
+        const float turn = 0.05f * static_cast<float>(i);
+        const Vec3 at = {cos(turn), 0.004f * static_cast<float>(i) - 1.2f, sin(turn)};
+        for (int k = 0; k < 3; ++k) {
+            sorted.indices.push_back(static_cast<uint32_t>(sorted.positions.size()));
+            sorted.positions.push_back(at + random.point(-0.15f, 0.15f));
+        }
+    }
+    std::vector<SurveyRay> rays;
+    for (int i = 0; i < 200; ++i) {
+        const Vec3 origin = 3.0f * random.direction();
+        const bool is_along = i % 4 == 0; // parallel to two axes
+        rays.push_back(
+            {origin, is_along ? Vec3{0, 0, origin.z < 0 ? 1.0f : -1.0f} : normalize(random.point(-1, 1) - origin)});
+    }
+    scene.meshes.push_back(sorted);
+    scene.materials.emplace_back();
+    scene.instances.push_back({.name = "spiral", .mesh = 0, .material = 0, .world_from_local = {}});
+    const std::vector<SurveyHit> expected = cast_rays(scene, rays);
+    CHECK(std::ranges::count_if(expected, &SurveyHit::is_hit) > 60);
+    CHECK(std::ranges::count_if(expected, &SurveyHit::is_hit) < 190);
+    for (std::size_t i = 600; i-- > 1;) { // shuffles
+        const std::size_t other = random.below(static_cast<uint32_t>(i) + 1);
+        for (std::size_t k = 0; k < 3; ++k) std::swap(sorted.indices[3 * i + k], sorted.indices[3 * other + k]);
+    }
+    scene.meshes[0] = sorted;
+    const std::vector<SurveyHit> shuffled = cast_rays(scene, rays);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const SurveyHit alone = cast_rays(scene, {&rays[i], 1})[0];
+        CHECK(shuffled[i].distance == expected[i].distance);
+        CHECK(shuffled[i].is_front == expected[i].is_front);
+        CHECK(alone.distance == expected[i].distance);
+    }
 }
 
 TEST_CASE("rays see the front of a sheet with two coincident sides, whichever triangle is first") {

@@ -7,7 +7,8 @@
 namespace pertev {
 namespace {
 
-constexpr uint64_t kGrain = 4096;
+constexpr uint64_t kBlock = 32;  // triangles that rays skip together
+constexpr uint64_t kGrain = 128; // blocks
 
 struct LocalRay {
     Vec3 origin, direction;
@@ -18,7 +19,8 @@ struct LocalRay {
 struct RayPack {
     static constexpr std::size_t kWidth = 8;
     float ox[kWidth], oy[kWidth], oz[kWidth], dx[kWidth], dy[kWidth], dz[kWidth];
-    float distance[kWidth], facing[kWidth]; // `facing` is above 0 on the front
+    float per_x[kWidth], per_y[kWidth], per_z[kWidth]; // 1 over the direction, finite
+    float distance[kWidth], facing[kWidth];            // `facing` is above 0 on the front
 };
 
 bool hits_box(const Bounds3& box, const LocalRay& ray) {
@@ -52,6 +54,8 @@ void hit_triangle(Vec3 a, Vec3 ab, Vec3 ac, bool has_back, RayPack& rays) {
     }
 }
 
+float finite_inverse(float d) { return abs(d) < 0x1p-80f ? 0x1p80f : 1.0f / d; }
+
 std::vector<RayPack> pack(const std::vector<LocalRay>& rays) {
     std::vector<RayPack> packs((rays.size() + RayPack::kWidth - 1) / RayPack::kWidth);
     for (std::size_t i = 0; i < packs.size() * RayPack::kWidth; ++i) {
@@ -60,20 +64,60 @@ std::vector<RayPack> pack(const std::vector<LocalRay>& rays) {
         const std::size_t k = i % RayPack::kWidth;
         to.ox[k] = ray.origin.x, to.oy[k] = ray.origin.y, to.oz[k] = ray.origin.z;
         to.dx[k] = ray.direction.x, to.dy[k] = ray.direction.y, to.dz[k] = ray.direction.z;
+        to.per_x[k] = finite_inverse(ray.direction.x), to.per_y[k] = finite_inverse(ray.direction.y);
+        to.per_z[k] = finite_inverse(ray.direction.z);
         to.distance[k] = kInfinity, to.facing[k] = 0;
     }
     return packs;
 }
 
+/// Consecutive triangles of a mesh. Files have neighbours together, so most rays miss the box of most blocks.
+struct Block {
+    std::size_t count = 0;
+    Vec3 a[kBlock], ab[kBlock], ac[kBlock];
+    Bounds3 box;
+
+    Block(const Mesh& mesh, uint64_t first) : count(min(kBlock, mesh.triangle_count() - first)) {
+        const uint32_t* index = mesh.indices.data() + 3 * first;
+        for (std::size_t i = 0; i < count; ++i, index += 3) {
+            const Vec3 b = mesh.positions[index[1]], c = mesh.positions[index[2]];
+            a[i] = mesh.positions[index[0]], ab[i] = b - a[i], ac[i] = c - a[i];
+            box.extend(a[i]), box.extend(b), box.extend(c);
+        }
+    }
+
+    /// Returns whether a ray may hit the box. It is grown by more than rounding moves a hit that is not edge-on, so
+    /// that the answer does not depend on the threads: blocks are the same for all.
+    bool is_reached(const RayPack& rays) const {
+        const Vec3 size = box.size();
+        const float own = 0x1p-10f * max_component(size);
+        int reaches = 0;
+        for (std::size_t k = 0; k < RayPack::kWidth; ++k) {
+            const Vec3 lo = box.lo - Vec3{rays.ox[k], rays.oy[k], rays.oz[k]}, hi = lo + size;
+            const float margin = own + 0x1p-16f * max(max_component(abs(lo)), max_component(abs(hi)));
+            const float x0 = (lo.x - margin) * rays.per_x[k], x1 = (hi.x + margin) * rays.per_x[k];
+            const float y0 = (lo.y - margin) * rays.per_y[k], y1 = (hi.y + margin) * rays.per_y[k];
+            const float z0 = (lo.z - margin) * rays.per_z[k], z1 = (hi.z + margin) * rays.per_z[k];
+            const float from = max(max(min(x0, x1), min(y0, y1)), max(min(z0, z1), 0.0f));
+            const float to = min(min(max(x0, x1), max(y0, y1)), max(z0, z1));
+            reaches |= from <= to;
+        }
+        return reaches != 0;
+    }
+};
+
 void cast_at_mesh(const Mesh& mesh, bool has_back, const std::vector<LocalRay>& rays, std::vector<SurveyHit>& hits) {
     const std::vector<RayPack> start = pack(rays);
     std::mutex merging;
-    parallel_for_ranges(mesh.triangle_count(), kGrain, [&](uint64_t begin, uint64_t end) {
+    parallel_for_ranges((mesh.triangle_count() + kBlock - 1) / kBlock, kGrain, [&](uint64_t begin, uint64_t end) {
         std::vector<RayPack> packs = start;
-        for (uint64_t i = 3 * begin; i < 3 * end; i += 3) {
-            const Vec3 a = mesh.positions[mesh.indices[i]];
-            const Vec3 ab = mesh.positions[mesh.indices[i + 1]] - a, ac = mesh.positions[mesh.indices[i + 2]] - a;
-            for (RayPack& of_eight : packs) hit_triangle(a, ab, ac, has_back, of_eight);
+        for (uint64_t i = begin; i < end; ++i) {
+            const Block block(mesh, i * kBlock);
+            for (RayPack& of_eight : packs) {
+                if (!block.is_reached(of_eight)) continue;
+                for (std::size_t k = 0; k < block.count; ++k)
+                    hit_triangle(block.a[k], block.ab[k], block.ac[k], has_back, of_eight);
+            }
         }
         const std::lock_guard lock(merging);
         for (std::size_t i = 0; i < rays.size(); ++i) {
