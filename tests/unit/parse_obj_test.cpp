@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "base/error.h"
+#include "formats/mesh/corner_numbers.h"
 #include "formats/obj/parse_obj.h"
+#include "tests/support/random.h"
 
 using namespace pertev;
 
@@ -84,4 +86,22 @@ TEST_CASE("a text read in pieces by several threads gives the same result and me
             }
         }
     }
+}
+
+TEST_CASE("corners are numbered in the order of first use, also many of one position and those far apart") {
+    for (const uint32_t apart : {1u, 1000u}) {
+        test::Random random(apart);
+        std::vector<VertexKey> corners;
+        for (int i = 0; i < 4000; ++i) { // position 5 has more corners than are tried before they are hashed
+            const uint32_t position = random.below(2) == 0 ? 5 : random.below(300);
+            corners.push_back({apart * position, random.below(40), random.below(2) == 0 ? 0xffffffffu : 7});
+        }
+        CornerNumbers found(corners);
+        KeyNumbers<VertexKey> expected(corners.size());
+        uint32_t wrong = 0;
+        for (const VertexKey& corner : corners) wrong += found.number_of(corner) != expected.number_of(corner) ? 1 : 0;
+        CHECK(wrong == 0);
+        CHECK(found.keys() == expected.keys());
+    }
+    CHECK(CornerNumbers({}).keys().empty());
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-// Key of a face corner, for files with indices or values per corner. KeyNumbers of base/key_numbers.h assigns a
-// vertex to each different key.
+// Key of a face corner, for files with indices or values per corner. CornerNumbers of formats/mesh/corner_numbers.h
+// assigns a vertex to each different key of indices, KeyNumbers of base/key_numbers.h to each of values.
 
 #include <cstdint>
 

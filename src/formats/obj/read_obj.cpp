@@ -14,12 +14,12 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "base/key_numbers.h"
 #include "base/message_text.h"
 #include "base/parallel_for.h"
 #include "base/read_file.h"
 #include "base/sink.h"
 #include "formats/files/load_textures.h"
+#include "formats/mesh/corner_numbers.h"
 #include "formats/obj/bump_normals.h"
 #include "formats/obj/parse_obj.h"
 #include "formats/obj/read_mtl.h"
@@ -70,7 +70,7 @@ Mesh make_mesh(const ObjGroup& group, const ObjData& data, Sink& sink) {
     Mesh mesh;
     mesh.name = group.name.empty() ? group.material : group.name;
     mesh.origin = fmt::format("line {}", group.line);
-    KeyNumbers<ObjCorner> table(group.corners.size());
+    CornerNumbers table(group.corners);
     mesh.indices.reserve(group.corners.size());
     bool has_uv = false, has_normal = false;
     for (const ObjCorner& corner : group.corners) {
