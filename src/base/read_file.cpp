@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/huge_pages.h"
 
 namespace pertev {
 
@@ -32,8 +33,9 @@ InputFile open_file(const std::filesystem::path& path) {
 std::vector<std::byte> read_file(const std::filesystem::path& path) {
     const InputFile file = open_file(path);
     std::error_code ec;
-    std::vector<std::byte> bytes(std::filesystem::file_size(path, ec));
+    const std::uintmax_t size = std::filesystem::file_size(path, ec);
     if (ec) throw failure(path, ec.message());
+    auto bytes = array_on_huge_pages<std::byte>(size);
     if (std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) {
         throw failure(path, "the file ended early or the disk failed");
     }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/huge_pages.h"
 #include "base/limits.h"
 #include "base/message_text.h"
 #include "base/parallel_until.h"
@@ -78,7 +79,7 @@ std::vector<BvhTriangle> baked_triangles(const Scene& scene, const MeshPlacement
                     fmt::format("the scene has {} triangles outside shared meshes; one tree holds at most {}", count,
                                 kMaxBvhTriangles));
     }
-    std::vector<BvhTriangle> triangles(count);
+    auto triangles = array_on_huge_pages<BvhTriangle>(count);
     std::size_t first = 0;
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         if (!placement.is_baked[i]) continue;
@@ -91,7 +92,7 @@ std::vector<BvhTriangle> baked_triangles(const Scene& scene, const MeshPlacement
 }
 
 std::vector<BvhTriangle> mesh_triangles(const Mesh& mesh, Sink& sink) {
-    std::vector<BvhTriangle> triangles(mesh.triangle_count());
+    auto triangles = array_on_huge_pages<BvhTriangle>(mesh.triangle_count());
     add_triangles(mesh, Transform{}, 0, triangles, sink);
     return triangles;
 }

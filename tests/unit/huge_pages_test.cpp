@@ -9,6 +9,13 @@
 
 using namespace pertev;
 
+TEST_CASE("an array on huge pages is as any other") {
+    for (const std::size_t count : {std::size_t(0), std::size_t(1), std::size_t(3) << 20}) {
+        const auto values = array_on_huge_pages<uint32_t>(count);
+        CHECK(values == std::vector<uint32_t>(count));
+    }
+}
+
 TEST_CASE("memory moved into huge pages keeps its bytes at any size") {
     for (const std::size_t count : {std::size_t(0), std::size_t(1), std::size_t(1) << 18, std::size_t(3) << 20}) {
         CAPTURE(count);

@@ -7,6 +7,7 @@
 
 #include "accel/builders/visit_upwards.h"
 #include "base/error.h"
+#include "base/huge_pages.h"
 #include "base/limits.h"
 
 namespace pertev {
@@ -113,8 +114,8 @@ public:
         const BinaryNode& root = tree_.nodes[tree_.root];
         const NodeSummary& summary = summaries_[tree_.root];
         bvh_.bounds = root.box;
-        bvh_.nodes.resize(summary.inner);
-        bvh_.triangles.resize(summary.size);
+        bvh_.nodes = array_on_huge_pages<BvhNode>(summary.inner);
+        bvh_.triangles = array_on_huge_pages<BvhTriangle>(summary.size);
         bvh_.root = link_of({tree_.root, 0, 0});
         bvh_.depth = summary.depth;
         bvh_.sah_cost = summary.cost / max(root.box.half_area(), 0x1p-126f);

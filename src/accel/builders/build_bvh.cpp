@@ -1,5 +1,6 @@
 #include "accel/builders/build_bvh.h"
 
+#include "base/huge_pages.h"
 #include "base/parallel_for.h"
 #include "base/parallel_until.h"
 
@@ -11,7 +12,7 @@ constexpr uint64_t kGrain = 1 << 14;
 } // namespace
 
 std::vector<BuildReference> references_of(const std::vector<BvhTriangle>& triangles) {
-    std::vector<BuildReference> references(triangles.size());
+    auto references = array_on_huge_pages<BuildReference>(triangles.size());
     parallel_for(triangles.size(), kGrain, [&](uint64_t i) {
         const BvhTriangle& t = triangles[i];
         // Adding 0 turns -0 into +0; otherwise a minimum of two zeros would depend on their order.
@@ -27,7 +28,7 @@ BuiltTree build_triangle_tree(const std::vector<BvhTriangle>& triangles, const B
 
 Bvh make_bvh(BuiltTree tree, const std::vector<BvhTriangle>& triangles, Sink& sink) {
     Bvh bvh{.nodes = std::move(tree.nodes),
-            .triangles = std::vector<BvhTriangle>(tree.order.size()),
+            .triangles = array_on_huge_pages<BvhTriangle>(tree.order.size()),
             .root = tree.root,
             .bounds = tree.bounds,
             .depth = tree.depth,

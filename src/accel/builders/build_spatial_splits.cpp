@@ -19,6 +19,7 @@
 #include "accel/builders/halve_references.h"
 #include "accel/bvh/binned_cut.h"
 #include "base/error.h"
+#include "base/huge_pages.h"
 #include "base/limits.h"
 #include "base/parallel_for.h"
 
@@ -270,8 +271,8 @@ public:
                              first + static_cast<std::ptrdiff_t>(std::min(kSplitChunk, all.size() - i * kSplitChunk)));
         });
         const std::unique_ptr<SplitPart> part = build_part(std::move(chunks), allowance, 0);
-        tree_.nodes.resize(part->nodes);
-        tree_.references.resize(part->references);
+        tree_.nodes = array_on_huge_pages<BinaryNode>(part->nodes);
+        tree_.references = array_on_huge_pages<uint32_t>(part->references);
         tree_.root = 0;
         place(*part, 0, 0);
         return std::move(tree_);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/huge_pages.h"
 
 namespace pertev {
 namespace {
@@ -46,7 +47,7 @@ void CollapsedTree::add_subtrees(const Bvh& bvh, Sink& sink) {
         uint32_t link, count, parent; // parent is kNoLink for a left child and for the root
         Bounds3 box;
     };
-    subtrees_.reserve(2 * bvh.nodes.size() + 1);
+    reserve_on_huge_pages(subtrees_, 2 * bvh.nodes.size() + 1);
     std::vector<Pending> pending = {{bvh.root, 0, kNoLink, bvh.bounds}};
     while (!pending.empty()) {
         Pending at = pending.back();
@@ -94,7 +95,7 @@ float CollapsedTree::leaf_cost(const CollapseSettings& settings, uint32_t count)
 }
 
 void CollapsedTree::plan(Sink& sink) {
-    plans_.resize(subtrees_.size());
+    plans_ = array_on_huge_pages<Plan>(subtrees_.size());
     std::vector<Costs> stack; // costs of subtrees whose parent comes later; a left child is on top of its sibling
     for (std::size_t i = subtrees_.size(); i-- > 0;) {
         sink.check_at(i);

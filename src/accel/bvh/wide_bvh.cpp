@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/huge_pages.h"
 #include "base/limits.h"
+#include "base/parallel_for.h"
 
 namespace pertev {
 namespace {
@@ -87,12 +89,17 @@ WideBvh<kWidth> assemble(const Bvh& bvh, const CollapseSettings& settings, Sink&
 
 template <int kWidth>
 WideBvh<kWidth> make_wide_bvh(const Bvh& bvh, const CollapseSettings& settings, Sink& sink) {
-    WideBvh<kWidth> wide = assemble<kWidth>(bvh, settings, sink);
-    wide.triangles.reserve(bvh.triangles.size());
-    for (const BvhTriangle& t : bvh.triangles) {
-        sink.check_at(wide.triangles.size());
-        wide.triangles.emplace_back(t).flags &= ~kLastInLeaf;
-    }
+    WideBvh<kWidth> wide;
+    std::vector<BvhTriangle> triangles;
+    parallel_invoke([&] { wide = assemble<kWidth>(bvh, settings, sink); },
+                    [&] {
+                        reserve_on_huge_pages(triangles, bvh.triangles.size());
+                        for (const BvhTriangle& t : bvh.triangles) {
+                            sink.check_at(triangles.size());
+                            triangles.emplace_back(t).flags &= ~kLastInLeaf;
+                        }
+                    });
+    wide.triangles = std::move(triangles);
     for (const WideBvhNode<kWidth>& node : wide.nodes) {
         for (int k = 0; k < kWidth; ++k) {
             if (node.count[k] != 0)

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/huge_pages.h"
 #include "base/message_text.h"
 #include "base/parallel_for.h"
 #include "formats/files/parse_number.h"
@@ -321,10 +322,10 @@ private:
         if (std::max({all.positions, all.uvs, all.normals}) >= kNoIndex) {
             throw Error(ErrorCode::OverLimit, FileLocation{file_}, "more than 2^32 - 1 vertices");
         }
-        data_.positions.resize(all.positions); // pieces write to disjoint ranges
-        exact_.resize(all.positions);
-        data_.uvs.resize(all.uvs);
-        data_.normals.resize(all.normals);
+        data_.positions = array_on_huge_pages<Vec3>(all.positions); // pieces write to disjoint ranges
+        exact_ = array_on_huge_pages<DoubleVec3>(all.positions);
+        data_.uvs = array_on_huge_pages<Vec2>(all.uvs);
+        data_.normals = array_on_huge_pages<Vec3>(all.normals);
         for (std::size_t i = 0; i < pieces_.size(); ++i)
             parsers_.emplace_back(pieces_[i], end_of_line_, file_, data_, exact_,
                                   i == 0 && found_materials ? &found_materials : nullptr);
@@ -397,7 +398,7 @@ private:
         std::size_t triangles = 0;
         for (const RawGroup* part : parts)
             for (const Face& face : part->faces) triangles += face.corner_count - 2;
-        group.corners.reserve(3 * triangles);
+        reserve_on_huge_pages(group.corners, 3 * triangles);
         for (RawGroup* part : parts) {
             cut_faces(*part, group, without, without_vertex);
             *part = {};

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/huge_pages.h"
 #include "base/message_text.h"
 #include "base/parallel_for.h"
 #include "base/read_file.h"
@@ -71,7 +72,7 @@ Mesh make_mesh(const ObjGroup& group, const ObjData& data, Sink& sink) {
     mesh.name = group.name.empty() ? group.material : group.name;
     mesh.origin = fmt::format("line {}", group.line);
     CornerNumbers table(group.corners);
-    mesh.indices.reserve(group.corners.size());
+    reserve_on_huge_pages(mesh.indices, group.corners.size());
     bool has_uv = false, has_normal = false;
     for (const ObjCorner& corner : group.corners) {
         sink.check_at(mesh.indices.size());
