@@ -80,6 +80,8 @@ MUTATIONS = [
      ("src/image/cube_lut.cpp", "curves_[at.cell + 1].*channel", "curves_[at.cell].*channel")),
     ("rays of a survey follow the first of their eight", "unit/scene_defaults",
      ("src/session/survey/cast_rays.cpp", "reaches |= from <= to;", "reaches |= (k == 0) & (from <= to);")),
+    ("the right side of a cut begins too low", "unit/sparse_bins",
+     ("src/accel/bvh/binned_cut.h", "static_cast<float>(n) + right_cost[k];", "static_cast<float>(n) + right_cost[below];")),
     ("hashed corners forget the others' numbers", "unit/parse_obj",
      ("src/formats/mesh/corner_numbers.h", "return others_numbers_[other];", "return other;")),
     ("a merge forgets the table", "robust/cli_outputs",

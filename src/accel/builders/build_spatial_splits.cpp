@@ -129,13 +129,15 @@ private:
         if (chunks.size() == 1) {
             fill_bins(chunks[0].data(), chunks[0].data() + chunks[0].size(), map, bins);
         } else {
-            std::vector<Bins> parts(chunks.size(), bins);
+            std::vector<Bins> parts;
+            parts.reserve(chunks.size());
+            for (std::size_t i = 0; i < chunks.size(); ++i) parts.emplace_back(kBins);
             for_each_chunk(chunks.size(), [&](uint64_t i) {
                 fill_bins(chunks[i].data(), chunks[i].data() + chunks[i].size(), map, parts[i]);
             });
-            for (const Bins& part : parts) add_bins(part, kBins, bins);
+            for (const Bins& part : parts) add_bins(part, bins);
         }
-        const BinnedCut best = find_cheapest_cut(bins, kBins);
+        const BinnedCut best = find_cheapest_cut(bins);
         cut.axis = best.axis, cut.bin = best.bin, cut.cost = best.cost;
         cut.left = to_bounds(best.left), cut.right = to_bounds(best.right);
     }

@@ -31,20 +31,37 @@ struct Row {
     int bin_of(float at, int first, int last) const { return to_int((at - lo) * scale, first, last); }
 };
 
-struct RowBins {
-    Box4 box[kMaxPlanes];
-    uint32_t begins[kMaxPlanes] = {}, ends[kMaxPlanes] = {}; // references whose first and whose last part lies here
+/// Boxes of bins, of which only those of a row are cleared.
+class RowBoxes {
+public:
+    explicit RowBoxes(int bins) {
+        for (int k = 0; k < bins; ++k) clear(k);
+    }
+    void clear(int k) { lo_[k] = Box4{}.lo, hi_[k] = Box4{}.hi; }
+    void extend(int k, const Box4& box) { lo_[k] = _mm_min_ps(lo_[k], box.lo), hi_[k] = _mm_max_ps(hi_[k], box.hi); }
+    void extend_point(int k, __m128 p) { extend(k, {p, p}); }
+    Box4 operator[](int k) const { return {lo_[k], hi_[k]}; }
+
+private:
+    __m128 lo_[kMaxPlanes], hi_[kMaxPlanes];
 };
 
-/// Adds the boxes of a triangle's parts in bins [first, last], each at most as large as the reference's.
+struct RowBins {
+    RowBoxes box;
+    uint32_t begins[kMaxPlanes] = {}, ends[kMaxPlanes] = {}; // references whose first and whose last part lies here
+
+    explicit RowBins(int bins) : box(bins) {}
+};
+
+/// Adds the boxes of a triangle's parts in bins [first, last], each at most as large as the reference's. `parts` are
+/// empty boxes, which are empty again afterwards: most triangles need few of them.
 void add_parts(const Row& row, const Box4& whole, float lo, float hi, const BvhTriangle& triangle, int first, int last,
-               RowBins& bins) {
-    Box4 parts[kMaxPlanes];
+               RowBoxes& parts, RowBins& bins) {
     const __m128 corners[3] = {load(triangle.a), load(triangle.b), load(triangle.c)};
     const float at[3] = {component(triangle.a, row.axis), component(triangle.b, row.axis),
                          component(triangle.c, row.axis)};
     for (int k = 0; k < 3; ++k) {
-        if (at[k] >= lo && at[k] <= hi) parts[row.bin_of(at[k], first, last)].extend_point(corners[k]);
+        if (at[k] >= lo && at[k] <= hi) parts.extend_point(row.bin_of(at[k], first, last), corners[k]);
         const int next = k == 2 ? 0 : k + 1;
         const float from = min(at[k], at[next]), to = max(at[k], at[next]);
         if (!(from < to)) continue;
@@ -53,23 +70,25 @@ void add_parts(const Row& row, const Box4& whole, float lo, float hi, const BvhT
         const auto crossing = [&](float plane) {
             return _mm_add_ps(corners[k], _mm_mul_ps(along, _mm_set1_ps((plane - at[k]) * per_unit)));
         };
-        if (from < lo && lo < to) parts[first].extend_point(crossing(lo));
-        if (from < hi && hi < to) parts[last].extend_point(crossing(hi));
+        if (from < lo && lo < to) parts.extend_point(first, crossing(lo));
+        if (from < hi && hi < to) parts.extend_point(last, crossing(hi));
         const int begin = row.bin_of(from, first, last), end = row.bin_of(to, first, last);
         for (int plane = begin + 1; plane <= end; ++plane) {
             const __m128 point = crossing(row.planes[plane]);
-            parts[plane - 1].extend_point(point);
-            parts[plane].extend_point(point);
+            parts.extend_point(plane - 1, point);
+            parts.extend_point(plane, point);
         }
     }
     for (int k = first; k <= last; ++k) {
         const Box4 part = {_mm_max_ps(parts[k].lo, whole.lo), _mm_min_ps(parts[k].hi, whole.hi)};
-        if (has_points(part)) bins.box[k].extend(part);
+        if (has_points(part)) bins.box.extend(k, part);
+        parts.clear(k);
     }
 }
 
 void fill_row(std::span<const BuildReference> references, const std::vector<BvhTriangle>& triangles, const Row& row,
               RowBins& bins) {
+    RowBoxes parts(row.bins);
     for (const BuildReference& r : references) {
         const float lo = component(r.lo, row.axis), hi = component(r.hi, row.axis);
         const int first = row.bin_of(lo, 0, row.bins - 1), last = row.bin_of(hi, first, row.bins - 1);
@@ -77,20 +96,20 @@ void fill_row(std::span<const BuildReference> references, const std::vector<BvhT
         ++bins.ends[last];
         const Box4 whole = simd_box_of(r);
         if (first == last) {
-            bins.box[first].extend(whole);
+            bins.box.extend(first, whole);
         } else {
-            add_parts(row, whole, lo, hi, triangles[r.id], first, last, bins);
+            add_parts(row, whole, lo, hi, triangles[r.id], first, last, parts, bins);
         }
     }
 }
 
 /// Replaces `best` if a plane of the row is cheaper.
 void find_plane(const Row& row, const RowBins& bins, uint64_t count, uint64_t allowance, SpatialCut& best) {
-    Box4 right[kMaxPlanes]; // boxes of the bins from this one on
+    RowBoxes right(row.bins); // the boxes of the bins from this one on
     Box4 sum;
     for (int k = row.bins - 1; k > 0; --k) {
         sum.extend(bins.box[k]);
-        right[k] = sum;
+        right.extend(k, sum);
     }
     Box4 left;
     uint64_t left_size = 0, right_size = count;
@@ -120,15 +139,17 @@ SpatialCut find_spatial_cut(std::span<const std::span<const BuildReference>> chu
     for (int axis = 0; axis < 3; ++axis) {
         const Row row(box, axis, planes);
         if (row.bins == 0) continue;
-        RowBins bins;
+        RowBins bins(row.bins);
         if (chunks.size() == 1) {
             fill_row(chunks[0], triangles, row, bins);
         } else {
-            std::vector<RowBins> parts(chunks.size());
+            std::vector<RowBins> parts;
+            parts.reserve(chunks.size());
+            for (std::size_t i = 0; i < chunks.size(); ++i) parts.emplace_back(row.bins);
             parallel_for(chunks.size(), 1, [&](uint64_t i) { fill_row(chunks[i], triangles, row, parts[i]); });
             for (const RowBins& part : parts) {
                 for (int k = 0; k < row.bins; ++k) {
-                    bins.box[k].extend(part.box[k]);
+                    bins.box.extend(k, part.box[k]);
                     bins.begins[k] += part.begins[k];
                     bins.ends[k] += part.ends[k];
                 }

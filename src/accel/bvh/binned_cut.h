@@ -6,7 +6,7 @@
 
 #include <immintrin.h>
 
-#include <algorithm>
+#include <bit>
 #include <cstdint>
 
 #include "accel/bvh/build_tree.h"
@@ -51,17 +51,38 @@ inline __m128 centre_of(const Box4& b) {
     return _mm_add_ps(b.lo, b.hi);
 } // doubled centre; the factor does not matter here
 
-struct Bins {
-    Box4 box[3][kMaxBins];
-    uint32_t count[3][kMaxBins];
-
+/// Bins along three axes. Most nodes have fewer boxes than bins, so only as many bins are cleared as are used, and cuts
+/// skip the empty ones.
+class Bins {
+public:
+    /// Makes `bins` empty bins for each axis; there are no others.
     explicit Bins(int bins) {
-        for (int axis = 0; axis < 3; ++axis) {
-            std::fill_n(box[axis], bins, Box4{});
-            std::fill_n(count[axis], bins, 0u);
-        }
+        const Box4 empty;
+        for (int axis = 0; axis < 3; ++axis)
+            for (int k = 0; k < bins; ++k) lo_[axis][k] = empty.lo, hi_[axis][k] = empty.hi, count_[axis][k] = 0;
     }
+
+    void add(int axis, int bin, const Box4& box, uint32_t count) {
+        lo_[axis][bin] = _mm_min_ps(lo_[axis][bin], box.lo), hi_[axis][bin] = _mm_max_ps(hi_[axis][bin], box.hi);
+        count_[axis][bin] += count;
+        occupied_[axis] |= uint64_t(1) << bin;
+    }
+    /// The occupied bins of an axis, a bit each.
+    uint64_t occupied(int axis) const { return occupied_[axis]; }
+    Box4 box(int axis, int bin) const { return {lo_[axis][bin], hi_[axis][bin]}; }
+    uint32_t count(int axis, int bin) const { return count_[axis][bin]; }
+
+private:
+    __m128 lo_[3][kMaxBins], hi_[3][kMaxBins];
+    uint32_t count_[3][kMaxBins];
+    uint64_t occupied_[3] = {};
 };
+
+/// Calls use(bin) for the bits of a set of bins, upwards.
+template <class Use>
+void for_each_bin(uint64_t set, const Use& use) {
+    for (; set != 0; set &= set - 1) use(std::countr_zero(set));
+}
 
 /// Maps a box to its bin along all axes at once. An axis along which the centres do not differ has only bin 0.
 struct BinMap {
@@ -95,31 +116,37 @@ struct BinnedCut {
     Box4 left, right;
 };
 
-inline BinnedCut find_cheapest_cut(const Bins& bins, int count) {
+/// An empty bin moves no box, so only cuts right above an occupied one are tried.
+inline BinnedCut find_cheapest_cut(const Bins& bins) {
     BinnedCut best;
     for (int axis = 0; axis < 3; ++axis) {
-        float right_cost[kMaxBins];
+        const uint64_t occupied = bins.occupied(axis);
+        float right_cost[kMaxBins]; // the cost of the boxes from an occupied bin on
         Box4 box;
         uint32_t n = 0;
-        for (int k = count - 1; k > 0; --k) {
-            box.extend(bins.box[axis][k]);
-            n += bins.count[axis][k];
-            right_cost[k] = n == 0 ? kInfinity : half_area(box) * static_cast<float>(n);
+        for (uint64_t rest = occupied; rest != 0;) {
+            const int k = 63 - std::countl_zero(rest);
+            rest ^= uint64_t(1) << k;
+            box.extend(bins.box(axis, k));
+            n += bins.count(axis, k);
+            right_cost[k] = half_area(box) * static_cast<float>(n);
         }
         box = Box4{};
         n = 0;
-        for (int k = 1; k < count; ++k) {
-            box.extend(bins.box[axis][k - 1]);
-            n += bins.count[axis][k - 1];
-            if (n == 0) continue;
-            const float cost = half_area(box) * static_cast<float>(n) + right_cost[k];
-            if (cost < best.cost) best = {axis, k, cost, {}, {}};
-        }
+        int below = -1;
+        for_each_bin(occupied, [&](int k) {
+            if (below >= 0) {
+                const float cost = half_area(box) * static_cast<float>(n) + right_cost[k];
+                if (cost < best.cost) best = {axis, below + 1, cost, {}, {}};
+            }
+            box.extend(bins.box(axis, k));
+            n += bins.count(axis, k);
+            below = k;
+        });
     }
-    if (best.axis >= 0) {
-        for (int k = 0; k < best.bin; ++k) best.left.extend(bins.box[best.axis][k]);
-        for (int k = best.bin; k < count; ++k) best.right.extend(bins.box[best.axis][k]);
-    }
+    if (best.axis < 0) return best;
+    for_each_bin(bins.occupied(best.axis),
+                 [&](int k) { (k < best.bin ? best.left : best.right).extend(bins.box(best.axis, k)); });
     return best;
 }
 
@@ -129,21 +156,14 @@ inline void fill_bins(const BuildReference* first, const BuildReference* last, c
         const Box4 b = simd_box_of(*first);
         alignas(16) int32_t k[4];
         _mm_store_si128(reinterpret_cast<__m128i*>(k), map(b));
-        for (int axis = 0; axis < 3; ++axis) {
-            bins.box[axis][k[axis]].extend(b);
-            ++bins.count[axis][k[axis]];
-        }
+        for (int axis = 0; axis < 3; ++axis) bins.add(axis, k[axis], b, 1);
     }
 }
 
-/// Adds the bins of another set, `count` per axis.
-inline void add_bins(const Bins& part, int count, Bins& sum) {
-    for (int axis = 0; axis < 3; ++axis) {
-        for (int k = 0; k < count; ++k) {
-            sum.box[axis][k].extend(part.box[axis][k]);
-            sum.count[axis][k] += part.count[axis][k];
-        }
-    }
+/// Adds the bins of another set.
+inline void add_bins(const Bins& part, Bins& sum) {
+    for (int axis = 0; axis < 3; ++axis)
+        for_each_bin(part.occupied(axis), [&](int k) { sum.add(axis, k, part.box(axis, k), part.count(axis, k)); });
 }
 
 } // namespace pertev

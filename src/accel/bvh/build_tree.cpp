@@ -81,7 +81,7 @@ private:
             cut_by_count(range, left, right);
         } else {
             const BinMap map(range.centres, settings_.bins);
-            const BinnedCut cut = find_cheapest_cut(bins_of(range, map), settings_.bins);
+            const BinnedCut cut = find_cheapest_cut(bins_of(range, map));
             const float area = half_area(range.box);
             const float n = static_cast<float>(range.size());
             const bool worth_it = cut.axis >= 0 && settings_.node_cost * area + settings_.leaf_cost * cut.cost <
@@ -132,13 +132,16 @@ private:
             fill_bins(&references_[range.begin], &references_[range.begin] + range.size(), map, bins);
             return bins;
         }
-        std::vector<Bins> parts((range.size() - 1) / kChunk + 1, Bins(settings_.bins));
+        const std::size_t chunks = (range.size() - 1) / kChunk + 1;
+        std::vector<Bins> parts;
+        parts.reserve(chunks);
+        for (std::size_t i = 0; i < chunks; ++i) parts.emplace_back(settings_.bins);
         parallel_for(parts.size(), 1, [&](uint64_t chunk) {
             const uint32_t begin = range.begin + static_cast<uint32_t>(chunk) * kChunk;
             const BuildReference* first = references_.data() + begin;
             fill_bins(first, first + std::min(range.end - begin, kChunk), map, parts[chunk]);
         });
-        for (const Bins& part : parts) add_bins(part, settings_.bins, bins);
+        for (const Bins& part : parts) add_bins(part, bins);
         return bins;
     }
 
