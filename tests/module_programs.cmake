@@ -53,7 +53,7 @@ foreach(source IN LISTS test_sources)
   endif()
 endforeach()
 
-get_target_property(options pertev_tests COMPILE_OPTIONS)
+get_target_property(options optimised_pertev_tests COMPILE_OPTIONS)
 get_target_property(definitions pertev_tests COMPILE_DEFINITIONS)
 add_custom_target(pertev_module_tests)
 foreach(module IN LISTS modules)

@@ -232,7 +232,7 @@ class Base(Tree):
         del words[at:at + 2]
         self.objects = [word for word in words if word.endswith(".o")]
         self.archives = [word for word in words if word.endswith(".a") and (self.build / word).is_file() and not word.startswith("/")]
-        self.link_words = [word for word in words if word not in self.objects and word not in self.archives]
+        self.link_words = [word for word in words if word not in self.objects + self.archives and "whole-archive" not in word]
         members = {}
         for archive in set(self.archives):
             for word in self.tell("query", archive).split():

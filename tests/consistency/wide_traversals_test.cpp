@@ -22,14 +22,14 @@ using namespace pertev::test;
 
 namespace {
 
-constexpr TraversalOptions kBoth = {}, kNoRta = {.rta = false}, kBuildersOrder = {.near_first = false},
+constexpr TraversalOptions kBoth = {}, kWithoutRta = {.rta = false}, kBuildersOrder = {.near_first = false},
                            kNeither = {.rta = false, .near_first = false}, kAtNodes = {.rta_at_pops = false};
 
 /// Calls check.operator()<Traversal>() for a traversal with every choice that must not change hits.
 template <template <TraversalOptions> class Traversal>
 void with_each_choice(auto&& check) {
     check.template operator()<Traversal<kBoth>>();
-    check.template operator()<Traversal<kNoRta>>();
+    check.template operator()<Traversal<kWithoutRta>>();
     check.template operator()<Traversal<kBuildersOrder>>();
     check.template operator()<Traversal<kNeither>>();
 }
@@ -225,7 +225,8 @@ TEST_CASE("in the compressed traversal RTA at pops saves more nodes than RTA at 
     for (const Ray& ray : rays) {
         const SingleTree<CompressedBvhView> scene = {view_of(trees.compressed)};
         Hit hit;
-        trace_closest<CompressedTraversal<kNoRta>>(scene, ray, AcceptAll{}, hit, TraversalCounter{&without, &unused});
+        trace_closest<CompressedTraversal<kWithoutRta>>(scene, ray, AcceptAll{}, hit,
+                                                        TraversalCounter{&without, &unused});
         expected.push_back(hit);
         trace_closest<CompressedTraversal<kBoth>>(scene, ray, AcceptAll{}, hit, TraversalCounter{&at_pops, &triangles});
         trace_closest<CompressedTraversal<kAtNodes>>(scene, ray, AcceptAll{}, hit,

@@ -17,7 +17,7 @@ using namespace pertev;
 namespace {
 
 constexpr uint32_t kAovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
-constexpr uint32_t kWidth = 17, kHeight = 9, kSamples = 6;
+constexpr uint32_t kWidth = 17, kHeight = 9, kAddedSamples = 6;
 
 /// Adds one arbitrary sample to every pixel of a film in the CPU's memory. Some samples are not finite, and some miss
 /// the scene.
@@ -62,13 +62,13 @@ void check_equal(const Film& a, const Film& b) {
 TEST_CASE("films of parts of the samples add up to the film of all samples on any device") {
     Queue cpu = Queue::make_cpu(), other_cpu = Queue::make_cpu(), requested = test::requested_queue();
     Film whole(cpu, kWidth, kHeight, kAovs);
-    take_samples(whole, {0, kSamples});
-    CHECK(whole.invalid_samples() == kSamples);
+    take_samples(whole, {0, kAddedSamples});
+    CHECK(whole.invalid_samples() == kAddedSamples);
     for (const uint32_t with_first : {0u, 1u}) { // the part that holds sample 0
         CAPTURE(with_first);
         Film parts[2] = {Film(cpu, kWidth, kHeight, kAovs), Film(other_cpu, kWidth, kHeight, kAovs)};
         take_samples(parts[with_first], {0, 2});
-        take_samples(parts[1 - with_first], {2, kSamples});
+        take_samples(parts[1 - with_first], {2, kAddedSamples});
         Film sum(requested, kWidth, kHeight, kAovs);
         sum.add(parts[0]);
         sum.add(parts[1]);
@@ -87,9 +87,9 @@ TEST_CASE("films of parts of the samples add up to the film of all samples on an
 TEST_CASE("a film is restored from the bytes of its targets on any device") {
     Queue cpu = Queue::make_cpu(), requested = test::requested_queue();
     Film whole(cpu, kWidth, kHeight, kAovs), part(cpu, kWidth, kHeight, kAovs), other(cpu, kWidth, kHeight, kAovs);
-    take_samples(whole, {0, kSamples});
+    take_samples(whole, {0, kAddedSamples});
     take_samples(part, {0, 2});
-    take_samples(other, {2, kSamples});
+    take_samples(other, {2, kAddedSamples});
     Film again(requested, kWidth, kHeight, kAovs);
     REQUIRE(again.targets().size() == 3);
     for (std::size_t i = 0; i < again.targets().size(); ++i) {
@@ -177,7 +177,7 @@ TEST_CASE("a film of another size or of other layers is refused") {
 TEST_CASE("the displayed film has the bytes of its picture tone-mapped on the host") {
     Queue cpu = Queue::make_cpu(), requested = test::requested_queue();
     Film film(cpu, kWidth, kHeight, kAovs);
-    take_samples(film, {0, kSamples});
+    take_samples(film, {0, kAddedSamples});
     Film on_device(requested, kWidth, kHeight, kAovs);
     on_device.add(film);
     for (const ToneMap kind : {ToneMap::Srgb, ToneMap::Agx, ToneMap::Aces, ToneMap::Neutral}) {

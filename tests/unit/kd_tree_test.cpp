@@ -19,12 +19,12 @@ using namespace pertev::test;
 
 namespace {
 
-const KdTreeSettings kSettings[] = {{},
-                                    {.split = KdSplit::SpatialMedian},
-                                    {.split = KdSplit::SpatialMedian, .max_leaf = 1, .max_references = 40},
-                                    {.max_depth = 9, .max_references = 2},
-                                    {.max_depth = 0},
-                                    {.max_references = 1}};
+const KdTreeSettings kKdSettings[] = {{},
+                                      {.split = KdSplit::SpatialMedian},
+                                      {.split = KdSplit::SpatialMedian, .max_leaf = 1, .max_references = 40},
+                                      {.max_depth = 9, .max_references = 2},
+                                      {.max_depth = 0},
+                                      {.max_references = 1}};
 
 bool same(const KdTree& a, const KdTree& b) {
     return a.nodes.size() == b.nodes.size() && a.references == b.references && a.depth == b.depth &&
@@ -37,7 +37,7 @@ bool same(const KdTree& a, const KdTree& b) {
 TEST_CASE("kd-trees over stress meshes are valid and respect their limits") {
     for (const StressMesh& c : stress_meshes()) {
         CAPTURE(c.name);
-        for (const KdTreeSettings& settings : kSettings) {
+        for (const KdTreeSettings& settings : kKdSettings) {
             CAPTURE(settings.max_references);
             CAPTURE(settings.max_depth);
             const KdTree tree = build_kd_tree(c.triangles, settings);

@@ -84,7 +84,7 @@ Mesh crooked_grid(uint32_t n, float size, uint32_t seed) {
     return mesh;
 }
 
-Camera camera_at(Vec3 eye, Vec3 target, Vec3 up = {0, 1, 0}) {
+Camera raster_camera(Vec3 eye, Vec3 target, Vec3 up = {0, 1, 0}) {
     Camera camera;
     camera.world_from_camera = look_at(eye, target, up);
     return camera;
@@ -102,8 +102,9 @@ TEST_CASE("triangles with shared edges cover each sample once") {
         const Mesh grid = crooked_grid(n, 2, n);
         // The views are perpendicular, oblique, and one in which the mesh crosses the picture's edges and the camera's
         // plane.
-        for (const Camera& camera : {camera_at({0, 0, 3}, {0, 0, 0}), camera_at({0.3f, 0.2f, 0.4f}, {0.5f, 0.7f, 0}),
-                                     camera_at({0.1f, 0.2f, 0.05f}, {0.1f, 1, 0}, {0, 0, 1})}) {
+        for (const Camera& camera :
+             {raster_camera({0, 0, 3}, {0, 0, 0}), raster_camera({0.3f, 0.2f, 0.4f}, {0.5f, 0.7f, 0}),
+              raster_camera({0.1f, 0.2f, 0.05f}, {0.1f, 1, 0}, {0, 0, 1})}) {
             const Pinhole seen = pinhole(camera, 211, 173);
             const SamplePosition middle = {kSubpixels / 2, kSubpixels / 2};
             const std::vector<int> times = times_drawn(grid, seen, middle);
@@ -170,7 +171,7 @@ TEST_CASE("light is evaluated per pixel, corner or triangle and matches the form
     Queue queue = test::requested_queue();
     RenderSettings settings = raster_settings(65, 65);
     settings.ambient = Rgb{0.25f, 0, 0};
-    Camera camera = camera_at({0, 0, 2}, {0, 0, 0});
+    Camera camera = raster_camera({0, 0, 2}, {0, 0, 0});
     camera.projection = Projection::Orthographic;
     camera.ortho_height = 2;
     const auto middle = [&](RasterShading shading) {
@@ -205,7 +206,7 @@ TEST_CASE("without shadows raster shades as cast does, with all lobes, textures 
     RenderSettings settings = raster_settings(60, 60);
     settings.filter = PixelFilter::Box;
     settings.filter_radius = 0x1p-20f;
-    const Camera camera = camera_at({1, 1, 4}, {0, 0, 0});
+    const Camera camera = raster_camera({1, 1, 4}, {0, 0, 0});
     const Image raster = test::render(queue, scene, camera, settings).picture;
     settings.integrator = IntegratorKind::Cast;
     const Image cast = test::render(queue, scene, camera, settings).picture;
@@ -232,7 +233,7 @@ TEST_CASE("edges are Bresenham's lines, and the nearer one is visible") {
     RenderSettings settings = raster_settings(16, 16);
     settings.display.edit().is_wireframe = true;
     settings.ambient = Rgb{0, 0, 0};
-    Camera camera = camera_at({0, 0, 2}, {0, 0, 0});
+    Camera camera = raster_camera({0, 0, 2}, {0, 0, 0});
     camera.projection = Projection::Orthographic;
     camera.ortho_height = 16;
     const Image image = test::render(queue, scene, camera, settings).picture;
@@ -258,7 +259,7 @@ TEST_CASE("a pixel's samples cover its filter evenly, the first is at the centre
     settings.ambient = Rgb{0, 0, 0};
     settings.filter = PixelFilter::Box;
     settings.filter_radius = 0.5f;
-    Camera camera = camera_at({0.2f, 0, 2}, {0.2f, 0, 0}); // it covers 0.3 of the pixel
+    Camera camera = raster_camera({0.2f, 0, 2}, {0.2f, 0, 0}); // it covers 0.3 of the pixel
     camera.projection = Projection::Orthographic;
     camera.ortho_height = 1;
     CHECK(pixel_of(test::render(queue, scene, camera, settings).picture, 0, 0).x == 0);

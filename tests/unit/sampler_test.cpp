@@ -15,7 +15,7 @@ namespace {
 
 constexpr uint32_t kPixels[] = {0, 1, 2, 1919, 1920, 2'073'599, 0xffffffffu};
 constexpr uint32_t kGroups[] = {0, 1, 2, 3, 17, 255, 4096};
-constexpr SamplerKind kKinds[] = {SamplerKind::Sobol, SamplerKind::Independent};
+constexpr SamplerKind kSamplerKinds[] = {SamplerKind::Sobol, SamplerKind::Independent};
 
 /// Returns whether each box 2^-a x 2^-(k-a), 0 <= a <= k, contains one of the 2^k points.
 bool is_net(const std::vector<Vec2>& points, int k) {
@@ -155,7 +155,7 @@ TEST_CASE("the scrambling of a digit depends only on earlier digits and is a per
 
 TEST_CASE("the numbers match the recorded ones") {
     uint64_t sum = 0;
-    for (const SamplerKind kind : kKinds) {
+    for (const SamplerKind kind : kSamplerKinds) {
         for (uint32_t i = 0; i < 20'000; i++) {
             const SampleKey key{.stream = hash_word(i), .sample = i, .seed = i / 1000};
             const Vec2 p = sample_2d(kind, key, i % 50), q = sample_2d(kind, key, i % 50, Pair::Last);

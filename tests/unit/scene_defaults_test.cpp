@@ -65,8 +65,8 @@ void check_shows_all(const Scene& scene, const Camera& camera, float aspect) {
         const Vec3 p = transform_point(view, {corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
                                               corner & 4 ? box.hi.z : box.lo.z});
         CHECK(p.z < 0);
-        CHECK(abs(p.y) <= -p.z * half);
-        CHECK(abs(p.x) <= -p.z * half * aspect);
+        CHECK(pertev::abs(p.y) <= -p.z * half);
+        CHECK(pertev::abs(p.x) <= -p.z * half * aspect);
     }
 }
 
@@ -217,7 +217,7 @@ TEST_CASE("a closed room and a long court open at the top are seen from inside a
             const Camera camera = make_default_camera(scene, 1.5f, messages);
             CHECK(is_within(bounds_of(scene), eye_of(camera)));
             CHECK(eye_of(camera).y == doctest::Approx(1.7));
-            CHECK(abs(along_x ? forward_of(camera).x : forward_of(camera).z) > 0.95f);
+            CHECK(pertev::abs(along_x ? forward_of(camera).x : forward_of(camera).z) > 0.95f);
             CHECK(messages.all()[0].text.find("inside") != std::string::npos);
         }
     }

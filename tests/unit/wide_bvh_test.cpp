@@ -89,12 +89,12 @@ void check_least_cost(const Bvh& bvh, const CollapseSettings& settings) {
     CHECK(wide.sah_cost == doctest::Approx(EveryCollapse(bvh, settings, kWidth).min_cost()).epsilon(1e-5));
 }
 
-const CollapseSettings kSettings[] = {{},
-                                      {.max_leaf = 1},
-                                      {.max_leaf = 4, .triangles_at_once = 4, .triangle_cost = 1},
-                                      {.max_leaf = 3, .node_cost = 0},
-                                      {.max_leaf = 64, .triangle_cost = 0},
-                                      {.max_leaf = 16, .triangle_cost = 4}};
+const CollapseSettings kWideSettings[] = {{},
+                                          {.max_leaf = 1},
+                                          {.max_leaf = 4, .triangles_at_once = 4, .triangle_cost = 1},
+                                          {.max_leaf = 3, .node_cost = 0},
+                                          {.max_leaf = 64, .triangle_cost = 0},
+                                          {.max_leaf = 16, .triangle_cost = 4}};
 
 } // namespace
 
@@ -107,7 +107,7 @@ TEST_CASE("the chosen collapse of a small tree has minimal cost") {
             build_bvh(triangles, {.max_leaf = count <= 11 ? 1 : 2, .leaf_cost = count <= 11 ? 1.0f : 0.01f});
         CAPTURE(count);
         REQUIRE(bvh.nodes.size() <= 12);
-        for (const CollapseSettings& settings : kSettings) {
+        for (const CollapseSettings& settings : kWideSettings) {
             if (settings.max_leaf < 2 && count > 11) continue; // its leaves would be split
             check_least_cost<4>(bvh, settings);
             check_least_cost<8>(bvh, settings);
@@ -120,7 +120,7 @@ TEST_CASE("wide trees of all stress meshes are valid and lose no triangle") {
         CAPTURE(mesh.name);
         for (const int build_leaf : {1, 4, 40}) {
             const Bvh bvh = build_bvh(mesh.triangles, {.max_leaf = build_leaf, .leaf_cost = 0.1f});
-            for (const CollapseSettings& settings : kSettings) {
+            for (const CollapseSettings& settings : kWideSettings) {
                 CAPTURE(settings.max_leaf);
                 const WideBvh<4> wide4 = make_wide_bvh<4>(bvh, settings);
                 const WideBvh<8> wide8 = make_wide_bvh<8>(bvh, settings);
