@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "formats/read_scene.h"
+#include "integrators/photon_map/photon_map_settings.h"
 #include "tests/support/compare_pictures.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
