@@ -444,7 +444,7 @@ MUTATIONS = part_mutations.MUTATIONS + format_mutations.MUTATIONS + lobe_mutatio
      ("src/lab/thesis_pictures.cpp", "if (!panel.has_ambient) solution->ambient = {};", "")),
     ("ratios to an H200's figures on any card", "unit/stored_figures",
      ("src/lab/stored_figures.cpp", "device == the_record().device && scene != nullptr &&", "scene != nullptr &&")),
-    ("a drawing of fewer points than are within the circle", "unit/thesis_pictures",
+    ("a drawing of fewer points than are within the circle", "unit/found_points",
      ("src/lab/found_points.cpp", "within = {result.radius_squared, keep}", "within = {0.8f * result.radius_squared, keep}")),
     ("solutions that are interpolated in time", "unit/transport_report",
      ("src/lab/transport_report.cpp", "row.is_solved ? solved_by(repetition, seconds) : at_time(repetition, seconds)", "at_time(repetition, seconds)")),

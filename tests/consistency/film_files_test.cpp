@@ -401,6 +401,7 @@ TEST_CASE("overlaps, gaps and parts of other pictures are refused by name") {
     CHECK(test::says(error, "samples 1 to 1"));
     CHECK(test::says(error, a));
     CHECK(merge_refusal({a, a}).find("samples 0 to 1") != std::string::npos);
+    CHECK(merge_refusal({c, over}, true).find("samples 3 to 3") != std::string::npos);
     CHECK(merge_refusal({a, c}).find("samples 2 to 2 of rows 0 to 19") != std::string::npos);
     CHECK(merge_refusal({b, c}).find("samples 0 to 1") != std::string::npos);
     CHECK(merge_refusal({a, b}).find("samples 3 to 4") != std::string::npos);

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <numeric>
 
 #include "image/picture_hash.h"
@@ -10,6 +11,7 @@
 #include "integrators/photon_map/photon_map_settings.h"
 #include "tests/support/compare_pictures.h"
 #include "tests/support/flat_scenes.h"
+#include "tests/support/meshes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 
@@ -75,6 +77,38 @@ TEST_CASE("all integrators that select lights by a tree have the mean of those b
         CHECK(test::p_value(tree, power) > 0.001);
         CHECK(test::p_value(test::brightened(tree, 1.15, 0), power) < 1e-3); // the test detects a difference
         CHECK(sum_of(power.variance_of_mean) > 1.7 * sum_of(tree.variance_of_mean));
+    }
+}
+
+TEST_CASE("within a glowing sphere, light by a tree is that by power, however rays find it") {
+    // Shadow rays and rays by the BSDF find each emitter. The receiver's normal decides how often the tree selects one:
+    // weights that another density made would not add up to 1.
+    Queue queue = test::requested_queue();
+    Scene scene;
+    const test::TriangleMesh sphere = test::make_sphere(2, {0, 0, 0}, 2);
+    Mesh around;
+    around.positions = sphere.positions, around.indices = sphere.indices;
+    Material glow = {{.base_color = {0, 0, 0}, .emission = {1, 1, 1}}, "glow"};
+    glow.two_sided_emission = true;
+    test::add(scene, around, glow);
+    test::add(
+        scene, test::floor_at(0, 0.7f),
+        {{.kind = MaterialKind::MetallicRoughness, .base_color = {0.6f, 0.5f, 0.4f}, .roughness = 0.3f}, "floor"});
+    Camera camera;
+    camera.world_from_camera = look_at({0, 0.5f, 1}, {0, 0, 0}, {0, 1, 0});
+    camera.fov_y = 0.3f;
+    for (const IntegratorDescriptor& kind : integrators()) {
+        if (!kind.selects_lights || kind.makes_frames) continue;
+        CAPTURE(kind.name);
+        const auto mean_by = [&](LightSelection choice) {
+            RenderSettings settings = settings_for(kind.value, choice);
+            settings.width = settings.height = 8;
+            settings.samples = 128;
+            settings.path.max_depth = 1;
+            return test::mean_of(test::render(queue, scene, camera, settings).picture);
+        };
+        const double tree = mean_by(LightSelection::Tree), power = mean_by(LightSelection::Power);
+        CHECK(std::abs(tree / power - 1) < 0.005);
     }
 }
 

@@ -180,6 +180,14 @@ TEST_CASE("a solid that touches an earlier one grows into it where it is near, a
     scene = before;
     scene.meshes[1] = test::box({2.001f, 0, 0}, {1, 1, 1}); // a gap of 5e-4
     CHECK(close_gaps(scene) == 0);
+    // A corner in the box of a slanted face, but 1e-3 in front of it, which is 50 times what touches.
+    Scene slanted;
+    test::add(slanted, test::box({0, 0, 0}, {1, 1, 1}), test::glass(1.5f));
+    test::add(slanted, test::box({0.807814f, 0.807814f, 0}, {0.1f, 0.1f, 0.1f}), test::glass(1.33f));
+    for (Vec3& p : slanted.meshes[0].positions) p = {0.70710678f * (p.x - p.y), 0.70710678f * (p.x + p.y), p.z};
+    CHECK(close_gaps(slanted) == 0);
+    slanted.instances[1].world_from_local = make_translation({-0.000703f, -0.000703f, 0}); // a gap of 6e-6
+    CHECK(close_gaps(slanted) == 1);
     // An instance of a mesh that others have gets one of its own.
     scene = before;
     scene.instances[2].mesh = 1;
