@@ -13,7 +13,7 @@ MUTATIONS = [
      ("src/integrators/subpaths/emit_particle.h", "squared_density(selection * position)", "squared_density(position)")),
     ("a sampled light is weighted as if the tree had emitted it", "statistical/selected_lights",
      ("src/integrators/bidirectional/camera_subpath_stages.h", "arriving /= selection_ratio", "arriving *= 1 + 0 * selection_ratio")),
-    ("the light that a path hits counts for ReSTIR as if power had selected it", "statistical/restir",
+    ("the light that a path hits counts for ReSTIR as if power had selected it", "statistical/selected_lights",
      ("src/restir/initial_candidates.h", "light.pdf = pdf_of_found<Choice>", "light.pdf = pdf_of_found<ChosenByPower>")),
     ("a light tree weighs a spot by its flux", "statistical/chosen_by_tree",
      ("src/shading/build_light_set.cpp", "of_punctual[i] > 0 ? kPiDouble * mean_of_channels(punctual.intensity) : 0;", "of_punctual[i];")),

@@ -51,7 +51,7 @@ const std::vector<Mixture>& mixtures() {
         {mix("even", "plastic", "\"texture amount\" \"third\""), {"red", "gold", "plastic"}, {0.35, 0.35, 0.3}},
         {mix("coated", "bare", "\"float amount\" .6"), {"coated", "bare", "bare"}, {0.4, 0.6, 0}},
         {mix("leaf", "red", "\"float amount\" .75"), {"leaf", "red", "red"}, {0.25, 0.75, 0}},
-        {mix("glass", "leaf", "\"float amount\" .5"), {"glass", "leaf", "leaf"}, {0.5, 0.5, 0}},
+        {mix("glass", "leaf", "\"float amount\" .3"), {"glass", "leaf", "leaf"}, {0.7, 0.3, 0}},
     };
     return all;
 }

@@ -293,6 +293,8 @@ TEST_CASE("mitsuba: included files are found beside the scene, in <path> and bes
                      in_scene("<include filename=\"b.xml\"/><include filename=\"c.xml\"/>"));
     test::write_text(folder / "parts" / "b.xml", "<shape version=\"3.0.0\" type=\"cube\"/>");
     test::write_text(folder / "parts" / "more" / "c.xml", in_scene("<shape type=\"sphere\"/>"));
+    fs::create_directories(folder / "parts" / "less"); // is not searched
+    test::write_text(folder / "parts" / "less" / "c.xml", in_scene("<shape type=\"cube\"/>"));
     Messages messages;
     const fs::path path =
         test::write_text(folder / "scene.xml",
