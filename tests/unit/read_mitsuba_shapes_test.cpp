@@ -297,7 +297,7 @@ TEST_CASE("mitsuba: serialized meshes of both versions, by their number, in floa
 TEST_CASE("mitsuba: damaged and untrue serialized meshes are refused") {
     const auto refuses = [](const std::string& bytes, uint32_t index = 0) {
         const auto error = test::thrown_error([&] { (void)mitsuba::read_serialized(bytes_in(bytes), index, "m"); });
-        return error && error->code() == ErrorCode::BadInput; // of counts too: they are not those of the bytes
+        return error && error->code() == ErrorCode::BadInput;
     };
     const std::string good = serialized_file(4, {serialized_triangle(false, true, 1)});
     CHECK(!refuses(good));
