@@ -92,28 +92,33 @@ struct AcceptHit {
     }
 };
 
-/// Probability that a ray meets a point of a surface where its path leads: the surface's alpha, unless that is a
-/// cut-out's, and what the layers above it let pass. It is 1 for an instance that is_met_by_chance() denies.
+/// Returns whether rays that lead to a surface of the instance may pass it by chance. Blended surfaces whose alpha is 1
+/// everywhere count as opaque.
+HD inline bool is_met_by_chance(const SceneView& scene, uint32_t instance) {
+    if (scene.any_alpha == 0) return false;
+    const InstanceView& placed = scene.instances[instance];
+    if (placed.layers_above > 0) return true;
+    const MaterialParameters& material = scene.materials[placed.material];
+    return material.alpha_mode == AlphaMode::Blend &&
+           (material.alpha < 1 || material.base_color_texture.has_image() || material.alpha_texture.has_image() ||
+            scene.meshes[placed.mesh].colors != nullptr);
+}
+/// Probability that a ray meets a point of a surface to which it leads: the alpha of a blended surface, times what the
+/// layers above it let pass. It is 1 where is_met_by_chance() is false.
 HD inline float chance_to_meet(const SceneView& scene, uint32_t instance, uint32_t primitive, float u, float v) {
     const auto alpha_of = [&](uint32_t layer) {
         const InstanceView& placed = scene.instances[layer];
         const MaterialParameters& material = scene.materials[placed.material];
-        return alpha_at(scene, material, scene.meshes[placed.mesh], primitive, u, v);
+        return clamp(alpha_at(scene, material, scene.meshes[placed.mesh], primitive, u, v), 0.0f, 1.0f);
     };
     const auto is_blended = [&](uint32_t layer) {
         return scene.materials[scene.instances[layer].material].alpha_mode == AlphaMode::Blend;
     };
-    float chance = is_blended(instance) ? min(alpha_of(instance), 1.0f) : 1.0f;
+    float chance = is_blended(instance) ? alpha_of(instance) : 1.0f;
     for (uint32_t k = scene.instances[instance].layers_above; k > 0; --k) {
-        if (is_blended(instance - k)) chance *= 1.0f - min(alpha_of(instance - k), 1.0f);
+        if (is_blended(instance - k)) chance *= 1.0f - alpha_of(instance - k);
     }
     return chance;
-}
-/// Returns whether rays that lead to a surface of the instance may pass it by chance.
-HD inline bool is_met_by_chance(const SceneView& scene, uint32_t instance) {
-    if (scene.any_alpha == 0) return false;
-    const InstanceView& placed = scene.instances[instance];
-    return placed.layers_above > 0 || scene.materials[placed.material].alpha_mode == AlphaMode::Blend;
 }
 
 /// Returns whether the instance, at its position at rest, culls the side that a camera ray of this direction (world

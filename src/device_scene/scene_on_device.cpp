@@ -45,13 +45,14 @@ struct Instances {
     std::vector<uint32_t> first_triangle; // see SceneView
 };
 
-/// Returns Instance::layers_above; 0 if the layers no longer have the same triangles.
+/// Returns Instance::layers_above; 0 if a layer has been moved since, or has another number of triangles.
 uint16_t layers_above(const Scene& scene, std::size_t instance) {
     const auto triangles = [&](std::size_t i) { return scene.meshes[scene.instances[i].mesh].triangle_count(); };
     const uint32_t count = scene.instances[instance].layers_above;
     if (count > instance || count > UINT16_MAX) return 0;
     for (uint32_t k = 1; k <= count; ++k) {
         if (triangles(instance - k) != triangles(instance)) return 0;
+        if (!(scene.instances[instance - k].world_from_local == scene.instances[instance].world_from_local)) return 0;
     }
     return static_cast<uint16_t>(count);
 }

@@ -78,9 +78,18 @@ TEST_CASE("curves are linear between their points, clamp to their range, and sha
     CHECK(shaped.r == 0.75f); // 1 - 0.5 / 2
     CHECK(shaped.g == 0.75f);
     CHECK(shaped.b == 1); // the curve has 0
-    for (const std::string& bad : {sizes + curves, "DOMAIN_MIN 0 0 0\n" + sizes + curves, curves + sizes, sizes + sizes,
-                                   std::string("LUT_1D_SIZE 2\nLUT_1D_INPUT_RANGE 1 1\n0 0 0\n1 1 1\n"),
-                                   std::string("LUT_1D_SIZE 65537\n"), std::string("LUT_3D_INPUT_RANGE 0\n")})
+    // Each is a whole table with one fault.
+    const std::string curve = "LUT_1D_SIZE 2\n", two = "0 0 0\n1 1 1\n",
+                      corners = "1 1 1\n0 1 1\n1 0 1\n0 0 1\n1 1 0\n0 1 0\n1 0 0\n0 0 0\n";
+    CHECK_NOTHROW(parsed(curve + two));
+    CHECK_NOTHROW(parsed(sizes + curves + corners));
+    CHECK_NOTHROW(parsed("LUT_3D_SIZE 2\nLUT_3D_INPUT_RANGE 0 1\n" + corners));
+    std::string long_curve = "LUT_1D_SIZE 65537\n";
+    for (int i = 0; i < 65537; ++i) long_curve += "0 0 0\n";
+    for (const std::string& bad :
+         {sizes + curves, "DOMAIN_MIN 0 0 0\n" + sizes + curves + corners, curves + sizes + corners,
+          curve + curve + two, curve + "LUT_1D_INPUT_RANGE 1 1\n" + two, long_curve,
+          "LUT_3D_SIZE 2\nLUT_3D_INPUT_RANGE 0\n" + corners})
         CHECK_THROWS(parsed(bad));
 }
 

@@ -174,7 +174,7 @@ TEST_CASE("every structure of the laboratory is built until the sink ends it") {
     check_stops(1 + sort + checks + 5, convert(TreeLayout::Compressed, StructureKind::Hploc)); // and levels of nodes
     // A kd-tree's root has 140,000 triangles, and at least 31 nodes have more than 4096. An octree's have over 8192.
     check_stops(checks + 31 + checks - 1, build(StructureKind::KdMedian));
-    check_stops(220, build(StructureKind::KdSah)); // There are 244; the axes of large cells make 66.
+    check_stops(220, build(StructureKind::KdSah)); // There are 244, of which 66 are of the axes of large cells.
     check_stops(checks + 3 + checks - 1, build(StructureKind::Octree));
 }
 

@@ -112,7 +112,7 @@ private:
         const uint32_t light = light_of(lights, hit.instance, hit.primitive);
         if (light == kNoLight) return {}; // only this subpath can find it
         const EmissiveTriangle& triangle = lights.triangles[light];
-        if (!(triangle.pmf > 0)) return {}; // its power is not finite
+        if (!(triangle.pmf > 0)) return {}; // its power is 0 or not finite
         const float cosine = dot(normalize(cross(triangle.ab, triangle.ac)), direction);
         return {pdf_position(triangle), pdf_emission(triangle, cosine), selection_ratio<Choice>(lights, before, light)};
     }

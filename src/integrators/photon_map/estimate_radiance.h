@@ -3,7 +3,7 @@
 // Estimates the light that a diffuse surface scatters from the photons near a point, within the radius r:
 //     L = sum over photons of f(wo, wi) power / (pi r^2),
 // where f is the BSDF of the diffuse lobes. Photons on surfaces turned away by more than 45 degrees belong to another
-// wall and do not count.
+// wall and do not count, nor do those of another owner (photon_map_view.h).
 //
 // Sources: Jensen, "Global Illumination using Photon Maps", 1996, section 5. Of the k nearest photons the farthest
 // sets the radius and does not count itself, so that the mean is right for uniform photons (Loftsgaarden, Quesenberry

@@ -24,15 +24,18 @@ struct Photon {
     Vec3 wi;       // unit, towards its origin
     Vec3 normal;   // unit, of the triangle, on the side from which it came
     Rgb power;     // W, for the total power of all lights in a pass, divided by the square of the refractive index
-                   // there
+                   // there and by the chance to meet the surface
     uint32_t path, scatterings;
     uint32_t owner; // result of owner_of
 };
 
-/// Identifies the instance of a surface that paths meet by chance; 0 for any other. Photons on the former are those of
-/// the surface alone, over the chance to meet it: a lookup, which is met by the same chance, then sees it once.
+/// Identifies surfaces that paths meet by the same chance, by material and layer; 0 for those that paths surely meet.
+/// A lookup counts only photons of its own owner. Where there is chance, their power is divided by it, because the
+/// lookup itself is met by the same chance.
 HD inline uint32_t owner_of(const SceneView& scene, uint32_t instance) {
-    return is_met_by_chance(scene, instance) ? (instance & 0x7fffffu) + 1 : 0;
+    if (!is_met_by_chance(scene, instance)) return 0;
+    const InstanceView& placed = scene.instances[instance];
+    return (hash_words(placed.material, placed.layers_above, 0).x & 0x7fffffu) + 1;
 }
 
 /// Packs the components with 10 bits each.

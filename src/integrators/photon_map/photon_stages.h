@@ -24,7 +24,8 @@ struct PhotonEnergy {
     FixedSum emitted;
     FixedSum escaped;   // hit nothing
     FixedSum arrived;   // arrived at surfaces
-    FixedSum left_none; // part of `arrived` that stored no photon; the maps contain the rest
+    FixedSum left_none; // part of `arrived` that stored no photon; the maps contain the rest, over the chance to meet
+                        // the surface
     FixedSum went_on;   // part of `arrived` that was scattered; the rest was absorbed
 };
 

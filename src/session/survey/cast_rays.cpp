@@ -86,8 +86,8 @@ struct Block {
         }
     }
 
-    /// Returns whether a ray may hit the box. It is grown by more than rounding moves a hit that is not edge-on, so
-    /// that the answer does not depend on the threads: blocks are the same for all.
+    /// Returns whether a ray may hit the box, which is grown by more than rounding moves a hit that is not edge-on.
+    /// Blocks are the same for all threads, so the answer does not depend on these.
     bool is_reached(const RayPack& rays) const {
         const Vec3 size = box.size();
         const float own = 0x1p-10f * max_component(size);
