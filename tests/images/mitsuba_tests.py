@@ -51,8 +51,7 @@ BLUR = 0.01
 # Scene, reference without its extension, scatterings, squares that are left out. CI does without arealight, whose few bright pixels
 # need more samples.
 SCENES = {
-    **{name: (SPHERES[0].format(name), SPHERES[1].format(name), 1, PLASTICS)
-       for name in ("envmap",)},
+    "envmap": (SPHERES[0].format("envmap"), SPHERES[1].format("envmap"), 1, PLASTICS),
     **{name: (SPHERES[0].format(name), SPHERES[1].format(name), 1, PLASTICS + TERMINATORS)
        for name in ("constant", "arealight", "pointlight")},
     **{name: (SPHERES[0].format(name), SPHERES[1].format(name), 1, []) for name in ("roughdielectric", "textured_diffuse")},
