@@ -59,41 +59,63 @@ Camera camera_of_crossing() {
     return camera;
 }
 
+void move_block(Scene& scene, PreparedScene& prepared, Session& session) {
+    Messages messages;
+    scene.instances[1].world_from_local.translation.x += kStepOfFrame;
+    SceneUpdate update;
+    update.moved_instances = {1};
+    prepared = update_scene(prepared, scene, update, messages);
+    session.update_scene(prepared, parts_of(update));
+}
+
+RenderSettings settings_of_crossing(uint32_t max_depth) {
+    RenderSettings settings;
+    settings.width = kCrossingWidth, settings.height = kCrossingHeight;
+    settings.path.max_depth = max_depth;
+    return settings;
+}
+
+/// Path-traced pictures of the frames from kFirstCrossing - kTrail on.
+std::vector<Image> references_of_crossing(uint32_t max_depth) {
+    Messages messages;
+    Scene scene = scene_of_crossing();
+    PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Queue queue = requested_queue();
+    Session session(queue, prepared, camera_of_crossing(), settings_of_crossing(max_depth));
+    std::vector<Image> pictures;
+    for (uint32_t k = 0; k < kFirstCrossing + kCrossingFrames; ++k) {
+        move_block(scene, prepared, session);
+        if (k + kTrail < kFirstCrossing) continue;
+        session.cut();
+        session.render(16);
+        pictures.push_back(session.picture());
+    }
+    return pictures;
+}
+
 /// Returns the light of frames over that of references, on the floor where the shadow was up to kTrail frames before.
-double light_in_trail(const RestirSettings& restir, bool follows = true) {
+double light_in_trail(const std::vector<Image>& references, const RestirSettings& restir, bool follows = true) {
     ReconstructionSettings raw = kRawFrames;
     raw.follow_light = follows;
     Messages messages;
     Scene scene = scene_of_crossing();
     PreparedScene prepared = prepare_scene(scene, {}, messages);
-    RenderSettings settings;
-    settings.width = kCrossingWidth, settings.height = kCrossingHeight;
-    settings.path.max_depth = restir.light == RestirLight::Indirect ? 2 : 1;
     Queue queue = requested_queue();
-    Session frames(queue, prepared, camera_of_crossing(), settings),
-        references(queue, prepared, camera_of_crossing(), settings);
-    std::vector<Image> expected;
+    Session frames(queue, prepared, camera_of_crossing(),
+                   settings_of_crossing(restir.light == RestirLight::Indirect ? 2 : 1));
     double light = 0, right = 0, pixels = 0;
     for (uint32_t k = 0; k < kFirstCrossing + kCrossingFrames; ++k) {
-        scene.instances[1].world_from_local.translation.x += kStepOfFrame;
-        SceneUpdate update;
-        update.moved_instances = {1};
-        prepared = update_scene(prepared, scene, update, messages);
-        frames.update_scene(prepared, parts_of(update));
+        move_block(scene, prepared, frames);
         frames.render_frame(k, raw, restir);
-        if (k + kTrail < kFirstCrossing) continue;
-        references.update_scene(prepared, parts_of(update));
-        references.cut();
-        references.render(16);
-        expected.push_back(references.picture());
         if (k < kFirstCrossing) continue;
-        const Image &now = expected.back(), shown = frames.frame().picture();
+        const std::size_t at = k - kFirstCrossing + kTrail;
+        const Image &now = references[at], shown = frames.frame().picture();
         const double lit = 0.9 * static_cast<double>(now.at(2, kCrossingHeight / 2)[1]);
         for (uint32_t y = 0; y < kCrossingHeight; ++y) {
             for (uint32_t x = 0; x < kCrossingWidth; ++x) {
                 bool was_dark = false;
                 for (uint32_t j = 2; j <= kTrail + 1; ++j) {
-                    was_dark = was_dark || static_cast<double>(expected[expected.size() - j].at(x, y)[1]) < 0.02 * lit;
+                    was_dark = was_dark || static_cast<double>(references[at + 1 - j].at(x, y)[1]) < 0.02 * lit;
                 }
                 const auto value = static_cast<double>(now.at(x, y)[1]);
                 if (!was_dark || value < 0.5 * lit) continue;
@@ -108,11 +130,13 @@ double light_in_trail(const RestirSettings& restir, bool follows = true) {
 } // namespace
 
 TEST_CASE("with ReSTIR a moving shadow leaves no trail") {
-    const double without = light_in_trail({.light = RestirLight::Direct, .history = 0});
+    const std::vector<Image> direct = references_of_crossing(1);
+    const double without = light_in_trail(direct, {.light = RestirLight::Direct, .history = 0});
     CHECK(without == doctest::Approx(1).epsilon(0.05));
-    CHECK(light_in_trail({.light = RestirLight::Direct}, false) < 0.8); // the change of light is unknown
+    CHECK(light_in_trail(direct, {.light = RestirLight::Direct}, false) < 0.8); // the change of light is unknown
     for (const RestirLight light : {RestirLight::Direct, RestirLight::Indirect}) {
-        const double with = light_in_trail({.light = light});
+        const double with =
+            light_in_trail(light == RestirLight::Direct ? direct : references_of_crossing(2), {.light = light});
         MESSAGE(with, " of the light with history, ", without, " without");
         CHECK(with == doctest::Approx(1).epsilon(0.05));
     }

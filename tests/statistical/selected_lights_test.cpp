@@ -95,7 +95,7 @@ TEST_CASE("within a glowing sphere, light by a tree is that by power, however ra
               {{.kind = MaterialKind::MetallicRoughness,
                 .base_color = {0.6f, 0.5f, 0.4f},
                 .metallic = 0.5f,
-                .roughness = 0.3f},
+                .roughness = 1.0f},
                "floor"});
     Camera camera;
     camera.world_from_camera = look_at({0, 0.5f, 1}, {0, 0, 0}, {0, 1, 0});

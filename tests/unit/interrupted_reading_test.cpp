@@ -72,7 +72,7 @@ SceneTriangles triangles_of_torus(int segments, int sides) {
     return triangles;
 }
 
-constexpr int kTriangles = 200'000;
+constexpr int kTriangles = 70'000;
 
 std::string repeated(int count, const std::string& line) {
     std::string text;
@@ -158,7 +158,7 @@ TEST_CASE("builders that sort all triangles, and those of a curve, check the sin
 }
 
 TEST_CASE("every structure of the laboratory is built until the sink ends it") {
-    const SceneTriangles triangles = triangles_of_torus(250, 280); // 140,000
+    const SceneTriangles triangles = triangles_of_torus(250, 140); // 70,000
     const BinaryTrees trees = build_binary_trees(triangles, BvhBuilder::Median);
     const auto convert = [&](TreeLayout layout, StructureKind kind = StructureKind::Median) {
         return [&, layout, kind](Sink& sink) { BuiltStructure(Tlas(), kind, layout, trees, nullptr, sink); };
@@ -166,15 +166,15 @@ TEST_CASE("every structure of the laboratory is built until the sink ends it") {
     const auto build = [&](StructureKind kind) {
         return [&, kind](Sink& sink) { BuiltStructure(Tlas(), kind, triangles, nullptr, sink); };
     };
-    const int64_t checks = 3, sort = 3 + 2 + 1;
+    const int64_t checks = 2, sort = 2 + 1 + 1;
     const auto nodes = static_cast<int64_t>(trees.baked().nodes.size());
     check_stops((nodes >> 16) + 1, convert(TreeLayout::Linked));
     check_stops((3 * nodes >> 16) + 1, convert(TreeLayout::Skip)); // inner nodes twice, and leaves
     check_stops(checks, convert(TreeLayout::Woop));
     check_stops(1 + sort + checks + 5, convert(TreeLayout::Compressed, StructureKind::Hploc)); // and levels of nodes
-    // A kd-tree's root has 140,000 triangles, and at least 31 nodes have more than 4096. An octree's have over 8192.
-    check_stops(checks + 31 + checks - 1, build(StructureKind::KdMedian));
-    check_stops(220, build(StructureKind::KdSah)); // There are 244, of which 66 are of the axes of large cells.
+    // A kd-tree's root has 70,000 triangles, and at least 15 nodes have more than 4096. An octree's have over 8192.
+    check_stops(checks + 15 + checks - 1, build(StructureKind::KdMedian));
+    check_stops(110, build(StructureKind::KdSah)); // There are 123, of which a fourth are of the axes of large cells.
     check_stops(checks + 3 + checks - 1, build(StructureKind::Octree));
 }
 
@@ -198,7 +198,7 @@ TEST_CASE("a photon map's first pass is abandoned wherever the sink stops it, al
         RenderSettings settings;
         settings.width = settings.height = 8;
         settings.integrator = IntegratorKind::PhotonMap;
-        settings.photon_map.edit().photons = 60'000;
+        settings.photon_map.edit().photons = 20'000;
         settings.photon_map.edit().search = search;
         constexpr int64_t kNever = 1 << 30;
         StopsAt never(kNever);
@@ -206,8 +206,8 @@ TEST_CASE("a photon map's first pass is abandoned wherever the sink stops it, al
         REQUIRE(whole.render(1, never) == 1);
         const int64_t checks = kNever - never.left();
         Session session(queue, prepared, test::mixed_scene_camera(), settings);
-        for (int64_t part = 0; part < 12; ++part) {
-            StopsAt sink(checks * part / 12);
+        for (int64_t part = 0; part < 8; ++part) {
+            StopsAt sink(checks * part / 8);
             CHECK(session.render(1, sink) == 0);
         }
         REQUIRE(session.render(1) == 1);
@@ -226,7 +226,7 @@ TEST_CASE("an update of the scene ignores a structure whose build was ended") {
 }
 
 TEST_CASE("a tree is stored, read, and made wide until the sink ends it, and an ended store leaves no file") {
-    const std::vector<BvhTriangle> triangles = test::triangles_of(test::make_torus(500, 400));
+    const std::vector<BvhTriangle> triangles = test::triangles_of(test::make_torus(250, 200));
     const auto parts = static_cast<int64_t>(triangles.size() >> 16);
     const Bvh bvh = build_bvh(triangles);
     check_stops(4 * parts, [&](Sink& sink) { make_wide_bvh<8>(bvh, kSimdCollapse, sink); });
