@@ -25,6 +25,39 @@ function(pertev_launches file)
   pertev_instances(${file} "device/launch_body.h;${of_UNPARSED_ARGUMENTS}" "${text}")
 endfunction()
 
+# pertev_shading_kernels(NAME plain listeners row...): Shade for these masks of features, and the list of the masks as NAME in
+# integrators/path/compiled_features.h. A row is "FILE: MASK", for shade_FILE.cu. Masks without kLayered have the listeners `plain`.
+function(pertev_shading_kernels name plain listeners)
+  set(masks "")
+  foreach(row IN LISTS ARGN)
+    string(REGEX MATCH "^([a-z_]+): (.+)$" matched "${row}")
+    set(file ${CMAKE_MATCH_1})
+    set(mask ${CMAKE_MATCH_2})
+    list(APPEND masks "${mask}")
+    set(its_listeners ${listeners})
+    if(mask MATCHES "^(kPlainDiffuse|kDiffuse)( |$)")
+      set(its_listeners ${plain})
+    endif()
+    set_property(GLOBAL APPEND PROPERTY PERTEV_SHADING_FILES ${file})
+    set_property(GLOBAL APPEND PROPERTY PERTEV_SHADING_${file} "Shade<${mask}, ${its_listeners}>")
+  endforeach()
+  list(JOIN masks ", " masks)
+  set_property(GLOBAL APPEND_STRING PROPERTY PERTEV_SHADING_FEATURES "using ${name} = CompiledFor<${masks}>;\n")
+endfunction()
+
+# Writes the files of all rows of pertev_shading_kernels.
+function(pertev_write_shading_kernels)
+  get_property(features GLOBAL PROPERTY PERTEV_SHADING_FEATURES)
+  file(CONFIGURE OUTPUT ${PERTEV_GENERATED_DIR}/integrators/path/compiled_features.h CONTENT
+    "#pragma once\n\n#include \"integrators/path/path_job.h\"\n\nnamespace pertev {\n${features}} // namespace pertev\n" @ONLY)
+  get_property(files GLOBAL PROPERTY PERTEV_SHADING_FILES)
+  list(REMOVE_DUPLICATES files)
+  foreach(file IN LISTS files)
+    get_property(stages GLOBAL PROPERTY PERTEV_SHADING_${file})
+    pertev_launches(integrators/path/shade_${file}.cu integrators/path/path_stages.h STAGES ${stages})
+  endforeach()
+endfunction()
+
 # pertev_integrator(NAME header class): an integrator that is made of a machine of several.
 function(pertev_integrator name header class)
   pertev_instances(integrators/${name}/${name}_integrator.cpp "integrators/${name}/${name}.h;${header}"

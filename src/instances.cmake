@@ -278,68 +278,44 @@ pertev_launches(integrators/path/path_stages.cu
     "AddLight<PlainReuseListeners>"
     "AddLight<ReuseListeners>"
     "AddLight<LayerListeners>")
-# For batches of pictures.
-pertev_launches(integrators/path/shade_batches.cu
-  integrators/path/path_stages.h
-  STAGES "Shade<kPlainDiffuse | kBatched, FilmListeners>"
-    "Shade<kDiffuse | kBatched, FilmListeners>"
-    "Shade<kUnstacked | kBatched, FilmListeners>"
-    "Shade<kUnstacked | kMoving | kBatched, FilmListeners>")
-pertev_launches(integrators/path/shade_films.cu
-  integrators/path/path_stages.h
-  STAGES "Shade<kPlainDiffuse, FilmListeners>"
-    "Shade<kDiffuse, FilmListeners>"
-    "Shade<kUnstacked, FilmListeners>")
-pertev_launches(integrators/path/shade_frames.cu
-  integrators/path/path_stages.h
-  STAGES "Shade<kPlainDiffuse, PlainFrameListeners>"
-    "Shade<kDiffuse | kMipMapped, PlainFrameListeners>"
-    "Shade<kUnstacked | kMipMapped, FrameListeners>")
-pertev_launches(integrators/path/shade_layers.cu
-  integrators/path/path_stages.h
-  STAGES "Shade<kUnstacked, LayerListeners>"
-    "Shade<kUnstacked | kMoving, LayerListeners>")
-# For lights that are selected by a tree.
-pertev_launches(integrators/path/shade_light_tree_films.cu
-  integrators/path/path_stages.h
-  STAGES "Shade<kUnstacked | kLightTree, FilmListeners>"
-    "Shade<kAllMaterials | kMoving | kBatched | kMipMapped | kNested | kLightTree, FilmListeners>")
-pertev_launches(integrators/path/shade_light_tree_parts.cu
-  integrators/path/path_stages.h
-  STAGES "Shade<kAllMaterials | kMipMapped | kNested | kLightTree, FrameListeners>"
-    "Shade<kAllMaterials | kMipMapped | kNested | kLightTree, ReuseListeners>"
-    "Shade<kAllMaterials | kMoving | kMipMapped | kNested | kLightTree, LayerListeners>")
-# For media.
-pertev_launches(integrators/path/shade_media.cu
-  integrators/path/path_stages.h
-  STAGES "Shade<kAnyFilm | kMedia, FilmListeners>"
-    "Shade<kAnyFilm | kMedia | kLightTree, FilmListeners>")
-pertev_launches(integrators/path/shade_media_parts.cu
-  integrators/path/path_stages.h
-  STAGES "Shade<kAllMaterials | kMipMapped | kNested | kMedia, FrameListeners>"
-    "Shade<kAllMaterials | kMoving | kMipMapped | kNested | kMedia, LayerListeners>")
-# For motion while the shutter is open, of the camera or of anything else.
-pertev_launches(integrators/path/shade_moving_films.cu
-  integrators/path/path_stages.h
-  STAGES "Shade<kPlainDiffuse | kMoving, FilmListeners>"
-    "Shade<kDiffuse | kMoving, FilmListeners>"
-    "Shade<kUnstacked | kMoving, FilmListeners>")
-# For frames that leave light to ReSTIR.
-pertev_launches(integrators/path/shade_reused_frames.cu
-  integrators/path/path_stages.h
-  STAGES "Shade<kPlainDiffuse, PlainReuseListeners>"
-    "Shade<kDiffuse | kMipMapped, PlainReuseListeners>"
-    "Shade<kUnstacked | kMipMapped, ReuseListeners>")
-# For coats, fuzz, thin walls and weighted reflections.
-pertev_launches(integrators/path/shade_stacks.cu
-  integrators/path/path_stages.h
-  STAGES "Shade<kAllMaterials, FilmListeners>"
-    "Shade<kAllMaterials | kMoving | kBatched | kMipMapped | kNested, FilmListeners>")
-pertev_launches(integrators/path/shade_stacks_of_frames.cu
-  integrators/path/path_stages.h
-  STAGES "Shade<kAllMaterials | kMipMapped | kNested, FrameListeners>"
-    "Shade<kAllMaterials | kMipMapped | kNested, ReuseListeners>"
-    "Shade<kAllMaterials | kMoving | kMipMapped | kNested, LayerListeners>")
+# Shading by masks of features: the file and the mask, from the least code on.
+pertev_shading_kernels(FilmFeatures FilmListeners FilmListeners
+  "films: kPlainDiffuse"
+  "films: kDiffuse"
+  "films: kUnstacked"
+  "stacks: kAllMaterials"
+  "moving_films: kPlainDiffuse | kMoving"
+  "moving_films: kDiffuse | kMoving"
+  "moving_films: kUnstacked | kMoving"
+  "batches: kPlainDiffuse | kBatched"
+  "batches: kDiffuse | kBatched"
+  "batches: kUnstacked | kBatched"
+  "batches: kUnstacked | kMoving | kBatched"
+  "stacks: kAnyFilm"
+  "light_tree_films: kUnstacked | kLightTree"
+  "light_tree_films: kAnyFilm | kLightTree"
+  "media: kAnyFilm | kMedia"
+  "media: kAnyFilm | kMedia | kLightTree")
+pertev_shading_kernels(FrameFeatures PlainFrameListeners FrameListeners
+  "frames: kPlainDiffuse"
+  "frames: kDiffuse | kMipMapped"
+  "frames: kUnstacked | kMipMapped"
+  "stacks_of_frames: kAllMaterials | kMipMapped | kNested"
+  "light_tree_parts: kAllMaterials | kMipMapped | kNested | kLightTree"
+  "media_parts: kAllMaterials | kMipMapped | kNested | kMedia")
+pertev_shading_kernels(ReuseFeatures PlainReuseListeners ReuseListeners # frames that leave light to ReSTIR
+  "reused_frames: kPlainDiffuse"
+  "reused_frames: kDiffuse | kMipMapped"
+  "reused_frames: kUnstacked | kMipMapped"
+  "stacks_of_frames: kAllMaterials | kMipMapped | kNested"
+  "light_tree_parts: kAllMaterials | kMipMapped | kNested | kLightTree")
+pertev_shading_kernels(LayerFeatures LayerListeners LayerListeners
+  "layers: kUnstacked"
+  "layers: kUnstacked | kMoving"
+  "stacks_of_frames: kAllMaterials | kMoving | kMipMapped | kNested"
+  "light_tree_parts: kAllMaterials | kMoving | kMipMapped | kNested | kLightTree"
+  "media_parts: kAllMaterials | kMoving | kMipMapped | kNested | kMedia")
+pertev_write_shading_kernels()
 pertev_launches(integrators/photon_map/photon_stages.cu
   integrators/photon_map/gather_stages.h integrators/photon_map/order_photons.h integrators/photon_map/photon_stages.h
   integrators/photon_map/photon_targets.h

@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "device_scene/scene_on_device.h"
+#include "integrators/path/compiled_features.h"
 #include "integrators/path/path_vertex.h"
 #include "render/prepare_scene.h"
 #include "tests/support/flat_scenes.h"

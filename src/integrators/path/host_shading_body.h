@@ -15,6 +15,7 @@
 #include <type_traits>
 
 #include "base/error.h"
+#include "integrators/path/compiled_features.h"
 #include "integrators/path/host_shading.h"
 
 namespace pertev {

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "device/launch.h"
 #include "integrators/path/begin_and_trace.h"
+#include "integrators/path/compiled_features.h"
 #include "integrators/path/meter_light.h"
 #include "integrators/path/path_loop.h"
 #include "integrators/path/path_stages.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 // The job of a path tracer: views and numbers for every vertex of every path, and the mask of features that selects
-// its code; one table lists the masks that are compiled.
+// its code; src/instances.cmake lists the masks that are compiled (integrators/path/compiled_features.h).
 
 #include <cstdint>
 #include <type_traits>
@@ -106,19 +106,5 @@ struct CompiledFor {
     }
 };
 inline constexpr Features kAnyFilm = kAllMaterials | kMoving | kBatched | kMipMapped | kNested;
-using FilmFeatures =
-    CompiledFor<kPlainDiffuse, kDiffuse, kUnstacked, kAllMaterials, kPlainDiffuse | kMoving, kDiffuse | kMoving,
-                kUnstacked | kMoving, kPlainDiffuse | kBatched, kDiffuse | kBatched, kUnstacked | kBatched,
-                kUnstacked | kMoving | kBatched, kAnyFilm, kUnstacked | kLightTree, kAnyFilm | kLightTree,
-                kAnyFilm | kMedia, kAnyFilm | kMedia | kLightTree>;
-using ReuseFeatures = // frames that leave light to ReSTIR
-    CompiledFor<kPlainDiffuse, kDiffuse | kMipMapped, kUnstacked | kMipMapped, kAllMaterials | kMipMapped | kNested,
-                kAllMaterials | kMipMapped | kNested | kLightTree>;
-using FrameFeatures =
-    CompiledFor<kPlainDiffuse, kDiffuse | kMipMapped, kUnstacked | kMipMapped, kAllMaterials | kMipMapped | kNested,
-                kAllMaterials | kMipMapped | kNested | kLightTree, kAllMaterials | kMipMapped | kNested | kMedia>;
-using LayerFeatures = CompiledFor<kUnstacked, kUnstacked | kMoving, kAllMaterials | kMoving | kMipMapped | kNested,
-                                  kAllMaterials | kMoving | kMipMapped | kNested | kLightTree,
-                                  kAllMaterials | kMoving | kMipMapped | kNested | kMedia>;
 
 } // namespace pertev
