@@ -65,7 +65,7 @@ MUTATIONS = [
     ("a hidden node's children are shown", "unit/read_gltf_compressed",
      ("src/formats/gltf/node_graph.cpp", "(parent != kNoNode && is_hidden_[parent])", "(parent != kNoNode && false)")),
     ("a hidden node's light shines", "unit/read_gltf_compressed",
-     ("src/formats/gltf/place_nodes.cpp", "if (!nodes.is_hidden(index)) place_emitter(", "place_emitter(")),
+     ("src/formats/gltf/place_nodes.cpp", "if (!nodes_.is_hidden(index)) place_emitter(", "place_emitter(")),
     ("a mesh has the first two sets of texture coordinates, whatever its material uses", "unit/read_gltf_compressed",
      ("src/formats/gltf/primitive.cpp", 'fmt::format("TEXCOORD_{}", request.sets[i])', 'fmt::format("TEXCOORD_{}", i)')),
     ("Draco's triangles are those of another order", "unit/read_gltf_compressed",

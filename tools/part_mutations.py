@@ -10,7 +10,7 @@ MUTATIONS = [
     ("films of other settings are merged", "consistency/film_files robust/cli_merge",
      ("src/session/film_file/film_header.cpp", "first_difference(before.settings, after.settings)", "first_difference(after.settings, after.settings)")),
     ("parts of scenes with other textures are merged", "robust/cli_merge",
-     ("src/session/pictures/prepare_render.cpp", "    ready->files = files_of_scene(options, scene.files);\n", "")),
+     ("src/session/pictures/prepare_render.cpp", "    ready.files = files_of_scene(options, scene.files);\n", "")),
     ("a film file has the name of mattes of each leaf", "unit/write_picture",
      ("src/session/writing/picture_metadata.cpp", "facts.objects = each_once(mattes->objects)", "facts.objects = mattes->objects")),
     ("a film file's header is longer than a reader takes", "robust/malformed_films",

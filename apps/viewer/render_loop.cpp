@@ -98,15 +98,7 @@ void RenderLoop::steer(const Steer& requested) {
         view_.screen_rate = shown_.screen_rate = message.hertz;
         return;
     }
-    if (message.kind == MessageKind::Shape) {
-        if (!resize_to_window(view_, message.width, message.height)) return;
-        resize_to_window(shown_, message.width, message.height);
-        camera_.fit(aspect_of(view_.options.render.width, view_.options.render.height), view_.lens);
-        shown_.lens = view_.lens;
-        is_done_ = false;
-        budget_s_ = kFirstBudget;
-        return;
-    }
+    if (message.kind == MessageKind::Shape) return reshape(message);
     is_done_ = is_done_ && message.kind == MessageKind::Pick; // a pick changes nothing
     switch (message.kind) {
     case MessageKind::Move:
@@ -152,6 +144,16 @@ void RenderLoop::steer(const Steer& requested) {
     case MessageKind::Hand:
         break; // handled by the audience
     }
+    budget_s_ = kFirstBudget;
+}
+
+/// Fits the picture to the window of a client.
+void RenderLoop::reshape(const ClientMessage& message) {
+    if (!resize_to_window(view_, message.width, message.height)) return;
+    resize_to_window(shown_, message.width, message.height);
+    camera_.fit(aspect_of(view_.options.render.width, view_.options.render.height), view_.lens);
+    shown_.lens = view_.lens;
+    is_done_ = false;
     budget_s_ = kFirstBudget;
 }
 

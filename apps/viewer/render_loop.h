@@ -26,6 +26,7 @@ public:
 private:
     void handle(const Command& command);
     void steer(const Steer& steer);
+    void reshape(const ClientMessage& message);
     void steer_time(const ClientMessage& message);
     void steer_path(const Steer& steer);
     void pick(const Steer& steer);

@@ -81,6 +81,13 @@ Rgba8Image shown_picture(Picture& picture, ToneMap tone_map, float exposure_stop
     return picture.displayed();
 }
 
+/// Records that the picture is shown at `scale` times its size.
+void set_size(const FrameRequest& request, float scale, ShownFrame& frame) {
+    frame.full_width = request.view.options.render.width;
+    frame.full_height = request.view.options.render.height;
+    frame.scale = scale;
+}
+
 /// Records that rendering took `seconds`.
 void set_render_times(double seconds, ShownFrame& frame) {
     const SceneTracer::Seconds& rays = frame.kind_seconds;
@@ -314,9 +321,7 @@ std::optional<ShownFrame> SessionFrames::reconstruct(const FrameRequest& request
     if (sharing_s > 0) frame.stages.emplace_back("ReSTIR", 1e3 * sharing_s);
     frame.stages.emplace_back("reconstruction", 1e3 * reconstruction_s);
     frame.stages.emplace_back("tone map", 1e3 * display.seconds());
-    frame.full_width = request.view.options.render.width;
-    frame.full_height = request.view.options.render.height;
-    frame.scale = scale;
+    set_size(request, scale, frame);
     frame.samples = still_frames_;
     frame.is_final = shows_layer && !request.is_moving && still_frames_ >= kFramesOfLayer;
     if (is_growing) {
@@ -336,9 +341,8 @@ std::optional<ShownFrame> SessionFrames::show_reconstruction_again(const FrameRe
     reconstruction_ = tone_map_image(reconstruction_light_, request.view.display.tone_map, frame.exposure_stops);
     half_samples_ = 0;
     frame.image = reconstruction_;
-    frame.full_width = request.view.options.render.width;
-    frame.full_height = request.view.options.render.height;
-    frame.scale = static_cast<float>(reconstruction_.width) / static_cast<float>(frame.full_width);
+    const float full_width = static_cast<float>(request.view.options.render.width);
+    set_size(request, static_cast<float>(reconstruction_.width) / full_width, frame);
     frame.samples = still_frames_;
     return frame;
 }
@@ -463,9 +467,7 @@ std::optional<ShownFrame> SessionFrames::make_next(const FrameRequest& request) 
     const Stopwatch display;
     frame.image = show(request, frame);
     const double display_s = display.seconds();
-    frame.full_width = request.view.options.render.width;
-    frame.full_height = request.view.options.render.height;
-    frame.scale = scale;
+    set_size(request, scale, frame);
     shows_film_ = frame.is_reference = !is_small && is_beauty(request.view.layer);
     frame.is_final = !is_small && frame.samples >= wanted;
     set_render_times(frame.render_s, frame);

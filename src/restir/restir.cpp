@@ -87,83 +87,115 @@ uint64_t Restir::rays() const {
     return sum;
 }
 
-void Restir::add(const NoisyFrame& frame, const PictureView& picture, const SampleNumbers& numbers, SceneTracer& tracer,
+/// Arguments of the steps of a frame.
+struct Restir::Frame {
+    const NoisyFrameView& noisy;
+    const FilmView& film;
+    const SceneView& scene;
+    PixelSurfaces here;
+    GBufferView last; // the previous frame
+    const RestirSettings& settings;
+    SceneTracer& tracer;
+};
+
+void Restir::add(const NoisyFrame& noisy, const PictureView& picture, const SampleNumbers& numbers, SceneTracer& tracer,
                  const PreviousScene& before, const ChangedLight& change, const RestirSettings& settings,
                  LightSelection selection) {
-    PERTEV_CHECK(frame.width() == width_ && frame.height() == height_);
-    const NoisyFrameView& noisy = frame.view();
-    const FilmView film = frame.film_view();
-    const SceneView& scene = picture.scene;
-    const GBufferView last = {seen_before_.data(), seen_before_.data() + pixels_};
-    PixelSurfaces here = {noisy, picture.camera, numbers.sampler, numbers.sample, numbers.seed, numbers.filters};
-    const PixelSurfaces there = {last,
-                                 camera_before_,
-                                 numbers_before_.sampler,
-                                 numbers_before_.sample,
-                                 numbers_before_.seed,
-                                 numbers_before_.filters};
-    LightReservoir *const fresh = reservoirs_.data(), *const kept = fresh + pixels_;
+    PERTEV_CHECK(noisy.width() == width_ && noisy.height() == height_);
+    const FilmView film = noisy.film_view();
+    Frame frame = {noisy.view(),
+                   film,
+                   picture.scene,
+                   {noisy.view(), picture.camera, numbers.sampler, numbers.sample, numbers.seed, numbers.filters},
+                   {seen_before_.data(), seen_before_.data() + pixels_},
+                   settings,
+                   tracer};
     ray_counts_.zero();
     traced_ = 0;
     rows_ = own_rows(others_, height_);
+    make_initial(selection, frame);
+    if (has_history_ && settings.history > 0) {
+        const FrameCameras cameras = {picture.camera.view, camera_before_.view, width_, height_};
+        reuse_before(before, cameras, change, frame);
+    }
+    if (others_ != nullptr) take_rows(frame);
+    reuse_beside(frame);
+    const std::size_t first = std::size_t(rows_.first) * width_, bytes = rows_.count() * width_ * sizeof(Float4);
+    queue_->copy_on_device(frame.last.hit + first, frame.noisy.hit + first, bytes);
+    queue_->copy_on_device(frame.last.normal + first, frame.noisy.normal + first, bytes);
+    camera_before_ = picture.camera;
+    numbers_before_ = numbers;
+    has_history_ = true;
+}
 
-    BounceReservoir *const fresh_bounces = bounces_.data(), *const kept_bounces = fresh_bounces + pixels_;
-    const bool has_bounces = light_ == RestirLight::Indirect;
-    if (has_bounces)
+/// Makes the reservoirs of this frame's own samples.
+void Restir::make_initial(LightSelection selection, Frame& frame) {
+    const SceneView& scene = frame.scene;
+    PixelSurfaces& here = frame.here;
+    if (has_bounces())
         with_textures(scene.variant, [&]<ShadingVariant kVariant>() {
             launch_in_band(*queue_, "initial_gi_reservoirs", rows_, width_,
-                           MakeInitialGiReservoirs<kVariant>{scene, here, film, fresh_bounces});
+                           MakeInitialGiReservoirs<kVariant>{scene, here, frame.film, bounces_.data()});
         });
     const auto sample_candidates = [&]<class Choice>() {
         with_textures(scene.variant, [&]<ShadingVariant kVariant>() {
             launch_in_band(*queue_, "initial_candidates", rows_, width_,
-                           SampleInitialCandidates<kVariant, Choice>{scene, here, met_.data(), fresh, receivers_.data(),
-                                                                     settings.candidates});
+                           SampleInitialCandidates<kVariant, Choice>{scene, here, met_.data(), reservoirs_.data(),
+                                                                     receivers_.data(), frame.settings.candidates});
         });
     };
     const bool is_by_tree = uses_light_tree(selection, scene);
     is_by_tree ? sample_candidates.template operator()<ChosenByTree>()
                : sample_candidates.template operator()<ChosenByPower>();
     here.stored = receivers_.data();
-    test_visibility(scene, here, fresh, tracer, 0);
-    if (has_history_ && settings.history > 0) {
-        const FrameCameras cameras = {picture.camera.view, camera_before_.view, width_, height_};
-        launch_in_band(*queue_, "find_before", rows_, width_,
-                       FindBefore{scene, before, cameras, noisy, last, change, static_cast<float>(settings.history),
-                                  neighbours_.data()});
-        reuse(scene, here, there, fresh, kept, fresh, 2, tracer, kGroupReuse);
-        if (has_bounces) {
-            reuse(scene, here, there, fresh_bounces, kept_bounces, fresh_bounces, 2, tracer, kGroupReuse + 1);
-        }
-    }
-    if (others_ != nullptr) {
-        std::vector<RowArray> arrays = {{fresh, width_ * sizeof(LightReservoir), height_},
-                                        {noisy.hit, width_ * sizeof(Float4), height_},
-                                        {noisy.normal, width_ * sizeof(Float4), height_}};
-        if (receivers_.size() > 0) arrays.push_back({receivers_.data(), width_ * sizeof(DiffuseReceiver), height_});
-        if (has_bounces) arrays.push_back({fresh_bounces, width_ * sizeof(BounceReservoir), height_});
-        others_->take(arrays, rows_.grown(FindNeighbours::reach(settings.radius), height_));
-    }
-    launch_in_band(*queue_, "find_beside", rows_, width_,
-                   FindNeighbours{here, settings.neighbours, settings.radius, neighbours_.data()});
-    reuse(scene, here, here, fresh, fresh, kept, kMaxEntries, tracer, kGroupReuse + 2);
-    with_textures(scene.variant, [&]<ShadingVariant kVariant>() {
-        launch_in_band(*queue_, "add_direct_light", rows_, width_, AddDirectLight<kVariant>{scene, here, kept, film});
-    });
-    if (has_bounces) {
-        reuse(scene, here, here, fresh_bounces, fresh_bounces, kept_bounces, kMaxEntries, tracer, kGroupReuse + 3);
-        with_textures(scene.variant, [&]<ShadingVariant kVariant>() {
-            launch_in_band(*queue_, "add_indirect_light", rows_, width_,
-                           AddIndirectLight<kVariant>{scene, here, kept_bounces, film});
-        });
-    }
+    test_visibility(scene, here, reservoirs_.data(), frame.tracer, 0);
+}
 
-    const std::size_t first = std::size_t(rows_.first) * width_, bytes = rows_.count() * width_ * sizeof(Float4);
-    queue_->copy_on_device(last.hit + first, noisy.hit + first, bytes);
-    queue_->copy_on_device(last.normal + first, noisy.normal + first, bytes);
-    camera_before_ = picture.camera;
-    numbers_before_ = numbers;
-    has_history_ = true;
+/// Combines this frame's reservoirs with those of the previous one.
+void Restir::reuse_before(const PreviousScene& before, const FrameCameras& cameras, const ChangedLight& change,
+                          const Frame& frame) {
+    const PixelSurfaces there = {
+        frame.last,           camera_before_,         numbers_before_.sampler, numbers_before_.sample,
+        numbers_before_.seed, numbers_before_.filters};
+    launch_in_band(*queue_, "find_before", rows_, width_,
+                   FindBefore{frame.scene, before, cameras, frame.noisy, frame.last, change,
+                              static_cast<float>(frame.settings.history), neighbours_.data()});
+    LightReservoir *const fresh = reservoirs_.data(), *const kept = fresh + pixels_;
+    reuse(frame.scene, frame.here, there, fresh, kept, fresh, 2, frame.tracer, kGroupReuse);
+    if (!has_bounces()) return;
+    BounceReservoir *const fresh_bounces = bounces_.data(), *const kept_bounces = fresh_bounces + pixels_;
+    reuse(frame.scene, frame.here, there, fresh_bounces, kept_bounces, fresh_bounces, 2, frame.tracer, kGroupReuse + 1);
+}
+
+/// Takes the rows beside this device's own that other devices have made.
+void Restir::take_rows(const Frame& frame) {
+    std::vector<RowArray> arrays = {{reservoirs_.data(), width_ * sizeof(LightReservoir), height_},
+                                    {frame.noisy.hit, width_ * sizeof(Float4), height_},
+                                    {frame.noisy.normal, width_ * sizeof(Float4), height_}};
+    if (receivers_.size() > 0) arrays.push_back({receivers_.data(), width_ * sizeof(DiffuseReceiver), height_});
+    if (has_bounces()) arrays.push_back({bounces_.data(), width_ * sizeof(BounceReservoir), height_});
+    others_->take(arrays, rows_.grown(FindNeighbours::reach(frame.settings.radius), height_));
+}
+
+/// Combines the reservoirs of neighbours into those that the next frame begins with, and adds their light to the frame.
+void Restir::reuse_beside(const Frame& frame) {
+    const SceneView& scene = frame.scene;
+    const PixelSurfaces& here = frame.here;
+    launch_in_band(*queue_, "find_beside", rows_, width_,
+                   FindNeighbours{here, frame.settings.neighbours, frame.settings.radius, neighbours_.data()});
+    LightReservoir *const fresh = reservoirs_.data(), *const kept = fresh + pixels_;
+    reuse(scene, here, here, fresh, fresh, kept, kMaxEntries, frame.tracer, kGroupReuse + 2);
+    with_textures(scene.variant, [&]<ShadingVariant kVariant>() {
+        launch_in_band(*queue_, "add_direct_light", rows_, width_,
+                       AddDirectLight<kVariant>{scene, here, kept, frame.film});
+    });
+    if (!has_bounces()) return;
+    BounceReservoir *const fresh_bounces = bounces_.data(), *const kept_bounces = fresh_bounces + pixels_;
+    reuse(scene, here, here, fresh_bounces, fresh_bounces, kept_bounces, kMaxEntries, frame.tracer, kGroupReuse + 3);
+    with_textures(scene.variant, [&]<ShadingVariant kVariant>() {
+        launch_in_band(*queue_, "add_indirect_light", rows_, width_,
+                       AddIndirectLight<kVariant>{scene, here, kept_bounces, frame.film});
+    });
 }
 
 /// Combines `own` with reservoirs of `others` at the selected neighbours into `to`, for at most `entries` pixels

@@ -54,10 +54,10 @@ public:
     /// Arrays in which the samples of a frame leave their first bounce.
     FirstBounceView first_bounce() const;
 
-    /// Adds to `frame` the light that its samples omitted; they must have filled first_bounce(). `before` has the
+    /// Adds to `noisy` the light that its samples omitted; they must have filled first_bounce(). `before` has the
     /// positions in the previous frame, `change` the light that has changed since. `selection` is that of the samples'
     /// lights, and of the candidates. Throws Error(DeviceFault).
-    void add(const NoisyFrame& frame, const PictureView& picture, const SampleNumbers& numbers, SceneTracer& tracer,
+    void add(const NoisyFrame& noisy, const PictureView& picture, const SampleNumbers& numbers, SceneTracer& tracer,
              const PreviousScene& before, const ChangedLight& change, const RestirSettings& settings,
              LightSelection selection);
 
@@ -70,6 +70,14 @@ public:
     }
 
 private:
+    struct Frame;
+
+    bool has_bounces() const { return light_ == RestirLight::Indirect; }
+    void make_initial(LightSelection selection, Frame& frame);
+    void reuse_before(const PreviousScene& before, const FrameCameras& cameras, const ChangedLight& change,
+                      const Frame& frame);
+    void take_rows(const Frame& frame);
+    void reuse_beside(const Frame& frame);
     template <class Reservoir>
     void reuse(const SceneView& scene, const PixelSurfaces& here, const PixelSurfaces& there, const Reservoir* own,
                const Reservoir* others, Reservoir* to, uint32_t entries, SceneTracer& tracer, uint32_t group);

@@ -128,99 +128,156 @@ void FilmRender::restore(SampleRange samples, const std::function<void(Film&)>& 
 
 uint32_t FilmRender::render(SampleRange range, Sink& sink) {
     PERTEV_CHECK(samples().count() == 0 || range.first == samples().end);
-    const uint32_t first = range.first, before = samples().count();
+    const uint32_t first = range.first;
     const uint32_t count = std::min(range.count(), kMaxSamplesPerPixel - std::min(first, kMaxSamplesPerPixel));
     if (count == 0) return 0;
-    if (SharedRender* const sharing = pictures_.sharing()) {
-        find_hidden_backs(); // while its device is known to work
-        Film& into = film();
-        SharedSamples added;
-        try {
-            const AddTargets add = targets_of_films();
-            const SharedPicture picture = {pictures_, camera_, settings_, add, number_, first - before};
-            added = sharing->render(picture, {first, first + count}, before, into, sink);
-        } catch (...) {
-            forget_samples();
-            throw;
-        }
-        if (added.count == 0) return 0;
-        into.set_samples({first - before, first + added.count});
-        stats_.rays = stats_.rays + added.rays;
-        stats_.render_seconds += added.seconds;
-        if (before == 0) stats_.first_pixel_seconds = added.first_seconds;
-        return added.count;
+    const SampleRange possible = {first, first + count};
+    return pictures_.sharing() != nullptr ? render_shared(possible, sink) : render_passes(possible, sink);
+}
+
+/// Adds `range` by several devices (PictureRenderer::sharing). Returns the number of samples added.
+uint32_t FilmRender::render_shared(SampleRange range, Sink& sink) {
+    const uint32_t before = samples().count(), films_first = range.first - before;
+    find_hidden_backs(); // while its device is known to work
+    Film& into = film();
+    SharedSamples added;
+    try {
+        const AddTargets add = targets_of_films();
+        const SharedPicture picture = {pictures_, camera_, settings_, add, number_, films_first};
+        added = pictures_.sharing()->render(picture, range, before, into, sink);
+    } catch (...) {
+        forget_samples();
+        throw;
     }
+    if (added.count == 0) return 0;
+    into.set_samples({films_first, range.first + added.count});
+    stats_.rays = stats_.rays + added.rays;
+    stats_.render_seconds += added.seconds;
+    if (before == 0) stats_.first_pixel_seconds = added.first_seconds;
+    return added.count;
+}
+
+/// The passes of one call of render().
+struct FilmRender::Passes {
+    bool are_apart() const { return &pass_film != &film; }
+    SampleRange next(uint32_t count) const { return {range.first + done, range.first + done + count}; }
+    bool is_time_over() const { return time_limit_s > 0 && watch.seconds() >= time_limit_s; }
+
+    SampleRange range; // that was requested
+    uint32_t before;   // samples that the film had before the call
+    uint32_t done = 0; // samples of `range` that it has by now
+    Film& film;        // receives the passes
+    Film& pass_film;   // receives a pass first: `film`, or another one if `film` must survive an unfinished pass
+    Integrator& integrator;
+    Sink& sink;
+    double time_limit_s; // 0: none
+    RayCounts rays_before;
+    double seconds_before;
+    Stopwatch since_call, watch; // `watch` starts once the picture has begun
+    double made_seconds = 0;     // when the integrator was prepared
+};
+
+/// Adds `range` pass by pass on this picture's device. Returns the number of samples added.
+uint32_t FilmRender::render_passes(SampleRange range, Sink& sink) {
     const Stopwatch since_call;
-    Film& into_film = film();
-    const bool has_steps = settings_.denoise != Denoise::None;
-    const bool on_cpu = !pictures_.queue().is_cuda(); // a GPU's passes are short
-    if (has_steps && before == 0 && !steps_->begin(camera_, settings_, on_cpu ? &sink : nullptr)) return 0;
-    Integrator& integrator = pictures_.begin(camera_, settings_, has_steps ? 1 : count, number_);
-    if (before == 0) pictures_.find_centres(camera_, settings_, into_film);
-    const RayCounts rays_before = stats_.rays;
-    const double seconds_before = stats_.render_seconds;
+    const uint32_t before = samples().count(), count = range.count();
+    Film& whole = film();
+    if (has_steps() && before == 0 && !steps_->begin(camera_, settings_, on_cpu() ? &sink : nullptr)) return 0;
+    Integrator& integrator = pictures_.begin(camera_, settings_, has_steps() ? 1 : count, number_);
+    if (before == 0) pictures_.find_centres(camera_, settings_, whole);
     const Stopwatch watch;
-    const bool has_moments = (settings_.sample_layers & kLayerVariance) != 0; // samples are rendered alone
-    const bool is_apart = has_moments || (interrupts_passes_ && on_cpu && before > 0 && !has_steps);
-    if (!is_apart) pass_film_.reset();
-    Film& into = is_apart ? fit_part(pass_film_) : into_film;
+    const bool are_apart = has_moments() || (interrupts_passes_ && on_cpu() && before > 0 && !has_steps());
+    if (!are_apart) pass_film_.reset();
+    Passes passes = {.range = range,
+                     .before = before,
+                     .film = whole,
+                     .pass_film = are_apart ? fit_part(pass_film_) : whole,
+                     .integrator = integrator,
+                     .sink = sink,
+                     .time_limit_s = settings_.time_limit_s,
+                     .rays_before = stats_.rays,
+                     .seconds_before = stats_.render_seconds,
+                     .since_call = since_call,
+                     .watch = watch};
+    if (!prepare(passes)) return 0;
+    while (passes.done < count) {
+        const uint32_t wanted =
+            has_moments() ? 1 : next_pass(settings_, count - passes.done, passes.done, passes.watch.seconds());
+        const uint32_t added = render_pass(passes, wanted);
+        if (added == 0) break;
+        commit_pass(passes, added);
+        if (added < wanted || !sink.goes_on(progress_of(passes)) || passes.is_time_over()) break;
+    }
+    const uint32_t after = samples().count();
+    return after < before ? 0 : after - before; // an unfinished pass may have lost all samples
+}
+
+/// Lets the integrator compute what it needs before its first sample. Returns whether it did so to the end.
+bool FilmRender::prepare(Passes& passes) {
     bool makes = false;
     const auto goes_on = [&](double made_share) {
         makes = true;
-        const double seconds = watch.seconds();
-        if (settings_.time_limit_s > 0 && seconds >= settings_.time_limit_s) return false;
-        return sink.goes_on(made_progress(before, before + count, made_share, seconds, integrator.rays()));
+        if (passes.is_time_over()) return false;
+        const uint32_t before = passes.before, end = before + passes.range.count();
+        return passes.sink.goes_on(
+            made_progress(before, end, made_share, passes.watch.seconds(), passes.integrator.rays()));
     };
-    if (!integrator.prepare(goes_on)) return 0;
-    const double made_seconds = makes ? watch.seconds() : 0;
-    for (uint32_t done = 0; done < count;) {
-        const auto now = [&] {
-            return progress_of(settings_, before + done, before + count, watch.seconds(), made_seconds,
-                               integrator.rays());
-        };
-        const uint32_t pass = has_moments ? 1 : next_pass(settings_, count - done, done, watch.seconds());
-        Sink* const stops = on_cpu && (interrupts_passes_ || (before == 0 && done == 0)) ? &sink : nullptr;
-        integrator.stop_with(stops);
-        uint32_t added = pass;
-        try {
-            if (has_steps) {
-                steps_->add(integrator, first + done, pass, into_film, stops);
-            } else {
-                if (is_apart) into.clear();
-                added = integrator.render_while(first + done, pass, into.view(), [&] { return sink.goes_on(now()); });
-            }
-        } catch (...) { // parts of the pass may be in the film
-            if (!is_apart) forget_samples();
-            throw;
+    if (!passes.integrator.prepare(goes_on)) return false;
+    if (makes) passes.made_seconds = passes.watch.seconds();
+    return true;
+}
+
+Progress FilmRender::progress_of(const Passes& passes) const {
+    return pertev::progress_of(settings_, passes.before + passes.done, passes.before + passes.range.count(),
+                               passes.watch.seconds(), passes.made_seconds, passes.integrator.rays());
+}
+
+/// Renders the next `count` samples. Returns how many of them are complete: fewer if the integrator ended the pass,
+/// none if the sink stopped a pass that may be left. The film's samples are then lost, unless passes are apart.
+uint32_t FilmRender::render_pass(Passes& passes, uint32_t count) {
+    const bool may_leave = on_cpu() && (interrupts_passes_ || (passes.before == 0 && passes.done == 0));
+    Sink* const stops = may_leave ? &passes.sink : nullptr;
+    passes.integrator.stop_with(stops);
+    const uint32_t first = passes.next(count).first;
+    uint32_t added = count;
+    try {
+        if (has_steps()) {
+            steps_->add(passes.integrator, first, count, passes.film, stops);
+        } else {
+            if (passes.are_apart()) passes.pass_film.clear();
+            added = passes.integrator.render_while(first, count, passes.pass_film.view(),
+                                                   [&] { return passes.sink.goes_on(progress_of(passes)); });
         }
-        if (stops != nullptr && added == pass && sink.should_stop()) { // parts of a sample may be missing
-            if (is_apart) break;
-            forget_samples();
-            return 0;
-        }
-        if (added == 0) break;
-        try {
-            if (is_apart) {
-                into.set_samples({first + done, first + done + added});
-                if (has_moments) take_moments(pictures_.queue(), into);
-                into_film.add(into);
-            }
-            pictures_.add_first_hits(camera_, settings_, {first + done, first + done + added}, into_film);
-        } catch (...) { // the film may have light of samples that it does not count
-            forget_samples();
-            throw;
-        }
-        done += added;
-        const double seconds = watch.seconds();
-        into_film.set_samples({first - before, first + done});
-        stats_.rays = rays_before + integrator.rays();
-        stats_.kind_seconds = pictures_.scene().tracer().seconds();
-        stats_.render_seconds = seconds_before + seconds;
-        if (before == 0 && done == added) stats_.first_pixel_seconds = since_call.seconds();
-        if (added < pass || !sink.goes_on(now())) break;
-        if (settings_.time_limit_s > 0 && seconds >= settings_.time_limit_s) break;
+    } catch (...) { // parts of the pass may be in the film
+        if (!passes.are_apart()) forget_samples();
+        throw;
     }
-    return samples().count() - before;
+    if (stops == nullptr || added < count || !stops->should_stop()) return added;
+    if (!passes.are_apart()) forget_samples(); // parts of a sample may be missing
+    return 0;
+}
+
+/// Counts the next `count` samples, which render_pass() has rendered, in the film and the statistics.
+void FilmRender::commit_pass(Passes& passes, uint32_t count) {
+    const SampleRange added = passes.next(count);
+    try {
+        if (passes.are_apart()) {
+            passes.pass_film.set_samples(added);
+            if (has_moments()) take_moments(pictures_.queue(), passes.pass_film);
+            passes.film.add(passes.pass_film);
+        }
+        pictures_.add_first_hits(camera_, settings_, added, passes.film);
+    } catch (...) { // the film may have light of samples that it does not count
+        forget_samples();
+        throw;
+    }
+    const bool is_first = passes.before == 0 && passes.done == 0;
+    passes.done += count;
+    passes.film.set_samples({passes.range.first - passes.before, added.end});
+    stats_.rays = passes.rays_before + passes.integrator.rays();
+    stats_.kind_seconds = pictures_.scene().tracer().seconds();
+    stats_.render_seconds = passes.seconds_before + passes.watch.seconds();
+    if (is_first) stats_.first_pixel_seconds = passes.since_call.seconds();
 }
 
 void FilmRender::find_hidden_backs() {

@@ -74,6 +74,18 @@ public:
     const RenderSettings& settings() const { return settings_; }
 
 private:
+    struct Passes;
+
+    bool has_steps() const { return settings_.denoise != Denoise::None; }
+    bool on_cpu() const { return !pictures_.queue().is_cuda(); } // a GPU's passes are short
+    /// Returns whether samples are rendered alone, because the film gets their squares, too.
+    bool has_moments() const { return (settings_.sample_layers & kLayerVariance) != 0; }
+    uint32_t render_shared(SampleRange range, Sink& sink);
+    uint32_t render_passes(SampleRange range, Sink& sink);
+    bool prepare(Passes& passes);
+    Progress progress_of(const Passes& passes) const;
+    uint32_t render_pass(Passes& passes, uint32_t count);
+    void commit_pass(Passes& passes, uint32_t count);
     void find_hidden_backs();
     void forget_samples();
     AddTargets targets_of_films();

@@ -22,6 +22,14 @@ RenderSettings settings_of_features(const RenderSettings& settings, const Render
     return of_features;
 }
 
+/// Returns the settings of a frame's samples of light, at their own size.
+RenderSettings settings_of_light(const FrameTask& task) {
+    RenderSettings of_light = settings_of_frames(task.settings);
+    of_light.width = scaled_side(task.settings.width, task.reconstruction);
+    of_light.height = scaled_side(task.settings.height, task.reconstruction);
+    return of_light;
+}
+
 } // namespace
 
 void FrameSequence::cut() {
@@ -102,75 +110,116 @@ void FrameSequence::follow(const FrameSequence& leader) {
     scene_has_changed_ = leader.scene_has_changed_;
 }
 
+/// A frame's sample at the size of its light, before reconstruction.
+struct FrameSequence::FrameOfLight {
+    const FrameTask& task;
+    const RenderSettings& settings;
+    NoisyFrame& frame;
+    PictureView view;
+    const TemporalGradientsView& change; // how light has changed since the previous frame
+};
+
 bool FrameSequence::render_rows(const FrameTask& task, RowExchange* others, Sink& sink) {
-    const auto& [number, camera, settings, reconstruction, restir] = task;
-    DeviceScene& scene = pictures_.scene();
     others_ = others;
-    RenderSettings of_light = settings_of_frames(settings);
-    of_light.width = scaled_side(settings.width, reconstruction);
-    of_light.height = scaled_side(settings.height, reconstruction);
-    number_ = number, camera_ = camera;
-    NoisyFrame& frame = fit_frame(scene, sample_, of_light.width, of_light.height);
-    if (!reconstruction_ || !temporal_gradients_ ||
-        !temporal_gradients_->fits(frame)) { // another size, or other signals
-        temporal_gradients_.reset();
-        contacts_.reset();
-        reconstruction_.reset(); // freed before the new one, so that two need not fit
-        reconstruction_.emplace(pictures_.queue(), of_light.width, of_light.height);
-        temporal_gradients_.emplace(pictures_.queue(), of_light.width, of_light.height, frame.splits_light(),
-                                    reconstruction_->gradients_memory());
-    }
-    if (reconstruction.follow_light && !contacts_) {
+    number_ = task.number, camera_ = task.camera;
+    const RenderSettings of_light = settings_of_light(task);
+    NoisyFrame& frame = fit_memory(of_light);
+    if (task.reconstruction.follow_light && !contacts_) {
         contacts_.emplace(pictures_.queue(), of_light.width, of_light.height);
     }
-    Restir* const shared = restir_for(restir, of_light);
-    reconstruction_->share(others);
-    if (shared != nullptr) shared->share(others);
-    const bool is_restored = restored_ != nullptr; // then each device takes all rows
-    if (is_restored) take_restored(task, of_light);
-    if (others != nullptr) others->begin_taking_last(is_restored ? std::vector<RowArray>() : rows_of_history());
+    Restir* const restir = restir_for(task.restir, of_light);
+    begin_exchange(task, of_light);
     rays_ = {};
     kind_seconds_ = {};
-    const TemporalGradientsView change = measure_gradients(of_light, reconstruction);
-    frame.leave(shared != nullptr ? shared->first_bounce() : FirstBounceView{});
-    Sink* const stops = pictures_.queue().is_cuda() ? nullptr : &sink; // a GPU's samples are short
-    render_sample(number, camera, of_light, frame, stops);
-    if (others != nullptr) others->finish_taking_last();
-    const bool stop = stops != nullptr && sink.should_stop();
-    if (others != nullptr ? others->any(stop) : stop) { // parts of the sample may be missing
+    const TemporalGradientsView change = measure_gradients(of_light, task.reconstruction);
+    frame.leave(restir != nullptr ? restir->first_bounce() : FirstBounceView{});
+    if (!render_light(task, of_light, frame, sink)) {
         cut();
         return false;
     }
-    const PictureView light = pictures_.view_of(camera, of_light);
-    const PreviousScene before = has_moved_ ? scene.before() : PreviousScene{light.scene.instances, light.scene.meshes};
-    if (shared != nullptr) {
-        const PathSettings& path = of_light.path;
-        sharing_timer_.start();
-        const ChangedLight changed = {change.share, change.width, change.height, change.columns, change.rows};
-        shared->add(frame, light, {path.sampler, number, path.seed, path.mip_maps == MipMaps::On}, scene.tracer(),
-                    before, changed, restir, path.light_choice);
-        sharing_timer_.stop();
-    }
+    const FrameOfLight made = {task, of_light, frame, pictures_.view_of(task.camera, of_light), change};
+    if (restir != nullptr) reuse_light(*restir, made);
     if (change.guide != nullptr) {
-        contacts_->find(frame, light.camera.view, light.scene, scene.tracer(), own_rows(others, of_light.height));
+        contacts_->find(frame, made.view.camera.view, made.view.scene, pictures_.scene().tracer(),
+                        own_rows(others, of_light.height));
     }
-    if (reconstruction.resolution_scale < 1) {
-        const RenderSettings of_features = settings_of_features(settings, of_light);
-        NoisyFrame& features = fit_frame(scene, features_, settings.width, settings.height);
-        render_sample(number, camera, of_features, features);
-        const CameraView feature_camera = pictures_.view_of(camera, of_features).camera.view;
-        reconstruction_->add_upsampled(frame, light.camera.view, features, feature_camera, light.scene, before, change,
-                                       reconstruction);
-    } else {
-        features_.reset();
-        reconstruction_->add(frame, light.camera.view, light.scene, before, change, reconstruction);
-    }
+    reconstruct(made);
     has_moved_ = false; // the frame is complete, whatever follows
     const bool has_changed = std::exchange(scene_has_changed_, false);
     // Before the first frame after a cut nothing can have changed, whatever the sequence has shown before.
-    const bool goes_on = reconstruction.follow_light && has_changed && reconstruction_->frames() > 1;
-    store_light(number, camera, of_light, goes_on);
+    const bool goes_on = task.reconstruction.follow_light && has_changed && reconstruction_->frames() > 1;
+    store_light(task.number, task.camera, of_light, goes_on);
     return true;
+}
+
+/// Returns the frame for samples of light, after making it and what reconstructs it where they do not fit.
+NoisyFrame& FrameSequence::fit_memory(const RenderSettings& of_light) {
+    Queue& queue = pictures_.queue();
+    const uint32_t width = of_light.width, height = of_light.height;
+    NoisyFrame& frame = fit_frame(pictures_.scene(), sample_, width, height);
+    const bool fits = reconstruction_ && temporal_gradients_ && temporal_gradients_->fits(frame);
+    if (fits) return frame;
+    // It has another size, or other signals.
+    temporal_gradients_.reset();
+    contacts_.reset();
+    reconstruction_.reset(); // freed before the new one, so that two need not fit
+    reconstruction_.emplace(queue, width, height);
+    temporal_gradients_.emplace(queue, width, height, frame.splits_light(), reconstruction_->gradients_memory());
+    return frame;
+}
+
+/// Takes a history that was restored, and begins to take other devices' rows of the history.
+void FrameSequence::begin_exchange(const FrameTask& task, const RenderSettings& of_light) {
+    reconstruction_->share(others_);
+    if (restir_) restir_->share(others_);
+    const bool is_restored = restored_ != nullptr; // then each device takes all rows
+    if (is_restored) take_restored(task, of_light);
+    if (others_ != nullptr) others_->begin_taking_last(is_restored ? std::vector<RowArray>() : rows_of_history());
+}
+
+/// Renders the frame's sample. Returns false if parts of it may be missing, because a sink stopped.
+bool FrameSequence::render_light(const FrameTask& task, const RenderSettings& of_light, NoisyFrame& frame, Sink& sink) {
+    Sink* const stops = pictures_.queue().is_cuda() ? nullptr : &sink; // a GPU's samples are short
+    render_sample(task.number, task.camera, of_light, frame, stops);
+    if (others_ != nullptr) others_->finish_taking_last();
+    const bool stop = stops != nullptr && sink.should_stop();
+    return !(others_ != nullptr ? others_->any(stop) : stop);
+}
+
+/// Returns the scene as it was in the previous frame.
+PreviousScene FrameSequence::scene_before(const PictureView& now) {
+    return has_moved_ ? pictures_.scene().before() : PreviousScene{now.scene.instances, now.scene.meshes};
+}
+
+/// Adds the light that the frame left to reservoirs.
+void FrameSequence::reuse_light(Restir& restir, const FrameOfLight& made) {
+    const TemporalGradientsView& change = made.change;
+    const PathSettings& path = made.settings.path;
+    const SampleNumbers numbers = {path.sampler, made.task.number, path.seed, path.mip_maps == MipMaps::On};
+    sharing_timer_.start();
+    restir.add(made.frame, made.view, numbers, pictures_.scene().tracer(), scene_before(made.view),
+               {change.share, change.width, change.height, change.columns, change.rows}, made.task.restir,
+               path.light_choice);
+    sharing_timer_.stop();
+}
+
+/// Reconstructs the picture from the frame and the history; at another size, with surfaces of the picture's size.
+void FrameSequence::reconstruct(const FrameOfLight& made) {
+    const ReconstructionSettings& settings = made.task.reconstruction;
+    const PreviousScene before = scene_before(made.view);
+    const CameraView& camera = made.view.camera.view;
+    if (settings.resolution_scale >= 1) {
+        features_.reset();
+        reconstruction_->add(made.frame, camera, made.view.scene, before, made.change, settings);
+        return;
+    }
+    const RenderSettings& of_picture = made.task.settings;
+    const RenderSettings of_features = settings_of_features(of_picture, made.settings);
+    NoisyFrame& features = fit_frame(pictures_.scene(), features_, of_picture.width, of_picture.height);
+    render_sample(made.task.number, made.task.camera, of_features, features);
+    const CameraView feature_camera = pictures_.view_of(made.task.camera, of_features).camera.view;
+    reconstruction_->add_upsampled(made.frame, camera, features, feature_camera, made.view.scene, before, made.change,
+                                   settings);
 }
 
 std::vector<RowArray> FrameSequence::rows_of_history() const {

@@ -88,6 +88,14 @@ public:
     Image motion(const Camera& camera, const RenderSettings& settings);
 
 private:
+    struct FrameOfLight;
+
+    NoisyFrame& fit_memory(const RenderSettings& of_light);
+    void begin_exchange(const FrameTask& task, const RenderSettings& of_light);
+    bool render_light(const FrameTask& task, const RenderSettings& of_light, NoisyFrame& frame, Sink& sink);
+    PreviousScene scene_before(const PictureView& now);
+    void reuse_light(Restir& restir, const FrameOfLight& made);
+    void reconstruct(const FrameOfLight& made);
     void render_sample(uint32_t number, const Camera& camera, RenderSettings settings, NoisyFrame& frame,
                        Sink* sink = nullptr);
     void take_small(const NoisyFrame& frame);

@@ -14,6 +14,15 @@ namespace {
 
 constexpr float kLastLobe = 0x1.fffffep-1f; // the largest number below 1
 
+/// Returns the settings of samples of visible surfaces: their paths end at the first surface, or behind mirrors.
+RenderSettings settings_of_features(const RenderSettings& settings, bool follows_mirrors) {
+    RenderSettings of_features = settings;
+    of_features.path.max_depth = follows_mirrors ? std::min(settings.path.max_depth, kMostMirrors) : 0;
+    of_features.path.strategy = LightStrategy::BsdfOnly;
+    of_features.path.roulette_depth = kMostMirrors + 1;
+    return of_features;
+}
+
 } // namespace
 
 std::vector<std::unique_ptr<Denoiser>> make_denoisers(Queue& queue, const RenderSettings& settings) {
@@ -71,11 +80,27 @@ bool PostSteps::begin(const Camera& camera, const RenderSettings& settings, Sink
         denoisers_ = make_denoisers(pictures_.queue(), settings);
         made_for_ = {settings.denoise, settings.width, settings.height};
     }
-    MirrorChainView mirrors = frame.splits_light() ? denoisers_.front()->mirrors() : MirrorChainView{};
-    RenderSettings of_features = settings;
-    of_features.path.max_depth = mirrors.is_there() ? std::min(settings.path.max_depth, kMostMirrors) : 0;
-    of_features.path.strategy = LightStrategy::BsdfOnly;
-    of_features.path.roulette_depth = kMostMirrors + 1;
+    const FilmPart part = settings.part();
+    const uint32_t rows = part.end_row - part.first_row;
+    window_ = {.width = settings.width, .height = rows};
+    if (rows < settings.height) window_.picture_width = settings.width, window_.y = part.first_row;
+    mirrors_ = frame.splits_light() ? denoisers_.front()->mirrors() : MirrorChainView{};
+    const RenderSettings of_features = settings_of_features(settings, mirrors_.is_there());
+    find_centres(camera, of_features, sink);
+    const bool is_whole = add_features(camera, of_features, sink);
+    if (is_whole) follow(-1);
+    return is_whole;
+}
+
+/// Lets the frame record, of mirrors, the lobe at `lobe`.
+void PostSteps::follow(float lobe) {
+    mirrors_.lobe = lobe;
+    sample_->follow(mirrors_);
+}
+
+/// Passes to the steps the surfaces at the centres of pixels, as a pinhole sees them.
+void PostSteps::find_centres(const Camera& camera, const RenderSettings& of_features, Sink* sink) {
+    NoisyFrame& frame = *sample_;
     RenderSettings of_centres = of_features;
     of_centres.filter = PixelFilter::Box;
     of_centres.filter_radius = 0x1p-20f; // pixels
@@ -84,24 +109,20 @@ bool PostSteps::begin(const Camera& camera, const RenderSettings& settings, Sink
     Integrator& of_pinhole = pictures_.begin(pinhole, of_centres, 1);
     frame.begin();
     of_pinhole.stop_with(sink);
-    const auto follow = [&](float lobe) {
-        mirrors.lobe = lobe;
-        frame.follow(mirrors);
-    };
     follow(0);
     of_pinhole.render(0, 1, frame.film_view());
     const CameraView centres = pictures_.view_of(pinhole, of_centres).camera.view;
-    const FilmPart part = settings.part();
-    const uint32_t rows = part.end_row - part.first_row;
-    window_ = {.width = settings.width, .height = rows};
-    if (rows < settings.height) window_.picture_width = settings.width, window_.y = part.first_row;
     for (const auto& denoiser : denoisers_) denoiser->begin(frame, centres, window_);
-    if (mirrors.is_there()) {
-        denoisers_.front()->guide_mirrors(frame);
-        follow(kLastLobe);
-        of_pinhole.render(0, 1, frame.film_view());
-        denoisers_.front()->guide_mirrors(frame);
-    }
+    if (!mirrors_.is_there()) return;
+    denoisers_.front()->guide_mirrors(frame);
+    follow(kLastLobe);
+    of_pinhole.render(0, 1, frame.film_view());
+    denoisers_.front()->guide_mirrors(frame);
+}
+
+/// Passes to the steps the surfaces of samples. Returns false once `sink` stops.
+bool PostSteps::add_features(const Camera& camera, const RenderSettings& of_features, Sink* sink) {
+    NoisyFrame& frame = *sample_;
     Integrator& integrator = pictures_.begin(camera, of_features, 1);
     integrator.stop_with(sink);
     const auto render = [&](uint32_t sample, float lobe) {
@@ -116,13 +137,12 @@ bool PostSteps::begin(const Camera& camera, const RenderSettings& settings, Sink
         for (uint32_t sample = 0; sample < denoiser->feature_samples(); ++sample) {
             if (!render(sample, 0)) return false;
             denoiser->add_features(frame, scene);
-            if (!mirrors.is_there()) continue;
+            if (!mirrors_.is_there()) continue;
             denoiser->add_mirrors(frame, scene);
             if (!render(sample, kLastLobe)) return false;
             denoiser->add_mirrors(frame, scene);
         }
     }
-    follow(-1);
     return true;
 }
 

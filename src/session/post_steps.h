@@ -52,9 +52,14 @@ public:
     std::string names() const;
 
 private:
+    void follow(float lobe);
+    void find_centres(const Camera& camera, const RenderSettings& of_features, Sink* sink);
+    bool add_features(const Camera& camera, const RenderSettings& of_features, Sink* sink);
+
     PictureRenderer& pictures_;
     std::optional<NoisyFrame> sample_;
-    PixelWindow window_; // the rows that are rendered
+    MirrorChainView mirrors_; // that samples of surfaces follow
+    PixelWindow window_;      // the rows that are rendered
     std::vector<std::unique_ptr<Denoiser>> denoisers_;
     std::tuple<Denoise, uint32_t, uint32_t> made_for_ = {}; // kind of steps, and the size of their picture
 };

@@ -139,6 +139,18 @@ void BuiltStructure::build(const Tlas& tlas, std::size_t count, const Before* be
     take<Tree>(tlas, parts, [](const Tree& tree) { return view_of(tree); });
 }
 
+namespace {
+
+/// Returns the eight-wide tree that one thread's vector instructions test.
+WideBvh<kWideChildren> make_simd_bvh(const Bvh& bvh, Sink& sink) {
+    WideBvh<kWideChildren> wide = make_wide_bvh<kWideChildren>(bvh, kSimdCollapse, sink);
+    use_huge_pages(std::as_bytes(std::span(wide.nodes)), sink);
+    use_huge_pages(std::as_bytes(std::span(wide.triangles)), sink);
+    return wide;
+}
+
+} // namespace
+
 BuiltStructure::BuiltStructure(const Tlas& tlas, StructureKind kind, TreeLayout layout, const BinaryTrees& trees,
                                const Before* before, Sink& sink) {
     figures_.name = name_of(kind);
@@ -182,12 +194,7 @@ BuiltStructure::BuiltStructure(const Tlas& tlas, StructureKind kind, TreeLayout 
         convert([&](const Bvh& bvh) { return make_wide_bvh<8>(bvh, {}, sink); });
         break;
     case TreeLayout::Wide8Simd:
-        convert([&](const Bvh& bvh) {
-            WideBvh<kWideChildren> wide = make_wide_bvh<kWideChildren>(bvh, kSimdCollapse, sink);
-            use_huge_pages(std::as_bytes(std::span(wide.nodes)), sink);
-            use_huge_pages(std::as_bytes(std::span(wide.triangles)), sink);
-            return wide;
-        });
+        convert([&](const Bvh& bvh) { return make_simd_bvh(bvh, sink); });
         break;
     case TreeLayout::Compressed:
         if (kind == StructureKind::Hploc) { // H-PLOC builds the compressed tree directly, as on a GPU, not from its

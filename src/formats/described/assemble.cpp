@@ -166,13 +166,8 @@ void set_environment(const Parts& parts, const DoubleTransform& scene_from_file,
     if (!scene.environment) scene.environment = Environment{.image = {}, .scale = {0, 0, 0}};
 }
 
-} // namespace
-
-Scene assemble(Parts parts, const DoubleTransform& scene_from_world, uint64_t file_bytes, std::string_view expected,
-               TextureLoader& loader, Sink& sink) {
-    separate_mixtures(parts, file_bytes, sink);
-    color_by_normals(parts, file_bytes, sink);
-    Scene scene;
+/// Returns the transforms of all shapes, and moves the scene's origin near them.
+std::vector<DoubleTransform> place_shapes(const Parts& parts, const DoubleTransform& scene_from_world, Scene& scene) {
     DoubleBounds3 box;
     std::vector<DoubleTransform> transforms;
     for (const Placed& shape : parts.placed) {
@@ -181,9 +176,11 @@ Scene assemble(Parts parts, const DoubleTransform& scene_from_world, uint64_t fi
         if (is_finite(transforms.back())) box.extend(box_of(mesh.mesh, transforms.back()));
     }
     set_origin(box, scene);
-    const DoubleTransform scene_from_file =
-        compose(translation_by(DoubleVec3{0, 0, 0} - scene.origin_in_file), scene_from_world);
+    return transforms;
+}
 
+/// Gives coordinates to the meshes that lack them and have textures.
+void give_missing_coordinates(Parts& parts) {
     std::vector<bool> has_textures(parts.meshes.size());
     for (const Placed& shape : parts.placed) {
         const Surface& surface = parts.surfaces[shape.surface];
@@ -196,42 +193,52 @@ Scene assemble(Parts parts, const DoubleTransform& scene_from_world, uint64_t fi
         ShapeMesh& shape = parts.meshes[i];
         if (has_textures[i] && shape.mesh.uv[0].empty()) give_coordinates(parts.missing_coordinates, shape);
     }
+}
 
-    Assembly assembly{.parts = parts, .scene = scene, .sink = sink, .numbers = {}, .surfaces = {}};
-    std::vector<std::optional<uint32_t>> numbers(parts.meshes.size()); // meshes in the scene
-    std::vector<std::size_t> bumpy;                                    // the first shape of each material
+/// Numbers of parts in the scene.
+struct Made {
+    std::vector<std::optional<uint32_t>> numbers; // each mesh has one
+    std::vector<std::size_t> first_shapes;        // each material has one
+};
+
+/// Adds the shapes that can be drawn, with their meshes and materials.
+Made add_shapes(Parts& parts, const std::vector<DoubleTransform>& transforms, Assembly& assembly, Scene& scene,
+                Sink& sink) {
+    Made made = {std::vector<std::optional<uint32_t>>(parts.meshes.size()), {}};
     for (std::size_t i = 0; i < parts.placed.size(); ++i) {
         const Placed& shape = parts.placed[i];
         ShapeMesh& mesh = parts.meshes[shape.mesh];
-        if (mesh.mesh.indices.empty() && !numbers[shape.mesh]) continue;
+        std::optional<uint32_t>& number = made.numbers[shape.mesh];
+        if (mesh.mesh.indices.empty() && !number) continue;
         DoubleTransform transform = transforms[i];
         transform.translation = transform.translation - scene.origin_in_file;
         if (!is_finite(transform)) {
             sink.leave_out({mesh.location, "a shape is left out, because its transform is not finite"});
             continue;
         }
-        if (!numbers[shape.mesh]) {
-            numbers[shape.mesh] = static_cast<uint32_t>(scene.meshes.size());
+        if (!number) {
+            number = static_cast<uint32_t>(scene.meshes.size());
             if (mesh.mesh.name.empty() || mesh.file.empty()) mesh.mesh.name = shape.name;
             scene.meshes.push_back(std::move(mesh.mesh));
         }
         const std::size_t materials = scene.materials.size();
-        const uint32_t material = assembly.material_of(shape, i, mesh, scene.meshes[*numbers[shape.mesh]]);
-        if (material == materials) bumpy.push_back(i);
+        const uint32_t material = assembly.material_of(shape, i, mesh, scene.meshes[*number]);
+        if (material == materials) made.first_shapes.push_back(i);
         Instance instance;
         instance.name = shape.name;
-        instance.mesh = *numbers[shape.mesh];
+        instance.mesh = *number;
         instance.material = material;
         instance.world_from_local = to_float(transform);
         instance.is_hidden = is_singular(instance.world_from_local);
         instance.layers_above = shape.layers_above;
         scene.instances.push_back(std::move(instance));
     }
-    if (scene.instances.empty()) {
-        scene.no_instances = fmt::format("no shape that can be drawn; expected {}", expected);
-        const std::vector<std::string> left_out = sink.messages().left_out();
-        if (!left_out.empty()) scene.no_instances += fmt::format("; left out: {}", left_out.front());
-    }
+    return made;
+}
+
+/// Loads the images of the materials, whose heights become normals.
+void add_images(Parts& parts, const Assembly& assembly, const Made& made, uint64_t file_bytes, TextureLoader& loader,
+                Scene& scene, Sink& sink) {
     loader.load_into(scene, file_bytes);
     ImageBudget budget(justified_bytes(4 * kFreeImageBytes, file_bytes));
     Bumps bumps(budget, parts.made, scene);
@@ -239,13 +246,34 @@ Scene assemble(Parts parts, const DoubleTransform& scene_from_world, uint64_t fi
     for (const Surface& surface : assembly.surfaces) surfaces.push_back(&surface);
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         if (!surfaces[i]->has_heights) continue;
-        const Placed& shape = parts.placed[bumpy[i]];
+        const Placed& shape = parts.placed[made.first_shapes[i]];
         const ShapeMesh& mesh = parts.meshes[shape.mesh];
-        bumps.set(surfaces[i]->heights, scene.meshes[*numbers[shape.mesh]],
+        bumps.set(surfaces[i]->heights, scene.meshes[*made.numbers[shape.mesh]],
                   compose(shape.world_from_mesh, mesh.shape_from_mesh), scene.materials[i]);
         keep_usable(scene.materials[i], mesh.location, sink);
     }
     finish_images(surfaces, parts.made, budget, scene);
+}
+
+} // namespace
+
+Scene assemble(Parts parts, const DoubleTransform& scene_from_world, uint64_t file_bytes, std::string_view expected,
+               TextureLoader& loader, Sink& sink) {
+    separate_mixtures(parts, file_bytes, sink);
+    color_by_normals(parts, file_bytes, sink);
+    Scene scene;
+    const std::vector<DoubleTransform> transforms = place_shapes(parts, scene_from_world, scene);
+    const DoubleTransform scene_from_file =
+        compose(translation_by(DoubleVec3{0, 0, 0} - scene.origin_in_file), scene_from_world);
+    give_missing_coordinates(parts);
+    Assembly assembly{.parts = parts, .scene = scene, .sink = sink, .numbers = {}, .surfaces = {}};
+    const Made made = add_shapes(parts, transforms, assembly, scene, sink);
+    if (scene.instances.empty()) {
+        scene.no_instances = fmt::format("no shape that can be drawn; expected {}", expected);
+        const std::vector<std::string> left_out = sink.messages().left_out();
+        if (!left_out.empty()) scene.no_instances += fmt::format("; left out: {}", left_out.front());
+    }
+    add_images(parts, assembly, made, file_bytes, loader, scene, sink);
     set_lights(parts, scene_from_file, sink, scene);
     set_environment(parts, scene_from_file, sink, scene);
     if (parts.around) scene.medium = parts.media[*parts.around];

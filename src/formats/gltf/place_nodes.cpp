@@ -70,89 +70,113 @@ std::string describe_nothing(const Document& document, const NodeGraph& nodes) {
         counted(shown, "node"), meshes);
 }
 
+/// Adds what nodes place to a scene.
+class Placing {
+public:
+    Placing(const Document& document, Buffers& buffers, const NodeGraph& nodes, Meshes& meshes, Scene& scene,
+            Sink& sink)
+        : document_(document), buffers_(buffers), nodes_(nodes), meshes_(meshes), scene_(scene), sink_(sink) {}
+
+    /// Adds the node's mesh, camera and light, or leaves out those that cannot be read.
+    void place(uint32_t index) {
+        const JsonValue& node = document_.table("nodes")[index];
+        const auto attempt = [&](const char* what, const auto& add) {
+            read_or_leave_out(fmt::format("the {} of {}", what, node.pointer()), sink_, add);
+        };
+        attempt("mesh", [&] {
+            if (node.find("mesh") && !nodes_.is_hidden(index)) place_mesh(node, index);
+        });
+        attempt("camera", [&] {
+            if (const auto reference = node.find("camera")) place_camera(node, *reference, index);
+        });
+        attempt("light", [&] {
+            if (!nodes_.is_hidden(index)) place_emitter(node, index);
+        });
+    }
+
+private:
+    void place_mesh(const JsonValue& node, uint32_t index) {
+        const std::vector<Meshes::Part>& parts = meshes_.parts_of(index);
+        const std::optional<JsonValue> instancing = node.extension("EXT_mesh_gpu_instancing");
+        const bool has_skin = scene_.nodes[index].skin != kNoSkin; // its joints have moved it already
+        std::vector<Transform> node_from_local(1);
+        if (instancing && !has_skin) {
+            read_or_leave_out(*instancing, sink_,
+                              [&] { node_from_local = read_placements(document_, buffers_, *instancing); });
+        }
+        const std::string& name = scene_.nodes[index].name;
+        buffers_.charge(node_from_local.size() * parts.size() * (sizeof(Instance) + name.size()), node);
+        for (const Transform& m : node_from_local) {
+            const Transform world_from_local =
+                has_skin ? Transform() : placed_in(nodes_.transform(index), m, {0, 0, 0});
+            if (!is_near(world_from_local)) {
+                sink_.leave_out({node.location(), "the mesh lies beyond 2^40 metres and is left out"});
+                continue;
+            }
+            for (const Meshes::Part& part : parts) {
+                scene_.instances.push_back({.name = name,
+                                            .mesh = part.mesh,
+                                            .material = part.material,
+                                            .world_from_local = world_from_local,
+                                            .node = index,
+                                            .node_from_local = m});
+            }
+        }
+        if (scene_.instances.size() > kMaxInstances) {
+            throw Error(ErrorCode::OverLimit, node.location(), fmt::format("more than {} instances", kMaxInstances));
+        }
+    }
+
+    void place_camera(const JsonValue& node, const JsonValue& reference, uint32_t index) {
+        Camera camera = read_camera(document_.item("cameras", reference), sink_);
+        if (camera.name.empty()) camera.name = scene_.nodes[index].name;
+        camera.origin = node.pointer();
+        camera.node = index;
+        const std::optional<Transform> rigid = without_scale(nodes_.world_from_node(index));
+        if (rigid && !is_near(*rigid)) throw node.error("the camera lies beyond 2^40 metres");
+        if (rigid) {
+            camera.world_from_camera = *rigid;
+            scene_.cameras.push_back(std::move(camera));
+        } else {
+            sink_.leave_out({node.location(), "the camera's transform is singular; it is left out"});
+        }
+    }
+
+    void place_emitter(const JsonValue& node, uint32_t index) {
+        const std::optional<JsonValue> extension = node.extension("KHR_lights_punctual");
+        if (!extension) return;
+        Light light = read_light(document_.item("lights", extension->at("light")), sink_);
+        if (light.name.empty()) light.name = scene_.nodes[index].name;
+        light.origin = node.pointer();
+        light.node = index;
+        const Transform& world_from_node = nodes_.world_from_node(index);
+        if (!is_near(world_from_node)) {
+            throw node.error("the light lies beyond 2^40 metres");
+        }
+        if (transform_light(world_from_node, light)) {
+            scene_.lights.push_back(std::move(light));
+        } else {
+            sink_.leave_out({node.location(), "the light's transform is singular; it is left out"});
+        }
+    }
+
+    const Document& document_;
+    Buffers& buffers_;
+    const NodeGraph& nodes_;
+    Meshes& meshes_;
+    Scene& scene_;
+    Sink& sink_;
+};
+
 } // namespace
 
 void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& nodes, Meshes& meshes, Scene& scene,
                  Sink& sink) {
     const std::size_t before = sink.messages().left_out().size();
-    const auto place_mesh = [&](const JsonValue& node, uint32_t index) {
-        const std::vector<Meshes::Part>& parts = meshes.parts_of(index);
-        const std::optional<JsonValue> instancing = node.extension("EXT_mesh_gpu_instancing");
-        const bool has_skin = scene.nodes[index].skin != kNoSkin; // its joints have moved it already
-        std::vector<Transform> node_from_local(1);
-        if (instancing && !has_skin) {
-            read_or_leave_out(*instancing, sink,
-                              [&] { node_from_local = read_placements(document, buffers, *instancing); });
-        }
-        const std::string& name = scene.nodes[index].name;
-        buffers.charge(node_from_local.size() * parts.size() * (sizeof(Instance) + name.size()), node);
-        for (const Transform& m : node_from_local) {
-            const Transform world_from_local = has_skin ? Transform() : placed_in(nodes.transform(index), m, {0, 0, 0});
-            if (!is_near(world_from_local)) {
-                sink.leave_out({node.location(), "the mesh lies beyond 2^40 metres and is left out"});
-                continue;
-            }
-            for (const Meshes::Part& part : parts) {
-                scene.instances.push_back({.name = name,
-                                           .mesh = part.mesh,
-                                           .material = part.material,
-                                           .world_from_local = world_from_local,
-                                           .node = index,
-                                           .node_from_local = m});
-            }
-        }
-        if (scene.instances.size() > kMaxInstances) {
-            throw Error(ErrorCode::OverLimit, node.location(), fmt::format("more than {} instances", kMaxInstances));
-        }
-    };
-
-    const auto place_camera = [&](const JsonValue& node, const JsonValue& reference, uint32_t index,
-                                  const Transform& world_from_node) {
-        Camera camera = read_camera(document.item("cameras", reference), sink);
-        if (camera.name.empty()) camera.name = scene.nodes[index].name;
-        camera.origin = node.pointer();
-        camera.node = index;
-        const std::optional<Transform> rigid = without_scale(world_from_node);
-        if (rigid && !is_near(*rigid)) throw node.error("the camera lies beyond 2^40 metres");
-        if (rigid) {
-            camera.world_from_camera = *rigid;
-            scene.cameras.push_back(std::move(camera));
-        } else {
-            sink.leave_out({node.location(), "the camera's transform is singular; it is left out"});
-        }
-    };
-    const auto place_emitter = [&](const JsonValue& node, uint32_t index, const Transform& world_from_node) {
-        const std::optional<JsonValue> extension = node.extension("KHR_lights_punctual");
-        if (!extension) return;
-        Light light = read_light(document.item("lights", extension->at("light")), sink);
-        if (light.name.empty()) light.name = scene.nodes[index].name;
-        light.origin = node.pointer();
-        light.node = index;
-        if (!is_near(world_from_node)) {
-            throw node.error("the light lies beyond 2^40 metres");
-        }
-        if (transform_light(world_from_node, light)) {
-            scene.lights.push_back(std::move(light));
-        } else {
-            sink.leave_out({node.location(), "the light's transform is singular; it is left out"});
-        }
-    };
+    Placing placing(document, buffers, nodes, meshes, scene, sink);
     for (const uint32_t index : nodes.scene_nodes()) {
         sink.check();
-        const JsonValue& node = document.table("nodes")[index];
-        const Transform& world_from_node = nodes.world_from_node(index);
-        const auto attempt = [&](const char* what, const auto& add) {
-            read_or_leave_out(fmt::format("the {} of {}", what, node.pointer()), sink, add);
-        };
-        attempt("mesh", [&] {
-            if (node.find("mesh") && !nodes.is_hidden(index)) place_mesh(node, index);
-        });
-        attempt("camera", [&] {
-            if (const auto reference = node.find("camera")) place_camera(node, *reference, index, world_from_node);
-        });
-        attempt("light", [&] {
-            if (!nodes.is_hidden(index)) place_emitter(node, index, world_from_node);
-        });
+        placing.place(index);
     }
     if (!scene.instances.empty()) return;
     scene.no_instances = describe_nothing(document, nodes);

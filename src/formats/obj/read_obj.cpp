@@ -201,12 +201,10 @@ Material grey_material(const std::string& name, const ObjData& data) {
     return material;
 }
 
-/// Makes the scene. `loader` has the textures of `materials`.
-Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& materials, TextureLoader& loader,
-                 const std::string& file, const ReadOptions& options, Sink& sink) {
-    Scene scene;
-    set_origin(data.box, scene);
-    scene.meshes.resize(data.groups.size());
+/// Adds an instance for each group, and the materials that they name: grey ones where no file has them, which is
+/// reported.
+void add_groups(const ObjData& data, const std::map<std::string, MtlMaterial>& materials, const std::string& file,
+                const ReadOptions& options, Scene& scene, Sink& sink) {
     std::unordered_map<std::string_view, uint32_t> numbers; // index of each material
     std::size_t unknown = 0;
     std::string first_unknown;
@@ -240,16 +238,10 @@ Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& 
                                                         counted(unknown, "material"), is_or_are(unknown),
                                                         shortened(first_unknown), is_or_are(unknown))});
     }
+}
 
-    parallel_invoke([&] { loader.load_into(scene); },
-                    [&] {
-                        parallel_for(data.groups.size(), 1, [&](uint64_t i) {
-                            scene.meshes[i] = make_mesh(data.groups[i], data, sink);
-                            const Material& material = scene.materials[scene.instances[i].material];
-                            if (material.is_emissive()) wind_after_normals(scene.meshes[i]);
-                        });
-                    });
-
+/// Finishes the materials, whose images are there: maps that may be heights or normals become normals.
+void finish_materials(const std::map<std::string, MtlMaterial>& materials, Scene& scene) {
     std::vector<BumpUse> bumps;
     std::vector<float> multipliers; // each bump has one
     for (uint32_t i = 0; i < scene.materials.size(); ++i) {
@@ -268,6 +260,24 @@ Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& 
     for (std::size_t i = 0; i < bumps.size(); ++i) {
         if (had_heights[i]) scene.materials[bumps[i].material].normal_scale = multipliers[i];
     }
+}
+
+/// Makes the scene. `loader` has the textures of `materials`.
+Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& materials, TextureLoader& loader,
+                 const std::string& file, const ReadOptions& options, Sink& sink) {
+    Scene scene;
+    set_origin(data.box, scene);
+    scene.meshes.resize(data.groups.size());
+    add_groups(data, materials, file, options, scene, sink);
+    parallel_invoke([&] { loader.load_into(scene); },
+                    [&] {
+                        parallel_for(data.groups.size(), 1, [&](uint64_t i) {
+                            scene.meshes[i] = make_mesh(data.groups[i], data, sink);
+                            const Material& material = scene.materials[scene.instances[i].material];
+                            if (material.is_emissive()) wind_after_normals(scene.meshes[i]);
+                        });
+                    });
+    finish_materials(materials, scene);
     warn_of_textures_without_coordinates(scene, data, file, sink);
     drop_colors_beside_textures(scene, file, sink);
     return scene;

@@ -274,64 +274,75 @@ void PathIntegrator::launch_rounds(int going, const Work& work) {
 }
 
 void PathIntegrator::launch_round(Wavefront& w, const Work& work) {
-    const uint32_t last = w.capacity - 1;
-    // The tracer reads the keys of camera rays that meet hidden backs, too, though it does not need them there.
-    const bool any_keys = picture_.scene.any_alpha != 0 || picture_.scene.any_hidden_back != 0;
-    const PathQueueView paths = w.paths(w.round), next = w.paths(w.round + 1);
-    const ShadowQueueView shadows = w.shadows();
-    const ListenerQueues listened = w.listened(w.round);
-    const HitQueueView hits = {w.hit_records.data(), w.hit_instances.data()};
-    RoundCounts* const counts = w.counts.data() + w.round % 2;
     // After all paths have begun, a round has no more of them than the previous one.
-    const uint32_t most = w.known.all_begun != 0 ? w.known.active : w.in_flight;
-    const auto pool = [&](RayKind kind) { return counts->taken + static_cast<int>(kind); };
+    const Round round = {w.counts.data() + w.round % 2, w.known.all_begun != 0 ? w.known.active : w.in_flight};
     {
         const Queue::OnStream on(queue_, w.path_stream);
-        launch(queue_, "plan_round", 1,
-               PlanRound{w.counts.data() + (w.round + 1) % 2, counts, w.seen.target(), render_counts_.data(),
-                         w.in_flight, work.samples.count()});
-        w.seen.mark();
-        if (w.round > 0) {
-            tracer_->find_hits(RayKind::Bounce, paths.query(), {most, &counts->going_on}, hits, pool(RayKind::Bounce));
-            queue_.make_stream_wait(w.path_stream,
-                                    w.light_stream); // waits for radiance, and for slots of paths that end
-        }
-        if (w.known.all_begun == 0) {
-            const WorkCount fresh = {most, &counts->fresh};
-            const HitQueueView camera_hits = {hits.records + last, hits.instances + last, -1};
-            const auto begin_paths = [&]<bool kInBatch>() {
-                const GeneratePaths<kInBatch> generate = {work.job, work.samples, counts, last, any_keys, paths};
-                if (!raster_ && begin_and_trace(queue_, *tracer_, fresh, generate, camera_hits)) return;
-                launch(queue_, "generate_paths", fresh, generate);
-                if (raster_) {
-                    tracer_->timed(RayKind::Camera,
-                                   [&] { raster_->find_hits(paths.query_back(last), fresh, camera_hits); });
-                } else {
-                    tracer_->find_hits(RayKind::Camera, paths.query_back(last), fresh, camera_hits,
-                                       pool(RayKind::Camera));
-                }
-            };
-            if (picture_.batch.is_there()) {
-                begin_paths.template operator()<true>();
-            } else {
-                begin_paths.template operator()<false>();
-            }
-        }
-        const WorkCount active = {most, &counts->active};
-        choose_shading(work.job, [&]<Features kFeatures, class Listener>() {
-            launch(queue_, "shade_hits", active,
-                   Shade<kFeatures, Listener>{work.job, paths, next, hits, shadows, listened, counts, last});
-        });
+        launch_paths(w, work, round);
     }
     queue_.make_stream_wait(w.light_stream, w.path_stream);
     const Queue::OnStream on(queue_, w.light_stream);
-    const WorkCount shadow_rays = {most, &counts->shadows};
-    tracer_->find_occlusions(shadows.query(), shadow_rays, {nullptr, shadows.keys}, // a ray's key has been used by then
-                             pool(RayKind::Shadow));
-    choose_shading(work.job, [&]<Features, class Listener>() {
-        launch(queue_, "add_light", shadow_rays, AddLight<Listener>{work.job, shadows, next, listened});
-    });
+    launch_light(w, work, round);
     ++w.round;
+}
+
+/// Launches a round's plan, its rays and their shading.
+void PathIntegrator::launch_paths(Wavefront& w, const Work& work, const Round& round) {
+    const uint32_t last = w.capacity - 1;
+    const PathQueueView paths = w.paths(w.round), next = w.paths(w.round + 1);
+    const HitQueueView hits = {w.hit_records.data(), w.hit_instances.data()};
+    launch(queue_, "plan_round", 1,
+           PlanRound{w.counts.data() + (w.round + 1) % 2, round.counts, w.seen.target(), render_counts_.data(),
+                     w.in_flight, work.samples.count()});
+    w.seen.mark();
+    if (w.round > 0) {
+        tracer_->find_hits(RayKind::Bounce, paths.query(), {round.most, &round.counts->going_on}, hits,
+                           round.pool(RayKind::Bounce));
+        queue_.make_stream_wait(w.path_stream, w.light_stream); // waits for radiance, and for slots of paths that end
+    }
+    if (w.known.all_begun == 0) {
+        if (picture_.batch.is_there()) {
+            begin_paths<true>(w, work, round);
+        } else {
+            begin_paths<false>(w, work, round);
+        }
+    }
+    choose_shading(work.job, [&]<Features kFeatures, class Listener>() {
+        launch(queue_, "shade_hits", WorkCount{round.most, &round.counts->active},
+               Shade<kFeatures, Listener>{work.job, paths, next, hits, w.shadows(), w.listened(w.round), round.counts,
+                                          last});
+    });
+}
+
+/// Launches the camera rays of paths that begin in this round, which lie at the queue's end.
+template <bool kInBatch>
+void PathIntegrator::begin_paths(Wavefront& w, const Work& work, const Round& round) {
+    const uint32_t last = w.capacity - 1;
+    const PathQueueView paths = w.paths(w.round);
+    const WorkCount fresh = {round.most, &round.counts->fresh};
+    const HitQueueView hits = {w.hit_records.data() + last, w.hit_instances.data() + last, -1};
+    // The tracer reads the keys of camera rays that meet hidden backs, too, though it does not need them there.
+    const bool any_keys = picture_.scene.any_alpha != 0 || picture_.scene.any_hidden_back != 0;
+    const GeneratePaths<kInBatch> generate = {work.job, work.samples, round.counts, last, any_keys, paths};
+    if (!raster_ && begin_and_trace(queue_, *tracer_, fresh, generate, hits)) return;
+    launch(queue_, "generate_paths", fresh, generate);
+    if (raster_) {
+        tracer_->timed(RayKind::Camera, [&] { raster_->find_hits(paths.query_back(last), fresh, hits); });
+    } else {
+        tracer_->find_hits(RayKind::Camera, paths.query_back(last), fresh, hits, round.pool(RayKind::Camera));
+    }
+}
+
+/// Launches a round's shadow rays, and adds the light of those that reach it.
+void PathIntegrator::launch_light(Wavefront& w, const Work& work, const Round& round) {
+    const ShadowQueueView shadows = w.shadows();
+    const WorkCount shadow_rays = {round.most, &round.counts->shadows};
+    tracer_->find_occlusions(shadows.query(), shadow_rays, {nullptr, shadows.keys}, // a ray's key has been used by then
+                             round.pool(RayKind::Shadow));
+    const PathQueueView next = w.paths(w.round + 1);
+    choose_shading(work.job, [&]<Features, class Listener>() {
+        launch(queue_, "add_light", shadow_rays, AddLight<Listener>{work.job, shadows, next, w.listened(w.round)});
+    });
 }
 
 } // namespace pertev

@@ -63,11 +63,23 @@ private:
         PathJob job;
     };
     PathJob job_for(const FilmView& film) const;
+    /// A round of a wavefront.
+    struct Round {
+        RoundCounts* counts; // on the device
+        uint32_t most;       // the most paths that it can have
+
+        auto pool(RayKind kind) const { return counts->taken + static_cast<int>(kind); }
+    };
+
     struct Wavefront;
     void allocate_wavefronts(uint64_t samples, const PathParts& parts);
     LightPathView layers_for(const FilmView& film) const;
     void launch_rounds(int going, const Work& work);
     void launch_round(Wavefront& wavefront, const Work& work);
+    void launch_paths(Wavefront& wavefront, const Work& work, const Round& round);
+    template <bool kInBatch>
+    void begin_paths(Wavefront& wavefront, const Work& work, const Round& round);
+    void launch_light(Wavefront& wavefront, const Work& work, const Round& round);
 
     std::optional<CameraRaster> raster_; // if it rasterizes
 

@@ -76,78 +76,98 @@ std::string fault_of(const AnimationChannel& channel, const Scene& scene) {
     return "";
 }
 
-void validate_nodes(const Scene& scene, const std::string& file) {
-    const auto bad = [&](const std::string& what) { return Error(ErrorCode::BadInput, FileLocation{file}, what); };
+namespace {
+
+std::string name_of_node(const Scene& scene, std::size_t i) {
+    return numbered("node", i, scene.nodes[i].name, fmt::format("/nodes/{}", i));
+}
+
+/// Throws Error(BadInput) unless `node`, which the part `of` of the scene names, is there or none.
+template <class NameOf>
+void check_node(const Scene& scene, const std::string& file, uint32_t node, const NameOf& of) {
     const std::size_t count = scene.nodes.size();
-    const auto name_of = [&](std::size_t i) {
-        return numbered("node", i, scene.nodes[i].name, fmt::format("/nodes/{}", i));
+    if (node == kNoNode || node < count) return;
+    throw Error(ErrorCode::BadInput, FileLocation{file},
+                fmt::format("{}: node {} is out of range; there are {}", of(), node, count));
+}
+
+void validate_node(const Scene& scene, const std::string& file, std::size_t i) {
+    const auto bad = [&](const std::string& what) {
+        return Error(ErrorCode::BadInput, FileLocation{file}, name_of_node(scene, i) + ": " + what);
     };
-    const auto check_node = [&](uint32_t node, const auto& of) {
-        if (node == kNoNode || node < count) return;
-        throw bad(fmt::format("{}: node {} is out of range; there are {}", of(), node, count));
-    };
-    for (std::size_t i = 0; i < count; ++i) {
-        const Node& node = scene.nodes[i];
-        check_node(node.parent, [&] { return name_of(i) + ": its parent"; });
-        if (node.skin != kNoSkin && node.skin >= scene.skins.size()) {
-            throw bad(
-                fmt::format("{}: skin {} is out of range; there are {}", name_of(i), node.skin, scene.skins.size()));
-        }
-        const NodePose* pose = std::get_if<NodePose>(&node.pose);
-        if (pose != nullptr ? !is_finite_pose(*pose) : !is_finite(to_float(std::get<DoubleTransform>(node.pose)))) {
-            throw bad(name_of(i) + ": its transform is not finite");
-        }
-        if (pose != nullptr && is_zero(pose->rotation)) {
-            throw bad(name_of(i) + ": its rotation is 0; expected a unit quaternion");
-        }
-        if (!std::ranges::all_of(node.morph_weights, [](float w) { return is_finite(w); })) {
-            throw bad(name_of(i) + ": a morph weight is not finite");
-        }
+    const Node& node = scene.nodes[i];
+    check_node(scene, file, node.parent, [&] { return name_of_node(scene, i) + ": its parent"; });
+    if (node.skin != kNoSkin && node.skin >= scene.skins.size()) {
+        throw bad(fmt::format("skin {} is out of range; there are {}", node.skin, scene.skins.size()));
     }
+    const NodePose* pose = std::get_if<NodePose>(&node.pose);
+    if (pose != nullptr ? !is_finite_pose(*pose) : !is_finite(to_float(std::get<DoubleTransform>(node.pose)))) {
+        throw bad("its transform is not finite");
+    }
+    if (pose != nullptr && is_zero(pose->rotation)) throw bad("its rotation is 0; expected a unit quaternion");
+    if (!std::ranges::all_of(node.morph_weights, [](float w) { return is_finite(w); })) {
+        throw bad("a morph weight is not finite");
+    }
+}
+
+void validate_skin(const Scene& scene, const std::string& file, std::size_t i) {
+    const auto bad = [&](const std::string& what) {
+        return Error(ErrorCode::BadInput, FileLocation{file}, fmt::format("skin {}: {}", i, what));
+    };
+    const Skin& skin = scene.skins[i];
+    if (!skin.joint_from_mesh.empty() && skin.joint_from_mesh.size() != skin.joints.size()) {
+        throw bad(
+            fmt::format("{} inverse bind matrices for {} joints", skin.joint_from_mesh.size(), skin.joints.size()));
+    }
+    if (!std::ranges::all_of(skin.joint_from_mesh, [](const Transform& m) { return is_finite(m); })) {
+        throw bad("an inverse bind matrix is not finite");
+    }
+    for (const uint32_t joint : skin.joints) {
+        if (joint < scene.nodes.size()) continue;
+        throw bad(fmt::format("joint {} is out of range; there are {} nodes", joint, scene.nodes.size()));
+    }
+}
+
+void validate_animation(const Scene& scene, const std::string& file, std::size_t i) {
+    const Animation& animation = scene.animations[i];
+    for (std::size_t k = 0; k < animation.channels.size(); ++k) {
+        const auto bad = [&](const std::string& what) {
+            const std::string of = numbered("animation", i, animation.name, animation.origin);
+            return Error(ErrorCode::BadInput, FileLocation{file}, fmt::format("{}: channel {}: {}", of, k, what));
+        };
+        const AnimationChannel& channel = animation.channels[k];
+        const auto [what, targets] = targets_of(channel.part, scene);
+        if (channel.target >= targets) {
+            throw bad(fmt::format("{} {} is out of range; there are {}", what, channel.target, targets));
+        }
+        const std::string fault = fault_of(channel, scene);
+        if (!fault.empty()) throw bad(fault);
+    }
+}
+
+} // namespace
+
+void validate_nodes(const Scene& scene, const std::string& file) {
+    const std::size_t count = scene.nodes.size();
+    for (std::size_t i = 0; i < count; ++i) validate_node(scene, file, i);
     if (const std::size_t placed = parents_first(scene.nodes).size(); placed != count) {
-        throw bad(fmt::format("{} of {} nodes lie in or below a cycle; expected trees", count - placed, count));
+        throw Error(ErrorCode::BadInput, FileLocation{file},
+                    fmt::format("{} of {} nodes lie in or below a cycle; expected trees", count - placed, count));
     }
-    for (std::size_t i = 0; i < scene.skins.size(); ++i) {
-        const Skin& skin = scene.skins[i];
-        if (!skin.joint_from_mesh.empty() && skin.joint_from_mesh.size() != skin.joints.size()) {
-            throw bad(fmt::format("skin {}: {} inverse bind matrices for {} joints", i, skin.joint_from_mesh.size(),
-                                  skin.joints.size()));
-        }
-        if (!std::ranges::all_of(skin.joint_from_mesh, [](const Transform& m) { return is_finite(m); })) {
-            throw bad(fmt::format("skin {}: an inverse bind matrix is not finite", i));
-        }
-        for (const uint32_t joint : skin.joints) {
-            if (joint >= count) {
-                throw bad(fmt::format("skin {}: joint {} is out of range; there are {} nodes", i, joint, count));
-            }
-        }
-    }
+    for (std::size_t i = 0; i < scene.skins.size(); ++i) validate_skin(scene, file, i);
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-        check_node(scene.instances[i].node,
+        check_node(scene, file, scene.instances[i].node,
                    [&] { return numbered("instance", i, scene.instances[i].name, std::string()); });
     }
     for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
-        check_node(scene.cameras[i].node,
+        check_node(scene, file, scene.cameras[i].node,
                    [&] { return numbered("camera", i, scene.cameras[i].name, scene.cameras[i].origin); });
     }
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-        check_node(scene.lights[i].node,
+        check_node(scene, file, scene.lights[i].node,
                    [&] { return numbered("light", i, scene.lights[i].name, scene.lights[i].origin); });
     }
-    for (std::size_t i = 0; i < scene.animations.size(); ++i) {
-        const Animation& animation = scene.animations[i];
-        const std::string of = numbered("animation", i, animation.name, animation.origin);
-        for (std::size_t k = 0; k < animation.channels.size(); ++k) {
-            const AnimationChannel& channel = animation.channels[k];
-            const auto [what, targets] = targets_of(channel.part, scene);
-            if (channel.target >= targets) {
-                throw bad(fmt::format("{}: channel {}: {} {} is out of range; there are {}", of, k, what,
-                                      channel.target, targets));
-            }
-            const std::string fault = fault_of(channel, scene);
-            if (!fault.empty()) throw bad(fmt::format("{}: channel {}: {}", of, k, fault));
-        }
-    }
+    for (std::size_t i = 0; i < scene.animations.size(); ++i) validate_animation(scene, file, i);
 }
 
 } // namespace pertev

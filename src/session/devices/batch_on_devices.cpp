@@ -95,83 +95,122 @@ void copy_chunk(Queue& to, BatchArrays& all, Queue& from, const BatchArrays& par
     std::ranges::copy(part.noisy_hashes, all.noisy_hashes.begin() + part.first);
 }
 
+/// A batch whose chunks several devices render.
+class BatchOnDevices {
+public:
+    BatchOnDevices(RenderOnDevices& together, PictureRenderer& pictures, const CameraBatch& batch,
+                   const RenderSettings& settings, uint32_t chunk, BatchArrays& arrays)
+        : together_(together), pictures_(pictures), batch_(batch), settings_(settings), chunk_(chunk), arrays_(arrays),
+          workers_(together.workers()), run_(batch.count(), chunk) {}
+
+    /// Renders rounds until all pictures are done or `sink` stops: another one for chunks of a device that failed.
+    SharedBatch render(Sink& sink) {
+        while (!run_.is_done() && !run_.should_stop()) {
+            render_round(sink);
+            if (run_.failure) std::rethrow_exception(run_.failure);
+            leave_out_lost(sink);
+        }
+        return std::move(result_);
+    }
+
+private:
+    /// Lets each device render chunks, in a thread of its own, until none is left.
+    void render_round(Sink& sink) {
+        run_.begin_round();
+        std::vector<std::thread> threads;
+        try {
+            for (DeviceWorker* const worker : workers_) threads.emplace_back([this, worker] { render_on(*worker); });
+            for (bool have_left = false; !have_left;) {
+                const auto [done, all_have] = run_.wait(threads.size());
+                have_left = all_have;
+                const double share = static_cast<double>(done) / batch_.count();
+                if (!sink.goes_on({.doing = "pictures", .share = share})) run_.stop();
+            }
+        } catch (...) {
+            run_.fail(std::current_exception());
+        }
+        for (std::thread& thread : threads) thread.join();
+    }
+
+    /// Renders chunks on the worker's device. A device's own error gives its chunk back; others end the run.
+    void render_on(DeviceWorker& worker) {
+        std::optional<uint32_t> taken;
+        try {
+            render_chunks(worker, taken);
+        } catch (const Error& error) {
+            if (is_its_own(error)) {
+                run_.lose(taken, worker.number(), error);
+            } else {
+                run_.fail(std::current_exception());
+            }
+        } catch (...) {
+            run_.fail(std::current_exception());
+        }
+        run_.leave();
+    }
+
+    /// `taken` is the first picture of the chunk that is being rendered.
+    void render_chunks(DeviceWorker& worker, std::optional<uint32_t>& taken) {
+        stay_near(worker.queue());
+        const UseThreads use(worker.queue().threads());
+        PictureRenderer& own = worker.pictures_of(pictures_, settings_);
+        if (together_.hooks().before_samples) together_.hooks().before_samples(worker.number());
+        Queue landing = another_queue(pictures_.queue());
+        BatchRender of_device(own, batch_, settings_, chunk_);
+        BatchArrays part;
+        while ((taken = run_.take())) {
+            of_device.go_to(*taken);
+            if (!of_device.next(part, run_)) break;
+            worker.queue().wait();
+            if (together_.hooks().after_slice)
+                together_.hooks().after_slice(worker.number(), {part.first, part.first + part.pictures});
+            copy_chunk(landing, arrays_, worker.queue(), part, std::size_t(settings_.width) * settings_.height);
+            if (!part.denoiser.empty()) {
+                const std::lock_guard lock(result_mutex_);
+                arrays_.denoiser = part.denoiser;
+            }
+            run_.add_done(part.pictures);
+        }
+        const std::lock_guard lock(result_mutex_);
+        result_.rays = result_.rays + of_device.rays();
+        result_.invalid_samples += of_device.invalid_samples();
+    }
+
+    /// Goes on without the devices that failed in this round. Throws the error of the last device.
+    void leave_out_lost(Sink& sink) {
+        for (const auto& [number, error] : std::exchange(run_.losses, {})) {
+            const auto lost = std::ranges::find(workers_, number, &DeviceWorker::number);
+            if (workers_.size() == 1) throw error;
+            sink.warn({"device", (*lost)->name(),
+                       "failed, and the others render its pictures: " + std::string(error.what())});
+            workers_.erase(lost);
+        }
+    }
+
+    RenderOnDevices& together_;
+    PictureRenderer& pictures_;
+    const CameraBatch& batch_;
+    const RenderSettings& settings_;
+    uint32_t chunk_; // pictures that a device renders at once
+    BatchArrays& arrays_;
+    std::vector<DeviceWorker*> workers_; // that have not failed
+    ChunkRun run_;
+    std::mutex result_mutex_;
+    SharedBatch result_;
+};
+
 } // namespace
 
 SharedBatch render_batch(RenderOnDevices& together, PictureRenderer& pictures, const CameraBatch& batch,
                          const RenderSettings& settings, uint32_t at_once, BatchArrays& arrays, Sink& sink) {
-    std::vector<DeviceWorker*> workers = together.workers();
-    const auto pieces = static_cast<uint32_t>(workers.size()) * kChunksOfDevice;
+    const auto pieces = static_cast<uint32_t>(together.workers().size()) * kChunksOfDevice;
     const uint32_t chunk = std::clamp((batch.count() + pieces - 1) / pieces, 1u, at_once);
     Queue& first_queue = pictures.queue();
     arrays.fit(first_queue, settings, batch.count());
     arrays.first = 0, arrays.pictures = batch.count();
     arrays.noisy_hashes.assign(settings.denoise != Denoise::None ? batch.count() : 0, {});
     first_queue.wait(); // others write into the arrays
-    ChunkRun run(batch.count(), chunk);
-    SharedBatch result;
-    std::mutex result_mutex;
-    const auto render = [&](DeviceWorker& worker) {
-        std::optional<uint32_t> taken;
-        try {
-            stay_near(worker.queue());
-            const UseThreads use(worker.queue().threads());
-            PictureRenderer& own = worker.pictures_of(pictures, settings);
-            if (together.hooks().before_samples) together.hooks().before_samples(worker.number());
-            Queue landing = another_queue(first_queue);
-            BatchRender of_device(own, batch, settings, chunk);
-            BatchArrays part;
-            while ((taken = run.take())) {
-                of_device.go_to(*taken);
-                if (!of_device.next(part, run)) break;
-                worker.queue().wait();
-                if (together.hooks().after_slice)
-                    together.hooks().after_slice(worker.number(), {part.first, part.first + part.pictures});
-                copy_chunk(landing, arrays, worker.queue(), part, std::size_t(settings.width) * settings.height);
-                if (!part.denoiser.empty()) {
-                    const std::lock_guard lock(result_mutex);
-                    arrays.denoiser = part.denoiser;
-                }
-                run.add_done(part.pictures);
-            }
-            const std::lock_guard lock(result_mutex);
-            result.rays = result.rays + of_device.rays();
-            result.invalid_samples += of_device.invalid_samples();
-        } catch (const Error& error) {
-            if (is_its_own(error)) {
-                run.lose(taken, worker.number(), error);
-            } else {
-                run.fail(std::current_exception());
-            }
-        } catch (...) {
-            run.fail(std::current_exception());
-        }
-        run.leave();
-    };
-    while (!run.is_done() && !run.should_stop()) {
-        run.begin_round();
-        std::vector<std::thread> threads;
-        try {
-            for (DeviceWorker* const worker : workers) threads.emplace_back([&render, worker] { render(*worker); });
-            for (bool have_left = false; !have_left;) {
-                const auto [done, all_have] = run.wait(threads.size());
-                have_left = all_have;
-                const double share = static_cast<double>(done) / batch.count();
-                if (!sink.goes_on({.doing = "pictures", .share = share})) run.stop();
-            }
-        } catch (...) {
-            run.fail(std::current_exception());
-        }
-        for (std::thread& thread : threads) thread.join();
-        if (run.failure) std::rethrow_exception(run.failure);
-        for (const auto& [number, error] : std::exchange(run.losses, {})) {
-            const auto lost = std::ranges::find(workers, number, &DeviceWorker::number);
-            if (workers.size() == 1) throw error;
-            sink.warn({"device", (*lost)->name(),
-                       "failed, and the others render its pictures: " + std::string(error.what())});
-            workers.erase(lost);
-        }
-    }
-    return result;
+    return BatchOnDevices(together, pictures, batch, settings, chunk, arrays).render(sink);
 }
 
 } // namespace pertev

@@ -140,6 +140,45 @@ bool is_whole(const PictureOptions& options, const Scene& scene) {
     return is_placed && !choice.projection && (!choice.aperture || choice.focus);
 }
 
+/// Opens the options' scene, with the ground that they request, and records its files.
+Scene read_scene(const PictureOptions& options, const SceneInMemory& in_memory, Sink& sink, RenderSetup& ready) {
+    const bool shows_solution = is_solved(options.render.integrator) && !options.radiosity.solution.empty();
+    const SceneUse use = shows_solution ? SceneUse::Measurement : SceneUse::Picture; // opened as for the solution
+    ready.ground = ground_of(options);
+    const std::size_t known = sink.messages().all().size();
+    Scene scene = open_scene(options.scene, sink, use, ready.ground, in_memory.read);
+    if (in_memory.edit) in_memory.edit(scene);
+    ready.reading = sink.messages().since(known);
+    // Files may change from here on.
+    if (!in_memory.read) ready.hash = scene_hash(options.scene.scene);
+    ready.files = files_of_scene(options, scene.files);
+    return scene;
+}
+
+/// Returns what the trees and surfaces of the scene are built for.
+PrepareOptions options_to_build(const PictureOptions& options, const RenderSettings& settings, const Scene& scene,
+                                StartingMachine& machine) {
+    // If it turns out not to be a GPU, the session makes what is missing.
+    PrepareOptions prepare = prepare_options(settings, machine.may_be_cuda());
+    prepare.may_be_better = may_be_better(options.tracer);
+    prepare.apart = movable_instances(options.scene.movable, scene);
+    if (!options.no_cache) prepare.bvh_cache = bvh_cache_folder();
+    return prepare;
+}
+
+/// Solves the prepared scene by radiosity, or takes the solution that the options name.
+void solve(const PictureOptions& options, Sink& sink, const SolveReport& report, RenderSetup& ready) {
+    if (ready.moving->is_animated() && !options.frames.empty()) {
+        throw Error(ErrorCode::BadInput, "frames", "",
+                    "radiosity is solved for one time, and this scene moves; set `time` (`camera_path` and "
+                    "`turntable` work with the scene at rest)");
+    }
+    RenderSettings& settings = ready.settings;
+    sink.report_messages();
+    check_film(options, settings, *ready.queue);
+    settings.radiosity = radiosity_display(ready.prepared(), options.radiosity, settings.path.seed, sink, report);
+}
+
 } // namespace
 
 std::string RenderSetup::device_name() const {
@@ -213,35 +252,21 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     if (!options.camera_path.empty()) path = read_camera_path(options.camera_path);
     StartingMachine machine(options.machine, sink, StartingMachine::Takes::AllNamed);
     const UseThreads threads(machine.threads());
-    std::optional<TracerChoice> tracers; // a tracer that does not fit the device is refused before the scene is read
-    if (!options.tracer.are_empty()) tracers = tracer_choice(options.tracer, machine.is_cuda());
+    auto ready = std::make_unique<RenderSetup>();
+    RenderSettings& settings = ready->settings;
+    // A tracer that does not fit the device is refused before the scene is read.
+    if (!options.tracer.are_empty()) settings.tracers = tracer_choice(options.tracer, machine.is_cuda());
     sink.report_messages();
     sink.set_work(fmt::format("loading {}", options.scene.scene));
     const Stopwatch watch;
-    auto ready = std::make_unique<RenderSetup>();
-    const bool shows_solution = is_solved(options.render.integrator) && !options.radiosity.solution.empty();
-    const SceneUse use = shows_solution ? SceneUse::Measurement : SceneUse::Picture; // opened as for the solution
-    ready->ground = ground_of(options);
-    const std::size_t known = sink.messages().all().size();
-    Scene scene = open_scene(options.scene, sink, use, ready->ground, in_memory.read);
-    if (in_memory.edit) in_memory.edit(scene);
-    ready->reading = sink.messages().since(known);
-    // Files may change from here on.
-    if (!in_memory.read) ready->hash = scene_hash(options.scene.scene);
-    ready->files = files_of_scene(options, scene.files);
-    RenderSettings& settings = ready->settings;
-    settings.tracers = tracers;
+    Scene scene = read_scene(options, in_memory, sink, *ready);
     settings = take_settings(*ready, options, verbs, scene, sink);
     set_light(settings, scene, *ready);
     set_camera(options, verbs, path, scene, settings, *ready);
     sink.add_all(ready->of_light);
     sink.add_all(ready->of_camera);
     ready->load_s = watch.seconds();
-    // If it turns out not to be a GPU, the session makes what is missing.
-    PrepareOptions prepare = prepare_options(settings, machine.may_be_cuda());
-    prepare.may_be_better = may_be_better(options.tracer);
-    prepare.apart = movable_instances(options.scene.movable, scene);
-    if (!options.no_cache) prepare.bvh_cache = bvh_cache_folder();
+    const PrepareOptions prepare = options_to_build(options, settings, scene, machine);
     sink.set_work("building trees");
     ready->sequence = frame_range(options).value_or(FrameRange{.time_s = options.time_s, .shutter = shutter(options)});
     ready->moving.emplace(std::move(scene), ready->sequence.time_of(ready->sequence.first), prepare, sink,
@@ -249,16 +274,7 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     sink.check();
     for (auto& queue : machine.take_all()) ready->queues.push_back(std::move(queue));
     ready->queue = ready->queues.front();
-    if (is_solved(settings.integrator)) {
-        if (ready->moving->is_animated() && !options.frames.empty()) {
-            throw Error(ErrorCode::BadInput, "frames", "",
-                        "radiosity is solved for one time, and this scene moves; set `time` (`camera_path` and "
-                        "`turntable` work with the scene at rest)");
-        }
-        sink.report_messages();
-        check_film(options, settings, *ready->queue);
-        settings.radiosity = radiosity_display(ready->prepared(), options.radiosity, settings.path.seed, sink, report);
-    }
+    if (is_solved(settings.integrator)) solve(options, sink, report, *ready);
     ready->bytes = bytes_to_render(options, ready->prepared(), settings_of_largest(*ready), *ready->queue);
     report_light_choice(options, settings, ready->prepared(), sink);
     return ready;
