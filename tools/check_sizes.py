@@ -49,6 +49,9 @@ LONG = {  # functions that may be longer, and why
     "apps/viewer/session_frames.cpp: SessionFrames::make_next": "decides what a client is shown next",
     "python/batch.cpp: PythonBatch::render": "checks arguments, renders and hands out arrays",
 }
+TOGETHER = {  # files that have so many lines together at most, and why
+    ("src/session/session.h", "src/session/session.cpp"): (200, "a facade has no work of its own"),
+}
 FOLDERS = ["src", "apps", "tests", "tools", "bench", "python", "cmake"]
 C_SUFFIXES = {".h", ".inl", ".cpp", ".cu"}
 SUFFIXES = C_SUFFIXES | {".py", ".js", ".cmake"}
@@ -135,6 +138,10 @@ def users_of_headers(root):
 def faults_in(root):
     users = users_of_headers(root)
     yield from long_functions(root)
+    for names, (limit, reason) in TOGETHER.items():
+        count = sum(len((root / name).read_text(encoding="utf-8").splitlines()) for name in names)
+        if count > limit:
+            yield f"{' and '.join(names)}: {count} lines; the limit is {limit}: {reason}"
     for name in SHORT:
         file = root / name
         if not file.is_file() or len(file.read_text(encoding="utf-8").splitlines()) > FLOOR:

@@ -321,4 +321,12 @@ RenderStats FilmRender::stats() {
     return stats;
 }
 
+RenderResult render_with_steps(PictureRenderer& pictures, const Camera& camera, const RenderSettings& settings,
+                               uint32_t first) {
+    if (settings.denoise == Denoise::None) return pictures.render_separately(camera, settings, first);
+    FilmRender film(pictures, camera, settings);
+    film.render({first, first + settings.samples});
+    return film.result();
+}
+
 } // namespace pertev

@@ -106,4 +106,8 @@ private:
     bool interrupts_passes_ = false;
 };
 
+/// Renders another picture of the scene as PictureRenderer::render_separately, with the post steps of its settings.
+RenderResult render_with_steps(PictureRenderer& pictures, const Camera& camera, const RenderSettings& settings,
+                               uint32_t first);
+
 } // namespace pertev

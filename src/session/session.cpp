@@ -62,13 +62,6 @@ RenderResult Session::result() {
     return result;
 }
 
-RenderResult Session::render_separately(const Camera& camera, const RenderSettings& settings, uint32_t first) {
-    if (settings.denoise == Denoise::None) return pictures_.render_separately(camera, settings, first);
-    FilmRender film(pictures_, camera, settings);
-    film.render({first, first + settings.samples});
-    return film.result();
-}
-
 RenderResult render_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera,
                             const RenderSettings& settings, Sink& sink) {
     Session session(queue, prepared, camera, settings);

@@ -99,7 +99,9 @@ public:
     Image motion();
 
     /// Renders another picture of the scene, of samples from `first` on. The film stays as it is.
-    RenderResult render_separately(const Camera& camera, const RenderSettings& settings, uint32_t first = 0);
+    RenderResult render_separately(const Camera& camera, const RenderSettings& settings, uint32_t first = 0) {
+        return render_with_steps(pictures_, camera, settings, first);
+    }
     std::vector<RayWork> count_camera_work() { return pictures_.count_camera_work(camera(), settings()); }
 
     PictureRenderer& pictures() { return pictures_; } // renders others of the scene, such as batches (BatchRender)
