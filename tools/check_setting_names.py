@@ -9,7 +9,7 @@ import pathlib
 import re
 import sys
 
-SUFFIXES = {".h", ".cpp", ".cu"}
+SUFFIXES = {".h", ".inl", ".cpp", ".cu"}
 FLAG = re.compile(r"(?<![\w)\]-])--(?=[a-z])")
 TOKEN = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\((.*?)\)\1"|"((?:\\.|[^"\\\n])*)"|\'(?:\\.|[^\'\\\n])+\'', re.DOTALL)
 NAMED = re.compile(r"`([a-z][a-z0-9_]*)(?:=[^`]*)?`")
