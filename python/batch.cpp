@@ -68,6 +68,33 @@ void copy_part(Queue& queue, void* to, const void* from, uint64_t first, uint64_
     queue.copy_on_device(static_cast<std::byte*>(to) + first * bytes_each, from, count * bytes_each);
 }
 
+/// Copies a chunk to its place among all pictures, each of `pixels`.
+void copy_chunk(Queue& queue, const BatchArrays& part, uint64_t pixels, uint32_t color_channels, BatchArrays& all) {
+    std::ranges::copy(part.noisy_hashes, all.noisy_hashes.begin() + part.first);
+    all.denoiser = part.denoiser;
+    const uint64_t first = part.first * pixels, count = part.pictures * pixels;
+    const std::size_t color_bytes = color_channels * sizeof(float);
+    if (color_channels > 0) copy_part(queue, all.color.data(), part.color.data(), first, count, color_bytes);
+    if (!part.noisy_hashes.empty()) {
+        copy_part(queue, all.noisy.data(), part.noisy.data(), first, count, color_bytes);
+    }
+    for (std::size_t i = 0; i < part.layers.size(); ++i) {
+        copy_part(queue, all.layers[i].values.data(), part.layers[i].values.data(), first, count,
+                  part.layers[i].channels * sizeof(float));
+    }
+    if (part.ids.size() > 0) copy_part(queue, all.ids.data(), part.ids.data(), first, count, sizeof(PixelIds));
+}
+
+/// Throws Error(OutOfMemory) if `bytes` for so many pictures are more than the limit.
+void check_room(std::size_t bytes, const MemoryLimit& limit, uint32_t pictures) {
+    if (bytes <= limit.bytes) return;
+    throw Error(
+        ErrorCode::OutOfMemory, "cameras", fmt::format("{}", pictures),
+        fmt::format("{:.1f} GiB are needed and {:.1f} GiB are available; pertev.render_chunks() renders the pictures "
+                    "in parts",
+                    static_cast<double>(bytes) / (1u << 30), static_cast<double>(limit.bytes) / (1u << 30)));
+}
+
 /// Returns the metadata without those of an entry.
 void leave_out(std::string_view name, ExrMetadata& metadata) {
     std::erase_if(metadata, [&](const auto& entry) { return entry.first == name; });
@@ -120,14 +147,7 @@ void PythonBatch::render(OpenedScene& opened, Session& session, const CamerasArg
     if (is_empty()) {
         const std::size_t bytes = predicted_batch_bytes(setup.prepared(), batch, settings, at_once, queue.is_cuda()) +
                                   (at_once < count ? bytes_of_arrays(settings, count, queue.is_cuda()) : 0);
-        const MemoryLimit limit = limit_of(setup, settings, options);
-        if (bytes > limit.bytes) {
-            throw Error(ErrorCode::OutOfMemory, "cameras", fmt::format("{}", count),
-                        fmt::format("{:.1f} GiB are needed and {:.1f} GiB are available; pertev.render_chunks() "
-                                    "renders the pictures in parts",
-                                    static_cast<double>(bytes) / (1u << 30),
-                                    static_cast<double>(limit.bytes) / (1u << 30)));
-        }
+        check_room(bytes, limit_of(setup, settings, options), count);
         queue_ = setup.queue;
         width_ = settings.width, height_ = settings.height;
         color_channels_ = color_channels_of(settings);
@@ -150,24 +170,7 @@ void PythonBatch::render(OpenedScene& opened, Session& session, const CamerasArg
         const uint64_t pixels = uint64_t(width_) * height_;
         arrays_.noisy_hashes.assign(settings.denoise != Denoise::None ? count : 0, {});
         for (BatchArrays part; render.next(part, sink);) {
-            std::ranges::copy(part.noisy_hashes, arrays_.noisy_hashes.begin() + part.first);
-            arrays_.denoiser = part.denoiser;
-            const uint64_t first = part.first * pixels, pixel_count = part.pictures * pixels;
-            if (color_channels_ > 0) {
-                copy_part(queue, arrays_.color.data(), part.color.data(), first, pixel_count,
-                          color_channels_ * sizeof(float));
-            }
-            if (!part.noisy_hashes.empty()) {
-                copy_part(queue, arrays_.noisy.data(), part.noisy.data(), first, pixel_count,
-                          color_channels_ * sizeof(float));
-            }
-            for (std::size_t i = 0; i < part.layers.size(); ++i) {
-                copy_part(queue, arrays_.layers[i].values.data(), part.layers[i].values.data(), first, pixel_count,
-                          part.layers[i].channels * sizeof(float));
-            }
-            if (part.ids.size() > 0) {
-                copy_part(queue, arrays_.ids.data(), part.ids.data(), first, pixel_count, sizeof(PixelIds));
-            }
+            copy_chunk(queue, part, pixels, color_channels_, arrays_);
         }
     }
     queue.wait();
