@@ -230,6 +230,32 @@ std::vector<double> build_triangle_tables(LightSetData& data, std::span<const do
     return powers;
 }
 
+/// Returns the half angle, in radians, of the cone in which a light of a tree emits.
+float emission_angle(const PunctualLight& light) {
+    switch (light.kind) {
+    case LightKind::Point:
+        return kPi;
+    case LightKind::Spot:
+    case LightKind::Goniometric:
+    case LightKind::Directional: // is in no tree
+        break;
+    }
+    return acos(clamp(light.cos_outer, -1.0f, 1.0f));
+}
+
+/// Returns the power of a light of a tree: pi times its mean intensity in the cone. `power` is its own, W.
+double power_in_tree(const PunctualLight& light, double power) {
+    switch (light.kind) {
+    case LightKind::Goniometric:
+        return 0.5 * power / static_cast<double>(1 - light.cos_outer);
+    case LightKind::Point:
+    case LightKind::Spot:
+    case LightKind::Directional: // is in no tree
+        break;
+    }
+    return power > 0 ? kPiDouble * mean_of_channels(light.intensity) : 0;
+}
+
 /// Returns the lights with a position for a tree: triangles, then punctual lights in their order. A spot's flux says
 /// little about the light in its cone, nor does that of a second face about the light of the first.
 std::vector<TreeLight> list_tree_lights(const LightSetData& data, std::span<const double> of_triangles,
@@ -252,12 +278,8 @@ std::vector<TreeLight> list_tree_lights(const LightSetData& data, std::span<cons
         TreeLight& light = lights[triangles + i];
         light.bounds.extend(punctual.position);
         light.axis = punctual.direction;
-        const bool is_point = punctual.kind == LightKind::Point;
-        light.emission_angle = is_point ? kPi : acos(clamp(punctual.cos_outer, -1.0f, 1.0f));
-        light.power = of_punctual[i] > 0 ? kPiDouble * mean_of_channels(punctual.intensity) : 0;
-        if (punctual.kind == LightKind::Goniometric) { // pi times its mean intensity in the cone
-            light.power = 0.5 * of_punctual[i] / static_cast<double>(1 - punctual.cos_outer);
-        }
+        light.emission_angle = emission_angle(punctual);
+        light.power = power_in_tree(punctual, of_punctual[i]);
     }
     return lights;
 }

@@ -47,11 +47,16 @@ template <EmitterLook kLook>
 HD inline bool find_local_light(const LightSetView& view, const EmitterPoint& point, const LightContext& context,
                                 LightSample& sample, float& measure) {
     measure = 1;
-    if (point.kind() == SourceKind::Punctual) {
+    switch (point.kind()) {
+    case SourceKind::Punctual: {
         if (point.index >= view.punctual_count) return false; // from another scene
         const bool arrives = sample_punctual_light<kLook>(view, point.index, 1.0f, context.point, sample);
         sample.primitive = point.index;
         return arrives;
+    }
+    case SourceKind::Triangle:
+    case SourceKind::Environment: // excluded by the caller
+        break;
     }
     const uint32_t light = light_of(view, point.instance, point.index);
     if (light == kNoLight) return false;
@@ -68,8 +73,12 @@ template <EmitterLook kLook = EmitterLook::Coated>
 HD inline bool find_light(const LightSetView& view, const EmitterPoint& point, const LightContext& context,
                           LightSample& sample, float& measure) {
     if (!point.is_there()) return false;
-    if (point.kind() != SourceKind::Environment) {
+    switch (point.kind()) {
+    case SourceKind::Triangle:
+    case SourceKind::Punctual:
         return find_local_light<kLook>(view, point, context, sample, measure);
+    case SourceKind::Environment:
+        break;
     }
     measure = 1;
     sample = {};
@@ -87,7 +96,13 @@ HD inline bool find_light(const LightSetView& view, const EmitterPoint& point, c
 template <class Choice>
 HD inline float pdf_of_found(const LightSetView& view, const EmitterPoint& point, const LightContext& context,
                              const LightSample& found) {
-    if (point.kind() != SourceKind::Triangle) return found.pdf;
+    switch (point.kind()) {
+    case SourceKind::Punctual:
+    case SourceKind::Environment:
+        return found.pdf;
+    case SourceKind::Triangle:
+        break;
+    }
     const uint32_t light = light_of(view, point.instance, point.index);
     return pdf_light_hit<Choice>(view, light, context, found.light_point);
 }
@@ -96,11 +111,15 @@ HD inline float pdf_of_found(const LightSetView& view, const EmitterPoint& point
 /// without textures, coats and the environment's image. Returns false if nothing can arrive.
 HD inline bool find_light_end(const LightSetView& view, const EmitterPoint& point, Vec3 from, LightSample& sample) {
     if (!point.is_there()) return false;
-    if (point.kind() == SourceKind::Environment) {
+    switch (point.kind()) {
+    case SourceKind::Environment:
         sample = {};
         sample.wi = environment_direction(point);
         sample.distance = kInfinity;
         return view.has_environment();
+    case SourceKind::Triangle:
+    case SourceKind::Punctual:
+        break;
     }
     float measure;
     return find_local_light<EmitterLook::Plain>(view, point, from, sample, measure);

@@ -219,10 +219,7 @@ HD inline bool sample_punctual_light(const LightSetView& view, uint32_t number, 
     PunctualArrival arrival;
     if (!find_punctual_light(light, from_point, arrival)) return false;
     if constexpr (kLook == EmitterLook::Coated) {
-        if (light.kind == LightKind::Goniometric) {
-            arrival.irradiance = goniometric_value(view.goniometric, light.table, -arrival.wi) * arrival.irradiance;
-            if (is_black(arrival.irradiance)) return false;
-        }
+        if (!apply_table(light, view.goniometric, -arrival.wi, arrival.irradiance)) return false;
     }
     sample = {};
     sample.wi = arrival.wi;

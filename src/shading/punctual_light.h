@@ -159,13 +159,28 @@ HD inline PunctualEmission emit_from(const PunctualLight& light, const WorldSphe
     return {sample_disc(world, light.direction, u), light.direction, kInfinity, pdf_disc(world)};
 }
 
+/// Multiplies `light`, which leaves along `direction`, by the table of a light that has one. Returns false if the table
+/// leaves nothing of it.
+HD inline bool apply_table(const PunctualLight& of, const GoniometricTablesView& tables, Vec3 direction, Rgb& light) {
+    switch (of.kind) {
+    case LightKind::Goniometric:
+        light = goniometric_value(tables, of.table, direction) * light;
+        return !is_black(light);
+    case LightKind::Point:
+    case LightKind::Spot:
+    case LightKind::Directional:
+        break;
+    }
+    return true;
+}
+
 /// Power of an emission, W, divided by its density and by `pmf`, the probability of the light.
 HD inline Rgb emitted_power(const PunctualLight& light, const PunctualEmission& emission, float pmf,
                             const GoniometricTablesView& tables) {
     const float falloff = punctual_falloff(light, -emission.direction, 0);
-    const Rgb intensity = (falloff / (pmf * emission.pdf)) * light.intensity;
-    if (light.kind != LightKind::Goniometric) return intensity;
-    return goniometric_value(tables, light.table, emission.direction) * intensity;
+    Rgb power = (falloff / (pmf * emission.pdf)) * light.intensity;
+    apply_table(light, tables, emission.direction, power);
+    return power;
 }
 
 /// Returns the power in watts of a light with this intensity; for a directional light, what enters a disc of `radius`
