@@ -101,6 +101,25 @@ HD inline InteriorList interior_towards(const SceneView& scene, const PathState&
     return solids_behind(scene, path.interior, vertex.triangle().instance);
 }
 
+/// Dims the light of a sample by the nested solid that holds the vertex, if media do not, or else by the layers and
+/// coloured solids on the way.
+template <Features kFeatures, class Vertex>
+HD inline void dim_by_solids(const SceneView& scene, const PathState& path, const Vertex& vertex, LightSample& light) {
+    bool is_within = false; // nested solids, by which light is then absorbed
+    if constexpr ((kFeatures & kNested) != 0) {
+        const InteriorList around = interior_towards(scene, path, vertex, light.wi);
+        is_within = around.top() != 0;
+        if (Medium<kFeatures>::kIsVacuum && is_within)
+            light.radiance = light.radiance * transmittance_within(scene, around, light.distance);
+    }
+    if constexpr ((kFeatures & kStacked) != 0) {
+        if (!is_within) {
+            light.radiance = light.radiance *
+                             transmittance_to_light<variant_of(kFeatures)>(scene, vertex.triangle(), light, path.time);
+        }
+    }
+}
+
 /// Samples one point of one light for the vertex, by its `context`. Returns whether `shadow` must be traced.
 template <Features kFeatures, class Vertex, class Numbers, class Listener>
 HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path, const Vertex& vertex,
@@ -128,32 +147,17 @@ HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path
     if (!light.is_delta && settings.strategy == LightStrategy::Mis) {
         weight = power_heuristic(light.pdf, scattered.pdf);
     }
-    constexpr bool kIsVacuum = Medium<kFeatures>::kIsVacuum;
-    bool is_within = false; // nested solids, by which light is then absorbed
-    if constexpr ((kFeatures & kNested) != 0) {
-        const InteriorList around = interior_towards(scene, path, vertex, light.wi);
-        is_within = around.top() != 0;
-        if (kIsVacuum && is_within)
-            light.radiance = light.radiance * transmittance_within(scene, around, light.distance);
-    }
-    if constexpr ((kFeatures & kStacked) != 0) {
-        if (!is_within) {
-            light.radiance = light.radiance *
-                             transmittance_to_light<variant_of(kFeatures)>(scene, vertex.triangle(), light, path.time);
-        }
-    }
-    shadow.contribution = clamp_contribution(settings, path.depth + 1, weight,
-                                             path.throughput * scattered.f * ((weight / light.pdf) * light.radiance));
-    const float emitter_error = kMoves ? emitter_error_at(scene, light, path.time) : 0.0f;
-    const Ray ray = vertex.ray_to(light, emitter_error);
-    if constexpr (!kIsVacuum) {
+    dim_by_solids<kFeatures>(scene, path, vertex, light);
+    Rgb arriving = (weight / light.pdf) * light.radiance;
+    const Ray ray = vertex.ray_to(light, kMoves ? emitter_error_at(scene, light, path.time) : 0.0f);
+    if constexpr (!Medium<kFeatures>::kIsVacuum) {
         const InteriorList around = interior_towards(scene, path, vertex, light.wi);
         const Rgb transmittance = Medium<kFeatures>(scene).transmittance(around, ray);
         if (is_black(transmittance)) return false;
-        const Rgb arriving = transmittance * ((weight / light.pdf) * light.radiance);
-        shadow.contribution =
-            clamp_contribution(settings, path.depth + 1, weight, path.throughput * scattered.f * arriving);
+        arriving = transmittance * arriving;
     }
+    shadow.contribution =
+        clamp_contribution(settings, path.depth + 1, weight, path.throughput * scattered.f * arriving);
     shadow.origin = ray.origin;
     shadow.direction = ray.direction;
     shadow.t_max = ray.t_max;
