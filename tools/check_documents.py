@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Fails where a document, a comment or what a script says of itself names what is not there: a file, an anchor, a source file, a script,
 a flag or a preset. It also fails where all documents together have more than 40,000 words, the tour names more than forty files, a text
-speaks of internal targets, or a picture has no licence in docs/notices.md.
+speaks of internal targets, a picture has no licence in docs/notices.md, or a key of metadata is in no table.
 
     tools/check_documents.py
     tools/check_documents.py --links      asks for the documents' external links instead
@@ -108,6 +108,13 @@ def change_faults(text, ends):
                 yield f"architecture.md: {row[0]}: {number[1]} files are {len(names)}"
 
 
+def metadata_faults(source, text, conventions, settings):
+    """Faults of keys of metadata that a source names, that are no setting's, and that conventions.md does not list."""
+    for key in sorted(set(re.findall(r'"pertev\.([a-z_]+)"', text))):
+        if f"`{key}`" not in conventions and f"`--{key.replace('_', '-')}`" not in settings:
+            yield f"{source}: conventions.md does not have the key pertev.{key}"
+
+
 def script_faults(name, command):
     """Faults of the scripts that a command names, and of the flags that it gives to one."""
     words = re.sub(r"^[A-Z_]+=\S+ ", "", command).partition(" -- ")[0].split()
@@ -190,9 +197,13 @@ def faults_of_all():
     known = "".join(path.read_text(encoding="utf-8") for path in [*(ROOT / "apps/cli").glob("*.cpp"), ROOT / "docs/settings.md"])
     for script in scripts():
         yield from own_faults(script.name, *parts_of(script), known)
+    settings = (ROOT / "docs/settings.md").read_text(encoding="utf-8")
+    conventions = (ROOT / "docs/conventions.md").read_text(encoding="utf-8").partition("The metadata of an EXR")[2]
     for source in tracked:
         if source.startswith(("src/", "apps/", "tests/", "bench/")) and source.endswith((".h", ".cpp", ".cu", ".py", ".js", ".txt")):
             yield from named_faults(source, (ROOT / source).read_text(encoding="utf-8"))
+        if source.startswith("src/session/") and source.endswith(".cpp"):
+            yield from metadata_faults(source, (ROOT / source).read_text(encoding="utf-8"), conventions, settings)
     words = 0
     for document in documents():
         text = document.read_text(encoding="utf-8")
@@ -234,6 +245,7 @@ def self_test():
     assert list(script_faults("x", "python3 examples/turntable.py a --none")) and not list(script_faults("x", "python3 examples/turntable.py --fps 3"))
     assert not list(script_faults("x", "tools/check_sizes.py -- --none")) and not list(script_faults("x", "bench/trace_bench"))
     assert list(own_faults("x", "tools/none.py or --none", "", "")) and not list(own_faults("x", "--a-b, --c", '"--a-b"', '"--c"'))
+    assert list(metadata_faults("x", '{"pertev.a", b}', "`b`", "`--b`")) and not list(metadata_faults("x", '"pertev.a" "pertev.b_c"', "`a`", "`--b-c`"))
     assert list(named_faults("x", "// see tools/none.py")) and not list(named_faults("x", "// bench/jobs.json has it"))
     assert "--self-test" in parts_of(pathlib.Path(__file__))[0] and "--self-test" in parts_of(pathlib.Path(__file__))[1]
     assert len(list(own_commands())) > 80 and not list(broken_links(len))

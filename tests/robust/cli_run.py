@@ -39,16 +39,31 @@ def limit_addresses(gibibytes):
     return limit
 
 
-KEYS = json.load(open(os.path.join(os.path.dirname(__file__), "../../docs/json_keys.json"), encoding="utf-8"))
+def document(name):
+    with open(os.path.join(os.path.dirname(__file__), "../../docs", name), encoding="utf-8") as file:
+        return file.read()
+
+
+def metadata_keys():
+    """Returns the keys pertev.NAME that documents list: those of settings, and those of a table in conventions.md."""
+    table = document("conventions.md").partition("The metadata of an EXR have a key `pertev.NAME`")[2].partition("\n\nMattes")[0]
+    names = {name for row in table.split("\n") if row.startswith("| `") for name in re.findall(r"`(\w+)`", row.split("|")[1])}
+    settings = {flag.replace("-", "_") for flag in re.findall(r"^\| `--([a-z0-9-]+)`", document("settings.md"), re.MULTILINE)}
+    assert len(names) > 20 and len(settings) > 100
+    return {f"pertev.{name}" for name in names | settings}
+
+
+KEYS = json.loads(document("json_keys.json"))
+METADATA_KEYS = metadata_keys()
 
 
 def refuse_unlisted_keys(line):
-    """Tests that docs/json_keys.json lists every key of an event. Attributes of an EXR belong to the file."""
-    unlisted = {key for key in line if key not in KEYS[line["event"]] and not key.startswith(("pertev.", "cryptomatte/"))} - {"event"}
+    """Tests that documents list every key of an event, and of the metadata in it. Other attributes of an EXR belong to the file."""
+    unlisted = {key for key in line if key not in KEYS[line["event"]] and not key.startswith("cryptomatte/")} - METADATA_KEYS - {"event"}
     if line["event"] == "info" and "channels" in line:
         unlisted -= {"pixelAspectRatio", "screenWindowWidth"}
     if unlisted:
-        raise ValueError(f"docs/json_keys.json does not have {sorted(unlisted)} of {line['event']}")
+        raise ValueError(f"docs/ do not list {sorted(unlisted)} of {line['event']}")
 
 
 class Outcome:
