@@ -48,7 +48,10 @@ nb::object read(const std::string& path) {
 
 ToneMap curve_of(const std::string& name) {
     const auto curve = value_named<ToneMap>(name);
-    if (!curve) throw Error(ErrorCode::BadInput, "curve", name, "expected srgb, agx, aces or neutral");
+    if (!curve) {
+        throw Error(ErrorCode::BadInput, "curve", name,
+                    fmt::format("expected one of {}", fmt::join(names_of<ToneMap>(), ", ")));
+    }
     return *curve;
 }
 

@@ -196,6 +196,9 @@ ViewSetting row_of(const Setting& setting) {
     return row;
 }
 
+constexpr std::string_view kNoDenoiser = "off"; // the setting no_reconstruction
+constexpr float kMostStops = 60;                // the viewer's exposure; its row in the table has no range
+
 /// The settings that only the viewer has.
 std::vector<ViewSetting> own_settings() {
     std::vector<ViewSetting> all;
@@ -248,12 +251,14 @@ std::vector<ViewSetting> own_settings() {
         [](ViewState& s, const std::string& name) {
             const bool finds = name == "auto";
             if (finds == s.finds_exposure) return;
-            s.display.exposure_stops = finds ? 0 : clamp(s.found_stops + s.display.exposure_stops, -60.0f, 60.0f);
+            s.display.exposure_stops =
+                finds ? 0 : clamp(s.found_stops + s.display.exposure_stops, -kMostStops, kMostStops);
             s.finds_exposure = finds;
         });
     numeric(
         "exposure", "Stops", PanelGroup::Picture, "Each stop doubles the light. It is added to an automatic exposure",
-        Kind::Number, -60, 60, 0.25, [](const ViewState& s) { return s.display.exposure_stops; },
+        Kind::Number, -static_cast<double>(kMostStops), static_cast<double>(kMostStops), 0.25,
+        [](const ViewState& s) { return s.display.exposure_stops; },
         [](ViewState& s, float v) { s.display.exposure_stops = v; });
     choice(
         "mode", "At rest", PanelGroup::Frames,
@@ -265,24 +270,27 @@ std::vector<ViewSetting> own_settings() {
         "Less is faster, but darker where light is scattered often. A picture at rest has full depth", Kind::Whole, 0,
         kMaxPathDepth - 1, 1, [](const ViewState& s) { return s.moving_depth; },
         [](ViewState& s, float v) { s.moving_depth = static_cast<uint32_t>(v); });
+    std::vector<std::string> denoisers = names_of<FrameDenoiser>();
+    denoisers.emplace_back(kNoDenoiser);
     choice(
         "denoiser", "Denoiser in motion", PanelGroup::Frames,
         "svgf: frames are filtered and accumulated; oidn: each is denoised by itself (Open Image Denoise); off: "
         "frames show their samples",
-        {"svgf", "oidn", "off"},
+        std::move(denoisers),
         [](const ViewState& s) {
             const ReconstructionOptions& frames = s.options.reconstruction;
-            return frames.none ? std::string("off") : std::string(name_of(frames.settings.denoiser));
+            return std::string(frames.none ? kNoDenoiser : name_of(frames.settings.denoiser));
         },
         [](ViewState& s, const std::string& name) {
+            const auto denoiser = value_named<FrameDenoiser>(name);
             try {
-                if (name == "oidn") OidnLibrary::find("frame_denoiser");
+                if (denoiser == FrameDenoiser::Oidn) OidnLibrary::find("frame_denoiser");
             } catch (const Error& error) {
                 return panel_phrase(error.remark());
             }
             ReconstructionOptions& frames = s.options.reconstruction;
-            frames.none = name == "off";
-            if (const auto denoiser = value_named<FrameDenoiser>(name)) frames.settings.denoiser = *denoiser;
+            frames.none = name == kNoDenoiser;
+            if (denoiser) frames.settings.denoiser = *denoiser;
             return std::string();
         });
     choice(

@@ -37,7 +37,7 @@ def write(path, picture, *, curve="srgb", exposure=0.0):
 
 
 def tone_map(picture, *, curve="agx", exposure=0.0):
-    """Returns uint8 (height, width, 4), sRGB: the picture times 2**exposure by "srgb", "agx", "aces" or "neutral"."""
+    """Returns uint8 (height, width, 4), sRGB: the picture times 2**exposure by a curve of the setting tone_map."""
     return _core.tone_map(_array(picture), curve, exposure)
 
 

@@ -43,7 +43,7 @@ std::vector<Setting> picture_settings() {
             Counts{{4}}, Unit{"pixels"}, Otherwise{"all"}, Excludes{"rows denoise!=none real_time"}, Recorded::AsUsed,
             Changes::Picture),
         row("tone_map", "Picture", "NAME", FIELD(tone_map), "The tone mapping of PNG and JPEG output.",
-            Otherwise{"agx"}, On{kShown | kMerge}, In{kToned}, Mark::Common, Recorded::AsUsed,
+            Otherwise{name_of(ToneMap::Agx).data()}, On{kShown | kMerge}, In{kToned}, Mark::Common, Recorded::AsUsed,
             Panel{"Tone map", PanelGroup::Picture}, Changes::Picture),
         row("lut", "Picture", "FILE", FIELD(lut),
             "A look-up table (.cube: 3D, curves, or both) for PNG and JPEG output.", On{kRender | kMerge}, In{kToned},
