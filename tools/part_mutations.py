@@ -92,6 +92,8 @@ MUTATIONS = [
      ("src/render/panorama.h", "return {sine * radius, height, -(cosine * radius)};", "return {-(sine * radius), height, -(cosine * radius)};")),
     ("a cube's corners are as dense as its middles", "unit/panorama",
      ("src/render/panorama.h", "const float growth = length_squared(on_cube) * length(on_cube);", "const float growth = 1;")),
+    ("rates count rows without samples", "robust/cli",
+     ("src/settings/render_settings.h", "uint64_t(window().width) * (part().end_row - part().first_row);", "uint64_t(window().width) * window().height;")),
     ("a checkpoint of other rows is taken", "robust/cli_merge",
      ("src/session/film_file/checkpoint.cpp",
       "if (of.first_row != wanted.first_row || of.end_row != wanted.end_row)", "if (false)")),

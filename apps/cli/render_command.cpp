@@ -166,7 +166,8 @@ int write_one(const RenderFlags& flags, const RenderSettings& settings, const Pi
     written.files.insert(written.files.end(), films.begin(), films.end());
     report_files(written, reporter);
     if (ranks != nullptr && ranks->all(failures_of(written).empty())) Generations(flags.checkpoint).remove();
-    report_result(result, written, queue, record.device, watch.seconds(), cut_short, reporter);
+    report_result(result, settings.rendered_pixels(), written, queue, record.device, watch.seconds(), cut_short,
+                  reporter);
     refuse_faults(written, result.invalid_samples, flags.strict);
     return cut_short ? exit_status(ErrorCode::Interrupted) : 0;
 }

@@ -46,9 +46,9 @@ std::string hashes_json(const WrittenPicture& written) {
                        or_null(written.denoised_hash));
 }
 
-void report_result(const RenderResult& result, const WrittenPicture& written, const Queue& queue,
+void report_result(const RenderResult& result, uint64_t pixels, const WrittenPicture& written, const Queue& queue,
                    const std::string& device, double total_seconds, bool interrupted, Reporter& reporter) {
-    const double samples = static_cast<double>(result.picture.width) * result.picture.height * result.samples;
+    const double samples = static_cast<double>(pixels) * result.samples;
     const double samples_per_second = samples / result.render_seconds;
     const double rays_per_second = static_cast<double>(result.rays.total()) / result.render_seconds;
     const double frame_seconds = result.render_seconds / result.samples; // one sample of every pixel

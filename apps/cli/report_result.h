@@ -26,10 +26,10 @@ void report_files(const WrittenPicture& written, Reporter& reporter);
 /// Members of a JSON object: `hash`, `layers_hash` and `denoised_hash`, null if there are none.
 std::string hashes_json(const WrittenPicture& written);
 
-/// Reports time, rates, memory, invalid samples and hashes. `total_seconds` counts from the start of loading the
-/// scene; `queue` is the one it was rendered on, and `device` names all devices; `interrupted` means before all samples
-/// were done.
-void report_result(const RenderResult& result, const WrittenPicture& written, const Queue& queue,
+/// Reports time, rates, memory, invalid samples and hashes. `pixels` is the number of pixels that got samples;
+/// `total_seconds` counts from the start of loading the scene; `queue` is the one it was rendered on, and `device`
+/// names all devices; `interrupted` means before all samples were done.
+void report_result(const RenderResult& result, uint64_t pixels, const WrittenPicture& written, const Queue& queue,
                    const std::string& device, double total_seconds, bool interrupted, Reporter& reporter);
 
 } // namespace pertev

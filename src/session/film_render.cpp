@@ -23,10 +23,8 @@ constexpr uint32_t kFirstAtOnce = 16; // samples of a first pass
 /// remain.
 uint32_t next_pass(const RenderSettings& settings, uint32_t left, uint32_t done, double seconds) {
     if (settings.pass_samples > 0) return std::min(left, settings.pass_samples);
-    const FilmPart part = settings.part();
-    const uint64_t pixels = uint64_t(settings.window().width) * (part.end_row - part.first_row);
-    const uint32_t at_once =
-        settings.time_limit_s > 0 ? 1 : std::min(samples_at_once(settings, pixels), std::max(done, kFirstAtOnce));
+    const uint32_t preferred = samples_at_once(settings, settings.rendered_pixels());
+    const uint32_t at_once = settings.time_limit_s > 0 ? 1 : std::min(preferred, std::max(done, kFirstAtOnce));
     if (done == 0) return std::min(left, at_once);
     const double a_sample = std::max(seconds / done, 1e-9);
     double budget = 1.0 / 3;

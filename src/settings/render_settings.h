@@ -69,6 +69,8 @@ struct RenderSettings : IntegratorSettings {
     }
     /// The part of the film that is rendered.
     FilmPart part() const { return {first_row, end_row == 0 ? window().height : end_row, range()}; }
+    /// The number of pixels that get samples.
+    uint64_t rendered_pixels() const { return uint64_t(window().width) * (part().end_row - part().first_row); }
 };
 
 /// Returns the names of the requested layers of light paths.

@@ -202,6 +202,12 @@ class WhatIsSaid(CliTest):
                          r"picture [0-9a-f]{32}$")
         self.assertEqual(outcome.stderr.split()[-1], self.info("x.exr")["hash"])
 
+    def test_rates_count_the_pixels_that_get_samples(self):
+        for flags in [[], ["--rows", "1:3"], ["--crop", "3,1,5,4"], ["--part", "1/2"], ["--rows", "1:3", "--part", "2/2"]]:
+            output = "x.pvf" if "--part" in flags else "x.exr"
+            done = self.render("--max-depth", "0", *flags, size="16x12", spp=4, output=output)
+            self.assertAlmostEqual(done["samples_per_second"] / done["rays_per_second"], 1, 5, flags)  # a ray each
+
     def test_version_is_quick(self):
         seconds = []
         for _ in range(9):
