@@ -175,22 +175,25 @@ def render(path, measured, name, options):
 
 def figures(rows, read):
     """The `table` of bench/figures.json. In its texts {KEY} stands for a value of the row whose first cell is `row`, and {KEY / OTHER} for a
-    ratio of two; without `row` a value is the geometric mean of the column."""
+    ratio of two; without `row` a value is the geometric mean of the column, or of several as in {KEY+OTHER}."""
     lines = ["| what | Pertev | beside | ratio | data |", "|---|---:|---:|---:|---|"]
     for one in rows:
         table = next(t for t in read(one["file"])["tables"] if t["name"] == one["table"])
         keys = [column["key"] for column in table["columns"]]
 
         def value(key):
-            cells = [row[keys.index(key)] for row in table["rows"] if row[0] == one.get("row", row[0])]
+            cells = [row[keys.index(part)] for part in key.split("+") for row in table["rows"] if row[0] == one.get("row", row[0])]
             if not cells or len(cells) > 1 and "row" in one:
                 raise ValueError(f"{one['file']} has not one row {one.get('row')}")
             return cells[0] if len(cells) == 1 else statistics.geometric_mean(cells)
 
-        def said(match):
-            return f"{value(match[1]) / value(match[2]):#.3g}" if match[2] else str(value(match[1])) if "row" in one else f"{value(match[1]):#.3g}"
+        def digits(number):
+            return f"{number:.0f}" if number >= 100 else f"{number:#.3g}"
 
-        cells = [re.sub(r"\{(\w+)(?: / (\w+))?\}", said, one[key]) for key in ("what", "pertev", "beside", "ratio")]
+        def said(match):
+            return digits(value(match[1]) / value(match[2])) if match[2] else str(value(match[1])) if "row" in one else digits(value(match[1]))
+
+        cells = [re.sub(r"\{([\w+]+)(?: / (\w+))?\}", said, one[key]) for key in ("what", "pertev", "beside", "ratio")]
         lines.append(f"| {' | '.join(cells)} | [{pathlib.PurePath(one['file']).stem}](../bench/{one['file']}) |")
     return "\n" + "\n".join(lines) + "\n\n"
 
@@ -230,9 +233,11 @@ def self_test():
     chosen = render("results/x.json", good, "a", "columns=k,r where=k:two_words")
     assert "1.10" not in chosen and "| two words | 2 |" in chosen, chosen
     chosen = {"what": "w", "pertev": "{r}", "beside": "O: {s}", "ratio": "{r / s}", "file": "results/x.json", "table": "a", "row": "two words"}
-    assert "| w | 2 | O: 3e-5 | 6.67e+04 | [x](../bench/results/x.json) |" in figures([chosen], lambda _: good)
+    assert "| w | 2 | O: 3e-5 | 66667 | [x](../bench/results/x.json) |" in figures([chosen], lambda _: good)
     del chosen["row"]
     assert "| 1.48 | O |" in figures([{**chosen, "pertev": "{r}", "beside": "O", "ratio": ""}], lambda _: good)
+    full = {**good, "tables": [{**good["tables"][0], "rows": [["Sponza", Digits("1.10"), Digits("3")], ["two words", Digits("2"), Digits("3e-5")]]}]}
+    assert "| 0.119 | O |" in figures([{**chosen, "pertev": "{r+s}", "beside": "O", "ratio": ""}], lambda _: full)
     document = "before\n<!-- table: results/x.json a -->\nold 1.2\n<!-- end -->\nafter\n"
     once = remade(document, lambda _: good)
     assert "old" not in once and once == remade(once, lambda _: good) and once.endswith("after\n")
