@@ -333,12 +333,12 @@ void add_bench_devices_command(CLI::App& bench, int& status) {
     add_whole(verb, "--runs", flags->runs, "timed runs of each number of devices", 1, 1000)->capture_default_str();
     add_whole(verb, "--pictures", flags->pictures, "pictures of 128x128 in a batch (4096 in CUDA, 32 on the CPU)", 1,
               10000000);
-    add_whole(verb, "--frames", flags->frames, "frames in real time (3840x2160 in CUDA, 192x108 on the CPU)", 1, 100000)
+    add_whole(verb, "--frames", flags->frames, "frames in real time, 3840x2160 in CUDA, 192x108 on the CPU", 1, 100000)
         ->capture_default_str();
     verb.add_option("--numbers", flags->numbers, "numbers of devices, compared with one alone (each up to all)")
         ->type_name("N,...")
         ->delimiter(',')
-        ->check(CLI::Range(1, 1000));
+        ->check(whole_between(1, 1000));
     add_picture_flags(verb, kBenchDevices, flags->picture, "the job's", "8192, and 256");
 }
 

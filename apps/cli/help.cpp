@@ -45,25 +45,21 @@ std::string names_of(const CLI::Option& option) {
     return name;
 }
 
-/// Returns the whole description of a flag, or the first sentence of a setting's.
-std::string text_of(const CLI::Option& option, bool is_short) {
-    const Setting* const setting = setting_of(option);
-    const std::string full = option.get_description();
-    std::string text = full;
-    if (setting != nullptr && is_short) text = text.substr(0, std::min(text.find(". "), text.size() - 1)) + ".";
-    const bool has_default = !option.get_default_str().empty();
-    if (const std::size_t at = full.find(kWithoutIt); setting != nullptr && is_short && at != std::string::npos)
-        text += fmt::format(" ({})", full.substr(at + kWithoutIt.size(), full.size() - at - kWithoutIt.size() - 1));
-    if (setting != nullptr && !is_short && *setting->more != '\0') text += fmt::format(" {}", setting->more);
-    if (has_default) text += fmt::format(" ({})", option.get_default_str());
-    return option.get_required() ? text + (text.ends_with('.') ? " Required." : ". Required.") : text;
+/// Begins a text with a capital letter and ends it with a full stop, which comes before a default in parentheses.
+std::string as_sentence(std::string text) {
+    if (text.empty()) return text;
+    if (text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+    if (text.ends_with('.')) return text;
+    std::size_t at = text.ends_with(')') ? text.rfind('(') : text.size();
+    while (at > 0 && at < text.size() && (text[at - 1] == ' ' || text[at - 1] == '\n')) --at;
+    return text.insert(std::min(at, text.size()), ".");
 }
 
 std::string entry(const CLI::Option& option, bool is_short) {
     std::string head = "  " + names_of(option);
     head += head.size() + 3 > kTextColumn ? '\n' + std::string(kTextColumn, ' ')
                                           : std::string(kTextColumn - head.size(), ' ');
-    return head + wrapped(text_of(option, is_short), kColumns - kTextColumn, kTextColumn) + '\n';
+    return head + wrapped(flag_description(option, is_short), kColumns - kTextColumn, kTextColumn) + '\n';
 }
 
 bool is_rare(const CLI::Option& option) {
@@ -103,6 +99,18 @@ std::set<std::string> groups_with_more(const CLI::App& verb) {
 std::string shown_names(const CLI::Option& option) {
     if (option.get_positional() || option.get_snames().empty()) return option.get_name(option.get_positional());
     return "-" + option.get_snames().front() + (option.get_lnames().empty() ? "" : "," + option.get_name());
+}
+
+std::string flag_description(const CLI::Option& option, bool is_short) {
+    const Setting* const setting = setting_of(option);
+    std::string text = as_sentence(option.get_description());
+    if (setting != nullptr && is_short) text = text.substr(0, std::min(text.find(". "), text.size() - 1)) + ".";
+    if (setting != nullptr && !is_short && *setting->more != '\0') text += fmt::format(" {}", setting->more);
+    std::string otherwise = option.get_default_str();
+    if (otherwise.starts_with('[') && otherwise.ends_with(']')) // CLI11's brackets of a list
+        otherwise = otherwise.substr(1, otherwise.size() - 2);
+    if (!otherwise.empty()) text += fmt::format(" ({})", otherwise);
+    return option.get_required() ? text + " Required." : text;
 }
 
 std::string Help::make_help(const CLI::App* verb, std::string, CLI::AppFormatMode) const {

@@ -27,6 +27,9 @@ std::string take_help_group(std::vector<std::string>& words);
 /// The names of a flag, as in "-o,--output". Names of earlier versions, which follow the first long one, are hidden.
 std::string shown_names(const CLI::Option& option);
 
+/// The description of a flag as sentences, with its default. For a setting `is_short` means the first sentence alone.
+std::string flag_description(const CLI::Option& option, bool is_short);
+
 /// A man page of all verbs.
 std::string man_page(const CLI::App& app);
 /// A completion script for verbs, flags, and the named values of settings. Throws Error(BadInput) for another shell

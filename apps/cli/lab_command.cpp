@@ -201,9 +201,10 @@ void add_lab_command(CLI::App& app, int& status) {
         ->type_name("NAME,...")
         ->delimiter(',')
         ->check(one_of(names_of<TraversalKind>()));
-    verb.add_option("--rta", flags->rta,
-                    "redundant traversal avoidance: skips nodes behind the nearest\nhit; nodes: tests at nodes and "
-                    "not at pops (compressed only)")
+    verb.add_option(
+            "--rta", flags->rta,
+            "redundant traversal avoidance: skips nodes behind the nearest\nhit; nodes, of compressed alone: tests "
+            "at nodes and not at pops")
         ->type_name("WHICH,...")
         ->delimiter(',')
         ->check(one_of({"on", "off", "both", "nodes"}))
@@ -211,8 +212,8 @@ void add_lab_command(CLI::App& app, int& status) {
     add_switch(verb, "--order", flags->order, "visits nearer children first");
     verb.add_option(
             "--tests", flags->tests,
-            "exact; fast: leaks at edges, as in most tracers; woop: Aila and\nLaine's unit triangles, which leak "
-            "at edges too")
+            "the triangle test: exact; fast, which leaks at edges, as in most\ntracers; or woop, Aila and Laine's "
+            "unit triangles, which leaks too")
         ->type_name("WHICH,...")
         ->delimiter(',')
         ->check(one_of(names_of<TestKind>()))
@@ -223,7 +224,9 @@ void add_lab_command(CLI::App& app, int& status) {
                                 "with --thesis 1-8)",
                                 kMaxFrameDepth + 1))
         ->type_name("[FIRST-]LAST");
-    verb.add_option("--rays", flags->rays, "primary, shadow, diffuse (all), or record: the five sets of\nbench rays")
+    verb.add_option(
+            "--rays", flags->rays,
+            "sets of rays: primary, shadow, diffuse, or record, the five of\nbench rays (primary,shadow,diffuse)")
         ->type_name("KIND,...")
         ->delimiter(',')
         ->check(one_of({"primary", "shadow", "diffuse", "record"}));

@@ -112,6 +112,7 @@ void add_measure_command(CLI::App& app, int& status) {
         ->type_name("X,Y,Z")
         ->required();
     flags->settings.add(verb, kMeasure, *flags);
+    verb.get_option("--spp")->description("The number of samples; four times as many halve the error.");
     add_report_flags(verb, flags->report);
     verb.callback([flags, &status] { status = measure(*flags); });
 }

@@ -71,7 +71,7 @@ void add_merge_command(CLI::App& app, int& status) {
                   "Makes a picture of the available samples if some are missing. Rows without any are black.");
     const std::string theirs = "that of the parts";
     flags->settings.add(verb, kMerge, {}, all_settings(),
-                        {{"denoise", theirs + ", which must not be another"},
+                        {{"denoise", "the parts' denoiser; any other is refused"},
                          {"tone_map", theirs},
                          {"exposure", theirs + "; auto is what a meter found for them"}});
     add_report_flags(verb, flags->report);

@@ -40,8 +40,8 @@ void add_report_flags(CLI::App& verb, ReportFlags& flags) {
 
 void add_progress_flag(CLI::App& verb, ReportFlags& flags) {
     verb.add_option("--progress", flags.progress, "progress as one JSON object per line on stderr")
-        ->type_name("FORM")
-        ->check(CLI::IsMember({"json"}));
+        ->type_name("json")
+        ->check(one_of({"json"}));
 }
 
 Reporter::Reporter(const ReportFlags& flags) : flags_(flags), redraws_(flags.progress.empty() && is_drawn_on()) {

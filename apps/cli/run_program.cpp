@@ -117,7 +117,9 @@ int run(std::vector<std::string> words, bool json) {
     CLI::App app("Pertev: a path tracer for GPUs without ray-tracing hardware, and for CPUs.", "pertev");
     int status = 0;
     try {
-        app.set_version_flag("-V,--version", fmt::format("pertev {} ({})", version(), git_commit()));
+        app.set_help_flag("-h,--help", "Prints this help.");
+        app.set_version_flag("-V,--version", fmt::format("pertev {} ({})", version(), git_commit()),
+                             "Prints the version.");
         app.formatter(std::make_shared<Help>(take_help_group(words)));
         app.require_subcommand(1);
         add_verbs(app, words, status);

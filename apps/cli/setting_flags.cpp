@@ -12,14 +12,12 @@
 namespace pertev {
 namespace {
 
-/// `otherwise` says what holds without it; it may be empty.
-std::string described(const Setting& setting, const std::string& otherwise) {
+std::string described(const Setting& setting) {
     std::string text = setting.sentence;
     const std::vector<std::string> choices = choices_of(setting);
     if (!choices.empty() && std::string_view(setting.form).find('|') == std::string_view::npos) {
         text += fmt::format(" One of {}.", fmt::join(choices, ", "));
     }
-    if (!otherwise.empty()) text += fmt::format("{}{}.", kWithoutIt, otherwise);
     return text;
 }
 
@@ -50,7 +48,7 @@ void SettingFlags::add(CLI::App& verb, uint32_t verbs, const PictureOptions& opt
         const std::string otherwise = said != own.end()                    ? said->second
                                       : now == texts_of(defaults, setting) ? setting.otherwise
                                                                            : "";
-        const std::string name = flag_names(setting), text = described(setting, otherwise);
+        const std::string name = flag_names(setting), text = described(setting);
         if (is_switch(setting)) {
             flag.option = verb.add_flag(name, flag.is_on, text);
         } else if (is_list(setting)) {
@@ -60,6 +58,7 @@ void SettingFlags::add(CLI::App& verb, uint32_t verbs, const PictureOptions& opt
             flag.option = verb.add_option(name, flag.text, text);
         }
         flag.option->group(setting.group);
+        flag.option->default_str(otherwise);
         if (is_switch(setting)) continue;
         flag.option->type_name(setting.form); // set_value checks the text
         if (otherwise.empty() && !is_list(setting) && !now.empty()) flag.option->default_str(now.front());

@@ -21,9 +21,6 @@ class Option;
 
 namespace pertev {
 
-/// Separates a flag's description from its default.
-inline constexpr std::string_view kWithoutIt = " Without it: ";
-
 /// The setting of a flag; null if it is none.
 const Setting* setting_of(const CLI::Option& flag);
 

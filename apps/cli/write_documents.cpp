@@ -196,10 +196,8 @@ std::string man_page(const CLI::App& app) {
         page += fmt::format(".SH {}\n{}\n", verb.path.empty() ? "OPTIONS" : in_man("pertev " + verb.path),
                             in_man(verb.app->get_description()));
         for (const CLI::Option* option : verb.app->get_options([](const CLI::Option*) { return true; })) {
-            page += fmt::format(
-                ".TP\n\\fB{}\\fR \\fI{}\\fR\n{}{}\n", in_man(shown_names(*option)), in_man(option->get_type_name()),
-                in_man(option->get_description()),
-                option->get_default_str().empty() ? "" : in_man(fmt::format(" ({})", option->get_default_str())));
+            page += fmt::format(".TP\n\\fB{}\\fR \\fI{}\\fR\n{}\n", in_man(shown_names(*option)),
+                                in_man(option->get_type_name()), in_man(flag_description(*option, false)));
         }
     }
     return page + ".SH EXIT STATUS\n0 done, 2 bad input, 3 over a limit, 4 out of memory, 5 a device's fault, 6 a file "

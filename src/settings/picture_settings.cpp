@@ -62,7 +62,7 @@ std::vector<Setting> picture_settings() {
         row("iso", "Picture", "S", FIELD(iso), "The film speed of a physical exposure.", Above{0, 1e8},
             Otherwise{"100"}, On{kShown}, Needs{"f_number"}, Changes::Picture),
         row("exr_colors", "Picture", "NAME", FIELD(exr_colors),
-            "The numbers of colours in EXR output; other layers keep 32 bits.", On{kRender | kMerge}, In{kExr},
+            "The number format of colours in EXR output; other layers keep 32 bits.", On{kRender | kMerge}, In{kExr},
             Mark::NotKept, Changes::Picture),
         row("png_bits", "Picture", "8|16", FIELD(png_bits), "The bits of each channel of PNG output.",
             Choices{{"8", "16"}}, On{kRender | kMerge}, In{kPng}, Mark::NotKept, Changes::Picture),
@@ -102,7 +102,7 @@ std::vector<Setting> picture_settings() {
             More{"path finds all light, direct and indirect a part each. hybrid is path with rasterised primary "
                  "visibility. cast, whitted and distributed are ray trees without most indirect light. raster and "
                  "reyes (micropolygons) trace no rays. light traces particles and misses what mirrors and glass show. "
-                 "bidirectional joins paths from both ends. photon_map finds caustics early. irradiance_cache "
+                 "bidirectional connects camera and light subpaths. photon_map finds caustics early. irradiance_cache "
                  "interpolates, with a small bias. radiosity solves diffuse light once."},
             On{kLooking}, Recorded::Always, Mark::Common, Panel{"Light", PanelGroup::Light}, Changes::Picture),
         row("max_depth", "Quality", "N", FIELD(render.path.max_depth),
@@ -126,7 +126,7 @@ std::vector<Setting> picture_settings() {
             Of{integrators_that(makes_frames)}, On{kLooking}, Recorded::Changed, Changes::Picture),
         row("light_choice", "Quality", "NAME", FIELD(render.path.light_choice),
             "The choice of a light at each point: by a tree, by power, or by the tree for more than 256 lights (auto). "
-            "Particles leave lights by power.",
+            "Particle emission always selects by power.",
             Of{integrators_that(selects_lights)}, On{kLooking | kBenchRender}, Recorded::Changed, Changes::Picture),
         row("time_limit", "Quality", "SECONDS", FIELD(render.time_limit_s),
             "The time after which the render stops, at the end of a sample. irradiance_cache may stop while it makes "
@@ -134,8 +134,8 @@ std::vector<Setting> picture_settings() {
             Above{0}, Unit{"s"}, Otherwise{"none"}, Excludes{"frames turntable cameras stereo"}, Mark::NotKept,
             Mark::Common, Changes::Picture),
         row("denoise", "Quality", "NAME", FIELD(render.denoise),
-            "The denoiser of pictures with few samples, which is biased. EXR output keeps the picture before as the "
-            "layer noisy. Bytes of oidn (Open Image Denoise) differ between devices.",
+            "The denoiser of pictures with few samples, which is biased. EXR output keeps the picture before "
+            "denoising as the layer noisy. Bytes of oidn (Open Image Denoise) differ between devices.",
             On{kRender | kBenchSequence | kMerge}, Excludes{"!none:max_depth=0"}, Recorded::Changed, Mark::Common,
             Changes::Picture),
 
