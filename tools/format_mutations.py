@@ -183,7 +183,7 @@ MUTATIONS = [
      ("src/formats/described/parameters.cpp", "parameter.name.size() + parameter.numbers.size() * sizeof(double)", "parameter.name.size()")),
     ("a backslash hides the end of a line", "unit/read_pbrt",
      ("src/formats/pbrt/tokens.cpp", " && text_[at_ + 1] != '\\n'", "")),
-    ("a gzip'd file unfolds without end", "unit/read_pbrt", ("src/formats/files/gunzip.cpp", "if (size > limit) {", "if (size > 2 * limit) {")),
+    ("a gzip'd file decompresses without end", "unit/read_pbrt", ("src/formats/files/gunzip.cpp", "if (size > limit) {", "if (size > 2 * limit) {")),
     ("no gzip'd PLY file is a scene", "unit/read_pbrt", ("src/formats/read_scene.cpp", 'FormatReader{".ply.gz", ', 'FormatReader{".ply.zip", ')),
     ("mitsuba: normal maps have the tangents of v", "unit/read_mitsuba_shapes", ("src/formats/mitsuba/shapes.cpp", "Vec4{t.x, t.y, t.z, side}", "Vec4{t.x, t.y, t.z, -1}")),
     ("mitsuba: a cylinder begins elsewhere", "unit/read_mitsuba_shapes", ("src/formats/mitsuba/shapes.cpp", "y = {b, sign + z.y * z.y * a, -z.y};", "y = {-b, -sign - z.y * z.y * a, z.y};")),

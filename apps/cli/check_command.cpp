@@ -1,4 +1,4 @@
-// pertev check SCENE: lists what a render of a scene would leave out, and what it would make up.
+// pertev check SCENE: lists what a render would omit from a scene, and which defaults it would add.
 
 #include <memory>
 
@@ -25,7 +25,7 @@ struct CheckFlags : PictureOptions {
 
 const char* kind_of(const Message& message) {
     if (message.is_left_out) return "left out";
-    if (message.is_made_up) return "made up";
+    if (message.is_made_up) return "added by default";
     return message.is_warning ? "warning" : "note";
 }
 
@@ -39,7 +39,7 @@ int check(CheckFlags& flags) {
     std::string lines;
     for (const Message& message : messages.all()) {
         is_complete = is_complete && !message.is_left_out && !message.is_made_up;
-        lines += fmt::format("{:9} {}{}\n", kind_of(message), phrase(message.remark),
+        lines += fmt::format("{:17} {}{}\n", kind_of(message), phrase(message.remark),
                              message.times > 1 ? fmt::format(" ({} times)", message.times) : "");
     }
     if (flags.report.json) {
@@ -48,19 +48,20 @@ int check(CheckFlags& flags) {
     }
     reporter.result(
         fmt::format(R"({{"event":"check","file":{},"complete":{}}})", json_string(flags.scene.scene), is_complete));
-    reporter.answer(lines + (is_complete ? "nothing is left out or made up\n" : ""));
+    reporter.answer(lines + (is_complete ? "nothing is left out or added by default\n" : ""));
     return is_complete ? 0 : kIsIncomplete;
 }
 
 } // namespace
 
 void add_check_command(CLI::App& app, int& status) {
-    CLI::App& verb = *app.add_subcommand("check", "List what a render would leave out of a scene, and make up");
+    CLI::App& verb =
+        *app.add_subcommand("check", "List what a render would omit from a scene, and which defaults it would add");
     const auto flags = std::make_shared<CheckFlags>();
     add_scene_name(verb, flags->scene);
     flags->settings.add(verb, kCheck, *flags);
     add_report_flags(verb, flags->report);
-    verb.footer("The exit status is 1 if anything is left out or made up.");
+    verb.footer("The exit status is 1 if anything is left out or added by default.");
     verb.callback([flags, &status] { status = check(*flags); });
 }
 

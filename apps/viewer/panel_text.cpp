@@ -158,7 +158,7 @@ std::string welcome_text(const ViewerStart& start) {
     append(about, row_json("Scene", "rendered by", start.record.device));
     for (const auto& [label, value] : start.about) append(about, row_json("Scene", label, value));
     const SceneSource& scene = start.record.scene;
-    for (const auto& [label, list] : {std::pair{"made up", &scene.made_up}, {"left out", &scene.left_out}}) {
+    for (const auto& [label, list] : {std::pair{"added by default", &scene.made_up}, {"left out", &scene.left_out}}) {
         for (const std::string& text : *list)
             append(about, row_json("Scene", label, without_folders(panel_phrase(text), scene.scene)));
     }

@@ -34,7 +34,7 @@ def _text(row, value):
         return str(int(number)) if number.is_integer() and abs(number) < 2**53 else repr(number)
     elif hasattr(value, "__iter__"):
         return ("x" if row["type"] == "size" else SEPARATORS.get(row["form"], ",")).join(_text(row, item) for item in value)
-    raise TypeError(f"{row['name']}: {type(value).__name__} is no value of this setting ({row['form'] or 'bool'})")
+    raise TypeError(f"{row['name']}: {type(value).__name__} is not a value of this setting ({row['form'] or 'bool'})")
 
 
 def _texts(row, value):

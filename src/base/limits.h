@@ -15,7 +15,7 @@ inline constexpr uint32_t kMaxLights = 1u << 30;                 // each is sele
 inline constexpr uint32_t kMaxImageSide = 1u << 16;              // pixels along one side of any image
 inline constexpr uint64_t kMaxImagePixels = uint64_t(1) << 30;   // pixels of one image
 inline constexpr uint64_t kFreeImageBytes = uint64_t(384) << 20; // decoded; a panorama of 8192 x 4096 in float
-inline constexpr uint64_t kFreeMeshBytes = uint64_t(256) << 20;  // unfolded size of a scene's files without images
+inline constexpr uint64_t kFreeMeshBytes = uint64_t(256) << 20;  // decompressed size of a scene's files without images
 inline constexpr uint64_t kMaxExpansion = 1024;                  // bytes in memory per byte of the files
 inline constexpr uint64_t kFreeBakedTriangles = 1u << 21;        // in copies of shared meshes that are baked because of
                                                                  // skewed transforms

@@ -181,7 +181,7 @@ std::vector<std::string> choices_of(const Setting& setting);
 /// Returns whether the integrator has the setting.
 bool has_setting(IntegratorKind integrator, const Setting& setting);
 
-/// Returns why the text is no value, according to its range, its choices and its kind; empty if it is one.
+/// Returns why the text is not a value, according to its range, its choices and its kind; empty if it is one.
 std::string why_no_value(const Setting& setting, const std::string& text);
 
 /// Sets the field, a list to all texts, and records the source in `options.given`. Throws Error(BadInput), or

@@ -1,4 +1,4 @@
-"""`check` lists what is left out and made up, `convert` writes scenes as .glb and pictures in other formats, and a tree that cannot select
+"""`check` lists what is left out and added by default, `convert` writes scenes as .glb and pictures in other formats, and a tree that cannot select
 lights says so."""
 
 import json
@@ -24,8 +24,8 @@ class Check(CliTest):
         self.assertEqual(len(done["made_up"]), 1, done)  # the view
         self.assertIn("a.pbrt:3", [event["text"][:8] for event in outcome.events("warning")])
         outcome = self.run_pertev("check", "a.pbrt")
-        self.assertRegex(outcome.stdout, r"(?m)^left out  a\.pbrt:3: ")
-        self.assertRegex(outcome.stdout, r"(?m)^made up   ")
+        self.assertRegex(outcome.stdout, r"(?m)^left out {10}a\.pbrt:3: ")
+        self.assertRegex(outcome.stdout, r"(?m)^added by default  ")
         self.assertEqual((outcome.status, outcome.stderr), (1, ""))
         self.refuse(2, "check", "gone.obj", says=["gone.obj"])
 

@@ -249,7 +249,7 @@ TEST_CASE("pbrt: a transform that stretches a light is left out at its line, whe
     }
 }
 
-TEST_CASE("pbrt: a light whose strength or place is no finite number is left out alone, at its line") {
+TEST_CASE("pbrt: a light whose strength or place is not a finite number is left out alone, at its line") {
     for (const std::string light : {"LightSource \"point\" \"float scale\" 1e30 \"rgb I\" [1e30 1 1]",
                                     "LightSource \"point\" \"float power\" 1e300 \"rgb I\" [0 1 1]",
                                     "LightSource \"point\" \"point3 from\" [0 0 5e12]",

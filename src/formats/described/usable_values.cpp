@@ -10,7 +10,7 @@ namespace pertev::described {
 bool is_light(Rgb strength) { return is_finite(strength) && strength.r >= 0 && strength.g >= 0 && strength.b >= 0; }
 
 void leave_out_strength(const std::string& which, const FileLocation& location, Sink& sink) {
-    sink.leave_out({location, which + " light is left out, because its strength is no finite number of at least 0"});
+    sink.leave_out({location, which + " light is left out, because its strength is not a finite number of at least 0"});
 }
 
 bool is_near(Vec3 position) { return is_finite(position) && max_component(abs(position)) <= kMaxCoordinate; }
@@ -22,7 +22,7 @@ std::string fault_of(const Camera& camera) {
         return "its view has no size, or none that is finite";
     if (!(camera.aperture_radius >= 0 && camera.aperture_radius <= kMaxCoordinate) ||
         !(camera.focus_distance > 0 && camera.focus_distance <= kMaxCoordinate))
-        return "its aperture or focus is no length";
+        return "its aperture or focus is not a length";
     return "";
 }
 

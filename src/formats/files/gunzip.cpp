@@ -50,7 +50,7 @@ std::vector<std::byte> inflate_all(std::span<const std::byte> bytes, int window_
         size += room - stream.avail_out;
         if (size > limit) {
             throw Error(ErrorCode::OverLimit, FileLocation{file},
-                        fmt::format("the file unfolds to over {} MiB, more than its size justifies", limit >> 20));
+                        fmt::format("the file decompresses to over {} MiB, more than its size justifies", limit >> 20));
         }
         const bool is_stuck = given == stream.avail_in && room == stream.avail_out;
         if ((state != Z_OK && state != Z_STREAM_END) || (state == Z_OK && is_stuck)) {

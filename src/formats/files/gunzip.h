@@ -15,8 +15,8 @@ namespace pertev {
 bool is_gzip(std::span<const std::byte> bytes);
 
 /// Returns the content of a gzip'd file, of all its members. `file` is for messages. Throws Error(BadInput) if it is
-/// damaged or cut off, and Error(OverLimit) if it unfolds to more than `limit` bytes; without one, to more than its
-/// size justifies (base/limits.h).
+/// damaged or cut off, and Error(OverLimit) if it decompresses to more than `limit` bytes; without one, to more than
+/// its size justifies (base/limits.h).
 std::vector<std::byte> gunzip(std::span<const std::byte> bytes, const std::string& file, uint64_t limit);
 std::vector<std::byte> gunzip(std::span<const std::byte> bytes, const std::string& file);
 

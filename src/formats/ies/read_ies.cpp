@@ -45,7 +45,7 @@ public:
         const std::optional<double> value = parse_float<double>(rest_);
         if (!value || !std::isfinite(*value)) {
             const std::string_view word = before.substr(0, before.find_first_of(" ,\t\r\n"));
-            fail(fmt::format("{} is no number; expected {}", shortened(std::string(word)), what));
+            fail(fmt::format("{} is not a number; expected {}", shortened(std::string(word)), what));
         }
         return *value;
     }

@@ -116,7 +116,7 @@ std::optional<AreaLight> read_area_light(Object& emitter, Textures& textures, Re
         light.image = radiance;
         if (radiance.made >= 0 || !is_black(radiance.offset)) {
             light.image = {};
-            sink.leave_out({emitter.location(), "the texture of an area emitter is no image; its factor is used"});
+            sink.leave_out({emitter.location(), "the texture of an area emitter is not an image; its factor is used"});
         }
     }
     emitter.parameters.ignore({"sampling_weight"});

@@ -189,7 +189,7 @@ private:
         std::vector<double> found = parse_numbers(value);
         const bool is_finite = std::ranges::all_of(found, [](double x) { return std::isfinite(x); });
         if (found.size() < least || found.size() > most || !is_finite)
-            throw error(node, fmt::format("{}=\"{}\" is no value", name, shortened(value)));
+            throw error(node, fmt::format("{}=\"{}\" is not a value", name, shortened(value)));
         return found;
     }
 
@@ -211,7 +211,7 @@ private:
             to.type = ParameterType::Rgb;
             to.numbers = parse_color(text(node, "value"), tag == "srgb");
             if (to.numbers.size() != 3)
-                throw error(node, fmt::format("\"{}\" is no colour", shortened(text(node, "value"))));
+                throw error(node, fmt::format("\"{}\" is not a colour", shortened(text(node, "value"))));
         } else if (tag == "blackbody") {
             to.type = ParameterType::Blackbody;
             std::string value = text(node, "temperature", text(node, "value"));
@@ -254,7 +254,7 @@ private:
         const bool has_pairs = value.find(':') != std::string::npos;
         const bool is_finite = std::ranges::all_of(to.numbers, [](double x) { return std::isfinite(x); });
         if (!is_finite || to.numbers.empty() || (has_pairs && to.numbers.size() % 2 != 0))
-            throw error(node, fmt::format("\"{}\" is no spectrum", shortened(value)));
+            throw error(node, fmt::format("\"{}\" is not a spectrum", shortened(value)));
         if (!has_pairs && to.numbers.size() == 3) to.type = ParameterType::Rgb; // Mitsuba 0.6 takes it so
         if (!has_pairs && to.numbers.size() != 1 && to.numbers.size() != 3)
             throw error(node, "a spectrum is one number, or pairs such as \"400:0.2, 700:0.5\"");

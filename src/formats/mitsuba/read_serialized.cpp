@@ -54,7 +54,8 @@ std::span<const std::byte> piece_of(std::span<const std::byte> bytes, uint32_t i
     const auto refuse = [&](std::string reason) {
         throw Error(ErrorCode::BadInput, FileLocation{file}, std::move(reason));
     };
-    if (bytes.size() < kHeader + 4 || value_at<uint16_t>(bytes, 0) != kMagic) refuse("no serialized mesh of Mitsuba");
+    if (bytes.size() < kHeader + 4 || value_at<uint16_t>(bytes, 0) != kMagic)
+        refuse("not a serialized mesh of Mitsuba");
     const auto version = value_at<uint16_t>(bytes, 1);
     if (version != 3 && version != 4) refuse(fmt::format("version {} of serialized meshes; expected 3 or 4", version));
     const uint64_t entry = version == 4 ? 8 : 4;

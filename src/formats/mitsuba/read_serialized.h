@@ -23,7 +23,7 @@ struct SerializedMesh {
 };
 
 /// Returns the mesh `index` in the bytes of `file`. Throws Error(BadInput) if there is none or if it is damaged, and
-/// Error(OverLimit) if it unfolds to more than its size justifies.
+/// Error(OverLimit) if it decompresses to more than its size justifies.
 SerializedMesh read_serialized(std::span<const std::byte> bytes, uint32_t index, const std::string& file);
 
 } // namespace pertev::mitsuba

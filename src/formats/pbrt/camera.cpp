@@ -57,13 +57,13 @@ void read_sensor(Parameters& film, Sink& sink) {
                      kelvins, white.r, white.g, white.b)});
 }
 
-/// Returns how long the shutter of a camera is open; 1 if that is no time.
+/// Returns how long the shutter of a camera is open; 1 if it never opens.
 double shutter_time(View& view, Sink& sink) {
     if (!view.camera) return 1;
     Parameters& camera = view.camera->parameters;
     const double seconds = camera.number("shutterclose", 1, sink) - camera.number("shutteropen", 0, sink);
     if (seconds > 0) return seconds;
-    sink.leave_out({camera.location(), "the shutter of a camera, which does not open, is left out of the exposure"});
+    sink.leave_out({camera.location(), "shutter times are ignored: the shutter never opens"});
     return 1;
 }
 

@@ -90,7 +90,8 @@ void read_parameters(Tokens& tokens, Parameters& parameters, Sink& sink) {
         const auto take = [&](const Token& token) {
             sink.check_at(to.numbers.size());
             if (!take_value(token, to) && fault.empty())
-                fault = fmt::format("\"{}\" is no value of \"{}\"", shortened(token.text), shortened(declaration.text));
+                fault =
+                    fmt::format("\"{}\" is not a value of \"{}\"", shortened(token.text), shortened(declaration.text));
         };
         if (tokens.peek().kind == TokenKind::Open) {
             tokens.next();
@@ -106,8 +107,8 @@ void read_parameters(Tokens& tokens, Parameters& parameters, Sink& sink) {
         if (type == std::end(kTypeNames)) {
             std::vector<std::string_view> known;
             for (const TypeName& row : kTypeNames) known.push_back(row.name);
-            fault =
-                fmt::format("\"{}\" is no type of a parameter{}", shortened(type_name), did_you_mean(type_name, known));
+            fault = fmt::format("\"{}\" is not a type of a parameter{}", shortened(type_name),
+                                did_you_mean(type_name, known));
         } else if (name.empty()) {
             fault = fmt::format("\"{}\" has no name; expected \"TYPE NAME\"", shortened(declaration.text));
         } else if (fault.empty() && to.numbers.empty() && to.texts.empty()) {

@@ -104,8 +104,8 @@ void Statements::read(std::string_view text, const std::filesystem::path& file) 
         }
         std::vector<std::string_view> known;
         for (const Statement& other : all()) known.push_back(other.name);
-        context_.sink.leave_out({place, fmt::format("\"{}\" is no statement and is left out{}", shortened(token.text),
-                                                    did_you_mean(token.text, known))});
+        context_.sink.leave_out({place, fmt::format("\"{}\" is not a statement and is left out{}",
+                                                    shortened(token.text), did_you_mean(token.text, known))});
         while (tokens.peek().kind != TokenKind::End && find(tokens.peek().text) == nullptr) tokens.next();
     }
     if (--files_ == 0) finish();

@@ -60,7 +60,7 @@ std::optional<std::vector<std::byte>> RecordsFile::read() const {
     const std::span<const std::byte> all(bytes);
     const std::size_t before = kMagic.size() + kSizes;
     if (all.size() < before + kHash || std::memcmp(all.data(), kMagic.data(), kMagic.size()) != 0)
-        throw damaged("this is no file of records");
+        throw damaged("this is not a file of records");
     const auto version = value_at<uint32_t>(all, kMagic.size()),
                size = value_at<uint32_t>(all, before - sizeof(uint32_t));
     if (version != kVersion)
