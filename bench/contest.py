@@ -87,7 +87,7 @@ class Corridor(Job):
 
 
 class CornellBox(Job):
-    """Bitterli's, whose materials and camera stand in its file."""
+    """Bitterli's Cornell box; its file has materials and camera."""
 
     name, stem, depth = "Cornell box, depth 8", "cornell-box", 7
     cpu_size, gpu_size = (512, 512), (1024, 1024)

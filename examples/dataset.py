@@ -43,7 +43,7 @@ def make(scene, folder, count, size, spp):
     scene = pertev.load(scene)
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    first = pertev.render(scene, size=size, spp=1)  # whose camera and angle of view are the scene's own
+    first = pertev.render(scene, size=size, spp=1)  # its camera and angle of view are the scene's own
     poses = around(first.pose, scene.bounds.mean(axis=0), count, 0.1 * numpy.ptp(scene.bounds, axis=0).max())
     names = [name or f"instance {number}" for number, name in enumerate(scene.instance_names)]
     categories = {name: number for number, name in enumerate(sorted(set(names)), 1)}

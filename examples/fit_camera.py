@@ -50,7 +50,7 @@ class Views:
 
 
 def blurred(pictures, sigma):
-    """Returns pictures (N, H, W, 3) after a Gaussian of `sigma` pixels, as (N, numbers). A lamp counts as white."""
+    """Returns pictures (N, H, W, 3) after a Gaussian of `sigma` pixels, as (N, numbers). Emitters count as white."""
     rows, columns = (numpy.exp(-0.5 * (numpy.subtract.outer(range(n), range(n)) / sigma)**2) for n in pictures.shape[1:3])
     rows, columns = rows / rows.sum(axis=1, keepdims=True), columns / columns.sum(axis=1, keepdims=True)
     return numpy.einsum("ij,njkc,lk->nilc", rows, numpy.minimum(pictures, 1), columns, optimize=True).reshape(len(pictures), -1)

@@ -23,7 +23,7 @@ def quaternion_of(rotation):
     k = numpy.array([[r[0, 0] + r[1, 1] + r[2, 2], 0, 0, 0], [r[2, 1] - r[1, 2], r[0, 0] - r[1, 1] - r[2, 2], 0, 0],
                      [r[0, 2] - r[2, 0], r[0, 1] + r[1, 0], r[1, 1] - r[0, 0] - r[2, 2], 0],
                      [r[1, 0] - r[0, 1], r[0, 2] + r[2, 0], r[1, 2] + r[2, 1], r[2, 2] - r[0, 0] - r[1, 1]]])
-    return numpy.linalg.eigh(k)[1][:, -1]  # which reads the lower triangle
+    return numpy.linalg.eigh(k)[1][:, -1]  # eigh reads the lower triangle
 
 
 def write_transforms(path, poses, K, size, names):

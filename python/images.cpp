@@ -74,7 +74,7 @@ void write_result(const std::string& path, const PythonResult& result, const std
     } else if (result.merged) {
         facts.shown.clear();
     }
-    RenderResult written = result.whole(); // which loses its layers
+    RenderResult written = result.whole(); // the copy loses its layers
     const nb::gil_scoped_release unlocked;
     image_format_for(path);
     const std::string failures = failures_of(write_picture(paths, facts, written));

@@ -138,7 +138,7 @@ def main():
     lines += class_of("BatchResult", core.BatchResult, "", properties_of(core.BatchResult, {**MEMBERS, **OF_BATCHES}))
     lines += class_of("Cameras", package.Cameras, "", ["poses: Any", "K: Any", "settings: dict[str, Any]", "names: list[str] | None", "size: str | None"])
     lines += class_of("Params", package.Params, "(Mapping[str, Any])")
-    others = [row for row in rows if row["name"] != "environment"] # which may be an array too
+    others = [row for row in rows if row["name"] != "environment"] # environment may be an array, too
     made_of = takes_settings("__init__", ["self,", "source: _Text | None = None,", "*,", *PARTS], "None", others, scene)
     lines += class_of("Scene", scene, "", properties_of(core.Scene), properties_of(scene), made_of)
     lines += class_of("Session", session, "", properties_of(core.Session),

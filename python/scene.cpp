@@ -51,7 +51,7 @@ std::unique_lock<std::timed_mutex> PythonScene::wait_for_turn(Sink& sink) {
 PictureOptions PythonScene::options_of(const CallSettings& settings, Sink& sink) const {
     PictureOptions options;
     options.scene.scene = name();
-    set_all(options, settings_); // which the call's file overrules
+    set_all(options, settings_); // the call's file overrules them
     combine_settings(
         settings.file, kRender, [&](PictureOptions& others) { set_all(others, settings.texts); }, options, sink);
     for (const char* name : {"samples", "part", "checkpoint"}) {

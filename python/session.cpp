@@ -47,7 +47,7 @@ std::optional<PythonResult> PythonSession::next(Sink& sink) {
     const FrameCamera camera = {*setup.camera, setup.sequence};
     RenderedFrame rendered = render_frame(*frame_, {camera, *setup.moving, *record_, session}, sink);
     if (rendered.result.samples < record_->settings.samples) {
-        cut_.reset(); // which has ended the history
+        cut_.reset(); // the cut has ended the history
         sink.check();
         throw Error(ErrorCode::Interrupted, "interrupted before the frame was complete");
     }

@@ -3,7 +3,7 @@
 
 A comment, docstring or trailing comment names a thing or is a sentence, and is understood without its neighbour. One that
 begins with a word of FRAGMENTS leans on another one, and the comment of a declaration that begins with one of CLAUSES is
-half a sentence. VAGUE are words with a plain or standard one: name who acts, say "emitter", "truncated", "except". Names
+half a sentence; so is a trailing comment that begins with one of JOINTS. VAGUE are words with a plain or standard one: name who acts, say "emitter", "truncated", "except". Names
 in backquotes and strings are not checked. Subjects are checked for the commits that follow the one that added
 this file; where there is no git or no history, they are not checked.
 
@@ -18,12 +18,13 @@ import sys
 import tempfile
 import tokenize
 
-FOLDERS = ["src", "apps", "tests", "tools", "bench", "cmake", "python", ".ci"]
+FOLDERS = ["src", "apps", "tests", "tools", "bench", "cmake", "python", "examples", ".ci"]
 C_SUFFIXES = {".h", ".cpp", ".cu", ".inl", ".js"}
 SCRIPT_SUFFIXES = {".cmake", ".sh"}
 FRAGMENTS = re.compile(r"[/*!<#\s]*(?:of|what|those|the same|likewise|as|beside)\b", re.IGNORECASE)
 CLAUSES = re.compile(r"/// *(?:its|their|whether|why|how|where|when|that|these|it|they|then|and|so|to|from|by|without|with the)\b",
                      re.IGNORECASE)
+JOINTS = re.compile(r"(?://+|/\*+|#+)\s*(?:and|or|also|then|which|whose)\b", re.IGNORECASE)
 VAGUE = re.compile(r"\b(?:(?:is|are) (?:told|asked|seen)|asked (?:for|about)|somebody|nobody(?!\()|stuff|thrice|the very|but for|"
                    r"cut short|proven|lamps?|what is (?:there|wrong|right)|for ever|whichever way|as it is,)\b", re.IGNORECASE)
 LONGEST_SUBJECT = 72
@@ -88,13 +89,20 @@ def comments_of(file):
     return ()
 
 
+def is_trailing(comment, line):
+    """Returns whether something stands before a comment on its line. Docstrings, which have no sign, are no such comments."""
+    return comment.startswith(("//", "/*", "#")) and line.split(comment.splitlines()[0])[0].strip() != ""
+
+
 def comment_faults(root):
     files = [file for folder in FOLDERS for file in sorted((root / folder).rglob("*"))]
     for file in [*files, root / "CMakeLists.txt", *sorted(root.glob("*.sh"))]:
         if not file.exists():
             continue
         for line, comment in comments_of(file):
-            if FRAGMENTS.match(comment) or CLAUSES.match(comment):
+            lines = file.read_text(encoding="utf-8").split("\n") if JOINTS.match(comment) else []
+            is_joint = lines and is_trailing(comment, lines[line - 1])
+            if FRAGMENTS.match(comment) or CLAUSES.match(comment) or is_joint:
                 yield f"{file.relative_to(root)}:{line}: a comment is no fragment: {comment.splitlines()[0]}"
             vague = VAGUE.search(re.sub(r"`[^`]*`|\"[^\"]*\"|'[^']*'", "", re.sub(r"\s+(?://+|#+|\*)?\s*", " ", comment)))
             if vague:
@@ -148,6 +156,13 @@ CASES = [
     (".sh", "a=$#\n# What it is\n", 2),
     (".sh", "a='# of'; b=${a#of}\n", 0),
     ("/run", "#!/bin/bash\n# As before\n", 2),
+    (".h", "int a; // which is one\n", 1),
+    (".h", "int a;\n\nint b; /* And another. */\n", 3),
+    (".h", "// Which of several is one\nint a;\n", 0),
+    (".h", "int a; // orders\n       // and sizes\n", 0),
+    (".py", "a = 1\nb = 2  # or 3\n", 2),
+    (".py", "'''Which of these.'''\n# And this.\na = 'b' # a set\n", 0),
+    (".sh", "a=1 # then b\n# Then c\n", 1),
     (".h", "/// Takes what a lamp emits.\n", 1),
     (".cpp", "int a; // the light that is asked\n       // for\n", 1),
     (".py", "a = 1  # nobody steers\n", 1),

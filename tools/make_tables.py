@@ -112,7 +112,7 @@ def peer_faults(files, peers):
 
 
 def unknown_commits(files):
-    """Messages about commits that Git has not got; none where there is no Git, or not its whole history."""
+    """Messages about commits that are missing in Git; none where there is no Git, or not its whole history."""
     named = [(name, commit) for name, measured in files.items() for key in ("program", "recorded")
              for commit in re.findall(r"\b[0-9a-f]{7,12}\b", measured.get(key) or "")]
     run = lambda *words, text=None: subprocess.run(["git", "-C", str(ROOT), *words], input=text, capture_output=True, text=True, check=False).stdout

@@ -53,14 +53,14 @@ Fields measure(const std::string& file, Queue& queue, RenderSettings settings) {
     const PrepareOptions uncached = options;
     options.bvh_cache = cache.path();
     throw_if_interrupted();
-    const PreparedScene prepared = prepare_scene(scene, options, sink); // also fills the cache
+    const PreparedScene prepared = prepare_scene(scene, options, sink); // fills the cache, too
     throw_if_interrupted();
     const PreparedScene cached = prepare_scene(scene, options, sink);
     const double build_s = prepare_scene(scene, uncached, sink).build_seconds;
 
     const Camera camera = choose_camera(CameraChoice{}, scene, aspect_of(settings.width, settings.height), sink);
     {
-        Session warm_up(queue, cached, camera, settings); // whose trees are not those that are yet to be converted
+        Session warm_up(queue, cached, camera, settings); // leaves the trees of `prepared` unconverted
         render_again(warm_up, 1);
     }
     Session session(queue, prepared, camera, settings);

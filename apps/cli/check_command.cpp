@@ -34,7 +34,7 @@ int check(CheckFlags& flags) {
     flags.settings.read(flags, reporter);
     Messages messages;
     const Scene scene = open_scene(flags.scene, messages, SceneUse::Picture, Ground::Auto);
-    MovingCamera(flags.scene.camera, std::nullopt, scene, 1, messages); // whose view a scene without a camera gets
+    MovingCamera(flags.scene.camera, std::nullopt, scene, 1, messages); // adds the view of a scene without a camera
     bool is_complete = true;
     std::string lines;
     for (const Message& message : messages.all()) {

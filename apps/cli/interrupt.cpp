@@ -18,7 +18,7 @@ volatile std::sig_atomic_t g_interrupted = 0;
 // Made before the signal, whose handler may do little but write() and _exit().
 std::string g_last_line;
 int g_last_line_goes_to = STDERR_FILENO;
-bool g_has_reader = false; // at a terminal
+bool g_has_reader = false; // whether standard error is a terminal
 
 /// A second signal of either kind ends the process.
 void ignore_second() {

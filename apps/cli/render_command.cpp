@@ -161,7 +161,7 @@ int write_one(const RenderFlags& flags, const RenderSettings& settings, const Pi
     }
     if (kept && ranks == nullptr) films.push_back(kept->written());
     kept.reset(), session.reset();                               // writing takes memory too
-    if (!writes_tone_mapped(flags.outputs)) facts.shown.clear(); // which only film files have
+    if (!writes_tone_mapped(flags.outputs)) facts.shown.clear(); // only film files have them
     WrittenPicture written = write_picture(flags.outputs, facts, result);
     written.files.insert(written.files.end(), films.begin(), films.end());
     report_files(written, reporter);

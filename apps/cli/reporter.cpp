@@ -81,7 +81,7 @@ void Reporter::print(const std::string& line) {
 }
 
 void Reporter::progress(const Progress& now) {
-    constexpr double often_s = 0.1; // enough for eyes
+    constexpr double often_s = 0.1; // the bar is redrawn at most this often
     const bool is_soon = now.seconds >= shown_at_s_ && now.seconds - shown_at_s_ < often_s;
     if (now.samples == 0 && now.doing == shown_step_ && is_soon && now.share < 1) return; // a render reports seldom
     shown_step_ = now.doing, shown_at_s_ = now.seconds;

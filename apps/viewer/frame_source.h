@@ -39,9 +39,9 @@ struct ShownFrame {
     bool is_reference = false;                // whether it shows the picture of pertev render
     std::string hash;                         // hash of the film if known; else empty
     std::string caption;                      // meaning of a layer's colours
-    float exposure_stops = 0;                 // that it is shown with
+    float exposure_stops = 0;                 // exposure of the shown picture
     float found_stops = 0;                    // the part of these stops that automatic exposure found
-    RayCounts rays;                           // traced for it
+    RayCounts rays;                           // rays traced for this frame
     double render_s = 0;                      // time of these rays and of shading
     SceneTracer::Seconds kind_seconds;        // times of these rays, if they were timed by kind
     float scale = 1;                          // scale relative to the full size

@@ -17,7 +17,8 @@ namespace pertev {
 
 class Packer {
 public:
-    /// All arguments outlive it. `now_s` returns seconds of the audience's clock. `jpeg_queue`: see JpegEncoder.
+    /// The arguments must outlive this object. `now_s` returns seconds of the audience's clock. `jpeg_queue`: see
+    /// JpegEncoder.
     Packer(Audience& audience, WebServer& server, std::function<double()> now_s, Queue* jpeg_queue);
     /// Ends the thread.
     ~Packer();

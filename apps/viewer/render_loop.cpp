@@ -84,8 +84,9 @@ void RenderLoop::handle(const Command& command) {
         return inbox_.expect(view_);
     }
     if (const Save* save = std::get_if<Save>(&command)) return saves_.push_back(*save);
-    is_done_ = false;                   // a client has connected, so the current picture is sent again
-    if (!last_) moved_at_s_ = now_s_(); // or a small one at once, because a sample of a large picture may take long
+    is_done_ = false; // a client has connected, so the current picture is sent again
+    if (!last_)
+        moved_at_s_ = now_s_(); // a small picture comes first, because a sample of a large picture may take long
 }
 
 void RenderLoop::steer(const Steer& requested) {

@@ -16,7 +16,7 @@ namespace pertev {
 
 class RenderLoop {
 public:
-    /// All arguments outlive it.
+    /// The arguments must outlive this object.
     RenderLoop(const ViewerStart& start, FrameSource& source, Inbox& inbox, Audience& audience, const Packer& packer,
                std::function<double()> now_s);
 

@@ -123,7 +123,7 @@ ViewerStart start_viewer(const PictureOptions& options, const RenderSetup& ready
     start.options = options;
     start.view.options = options;
     start.view.options.render = ready.settings;
-    if (!options.size && !camera.intrinsics) { // which hold for pictures of one shape
+    if (!options.size && !camera.intrinsics) { // intrinsics hold for pictures of one shape
         start.view.window_pixels = uint64_t(ready.settings.width) * ready.settings.height;
     }
     start.view.display = display;

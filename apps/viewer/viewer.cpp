@@ -65,7 +65,7 @@ std::string address_of(const std::string& host, uint16_t port, const std::string
 void run_viewer(const ViewerOptions& options, const ViewerStart& start, FrameSource& source,
                 const std::function<void(const std::string& address)>& listening,
                 const std::function<bool()>& goes_on) {
-    const bool is_given = !options.token.empty(); // and not in the program's output
+    const bool is_given = !options.token.empty(); // a given token is not in the program's output
     const ServerIdentity identity = {options.host, is_given ? options.token : make_token(), "pertev-" + make_token(4),
                                      make_token(), options.embed};
     Inbox inbox;

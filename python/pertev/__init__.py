@@ -27,7 +27,7 @@ __all__ = ["BatchResult", "Cameras", "DeviceArray", "DeviceError", "Error", "Inp
 
 
 def __getattr__(name):
-    if name == "farm":  # which few need
+    if name == "farm":  # few need it
         return importlib.import_module(".farm", __name__)
     raise AttributeError(f"module 'pertev' has no attribute '{name}'")
 

@@ -3,7 +3,7 @@
 
 def on_host(value):
     """Returns an array in the memory of the CPU: of PyTorch, CuPy, Warp, JAX or of a DeviceArray a copy if it is on a GPU."""
-    import numpy  # which `import pertev` does without
+    import numpy  # not needed by `import pertev` itself
 
     if hasattr(value, "detach"):  # PyTorch's, which NumPy takes only without a gradient
         value = value.detach()

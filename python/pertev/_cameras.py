@@ -11,7 +11,7 @@ from .errors import InputError, input_error
 
 def _numbers(value, name):
     """Returns an array of NumPy. Raises InputError of the argument's name."""
-    import numpy  # which `import pertev` does without
+    import numpy  # not needed by `import pertev` itself
 
     try:
         array = numpy.asarray(on_host(value))

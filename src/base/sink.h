@@ -161,7 +161,7 @@ inline Sink& nobody() {
 /// Keeps the messages of a part of some work. The part stops with the whole, which hears none of them.
 class PartMessages final : public Messages {
 public:
-    /// `whole` outlives it.
+    /// `whole` must outlive this object.
     explicit PartMessages(Sink& whole) : whole_(whole) {}
     bool should_stop() override { return whole_.should_stop(); }
 
@@ -173,7 +173,7 @@ private:
 /// whole, which gets the messages.
 class ProgressSink final : public Sink {
 public:
-    /// `whole` outlives it.
+    /// `whole` must outlive this object.
     explicit ProgressSink(std::function<bool(const Progress&)> goes_on, Sink& whole = nobody())
         : goes_on_(std::move(goes_on)), whole_(whole) {}
     void receive(const Message& message) override { whole_.receive(message); }

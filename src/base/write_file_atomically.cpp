@@ -34,7 +34,7 @@ private:
     int fd_;
 };
 
-constexpr std::string_view kStandardOutput = "/dev/stdout."; // which is no folder, so no file has such a name
+constexpr std::string_view kStandardOutput = "/dev/stdout."; // /dev/stdout is not a folder, so no file has such a name
 
 bool is_standard_output(const fs::path& path) { return path.string().starts_with(kStandardOutput); }
 

@@ -15,7 +15,7 @@ class Readback {
     static_assert(std::is_trivially_copyable_v<T>);
 
 public:
-    /// `queue` outlives it.
+    /// `queue` must outlive this object.
     explicit Readback(Queue& queue) : queue_(&queue), copy_(queue.make_host_copy(sizeof(T))) {}
 
     /// Copies the value at `device` once the work queued on the current stream so far is done.

@@ -17,7 +17,7 @@ struct MediumPoint {
     Vec3 position;
     Rgb sigma_t;       // 1/m
     float g;           // mean cosine of the phase function
-    uint32_t instance; // whose medium it is; the number of all instances: the scene's
+    uint32_t instance; // instance that contains the medium; the number of all instances: the scene's
 };
 
 /// The media that a free flight went through before it ended.

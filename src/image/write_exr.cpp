@@ -123,7 +123,7 @@ std::vector<std::byte> encode_exr(const Image& picture, std::span<const ExrLayer
     for (const ExrLayer& layer : layers) channels += layer.channels.size();
     PERTEV_CHECK(row_bytes(picture.width, channels) <= kMaxRowBytes);
     Builder builder(picture, channels, place);
-    std::deque<std::vector<half>> halves; // which the file is written from
+    std::deque<std::vector<half>> halves; // the file is written from these
     const auto add = [&](const std::string& name, const std::vector<float>& values, std::size_t c, std::size_t count,
                          bool is_color) {
         if (!is_color || colors == ExrColors::Float)

@@ -77,7 +77,7 @@ Bytes deflate_part(const Bytes& bytes, std::size_t begin, std::size_t end) {
     if (before > 0) {
         deflateSetDictionary(&stream, zlib_bytes(bytes.data() + begin - before), static_cast<uInt>(before));
     }
-    Bytes part(deflateBound(&stream, static_cast<uLong>(end - begin)) + 16); // and the mark of the part's end
+    Bytes part(deflateBound(&stream, static_cast<uLong>(end - begin)) + 16); // 16: the mark of the part's end
     stream.next_in = const_cast<Bytef*>(zlib_bytes(bytes.data() + begin));   // zlib only reads it
     stream.avail_in = static_cast<uInt>(end - begin);
     stream.next_out = reinterpret_cast<Bytef*>(part.data());

@@ -56,7 +56,7 @@ struct RecordJob {
 struct TransportPreset {
     std::string name, scene; // a built-in scene
     std::string shows;
-    std::string reference_integrator; // which of path and bidirectional has the less noise at equal time
+    std::string reference_integrator; // the one of path and bidirectional with less noise at equal time
     std::optional<RecordView> view;   // otherwise the scene's own camera is used
 };
 

@@ -94,7 +94,7 @@ HD inline float log(float x) {
     const float f = scale.mantissa - 1.0f, e = static_cast<float>(scale.exponent);
     const float p = polynomial(f, 0x1.14730ap-4f, -0x1.de01cap-4f, 0x1.e6c01p-4f, -0x1.fc28ccp-4f, 0x1.233ba2p-3f,
                                -0x1.555c44p-3f, 0x1.99a476p-3f, -0x1.000006p-2f, 0x1.555548p-2f, -0.5f);
-    const float low = fma(p, f * f, e * -0x1.05c61p-29f); // and the low part of e ln 2
+    const float low = fma(p, f * f, e * -0x1.05c61p-29f); // includes the low part of e ln 2
     return fma(e, 0x1.62e43p-1f, f + low);
 }
 

@@ -13,7 +13,7 @@ namespace pertev {
 namespace {
 
 constexpr uint32_t kMaxPasses = 24, kSweeps = 3;
-constexpr uint64_t kLinksAtOnce = 256; // whose rays are traced together
+constexpr uint64_t kLinksAtOnce = 256; // their rays are traced together
 constexpr float kRaysOfLimit = 8;      // rays of a link whose possible error equals the limit
 
 /// The exception for too many links. It does not depend on the number of threads, because the links of a round are

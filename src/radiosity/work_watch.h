@@ -15,7 +15,7 @@ namespace pertev {
 
 class WorkWatch {
 public:
-    /// `sink` outlives it.
+    /// `sink` must outlive this object.
     explicit WorkWatch(Sink& sink) : sink_(sink), began_(Clock::now()), step_began_(began_) {}
     WorkWatch(const WorkWatch&) = delete;
     WorkWatch& operator=(const WorkWatch&) = delete;

@@ -28,7 +28,7 @@ public:
     /// Takes those of `rows` that others have made, once they have queued that. Work queued here afterwards sees them.
     /// No device may change these rows before the next take() or the end of the frame.
     virtual void take(const std::vector<RowArray>& arrays, RowBand rows) = 0;
-    /// Starts to take all rows of the last frame, from the devices that made them then, beside other work.
+    /// Starts collecting the last frame's rows from the devices that rendered them, concurrently with other work.
     virtual void begin_taking_last(const std::vector<RowArray>& arrays) = 0;
     /// Waits for these rows.
     virtual void finish_taking_last() = 0;

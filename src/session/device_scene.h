@@ -17,7 +17,7 @@ namespace pertev {
 
 class DeviceScene {
 public:
-    /// Makes an object without a scene, which the first set() gives; `queue` outlives it.
+    /// Makes an empty object; call set() before use. `queue` must outlive this object.
     explicit DeviceScene(Queue& queue) : queue_(queue), uploads_(queue) {}
     DeviceScene(const DeviceScene&) = delete;
     DeviceScene& operator=(const DeviceScene&) = delete;

@@ -94,7 +94,7 @@ private:
     PictureRenderer& pictures_;
     Camera camera_;
     RenderSettings settings_;
-    std::shared_ptr<PostSteps> steps_; // which the film may read; unused if devices share the picture
+    std::shared_ptr<PostSteps> steps_; // the film may read them; unused if devices share the picture
     std::string denoiser_;             // that made denoised()
     AddTargets add_targets_;
     std::optional<Film> film_;

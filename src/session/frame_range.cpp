@@ -69,7 +69,7 @@ std::string frame_file(std::string pattern, uint32_t frame, std::span<const std:
     const std::size_t name = pattern.rfind('/') + 1; // npos + 1: 0
     std::string file = pattern.substr(0, name);
     const std::size_t camera = names.empty() ? std::string::npos : pattern.find(kName, name);
-    if (camera != std::string::npos) { // whose name may contain a '#'
+    if (camera != std::string::npos) { // a camera's name may contain a '#'
         return frame_file(pattern.substr(0, camera), frame) + names[frame] +
                frame_file(pattern.substr(camera + kName.size()), frame);
     }

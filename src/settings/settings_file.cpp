@@ -56,7 +56,7 @@ bool is_written(const PictureOptions& options, const Setting& setting) {
                              has_setting(options.render.integrator, setting);
     if (!setting.is_kept || !(is_recorded || options.is_given(setting.name))) return false;
     const std::vector<std::string> texts = texts_of(options, setting);
-    return !texts.empty() && // which a value that means "not given" has
+    return !texts.empty() && // empty: a value that means "not given"
            std::ranges::all_of(texts, [&](const std::string& text) { return why_no_value(setting, text).empty(); });
 }
 

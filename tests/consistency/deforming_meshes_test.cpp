@@ -158,7 +158,7 @@ TEST_CASE("a step in time uploads joints and weights, not vertices, and allocate
         const uint64_t uploaded = queue.uploaded_bytes(), allocations = queue.allocation_count();
         session.update_scene(moving.prepared(), moving.set_time(0.75, messages));
         const uint64_t of_step = queue.uploaded_bytes() - uploaded;
-        CHECK(of_step < 8192); // and the TLAS, the instances, the lights and the view of the scene
+        CHECK(of_step < 8192); // includes the TLAS, the instances, the lights and the view of the scene
         CHECK(of_step < moving.scene().meshes[0].positions.size() * sizeof(Vec3));
         session.render_frame(2, {});
         CHECK(queue.allocation_count() == allocations);

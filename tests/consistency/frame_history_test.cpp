@@ -299,7 +299,7 @@ TEST_CASE("a damaged checkpoint of frames is found, and the generation before is
         const std::vector<std::byte> damaged_too = read_file(disk.file);
         std::ofstream(disk.file + ".previous", std::ios::binary)
             .write(reinterpret_cast<const char*>(damaged_too.data()), std::streamsize(damaged_too.size()));
-        CHECK(!disk.kept().read(disk.messages)); // and both are named
+        CHECK(!disk.kept().read(disk.messages)); // both generations are named
         const std::string said = disk.messages.all().back().text;
         CHECK(said.find(disk.file + ":") != std::string::npos);
         CHECK(said.find(disk.file + ".previous") != std::string::npos);

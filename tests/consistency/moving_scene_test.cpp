@@ -142,7 +142,7 @@ TEST_CASE("an instance with a scale of 0 is invisible, casts no shadow and emits
     Messages messages;
     Scene without = test::make_mixed_scene();
     validate(without, "mixed", messages);
-    Scene with = without; // and an emitter, which is the last instance and within the box of the others
+    Scene with = without; // has an emitter as the last instance, within the box of the others
     const Transform place = make_translation({0.5f, 2, 0.5f});
     with.nodes.resize(1);
     with.instances.push_back({.name = "lamp",

@@ -229,7 +229,7 @@ TEST_CASE("pictures and frames of two wavefronts, or of one with the memory of t
     check(90, 50, 1);    // one
     check(1000, 521, 1); // two with equal shares
     check(1000, 601, 2); // with room for more
-    check(1000, 521, 1); // again
+    check(1000, 521, 1); // two with equal shares, once more
     check(700, 500, 1);  // one of them
     settings.path.max_depth = 17;
     check(1000, 521, 1); // one wavefront again, because it has many rounds

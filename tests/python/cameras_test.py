@@ -301,7 +301,7 @@ class Cameras(unittest.TestCase):
         batch = pertev.render(self.scene, cameras=poses(2), **SMALL)
         before, size = batch.color.numpy(), ctypes.c_size_t(batch.color.numpy().nbytes)
         address = ctypes.c_uint64(batch.color.__cuda_array_interface__["data"][0])
-        call("cuStreamCreate", ctypes.byref(stream), 1)  # which waits for no other one
+        call("cuStreamCreate", ctypes.byref(stream), 1)  # non-blocking: it waits for no other stream
         call("cuMemAlloc_v2", ctypes.byref(kept), size)
         call("cuLaunchHostFunc", stream, work, None)
         call("cuMemcpyDtoDAsync_v2", kept, address, size, stream)

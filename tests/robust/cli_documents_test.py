@@ -23,7 +23,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 import check_documents  # pylint: disable=wrong-import-position
 
-PARSED = [r"--rays record"] # which needs a public scene
+PARSED = [r"--rays record"] # it needs a public scene
 SMALL = {"--size": "24x16", "--spp": "1", "--seconds": "0.02", "--depths": "1-2", "--runs": "1", "--repetitions": "2", "--reference-spp": "2",
          "--frames": "0-1", "--turntable": "2"}
 ADDED = {"render": ["--size", "--spp"], "lab": ["--size", "--runs"], "lab --thesis": ["--size", "--runs"], "lab --transport": ["--size", "--seconds", "--repetitions", "--reference-spp"],

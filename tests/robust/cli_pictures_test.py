@@ -126,7 +126,7 @@ class WhatHalfACameraSees(CliTest):
                     given = "{},{},{}".format(*eye)
                     notices, made = self.notices("--eye", given, scene=scene)
                     told = [text for text in notices if "--eye" in text]
-                    self.assertEqual(len(told), 1, notices)  # and no unused camera is named
+                    self.assertEqual(len(told), 1, notices)  # no unused camera is named
                     flags = re.search(r"\((--eye \S+ --target \S+)\)", told[0]).group(1).split()
                     self.assertEqual(flags[1], given)
                     self.assertEqual(tuple(float(x) for x in flags[3].split(",")), middle)

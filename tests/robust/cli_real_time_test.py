@@ -226,7 +226,7 @@ class RealTime(CliTest):
         end = self.succeed(*line, "--json").events("sequence")[0]
         self.assertLessEqual(end["rendered_again"], 1)
         self.assertEqual(self.pictures("x"), self.pictures("whole"))
-        self.assertEqual([name for name in self.files() if name.startswith(".")], [])  # which killed ones had left
+        self.assertEqual([name for name in self.files() if name.startswith(".")], [])  # files that killed processes left
 
     def test_frames_with_another_hash_than_recorded_are_refused(self):
         motion = ["--fps", "4", "--frames", "0-3"]

@@ -103,7 +103,7 @@ TEST_CASE("no builder's tree exceeds the traversals' depth, however long the lin
             if (effort(0, 1))
                 MESSAGE(std::string(name_of(builder)), ": ", triangles->size(), " triangles, depth ", bvh.depth, ", ",
                         time.seconds(), " s");
-            const auto fault = fault_of(builder, bvh, *triangles); // also checks that the depth is at most kMaxBvhDepth
+            const auto fault = fault_of(builder, bvh, *triangles); // checks the depth against kMaxBvhDepth, too
             CHECK_MESSAGE(!fault, fault.value_or(""));
         }
     }

@@ -57,7 +57,7 @@ TEST_CASE("a file with other bytes is named, and a missing one unless only its n
     const DecidingSettings one = {
         {"max_depth", "4"}, {"exposure", "1"}, {"file a.mtl", "0a"}, {"file maps/b.png", "0b"}, {"version", "1"}};
     DecidingSettings changed = one;
-    changed[0].second = "5"; // which the changed file suggests
+    changed[0].second = "5"; // the changed file suggests it
     changed[3].second = "1b";
     CHECK(text_of_first(one, changed) == "maps/b.png is another file there");
     DecidingSettings missing = one;
@@ -68,7 +68,7 @@ TEST_CASE("a file with other bytes is named, and a missing one unless only its n
     DecidingSettings renamed = one;
     renamed[3].first = "file other/b.png";
     CHECK(text_of_first(one, renamed) == "");
-    renamed.emplace_back("file maps/b.png", "0b"); // and one more of these bytes
+    renamed.emplace_back("file maps/b.png", "0b"); // another file with the same bytes
     CHECK(text_of_first(one, renamed) == "other/b.png is read here and not there");
     CHECK(text_of_first(renamed, one) == "other/b.png is read there and not here");
     renamed[3].second = "1b";

@@ -171,7 +171,7 @@ TEST_CASE("every structure of the laboratory is built until the sink ends it") {
     check_stops((nodes >> 16) + 1, convert(TreeLayout::Linked));
     check_stops((3 * nodes >> 16) + 1, convert(TreeLayout::Skip)); // inner nodes twice, and leaves
     check_stops(checks, convert(TreeLayout::Woop));
-    check_stops(1 + sort + checks + 5, convert(TreeLayout::Compressed, StructureKind::Hploc)); // and levels of nodes
+    check_stops(1 + sort + checks + 5, convert(TreeLayout::Compressed, StructureKind::Hploc)); // 5: levels of nodes
     // A kd-tree's root has 70,000 triangles, and at least 15 nodes have more than 4096. An octree's have over 8192.
     check_stops(checks + 15 + checks - 1, build(StructureKind::KdMedian));
     check_stops(110, build(StructureKind::KdSah)); // There are 123, of which a fourth are of the axes of large cells.

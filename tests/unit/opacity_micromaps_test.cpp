@@ -162,7 +162,7 @@ TEST_CASE("each micro-triangle has a unique index, which all of its points have"
             CHECK(micro_index(level, micro_triangle_of(level, at.x, at.y)) == i);
         }
         CHECK(seen.size() == micro_triangles(level));
-        for (int i = 0; i < 10'000; ++i) { // and no point has an invalid index
+        for (int i = 0; i < 10'000; ++i) { // no point has an invalid index
             const Vec2 at = some_place(random);
             CHECK(micro_index(level, micro_triangle_of(level, at.x, at.y)) < micro_triangles(level));
         }

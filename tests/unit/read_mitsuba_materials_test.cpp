@@ -274,7 +274,7 @@ TEST_CASE("mitsuba: phong, ward, roughdiffuse and coating are the nearest, with 
     for (const char* const type : {"phong", "ward", "roughdiffuse"}) {
         const MitsubaMaterial read = load_bsdf(bsdf_of(type), "0.6.0");
         CHECK(read.messages.left_out() == std::vector<std::string>{});
-        CHECK(read.messages.all().size() == 2); // and that both faces reflect
+        CHECK(read.messages.all().size() == 2); // the second: both faces reflect
     }
     CHECK(load_bsdf(bsdf_of("phong", number_of("exponent", 6))).material.roughness == doctest::Approx(std::sqrt(0.5)));
     const Material coated = mitsuba_material(

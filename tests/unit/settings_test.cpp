@@ -297,7 +297,7 @@ TEST_CASE("a picture's file records each setting of the table that the integrato
     CHECK(has("pertev.max_depth"));
     CHECK(has("pertev.ambient"));
     CHECK(!has("pertev.photons"));
-    CHECK(!has("pertev.denoise")); // which is the default
+    CHECK(!has("pertev.denoise")); // it has the default
 }
 TEST_CASE("a scene file's suggestions hold unless a given setting excludes them") {
     Scene scene;

@@ -31,7 +31,7 @@ TEST_CASE("an array that stays on the host is copied from the device that has it
         upload_array(first, there.data(), std::as_bytes(std::span(host)));
         first.wait();
     }
-    for (uint32_t& number : host) number += 7; // which shows where a copy comes from
+    for (uint32_t& number : host) number += 7; // shows where a copy comes from
     CHECK(upload_to_second(&of_first, true) == before);
     CHECK(upload_to_second(&of_first, false) == host); // another array may lie there by now
     CHECK(upload_to_second(nullptr, true) == host);

@@ -55,7 +55,7 @@ Bvh build_insertion_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuil
 struct SpatialSplitSettings {
     float min_overlap = 1e-5f; // triangles are split if the halves of the best object split overlap by more than this
                                // fraction of the root's area
-    float min_own_overlap = 0.2f; // and by more than this fraction of their parent's; a smaller overlap is seldom
+    float min_own_overlap = 0.2f; // least overlap as a fraction of the parent's; a smaller one is seldom
                                   // worth a split
     float max_growth = 1.0f;      // >= 0; at most (1 + this) references per triangle
 };

@@ -55,7 +55,7 @@ void OidnFilter::make_filter(OidnQuality quality) {
     set_image("normal", images + 2 * pixels_);
     set_image("output", images);
     call.set_filter_bool(filter, "hdr", true);
-    const bool is_high = quality == OidnQuality::High; // whose guides are means of many samples, and hardly noisy
+    const bool is_high = quality == OidnQuality::High; // guides are means of many samples, and hardly noisy
     call.set_filter_bool(filter, "cleanAux", is_high);
     call.set_filter_int(filter, "quality", is_high ? OidnLibrary::kHighQuality : OidnLibrary::kFastQuality);
     call.commit_filter(filter);

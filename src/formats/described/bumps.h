@@ -22,7 +22,7 @@ double world_area(const Mesh& mesh, const DoubleTransform& world_from_mesh);
 /// Normals of height maps, each made once.
 class Bumps {
 public:
-    /// All outlive it; `made` are images that are not from files.
+    /// `made` are images that are not from files. The arguments must outlive this object.
     Bumps(ImageBudget& budget, const std::vector<TextureImage>& made, Scene& scene)
         : budget_(budget), made_(made), scene_(scene) {}
 

@@ -135,7 +135,7 @@ void finish_media(std::optional<uint32_t> at_camera, Sink& sink, Parts& parts) {
 void fill_surface(const MediumParameters& medium, const FileLocation& location, Sink& sink, Surface& surface) {
     Material& material = surface.material;
     material.medium = medium;
-    if (surface.is_nothing && max_component(material.emission) > 0) { // which a clear boundary could not show
+    if (surface.is_nothing && max_component(material.emission) > 0) { // a clear boundary cannot emit
         material.medium = {};
         if (medium.is_there())
             sink.leave_out({location, "the medium inside of a shape is left out, because an invisible surface emits "

@@ -40,7 +40,7 @@ struct NormalMix {
 struct TextureValue {
     Rgb factor = {1, 1, 1}, offset = {0, 0, 0};
     TextureRef ref;             // its image is one of the loader, or kNoImage
-    int32_t made = -1;          // or one of Parts::made
+    int32_t made = -1;          // index into Parts::made; -1: none
     float exponent = 1;         // the gamma of the stored values; applied before factor and offset
     bool ignores_alpha = false; // an opacity is that of the colour, even if the image has an alpha channel
 

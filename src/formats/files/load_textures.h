@@ -28,7 +28,7 @@ namespace pertev {
 
 class TextureLoader {
 public:
-    /// `access` and `sink` outlive it.
+    /// `access` and `sink` must outlive this object.
     TextureLoader(const FileAccess& access, Sink& sink) : access_(access), sink_(&sink) {}
     /// Redirects messages to `sink`, which must outlive the loader.
     void report_to(Sink& sink) { sink_ = &sink; }

@@ -65,7 +65,8 @@ std::vector<Meshes::Part> Meshes::read_parts(uint32_t index) {
         sink_.check();
         const std::string part_name = primitives.size() > 1 ? fmt::format("{}/{}", name, i) : name;
         std::optional<uint32_t> part, material;
-        if (has_further_sets(primitives[i])) material = material_of(primitives[i]); // which tells the sets to read
+        if (has_further_sets(primitives[i]))
+            material = material_of(primitives[i]); // the material names the sets to read
         TextureSets sets = material ? sets_of(*material) : TextureSets{0, 1};
         const auto read_mesh = [&] { part = mesh_of(primitives[i], index, part_name, sets); };
         read_or_leave_out(primitives[i], sink_, read_mesh);

@@ -23,7 +23,7 @@ struct TextureChannel {
 
 class TextureWriter {
 public:
-    /// All outlive it. `scene` is written to `parts`; `sink` gets what is lost.
+    /// `scene` is written to `parts`; `sink` gets what is lost. The arguments must outlive this object.
     TextureWriter(const Scene& scene, GlbParts& parts, Sink& sink) : scene_(scene), parts_(parts), sink_(sink) {}
 
     /// Returns a textureInfo that has these channels, with additional members such as a scale, or "" if none has an

@@ -132,7 +132,7 @@ private:
     void add_instance(const Instance& instance) {
         if (instance.is_background) return; // a ground that was made up
         const std::string members = fmt::format(R"("mesh":{})", mesh_of(instance.mesh, instance.material));
-        Transform none; // which hides it
+        Transform none; // a node without a scale is hidden
         none.row0 = none.row1 = none.row2 = {0, 0, 0};
         add_node(instance.is_hidden ? none : instance.world_from_local, instance.name, members);
     }

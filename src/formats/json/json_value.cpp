@@ -110,7 +110,7 @@ JsonValue::extensions_within(const std::function<bool(std::string_view)>& is_wan
                     self(self, value, false);
                     path.pop_back();
                 } else if (value.is_number() || value.is_string()) {
-                    break; // so are all
+                    break; // all elements of this array are of this kind
                 }
                 ++i;
             }

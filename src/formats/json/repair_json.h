@@ -11,7 +11,7 @@ namespace pertev::gltf {
 enum class RepairJson {
     Numbers, // valid by RFC 8259: whole numbers beyond 64 bits, and numbers beyond the largest double, which become
              // that
-    All,     // and invalid ones: NaN (null), Infinity, bytes that are not UTF-8, half a surrogate pair (U+FFFD), tabs
+    All, // invalid values, too: NaN (null), Infinity, bytes that are not UTF-8, half a surrogate pair (U+FFFD), tabs
 };
 
 /// Returns text that simdjson can read; `text` itself if it needs no repair. Appends to `repairs` what was invalid, as

@@ -14,11 +14,11 @@
 
 namespace pertev::mitsuba {
 
-using described::Surface; // which a device's Surface would hide
+using described::Surface; // a device's Surface would hide it
 
 class Bsdfs {
 public:
-    /// Both outlive it.
+    /// The arguments must outlive this object.
     Bsdfs(Reading& reading, Textures& textures) : reading_(reading), textures_(textures) {}
 
     /// Returns the index into Parts::surfaces of an object <bsdf>. An unreadable one is grey, with a warning.
@@ -55,7 +55,7 @@ private:
         return textures_.color(bsdf, name, ColorUse::Reflectance, grey(missing));
     }
 
-    static constexpr std::size_t kMostReads = 4096; // and some for each object of the file
+    static constexpr std::size_t kMostReads = 4096; // a file's objects add some each
 
     Reading& reading_;
     Textures& textures_;

@@ -12,7 +12,7 @@ namespace pertev::mitsuba {
 
 class Media {
 public:
-    /// `reading` outlives it.
+    /// `reading` must outlive this object.
     explicit Media(Reading& reading) : reading_(reading) {}
 
     struct OfShape {

@@ -37,7 +37,7 @@ void report_edges(Object& texture, const IntensityTable& table, Sink& sink) {
     for (const bool across : {true, false}) {
         const char* const name = across ? "wrap_mode_u" : "wrap_mode_v";
         const std::string mode = parameters.text(name, both, sink);
-        const bool is_edge = mode == "clamp" || mode == "mirror"; // which are the same half a pixel from it
+        const bool is_edge = mode == "clamp" || mode == "mirror"; // both are the same half a pixel from the edge
         if (is_edge || table.filter == TableFilter::Nearest || !has_other_edges(table.values, across)) continue;
         const bool is_stated = parameters.has(name) || parameters.has("wrap_mode");
         Remark remark(texture.location(),

@@ -31,7 +31,7 @@ struct MeshNeeds {
 
 class Shapes {
 public:
-    /// `reading` outlives it.
+    /// `reading` must outlive this object.
     explicit Shapes(Reading& reading) : reading_(reading) {}
 
     /// Reads the geometry of a shape. Shapes with other needs have other meshes. Returns nothing, with a warning,

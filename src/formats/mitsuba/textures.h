@@ -15,7 +15,7 @@ namespace pertev::mitsuba {
 
 class Textures {
 public:
-    /// `reading` outlives it.
+    /// `reading` must outlive this object.
     explicit Textures(Reading& reading) : reading_(reading) {}
 
     /// Returns the colour `name`, or a texture of colours; `missing` without one.

@@ -18,7 +18,7 @@ namespace pertev::mitsuba {
 
 class World {
 public:
-    /// Both outlive it.
+    /// The arguments must outlive this object.
     World(Context& context, Objects& objects);
 
     /// Makes the scene. `file_bytes` is the size of all XML files.

@@ -13,7 +13,7 @@
 
 namespace pertev::pbrt {
 
-using described::Surface; // which a device's Surface would hide
+using described::Surface; // a device's Surface would hide it
 
 /// Finds a named material for a mixture, with its location for messages; null after a warning if there is none.
 using FindMaterial = std::function<const Surface*(const std::string& name, const FileLocation& from)>;

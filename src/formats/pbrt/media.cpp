@@ -71,7 +71,7 @@ MediumParameters read_subsurface_medium(const MaterialSource& source) {
         medium = coefficients_of_color(source, "Kd", scale);
         medium.g = g;
     } else if (const auto named = named_coefficients(parameters, "name", sink)) {
-        medium = scaled(*named, scale); // whose scattering is the reduced one
+        medium = scaled(*named, scale); // its scattering is the reduced one
         if (g != 0) sink.leave_out({parameters.location(), "g is left out, because a named substance is isotropic"});
     } else {
         medium = !has_coefficients && parameters.contains("reflectance")

@@ -24,7 +24,7 @@ struct ReadShape {
 
 class Shapes {
 public:
-    /// Both outlive it; meshes are added to `meshes`.
+    /// Meshes are added to `meshes`. The arguments must outlive this object.
     Shapes(const Context& context, std::vector<ShapeMesh>& meshes) : context_(context), meshes_(meshes) {}
 
     /// Reads a shape except its alpha. Returns nothing, with a warning, for a type that is left out. Throws

@@ -17,7 +17,7 @@ namespace pertev::pbrt {
 
 class Statements {
 public:
-    /// Both outlive it.
+    /// The arguments must outlive this object.
     Statements(const Context& context, World& world) : context_(context), world_(world) {}
 
     /// Reads a text. `file` is its path, to which includes are relative. Throws Error(OverLimit) if the files of the

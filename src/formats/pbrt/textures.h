@@ -21,7 +21,7 @@ namespace pertev::pbrt {
 
 class Textures {
 public:
-    /// Both outlive it; images that are not from files are added to `made`.
+    /// Images that are not from files are added to `made`. The arguments must outlive this object.
     Textures(const Context& context, std::vector<TextureImage>& made) : context_(context), made_(made) {}
 
     /// Reads a statement Texture "name" "kind" "type" with the present transform.

@@ -22,7 +22,7 @@ struct Token {
 
 class Tokens {
 public:
-    /// `text` outlives it.
+    /// `text` must outlive this object.
     explicit Tokens(std::string_view text) : text_(text) {}
 
     /// Returns the next token without removing it.

@@ -36,7 +36,7 @@ struct GraphicsState {
 
 class World {
 public:
-    /// `context` outlives it.
+    /// `context` must outlive this object.
     explicit World(const Context& context);
 
     GraphicsState state;

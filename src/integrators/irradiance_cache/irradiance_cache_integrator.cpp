@@ -165,7 +165,7 @@ bool IrradianceCacheIntegrator::make_round(uint32_t round, OvertureProgress& pro
     if (!went_on) return false;
     const uint32_t wanted = store_.gather_sites(job.grid.count());
     progress.begin_records(wanted, rays_.total());
-    if (wanted == 0) return true; // also if the picture is smaller than a step
+    if (wanted == 0) return true; // the picture may be smaller than a step
     if (!make_hemispheres(make_job(kHemisphereSeed), wanted, goes_on)) return false;
     store_.take(wanted, picture_settings_.cache.accuracy);
     return true;

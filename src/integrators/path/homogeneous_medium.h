@@ -13,7 +13,7 @@ namespace pertev {
 struct MediumVertex {
     Vec3 position, direction; // the direction in which the path arrived, unit
     float g;
-    uint32_t instance; // whose medium it is; the number of all instances: the scene's
+    uint32_t instance; // instance that contains the medium; the number of all instances: the scene's
 
     HD bool scatters_by_delta_alone() const { return false; }
     HD LightContext light_context(float time) const { return {position, time}; }

@@ -190,7 +190,7 @@ private:
         }
     }
 
-    /// Shades the vertex of path i, or its miss, with the numbers of a lane.
+    /// Shades the vertex of path i, or its miss, with the random numbers of a lane.
     void shade(uint32_t i, const VertexWords<Words8>& words, uint32_t lane) {
         const uint32_t key = key_of(paths_[i], true);
         const bool has_shadow_ray =

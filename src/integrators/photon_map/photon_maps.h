@@ -33,7 +33,7 @@ public:
     /// Counts of the last build().
     const PhotonCounts& counts() const { return found_; }
     const PhotonMapsView& view() const { return view_; }
-    /// The map of medium_photons.h.
+    /// Photons stored in media.
     const PhotonMapView& in_media() const { return in_media_; }
 
 private:

@@ -123,7 +123,7 @@ void RenderOnDevices::drive(SharedRun& run, const SharedPicture& picture, Sample
 void RenderOnDevices::fold(SharedRun& run, const FilledFilm& film, Film& into) {
     const auto& targets = film.film->targets();
     try {
-        if (into_is_empty_) { // which saves a pass over the first film
+        if (into_is_empty_) { // saves a pass over the first film
             for (std::size_t i = 0; i < targets.size(); ++i) into.targets()[i]->copy(*targets[i]);
         } else {
             for (std::size_t i = 0; i < targets.size(); ++i) targets[i]->read(0, landing_[i]);

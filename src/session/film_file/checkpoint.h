@@ -24,7 +24,7 @@ public:
     /// the disk.
     void check_space(const Film& film) const;
     /// Replaces the file by all samples of the film; the file so far becomes the generation before. `facts` are those
-    /// of the picture. Throws Error(FileWrite); then the file is the one before.
+    /// of the picture. Throws Error(FileWrite) and leaves the old file unchanged.
     void write(FilmRender& film, PictureFacts facts);
 
     const std::string& file() const { return generations_.file(); }

@@ -35,8 +35,8 @@ public:
     /// Throws Error(FileWrite) if two generations that take so many bytes each, and the next while it is written, may
     /// not fit on the disk.
     void check_space(uint64_t bytes) const;
-    /// Replaces the file; the file so far becomes the generation before, unless it is damaged. Throws Error(FileWrite);
-    /// then the file is the one before.
+    /// Replaces the file; the file so far becomes the generation before, unless it is damaged. Throws Error(FileWrite)
+    /// and leaves the old file unchanged.
     void write(std::span<const std::byte> bytes);
     /// Deletes both, as far as that is possible.
     void remove() const;

@@ -24,7 +24,7 @@ std::string json_of(const DecidingSettings& settings, uint32_t frame, const Fram
                        fmt::join(sizes, ","));
 }
 
-constexpr std::size_t kMostArrays = 64; // which a history has by far fewer of
+constexpr std::size_t kMostArrays = 64; // a history has far fewer
 
 uint32_t read_number(const gltf::JsonValue& value) {
     const uint64_t number = value.to_unsigned();

@@ -32,8 +32,8 @@ public:
     /// before has; nothing if that is not whole. Throws Error(BadInput) if the file is of another sequence, naming the
     /// first difference.
     std::optional<KeptFrame> read(Sink& sink);
-    /// Replaces the file; the file so far becomes the generation before. Throws Error(FileWrite); then the file is the
-    /// one before.
+    /// Replaces the file; the file so far becomes the generation before. Throws Error(FileWrite) and leaves the old
+    /// file unchanged.
     void write(uint32_t frame, const FrameHistory& history);
 
     const std::string& file() const { return generations_.file(); }

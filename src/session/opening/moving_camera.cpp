@@ -30,7 +30,7 @@ MovingCamera::MovingCamera(CameraChoice choice, std::optional<CameraPath> path, 
     if (choice_.projection && view_angle(at_rest) == 0) choice_.view_height = at_rest.ortho_height;
     const Vec3 eye = at_rest.world_from_camera.translation;
     const Vec3 seen = eye - at_rest.focus_distance * column(at_rest.world_from_camera, 2);
-    const Bounds3 bounds = choice_.target || made_up_ ? Bounds3() : bounds_of(rest); // which takes time
+    const Bounds3 bounds = choice_.target || made_up_ ? Bounds3() : bounds_of(rest); // taking bounds costs time
     middle_ = choice_.target ? in_scene(rest, *choice_.target) : bounds.is_empty() ? seen : bounds.centre();
 }
 

@@ -21,7 +21,7 @@ std::vector<CountedRows> counted_rows(const RowSamples& samples) {
     std::vector<CountedRows> all;
     for (const RowSamples::Band& band : samples.bands()) {
         if (!all.empty() && all.back().samples == band.count())
-            all.back().end = band.end_row; // which has other samples of the same number
+            all.back().end = band.end_row; // other samples of the same number
         else
             all.push_back({band.first_row, band.end_row, band.count()});
     }
@@ -81,7 +81,7 @@ MergedPicture merge_picture(std::span<const std::string> files, bool is_partial,
     } else if (picture.least_samples < header.spp) {
         sink.warn(fmt::format("the picture has {} of {} samples", picture.least_samples, header.spp));
     }
-    if (!writes_tone_mapped(outputs)) picture.facts.shown.clear(); // which only film files have
+    if (!writes_tone_mapped(outputs)) picture.facts.shown.clear(); // only film files have them
     Film film = parts.film(queue, sink);
     picture.films = write_film_files(outputs, header, film);
     picture.result = result_of(header, film, queue);

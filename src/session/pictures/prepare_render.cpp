@@ -88,7 +88,7 @@ void set_camera(PictureOptions& options, uint32_t verbs, const std::optional<Cam
     for (uint32_t i = 0; options.camera_list && i < options.camera_list->size(); ++i) {
         PictureOptions own = options_of_camera(options, i, verbs);
         set_size(own, rest, settings);
-        Messages of_others; // which say the same again
+        Messages of_others; // duplicates, dropped
         MovingCamera camera = camera_of(own, verbs, path, settings, rest, i == 0 ? messages : of_others);
         list.push_back({std::move(camera), {settings.width, settings.height}});
     }
@@ -332,7 +332,7 @@ void report_motion(const PictureOptions& options, const MovingScene& moving, Sin
         sink.note({"aov", "motion", "there is no motion without `frames`, because there is no earlier frame"});
     }
     const bool camera_moves = !options.camera_path.empty() || options.turntable > 0;
-    if (!moving.is_animated() && has_time && !camera_moves && !options.real_time) { // which gather light at rest
+    if (!moving.is_animated() && has_time && !camera_moves && !options.real_time) { // records gather light at rest
         sink.warn({options.time_s ? "time" : "frames", "",
                    "nothing moves in this scene (`time_limit` ends a render after a time)"});
     }

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 namespace pertev {
 namespace {
 
-constexpr std::size_t kMostNamedFiles = 1024; // which take about 60 KB of a header
+constexpr std::size_t kMostNamedFiles = 1024; // about 60 KB of a header
 constexpr std::size_t kHashDigits = 16;       // an accident of 2^-64 is no other file
 
 void add_file(const fs::path& path, const fs::path& name, std::vector<FileOfPicture>& files) {

@@ -30,7 +30,7 @@ Vec3 vec3(Floats4 v) { return {v[0], v[1], v[2]}; }
 
 /// A light of a tree that is being built.
 struct Item {
-    Floats4 lo, hi; // and, last, the angle of emission, twice
+    Floats4 lo, hi; // box of the light; both fourth lanes are the angle of emission
     Floats4 sum;    // normal, or 0 if light leaves in all directions or from both faces; power
     uint32_t light;
 

@@ -36,7 +36,7 @@ private:
 
 /// Microfacets and a film, or without one a tint.
 struct PackedSurface {
-    PackedMicrofacets microfacets; // and the film's weight
+    PackedMicrofacets microfacets; // packed with the film's weight
     uint32_t film_ior, film_thickness;
 
     HD PackedSurface(const Microfacets& widths, const ThinFilm& film, Rgb tint = {1, 1, 1})
@@ -98,7 +98,7 @@ struct PackedGlassLobe {
 
 struct PackedMetalLobe {
     Rgb eta, k;
-    PackedMicrofacets microfacets; // and 1 - weight
+    PackedMicrofacets microfacets; // packed with 1 - weight
 
     HD explicit PackedMetalLobe(const MetalLobe& lobe)
         : eta(lobe.eta), k(lobe.k), microfacets(lobe.widths, 1.0f - lobe.weight) {}

@@ -17,7 +17,7 @@ namespace pertev {
 struct ShearRows {
     alignas(16) std::array<uint32_t, 4> order; // kx, ky, kz; the fourth stays
     alignas(16) std::array<float, 4> shear;    // sx, sy, sz, t_max
-    alignas(16) std::array<float, 4> origin;   // then t_min
+    alignas(16) std::array<float, 4> origin;   // x, y, z, t_min
 };
 
 /// Makes the shear of make_ray_shear, without a branch.
