@@ -60,16 +60,16 @@ HD inline InteriorList interior_before(const SceneView& scene, InteriorList list
                          points_inwards(scene, {hit.instance, hit.primitive}, direction, time));
 }
 
-/// The passage of light from one point to another.
-struct Passage {
+/// Transmittance of a segment, and the probability that sampled flight passes it.
+struct MediumTransmittance {
     Rgb transmittance = {1, 1, 1};
     float probability = 1; // FlownMedia::probability()
 };
 
-/// Returns the passage of a ray with a unit direction over `distance` metres, which may not end. `list` has the solids
-/// that hold its origin, and afterwards its end.
-HD_CALL inline Passage passage_through_media(const SceneView& scene, InteriorList& list, Vec3 origin, Vec3 direction,
-                                             float distance) {
+/// Returns the transmittance along a unit direction over `distance` metres, which may be infinite. `list` has the
+/// solids that hold the origin, and afterwards those that hold the end.
+HD_CALL inline MediumTransmittance transmittance_through_media(const SceneView& scene, InteriorList& list, Vec3 origin,
+                                                               Vec3 direction, float distance) {
     FlownMedia flown;
     visit_media(scene, list, origin, direction, distance, !(distance < kInfinity), [&](const RayPart& part) {
         flown.add(part, part.end - part.begin);

@@ -134,19 +134,19 @@ private:
             return; // transparent part of the light
         }
         const TriangleId target = light.is_delta ? TriangleId{} : TriangleId{light.instance, light.primitive};
-        Passage passage;
+        MediumTransmittance through_media;
         if constexpr (kInMedia) {
-            passage =
-                passage_of_connection(view, interior_towards(view, list, end, wo, light.wi),
-                                      end.origin_towards(light.wi), light.wi, light.distance, end.triangle(), target);
-            if (is_black(passage.transmittance)) return;
+            through_media = transmittance_of_connection(view, interior_towards(view, list, end, wo, light.wi),
+                                                        end.origin_towards(light.wi), light.wi, light.distance,
+                                                        end.triangle(), target);
+            if (is_black(through_media.transmittance)) return;
         }
         float found = light.is_delta ? 0.0f : squared_density(scattered.camera.pdf / light.pdf);
         float arriving = density_from(light) * end.density_factor(light.wi);
         if constexpr (Choice::kReadsNormal) arriving /= selection_ratio<Choice>(view.lights, context, light);
         if constexpr (kInMedia) {
-            found *= square(passage.probability);
-            arriving *= passage.probability;
+            found *= square(through_media.probability);
+            arriving *= through_media.probability;
         }
         const float weight =
             mis_weight(found + squared_density(arriving) * state.mis.weight_sum(scattered.particle.pdf));
@@ -156,7 +156,7 @@ private:
         connection.target = target;
         connection.key = coin;
         if constexpr (kInMedia) {
-            light.radiance = light.radiance * passage.transmittance;
+            light.radiance = light.radiance * through_media.transmittance;
         } else if constexpr (kVariant == ShadingVariant::General) {
             light.radiance = light.radiance * transmittance_to_light<kVariant>(view, end.triangle(), light);
         }
@@ -323,13 +323,13 @@ struct ConnectSubpaths {
         const float inverse = 1.0f / distance_squared;
         float by_camera = camera.onwards_density * particle.density_factor * inverse;
         float by_particle = particle.onwards_density * camera.density_factor * inverse;
-        Passage passage;
+        MediumTransmittance through_media;
         if constexpr (kInMedia) {
-            passage = passage_of_connection(view, camera.interior, camera.start, along, sqrt(distance_squared),
-                                            camera.triangle, particle.triangle);
-            if (is_black(passage.transmittance)) return;
-            by_camera *= passage.probability;
-            by_particle *= passage.probability;
+            through_media = transmittance_of_connection(view, camera.interior, camera.start, along,
+                                                        sqrt(distance_squared), camera.triangle, particle.triangle);
+            if (is_black(through_media.transmittance)) return;
+            by_camera *= through_media.probability;
+            by_particle *= through_media.probability;
         }
         const float weight =
             mis_weight(squared_density(by_camera) * ends[1].mis.weight_sum(particle.backwards_density) +
@@ -343,7 +343,7 @@ struct ConnectSubpaths {
                                   round * 0x1000u + number, true);
         connection.light = (weight * inverse) * (ends[0].throughput * camera.f * particle.f * ends[1].throughput);
         if constexpr (kInMedia) {
-            connection.light = connection.light * passage.transmittance;
+            connection.light = connection.light * through_media.transmittance;
         } else if constexpr (kVariant == ShadingVariant::General) {
             connection.light = connection.light * transmittance_of_solid(view, camera.triangle, particle.triangle,
                                                                          along, sqrt(distance_squared), kAtRest);

@@ -32,12 +32,12 @@ private:
         const SceneView& view = scene.picture.scene;
         const bool leaves = hit.instance == kNoHit;
         InteriorList list = interior_before(view, scene.picture.camera.interior, ray.direction, hit, kAtRest);
-        const Passage passage =
-            passage_through_media(view, list, ray.origin, ray.direction, leaves ? kInfinity : hit.t);
-        if (leaves) return add_seen_background(scene.picture, film, state, ray, passage.transmittance);
+        const MediumTransmittance through_media =
+            transmittance_through_media(view, list, ray.origin, ray.direction, leaves ? kInfinity : hit.t);
+        if (leaves) return add_seen_background(scene.picture, film, state, ray, through_media.transmittance);
         Surface surface = make_surface<kVariant>(view, hit, ray.direction);
         const Rgb passed = reach_surface(view, list, {}, ray.direction, hit, surface);
-        add_seen(scene.picture, film, state, ray, hit, surface, passed * passage.transmittance);
+        add_seen(scene.picture, film, state, ray, hit, surface, passed * through_media.transmittance);
     }
 };
 

@@ -199,11 +199,11 @@ private:
         connection.key = coin;
         if constexpr (kInMedia) {
             const Vec3 from = end.origin_towards(light.wi);
-            const Passage passage =
-                passage_of_connection(view, interior_towards(view, list, end, vertex.wo, light.wi), from, light.wi,
-                                      light.distance, end.triangle(), connection.target);
-            if (is_black(passage.transmittance)) return nearness;
-            light.radiance = light.radiance * passage.transmittance;
+            const MediumTransmittance through_media =
+                transmittance_of_connection(view, interior_towards(view, list, end, vertex.wo, light.wi), from,
+                                            light.wi, light.distance, end.triangle(), connection.target);
+            if (is_black(through_media.transmittance)) return nearness;
+            light.radiance = light.radiance * through_media.transmittance;
         } else if constexpr (kVariant == ShadingVariant::General) {
             light.radiance = light.radiance * transmittance_to_light<kVariant>(view, end.triangle(), light);
         }

@@ -214,16 +214,16 @@ private:
         const Vec3 wo = -seen.direction;
         const BothWays scattered = end.scatter(wo, wi);
         if (is_black(scattered.particle.f)) return;
-        Passage passage;
+        MediumTransmittance through_media;
         if constexpr (kInMedia) {
-            passage = passage_of_connection(scene.picture.scene, camera.interior, seen.from, seen.direction,
-                                            length(end.position() - seen.from), {}, end.triangle());
-            if (is_black(passage.transmittance)) return;
+            through_media = transmittance_of_connection(scene.picture.scene, camera.interior, seen.from, seen.direction,
+                                                        length(end.position() - seen.from), {}, end.triangle());
+            if (is_black(through_media.transmittance)) return;
         }
         float weight = 1;
         if (scene.is_connected) {
             float density = seen.density * end.density_factor(wo) / seen.distance_squared;
-            if constexpr (kInMedia) density *= passage.probability;
+            if constexpr (kInMedia) density *= through_media.probability;
             weight = mis_weight(squared_density(density) * state.mis.weight_sum(scattered.camera.pdf));
         }
         Connection connection;
@@ -236,7 +236,7 @@ private:
         connection.light =
             (1.0f / end.squared_index_along(wi, wo, subpaths.squared_indices[subpath])) * connection.light;
         if constexpr (kInMedia) {
-            connection.light = passage.transmittance * connection.light;
+            connection.light = through_media.transmittance * connection.light;
         } else if constexpr (kVariant == ShadingVariant::General) {
             const Rgb passed = transmittance_of_solid(scene.picture.scene, end.triangle(), {}, wo,
                                                       length(end.position() - seen.from), kAtRest);

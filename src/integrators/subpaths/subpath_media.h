@@ -85,16 +85,17 @@ HD_CALL inline Rgb reach_surface(const SceneView& scene, InteriorList& list, Tri
     return transmittance_of_solid(scene, start, {hit.instance, hit.primitive}, direction, hit.t, kAtRest);
 }
 
-/// Returns the passage of a connection along `way`, whose ends are on the triangles `start` and `end` if they are on
-/// any. `list` has the solids that hold its start.
-HD_CALL inline Passage passage_of_connection(const SceneView& scene, InteriorList list, Vec3 from, Vec3 direction,
-                                             float distance, TriangleId start, TriangleId end) {
-    Passage passage = passage_through_media(scene, list, from, direction, distance);
+/// Returns the transmittance of a connection along `direction`, whose ends are on the triangles `start` and `end` if
+/// they are on any. `list` has the solids that hold its start.
+HD_CALL inline MediumTransmittance transmittance_of_connection(const SceneView& scene, InteriorList list, Vec3 from,
+                                                               Vec3 direction, float distance, TriangleId start,
+                                                               TriangleId end) {
+    MediumTransmittance through_media = transmittance_through_media(scene, list, from, direction, distance);
     if (list.top() == 0) {
-        passage.transmittance =
-            passage.transmittance * transmittance_of_solid(scene, start, end, direction, distance, kAtRest);
+        through_media.transmittance =
+            through_media.transmittance * transmittance_of_solid(scene, start, end, direction, distance, kAtRest);
     }
-    return passage;
+    return through_media;
 }
 
 /// Stores the solids that hold the beginning of a particle's ray. Light from infinity has passed the scene's own
