@@ -100,15 +100,15 @@ void check(const Scene& scene, bool all_switches_everywhere) {
 
 } // namespace
 
-TEST_CASE("every tracer gives one picture: a scene with instances, cut-outs, blended surfaces and hidden backs") {
+TEST_CASE("every tracer gives one picture of a scene with instances, cut-outs, blended surfaces and hidden backs") {
     check(test::make_mixed_scene(), true);
 }
 
-TEST_CASE("every tracer gives one picture: the same scene in one tree") {
+TEST_CASE("every tracer gives one picture of a scene in one tree") {
     check(make_single_tree(test::make_mixed_scene()), false);
 }
 
-TEST_CASE("every tracer gives one picture: opaque surfaces in one tree") {
+TEST_CASE("every tracer gives one picture of opaque surfaces in one tree") {
     check(make_opaque(make_single_tree(test::make_mixed_scene())), false);
 }
 

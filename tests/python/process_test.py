@@ -75,7 +75,7 @@ class Viewer(unittest.TestCase):
             with self.assertRaises(OSError):
                 urllib.request.urlopen(viewer.url, timeout=5)
 
-    def test_a_loaded_scene_with_its_settings(self):
+    def test_view_shows_a_loaded_scene_with_its_settings(self):
         started = []
         with unittest.mock.patch.dict(os.environ, {"PERTEV_PROGRAM": PROGRAM}), \
                 unittest.mock.patch("webbrowser.open", started.append):

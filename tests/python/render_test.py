@@ -143,7 +143,7 @@ class Running(unittest.TestCase):
             pertev.render("cornell-box", size=(4, 4), spp=1, time=1)
         self.assertTrue(any(record.levelno == logging.WARNING for record in logged.records))
 
-    def test_keyboard_interrupt(self):
+    def test_keyboard_interrupt_ends_a_render(self):
         begun = time.monotonic()
         threading.Timer(0.5, lambda: signal.raise_signal(signal.SIGINT)).start()
         with self.assertRaises(KeyboardInterrupt):

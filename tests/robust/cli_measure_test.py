@@ -34,7 +34,7 @@ class Light(CliTest):
         words = self.succeed("measure", "floor.obj", "--at", "0,0,0", "--normal", "0,1,0", "--device", "cpu", "--spp", "1")
         self.assertRegex(words.stdout, r"irradiance +[0-9.]+ ± [0-9.e-]+ W/m2[^\n]*\nilluminance +[0-9.]+ ± [0-9.e-]+ lx")
 
-    def test_measuring_uses_the_set_lamp_intensities_and_adds_no_sky(self):
+    def test_measuring_uses_the_light_amounts_that_are_set_and_adds_no_sky(self):
         gltf = json.loads(gltf_with_cameras())
         gltf["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 0, "name": "L"}]}}
         gltf["nodes"].append({"translation": [5, 2, 5], "extensions": {"KHR_lights_punctual": {"light": 0}}})

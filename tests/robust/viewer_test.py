@@ -271,7 +271,7 @@ class Pictures(CliTest):
                 self.assertEqual(header["total"], len(png))
                 self.assertEqual(png, self.rendered("--max-depth", "1", "--integrator", "direct", "--tone-map", tone_map, spp=7)[1])
 
-    def test_every_layer_can_be_shown_and_the_picture_again(self):
+    def test_the_viewer_shows_each_layer_and_then_the_picture_again(self):
         with Viewer() as viewer, Client(viewer) as client:
             whole = client.done()
             seen = set()

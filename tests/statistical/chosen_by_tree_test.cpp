@@ -137,7 +137,7 @@ TEST_CASE("a draw on the floor of many-lights has a relative variance of at most
     CHECK(by_power / kPoints > 3);
 }
 
-TEST_CASE("a tree selects a narrow spot as often as a lamp of its intensity, and a face as often as one of two") {
+TEST_CASE("a tree selects a narrow spot as often as a point light of its intensity, and one face as often as two") {
     Scene scene;
     const auto add = [&](LightKind kind, float x) {
         Light& light = scene.lights.emplace_back();

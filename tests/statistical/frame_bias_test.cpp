@@ -101,7 +101,7 @@ ReconstructionSettings history_alone() {
 
 void print_bias(const std::string& scene, const std::string& part, const Bias& bias) {
     MESSAGE(scene, ", ", part, ": whole ", bias.whole, ", block ", bias.of_block, ", pixels ", bias.of_pixels,
-            ", with lamps ", bias.with_emitters);
+            ", with emitters ", bias.with_emitters);
 }
 
 /// Returns the mean of the frames of a scene of bias_scenes(). It is rendered once, because several cases need it.

@@ -66,7 +66,7 @@ Environment make_sky(uint32_t height) {
 
 } // namespace
 
-TEST_CASE("strata: a square light of few or many triangles") {
+TEST_CASE("stratified light samples reduce the variance of a square emitter of few or many triangles") {
     for (const uint32_t n : {1u, 8u}) {
         Scene scene;
         add_square_emitter(scene, {0.3f, 1, 0}, 1.5f, n, 1);
@@ -76,7 +76,7 @@ TEST_CASE("strata: a square light of few or many triangles") {
     }
 }
 
-TEST_CASE("strata: a row of emitters of different power") {
+TEST_CASE("stratified light samples reduce the variance of a row of emitters of different power") {
     Scene scene;
     for (int i = 0; i < 16; ++i) {
         const float x = static_cast<float>(i) - 7.5f;
@@ -87,7 +87,7 @@ TEST_CASE("strata: a row of emitters of different power") {
     CHECK(times > 100);
 }
 
-TEST_CASE("strata: a spherical emitter, and emitters on a square grid") {
+TEST_CASE("stratified light samples reduce the variance of a spherical emitter, and of emitters on a square grid") {
     Scene ball, square;
     add_square_emitter(ball, {0, 0, 0}, 2, 24, 1);
     ball.materials[0].two_sided_emission = true; // in either winding
@@ -108,18 +108,18 @@ TEST_CASE("strata: a spherical emitter, and emitters on a square grid") {
     CHECK(in_square > 100);
 }
 
-TEST_CASE("strata: a sky, alone and with an emitter") {
+TEST_CASE("stratified light samples reduce the variance of a sky, alone and with an emitter") {
     Scene scene;
     scene.environment = make_sky(64);
     const double alone = gain(Lights(scene).view);
     add_square_emitter(scene, {0, 3, 0}, 1, 1, 30);
     const double beside = gain(Lights(scene).view);
-    MESSAGE(alone, " times less variance, ", beside, " beside a lamp");
+    MESSAGE(alone, " times less variance, ", beside, " with an emitter");
     CHECK(alone > 10);
     CHECK(beside > 5);
 }
 
-TEST_CASE("strata: a path's directions and light samples are stratified together from the pixel on") {
+TEST_CASE("a path's directions and light samples are stratified together from the pixel on") {
     for (const uint32_t depth : {0u, 1u, 4u}) {
         const auto variance = [&](SamplerKind kind) {
             return relative_variance_of([&](SampleKey key) {

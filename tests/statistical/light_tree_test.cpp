@@ -213,7 +213,7 @@ TEST_CASE("a light tree that several threads build has each light, and does not 
     CHECK(found == 100'000);
 }
 
-TEST_CASE("a draw from a light tree has little variance, and at most that of a published tree") {
+TEST_CASE("light samples by a tree have little variance, and at most that of a published tree") {
     const Variances corridor = variances_of(test::make_corridor(10'000));
     CHECK(corridor.tree <= 0.6);
     CHECK(corridor.power > 5);

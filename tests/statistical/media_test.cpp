@@ -298,7 +298,7 @@ TEST_CASE("in media light tracing, bidirectional path tracing and photon mapping
     }
 }
 
-TEST_CASE("media of any size look alike, and a lamp's range ends in a medium as elsewhere") {
+TEST_CASE("media of any size look alike, and a punctual light's range ends in a medium as elsewhere") {
     const auto mean_of = [](IntegratorKind kind, float scale, float range, uint32_t samples) {
         Scene scene;
         test::add(scene, test::ball({0, 0, 0}, scale), clear_boundary({.sigma_s = {8 / scale, 4 / scale, 2 / scale}}));

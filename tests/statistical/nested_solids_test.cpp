@@ -184,7 +184,7 @@ TEST_CASE("the innermost solid absorbs, and the outer one between two inner ones
     check_absorbed(scene, test::camera_down({0, 3, 0}, 0.5f), 1);
 }
 
-TEST_CASE("light of a thing in an inner solid is absorbed by both from there on") {
+TEST_CASE("both solids absorb the light of an object in the inner one from there on") {
     Scene scene = test::under_sky();
     test::add(scene, test::box({0, 0, 0}, {1, 0.6f, 1}), dimming_solid());
     test::add(scene, test::box({0, 0, 0}, {0.8f, 0.3f, 0.8f}), test::glass(1));
@@ -215,7 +215,7 @@ TEST_CASE("a camera inside a solid, and inside one in another, knows it") {
     check_absorbed(scene, test::camera_down({0, 0.5f, 0}, 0.5f), 1.1f);
 }
 
-TEST_CASE("a sample point on a lamp in glass is dimmed by what fills the way to it") {
+TEST_CASE("the solids between a surface and an emitter point in glass absorb its light") {
     Scene scene;
     test::add(scene, test::box({0, 0, 0}, {1, 0.6f, 1}), dimming_solid());
     test::add(scene, test::box({0, 0, 0}, {0.9f, 0.5f, 0.9f}), dimming_solid());

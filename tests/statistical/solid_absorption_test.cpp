@@ -92,7 +92,7 @@ TEST_CASE("a camera within a block sees light absorbed from there on") {
     check_all_pixels(scene, test::camera_down({0, 0.1f, 0}, 0.5f), 0.7f);
 }
 
-TEST_CASE("light of a thing within a block is absorbed from there on, although the thing is no solid") {
+TEST_CASE("a block absorbs the light of an object within it from there on, although the object is no solid") {
     Scene scene = under_white_sky();
     add_block(scene, {0, 0, 0}, {1, 0.6f, 1}, absorbing());
     Material unlit = test::white();
@@ -112,7 +112,7 @@ TEST_CASE("of two blocks that overlap, the first one absorbs") {
     check_all_pixels(scene, test::camera_down({0, 3, 0}, 0.5f), 0.6f);
 }
 
-TEST_CASE("paths, particles and connections agree about a diffuse thing and a lamp within rough absorbing glass") {
+TEST_CASE("paths, particles and connections agree about a diffuse object and an emitter within rough absorbing glass") {
     Scene scene;
     test::add(scene, test::floor_at(-0.8f, 2), test::white(0.6f));
     Material glass = absorbing(1.3f);

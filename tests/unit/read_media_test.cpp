@@ -149,7 +149,7 @@ TEST_CASE("pbrt: coefficients are those of pbrt, by name before sigma and reflec
     CHECK(material_of(leaf, 0).medium.scatters());
 }
 
-TEST_CASE("Mitsuba: the first sensor's medium counts, and an invisible lamp has none") {
+TEST_CASE("Mitsuba: the first sensor's medium counts, and an invisible emitter has none") {
     const std::string fog = "<medium type='homogeneous' id='fog'/>", ball = "<shape type='sphere'><bsdf type='null'/>";
     Messages sensors;
     const Scene first = read_with_media("m.xml",

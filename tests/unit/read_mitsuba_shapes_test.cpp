@@ -189,7 +189,7 @@ TEST_CASE("mitsuba: a cylinder's u begins where Mitsuba's does, and normal maps 
     CHECK(mirrored.meshes[1].tangents.at(0).w == -1);
 }
 
-TEST_CASE("mitsuba: files of meshes are smooth unless they shall not be, and v follows flip_tex_coords") {
+TEST_CASE("mitsuba: mesh files have smooth normals unless face_normals is set; flip_tex_coords flips v") {
     const fs::path folder = test::scratch_folder();
     test::write_text(folder / "roof.obj", "v 0 0 0\nv 1 0 1\nv 2 0 0\nv 0 1 0\nv 1 1 1\nv 2 1 0\nvt 0 .25\n"
                                           "f 1/1 2/1 5/1 4/1\nf 2/1 3/1 6/1 5/1\n");

@@ -68,7 +68,7 @@ double area(const std::vector<Vec3>& p, const std::vector<uint32_t>& indices) {
 
 } // namespace
 
-TEST_CASE("one mesh and one instance for each material, in the order of first use") {
+TEST_CASE("each material gets one mesh and one instance, in the order of first use") {
     const Loaded l = load_text("mtllib a.mtl\n" + kTriangle +
                                    "usemtl b\nf 1 2 3\ns 1\nusemtl a\nf 3 2 1\nusemtl b\nf 1 3 2\nusemtl unused\n",
                                "newmtl a\nKd 1 0 0\nnewmtl b\nKd 0 1 0\nnewmtl unused\n");

@@ -93,7 +93,7 @@ TEST_CASE("shapes: a flat patch is two triangles, and a curved one follows its f
     check_fronts(bent);
 }
 
-TEST_CASE("shapes: Loop's rules give the limits that theory has") {
+TEST_CASE("Loop subdivision converges to the analytic limit") {
     Mesh octahedron;
     octahedron.positions = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
     octahedron.indices = {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4, 1, 0, 5, 2, 1, 5, 3, 2, 5, 0, 3, 5};
