@@ -78,7 +78,7 @@ class Bunny(Job):
 
 
 class Corridor(Job):
-    name, stem, depth = "corridor of 5,000 lamps, direct light", "corridor", 1
+    name, stem, depth = "corridor of 5,000 emitters, direct light", "corridor", 1
     eye, target, fov = (JOBS_OF_RECORD["corridor"][key] for key in ("eye", "target", "fov_y_deg"))
     materials = {"wall": (make_corridor.REFLECTANCE, 0), "lamp": (0, make_corridor.EMISSION)}
 

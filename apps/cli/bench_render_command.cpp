@@ -173,7 +173,7 @@ void add_bench_render_command(CLI::App& bench, int& status) {
         ->capture_default_str();
     verb.add_option("--scene", flags->picture.scenes,
                     "the job's scene: Crytek's Sponza, Bitterli's Cornell box as a\nglTF, the Stanford bunny, or a "
-                    "corridor of 5,000 lamps\n(tools/make_corridor.py)")
+                    "corridor of 5,000 emitters\nby tools/make_corridor.py")
         ->type_name("FILE")
         ->required()
         ->expected(1);
