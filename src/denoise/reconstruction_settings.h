@@ -15,13 +15,13 @@ enum class FrameDenoiser : uint8_t {
 
 struct ReconstructionSettings {
     FrameDenoiser denoiser = FrameDenoiser::Svgf;
-    uint32_t history = 32;       // maximum number of frames of a mean, >= 1
-    uint32_t passes = 5;         // passes of the wavelet filter, [0, 8]; 0: none, as with Oidn. Biased: blurs what
-                                 // guides do not show
-    bool clamp_fireflies = true; // biased: darkens samples far brighter than all their neighbours
-    bool clamp_history = true;   // biased: clamps long means to recent frames, against ghosting
-    bool follow_light = true; // if the scene moves, updates means by the change of light (temporal_gradients_view.h).
-                              // Biased
+    uint32_t history = 32;          // maximum number of frames of a mean, >= 1
+    uint32_t passes = 5;            // passes of the wavelet filter, [0, 8]; 0: none, as with Oidn. Biased: blurs what
+                                    // guides do not show
+    bool clamp_fireflies = true;    // biased: darkens samples far brighter than all their neighbours
+    bool clamp_history = true;      // biased: clamps long means to recent frames, against ghosting
+    bool temporal_gradients = true; // if the scene moves, updates means by the change of light
+                                    // (temporal_gradients_view.h). Biased
     bool anti_alias = true;   // biased: the mean of shown frames is clamped to surrounding colours
     bool keep_layers = false; // for Reconstruction::motion() and deviation(); does not affect the frame
 
@@ -37,7 +37,7 @@ inline ReconstructionSettings of_samples_alone(ReconstructionSettings settings) 
     settings.denoiser = FrameDenoiser::Svgf;
     settings.history = 1;
     settings.passes = 0;
-    settings.clamp_fireflies = settings.clamp_history = settings.follow_light = settings.anti_alias = false;
+    settings.clamp_fireflies = settings.clamp_history = settings.temporal_gradients = settings.anti_alias = false;
     return settings;
 }
 

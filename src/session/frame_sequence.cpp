@@ -124,7 +124,7 @@ bool FrameSequence::render_rows(const FrameTask& task, RowExchange* others, Sink
     number_ = task.number, camera_ = task.camera;
     const RenderSettings of_light = settings_of_light(task);
     NoisyFrame& frame = fit_memory(of_light);
-    if (task.reconstruction.follow_light && !contacts_) {
+    if (task.reconstruction.temporal_gradients && !contacts_) {
         contacts_.emplace(pictures_.queue(), of_light.width, of_light.height);
     }
     Restir* const restir = restir_for(task.restir, of_light);
@@ -147,7 +147,7 @@ bool FrameSequence::render_rows(const FrameTask& task, RowExchange* others, Sink
     has_moved_ = false; // the frame is complete, whatever follows
     const bool has_changed = std::exchange(scene_has_changed_, false);
     // Before the first frame after a cut nothing can have changed, whatever the sequence has shown before.
-    const bool goes_on = task.reconstruction.follow_light && has_changed && reconstruction_->frames() > 1;
+    const bool goes_on = task.reconstruction.temporal_gradients && has_changed && reconstruction_->frames() > 1;
     store_light(task.number, task.camera, of_light, goes_on);
     return true;
 }
@@ -326,8 +326,8 @@ TemporalGradientsView FrameSequence::measure_gradients(const RenderSettings& of_
                                                        const ReconstructionSettings& settings) {
     // The picture can be used once, because the frame reuses its memory.
     const std::optional<LightBefore> before = std::exchange(light_before_, {});
-    const bool is_known = settings.follow_light && scene_has_changed_ && before && reconstruction_->frames() > 0 &&
-                          before->path == of_light.path;
+    const bool is_known = settings.temporal_gradients && scene_has_changed_ && before &&
+                          reconstruction_->frames() > 0 && before->path == of_light.path;
     if (!is_known) return {};
     NoisyFrame& small = temporal_gradients_->after();
     render_sample(before->number, before->camera, of_light, small);

@@ -148,7 +148,7 @@ std::size_t predicted_frame_bytes(const PreparedScene& scene, const RenderSettin
     const NoisyFrame frame(queue, of_light[0], of_light[1], splits);
     const Reconstruction frames(queue, of_light[0], of_light[1]);
     std::optional<ContactFinder> contacts;
-    if (used.follow_light) contacts.emplace(queue, of_light[0], of_light[1]);
+    if (used.temporal_gradients) contacts.emplace(queue, of_light[0], of_light[1]);
     std::optional<Restir> sharing;
     if (restir.light != RestirLight::Off)
         sharing.emplace(queue, of_light[0], of_light[1], restir.light, shading_variant(*scene.scene));

@@ -119,7 +119,9 @@ std::vector<Setting> frame_settings() {
             "Long-term means are not clamped to recent frames where both disagree.", OldName{"no_history_limit"}),
         row(
             "no_temporal_gradients", "Frames", "",
-            [](PictureOptions& o) -> SettingField { return InverseSwitch{&o.reconstruction.settings.follow_light}; },
+            [](PictureOptions& o) -> SettingField {
+                return InverseSwitch{&o.reconstruction.settings.temporal_gradients};
+            },
             "Accumulated frames do not adapt to changing light in moving scenes.", OldName{"no_follow_light"}),
         row(
             "no_anti_alias", "Frames", "",

@@ -215,7 +215,7 @@ TEST_CASE("devices follow a scene that moves and deforms, and light that changes
         prepared = update_scene(prepared, lit, update, messages);
         for (Bands* const each : {&one, &two}) {
             each->session->update_scene(prepared, parts_of(update));
-            REQUIRE(each->render(k, {.follow_light = true}));
+            REQUIRE(each->render(k, {.temporal_gradients = true}));
         }
         check_frame(two, one);
     }

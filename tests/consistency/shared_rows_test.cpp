@@ -77,7 +77,7 @@ TEST_CASE("no row that other devices may be copying is changed before the next m
             prepared = update_scene(prepared, scene, update, messages);
             session.update_scene(prepared, parts_of(update));
             const int takes = rows.takes;
-            const FrameTask task = {k, camera, settings, {.follow_light = true}, {.light = light}};
+            const FrameTask task = {k, camera, settings, {.temporal_gradients = true}, {.light = light}};
             REQUIRE(session.frames().render_rows(task, &rows, messages));
             rows.end();
             if (k == 3) CHECK(rows.takes >= takes + 2); // both small pictures

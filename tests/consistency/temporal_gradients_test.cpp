@@ -51,7 +51,7 @@ Image last_frame(Queue& queue, bool follows, bool dims, bool has_contacts = true
         if (dims && k >= kStill) scene.lights[0].intensity = kStep * scene.lights[0].intensity;
         prepared = update_scene(prepared, scene, update, messages);
         session.update_scene(prepared, parts_of(update));
-        session.render_frame(k, {.follow_light = follows, .anti_alias = has_contacts});
+        session.render_frame(k, {.temporal_gradients = follows, .anti_alias = has_contacts});
         if (before_dimming != nullptr && k + 1 == kStill) *before_dimming = picture_hash(session.frame().picture());
     }
     return session.frame().picture();
@@ -110,7 +110,7 @@ Halves halves_of_two(Queue& queue, bool follows, float step) {
         if (k >= kStill) scene.lights[0].intensity = step * scene.lights[0].intensity;
         prepared = update_scene(prepared, scene, update, messages);
         session.update_scene(prepared, parts_of(update));
-        session.render_frame(k, {.follow_light = follows});
+        session.render_frame(k, {.temporal_gradients = follows});
     }
     return halves_of(session.frame().picture());
 }
@@ -193,7 +193,8 @@ TEST_CASE("temporal gradients reuse the reconstruction's memory") {
 
     const auto held_by_frames = [&](bool follows) {
         std::size_t held = 0;
-        dimming_frames(queue, 64, 48, {.follow_light = follows}, [&](Session&) { held = queue.allocated_bytes(); });
+        dimming_frames(queue, 64, 48, {.temporal_gradients = follows},
+                       [&](Session&) { held = queue.allocated_bytes(); });
         return held;
     };
     Queue dry = Queue::make_dry_run(false);
@@ -204,7 +205,8 @@ TEST_CASE("temporal gradients reuse the reconstruction's memory") {
 TEST_CASE("a frame rendered separately does not change the following frames") {
     Queue queue = requested_queue();
     const auto frames = [&](float scale, bool looks) {
-        const ReconstructionSettings settings = {.follow_light = true, .keep_layers = true, .resolution_scale = scale};
+        const ReconstructionSettings settings = {
+            .temporal_gradients = true, .keep_layers = true, .resolution_scale = scale};
         return dimming_frames(queue, 33, 17, settings, [&](Session& session) {
             if (!looks) return;
             session.frames().tones();

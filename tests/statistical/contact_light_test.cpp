@@ -64,7 +64,7 @@ LightOfGap light_of_gap(bool follows) {
         update.moved_instances = {1};
         prepared = update_scene(prepared, scene, update, messages);
         frames.update_scene(prepared, parts_of(update));
-        frames.render_frame(k, {.follow_light = follows});
+        frames.render_frame(k, {.temporal_gradients = follows});
         if (k < kFirstInGap) continue;
         references.update_scene(prepared, parts_of(update));
         references.cut();

@@ -96,7 +96,7 @@ std::vector<Image> references_of_crossing(uint32_t max_depth) {
 /// Returns the light of frames over that of references, on the floor where the shadow was up to kTrail frames before.
 double light_in_trail(const std::vector<Image>& references, const RestirSettings& restir, bool follows = true) {
     ReconstructionSettings raw = kRawFrames;
-    raw.follow_light = follows;
+    raw.temporal_gradients = follows;
     Messages messages;
     Scene scene = scene_of_crossing();
     PreparedScene prepared = prepare_scene(scene, {}, messages);

@@ -252,7 +252,7 @@ TEST_CASE("settings survive writing to JSON and reading back") {
         read_settings(file, kRender, overruled, old, messages);
         CHECK(messages.all().empty());
         CHECK(!old.reconstruction.settings.clamp_history);
-        CHECK(old.reconstruction.settings.follow_light);
+        CHECK(old.reconstruction.settings.temporal_gradients);
         CHECK(old.given.size() == 1);
         CHECK(old.is_given("no_history_clamping"));
         CHECK(settings_json(old, "").find("\"no_history_clamping\":true") != std::string::npos);
