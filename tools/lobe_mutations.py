@@ -46,7 +46,7 @@ MUTATIONS = [
     ("a camera is never inside a nested solid", "statistical/nested_solids", ("src/session/picture_renderer.cpp", "    picture.camera.interior = scene_.interior_of(camera);\n", "")),
     ("cameras of a batch are never inside a nested solid", "consistency/camera_batch", ("src/session/batch_render.cpp", "        rays.interior = pictures_.scene().interior_of(camera);\n", "")),
     ("a light in nested solids is not dimmed on the way", "statistical/nested_solids", ("src/integrators/path/path_vertex.h", "if (Medium<kFeatures>::kIsVacuum && is_within)", "if (false)")),
-    ("solids that touch leave air between", "unit/nest_solids statistical/nested_solids", ("src/device_scene/close_gaps.cpp", "point + 2 * later.gap * ways[i]", "point + 0 * later.gap * ways[i]")),
+    ("solids that touch leave air between", "unit/nest_solids statistical/nested_solids", ("src/device_scene/close_gaps.cpp", "point + 2 * later.gap * directions[i]", "point + 0 * later.gap * directions[i]")),
     ("what is near counts as touching", "unit/nest_solids", ("src/device_scene/close_gaps.cpp", "<= gap * gap) return true;", "<= 1e4f * gap * gap) return true;")),
     ("dispersion without the density of two channels", "statistical/openpbr_lobes",
      ("src/shading/lobes/glass_lobe.h", "pdf += (1.0f / 3.0f) * value.pdf;", "pdf = value.pdf;")),

@@ -423,7 +423,7 @@ MUTATIONS = part_mutations.MUTATIONS + format_mutations.MUTATIONS + lobe_mutatio
     ("tangents that all triangles at a vertex weigh alike", "unit/corner_tangents",
      ("src/scene/tangents/corner_tangents.cpp", "shares[i].angle * shares[i].along_u", "shares[i].along_u")),
     ("mirrored textures share tangents", "unit/corner_tangents unit/make_tangents",
-     ("src/scene/tangents/tangent_groups.cpp", "return triangles_.is_counter_clockwise[triangle] == way;", "return true;")),
+     ("src/scene/tangents/tangent_groups.cpp", "return triangles_.is_counter_clockwise[triangle] == winding;", "return true;")),
     ("a normal map that does not turn with its texture", "unit/shading_frame",
      ("src/shading/shading_frame.h", "(v_by.y * frame.tangent + v_by.x * frame.bitangent)", "(v_by.y * frame.tangent)")),
     ("a frame with the vertices of the one before", "consistency/update_scene",

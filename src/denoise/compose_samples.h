@@ -18,8 +18,8 @@ struct ComposeSamples {
 
     HD void operator()(uint32_t pixel) const {
         const float features = first_features + static_cast<float>(sums.exact.at(SampleSums::kFeatures, pixel));
-        const Float4 met = sums.all_met(pixel), loose = sums.loose(pixel);
-        Rgb light = rgb_of(met) + sums.all_diffuse_color(pixel) * rgb_of(signals.diffuse[pixel]);
+        const Float4 emission = sums.all_emission(pixel), loose = sums.loose(pixel);
+        Rgb light = rgb_of(emission) + sums.all_diffuse_color(pixel) * rgb_of(signals.diffuse[pixel]);
         if (has_gloss) light += sums.all_gloss_color(pixel) * rgb_of(signals.gloss[pixel]);
         light += sums.all_normal(pixel).w * mirrored_light(mirrors, mirrored, pixel);
         Rgb of_neighbours = {0, 0, 0};
@@ -43,7 +43,7 @@ struct ComposeSamples {
         light += of_neighbours;
         // Samples that fit no guide are used unfiltered. If only rays without light have hit such surfaces, the rest
         // represents them.
-        const float loose_features = met.w;
+        const float loose_features = emission.w;
         if (loose.w > 0) {
             light += (loose_features / loose.w) * rgb_of(loose);
         } else if (loose_features < features) {

@@ -20,7 +20,7 @@ struct BeginSums {
         guide.albedo[pixel] = centres.albedo[pixel];
         guide.object[pixel] = bits_of(centres.hit[pixel].x);
         constexpr Float4 kZero = {0, 0, 0, 0};
-        sums.normal[pixel] = sums.met[pixel] = sums.diffuse_color[pixel] = sums.gloss_color[pixel] = kZero;
+        sums.normal[pixel] = sums.emission[pixel] = sums.diffuse_color[pixel] = sums.gloss_color[pixel] = kZero;
         for (int slot = 0; slot < kNeighbourSurfaces; ++slot) {
             sums.neighbour_diffuse[slot][pixel] = {0, 0, 0, float_of(kNoHit)};
             sums.neighbour_gloss[slot][pixel] = kZero;
@@ -127,15 +127,15 @@ struct GatherFeatures {
     HD void operator()(uint32_t pixel) const {
         const NoisyFrameView& frame = samples.frame;
         const PictureSums& sums = samples.sums;
-        const Rgb met = frame.light[pixel].w != 0 ? rgb_of(frame.emission[pixel]) : Rgb{0, 0, 0};
+        const Rgb emission = frame.light[pixel].w != 0 ? rgb_of(frame.emission[pixel]) : Rgb{0, 0, 0};
         const SampledSurfaces::Found found = samples.found(pixel);
-        if (found.object == kNoHit) return SampledSurfaces::add(sums.met[pixel], met);
+        if (found.object == kNoHit) return SampledSurfaces::add(sums.emission[pixel], emission);
         const Rgb diffuse = diffuse_divisor(frame, pixel), gloss = gloss_divisor(frame, pixel);
         if (samples.shows_own(pixel, found)) {
             SampledSurfaces::add(sums.diffuse_color[pixel], diffuse);
             SampledSurfaces::add(sums.gloss_color[pixel], gloss);
             SampledSurfaces::add(sums.normal[pixel], {found.normal.x, found.normal.y, found.normal.z}, 1);
-            return SampledSurfaces::add(sums.met[pixel], met);
+            return SampledSurfaces::add(sums.emission[pixel], emission);
         }
         bool is_free = false;
         const int slot = samples.slot_of(pixel, found, is_free);
@@ -146,10 +146,10 @@ struct GatherFeatures {
                 sums.neighbour_diffuse[slot][pixel].w = float_of(neighbour);
             }
         }
-        if (is_free || slot == kNeighbourSurfaces) return SampledSurfaces::add(sums.met[pixel], {0, 0, 0}, 1);
+        if (is_free || slot == kNeighbourSurfaces) return SampledSurfaces::add(sums.emission[pixel], {0, 0, 0}, 1);
         SampledSurfaces::add(sums.neighbour_diffuse[slot][pixel], diffuse);
         SampledSurfaces::add(sums.neighbour_gloss[slot][pixel], gloss, 1);
-        SampledSurfaces::add(sums.met[pixel], met);
+        SampledSurfaces::add(sums.emission[pixel], emission);
     }
 
 private:
@@ -172,9 +172,9 @@ struct GatherLight {
         const PictureSums& sums = samples.sums;
         const ExactSums& exact = sums.exact;
         const Rgb all = frame.light[pixel].w != 0 ? rgb_of(frame.light[pixel]) : Rgb{0, 0, 0},
-                  met = frame.light[pixel].w != 0 ? rgb_of(frame.emission[pixel]) : Rgb{0, 0, 0};
+                  emission = frame.light[pixel].w != 0 ? rgb_of(frame.emission[pixel]) : Rgb{0, 0, 0};
         const auto add_met = [&] {
-            if (adds_features) SampleSums::Light::add(exact, SampleSums::kMet, pixel, met);
+            if (adds_features) SampleSums::Light::add(exact, SampleSums::kEmission, pixel, emission);
         };
         if (adds_features) exact.add(SampleSums::kFeatures, pixel, 1);
         const SampledSurfaces::Found found = samples.found(pixel);
@@ -191,7 +191,7 @@ struct GatherLight {
             if (adds_features) exact.add(SampleSums::kLooseFeatures, pixel, 1);
             return;
         }
-        SampleSums::Light::add(exact, SampleSums::kNeighbour, pixel, all - met);
+        SampleSums::Light::add(exact, SampleSums::kNeighbour, pixel, all - emission);
         exact.add(SampleSums::kNeighbourCount, pixel, 1);
         if (!adds_features) return;
         const uint32_t array = PictureSums::of_slot(slot);

@@ -38,7 +38,7 @@ PictureDenoiser::PictureDenoiser(Queue& queue, uint32_t width, uint32_t height)
     for (Float4** array :
          {&guide_.normal,     &guide_.albedo,       &smooth_,           &packed_,       &sums_.diffuse,
           &sums_.gloss,       &sums_.diffuse_share, &sums_.gloss_share, &sums_.normal,  &sums_.diffuse_color,
-          &sums_.gloss_color, &sums_.met,           &from_.diffuse,     &from_.gloss,   &to_.diffuse,
+          &sums_.gloss_color, &sums_.emission,      &from_.diffuse,     &from_.gloss,   &to_.diffuse,
           &to_.gloss,         &mirrored_.diffuse,   &mirrored_.gloss,   &mirrors_.seen, &chain_.end,
           &chain_.normal,     &chain_.color,        &chain_.seen}) {
         take(*array);
@@ -103,7 +103,7 @@ void PictureDenoiser::add(const NoisyFrame& frame, const SceneView& scene, uint3
 std::vector<PixelWords> PictureDenoiser::gathered() const {
     std::vector<PixelWords> arrays;
     for (Float4* const array :
-         {guide_.normal, guide_.albedo, sums_.normal, sums_.met, sums_.diffuse_color, sums_.gloss_color}) {
+         {guide_.normal, guide_.albedo, sums_.normal, sums_.emission, sums_.diffuse_color, sums_.gloss_color}) {
         arrays.push_back({array, 4});
     }
     for (int slot = 0; slot < kNeighbourSurfaces; ++slot) {

@@ -37,8 +37,8 @@ struct SampleSums {
                               kLooseCount = kNeighbourCount + 1;
     // Sums of the features of samples after the first ones, as in PictureSums.
     static constexpr uint32_t kFeatures = kLooseCount + 1, // their number
-        kNormal = kFeatures + 1, kNormalCount = kNormal + Color::kArrays, kMet = kNormalCount + 1,
-                              kLooseFeatures = kMet + Light::kArrays, kDiffuseColor = kLooseFeatures + 1,
+        kNormal = kFeatures + 1, kNormalCount = kNormal + Color::kArrays, kEmission = kNormalCount + 1,
+                              kLooseFeatures = kEmission + Light::kArrays, kDiffuseColor = kLooseFeatures + 1,
                               kGlossColor = kDiffuseColor + Color::kArrays, kSlots = kGlossColor + Color::kArrays;
     // Within kSlots, for each other surface of a pixel.
     static constexpr uint32_t kSlotDiffuse = 0, kSlotGloss = Color::kArrays, kSlotCount = 2 * Color::kArrays,
@@ -63,7 +63,7 @@ struct PictureSums {
     // Sums of the features of the first samples, which every part of a picture has. They decide which surfaces a pixel
     // distinguishes, so that what a sample adds depends on no other sample.
     Float4* normal;        // normal of the guide's surface; their number
-    Float4* met;           // rgb of emission; number of loose samples, whose emission is excluded
+    Float4* emission;      // rgb of emission; number of loose samples, whose emission is excluded
     Float4* diffuse_color; // rgb of divisors of the guide's surface
     Float4* gloss_color;   // divisors of the guide's surface for the gloss signal
     Float4* neighbour_diffuse[kNeighbourSurfaces]; // divisors of another surface; bits of a pixel whose guide shows it,
@@ -77,8 +77,8 @@ struct PictureSums {
     HD Float4 all_normal(uint32_t pixel) const {
         return all<SampleSums::Color>(normal[pixel], SampleSums::kNormal, SampleSums::kNormalCount, pixel);
     }
-    HD Float4 all_met(uint32_t pixel) const {
-        return all<SampleSums::Light>(met[pixel], SampleSums::kMet, SampleSums::kLooseFeatures, pixel);
+    HD Float4 all_emission(uint32_t pixel) const {
+        return all<SampleSums::Light>(emission[pixel], SampleSums::kEmission, SampleSums::kLooseFeatures, pixel);
     }
     HD Rgb all_diffuse_color(uint32_t pixel) const {
         return SampleSums::Color::plus(rgb_of(diffuse_color[pixel]), exact, SampleSums::kDiffuseColor, pixel);

@@ -43,10 +43,10 @@ struct SumBlockRows {
         float counted = 0;
         for (uint32_t x = first; x < end; ++x) {
             const uint32_t pixel = y * width + x;
-            const Rgb light = light_of_shown(rgb_of(shown[pixel])), met = rgb_of(frame.emission[pixel]);
+            const Rgb light = light_of_shown(rgb_of(shown[pixel])), emission = rgb_of(frame.emission[pixel]);
             all += light;
-            const Rgb rest = light - met;
-            if (bits_of(frame.hit[pixel].x) == kNoHit || !(luminance(rest) >= luminance(met))) continue;
+            const Rgb rest = light - emission;
+            if (bits_of(frame.hit[pixel].x) == kNoHit || !(luminance(rest) >= luminance(emission))) continue;
             scattered += Rgb{max(rest.r, 0.0f), max(rest.g, 0.0f), max(rest.b, 0.0f)};
             counted += 1;
         }

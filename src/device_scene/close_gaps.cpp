@@ -100,13 +100,13 @@ std::vector<Vec3> outward(const Mesh& mesh, const Transform& world_from_local) {
             sum = sum + normal;
         }
     }
-    std::vector<Vec3> ways(mesh.positions.size(), Vec3{0, 0, 0});
+    std::vector<Vec3> directions(mesh.positions.size(), Vec3{0, 0, 0});
     for (const uint32_t vertex : mesh.indices) {
         const Vec3 sum = sums.at(key(vertex));
         const float size = length(sum);
-        if (size > 0) ways[vertex] = (1.0f / size) * sum;
+        if (size > 0) directions[vertex] = (1.0f / size) * sum;
     }
-    return ways;
+    return directions;
 }
 
 /// Returns the positions of the later solid's mesh after it has grown towards `earlier`; nothing if they do not touch.
@@ -115,13 +115,13 @@ std::optional<std::vector<Vec3>> grown_towards(const Scene& scene, const Touchin
     const Instance& instance = scene.instances[later.instance];
     const Mesh& mesh = scene.meshes[instance.mesh];
     const Triangles triangles(scene, earlier, grown(later.bounds, later.gap));
-    std::vector<Vec3> ways, positions;
+    std::vector<Vec3> directions, positions;
     const Transform local_from_world = inverse(instance.world_from_local);
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
         const Vec3 point = transform_point(instance.world_from_local, mesh.positions[i]);
         if (!triangles.is_near(point, later.gap)) continue;
-        if (positions.empty()) positions = mesh.positions, ways = outward(mesh, instance.world_from_local);
-        positions[i] = transform_point(local_from_world, point + 2 * later.gap * ways[i]);
+        if (positions.empty()) positions = mesh.positions, directions = outward(mesh, instance.world_from_local);
+        positions[i] = transform_point(local_from_world, point + 2 * later.gap * directions[i]);
     }
     if (positions.empty()) return std::nullopt;
     return positions;

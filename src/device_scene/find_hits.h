@@ -31,10 +31,10 @@ inline void find_hits(const HostTrees& trees, const SceneView& scene, bool from_
 /// Returns whether each of `count` rays hits anything.
 template <class F = Floats8, class RayOf, class AcceptOf>
 inline void find_occlusions(const HostTrees& trees, uint32_t count, RayOrder order, const RayOf& ray_of,
-                            const AcceptOf& accept_of, bool* met) {
+                            const AcceptOf& accept_of, bool* occluded) {
     // The builder's first child is the one where such searches usually end sooner. For rays without an end the
     // farthest is a better start (trace/trace_any.h).
-    trace_any_many<TraversalOptions{.near_first = false}, F>(trees, count, order, ray_of, accept_of, met);
+    trace_any_many<TraversalOptions{.near_first = false}, F>(trees, count, order, ray_of, accept_of, occluded);
 }
 
 } // namespace pertev

@@ -22,10 +22,10 @@ HD inline InteriorList interior_of_light(const SceneView& scene, uint32_t light,
     if (light == kNoLight || scene.nesting.of_lights == nullptr) return {};
     InteriorList list = InteriorList::of_words(scene.nesting.of_lights[light]);
     if (light >= scene.lights.triangle_count) return list;
-    const Vec3 from = point_before(scene.lights.triangles[light]), way = origin - from;
-    const float distance = length(way);
+    const Vec3 from = point_before(scene.lights.triangles[light]), offset = origin - from;
+    const float distance = length(offset);
     if (distance > 0) {
-        visit_media(scene, list, from, way / distance, distance, false, [](const RayPart&) { return false; });
+        visit_media(scene, list, from, offset / distance, distance, false, [](const RayPart&) { return false; });
     }
     const uint32_t rank = scene.nesting.ranks[start.instance];
     if (rank == 0) return list;

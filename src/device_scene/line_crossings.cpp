@@ -10,13 +10,13 @@ constexpr uint32_t kMostCells = 512;   // along a side
 constexpr std::size_t kMostPlaces = 8; // entries per index, on average
 constexpr double kMargin = 1e-6;       // in cells, far more than what rounding moves a place by
 
-/// Returns +1 or -1 if a line from `from` along `way` meets the triangle, by the side that it meets; else 0.
-int crossing(DoubleVec3 from, DoubleVec3 way, DoubleVec3 a, DoubleVec3 b, DoubleVec3 c) {
-    const DoubleVec3 ab = b - a, ac = c - a, p = cross(way, ac);
+/// Returns +1 or -1 if a line from `from` along `direction` meets the triangle, by the side that it meets; else 0.
+int crossing(DoubleVec3 from, DoubleVec3 direction, DoubleVec3 a, DoubleVec3 b, DoubleVec3 c) {
+    const DoubleVec3 ab = b - a, ac = c - a, p = cross(direction, ac);
     const double det = dot(ab, p);
     if (det == 0) return 0;
     const DoubleVec3 to = from - a, q = cross(to, ab);
-    const double u = dot(to, p) / det, v = dot(way, q) / det, t = dot(ac, q) / det;
+    const double u = dot(to, p) / det, v = dot(direction, q) / det, t = dot(ac, q) / det;
     if (!(u >= 0 && v >= 0 && u + v <= 1 && t > 0)) return 0;
     return det > 0 ? 1 : -1;
 }

@@ -45,7 +45,7 @@ bool contains(const Bounds3& bounds, Vec3 p) {
 }
 
 /// Directions of lines from a point, of which two of three decide, because one may meet an edge.
-constexpr DoubleVec3 kWays[] = {{0.5773, 0.5221, 0.6279}, {-0.3117, 0.8891, -0.3353}, {0.1213, -0.4391, 0.8903}};
+constexpr DoubleVec3 kDirections[] = {{0.5773, 0.5221, 0.6279}, {-0.3117, 0.8891, -0.3353}, {0.1213, -0.4391, 0.8903}};
 
 } // namespace
 
@@ -76,7 +76,8 @@ std::shared_ptr<const ClosedMeshes::Shape> ClosedMeshes::shape_of(const Scene& s
     const auto [found, is_new] = found_.try_emplace(mesh);
     if (is_new && is_closed(scene.meshes[mesh])) {
         Shape shape = {scene.meshes[mesh].positions, scene.meshes[mesh].indices, {}};
-        for (const DoubleVec3& way : kWays) shape.lines.emplace_back(shape.positions, shape.indices, way);
+        for (const DoubleVec3& direction : kDirections)
+            shape.lines.emplace_back(shape.positions, shape.indices, direction);
         found->second = std::make_shared<const Shape>(std::move(shape));
     }
     return found->second;

@@ -125,10 +125,10 @@ std::vector<Ray> make_shadow(const StartPoints& starts, const Bounds3& box) {
     parallel_for(rays.size(), kGrain, [&](uint64_t o) {
         uint32_t state = state_of(starts, o, kShadowSeed);
         const Vec3 target = targets[static_cast<std::size_t>(draw(state) * static_cast<float>(kShadowTargets))];
-        const Vec3 origin = starts.points[o].origin, way = target - origin;
-        const float distance = length(way);
+        const Vec3 origin = starts.points[o].origin, offset = target - origin;
+        const float distance = length(offset);
         const bool is_there = !(distance > 0); // a ray of zero length, which cannot hit anything
-        rays[o] = {origin, 0.0f, is_there ? starts.points[o].normal : (1.0f / distance) * way,
+        rays[o] = {origin, 0.0f, is_there ? starts.points[o].normal : (1.0f / distance) * offset,
                    is_there ? 0.0f : kShadowReach * distance};
     });
     return rays;

@@ -87,11 +87,12 @@ RenderSettings with_settings(const RenderSettings& settings, const std::vector<s
 std::string command_text(const ThesisRecipe& recipe, const RenderSettings& settings) {
     const std::string scene = command_of(recipe.scene);
     const bool is_whole =
-        recipe.way == ThesisWay::Render || (recipe.way == ThesisWay::Radiosity && recipe.panel.has_ambient);
+        recipe.method == ThesisMethod::Render || (recipe.method == ThesisMethod::Radiosity && recipe.panel.has_ambient);
     if (scene.empty() || !is_whole) return {};
     std::string others;
     for (const std::string& setting : recipe.settings) others += fmt::format(" `{}`", setting);
-    if (recipe.way == ThesisWay::Radiosity) others += settings_of(recipe.panel, solution_of(recipe.panel, settings));
+    if (recipe.method == ThesisMethod::Radiosity)
+        others += settings_of(recipe.panel, solution_of(recipe.panel, settings));
     if (recipe.has_photons_by_size) others += fmt::format(" `photons={}`", settings.photon_map->photons);
     return fmt::format("{} `integrator={}`{} `size={}x{}` `spp={}` `max_depth={}` `exposure={:g}` `output={}.png`",
                        scene, recipe.integrator, others, settings.width, settings.height, settings.samples,
@@ -125,8 +126,8 @@ ThesisPicture ThesisPictures::make(std::string_view name, Sink& sink) {
                              .title = recipe.title,
                              .shows = recipe.shows,
                              .integrator = recipe.integrator};
-    if (recipe.way == ThesisWay::KdTree || recipe.way == ThesisWay::Octree) {
-        const FoundPoints found = recipe.way == ThesisWay::KdTree ? found_in_kd_tree() : found_in_octree();
+    if (recipe.method == ThesisMethod::KdTree || recipe.method == ThesisMethod::Octree) {
+        const FoundPoints found = recipe.method == ThesisMethod::KdTree ? found_in_kd_tree() : found_in_octree();
         picture.svg = svg_of(found);
         picture.shows += ' ' + describe(found);
         return picture;
@@ -140,7 +141,7 @@ ThesisPicture ThesisPictures::make(std::string_view name, Sink& sink) {
     settings.path.max_depth = std::min(settings.path.max_depth, max_depth(settings.integrator));
     settings = with_settings(settings, recipe.settings);
     if (recipe.has_photons_by_size) settings.photon_map.edit().photons = thesis_detail(settings.height).photons;
-    if (recipe.way == ThesisWay::Work) {
+    if (recipe.method == ThesisMethod::Work) {
         settings.tracers =
             same_for_all({.structure = recipe.structure,
                           .traversal = only_traversal_of(recipe.structure).value_or(TraversalKind::WhileWhile)});
@@ -148,19 +149,19 @@ ThesisPicture ThesisPictures::make(std::string_view name, Sink& sink) {
     job.prepared = prepare_scene(job.scene, prepare_options(settings, queue_.is_cuda()), job.sink);
     job.camera = camera_of(recipe.scene, job.scene, aspect_of(settings.width, settings.height));
     picture.command = command_text(recipe, settings);
-    switch (recipe.way) {
-    case ThesisWay::Radiosity:
+    switch (recipe.method) {
+    case ThesisMethod::Radiosity:
         show_radiosity(job, picture);
         break;
-    case ThesisWay::Photons:
+    case ThesisMethod::Photons:
         show_photons(job, picture);
         break;
-    case ThesisWay::Work:
+    case ThesisMethod::Work:
         count_work(job, picture);
         break;
-    case ThesisWay::Render:
-    case ThesisWay::KdTree:
-    case ThesisWay::Octree:
+    case ThesisMethod::Render:
+    case ThesisMethod::KdTree:
+    case ThesisMethod::Octree:
         render(job, settings, picture);
         break;
     }

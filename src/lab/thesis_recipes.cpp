@@ -11,7 +11,7 @@ ThesisRecipe recipe_of(const gltf::JsonValue& value) {
     ThesisRecipe recipe = {.name = value.string_or("name", ""),
                            .title = value.string_or("title", ""),
                            .shows = value.string_or("shows", ""),
-                           .way = value_named<ThesisWay>(value.string_or("way", "render")).value(),
+                           .method = value_named<ThesisMethod>(value.string_or("way", "render")).value(),
                            .scene = value_named<ThesisScene>(value.string_or("scene", "box")).value(),
                            .integrator = value.string_or("integrator", ""),
                            .is_whole = value.bool_or("is_whole", false),

@@ -12,7 +12,7 @@
 namespace pertev {
 
 /// The way in which a picture is made.
-enum class ThesisWay : uint8_t {
+enum class ThesisMethod : uint8_t {
     Render,    // by an integrator
     Radiosity, // by a radiosity solution that is then rendered
     Photons,   // the photons of one pass, drawn as dots
@@ -21,10 +21,10 @@ enum class ThesisWay : uint8_t {
     Octree,    // a drawing of the points that an octree search finds
 };
 
-inline constexpr ValueName<ThesisWay> kThesisWayNames[] = {
-    {ThesisWay::Render, "render"}, {ThesisWay::Radiosity, "radiosity"}, {ThesisWay::Photons, "photons"},
-    {ThesisWay::Work, "work"},     {ThesisWay::KdTree, "kd-tree"},      {ThesisWay::Octree, "octree"}};
-constexpr const auto& names_of_all(ThesisWay) { return kThesisWayNames; }
+inline constexpr ValueName<ThesisMethod> kThesisMethodNames[] = {
+    {ThesisMethod::Render, "render"}, {ThesisMethod::Radiosity, "radiosity"}, {ThesisMethod::Photons, "photons"},
+    {ThesisMethod::Work, "work"},     {ThesisMethod::KdTree, "kd-tree"},      {ThesisMethod::Octree, "octree"}};
+constexpr const auto& names_of_all(ThesisMethod) { return kThesisMethodNames; }
 
 /// A panel of the figure of radiosity.
 struct RadiosityPanel {
@@ -44,7 +44,7 @@ ThesisDetail thesis_detail(uint32_t panel_height);
 
 struct ThesisRecipe {
     std::string name, title, shows; // ThesisPicture's
-    ThesisWay way = ThesisWay::Render;
+    ThesisMethod method = ThesisMethod::Render;
     ThesisScene scene = ThesisScene::Box;
     std::string integrator;
     bool is_whole = false;             // otherwise one panel of several: half the width and height

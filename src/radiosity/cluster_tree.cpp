@@ -101,12 +101,12 @@ Rgb SentLight::towards(Vec3 d) const {
 }
 
 Ball ball_round(const Ball& a, const Ball& b) {
-    const Vec3 way = b.centre - a.centre;
-    const float distance = length(way);
+    const Vec3 offset = b.centre - a.centre;
+    const float distance = length(offset);
     if (distance + b.radius <= a.radius) return a;
     if (distance + a.radius <= b.radius) return b;
     const float radius = 0.5f * (distance + a.radius + b.radius);
-    return {a.centre + ((radius - a.radius) / distance) * way, radius};
+    return {a.centre + ((radius - a.radius) / distance) * offset, radius};
 }
 
 ClusterTree make_clusters(std::span<const uint32_t> faces, std::span<const Ball> balls, std::span<const Vec3> normals,

@@ -134,11 +134,11 @@ private:
         if (!is_cluster(link.receiver)) { // no more arrives than leaves, all over the receiver
             most = min(most, luminance(nodes_.power(link.source)) / nodes_.area(link.receiver));
         }
-        const Vec3 way = here.centre - there.centre;
-        const float distance = length(way), nearest = distance - here.radius;
+        const Vec3 offset = here.centre - there.centre;
+        const float distance = length(offset), nearest = distance - here.radius;
         if (!is_cluster(link.source) || !(nearest > 2 * there.radius)) return most;
         // A series of three terms may take a quarter of the power for none.
-        const float towards = luminance(nodes_.power_towards(link.source, (1.0f / distance) * way));
+        const float towards = luminance(nodes_.power_towards(link.source, (1.0f / distance) * offset));
         const float power = max(towards, 0.25f * luminance(nodes_.power(link.source)));
         return min(most, power * kInvPi / square(nearest));
     }

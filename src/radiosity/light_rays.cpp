@@ -43,7 +43,7 @@ void add_light_rays(const RowScene& scene, const Patch& patch, SampleKey key, co
     const LightSetView& lights = view.lights;
     if (lights.choice.starts == nullptr) return;
     QueuedLight queued[kRaysAtOnce];
-    bool met[kRaysAtOnce];
+    bool occluded[kRaysAtOnce];
     const float each = 1.0f / static_cast<float>(rays.count);
     for (uint32_t first = 0; first < rays.count; first += kRaysAtOnce) {
         if (scene.is_over()) return;
@@ -84,9 +84,10 @@ void add_light_rays(const RowScene& scene, const Patch& patch, SampleKey key, co
             return AcceptHit{view, {patch.instance, patch.primitive}, queued[i].target, queued[i].key};
         };
         find_occlusions(
-            scene.scene.trees(), count, RayOrder::Scattered, [&](uint32_t i) { return queued[i].ray; }, accept_of, met);
+            scene.scene.trees(), count, RayOrder::Scattered, [&](uint32_t i) { return queued[i].ray; }, accept_of,
+            occluded);
         for (uint32_t i = 0; i < count; ++i) {
-            if (met[i]) continue;
+            if (occluded[i]) continue;
             if (is_patch(queued[i].emitter)) {
                 row.factors.push_back({number_of(queued[i].emitter), queued[i].factor});
             } else {

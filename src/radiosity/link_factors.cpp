@@ -11,11 +11,11 @@ constexpr float kFar = 8;      // distance, in radii of a source, from which on 
 
 /// Form factor from a point to a patch, which may face it or not.
 float form_factor_at(const PatchPoint& point, const LinkedPatch& source) {
-    const Vec3 way = source.ball.centre - point.position;
+    const Vec3 offset = source.ball.centre - point.position;
     if (!(dot(source.normal, source.corner[0] - point.position) < 0)) return 0;
-    const float squared = length_squared(way);
+    const float squared = length_squared(offset);
     if (squared > square(kFar * source.ball.radius)) {
-        const float cosines = dot(way, point.normal) * -dot(way, source.normal);
+        const float cosines = dot(offset, point.normal) * -dot(offset, source.normal);
         return cosines > 0 ? cosines * source.area / (kPi * square(squared)) : 0.0f;
     }
     const Vec3 corner[] = {source.corner[0] - point.position, source.corner[1] - point.position,
@@ -88,10 +88,10 @@ void LinkFactors::queue_clusters(const Link& link, uint32_t rays, uint32_t key, 
         const Patch &receiver = nodes_.patch(receiving), &source = nodes_.patch(sending);
         const PatchPoint start = point_on_patch(scene_.view(), receiver, on_receiver);
         const PatchPoint target = point_on_patch(scene_.view(), source, on_source);
-        const Vec3 way = target.position - start.position;
-        const float squared = length_squared(way);
-        const float cosines = dot(way, start.normal) * -dot(way, target.normal);
-        if (!(squared > 0) || !(dot(way, start.normal) > 0) || !(cosines > 0)) continue;
+        const Vec3 offset = target.position - start.position;
+        const float squared = length_squared(offset);
+        const float cosines = dot(offset, start.normal) * -dot(offset, target.normal);
+        if (!(squared > 0) || !(dot(offset, start.normal) > 0) || !(cosines > 0)) continue;
         const float weight = is_even ? cosines / (squared * (kPi * squared + area)) : cosines / squared;
         if (test_visibility(receiver, start, source, target, weight)) weights += weight;
     }
@@ -101,11 +101,11 @@ void LinkFactors::queue_clusters(const Link& link, uint32_t rays, uint32_t key, 
     } else {
         const uint32_t tested = static_cast<uint32_t>(visibility_rays_.size()) - queued.first;
         queued.rays = tested > 0 ? tested : rays; // none faces the other
-        const Vec3 way = there.centre - here.centre;
-        const float squared = length_squared(way);
+        const Vec3 offset = there.centre - here.centre;
+        const float squared = length_squared(offset);
         float cosine = 1;
         if (!is_cluster(link.receiver)) {
-            cosine = max(dot(way, nodes_.shape(link.receiver).normal), 0.0f) / sqrt(squared);
+            cosine = max(dot(offset, nodes_.shape(link.receiver).normal), 0.0f) / sqrt(squared);
         }
         queued.scale = weights > 0 ? cosine * kInvPi / (squared * weights) : 0.0f;
     }
@@ -114,10 +114,10 @@ void LinkFactors::queue_clusters(const Link& link, uint32_t rays, uint32_t key, 
 /// Queues a visibility ray between two points. Returns false if they do not face each other.
 bool LinkFactors::test_visibility(const Patch& from, const PatchPoint& start, const Patch& to, const PatchPoint& target,
                                   float weight) {
-    const Vec3 way = target.position - start.position;
-    const float squared = length_squared(way);
+    const Vec3 offset = target.position - start.position;
+    const float squared = length_squared(offset);
     if (!(squared > 0)) return false;
-    const Vec3 direction = (1.0f / sqrt(squared)) * way;
+    const Vec3 direction = (1.0f / sqrt(squared)) * offset;
     if (!(dot(direction, start.normal) > 0) || !(dot(direction, target.normal) < 0)) return false;
     VisibilityRay visibility_ray;
     visibility_ray.ray.origin = offset_ray_origin(start.position, start.error, start.normal, direction);

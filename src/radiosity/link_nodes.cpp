@@ -176,9 +176,9 @@ void LinkNodes::receive(NodeCode receiver, std::span<const Link> links) {
             const Ball& there = ball(link.source);
             if (!(link.factor > 0)) return {};
             if (balls_meet(here, there)) return {link.factor * power(link.source), {}};
-            const Vec3 way = normalize(there.centre - here.centre);
+            const Vec3 direction = normalize(there.centre - here.centre);
             Received of;
-            of.directed.add(way, link.factor * power_towards(link.source, -way));
+            of.directed.add(direction, link.factor * power_towards(link.source, -direction));
             return of;
         });
         cluster_gathered_[cluster_of(receiver)] = received.even;

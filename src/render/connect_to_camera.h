@@ -72,10 +72,10 @@ HD inline bool connect_to_camera(const CameraRays& camera, Vec3 point, Vec2 u, C
         y = through.at.y;
     }
     seen.from = transform_point(view.world_from_camera, from);
-    const Vec3 way = point - seen.from;
-    const float distance_squared = length_squared(way);
+    const Vec3 offset = point - seen.from;
+    const float distance_squared = length_squared(offset);
     if (!(distance_squared > 0)) return false;
-    seen.direction = way / sqrt(distance_squared);
+    seen.direction = offset / sqrt(distance_squared);
     seen.raster = {(0.5f * x / view.half_width + 0.5f * view.centre.x) * static_cast<float>(camera.width),
                    (0.5f * view.centre.y - 0.5f * y / view.half_height) * static_cast<float>(camera.height)};
     const float reach = camera.filter.radius, right = static_cast<float>(camera.width) + reach,

@@ -26,17 +26,18 @@ struct FirstBounceView {
 
     // The arrays from here on are null unless the light from the point that the first bounce hit is needed too (the
     // samples include it):
-    Float4* hit = nullptr;     // bits of instance (kNoHit: no hit) and primitive, u, v of the point that the first
-                               // bounce hit
-    Float4* way = nullptr;     // rgb throughput of the path on arrival; density of the first bounce, 1/sr
-    Float4* sent = nullptr;    // rgb, the part of the sample that diffuse lobes there send
-    Float4* onwards = nullptr; // rgb, share of the light of the rest of the path that passes through these lobes
+    Float4* hit = nullptr; // bits of instance (kNoHit: no hit) and primitive, u, v of the point that the first
+                           // bounce hit
+    Float4* throughput_and_pdf = nullptr;   // rgb throughput of the path on arrival; density of the first bounce, 1/sr
+    Float4* diffuse_contribution = nullptr; // rgb, the part of the sample that diffuse lobes there scatter
+    Float4* continuation_weight = nullptr;  // rgb, share of the light of the rest of the path that passes through
+                                            // these lobes
 
     HD bool leaves_direct_light() const { return light != nullptr; }
-    HD bool records_bounce() const { return sent != nullptr; }
-    HD void add_sent(uint32_t pixel, Rgb more) const {
-        const Float4 s = sent[pixel];
-        sent[pixel] = {s.x + more.r, s.y + more.g, s.z + more.b, 0};
+    HD bool records_bounce() const { return diffuse_contribution != nullptr; }
+    HD void add_diffuse(uint32_t pixel, Rgb more) const {
+        const Float4 s = diffuse_contribution[pixel];
+        diffuse_contribution[pixel] = {s.x + more.r, s.y + more.g, s.z + more.b, 0};
     }
 };
 

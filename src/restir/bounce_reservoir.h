@@ -20,12 +20,12 @@ namespace pertev {
 struct alignas(16) BounceReservoir {
     uint32_t instance = kNoHit, primitive = 0;
     float u = 0, v = 0; // weights of the triangle's second and third vertex
-    Rgb sent;           // B, W/(sr m2)
+    Rgb radiance;       // B, W/(sr m2)
     float weight = 0;   // contribution weight, as in LightReservoir
     float count = 0;
     float seen = 0;
     uint32_t source = 0;
-    float side = 0; // 1 if `sent` leaves on the front of the triangle (corners counter-clockwise), else -1
+    float side = 0; // 1 if `radiance` leaves on the front of the triangle (corners counter-clockwise), else -1
 
     HD Hit hit() const { return {0, u, v, instance, primitive}; }
 };
@@ -41,9 +41,9 @@ struct Reconnection {
 
 /// `normal` is the cross product of the triangle's edges.
 HD inline Reconnection reconnect(Vec3 position, Vec3 normal, Vec3 from) {
-    const Vec3 way = position - from;
-    const float distance_squared = length_squared(way);
-    const Vec3 wi = way / sqrt(distance_squared);
+    const Vec3 offset = position - from;
+    const float distance_squared = length_squared(offset);
+    const Vec3 wi = offset / sqrt(distance_squared);
     const float facing = dot(normal, wi), measure = abs(facing) / distance_squared;
     return {wi, measure, facing < 0 ? 1.0f : -1.0f, measure > 0 && is_finite(measure)};
 }
@@ -78,12 +78,12 @@ HD inline float diffuse_transmittance(const SceneView& scene, const Hit& hit, Ve
 /// Holds what is the same for all receivers: a reservoir's point in the world, and the light that it sends.
 struct PreparedBounce {
     Vec3 position, normal; // normal: cross product of its triangle's edges
-    Rgb sent;
+    Rgb radiance;
     float side;
 };
 HD inline PreparedBounce prepare_light(const SceneView& scene, const BounceReservoir& reservoir) {
     const WorldTriangle triangle = world_triangle(scene, reservoir);
-    return {triangle.position, cross(triangle.ab, triangle.ac), reservoir.sent, reservoir.side};
+    return {triangle.position, cross(triangle.ab, triangle.ac), reservoir.radiance, reservoir.side};
 }
 
 /// Returns the integrand of indirect light that only diffuse lobes of the receiver scatter, without A, which the target
@@ -92,7 +92,7 @@ template <ShadingVariant kVariant>
 HD inline Rgb light_scattered(const SceneView&, const Receiver<kVariant>& receiver, const PreparedBounce& from) {
     const Reconnection seen = reconnect(from.position, from.normal, receiver.position());
     if (!seen.is_there || seen.side != from.side) return {};
-    return seen.measure * (receiver.evaluate(seen.wi, only(LobeClass::Diffuse)).f * from.sent);
+    return seen.measure * (receiver.evaluate(seen.wi, only(LobeClass::Diffuse)).f * from.radiance);
 }
 
 HD inline bool make_visibility_ray(const SceneView& scene, const BounceReservoir& reservoir, const WorldTriangle& from,

@@ -23,8 +23,9 @@ struct MakeInitialGiReservoirs {
         if (!here.is_there(pixel)) return;
         reservoir.count = 1;
         const FirstBounceView& left = film.frame.first_bounce;
-        const Float4 hit = left.hit[pixel], sent = left.sent[pixel], way = left.way[pixel];
-        const Rgb found = {sent.x, sent.y, sent.z};
+        const Float4 hit = left.hit[pixel], diffuse = left.diffuse_contribution[pixel],
+                     arrival = left.throughput_and_pdf[pixel];
+        const Rgb found = {diffuse.x, diffuse.y, diffuse.z};
         if (bits_of(hit.x) == kNoHit || is_black(found) || film.frame.light[pixel].w == 0) return;
         const Vec3 direction = here.direction(pixel);
         const Surface surface = here.surface<kVariant>(scene, pixel, direction);
@@ -42,10 +43,10 @@ struct MakeInitialGiReservoirs {
         subtract_from_sample(pixel, share * found);
         taken.count = 1;
         taken.side = seen.side;
-        taken.sent =
-            (1.0f / transmittance) * Rgb{quotient(found.r, way.x), quotient(found.g, way.y), quotient(found.b, way.z)};
-        taken.weight = 1.0f / (way.w * seen.measure);
-        if (is_finite(taken.sent) && is_finite(taken.weight)) reservoir = taken;
+        taken.radiance = (1.0f / transmittance) *
+                         Rgb{quotient(found.r, arrival.x), quotient(found.g, arrival.y), quotient(found.b, arrival.z)};
+        taken.weight = 1.0f / (arrival.w * seen.measure);
+        if (is_finite(taken.radiance) && is_finite(taken.weight)) reservoir = taken;
     }
 
 private:

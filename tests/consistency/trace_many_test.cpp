@@ -22,12 +22,12 @@ using namespace pertev::test;
 namespace {
 
 void check_hits(const std::vector<Ray>& rays, const std::vector<Hit>& expected, const std::vector<Hit>& hits,
-                const bool* met) {
+                const bool* occluded) {
     uint64_t wrong = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         Hit want = expected[i];
         if (want.instance == kNoHit) want.t = rays[i].t_max;
-        if (hits[i] == want && met[i] == (want.instance != kNoHit)) continue;
+        if (hits[i] == want && occluded[i] == (want.instance != kNoHit)) continue;
         if (wrong++ == 0) FAIL_CHECK("ray ", i, ": ", text_of(rays[i]), " t ", hits[i].t, " want ", want.t);
     }
     CHECK(wrong == 0);
@@ -39,12 +39,12 @@ void check_many(const HostTrees& scene, RayOrder order, const std::vector<Ray>& 
                 const Accept& accept) {
     const auto count = static_cast<uint32_t>(rays.size());
     std::vector<Hit> hits(rays.size());
-    const auto met = std::make_unique<bool[]>(rays.size());
+    const auto occluded = std::make_unique<bool[]>(rays.size());
     const auto ray_of = [&](uint32_t i) { return rays[i]; };
     const auto accept_of = [&](uint32_t) { return accept; };
     trace_closest_many<TraversalOptions{}>(scene, count, order, ray_of, accept_of, hits.data());
-    trace_any_many<TraversalOptions{.near_first = false}>(scene, count, order, ray_of, accept_of, met.get());
-    check_hits(rays, expected, hits, met.get());
+    trace_any_many<TraversalOptions{.near_first = false}>(scene, count, order, ray_of, accept_of, occluded.get());
+    check_hits(rays, expected, hits, occluded.get());
 #if defined(PERTEV_HAS_16_LANES)
     if (!has_sixteen_lanes()) return;
     std::vector<Hit> hits_of_16(rays.size());

@@ -10,24 +10,24 @@ namespace {
 
 template <class Accept>
 void trace_many(const HostTrees& scene, RayOrder order, std::span<const Ray> rays, const Accept& accept, Hit* hits,
-                bool* met) {
+                bool* occluded) {
     const auto count = static_cast<uint32_t>(rays.size());
     const auto ray_of = [&](uint32_t i) { return rays[i]; };
     const auto accept_of = [&](uint32_t) { return accept; };
     trace_closest_many<TraversalOptions{}, Floats16>(scene, count, order, ray_of, accept_of, hits);
-    trace_any_many<TraversalOptions{.near_first = false}, Floats16>(scene, count, order, ray_of, accept_of, met);
+    trace_any_many<TraversalOptions{.near_first = false}, Floats16>(scene, count, order, ray_of, accept_of, occluded);
 }
 
 } // namespace
 
 void trace_many_by_16(const HostTrees& scene, RayOrder order, std::span<const Ray> rays, AcceptAll accept, Hit* hits,
-                      bool* met) {
-    trace_many(scene, order, rays, accept, hits, met);
+                      bool* occluded) {
+    trace_many(scene, order, rays, accept, hits, occluded);
 }
 
 void trace_many_by_16(const HostTrees& scene, RayOrder order, std::span<const Ray> rays, AcceptSome accept, Hit* hits,
-                      bool* met) {
-    trace_many(scene, order, rays, accept, hits, met);
+                      bool* occluded) {
+    trace_many(scene, order, rays, accept, hits, occluded);
 }
 
 } // namespace pertev::test

@@ -12,9 +12,9 @@ namespace pertev::test {
 #if defined(PERTEV_HAS_16_LANES)
 /// trace_closest_many and trace_any_many with Floats16, only for processors that have_sixteen_lanes.
 void trace_many_by_16(const HostTrees& scene, RayOrder order, std::span<const Ray> rays, AcceptAll accept, Hit* hits,
-                      bool* met);
+                      bool* occluded);
 void trace_many_by_16(const HostTrees& scene, RayOrder order, std::span<const Ray> rays, AcceptSome accept, Hit* hits,
-                      bool* met);
+                      bool* occluded);
 #endif
 
 } // namespace pertev::test

@@ -109,7 +109,7 @@ using Edge = std::pair<ScreenPoint, ScreenPoint>;
 
 struct Diced {
     std::map<Edge, int> edges; // number of micropolygons at each edge
-    std::set<std::pair<uint32_t, uint64_t>> ways;
+    std::set<std::pair<uint32_t, uint64_t>> split_paths;
     std::size_t count = 0;
     double longest = 0; // pixels
 };
@@ -136,7 +136,7 @@ Diced dice(const HostMesh& host, const Camera& camera, uint32_t width, uint32_t 
         for (uint32_t k = 0; k < child_count(edges); ++k) stack.push_back(child_of(piece, edges, k));
         if (edges != 0) continue;
         ++diced.count;
-        diced.ways.insert({piece.triangle, piece.way});
+        diced.split_paths.insert({piece.triangle, piece.split_path});
         for (int k = 0; k < 3; ++k) {
             const PinholePoint &a = p[k].position, &b = p[(k + 1) % 3].position;
             const double dx = pass.camera.column_of(a.x / a.w) - pass.camera.column_of(b.x / b.w);
@@ -158,7 +158,7 @@ TEST_CASE("no edge of a micropolygon exceeds the shading rate, displaced or not,
             const HostMesh sphere(seamless_sphere(), map);
             const Diced far = dice(sphere, looking({1, 2, 5}, {0, 0, 0}), 60, 50, rate);
             CHECK(far.count > 500 / (rate * rate));
-            CHECK(far.ways.size() == far.count); // gives the subcase its own name
+            CHECK(far.split_paths.size() == far.count); // gives the subcase its own name
             CHECK(far.longest <= rate);
             CHECK(far.longest > 0.9 * rate);
             const Diced inside = dice(sphere, looking({0.3f, 0.1f, 0.2f}, {1, 1, 0}), 30, 20, rate);

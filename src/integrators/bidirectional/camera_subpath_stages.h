@@ -45,7 +45,7 @@ private:
         const SampleKey key = {state.pixel, state.sample, scene.settings.seed};
         const SubpathFlight flight = fly(scene, key, state.depth(), ray, hit, false, list, state.throughput);
         const float squared = flight.distance < kInfinity ? square(flight.distance) : 1.0f;
-        const float way = (state.is_from_far != 0 ? 1.0f : squared) / flight.probability;
+        const float distance_factor = (state.is_from_far != 0 ? 1.0f : squared) / flight.probability;
         state.is_from_far = 0;
         if (!flight.is_scattered && hit.instance == kNoHit) {
             state.mis.arrive(1, 1.0f / flight.probability);
@@ -54,7 +54,7 @@ private:
         if (flight.is_scattered) {
             if (state.depth() == 0) add_behind_medium<kVariant>(picture, film, state, ray, hit);
             const MediumEnd end = {flight.point, ray.direction, flight.share};
-            state.mis.arrive(end.density_factor(ray.direction), way);
+            state.mis.arrive(end.density_factor(ray.direction), distance_factor);
             if (is_black(state.throughput) || state.depth() >= scene.settings.max_depth) return;
             return shade_vertex(end, SubpathVertex::hit_in_medium(end.position()), ray.direction, subpath, state, list);
         }
@@ -62,7 +62,7 @@ private:
         state.throughput =
             reach_surface(picture.scene, list, subpaths.start_of(i, round), ray.direction, hit, surface) *
             state.throughput;
-        state.mis.arrive(cosine_at(surface, ray.direction), way);
+        state.mis.arrive(cosine_at(surface, ray.direction), distance_factor);
         shade_surface(surface, hit, ray, subpath, state, list);
     }
     HD INLINE_ON_DEVICE void shade_surface(const Surface& surface, const Hit& hit, const Ray& ray, uint32_t subpath,
@@ -313,10 +313,10 @@ struct ConnectSubpaths {
         if (!subpaths.kept.is_there(at)) return;
         const SceneView& view = scene.picture.scene;
         const VertexToConnect<kInMedia> ends[2] = {{subpaths.present, present}, {subpaths.kept, at}};
-        const Vec3 way = position_of<kInMedia>(view, ends[1]) - position_of<kInMedia>(view, ends[0]);
-        const float distance_squared = length_squared(way);
+        const Vec3 offset = position_of<kInMedia>(view, ends[1]) - position_of<kInMedia>(view, ends[0]);
+        const float distance_squared = length_squared(offset);
         if (!(distance_squared > 0)) return;
-        const Vec3 along = way / sqrt(distance_squared);
+        const Vec3 along = offset / sqrt(distance_squared);
         ConnectedEnd<kInMedia> connected[2];
         if (!connect_ends<kVariant, kInMedia>(view, ends, along, connected)) return;
         const ConnectedEnd<kInMedia>&camera = connected[0], &particle = connected[1];

@@ -34,7 +34,7 @@ struct MirroredEmitters {
 struct CacheLookup {
     Hit hit;
     Vec3 direction; // direction of the path, unit
-    float way;      // distance from the camera along the path, metres
+    float distance; // distance from the camera along the path, metres
     Rgb throughput;
     uint32_t subpath, scatterings;
 };
@@ -42,7 +42,7 @@ struct CacheLookup {
 struct CacheSubpathsView {
     Float4* cache_states; // [paths]
     Float4* paths;        // [paths] throughput of all light, as in path tracing; 0 for rays of a record
-    float* ways;          // [paths] distance from the camera, metres
+    float* distances;     // [paths] distance from the camera, metres
     SubpathAim* aims;     // [paths]
     // Lookups of a round, contiguous; SubpathCounts::vertices is their number.
     Float4 *hits, *directions, *throughputs;
@@ -67,7 +67,7 @@ struct CacheSubpathsView {
         const Vec3 d = lookup.direction;
         const Rgb t = lookup.throughput;
         hits[at] = {hit.u, hit.v, float_of(hit.instance), float_of(hit.primitive)};
-        directions[at] = {d.x, d.y, d.z, lookup.way};
+        directions[at] = {d.x, d.y, d.z, lookup.distance};
         throughputs[at] = {t.r, t.g, t.b, float_of(lookup.subpath)};
         scatterings[at] = lookup.scatterings;
     }
@@ -95,7 +95,7 @@ inline std::size_t lay_out(CacheSubpathsView& view, std::byte* memory, const Cac
         const std::size_t subpaths = capacity.count, cells = capacity.cells;
         add_array(view.cache_states, subpaths);
         add_array(view.paths, subpaths);
-        add_array(view.ways, subpaths);
+        add_array(view.distances, subpaths);
         add_array(view.aims, subpaths);
         add_array(view.hits, subpaths);
         add_array(view.directions, subpaths);

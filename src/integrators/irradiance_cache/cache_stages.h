@@ -44,7 +44,7 @@ struct BeginCacheSubpaths {
         begin(i);
         cache.store_cache_state(i, {{1, 1, 1}, 0});
         cache.store_path(i, {1, 1, 1});
-        cache.ways[i] = 0;
+        cache.distances[i] = 0;
         cache.aims[i] = SubpathAim::Seek;
     }
 };
@@ -84,17 +84,17 @@ struct ShadeCacheSubpaths {
         }
         const uint32_t depth = state.depth();
         if (surface.is_unlit || depth >= scene.settings.max_depth) return;
-        const float way = cache.ways[subpath] + hit.t;
+        const float distance = cache.distances[subpath] + hit.t;
         const Vec3 wo = -ray.direction;
         const bool is_cached = cache.aims[subpath] == SubpathAim::Seek && depth + 2 <= scene.settings.max_depth &&
                                CachedSurface(surface, wo).is_cached;
         const Vertex vertex = {surface, wo, is_cached, {state.pixel, state.sample, scene.settings.seed}};
         if (is_cached) {
             cache.store(atomic_add(&subpaths.counts->vertices, 1u),
-                        {hit, ray.direction, way, state.throughput, subpath, depth});
+                        {hit, ray.direction, distance, state.throughput, subpath, depth});
         }
         if (adds_light()) sample_direct_light(vertex, subpath, state);
-        cache.ways[subpath] = way;
+        cache.distances[subpath] = distance;
         continue_subpath(vertex, subpath, state, cache_state);
     }
 

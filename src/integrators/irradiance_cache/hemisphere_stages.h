@@ -153,7 +153,7 @@ struct BeginHemispheres {
         // mirrors.
         cache.store_cache_state(i, {{0, 0, 0}, 0});
         cache.store_path(i, {0, 0, 0});
-        cache.ways[i] = 0;
+        cache.distances[i] = 0;
         cache.aims[i] = SubpathAim::GoOn;
         const Ray ray = {offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wi), 0, wi,
                          kInfinity};
@@ -200,7 +200,7 @@ struct FinishRecords {
         const RecordSite site = job.sites[job.begin + i];
         const Surface surface = make_surface<kVariant>(scene.picture.scene, hit_of(site), site.direction);
         const float side = CachedSurface(surface, -site.direction).side;
-        const float pixel = pixel_size(scene.picture.camera.view, site.way);
+        const float pixel = pixel_size(scene.picture.camera.view, site.distance);
         const std::size_t first = std::size_t(i) * job.grid.cells();
         const float nearest = 0x1p-6f * pixel; // smaller distances count as this
         HemisphereSum sum = sum_hemisphere(job.grid, surface.frame, [&](uint32_t cell) {

@@ -106,8 +106,8 @@ void IrradianceCacheIntegrator::render(uint32_t first, uint32_t count, const Fil
     const float bright = 4.0f * store_.mean_luminance();
     job.mark = {bright, 0.35f * bright, 0};
     job.samples = {film.window, first, count};
-    run_subpaths(job, 0, job.samples.count(), [this](auto& way, const CacheJob& part) {
-        if (!is_abandoned()) run_picture(way, part);
+    run_subpaths(job, 0, job.samples.count(), [this](auto& schedule, const CacheJob& part) {
+        if (!is_abandoned()) run_picture(schedule, part);
     });
     rays_.camera += job.samples.count();
 }
@@ -159,7 +159,7 @@ bool IrradianceCacheIntegrator::make_round(uint32_t round, OvertureProgress& pro
             ? PartSizes{uint64_t(kLoopCount) * static_cast<uint64_t>(thread_count()), job.grid.count()}
             : PartSizes{capacity_.count, capacity_.count};
     const bool went_on = do_in_parts(job.grid.count(), parts, goes_on, [&](uint64_t begin, uint64_t end) {
-        run_subpaths(job, begin, end, [](auto& way, const CacheJob& part) { run_overture(way, part); });
+        run_subpaths(job, begin, end, [](auto& schedule, const CacheJob& part) { run_overture(schedule, part); });
         rays_.camera += end - begin;
     });
     if (!went_on) return false;

@@ -43,7 +43,7 @@ inline constexpr uint32_t kNoSite = 0xffffffffu;
 /// A point for which a record is requested.
 struct alignas(16) RecordSite {
     Vec3 direction = {}; // direction of the path that hit it, unit
-    float way = 0;       // distance from the camera, metres
+    float distance = 0;  // distance from the camera, metres
     float u = 0, v = 0;  // on the triangle
     uint32_t instance = 0, primitive = 0;
     uint32_t scatterings = kNoSite; // between the camera and the point; kNoSite: no record is requested
@@ -73,7 +73,7 @@ struct FindRecordSites {
         if (found.weight >= kServedWeight) return;
         cache.aims[lookup.subpath] = SubpathAim::End;
         const Hit& hit = lookup.hit;
-        sites[first + lookup.subpath] = {lookup.direction, lookup.way,         hit.u, hit.v, hit.instance,
+        sites[first + lookup.subpath] = {lookup.direction, lookup.distance,    hit.u, hit.v, hit.instance,
                                          hit.primitive,    lookup.scatterings, {}};
     }
 };
@@ -101,7 +101,7 @@ struct DrawRecords {
         const CachedSurface cached(surface, -ray.direction);
         if (!cached.is_cached) return;
         const CachePoint point = cache_point(surface, cached.side, state.depth());
-        const float radius = kPixels * pixel_size(scene.picture.camera.view, cache.ways[subpath] + hit.t);
+        const float radius = kPixels * pixel_size(scene.picture.camera.view, cache.distances[subpath] + hit.t);
         bool is_marked = false;
         visit_within(records.tree, point.position, radius, [&](const NearPoint& near) {
             const CachePoint& own = records.records[near.index].point;

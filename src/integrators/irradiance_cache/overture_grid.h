@@ -55,7 +55,7 @@ struct BeginSeekers {
         subpaths.queue_ray(i, i, ray, {}, coin_key(key, 0, false), 0);
         cache.store_cache_state(i, {{1, 1, 1}, 0});
         cache.store_path(i, {1, 1, 1});
-        cache.ways[i] = 0;
+        cache.distances[i] = 0;
         cache.aims[i] = SubpathAim::Seek;
         sites[first + i] = {}; // written completely, because the host reads all of it
     }

@@ -148,7 +148,7 @@ private:
 class FirstBounce : public PathListener<FirstBounce> {
 public:
     struct ShadowData {
-        Rgb sent; // part of the contribution that passes through diffuse lobes of the second vertex
+        Rgb diffuse; // part of the contribution that passes through diffuse lobes of the second vertex
         uint32_t pixel;
     };
 
@@ -171,7 +171,7 @@ public:
         if (!records() || path.depth <= 1) return;
         // Equals the growth of the sample's radiance, which for split light contains only this vertex.
         const Rgb more = frame_.splits_light() ? light : (path.radiance + light) - path.radiance;
-        left().add_sent(path.pixel, share_onwards(path.pixel) * more);
+        left().add_diffuse(path.pixel, continuation_share(path.pixel) * more);
     }
     HD bool samples_direct(const PathState& path, const Hit& hit, const Surface& surface) {
         // Beneath coat or sheen, the light that leaves in one direction does not determine the light in another.
@@ -181,33 +181,33 @@ public:
     }
     HD void direct(const PathState& path, const SurfaceVertex& at, Vec3 wi, const ShadowRay& shadow) {
         if (!records()) return;
-        const Rgb share = is_bounce_ ? at.surface.diffuse_share(at.wo, wi) : share_onwards(path.pixel);
+        const Rgb share = is_bounce_ ? at.surface.diffuse_share(at.wo, wi) : continuation_share(path.pixel);
         shadow_data_ = {share * shadow.contribution, path.pixel};
     }
     HD void scattered(const PathState& path, const SurfaceVertex& at, const BsdfSample&) {
         if (!is_bounce_ || !(path.bsdf_pdf > 0)) return; // light of a delta lobe cannot be shared
         const Rgb share = at.surface.diffuse_share(at.wo, path.direction);
-        left().onwards[path.pixel] = {share.r, share.g, share.b, 0};
+        left().continuation_weight[path.pixel] = {share.r, share.g, share.b, 0};
     }
     HD void direct(const PathState& path, const MediumVertex&, Vec3, const ShadowRay& shadow) {
-        if (records()) shadow_data_ = {share_onwards(path.pixel) * shadow.contribution, path.pixel};
+        if (records()) shadow_data_ = {continuation_share(path.pixel) * shadow.contribution, path.pixel};
     }
     HD void scattered(const PathState&, const MediumVertex&, const BsdfSample&) {}
     HD void save_shadow_data(ShadowData& shadow_data) const { shadow_data = shadow_data_; }
 
     HD void arrived(PathData&, const ShadowData& shadow_data, Rgb) const {
-        if (records()) left().add_sent(shadow_data.pixel, shadow_data.sent);
+        if (records()) left().add_diffuse(shadow_data.pixel, shadow_data.diffuse);
     }
 
     HD static void load_shadow_data(const ListenerQueues& queues, uint32_t i, ShadowData& shadow_data) {
-        if (queues.shadow_sent == nullptr) return;
-        const Float4 sent = queues.shadow_sent[i];
-        shadow_data = {{sent.x, sent.y, sent.z}, bits_of(sent.w)};
+        if (queues.shadow_bounce == nullptr) return;
+        const Float4 diffuse = queues.shadow_bounce[i];
+        shadow_data = {{diffuse.x, diffuse.y, diffuse.z}, bits_of(diffuse.w)};
     }
     HD static void store_shadow_data(const ListenerQueues& queues, uint32_t i, const ShadowData& shadow_data) {
-        if (queues.shadow_sent == nullptr) return;
-        queues.shadow_sent[i] = {shadow_data.sent.r, shadow_data.sent.g, shadow_data.sent.b,
-                                 float_of(shadow_data.pixel)};
+        if (queues.shadow_bounce == nullptr) return;
+        queues.shadow_bounce[i] = {shadow_data.diffuse.r, shadow_data.diffuse.g, shadow_data.diffuse.b,
+                                   float_of(shadow_data.pixel)};
     }
 
 private:
@@ -217,11 +217,12 @@ private:
     /// Stores the point that the first bounce hit before light is added there; none if it cannot be shared.
     HD void begin_bounce(const PathState& path, const Hit& hit, bool is_shared) const {
         left().hit[path.pixel] = {float_of(is_shared ? hit.instance : kNoHit), float_of(hit.primitive), hit.u, hit.v};
-        left().way[path.pixel] = {path.throughput.r, path.throughput.g, path.throughput.b, path.bsdf_pdf};
-        left().sent[path.pixel] = left().onwards[path.pixel] = {0, 0, 0, 0};
+        left().throughput_and_pdf[path.pixel] = {path.throughput.r, path.throughput.g, path.throughput.b,
+                                                 path.bsdf_pdf};
+        left().diffuse_contribution[path.pixel] = left().continuation_weight[path.pixel] = {0, 0, 0, 0};
     }
-    HD Rgb share_onwards(uint32_t pixel) const {
-        const Float4 share = left().onwards[pixel];
+    HD Rgb continuation_share(uint32_t pixel) const {
+        const Float4 share = left().continuation_weight[pixel];
         return {share.x, share.y, share.z};
     }
 

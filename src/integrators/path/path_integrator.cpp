@@ -95,7 +95,7 @@ void PathIntegrator::Wavefront::take(Queue& queue, const PathParts& parts) {
         for (Paths& set : sets) set.diffuse = {queue, capacity, "paths"};
         shadow_diffuse = {queue, capacity, "shadow rays"};
     }
-    if (parts.records_bounce && shadow_sent.size() == 0) shadow_sent = {queue, capacity, "shadow rays"};
+    if (parts.records_bounce && shadow_bounce.size() == 0) shadow_bounce = {queue, capacity, "shadow rays"};
 }
 
 PathQueueView PathIntegrator::Wavefront::paths(uint32_t of_round) const {
@@ -114,7 +114,7 @@ ListenerQueues PathIntegrator::Wavefront::listened(uint32_t of_round) const {
     return {.diffuse = set.diffuse.data(),
             .next_diffuse = next.diffuse.data(),
             .shadow_diffuse = shadow_diffuse.data(),
-            .shadow_sent = shadow_sent.data(),
+            .shadow_bounce = shadow_bounce.data(),
             .states = set.states.data(),
             .next_states = next.states.data(),
             .layer_diffuse = layer_diffuse.data(),

@@ -111,7 +111,7 @@ private:
         Buffer<uint32_t> path_keys, shadow_keys;
         Buffer<Float4> contribution, hit_records;
         Buffer<Float4> shadow_diffuse;          // if frames split light
-        Buffer<Float4> shadow_sent;             // if frames store the first bounce
+        Buffer<Float4> shadow_bounce;           // if frames store the first bounce
         Buffer<float> path_times, shadow_times; // if something moves while the shutter is open
         Buffer<Float4> layer_diffuse;           // if there are layers
         Buffer<Uint4> layer_parts;              // if there are layers

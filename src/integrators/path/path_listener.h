@@ -21,7 +21,7 @@ namespace pertev {
 struct ListenerQueues {
     Float4 *diffuse = nullptr, *next_diffuse = nullptr; // LightSplit
     Float4* shadow_diffuse = nullptr;
-    Float4* shadow_sent = nullptr;                   // FirstBounce
+    Float4* shadow_bounce = nullptr;                 // FirstBounce
     Uint2 *states = nullptr, *next_states = nullptr; // LightPaths
     Float4* layer_diffuse = nullptr;
     Uint4* layer_parts = nullptr;

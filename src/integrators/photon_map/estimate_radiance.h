@@ -116,11 +116,11 @@ private:
     }
     /// Scattered power f(wo, wi) power of photon `number`, W/sr.
     HD static Rgb reflected_light(const PhotonMapView& map, const Receiver& receiver, uint32_t number) {
-        const Float4 power = map.photons.powers[number], way = map.photons.ways[number];
+        const Float4 power = map.photons.powers[number], direction = map.photons.directions[number];
         if (PhotonsView::scatterings(power) > receiver.max_scatterings) return {};
         if (PhotonsView::owner(power) != receiver.owner) return {};
-        if (!(dot(unpack_normal(bits_of(way.w)), receiver.normal) > 0.7071f)) return {};
-        const Vec3 wi = {way.x, way.y, way.z};
+        if (!(dot(unpack_normal(bits_of(direction.w)), receiver.normal) > 0.7071f)) return {};
+        const Vec3 wi = {direction.x, direction.y, direction.z};
         const float cosine = abs(dot(wi, receiver.surface.geometric_normal));
         const Rgb f = evaluate_surface<kVariant>(receiver.surface, receiver.wo, wi, only(LobeClass::Diffuse)).f;
         if (is_black(f) || !(cosine > 0)) return {};

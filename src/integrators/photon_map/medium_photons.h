@@ -36,9 +36,9 @@ HD inline Rgb radiance_of_photons(const PhotonMapView& map, const MediumEnd& end
     if (map.count == 0) return {};
     FixedSum sums[3];
     visit_within(map.grid, end.position(), map.radius, [&](const NearPoint& near) {
-        const Float4 power = map.photons.powers[near.index], way = map.photons.ways[near.index];
-        if (PhotonsView::scatterings(power) > max_scatterings || bits_of(way.w) != end.point.instance) return;
-        const float phase = end.scatter_camera(wo, {way.x, way.y, way.z}).pdf;
+        const Float4 power = map.photons.powers[near.index], direction = map.photons.directions[near.index];
+        if (PhotonsView::scatterings(power) > max_scatterings || bits_of(direction.w) != end.point.instance) return;
+        const float phase = end.scatter_camera(wo, {direction.x, direction.y, direction.z}).pdf;
         const Rgb light = phase * Rgb{power.x, power.y, power.z};
         if (!(max_component(light) <= kMaxSampleValue)) {
             atomic_add(invalid, 1);

@@ -28,7 +28,7 @@ struct OrderPhotons {
     HD void operator()(uint32_t i) const {
         const uint32_t from = order[i];
         ordered.positions[i] = stored.positions[from];
-        ordered.ways[i] = stored.ways[from];
+        ordered.directions[i] = stored.directions[from];
         ordered.powers[i] = stored.powers[from];
     }
 };

@@ -57,17 +57,17 @@ static_assert((uint64_t(2 * kMaxPhotons) << 8) <= kKeyInMedium && kMaxPhotonDept
 struct PhotonsView {
     // Position, with 1 in a map, or 0 if it was removed (order_photons.h); wi, bits of the normal, or the medium;
     // power, bits of the owner and the scatterings.
-    Float4 *positions, *ways, *powers;
+    Float4 *positions, *directions, *powers;
 
-    HD void store(std::size_t at, const Photon& photon, uint32_t place) const {
+    HD void store(std::size_t at, const Photon& photon, uint32_t normal_or_medium) const {
         const Vec3 p = photon.position, wi = photon.wi;
         positions[at] = {p.x, p.y, p.z, 0};
-        ways[at] = {wi.x, wi.y, wi.z, float_of(place)};
+        directions[at] = {wi.x, wi.y, wi.z, float_of(normal_or_medium)};
         powers[at] = {photon.power.r, photon.power.g, photon.power.b, float_of(photon.owner << 8 | photon.scatterings)};
     }
     HD static uint32_t owner(Float4 power) { return bits_of(power.w) >> 8; }
     HD static uint32_t scatterings(Float4 power) { return bits_of(power.w) & 0xffu; }
-    HD PhotonsView from(uint32_t first) const { return {positions + first, ways + first, powers + first}; }
+    HD PhotonsView from(uint32_t first) const { return {positions + first, directions + first, powers + first}; }
 };
 
 struct PhotonCounts {

@@ -32,7 +32,7 @@ inline constexpr uint64_t kNothingThere = ~uint64_t(0);
 struct SampleLists {
     SamplePosition* positions; // 1/256 pixels from the picture's upper left corner
     uint64_t* nearest;         // (bits of the depth, triangle) of the nearest one, or kNothingThere
-    uint64_t* ways;            // that triangle's micropolygon (Piece::way)
+    uint64_t* split_paths;     // that triangle's micropolygon (Piece::split_path)
     uint32_t* next;            // the sample that follows on the list, or kNoSample
     uint32_t* heads;           // [pixels] head of each cell's list
     float* far; // [pixels] depth beyond which everything is hidden for all samples on the list, updated by
@@ -171,7 +171,7 @@ HD void hide_micropolygon(const ReyesPass& pass, const DicedTriangle& triangle, 
                 if (kPass == HidingPass::FindNearest) {
                     atomic_min(samples.nearest + i, key);
                 } else {
-                    atomic_min(samples.ways + i, piece.way);
+                    atomic_min(samples.split_paths + i, piece.split_path);
                 }
             }
         }

@@ -10,15 +10,15 @@
 
 namespace pertev {
 
-inline constexpr uint32_t kMaxLevels = 31; // levels of halving, two bits each in Piece::way
-inline constexpr uint64_t kNoWay = ~uint64_t(0);
+inline constexpr uint32_t kMaxLevels = 31; // levels of halving, two bits each in Piece::split_path
+inline constexpr uint64_t kNoSplitPath = ~uint64_t(0);
 
 struct Piece {
-    Vec2 corners[3];   // weights of the triangle's second and third corner
-    uint32_t triangle; // number in the scene
-    uint32_t level;    // number of splits
-    uint64_t way;      // index of the child at each split, from the top bits down; unique for each micropolygon of a
-                       // triangle
+    Vec2 corners[3];     // weights of the triangle's second and third corner
+    uint32_t triangle;   // number in the scene
+    uint32_t level;      // number of splits
+    uint64_t split_path; // index of the child at each split, from the top bits down; unique for each micropolygon of a
+                         // triangle
 };
 
 HD inline Piece whole_triangle(uint32_t number) { return {{{0, 0}, {1, 0}, {0, 1}}, number, 0, 0}; }
@@ -41,7 +41,7 @@ HD inline Piece child_of(const Piece& piece, uint32_t long_edges, uint32_t numbe
     const auto middle = [&](uint32_t edge) { return 0.5f * (c[edge] + c[(edge + 1) % 3]); };
     Piece child = piece;
     child.level = piece.level + 1;
-    child.way = piece.way | uint64_t(number) << (2 * (kMaxLevels - 1 - piece.level));
+    child.split_path = piece.split_path | uint64_t(number) << (2 * (kMaxLevels - 1 - piece.level));
     const auto set = [&](Vec2 x, Vec2 y, Vec2 z) { child.corners[0] = x, child.corners[1] = y, child.corners[2] = z; };
     if (long_edges == 7) {
         if (number < 3) {
@@ -73,9 +73,9 @@ HD inline Piece child_of(const Piece& piece, uint32_t long_edges, uint32_t numbe
     return child;
 }
 
-/// The child on the path `way` below a piece at `level`.
-HD inline uint32_t child_on_way(uint64_t way, uint32_t level) {
-    return static_cast<uint32_t>(way >> (2 * (kMaxLevels - 1 - level))) & 3u;
+/// The child on the path `split_path` below a piece at `level`.
+HD inline uint32_t child_on_path(uint64_t split_path, uint32_t level) {
+    return static_cast<uint32_t>(split_path >> (2 * (kMaxLevels - 1 - level))) & 3u;
 }
 
 } // namespace pertev

@@ -64,7 +64,7 @@ void ReyesIntegrator::reserve(const WorkSize& size) {
     count_.grow(queue_, 2, "pieces of triangles");
     positions_.grow(queue_, all, "positions of samples");
     nearest_.grow(queue_, all, "samples' nearest triangles");
-    ways_.grow(queue_, all, "samples' micropolygons");
+    split_paths_.grow(queue_, all, "samples' micropolygons");
     next_.grow(queue_, all, "lists of samples");
     heads_.grow(queue_, size.pixels(), "lists of samples");
     far_.grow(queue_, size.pixels(), "farthest samples");
@@ -171,11 +171,11 @@ uint32_t ReyesIntegrator::render_while(uint32_t first, uint32_t count, const Fil
                                 light_,
                                 settings_.seed,
                                 settings_.heights ? count_.data() + 1 : nullptr,
-                                {positions_.data(), nearest_.data(), ways_.data(), next_.data(), heads_.data(),
+                                {positions_.data(), nearest_.data(), split_paths_.data(), next_.data(), heads_.data(),
                                  far_.data(), picture_.camera.width, picture_.camera.height, first + done, now}};
-        nearest_.fill(0xff); // kNothingThere
-        ways_.fill(0xff);    // kNoWay
-        heads_.fill(0xff);   // kNoSample
+        nearest_.fill(0xff);     // kNothingThere
+        split_paths_.fill(0xff); // kNoSplitPath
+        heads_.fill(0xff);       // kNoSample
         launch(queue_, "place_samples", pixels * now,
                PositionSamples{picture_.camera, settings_.sampler, settings_.seed, pass.samples});
         if (!hide<HidingPass::FindNearest>(pass, goes_on) || !hide<HidingPass::FindMicropolygon>(pass, goes_on)) {

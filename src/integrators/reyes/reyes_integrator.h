@@ -41,7 +41,7 @@ private:
     std::shared_ptr<const HeightMaps> uploaded_; // the maps on the device
 
     Buffer<SamplePosition> positions_;
-    Buffer<uint64_t> nearest_, ways_;
+    Buffer<uint64_t> nearest_, split_paths_;
     Buffer<uint32_t> next_, heads_, count_;
     Buffer<float> far_;
     Buffer<Piece> stack_, under_way_;

@@ -17,14 +17,14 @@ struct Micropolygon {
     Piece piece;
     DicedPoint points[3];
 
-    HD bool begin(const ReyesPass& pass, uint32_t number, uint64_t way) {
+    HD bool begin(const ReyesPass& pass, uint32_t number, uint64_t split_path) {
         if (!triangle.begin(pass.camera, pass.picture.scene, pass.displacements, number)) return false;
         piece = whole_triangle(number);
         for (;;) {
             for (int k = 0; k < 3; ++k) points[k] = triangle.point(pass.camera.is_perspective, piece.corners[k]);
             const uint32_t edges = piece.level < kMaxLevels ? long_edges(pass, triangle, points) : 0;
             if (edges == 0) return true;
-            piece = child_of(piece, edges, child_on_way(way, piece.level));
+            piece = child_of(piece, edges, child_on_path(split_path, piece.level));
         }
     }
 
@@ -104,7 +104,7 @@ struct ShadeSamples {
     HD void operator()(uint32_t pixel) const {
         const SampleLists& samples = pass.samples;
         Micropolygon seen;
-        uint64_t way = kNoWay;
+        uint64_t split_path = kNoSplitPath;
         uint32_t number = kNoHit;
         Rgb color = {};
         for (uint32_t s = 0; s < samples.count; ++s) {
@@ -120,9 +120,9 @@ struct ShadeSamples {
                 continue;
             }
             const auto triangle = static_cast<uint32_t>(nearest);
-            if (triangle != number || samples.ways[i] != way) {
-                number = triangle, way = samples.ways[i];
-                if (!seen.begin(pass, number, way)) continue;
+            if (triangle != number || samples.split_paths[i] != split_path) {
+                number = triangle, split_path = samples.split_paths[i];
+                if (!seen.begin(pass, number, split_path)) continue;
                 color = seen.color(pass);
             }
             add_layers(pixel, samples.first + s, seen, position, ray);

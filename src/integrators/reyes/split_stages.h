@@ -56,9 +56,9 @@ HD inline bool is_hidden_piece(const ReyesPass& pass, const DicedTriangle& trian
 }
 
 struct PiecesView {
-    Piece* stack;     // [capacity]
-    Piece* under_way; // pieces of the current round
-    uint32_t* count;  // pieces on the stack
+    Piece* stack;    // [capacity]
+    Piece* current;  // pieces of the current round
+    uint32_t* count; // pieces on the stack
     uint32_t capacity;
 };
 
@@ -71,7 +71,7 @@ struct TakePieces {
 
     HD void operator()(uint32_t i) const {
         if (i == 0) *pieces.count = height - from_stack;
-        pieces.under_way[i] =
+        pieces.current[i] =
             i < from_stack ? pieces.stack[height - from_stack + i] : whole_triangle(first_triangle + (i - from_stack));
     }
 };
@@ -91,7 +91,7 @@ struct SplitPieces {
     PiecesView pieces;
 
     HD void operator()(uint32_t i) const {
-        const Piece piece = pieces.under_way[i];
+        const Piece piece = pieces.current[i];
         DicedTriangle triangle;
         if (!triangle.begin(pass.camera, pass.picture.scene, pass.displacements, piece.triangle)) return;
         DicedPoint points[3];

@@ -153,10 +153,10 @@ private:
                                          kGroupLight + state.depth(), ray, hit, is_from_far, list, state.throughput);
         if (state.depth() == 0) state.throughput = left_at(flight.distance, ray.t_max) * state.throughput;
         if (is_black(state.throughput)) return;
-        const float way = (is_from_far ? 1.0f : square(flight.distance)) / flight.probability;
+        const float distance_factor = (is_from_far ? 1.0f : square(flight.distance)) / flight.probability;
         if (flight.is_scattered) {
             const MediumEnd end = {flight.point, ray.direction, flight.share};
-            state.mis.arrive(end.density_factor(ray.direction), way);
+            state.mis.arrive(end.density_factor(ray.direction), distance_factor);
             return shade_vertex(end, SubpathVertex::hit_in_medium(end.position()), ray.direction, subpath, state, list);
         }
         if (hit.instance == kNoHit) return;
@@ -164,7 +164,7 @@ private:
         const Rgb passed = reach_surface(view, list, subpaths.start_of(i, round), ray.direction, hit, surface);
         state.throughput = passed * state.throughput;
         if (surface.is_unlit || is_black(state.throughput)) return;
-        state.mis.arrive(cosine_at(surface, ray.direction), way);
+        state.mis.arrive(cosine_at(surface, ray.direction), distance_factor);
         shade_vertex(SurfaceEnd<kVariant>{surface}, hit, ray.direction, subpath, state, list);
     }
     /// Shades a vertex at which the subpath arrives along `direction`; `list` has the solids that hold it there.

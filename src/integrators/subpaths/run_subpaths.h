@@ -68,8 +68,8 @@ public:
     void find_hits(RayKind kind, const SubpathJob& job, WorkCount rays, uint32_t round) {
         const SubpathsView& subpaths = job.subpaths;
         const SceneView& scene = job.scene.picture.scene;
-        const Ray* under_way = subpaths.rays[round % 2];
-        const auto ray_of = [&](uint32_t i) { return under_way[i]; };
+        const Ray* current = subpaths.rays[round % 2];
+        const auto ray_of = [&](uint32_t i) { return current[i]; };
         const auto accept_of = [&](uint32_t i) {
             return AcceptHit{scene, subpaths.start_of(i, round), {}, subpaths.keys[i]};
         };

@@ -56,11 +56,11 @@ public:
     /// Returns which letters match a scattering.
     std::vector<bool> readers_of(LobeClass lobe_class, bool is_transmission, const std::vector<bool>& tag) {
         std::vector<bool> readers(letters_.size());
-        const int way = is_transmission ? kWayTransmitted : kWayReflected;
+        const int mode = is_transmission ? kTransmitted : kReflected;
         spend(letters_.size());
         for (uint32_t i = 0; i < letters_.size(); ++i) {
             const auto is_one = [&](const ScatteringTerm& term) {
-                return term.classes.has(lobe_class) && (term.ways & way) != 0 && lets_through(i, term.names, tag);
+                return term.classes.has(lobe_class) && (term.modes & mode) != 0 && lets_through(i, term.names, tag);
             };
             readers[i] = letters_[i]->kind == LightPathLetter::Kind::Scattering &&
                          std::ranges::any_of(letters_[i]->terms, is_one) != letters_[i]->is_negated;

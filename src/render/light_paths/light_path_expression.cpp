@@ -143,9 +143,9 @@ private:
         case 'L': {
             ++at_;
             LightPathLetter light = {.kind = LightPathLetter::Kind::Light};
-            uint8_t ways = 0;
-            if (peek() == '<') light.names = parse_filter(ways);
-            if (ways != 0) fail(offset, "R and T apply only to scattering; a light has only a name, L<'lamp'>");
+            uint8_t modes = 0;
+            if (peek() == '<') light.names = parse_filter(modes);
+            if (modes != 0) fail(offset, "R and T apply only to scattering; a light has only a name, L<'lamp'>");
             return add(std::move(light));
         }
         case 'E':
@@ -178,9 +178,9 @@ private:
         }
         ++at_;
         if (peek() != '<') return term;
-        uint8_t ways = 0;
-        term.names = parse_filter(ways);
-        if (ways != 0) term.ways = ways;
+        uint8_t modes = 0;
+        term.names = parse_filter(modes);
+        if (modes != 0) term.modes = modes;
         return term;
     }
     uint32_t parse_set() {
@@ -197,14 +197,14 @@ private:
         ++at_;
         return add(std::move(set));
     }
-    /// Parses a filter. Returns kNoNames if it has no names, and leaves `ways` if it has none.
-    uint32_t parse_filter(uint8_t& ways) {
+    /// Parses a filter. Returns kNoNames if it has no names, and leaves `modes` if it has none.
+    uint32_t parse_filter(uint8_t& modes) {
         const std::size_t open = at_;
         take('<');
         if (take('R')) {
-            ways = kWayReflected;
+            modes = kReflected;
         } else if (take('T')) {
-            ways = kWayTransmitted;
+            modes = kTransmitted;
         }
         NameFilter filter;
         const std::size_t caret = peek() == '^' ? at_ : text_.size();
@@ -213,7 +213,7 @@ private:
         if (peek() == 0) fail(open, "this < is not closed");
         if (peek() != '>') fail(at_, "expected R or T, then names between < and >: <T 'glass' 'wine*'>");
         if (filter.is_negated && filter.names.empty()) fail(caret, "^ comes before names: <^'wall'>");
-        if (filter.names.empty() && ways == 0) fail(at_, "expected R or T, then names between < and >: <T 'glass'>");
+        if (filter.names.empty() && modes == 0) fail(at_, "expected R or T, then names between < and >: <T 'glass'>");
         ++at_;
         if (filter.names.empty()) return kNoNames;
         expression_.filters.push_back(std::move(filter));

@@ -37,12 +37,12 @@ struct NameFilter {
 inline constexpr uint32_t kNoNames = 0xffffffffu;
 
 /// Directions in which light leaves a surface.
-enum WayBits : uint8_t { kWayReflected = 1, kWayTransmitted = 2, kAnyWay = 3 };
+enum ModeBits : uint8_t { kReflected = 1, kTransmitted = 2, kAnyMode = 3 };
 
-/// A set of scatterings: one of `classes`, in one of `ways`, at an object that `names` accepts.
+/// A set of scatterings: one of `classes`, in one of `modes`, at an object that `names` accepts.
 struct ScatteringTerm {
     LobeClasses classes = kAllLobeClasses;
-    uint8_t ways = kAnyWay;
+    uint8_t modes = kAnyMode;
     uint32_t names = kNoNames; // index into LightPathExpression::filters
 };
 

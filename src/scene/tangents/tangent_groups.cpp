@@ -127,13 +127,13 @@ public:
         groups_.group.assign(neighbour_.size(), kNoTangentGroup);
         for (uint32_t corner = 0; corner < neighbour_.size(); ++corner) {
             if (triangles_.kind[corner / 3] != TriangleKind::Known || has_group(corner)) continue;
-            const uint8_t way = triangles_.is_counter_clockwise[corner / 3];
-            groups_.is_counter_clockwise.push_back(way);
+            const uint8_t winding = triangles_.is_counter_clockwise[corner / 3];
+            groups_.is_counter_clockwise.push_back(winding);
             take(corner);
             while (!open_.empty()) {
                 const uint32_t reached = open_.back();
                 open_.pop_back();
-                if (!has_group(reached) && fits(reached, way)) take(reached);
+                if (!has_group(reached) && fits(reached, winding)) take(reached);
             }
         }
     }
@@ -141,13 +141,13 @@ public:
 private:
     bool has_group(std::size_t corner) const { return groups_.group[corner] != kNoTangentGroup; }
 
-    bool fits(uint32_t corner, uint8_t way) {
+    bool fits(uint32_t corner, uint8_t winding) {
         const std::size_t triangle = corner / 3;
         const bool is_free = !has_group(3 * triangle) && !has_group(3 * triangle + 1) && !has_group(3 * triangle + 2);
         if (triangles_.kind[triangle] == TriangleKind::Unknown && is_free) {
-            triangles_.is_counter_clockwise[triangle] = way;
+            triangles_.is_counter_clockwise[triangle] = winding;
         }
-        return triangles_.is_counter_clockwise[triangle] == way;
+        return triangles_.is_counter_clockwise[triangle] == winding;
     }
 
     /// Adds a corner to the group. The neighbour across the edge that begins here is pushed last, so that it is visited

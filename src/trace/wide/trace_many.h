@@ -97,14 +97,14 @@ void trace_closest_many(const HostTrees& scene, uint32_t count, RayOrder order, 
     traverse_scene_many<kOptions, false, F>(scene, count, order, ray_of, accept_of, make_visitor, end);
 }
 
-/// Occlusion of `count` rays: met[i] is whether ray i hits anything.
+/// Occlusion of `count` rays: occluded[i] is whether ray i hits anything.
 template <TraversalOptions kOptions, class F = Floats8, class RayOf, class AcceptOf>
 void trace_any_many(const HostTrees& scene, uint32_t count, RayOrder order, const RayOf& ray_of,
-                    const AcceptOf& accept_of, bool* met) {
+                    const AcceptOf& accept_of, bool* occluded) {
     const auto make_visitor = []<class Accept>(const Accept& accept, const Ray& ray) {
         return AnyVisitor<Accept>{accept, ray.t_max};
     };
-    const auto end = [&](uint32_t i, const auto& visitor) { met[i] = visitor.found; };
+    const auto end = [&](uint32_t i, const auto& visitor) { occluded[i] = visitor.found; };
     traverse_scene_many<kOptions, true, F>(scene, count, order, ray_of, accept_of, make_visitor, end);
 }
 
