@@ -154,12 +154,12 @@ const ArrayArgument& ArrayArgument::of_finite_numbers() const {
     const std::vector<double> all = doubles();
     const auto bad = std::ranges::find_if(all, [](double number) { return !std::isfinite(number); });
     if (bad == all.end()) return *this;
-    std::string place; // such as "1, 0, 3"
+    std::string indices; // such as "1, 0, 3"
     auto rest = static_cast<std::size_t>(bad - all.begin());
     for (std::size_t axis = axes(); axis-- > 0; rest /= length(axis))
-        place = fmt::format("{}{}{}", rest % length(axis), place.empty() ? "" : ", ", place);
+        indices = fmt::format("{}{}{}", rest % length(axis), indices.empty() ? "" : ", ", indices);
     fail(axes() == 0 ? fmt::format("expected a finite number, not {}", *bad)
-                     : fmt::format("expected finite numbers; [{}] is {}", place, *bad));
+                     : fmt::format("expected finite numbers; [{}] is {}", indices, *bad));
 }
 
 } // namespace pertev

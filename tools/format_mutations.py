@@ -87,7 +87,7 @@ MUTATIONS = [
     ("pbrt: the field of view is that of the height", "unit/read_pbrt_lights", ("src/formats/pbrt/camera.cpp", "aspect >= 1 ? Screen{", "aspect >= 0 ? Screen{")),
     ("pbrt: transforms multiply from the left", "unit/read_pbrt", ("src/formats/pbrt/statements.cpp", "compose(to, transform);", "compose(transform, to);")),
     ("pbrt: AttributeEnd keeps the state", "unit/read_pbrt", ("src/formats/pbrt/statements.cpp", "    world_.state = std::move(kept_.back().state);\n    kept_.pop_back();\n}\n\nvoid Statements::begin_transform", "    kept_.pop_back();\n}\n\nvoid Statements::begin_transform")),
-    ("pbrt: Import changes the state", "unit/read_pbrt", ("src/formats/pbrt/statements.cpp", "read_file(tokens, place, false); }", "read_file(tokens, place, true); }")),
+    ("pbrt: Import changes the state", "unit/read_pbrt", ("src/formats/pbrt/statements.cpp", "read_file(tokens, location, false); }", "read_file(tokens, location, true); }")),
     ("pbrt: names in included files are relative to them alone", "unit/read_pbrt", ("src/formats/pbrt/context.cpp", "fault)) return scene;", "fault)) return from;")),
     ("pbrt: instances copy their meshes' places", "unit/read_pbrt", ("src/formats/pbrt/world.cpp", "compose(world_from_object, shape.world_from_mesh);", "shape.world_from_mesh;")),
     ("pbrt: spheres share no mesh", "unit/read_pbrt", ("src/formats/pbrt/shapes.cpp", "    if (is_new) {\n        shape.mesh = type", "    if (true) {\n        shape.mesh = type")),

@@ -37,7 +37,7 @@ MUTATIONS = part_mutations.MUTATIONS + format_mutations.MUTATIONS + lobe_mutatio
     ("the wavefront draws other numbers", "consistency/one_picture",
      ("src/integrators/path/path_stages.h", "job.settings, begun.pixel, begun.sample)", "job.settings, begun.pixel, begun.sample + 1)")),
     ("pictures of a batch draw the numbers of the tall picture", "consistency/camera_batch",
-     ("src/render/batch_view.h", "return {place.pixel, sample, seeds[place.picture]};", "return {tall_pixel, sample, seeds[place.picture]};")),
+     ("src/render/batch_view.h", "return {at.pixel, sample, seeds[at.picture]};", "return {tall_pixel, sample, seeds[at.picture]};")),
     ("a batch takes the axis of its first camera", "consistency/camera_batch",
      ("src/render/picture_view.h", "return batch.camera_of(pixel).axis_at(time);", "return batch.cameras[0].axis_at(time);")),
     ("a batch's arrays have pictures as they were before they were denoised", "consistency/camera_batch",

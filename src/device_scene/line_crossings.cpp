@@ -45,9 +45,9 @@ LineCrossings::LineCrossings(std::span<const Vec3> positions, std::span<const ui
     const DoubleVec3 whole_x = scaled(size > 0 ? 1 / size : 1, x_axis_),
                      whole_y = scaled(size > 0 ? 1 / size : 1, y_axis_);
     const auto visit_cells = [&](std::size_t triangle, const auto& visit) {
-        Place lo = place_of(corner(triangle)), hi = lo;
+        GridPoint lo = grid_point_of(corner(triangle)), hi = lo;
         for (std::size_t k = 1; k < 3; ++k) {
-            const Place p = place_of(corner(triangle + k));
+            const GridPoint p = grid_point_of(corner(triangle + k));
             lo = {std::min(lo.x, p.x), std::min(lo.y, p.y)}, hi = {std::max(hi.x, p.x), std::max(hi.y, p.y)};
         }
         for (uint32_t y = cell(lo.y - kMargin); y <= cell(hi.y + kMargin); ++y)
@@ -69,7 +69,7 @@ LineCrossings::LineCrossings(std::span<const Vec3> positions, std::span<const ui
         visit_cells(i, [&](uint32_t at) { triangles_[next[at]++] = static_cast<uint32_t>(i / 3); });
 }
 
-LineCrossings::Place LineCrossings::place_of(DoubleVec3 point) const {
+LineCrossings::GridPoint LineCrossings::grid_point_of(DoubleVec3 point) const {
     const DoubleVec3 to = point - corner_;
     return {dot(to, x_axis_), dot(to, y_axis_)};
 }
@@ -77,10 +77,10 @@ LineCrossings::Place LineCrossings::place_of(DoubleVec3 point) const {
 uint32_t LineCrossings::cell(double at) const { return static_cast<uint32_t>(std::clamp(at, 0.0, side_ - 1.0)); }
 
 int LineCrossings::count(std::span<const Vec3> positions, std::span<const uint32_t> indices, DoubleVec3 from) const {
-    const Place place = place_of(from);
+    const GridPoint point_on_grid = grid_point_of(from);
     const auto is_outside = [&](double at) { return !(at >= -kMargin && at <= side_ + kMargin); };
-    if (is_outside(place.x) || is_outside(place.y)) return 0;
-    const uint32_t number = cell(place.y) * side_ + cell(place.x);
+    if (is_outside(point_on_grid.x) || is_outside(point_on_grid.y)) return 0;
+    const uint32_t number = cell(point_on_grid.y) * side_ + cell(point_on_grid.x);
     int count = 0;
     for (uint32_t k = starts_[number]; k < starts_[number + 1]; ++k) {
         const uint32_t* const i = indices.data() + 3 * std::size_t(triangles_[k]);

@@ -22,10 +22,10 @@ public:
     int count(std::span<const Vec3> positions, std::span<const uint32_t> indices, DoubleVec3 from) const;
 
 private:
-    struct Place {
+    struct GridPoint {
         double x, y; // in cells
     };
-    Place place_of(DoubleVec3 point) const;
+    GridPoint grid_point_of(DoubleVec3 point) const;
     uint32_t cell(double at) const; // along a side
 
     DoubleVec3 along_, x_axis_, y_axis_; // the axes measure in cells

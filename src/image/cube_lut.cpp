@@ -33,13 +33,13 @@ std::optional<float> number_of(std::string_view word) {
 }
 
 /// A place between two points of an axis.
-struct Place {
+struct GridPoint {
     uint32_t cell; // the point below
     float share;   // the part of the way to the next
 };
 
 /// Returns the place of a value among `count` points, at least two, that divide [low, high] evenly.
-Place place_of(float value, float low, float high, uint32_t count) {
+GridPoint grid_point_of(float value, float low, float high, uint32_t count) {
     const auto most = static_cast<float>(count - 1);
     const float x = (value - low) / (high - low) * most;
     const float inside = x > 0 ? min(x, most) : 0.0f; // NaN is 0
@@ -164,7 +164,7 @@ Rgb CubeLut::operator()(Rgb color) const {
 Rgb CubeLut::on_curves(Rgb color) const {
     const auto count = static_cast<uint32_t>(curves_.size());
     const auto on = [&](float value, float low, float high, float Rgb::*channel) {
-        const Place at = place_of(value, low, high, count);
+        const GridPoint at = grid_point_of(value, low, high, count);
         return lerp(curves_[at.cell].*channel, curves_[at.cell + 1].*channel, at.share);
     };
     const auto& [low, high] = curve_domain_;
@@ -174,14 +174,15 @@ Rgb CubeLut::on_curves(Rgb color) const {
 
 Rgb CubeLut::in_table(Rgb color) const {
     const auto& [low, high] = domain_;
-    const Place places[3] = {place_of(color.r, low.r, high.r, side_), place_of(color.g, low.g, high.g, side_),
-                             place_of(color.b, low.b, high.b, side_)};
-    const float share[3] = {places[0].share, places[1].share, places[2].share};
+    const GridPoint points[3] = {grid_point_of(color.r, low.r, high.r, side_),
+                                 grid_point_of(color.g, low.g, high.g, side_),
+                                 grid_point_of(color.b, low.b, high.b, side_)};
+    const float share[3] = {points[0].share, points[1].share, points[2].share};
     // The path from the lowest to the highest corner along the axes, the largest share first, has the corners of the
     // tetrahedron.
     int order[3] = {0, 1, 2};
     std::stable_sort(order, order + 3, [&](int a, int b) { return share[a] > share[b]; });
-    uint32_t corner[3] = {places[0].cell, places[1].cell, places[2].cell};
+    uint32_t corner[3] = {points[0].cell, points[1].cell, points[2].cell};
     Rgb sum = (1.0f - share[order[0]]) * at(corner[0], corner[1], corner[2]);
     for (int i = 0; i < 3; ++i) {
         ++corner[order[i]];

@@ -14,7 +14,7 @@
 namespace pertev {
 
 /// Returns where the square has the unit direction d, in [0, 1] from its first row and column.
-HD inline Vec2 octahedral_place(Vec3 d) {
+HD inline Vec2 octahedral_uv(Vec3 d) {
     const float x = abs(d.x), y = abs(d.y), root = sqrt(max(1 - abs(d.z), 0.0f));
     const float share = x == 0 && y == 0 ? 0.0f : atan2(y, x) * (2 / kPi);
     const float across = share * root, along = root - across;
@@ -23,9 +23,9 @@ HD inline Vec2 octahedral_place(Vec3 d) {
     return {0.5f + (d.x < 0 ? -0.5f : 0.5f) * u, 0.5f + (d.y < 0 ? -0.5f : 0.5f) * v};
 }
 
-/// Returns the unit direction at a place of the square.
-HD inline Vec3 octahedral_direction(Vec2 place) {
-    const float u = 2.0f * place.x - 1.0f, v = 2.0f * place.y - 1.0f;
+/// Returns the unit direction at a point of the square.
+HD inline Vec3 octahedral_direction(Vec2 uv) {
+    const float u = 2.0f * uv.x - 1.0f, v = 2.0f * uv.y - 1.0f;
     const float inside = 1.0f - (abs(u) + abs(v)); // negative below the equator
     const float root = max(1.0f - abs(inside), 0.0f);
     const float along = inside < 0 ? 1.0f - abs(v) : abs(u), across = inside < 0 ? 1.0f - abs(u) : abs(v);

@@ -15,20 +15,20 @@ struct BatchView {
     uint32_t pixels = 0;                 // number of pixels of one picture
 
     /// A pixel of one of the pictures.
-    struct Place {
+    struct PixelOfPicture {
         uint32_t picture, pixel;
     };
 
     HD bool is_there() const { return cameras != nullptr; }
-    HD Place place_of(uint32_t tall_pixel) const {
+    HD PixelOfPicture pixel_of(uint32_t tall_pixel) const {
         const uint32_t picture = tall_pixel / pixels;
         return {picture, tall_pixel - picture * pixels};
     }
     HD const CameraRays& camera_of(uint32_t tall_pixel) const { return cameras[tall_pixel / pixels]; }
     /// Returns the key of a sample's random numbers.
     HD SampleKey key(uint32_t tall_pixel, uint32_t sample) const {
-        const Place place = place_of(tall_pixel);
-        return {place.pixel, sample, seeds[place.picture]};
+        const PixelOfPicture at = pixel_of(tall_pixel);
+        return {at.pixel, sample, seeds[at.picture]};
     }
 };
 

@@ -54,18 +54,18 @@ HD inline PanoramaPosition panorama_position(LensModel lens, Vec3 d) {
     const Vec3 on_cube = (1.0f / most) * d;
     const float growth = length_squared(on_cube) * length(on_cube);
     int face;
-    Vec2 place;
+    Vec2 on_face;
     if (y > x && y > z) {
         face = d.y > 0 ? 4 : 5;
-        place = {on_cube.x, d.y > 0 ? on_cube.z : -on_cube.z};
+        on_face = {on_cube.x, d.y > 0 ? on_cube.z : -on_cube.z};
     } else if (x > z) {
         face = d.x > 0 ? 1 : 3;
-        place = {d.x > 0 ? on_cube.z : -on_cube.z, on_cube.y};
+        on_face = {d.x > 0 ? on_cube.z : -on_cube.z, on_cube.y};
     } else {
         face = d.z > 0 ? 2 : 0;
-        place = {d.z > 0 ? -on_cube.x : on_cube.x, on_cube.y};
+        on_face = {d.z > 0 ? -on_cube.x : on_cube.x, on_cube.y};
     }
-    return {{place.x + static_cast<float>(2 * face - 5), place.y}, growth};
+    return {{on_face.x + static_cast<float>(2 * face - 5), on_face.y}, growth};
 }
 
 } // namespace pertev

@@ -8,18 +8,18 @@ namespace pertev {
 namespace {
 
 /// Returns where a range belongs among the others of its row: at the first one that ends after its begin.
-auto place_of(const std::vector<SampleRange>& ranges, const SampleRange& range) {
+auto position_of(const std::vector<SampleRange>& ranges, const SampleRange& range) {
     return std::ranges::upper_bound(ranges, range.first, {}, &SampleRange::end);
 }
 
 bool overlaps(const std::vector<SampleRange>& ranges, const SampleRange& range) {
-    const auto next = place_of(ranges, range);
+    const auto next = position_of(ranges, range);
     return next != ranges.end() && next->first < range.end;
 }
 
 /// Inserts a range that overlaps none, and joins it with those that it touches.
 void insert(const SampleRange& range, std::vector<SampleRange>& ranges) {
-    auto at = ranges.insert(place_of(ranges, range), range);
+    auto at = ranges.insert(position_of(ranges, range), range);
     if (const auto next = std::next(at); next != ranges.end() && next->first == at->end) {
         at->end = next->end;
         at = std::prev(ranges.erase(next));

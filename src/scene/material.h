@@ -255,13 +255,13 @@ void visit_parameters(Parameters& m, const Number& number, const Texture& textur
 /// Returns the places of the numbers named `name` in the order of visit_parameters: one, or three of a colour.
 inline std::vector<uint8_t> material_numbers(std::string_view name) {
     std::vector<uint8_t> found;
-    uint8_t place = 0;
+    uint8_t index = 0;
     MaterialParameters material;
     visit_parameters(
         material,
         [&](float&, const char* known, float, float) {
-            if (name == known) found.push_back(place);
-            ++place;
+            if (name == known) found.push_back(index);
+            ++index;
         },
         [](auto&&...) {});
     return found;

@@ -25,7 +25,7 @@ inline constexpr uint32_t kDescribes = kInfo | kCheck | kConvert; // verbs that 
 inline constexpr uint32_t kBenchPictures = kBench | kBenchRender | kBenchDevices;
 
 /// The field at a path in PictureOptions.
-#define PERTEV_SETTING_FIELD(place) [](PictureOptions& all) { return field_of(all.place); }
+#define PERTEV_SETTING_FIELD(member) [](PictureOptions& all) { return field_of(all.member); }
 
 // Optional parts of a row.
 struct Range {

@@ -61,41 +61,41 @@ HD inline bool is_picture(TableLayout layout) {
     return false;
 }
 
-/// Finds the place of a unit direction of the table's frame in the square. Returns false beyond its edges.
-HD inline bool find_table_place(const GoniometricTable& table, Vec3 local, Vec2& place) {
+/// Finds the point of a unit direction of the table's frame in the square. Returns false beyond its edges.
+HD inline bool find_table_uv(const GoniometricTable& table, Vec3 local, Vec2& uv) {
     if (is_picture(table.layout)) {
         if (!(local.z > 0)) return false;
         const float inv = 0.5f / local.z;
-        place = {0.5f + inv * local.x / table.half_width, 0.5f - inv * local.y / table.half_height};
-        return place.x >= 0 && place.x <= 1 && place.y >= 0 && place.y <= 1;
+        uv = {0.5f + inv * local.x / table.half_width, 0.5f - inv * local.y / table.half_height};
+        return uv.x >= 0 && uv.x <= 1 && uv.y >= 0 && uv.y <= 1;
     }
     if (table.layout == TableLayout::Octahedron) {
-        place = octahedral_place(local);
+        uv = octahedral_uv(local);
         return true;
     }
     const float angle = atan2(sqrt(square(local.x) + square(local.y)), local.z);
     const float share = (angle - table.first_angle) / (table.last_angle - table.first_angle);
     const float turns = table.width > 1 ? atan2(local.y, local.x) * (0.5f * kInvPi) : 0.0f;
     const float around = turns < 0 ? turns + 1.0f : turns; // it may round to 1, which is 0
-    place = {around < 1 ? around : 0.0f, clamp(share, 0.0f, 1.0f)};
-    return abs(share - place.y) <= 0x1p-22f; // rounding is no edge
+    uv = {around < 1 ? around : 0.0f, clamp(share, 0.0f, 1.0f)};
+    return abs(share - uv.y) <= 0x1p-22f; // rounding is no edge
 }
 
-/// The cell of the square that holds a place, among `count` along this axis.
-HD inline uint32_t table_cell(float place, uint32_t count) {
-    return static_cast<uint32_t>(to_int(place * static_cast<float>(count), 0, static_cast<int>(count) - 1));
+/// The cell of the square that holds a point, among `count` along this axis.
+HD inline uint32_t table_cell(float coordinate, uint32_t count) {
+    return static_cast<uint32_t>(to_int(coordinate * static_cast<float>(count), 0, static_cast<int>(count) - 1));
 }
 
-/// Value at a place of the square, [0, 1].
-HD inline Rgb table_value_at(const GoniometricTablesView& view, const GoniometricTable& table, Vec2 place) {
+/// Value at a point of the square, [0, 1].
+HD inline Rgb table_value_at(const GoniometricTablesView& view, const GoniometricTable& table, Vec2 uv) {
     const Rgb* values = view.values + table.first_value;
     if (table.filter == TableFilter::Nearest) {
-        return values[size_t(table_cell(place.y, table.height)) * table.width + table_cell(place.x, table.width)];
+        return values[size_t(table_cell(uv.y, table.height)) * table.width + table_cell(uv.x, table.width)];
     }
     const bool has_knots = table.filter == TableFilter::Knots;
-    const float x = place.x * static_cast<float>(table.width) - (has_knots ? 0.0f : 0.5f);
+    const float x = uv.x * static_cast<float>(table.width) - (has_knots ? 0.0f : 0.5f);
     const float y =
-        has_knots ? place.y * static_cast<float>(table.height - 1) : place.y * static_cast<float>(table.height) - 0.5f;
+        has_knots ? uv.y * static_cast<float>(table.height - 1) : uv.y * static_cast<float>(table.height) - 0.5f;
     const int last_x = static_cast<int>(table.width) - 1, last_y = static_cast<int>(table.height) - 1;
     const int left = to_int(floor(x), -1, last_x), above = to_int(floor(y), -1, last_y);
     const bool goes_round = table.layout == TableLayout::Angles;
@@ -112,9 +112,9 @@ HD inline Rgb table_value_at(const GoniometricTablesView& view, const Goniometri
 
 /// Fraction of the light's intensity in the unit direction `local` of the frame.
 HD inline Rgb table_value(const GoniometricTablesView& view, const GoniometricTable& table, Vec3 local) {
-    Vec2 place;
-    if (!find_table_place(table, local, place)) return {0, 0, 0};
-    const Rgb value = table_value_at(view, table, place);
+    Vec2 uv;
+    if (!find_table_uv(table, local, uv)) return {0, 0, 0};
+    const Rgb value = table_value_at(view, table, uv);
     if (table.layout != TableLayout::PictureIrradiance) return value;
     return (1.0f / (local.z * local.z * local.z)) * value;
 }
@@ -152,23 +152,23 @@ HD inline float pdf_in_cell(const GoniometricTable& table, uint32_t row, float p
 
 /// Direction of the frame at `at`, [0, 1] both ways, in a cell, uniformly distributed with it.
 HD inline Vec3 direction_in_cell(const GoniometricTable& table, uint32_t column, uint32_t row, Vec2 at) {
-    const Vec2 place = {(static_cast<float>(column) + at.x) / static_cast<float>(table.width),
-                        (static_cast<float>(row) + at.y) / static_cast<float>(table.rows)};
+    const Vec2 uv = {(static_cast<float>(column) + at.x) / static_cast<float>(table.width),
+                     (static_cast<float>(row) + at.y) / static_cast<float>(table.rows)};
     switch (table.layout) {
     case TableLayout::Angles: {
         const AngleRow bounds = angle_row(table, row);
         const float s = lerp(bounds.lower, bounds.upper, at.y), sine = 2.0f * safe_sqrt(s * (1.0f - s));
         float x, y;
-        sin_cos_2pi(place.x, y, x);
+        sin_cos_2pi(uv.x, y, x);
         return {sine * x, sine * y, bounds.is_back ? 2.0f * s - 1.0f : 1.0f - 2.0f * s};
     }
     case TableLayout::Octahedron:
-        return octahedral_direction(place);
+        return octahedral_direction(uv);
     case TableLayout::Perspective:
     case TableLayout::PictureIrradiance:
         break;
     }
-    return normalize(Vec3{(2.0f * place.x - 1.0f) * table.half_width, (1.0f - 2.0f * place.y) * table.half_height, 1});
+    return normalize(Vec3{(2.0f * uv.x - 1.0f) * table.half_width, (1.0f - 2.0f * uv.y) * table.half_height, 1});
 }
 
 HD inline Vec3 to_table_frame(const GoniometricTable& table, Vec3 direction) {
@@ -185,9 +185,9 @@ HD_CALL inline Rgb goniometric_value(const GoniometricTablesView& view, uint32_t
 HD_CALL inline float pdf_goniometric(const GoniometricTablesView& view, uint32_t number, Vec3 direction) {
     const GoniometricTable& table = view.tables[number];
     const Vec3 local = to_table_frame(table, direction);
-    Vec2 place;
-    if (!find_table_place(table, local, place)) return 0;
-    const uint32_t row = table_cell(place.y, table.rows), column = table_cell(place.x, table.width);
+    Vec2 uv;
+    if (!find_table_uv(table, local, uv)) return 0;
+    const uint32_t row = table_cell(uv.y, table.rows), column = table_cell(uv.x, table.width);
     const float of_row = cdf_pmf(view.rows_of(table), row);
     if (!(of_row > 0)) return 0;
     return pdf_in_cell(table, row, of_row * cdf_pmf(view.columns_of(table, row), column), local);

@@ -299,21 +299,21 @@ TEST_CASE("pbrt: nothing is made up for a file without light, and infinite light
 
 TEST_CASE("pbrt: the octahedron's middle is +z, its corners -z, and its sides x and y") {
     const auto is_at = [](Vec2 p, float x, float y) { return std::abs(p.x - x) < 1e-6f && std::abs(p.y - y) < 1e-6f; };
-    CHECK(is_at(octahedral_place({0, 0, 1}), 0.5f, 0.5f));
-    CHECK(is_at(octahedral_place({1, 0, 0}), 1, 0.5f));
-    CHECK(is_at(octahedral_place({-1, 0, 0}), 0, 0.5f));
-    CHECK(is_at(octahedral_place({0, 1, 0}), 0.5f, 1));
-    CHECK(is_at(octahedral_place({0, -1, 0}), 0.5f, 0));
-    const Vec2 below = octahedral_place({0, 0, -1});
+    CHECK(is_at(octahedral_uv({0, 0, 1}), 0.5f, 0.5f));
+    CHECK(is_at(octahedral_uv({1, 0, 0}), 1, 0.5f));
+    CHECK(is_at(octahedral_uv({-1, 0, 0}), 0, 0.5f));
+    CHECK(is_at(octahedral_uv({0, 1, 0}), 0.5f, 1));
+    CHECK(is_at(octahedral_uv({0, -1, 0}), 0.5f, 0));
+    const Vec2 below = octahedral_uv({0, 0, -1});
     CHECK((below.x == 0 || below.x == 1));
     // Equal areas: half of the upper hemisphere is within a diamond of half its area.
     const float z = 0.5f, r = sqrt(1 - z * z);
-    const Vec2 p = octahedral_place({r, 0, z});
+    const Vec2 p = octahedral_uv({r, 0, z});
     CHECK(2 * square(2 * p.x - 1) == doctest::Approx(1));
     // The inverse, in all eight octants.
     for (int i = 0; i < 64; ++i) {
         const Vec2 place = {(static_cast<float>(i % 8) + 0.3f) / 8, (static_cast<float>(i / 8) + 0.4f) / 8};
-        const Vec2 back = octahedral_place(octahedral_direction(place));
+        const Vec2 back = octahedral_uv(octahedral_direction(place));
         CHECK(is_at(back, place.x, place.y));
     }
 }

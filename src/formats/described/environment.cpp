@@ -17,8 +17,8 @@ namespace pertev::described {
 namespace {
 
 /// Returns where a panorama has the unit direction d.
-Vec2 place_of(PanoramaLayout layout, Vec3 d) {
-    if (layout == PanoramaLayout::Octahedron) return octahedral_place(d);
+Vec2 uv_of(PanoramaLayout layout, Vec3 d) {
+    if (layout == PanoramaLayout::Octahedron) return octahedral_uv(d);
     const bool is_around_y = layout == PanoramaLayout::AroundY;
     const float turn = (is_around_y ? atan2(d.x, -d.z) : atan2(d.y, d.x)) / (2 * kPi);
     return {turn < 0 ? turn + 1 : turn, acos(clamp(is_around_y ? d.y : d.z, -1.0f, 1.0f)) / kPi};
@@ -29,12 +29,12 @@ Rgb pixel(const Image& image, uint32_t x, uint32_t y) {
     return {p[0], p[1], p[2]};
 }
 
-/// Returns the picture at a place, bilinear. Columns go round a panorama; Mitsuba's first and last rows are the poles.
-Rgb look_up(const Image& image, Vec2 place, PanoramaLayout layout) {
+/// Returns the picture at a point, bilinear. Columns go round a panorama; Mitsuba's first and last rows are the poles.
+Rgb look_up(const Image& image, Vec2 uv, PanoramaLayout layout) {
     const bool wraps = layout != PanoramaLayout::Octahedron;
     const auto width = static_cast<float>(image.width), height = static_cast<float>(image.height);
-    const float row_at = layout == PanoramaLayout::AroundY ? place.y * (height - 1) : place.y * height - 0.5f;
-    const float x = place.x * width - 0.5f, y = clamp(row_at, 0.0f, height - 1);
+    const float row_at = layout == PanoramaLayout::AroundY ? uv.y * (height - 1) : uv.y * height - 0.5f;
+    const float x = uv.x * width - 0.5f, y = clamp(row_at, 0.0f, height - 1);
     const float left = floor(x), top = floor(y);
     const auto column = [&](float at) {
         const float turned = wraps ? (at < 0 ? at + width : (at >= width ? at - width : at)) : at;
@@ -124,8 +124,8 @@ std::optional<Environment> make_environment(const InfiniteLight& light, const Do
             const DoubleVec3 d = to_double(direction_at(x, static_cast<uint32_t>(y), to.width, to.height));
             const Vec3 local = normalize(to_float(DoubleVec3{
                 dot(local_from_scene.row0, d), dot(local_from_scene.row1, d), dot(local_from_scene.row2, d)}));
-            const Vec2 place = place_of(light.layout, local);
-            const Rgb color = look_up(from, place, light.layout);
+            const Vec2 uv = uv_of(light.layout, local);
+            const Rgb color = look_up(from, uv, light.layout);
             float* const pixel = to.pixels.data() + 3 * (static_cast<std::size_t>(y) * to.width + x);
             pixel[0] = color.r, pixel[1] = color.g, pixel[2] = color.b;
         }

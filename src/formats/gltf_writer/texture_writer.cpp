@@ -27,7 +27,7 @@ uint32_t constant_of(Wrap wrap) {
     return kRepeat;
 }
 
-/// Returns whether both look up texels at the same places.
+/// Returns whether both look up texels at the same points.
 bool has_same_lookup(const TextureRef& a, const TextureRef& b) {
     return a.wrap_s == b.wrap_s && a.wrap_t == b.wrap_t && a.filter == b.filter && a.uv_set == b.uv_set &&
            a.m00 == b.m00 && a.m01 == b.m01 && a.m02 == b.m02 && a.m10 == b.m10 && a.m11 == b.m11 && a.m12 == b.m12;
@@ -67,7 +67,7 @@ std::string TextureWriter::info(const std::array<TextureChannel, 4>& channels, b
                                 JsonMembers more) {
     const TextureRef* first = nullptr;
     Recipe recipe = {{kNoImage, kNoImage, kNoImage, kNoImage}, {}, {}, is_srgb};
-    auto& [images, places, are_srgb, encoding] = recipe;
+    auto& [images, source_channels, are_srgb, encoding] = recipe;
     for (std::size_t c = 0; c < 4; ++c) {
         const TextureRef* texture = channels[c].texture;
         if (texture == nullptr || !texture->has_image()) continue;
@@ -82,7 +82,7 @@ std::string TextureWriter::info(const std::array<TextureChannel, 4>& channels, b
             continue;
         }
         first = first == nullptr ? texture : first;
-        images[c] = texture->image, places[c] = channels[c].channel;
+        images[c] = texture->image, source_channels[c] = channels[c].channel;
         are_srgb[c] = texture->is_srgb && channels[c].channel < 3;
     }
     if (first == nullptr) return "";
@@ -119,7 +119,7 @@ uint32_t TextureWriter::image_of(const Recipe& recipe, const std::string& owner)
 }
 
 Rgba8Image TextureWriter::make_image(const Recipe& recipe, const std::string& owner) {
-    const auto& [images, places, are_srgb, is_srgb] = recipe;
+    const auto& [images, source_channels, are_srgb, is_srgb] = recipe;
     Rgba8Image made;
     bool is_rounded = false;
     for (std::size_t c = 0; c < 4; ++c) {
@@ -127,10 +127,10 @@ Rgba8Image TextureWriter::make_image(const Recipe& recipe, const std::string& ow
         const TextureImage& from = scene_.images[static_cast<std::size_t>(images[c])];
         std::tie(made.width, made.height) = size_of(from);
         const bool to_srgb = is_srgb && c < 3;
-        is_rounded = is_rounded || from.rgba8.pixels.empty() || (are_srgb[c] != to_srgb && places[c] != 3);
+        is_rounded = is_rounded || from.rgba8.pixels.empty() || (are_srgb[c] != to_srgb && source_channels[c] != 3);
         made.pixels.resize(4 * std::size_t(made.width) * made.height, 255);
         for (std::size_t i = 0; i < made.pixels.size() / 4; ++i) {
-            made.pixels[4 * i + c] = byte_at(from, i, places[c], are_srgb[c], to_srgb);
+            made.pixels[4 * i + c] = byte_at(from, i, source_channels[c], are_srgb[c], to_srgb);
         }
     }
     if (is_rounded) {

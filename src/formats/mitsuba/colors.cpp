@@ -143,7 +143,7 @@ std::optional<Rgb> color_of_object(Object& object, ColorUse use, Reading& readin
 }
 
 std::optional<Rgb> color_of(Object& object, const Parameter& parameter, ColorUse use, Reading& reading) {
-    const FileLocation place = object.parameters.location_of(parameter);
+    const FileLocation location = object.parameters.location_of(parameter);
     try {
         const std::vector<double>& numbers = parameter.numbers;
         std::optional<Rgb> color;
@@ -157,7 +157,7 @@ std::optional<Rgb> color_of(Object& object, const Parameter& parameter, ColorUse
             break;
         case ParameterType::Spectrum:
             if (!parameter.texts.empty()) {
-                color = of_file(parameter.texts[0], place, use, reading);
+                color = of_file(parameter.texts[0], location, use, reading);
             } else if (numbers.size() > 1) {
                 color = of_spectrum(bounded_spectrum(numbers, use), use);
             } else { // light of Mitsuba 3 is equal at all wavelengths, which is not white
@@ -186,7 +186,7 @@ std::optional<Rgb> color_of(Object& object, const Parameter& parameter, ColorUse
             break;
         }
         if (color && is_finite(*color)) return limited(*color, use);
-        throw Error(ErrorCode::BadInput, place, "expected a colour or a spectrum");
+        throw Error(ErrorCode::BadInput, location, "expected a colour or a spectrum");
     } catch (const Error& error) {
         if (error.code() != ErrorCode::BadInput) throw;
         reading.sink().leave_out(error.remark().and_then(

@@ -102,16 +102,16 @@ Image enlarged(Image from, TableFilter filter) {
     if (factor <= 1 || from.pixels.size() * factor > (1u << 24) / factor) return from;
     Image to = {.width = from.width * factor, .height = from.height * factor, .channels = from.channels, .pixels = {}};
     to.pixels.resize(std::size_t(to.width) * to.height * to.channels);
-    const auto place = [&](uint32_t at, uint32_t size) {
+    const auto coordinate = [&](uint32_t at, uint32_t size) {
         if (filter == TableFilter::Nearest) return static_cast<float>(at / factor);
         const float centre = (static_cast<float>(at) + 0.5f) / static_cast<float>(factor) - 0.5f;
         return clamp(centre, 0.0f, static_cast<float>(size - 1));
     };
     for (uint32_t row = 0; row < to.height; ++row) {
-        const float y = place(row, from.height);
+        const float y = coordinate(row, from.height);
         const auto above = static_cast<uint32_t>(y), below = std::min(above + 1, from.height - 1);
         for (uint32_t column = 0; column < to.width; ++column) {
-            const float x = place(column, from.width);
+            const float x = coordinate(column, from.width);
             const auto left = static_cast<uint32_t>(x), right = std::min(left + 1, from.width - 1);
             const float s = x - floor(x), t = y - floor(y);
             for (uint32_t channel = 0; channel < from.channels; ++channel) {

@@ -74,15 +74,15 @@ private:
             std::ranges::lower_bound(file_.line_ends, static_cast<std::size_t>(std::max<std::ptrdiff_t>(offset, 0)));
         return static_cast<std::size_t>(found - file_.line_ends.begin()) + 1;
     }
-    FileLocation place_of(const pugi::xml_node& node) const { return {file_.path, line_at(node.offset_debug())}; }
+    FileLocation location_of(const pugi::xml_node& node) const { return {file_.path, line_at(node.offset_debug())}; }
     Error error(const pugi::xml_node& node, std::string reason) const {
-        return {ErrorCode::BadInput, place_of(node), std::move(reason)};
+        return {ErrorCode::BadInput, location_of(node), std::move(reason)};
     }
 
     /// Returns an attribute's text with the values of $NAME; `missing` if there is none.
     std::string text(const pugi::xml_node& node, const char* name, std::string_view missing = "") {
         const pugi::xml_attribute attribute = node.attribute(name);
-        return attribute ? values_.put_into(attribute.value(), place_of(node)) : std::string(missing);
+        return attribute ? values_.put_into(attribute.value(), location_of(node)) : std::string(missing);
     }
 
     void read_root(const pugi::xml_node& root) {
@@ -92,7 +92,7 @@ private:
             const std::vector<double> numbers = parse_numbers(version.substr(0, version.find('.')));
             document_.is_old = context_.is_old = !numbers.empty() && numbers[0] < 2;
             if (numbers.empty())
-                context_.sink.warn({place_of(root), "there is no version such as \"3.0.0\"; Mitsuba 3 is assumed"});
+                context_.sink.warn({location_of(root), "there is no version such as \"3.0.0\"; Mitsuba 3 is assumed"});
         }
         if (std::string_view(root.name()) == "scene") {
             for (const pugi::xml_node& node : root.children()) read_element(node, nullptr, 0);
@@ -106,7 +106,7 @@ private:
         if (node.type() != pugi::node_element) return;
         context_.sink.check_at(elements_);
         if (++elements_ * kObject > justified_bytes(kFreeMeshBytes, first_bytes_))
-            throw Error(ErrorCode::OverLimit, place_of(node),
+            throw Error(ErrorCode::OverLimit, location_of(node),
                         "more elements than the size of the scene's file justifies");
         try {
             if (depth > kMostNested)
@@ -122,9 +122,9 @@ private:
         std::string tag = snake_case(node.name());
         if (tag == "luminaire") tag = "emitter";
         if (tag == "camera") tag = "sensor";
-        if (tag == "default") return values_.set_default(text(node, "name"), text(node, "value"), place_of(node));
+        if (tag == "default") return values_.set_default(text(node, "name"), text(node, "value"), location_of(node));
         if (tag == "include") return include(node, parent, depth);
-        if (tag == "path") return context_.search_paths.emplace_back(place_of(node), text(node, "value")), void();
+        if (tag == "path") return context_.search_paths.emplace_back(location_of(node), text(node, "value")), void();
         if (tag == "alias") return document_.objects.add_alias(text(node, "id"), text(node, "as"));
         const bool is_object = std::ranges::find(kObjectTags, tag) != kObjectTags.end();
         if (is_object || tag == "subsurface" || (tag == "spectrum" && node.attribute("type")))
@@ -144,7 +144,7 @@ private:
         if (files_ >= kMostFiles) throw error(node, fmt::format("more than {} files include each other", kMostFiles));
         (void)depth;
         const std::string name = text(node, "filename");
-        const auto path = find_file(context_, place_of(node), name);
+        const auto path = find_file(context_, location_of(node), name);
         if (!path) throw error(node, fmt::format("there is no file {}", shortened(name)));
         const std::vector<std::byte> bytes = read_file(*path);
         read(path->string(), bytes);
@@ -156,14 +156,15 @@ private:
             type.empty() ? fmt::format("the {}", tag) : fmt::format("the {} {}", tag, shortened(type));
         std::string id = text(node, "id");
         if (document_.objects.has(id))
-            context_.sink.warn({place_of(node), fmt::format("another object has the id {}, too; references are to this "
-                                                            "one",
-                                                            shortened(id))});
-        Object& object = document_.objects.add(tag, std::move(type), std::move(id), place_of(node), what);
+            context_.sink.warn(
+                {location_of(node), fmt::format("another object has the id {}, too; references are to this "
+                                                "one",
+                                                shortened(id))});
+        Object& object = document_.objects.add(tag, std::move(type), std::move(id), location_of(node), what);
         if (parent == nullptr) {
             document_.objects.top().push_back(object.number);
         } else {
-            add_child(snake_case(text(node, "name")), Objects::id_of(object), place_of(node).line, *parent);
+            add_child(snake_case(text(node, "name")), Objects::id_of(object), location_of(node).line, *parent);
         }
         for (const pugi::xml_node& child : node.children()) read_element(child, &object, depth + 1);
     }
@@ -171,7 +172,7 @@ private:
     void read_reference(const pugi::xml_node& node, Object& parent) {
         const std::string id = text(node, "id");
         if (id.empty()) throw error(node, "a reference has no id");
-        add_child(snake_case(text(node, "name")), id, place_of(node).line, parent);
+        add_child(snake_case(text(node, "name")), id, location_of(node).line, parent);
     }
 
     static void add_child(std::string name, std::string id, std::size_t line, Object& parent) {
@@ -196,7 +197,7 @@ private:
     Parameter read_parameter(const pugi::xml_node& node, const std::string& tag) {
         Parameter to;
         to.name = snake_case(text(node, "name"));
-        to.line = place_of(node).line;
+        to.line = location_of(node).line;
         if (tag == "float" || tag == "integer") {
             to.type = tag == "float" ? ParameterType::Float : ParameterType::Integer;
             to.numbers = numbers(node, "value", 1, 1);
@@ -262,7 +263,7 @@ private:
 
     std::vector<double> transform_in(const pugi::xml_node& node, bool is_motion) {
         if (is_motion) {
-            context_.sink.leave_out({place_of(node), "motion is left out; its first transform is used"});
+            context_.sink.leave_out({location_of(node), "motion is left out; its first transform is used"});
             return transform_in(node.child("transform"), false);
         }
         DoubleTransform transform;

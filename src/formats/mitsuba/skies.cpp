@@ -21,7 +21,7 @@ int64_t day_of_year(int64_t year, int64_t month, int64_t day) {
 
 } // namespace
 
-SunPlace place_at(Parameters& time, Sink& sink) {
+SunPosition sun_position_at(Parameters& time, Sink& sink) {
     const auto number = [&](const char* name, double missing) {
         return static_cast<float>(time.number(name, missing, sink));
     };
@@ -66,9 +66,9 @@ void set_sky(Object& emitter, Reading& reading, InfiniteLight& light) {
     if (given) {
         sky.sun = normalize_safely(to_float(*given));
     } else {
-        const SunPlace place = place_at(parameters, sink);
-        const float south = cos(place.height) * cos(place.from_south), west = cos(place.height) * sin(place.from_south);
-        sky.sun = is_old ? Vec3{-west, sin(place.height), south} : Vec3{south, west, sin(place.height)};
+        const SunPosition sun = sun_position_at(parameters, sink);
+        const float south = cos(sun.height) * cos(sun.from_south), west = cos(sun.height) * sin(sun.from_south);
+        sky.sun = is_old ? Vec3{-west, sin(sun.height), south} : Vec3{south, west, sin(sun.height)};
     }
     if (dot(sky.sun, sky.zenith) < 0) throw parameters.error("the sun is below the horizon");
     // Radiance counts per nanometre there.

@@ -7,14 +7,14 @@
 namespace pertev::mitsuba {
 
 /// The sun's height and its angle from south towards west, radians.
-struct SunPlace {
+struct SunPosition {
     float height, from_south;
 };
 
 /// Returns the sun's place at the time and position of parameters; without any it is that of Mitsuba's default, an
 /// afternoon in Tokyo.
 /// Source: Preetham, Shirley, Smits, "A Practical Analytic Model for Daylight", SIGGRAPH 1999, appendix A.6.
-SunPlace place_at(Parameters& time, Sink& sink);
+SunPosition sun_position_at(Parameters& time, Sink& sink);
 
 /// Sets the sky of an emitter of one of these types, with a warning that it is another model.
 void set_sky(Object& emitter, Reading& reading, InfiniteLight& light);

@@ -194,9 +194,9 @@ Surface mixture(const MaterialSource& source) {
     }
     TextureValue amount = source.textures.color(source.parameters, "amount", grey(0.5f));
     if (parts.size() != 2) throw source.parameters.error("a mix needs two materials");
-    const FileLocation& place = source.parameters.location();
-    const Surface* first = source.find(parts[0], place);
-    const Surface* second = source.find(parts[1], place);
+    const FileLocation& location = source.parameters.location();
+    const Surface* first = source.find(parts[0], location);
+    const Surface* second = source.find(parts[1], location);
     if (first == nullptr || second == nullptr) {
         const Surface* const left = first != nullptr ? first : second;
         if (left == nullptr) throw source.parameters.error("a mix of two materials that do not exist");
@@ -205,13 +205,13 @@ Surface mixture(const MaterialSource& source) {
     // In pbrt-v4 `amount` is the share of the second; in v3 it is that of the first.
     const Rgb c = amount.factor;
     if (!amount.has_image() && !(c.r == c.g && c.g == c.b)) {
-        source.context.sink.leave_out({place, "the colour of the amount of a mix is left out; its mean counts"});
+        source.context.sink.leave_out({location, "the colour of the amount of a mix is left out; its mean counts"});
         amount = constant(grey((c.r + c.g + c.b) / 3));
     }
     const MixedSurface mixed = mix_surfaces(*first, *second, names == nullptr ? one_less(amount) : amount);
     if (mixed.left_out)
-        source.context.sink.leave_out({place, fmt::format("of the mix the material {} is left out, because {}",
-                                                          shortened(parts[*mixed.left_out]), mixed.reason)});
+        source.context.sink.leave_out({location, fmt::format("of the mix the material {} is left out, because {}",
+                                                             shortened(parts[*mixed.left_out]), mixed.reason)});
     return mixed.surface;
 }
 

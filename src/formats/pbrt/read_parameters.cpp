@@ -80,7 +80,7 @@ void read_parameters(Tokens& tokens, Parameters& parameters, Sink& sink) {
     while (tokens.peek().kind == TokenKind::Quoted) {
         const Token declaration = tokens.next();
         const auto [type_name, name] = split(declaration.text);
-        const FileLocation place{parameters.location().file, declaration.line};
+        const FileLocation location{parameters.location().file, declaration.line};
         Parameter to;
         to.name = std::string(name);
         to.line = declaration.line;
@@ -122,7 +122,7 @@ void read_parameters(Tokens& tokens, Parameters& parameters, Sink& sink) {
         if (fault.empty()) {
             parameters.add(std::move(to));
         } else {
-            sink.leave_out({place, fmt::format("{}; it is left out of {}", fault, parameters.what())});
+            sink.leave_out({location, fmt::format("{}; it is left out of {}", fault, parameters.what())});
         }
     }
 }

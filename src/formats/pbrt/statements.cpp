@@ -96,24 +96,24 @@ void Statements::read(std::string_view text, const std::filesystem::path& file) 
     while (tokens.peek().kind != TokenKind::End) {
         context_.sink.check();
         const Token token = tokens.next();
-        const FileLocation place{file.string(), token.line};
+        const FileLocation location{file.string(), token.line};
         const Statement* const statement = token.kind == TokenKind::Word ? find(token.text) : nullptr;
         if (statement != nullptr) {
-            read_one(tokens, *statement, place);
+            read_one(tokens, *statement, location);
             continue;
         }
         std::vector<std::string_view> known;
         for (const Statement& other : all()) known.push_back(other.name);
-        context_.sink.leave_out({place, fmt::format("\"{}\" is not a statement and is left out{}",
-                                                    shortened(token.text), did_you_mean(token.text, known))});
+        context_.sink.leave_out({location, fmt::format("\"{}\" is not a statement and is left out{}",
+                                                       shortened(token.text), did_you_mean(token.text, known))});
         while (tokens.peek().kind != TokenKind::End && find(tokens.peek().text) == nullptr) tokens.next();
     }
     if (--files_ == 0) finish();
 }
 
-void Statements::read_one(Tokens& tokens, const Statement& statement, const FileLocation& place) {
+void Statements::read_one(Tokens& tokens, const Statement& statement, const FileLocation& location) {
     try {
-        (this->*statement.read)(tokens, place);
+        (this->*statement.read)(tokens, location);
     } catch (const Error& error) {
         if (error.code() != ErrorCode::BadInput) throw;
         context_.sink.leave_out(error.remark().and_then(fmt::format("; {} is left out", statement.name)));
@@ -126,20 +126,20 @@ void Statements::finish() {
         fmt::format("{} lacks its end", counted(kept_.size(), "AttributeBegin, TransformBegin or ObjectBegin")));
 }
 
-std::string Statements::take_text(Tokens& tokens, const FileLocation& place) {
+std::string Statements::take_text(Tokens& tokens, const FileLocation& location) {
     const bool has_brackets = tokens.peek().kind == TokenKind::Open;
     if (has_brackets) tokens.next();
     if (tokens.peek().kind != TokenKind::Quoted)
-        throw Error(ErrorCode::BadInput, place,
+        throw Error(ErrorCode::BadInput, location,
                     fmt::format("expected a quoted name, not \"{}\"", shortened(tokens.peek().text)));
     const Token token = tokens.next();
     if (has_brackets && tokens.peek().kind == TokenKind::Close) tokens.next();
     if (token.is_open_ended)
-        throw Error(ErrorCode::BadInput, place, fmt::format("\"{}\" has no closing quote", shortened(token.text)));
+        throw Error(ErrorCode::BadInput, location, fmt::format("\"{}\" has no closing quote", shortened(token.text)));
     return unescaped(token.text);
 }
 
-std::vector<double> Statements::take_numbers(Tokens& tokens, std::size_t count, const FileLocation& place) {
+std::vector<double> Statements::take_numbers(Tokens& tokens, std::size_t count, const FileLocation& location) {
     const bool has_brackets = tokens.peek().kind == TokenKind::Open;
     if (has_brackets) tokens.next();
     std::vector<double> numbers;
@@ -148,21 +148,21 @@ std::vector<double> Statements::take_numbers(Tokens& tokens, std::size_t count, 
         const auto number = tokens.peek().kind == TokenKind::Word ? parse_float<double>(text) : std::nullopt;
         if (!number || !text.empty() || !(std::abs(*number) <= 1e300)) {
             throw Error(
-                ErrorCode::BadInput, place,
+                ErrorCode::BadInput, location,
                 fmt::format("expected {} finite numbers; \"{}\" is none", count, shortened(tokens.peek().text)));
         }
         numbers.push_back(*number);
         tokens.next();
     }
     if (has_brackets && tokens.peek().kind != TokenKind::Close)
-        throw Error(ErrorCode::BadInput, place, fmt::format("expected {} numbers and ]", count));
+        throw Error(ErrorCode::BadInput, location, fmt::format("expected {} numbers and ]", count));
     if (has_brackets) tokens.next();
     return numbers;
 }
 
-Parameters Statements::take_parameters(Tokens& tokens, const FileLocation& place, std::string what,
+Parameters Statements::take_parameters(Tokens& tokens, const FileLocation& location, std::string what,
                                        const char* attribute) {
-    Parameters parameters(place, std::move(what));
+    Parameters parameters(location, std::move(what));
     parameters.set_color_space(world_.state.color_space);
     read_parameters(tokens, parameters, context_.sink);
     const auto& defaults = world_.state.attributes;
@@ -171,12 +171,12 @@ Parameters Statements::take_parameters(Tokens& tokens, const FileLocation& place
     return parameters;
 }
 
-void Statements::read_file(Tokens& tokens, const FileLocation& place, bool keeps_state) {
-    const std::string name = take_text(tokens, place);
+void Statements::read_file(Tokens& tokens, const FileLocation& location, bool keeps_state) {
+    const std::string name = take_text(tokens, location);
     if (files_ >= kMostFiles)
-        throw Error(ErrorCode::BadInput, place, fmt::format("{} files include each other", files_));
-    const auto path = context_.access.find(base_of(context_, place, name), name, context_.sink);
-    if (!path) throw Error(ErrorCode::BadInput, place, fmt::format("there is no file {}", shortened(name)));
+        throw Error(ErrorCode::BadInput, location, fmt::format("{} files include each other", files_));
+    const auto path = context_.access.find(base_of(context_, location, name), name, context_.sink);
+    if (!path) throw Error(ErrorCode::BadInput, location, fmt::format("there is no file {}", shortened(name)));
     const std::vector<std::byte> bytes = read_unzipped(*path);
     const std::size_t depth = kept_.size();
     if (!keeps_state) kept_.push_back({.state = world_.state});
@@ -186,30 +186,31 @@ void Statements::read_file(Tokens& tokens, const FileLocation& place, bool keeps
     kept_.resize(depth);
 }
 
-void Statements::include(Tokens& tokens, const FileLocation& place) { read_file(tokens, place, true); }
-void Statements::import_file(Tokens& tokens, const FileLocation& place) { read_file(tokens, place, false); }
+void Statements::include(Tokens& tokens, const FileLocation& location) { read_file(tokens, location, true); }
+void Statements::import_file(Tokens& tokens, const FileLocation& location) { read_file(tokens, location, false); }
 
-void Statements::begin(Tokens&, const FileLocation& place) {
+void Statements::begin(Tokens&, const FileLocation& location) {
     if (kept_.size() >= kMostKept)
-        throw Error(ErrorCode::OverLimit, place, fmt::format("over {} statements begin within each other", kMostKept));
+        throw Error(ErrorCode::OverLimit, location,
+                    fmt::format("over {} statements begin within each other", kMostKept));
     kept_.push_back({.state = world_.state});
 }
 
-void Statements::end(Tokens&, const FileLocation& place) {
+void Statements::end(Tokens&, const FileLocation& location) {
     if (kept_.empty() || kept_.back().is_object)
-        throw Error(ErrorCode::BadInput, place, "there is no AttributeBegin before it");
+        throw Error(ErrorCode::BadInput, location, "there is no AttributeBegin before it");
     world_.state = std::move(kept_.back().state);
     kept_.pop_back();
 }
 
-void Statements::begin_transform(Tokens& tokens, const FileLocation& place) {
-    begin(tokens, place);
+void Statements::begin_transform(Tokens& tokens, const FileLocation& location) {
+    begin(tokens, location);
     kept_.back().is_transform_alone = true;
 }
 
-void Statements::end_transform(Tokens&, const FileLocation& place) {
+void Statements::end_transform(Tokens&, const FileLocation& location) {
     if (kept_.empty() || !kept_.back().is_transform_alone)
-        throw Error(ErrorCode::BadInput, place, "there is no TransformBegin before it");
+        throw Error(ErrorCode::BadInput, location, "there is no TransformBegin before it");
     world_.state.transforms = kept_.back().state.transforms;
     world_.state.is_active = kept_.back().state.is_active;
     kept_.pop_back();
@@ -223,27 +224,27 @@ void Statements::begin_world(Tokens&, const FileLocation&) {
 
 void Statements::end_world(Tokens&, const FileLocation&) {}
 
-void Statements::begin_object(Tokens& tokens, const FileLocation& place) {
-    const std::string name = take_text(tokens, place);
-    world_.begin_object(name, place);
-    begin(tokens, place);
+void Statements::begin_object(Tokens& tokens, const FileLocation& location) {
+    const std::string name = take_text(tokens, location);
+    world_.begin_object(name, location);
+    begin(tokens, location);
     kept_.back().is_object = true;
 }
 
-void Statements::end_object(Tokens&, const FileLocation& place) {
-    world_.end_object(place);
+void Statements::end_object(Tokens&, const FileLocation& location) {
+    world_.end_object(location);
     while (!kept_.empty() && !kept_.back().is_object) kept_.pop_back(); // blocks that lack their end
     if (kept_.empty()) return;
     world_.state = std::move(kept_.back().state);
     kept_.pop_back();
 }
 
-void Statements::instance(Tokens& tokens, const FileLocation& place) {
-    world_.add_instance(take_text(tokens, place), place, bytes_);
+void Statements::instance(Tokens& tokens, const FileLocation& location) {
+    world_.add_instance(take_text(tokens, location), location, bytes_);
 }
 
-void Statements::apply(const DoubleTransform& transform, bool replaces, const FileLocation& place) {
-    if (!is_finite(transform)) throw Error(ErrorCode::BadInput, place, "the transform is not finite");
+void Statements::apply(const DoubleTransform& transform, bool replaces, const FileLocation& location) {
+    if (!is_finite(transform)) throw Error(ErrorCode::BadInput, location, "the transform is not finite");
     for (std::size_t i = 0; i < 2; ++i) {
         if (!world_.state.is_active[i]) continue;
         DoubleTransform& to = world_.state.transforms[i];
@@ -251,58 +252,60 @@ void Statements::apply(const DoubleTransform& transform, bool replaces, const Fi
     }
 }
 
-void Statements::identity(Tokens&, const FileLocation& place) { apply({}, true, place); }
+void Statements::identity(Tokens&, const FileLocation& location) { apply({}, true, location); }
 
-void Statements::translate(Tokens& tokens, const FileLocation& place) {
-    const std::vector<double> t = take_numbers(tokens, 3, place);
-    apply(translation_by({t[0], t[1], t[2]}), false, place);
+void Statements::translate(Tokens& tokens, const FileLocation& location) {
+    const std::vector<double> t = take_numbers(tokens, 3, location);
+    apply(translation_by({t[0], t[1], t[2]}), false, location);
 }
 
-void Statements::scale(Tokens& tokens, const FileLocation& place) {
-    const std::vector<double> s = take_numbers(tokens, 3, place);
-    apply(scale_by({s[0], s[1], s[2]}), false, place);
+void Statements::scale(Tokens& tokens, const FileLocation& location) {
+    const std::vector<double> s = take_numbers(tokens, 3, location);
+    apply(scale_by({s[0], s[1], s[2]}), false, location);
 }
 
-void Statements::rotate(Tokens& tokens, const FileLocation& place) {
-    const std::vector<double> r = take_numbers(tokens, 4, place);
-    apply(make_rotation(r[0], {r[1], r[2], r[3]}), false, place);
+void Statements::rotate(Tokens& tokens, const FileLocation& location) {
+    const std::vector<double> r = take_numbers(tokens, 4, location);
+    apply(make_rotation(r[0], {r[1], r[2], r[3]}), false, location);
 }
 
-void Statements::look_at(Tokens& tokens, const FileLocation& place) {
-    const std::vector<double> n = take_numbers(tokens, 9, place);
-    apply(make_look_at({n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {n[6], n[7], n[8]}), false, place);
+void Statements::look_at(Tokens& tokens, const FileLocation& location) {
+    const std::vector<double> n = take_numbers(tokens, 9, location);
+    apply(make_look_at({n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {n[6], n[7], n[8]}), false, location);
 }
 
-void Statements::transform(Tokens& tokens, const FileLocation& place) {
-    apply(transform_of(take_numbers(tokens, 16, place)), true, place);
+void Statements::transform(Tokens& tokens, const FileLocation& location) {
+    apply(transform_of(take_numbers(tokens, 16, location)), true, location);
 }
 
-void Statements::concat_transform(Tokens& tokens, const FileLocation& place) {
-    apply(transform_of(take_numbers(tokens, 16, place)), false, place);
+void Statements::concat_transform(Tokens& tokens, const FileLocation& location) {
+    apply(transform_of(take_numbers(tokens, 16, location)), false, location);
 }
 
-void Statements::coordinate_system(Tokens& tokens, const FileLocation& place) {
-    world_.coordinate_systems[take_text(tokens, place)] = world_.state.transforms;
+void Statements::coordinate_system(Tokens& tokens, const FileLocation& location) {
+    world_.coordinate_systems[take_text(tokens, location)] = world_.state.transforms;
 }
 
-void Statements::coord_sys_transform(Tokens& tokens, const FileLocation& place) {
-    const std::string name = take_text(tokens, place);
+void Statements::coord_sys_transform(Tokens& tokens, const FileLocation& location) {
+    const std::string name = take_text(tokens, location);
     const auto found = world_.coordinate_systems.find(name);
     if (found == world_.coordinate_systems.end())
-        throw Error(ErrorCode::BadInput, place, fmt::format("there is no coordinate system {}", shortened(name)));
+        throw Error(ErrorCode::BadInput, location, fmt::format("there is no coordinate system {}", shortened(name)));
     world_.state.transforms = found->second;
 }
 
-void Statements::active_transform(Tokens& tokens, const FileLocation& place) {
+void Statements::active_transform(Tokens& tokens, const FileLocation& location) {
     const Token token = tokens.peek();
     const bool is_start = token.is_word("StartTime"), is_end = token.is_word("EndTime");
     if (!is_start && !is_end && !token.is_word("All"))
-        throw Error(ErrorCode::BadInput, place, "expected StartTime, EndTime or All");
+        throw Error(ErrorCode::BadInput, location, "expected StartTime, EndTime or All");
     tokens.next();
     world_.state.is_active = {!is_end, !is_start};
 }
 
-void Statements::transform_times(Tokens& tokens, const FileLocation& place) { (void)take_numbers(tokens, 2, place); }
+void Statements::transform_times(Tokens& tokens, const FileLocation& location) {
+    (void)take_numbers(tokens, 2, location);
+}
 
 void Statements::reverse_orientation(Tokens&, const FileLocation&) {
     world_.state.is_reversed = !world_.state.is_reversed;

@@ -174,10 +174,10 @@ void World::make_named_medium(const std::string& name, Parameters& parameters) {
     parameters.leave_out_unknown(context_.sink);
 }
 
-void World::set_media(const std::string& inside, const std::string& outside, const FileLocation& place) {
+void World::set_media(const std::string& inside, const std::string& outside, const FileLocation& location) {
     state.inside = inside, state.outside = outside;
     for (const std::string& name : {inside, outside}) {
-        if (!name.empty()) (void)medium_called(name, place);
+        if (!name.empty()) (void)medium_called(name, location);
     }
 }
 

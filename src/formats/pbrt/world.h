@@ -47,17 +47,17 @@ public:
     void add_texture(const std::string& name, const std::string& kind, const std::string& type, Parameters& parameters);
     void set_material(const std::string& type, Parameters& parameters);
     void make_named_material(const std::string& name, Parameters& parameters);
-    void set_named_material(const std::string& name, const FileLocation& place);
+    void set_named_material(const std::string& name, const FileLocation& location);
     void make_named_medium(const std::string& name, Parameters& parameters);
-    void set_media(const std::string& inside, const std::string& outside, const FileLocation& place);
+    void set_media(const std::string& inside, const std::string& outside, const FileLocation& location);
     /// Puts the present medium outside around everything, because a camera is there.
     void set_camera_medium() { around_ = state.outside; }
     void set_area_light(const std::string& type, Parameters& parameters);
     void add_light(const std::string& type, Parameters& parameters);
     void add_shape(const std::string& type, Parameters& parameters);
-    void begin_object(const std::string& name, const FileLocation& place);
-    void end_object(const FileLocation& place);
-    void add_instance(const std::string& name, const FileLocation& place, uint64_t file_bytes);
+    void begin_object(const std::string& name, const FileLocation& location);
+    void end_object(const FileLocation& location);
+    void add_instance(const std::string& name, const FileLocation& location, uint64_t file_bytes);
 
     /// Makes the scene. `file_bytes` is the size of all files of statements.
     Scene finish(uint64_t file_bytes);

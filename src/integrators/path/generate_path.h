@@ -30,10 +30,10 @@ HD inline PathState generate_path(const CameraRays& camera, const PathSettings& 
 
 /// Starts a path of one picture of a batch; `pixel` is that of the tall picture.
 HD inline PathState generate_path(const BatchView& batch, SamplerKind sampler, uint32_t pixel, uint32_t sample) {
-    const BatchView::Place place = batch.place_of(pixel);
-    const CameraRays& camera = batch.cameras[place.picture];
-    const SampleKey key = {place.pixel, sample, batch.seeds[place.picture]};
-    return begin_path(camera, pixel, sample, camera.ray(place.pixel, sampler, key), camera.time(sampler, key));
+    const BatchView::PixelOfPicture at = batch.pixel_of(pixel);
+    const CameraRays& camera = batch.cameras[at.picture];
+    const SampleKey key = {at.pixel, sample, batch.seeds[at.picture]};
+    return begin_path(camera, pixel, sample, camera.ray(at.pixel, sampler, key), camera.time(sampler, key));
 }
 
 } // namespace pertev

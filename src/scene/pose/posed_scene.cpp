@@ -40,15 +40,15 @@ bool same_bits(const T& a, const T& b) {
     return std::memcmp(&a, &b, sizeof(T)) == 0;
 }
 
-/// Sets numbers of a material, by their places in the order of visit_parameters.
-void set_numbers(const std::vector<uint8_t>& places, const std::vector<float>& values, MaterialParameters& material) {
-    uint8_t place = 0;
+/// Sets numbers of a material, by their indices in the order of visit_parameters.
+void set_numbers(const std::vector<uint8_t>& indices, const std::vector<float>& values, MaterialParameters& material) {
+    uint8_t index = 0;
     visit_parameters(
         material,
         [&](float& number, const char*, float least, float most) {
-            const auto found = std::ranges::find(places, place++);
-            if (found == places.end()) return;
-            const float value = values[static_cast<std::size_t>(found - places.begin())];
+            const auto found = std::ranges::find(indices, index++);
+            if (found == indices.end()) return;
+            const float value = values[static_cast<std::size_t>(found - indices.begin())];
             if (&number == &material.ior) return set_gltf_ior(material, value == 0 ? 0 : clamp(value, least, most));
             number = clamp(value, least, most);
         },
