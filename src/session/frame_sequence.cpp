@@ -172,7 +172,7 @@ NoisyFrame& FrameSequence::fit_memory(const RenderSettings& of_light) {
 void FrameSequence::begin_exchange(const FrameTask& task, const RenderSettings& of_light) {
     reconstruction_->share(others_);
     if (restir_) restir_->share(others_);
-    const bool is_restored = restored_ != nullptr; // then each device takes all rows
+    const bool is_restored = restored_ != nullptr; // each device then takes all rows
     if (is_restored) take_restored(task, of_light);
     if (others_ != nullptr) others_->begin_taking_last(is_restored ? std::vector<RowArray>() : rows_of_history());
 }
