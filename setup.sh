@@ -109,7 +109,7 @@ install_packages() {
     local log
     log=$(mktemp)
     mapfile -t unknown < <(without_candidate "${missing[@]}")
-    local install=("${as_root[@]}" apt-get install -y -q --no-install-recommends "${missing[@]}")
+    local install=("${as_root[@]}" apt-get install -y -q --no-install-recommends -o DPkg::Lock::Timeout=600 "${missing[@]}")
     if ((${#unknown[@]})); then
         run_quietly "$log" "${as_root[@]}" apt-get update -q || fail "apt-get update failed"
         mapfile -t unknown < <(without_candidate "${missing[@]}")

@@ -26,7 +26,8 @@ function(pertev_launches file)
 endfunction()
 
 # pertev_shading_kernels(NAME plain listeners row...): Shade for these masks of features, and the list of the masks as NAME in
-# integrators/path/compiled_features.h. A row is "FILE: MASK", for shade_FILE.cu. Masks without kLayered have the listeners `plain`.
+# integrators/path/compiled_features.h. A row is "FILE: MASK", for shade_FILE.cu. Masks of kPlainDiffuse and kDiffuse,
+# which they begin with, have the listeners `plain`.
 function(pertev_shading_kernels name plain listeners)
   set(masks "")
   foreach(row IN LISTS ARGN)

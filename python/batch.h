@@ -42,8 +42,8 @@ public:
 
     bool is_single() const { return is_single_; }
     bool is_empty() const { return queue_ == nullptr; }
-    /// Returns the hash of a picture, as its array holds it now, or of its samples if it is denoised; nothing if there
-    /// is not a colour.
+    /// Returns the hash of a picture, as its array holds it now, or of its samples if it is denoised; nothing if it
+    /// has no colour.
     std::optional<std::string> hash(std::size_t picture) const;
     /// Returns the metadata of a picture, as an EXR has them.
     ExrMetadata metadata(std::size_t picture) const;

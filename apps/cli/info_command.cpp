@@ -97,7 +97,7 @@ private:
 /// Returns where the values of settings came from, by their keys.
 std::map<std::string, std::string> origins_in(const ExrMetadata& metadata) {
     std::map<std::string, std::string> origins;
-    for (const auto& [key, origin] : {std::pair("pertev.by_default", "added by default"),
+    for (const auto& [key, origin] : {std::pair("pertev.by_default", "by default"),
                                       {"pertev.by_scene", "the scene's file"},
                                       {"pertev.by_settings", "a settings file"},
                                       {"pertev.by_caller", "a flag"},

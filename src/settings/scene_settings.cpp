@@ -144,15 +144,15 @@ std::vector<Setting> scene_settings() {
             "A ground plane that receives shadows. auto adds it to an object whose file has neither camera nor light.",
             Choices{{"on", "off", "auto"}}, On{kRender | kView}, Mark::OpensScene, Recorded::AsUsed),
 
-        row("lamp", "Emitters", "NAME=AMOUNT", FIELD(scene.emitters),
+        row("lamp", "Lamps", "NAME=AMOUNT", FIELD(scene.emitters),
             "The amount of light of all lights with this name (* and ? are wildcards) in W, lm, cd, lx or nits, for "
             "example bulb=800lm. It may be given again.",
             On{kScenes}, Mark::OpensScene, Recorded::AsUsed),
-        row("ies", "Emitters", "NAME=FILE", FIELD(scene.profiles),
+        row("ies", "Lamps", "NAME=FILE", FIELD(scene.profiles),
             "The IES photometric file of all point and spot lights with this name, which gives them its candelas. It "
             "may be given again.",
             On{kScenes}, Mark::OpensScene, Recorded::AsUsed),
-        row("efficacy", "Emitters", "LM_PER_W", FIELD(scene.efficacy), "The number of lumens per watt.", Above{0, 1e6},
+        row("efficacy", "Lamps", "LM_PER_W", FIELD(scene.efficacy), "The number of lumens per watt.", Above{0, 1e6},
             Unit{"lm/W"}, Otherwise{"683; 1 for glTF, whose candela, lux and nits are read as watts"}, On{kScenes},
             Mark::OpensScene),
 

@@ -1,5 +1,5 @@
-// An updated scene has the picture of a newly prepared one with the same centre, for every structure. Only affected
-// trees are rebuilt.
+// An updated scene has the picture of a newly prepared one with the same centre, for every structure, and with lights
+// infinitely far away for some of them. Only affected trees are rebuilt.
 
 #include "render/update_scene.h"
 
@@ -110,7 +110,7 @@ TEST_CASE("an updated scene renders like a freshly prepared one with every struc
         return hashes;
     };
     const std::vector<Hash128> fresh[] = {fresh_hashes(false), fresh_hashes(true)};
-    int pictures = 0;
+    int pictures = 0, far_structures = 0;
     for (const StructureKind structure : kValuesOf<StructureKind>) {
         for (const TraversalKind traversal : kValuesOf<TraversalKind>) {
             const Combination c = {.structure = structure, .traversal = traversal};
@@ -127,6 +127,7 @@ TEST_CASE("an updated scene renders like a freshly prepared one with every struc
             const bool is_far =
                 first_traversal && (structure == structure_of(kDefaultBuild) || structure == StructureKind::KdMedian ||
                                     structure == StructureKind::Octree);
+            far_structures += is_far;
             std::vector<Scene> scenes(1, scene_with(is_far));
             scenes.reserve(1 + steps(is_far).size());
             PreparedScene prepared = prepare_scene(scenes[0], {}, messages);
@@ -149,6 +150,7 @@ TEST_CASE("an updated scene renders like a freshly prepared one with every struc
         }
     }
     CHECK(pictures >= 6 * 20);
+    CHECK(far_structures >= (queue.is_cuda() ? 1 : 3));
 }
 
 TEST_CASE("a change rebuilds only the trees of changed meshes") {

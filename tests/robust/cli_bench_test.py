@@ -194,11 +194,11 @@ class Bench(CliTest):
         self.refuse(2, *line, "--spp", "4", says=["--spp"])
 
     def test_batches_of_cameras_have_rates_beside_one_large_picture(self):
-        line = ["bench", "cameras", "cornell-box", "--device", "cpu", "--size", "8x8", "--spp", "1", "--pictures", "33", "--runs", "1"]
+        line = ["bench", "cameras", "cornell-box", "--device", "cpu", "--size", "8x8", "--spp", "2", "--pictures", "33", "--runs", "1"]
         run = self.succeed(*line, "--json")
         jobs = {event["job"]: event for event in run.events("cameras")}
         self.assertEqual([(name, job["pictures"], job["samples"], job["max_depth"]) for name, job in jobs.items()],
-                         [("centres", 33, 0, 5), ("direct", 33, 1, 1), ("paths", 2, 1, 5)])
+                         [("centres", 33, 0, 5), ("direct", 33, 1, 1), ("paths", 2, 2, 5)])
         for job in jobs.values():
             self.assertAlmostEqual(job["pictures_per_second"] * job["median_seconds"] / job["pictures"], 1, delta=1e-3)
             self.assertGreater(job["rays_per_second"], 64 * job["pictures_per_second"] * (1 + job["samples"]) * 0.999)

@@ -17,7 +17,7 @@ using namespace pertev::test;
 
 namespace {
 
-constexpr uint32_t kRestirWidth = 32, kRestirHeight = 24, kRestirBlocks = 4; // along each side
+constexpr uint32_t kRestirWidth = 34, kRestirHeight = 25, kRestirBlocks = 4; // along each side
 constexpr ReconstructionSettings kAsTheyAre = {
     .history = 1, .passes = 0, .clamp_fireflies = false, .clamp_history = false, .anti_alias = false};
 

@@ -174,7 +174,7 @@ TEST_CASE("every structure of the laboratory is built until the sink ends it") {
     check_stops(1 + sort + checks + 5, convert(TreeLayout::Compressed, StructureKind::Hploc)); // 5: levels of nodes
     // A kd-tree's root has 70,000 triangles, and at least 15 nodes have more than 4096. An octree's have over 8192.
     check_stops(checks + 15 + checks - 1, build(StructureKind::KdMedian));
-    check_stops(110, build(StructureKind::KdSah)); // There are 123, of which a fourth are of the axes of large cells.
+    check_stops(110, build(StructureKind::KdSah)); // There are 123, of which 36 are of the axes of large cells.
     check_stops(checks + 3 + checks - 1, build(StructureKind::Octree));
 }
 
@@ -198,7 +198,7 @@ TEST_CASE("a photon map's first pass is abandoned wherever the sink stops it, al
         RenderSettings settings;
         settings.width = settings.height = 8;
         settings.integrator = IntegratorKind::PhotonMap;
-        settings.photon_map.edit().photons = 20'000;
+        settings.photon_map.edit().photons = 40'000;
         settings.photon_map.edit().search = search;
         constexpr int64_t kNever = 1 << 30;
         StopsAt never(kNever);
@@ -206,8 +206,8 @@ TEST_CASE("a photon map's first pass is abandoned wherever the sink stops it, al
         REQUIRE(whole.render(1, never) == 1);
         const int64_t checks = kNever - never.left();
         Session session(queue, prepared, test::mixed_scene_camera(), settings);
-        for (int64_t part = 0; part < 8; ++part) {
-            StopsAt sink(checks * part / 8);
+        for (int64_t part = 0; part < 12; ++part) {
+            StopsAt sink(checks * part / 12);
             CHECK(session.render(1, sink) == 0);
         }
         REQUIRE(session.render(1) == 1);
@@ -226,7 +226,7 @@ TEST_CASE("an update of the scene ignores a structure whose build was ended") {
 }
 
 TEST_CASE("a tree is stored, read, and made wide until the sink ends it, and an ended store leaves no file") {
-    const std::vector<BvhTriangle> triangles = test::triangles_of(test::make_torus(250, 200));
+    const std::vector<BvhTriangle> triangles = test::triangles_of(test::make_torus(300, 220));
     const auto parts = static_cast<int64_t>(triangles.size() >> 16);
     const Bvh bvh = build_bvh(triangles);
     check_stops(4 * parts, [&](Sink& sink) { make_wide_bvh<8>(bvh, kSimdCollapse, sink); });

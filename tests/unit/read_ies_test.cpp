@@ -131,7 +131,7 @@ TEST_CASE("ies: a damaged file is refused with its line") {
                                {changed("100 80 0\n", "100 80\n"), 9, "candelas"},
                                {changed("100 80", "100 8e38"), 8, "expected at most 2^40"},
                                {changed("1 -1 2", "1 -1 1e300"), 8, "expected at most 2^40"},
-                               {changed("100 80", "100 x80"), 8, "x80 is no number"},
+                               {changed("100 80", "100 x80"), 8, "x80 is not a number"},
                                {changed("0 45 90", "0 95 90"), 6, "90 after 95"},
                                {changed("0 45 90", "0 45 190"), 7, "vertical angles"},
                                {changed("3 1 1 2", "3 1 4 2"), 4, "the type of photometry"},
