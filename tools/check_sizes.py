@@ -48,7 +48,6 @@ LONG = {  # functions that may be longer, and why
     "apps/cli/bench_render_command.cpp: bench_job": "its steps in order",
     "apps/cli/transport_command.cpp: run_transport_command": "its steps in order",
     # Yet to be split.
-    "apps/viewer/session_frames.cpp: SessionFrames::make_next": "decides what a client is shown next",
 }
 TOGETHER = {  # files that have so many lines together at most, and why
     ("src/session/session.h", "src/session/session.cpp"): (200, "a facade has no work of its own"),

@@ -13,7 +13,6 @@
 #include "device_scene/ray_queue.h"
 #include "image/picture_hash.h"
 #include "image/tone_map_image.h"
-#include "render/film_channels.h"
 #include "scene/scene_origin.h"
 
 namespace pertev {
@@ -26,29 +25,6 @@ constexpr uint32_t kSamplesWorthAFrame = 16;    // samples of a picture at rest 
 constexpr double kPass = 0.03;                  // seconds between checks whether a render is still needed
 constexpr double kMinRate = 30, kMaxRate = 240; // limits of the screen rates that a GPU's frames match, per second
 
-/// Auxiliary channels that the film needs for this layer.
-uint32_t aovs_of(ShownLayer layer) {
-    switch (layer) {
-    case ShownLayer::Beauty:
-    case ShownLayer::NodeHeat:
-    case ShownLayer::TriangleHeat:
-    case ShownLayer::Motion:
-    case ShownLayer::Deviation:
-        return 0;
-    case ShownLayer::Albedo:
-        return kAovAlbedo;
-    case ShownLayer::Normal:
-        return kAovNormal;
-    case ShownLayer::Depth:
-        return kAovDepth;
-    case ShownLayer::Instances:
-    case ShownLayer::Triangles:
-    case ShownLayer::Materials:
-        return kAovIds;
-    }
-    return 0;
-}
-
 /// Stops when another thread sets the flag; null: never.
 struct FlagSink final : Sink {
     explicit FlagSink(const std::atomic<bool>* stops) : flag(stops) {}
@@ -57,6 +33,11 @@ struct FlagSink final : Sink {
 };
 
 bool is_beauty(ShownLayer layer) { return layer == ShownLayer::Beauty; }
+
+/// Samples of the finished film; one gives every layer but the picture.
+uint32_t wanted_samples(const FrameRequest& request) {
+    return is_beauty(request.view.layer) ? request.view.options.render.samples : 1;
+}
 
 /// Returns whether a moving frame belongs to the session's sequence (Session::render_frame), as all do that show more
 /// than raw samples.
@@ -394,18 +375,42 @@ std::optional<ShownFrame> SessionFrames::make_next(const FrameRequest& request) 
     const Stopwatch whole;
     const bool is_of_movement = request.is_moving || request.view.is_real_time;
     const std::optional<float> grows_to = is_of_movement ? std::nullopt : growth_scale(request);
-    const bool is_growing = grows_to.has_value(), is_small = is_of_movement || is_growing;
-    const float scale = is_growing ? *grows_to : is_of_movement ? scale_for(request) : 1;
+    const float scale = grows_to ? *grows_to : is_of_movement ? scale_for(request) : 1;
+    const FilmSize size = {scale, is_of_movement, grows_to.has_value()};
     if (is_of_frames(request.view.layer) ||
-        (is_small && is_beauty(request.view.layer) && is_of_sequence(request.view))) {
-        std::optional<ShownFrame> frame = reconstruct(request, scale, is_growing);
-        if (frame && is_growing) growth_.showed(scale);
+        (size.is_small() && is_beauty(request.view.layer) && is_of_sequence(request.view))) {
+        std::optional<ShownFrame> frame = reconstruct(request, size.scale, size.is_growing);
+        if (frame && size.is_growing) growth_.showed(size.scale);
         return frame;
     }
     const double update_s = std::exchange(update_s_, 0);
-    const bool competes = shows_reconstruction_ && !shows_layer_ && !is_small && is_beauty(request.view.layer) &&
+    const bool competes = competes_with_reconstruction(request, size);
+    if (competes) {
+        if (std::optional<ShownFrame> again = show_reconstruction_again(request)) return again;
+    }
+    use(is_of_movement ? small_settings_for(request, size.scale) : settings_for(request, size.scale));
+    session_.set_camera(request.camera);
+    const bool was_begun = session_.history().samples > 0;
+    ShownFrame frame;
+    if (!add_samples(request, size, competes, frame)) return std::nullopt;
+    shows_reconstruction_ = false;
+    // A moving frame outside a sequence keeps the previous exposure.
+    if (!request.is_moving && !size.is_growing && is_beauty(request.view.layer)) meter_still(request, size.is_small());
+    show_film(request, size, frame);
+    if (size.is_growing) {
+        growth_.took(size.scale, whole.seconds());
+        growth_.showed(size.scale);
+    }
+    if (is_of_movement && !was_begun) pace_.took(size.scale, whole.seconds(), update_s);
+    if (is_of_movement) report_pace(request, frame);
+    return frame;
+}
+
+/// Returns whether the film is shown only once it is better than the reconstruction, which is then kept as displayed.
+bool SessionFrames::competes_with_reconstruction(const FrameRequest& request, const FilmSize& size) {
+    const bool competes = shows_reconstruction_ && !shows_layer_ && !size.is_small() && is_beauty(request.view.layer) &&
                           !request.view.options.reconstruction.none &&
-                          same_light(reconstructed_as_, settings_for(request, scale));
+                          same_light(reconstructed_as_, settings_for(request, size.scale));
     if (!competes) shows_reconstruction_ = false;     // another size discards it
     if (competes && reconstruction_.pixels.empty()) { // before another size discards it
         ShownFrame frame;
@@ -413,31 +418,30 @@ std::optional<ShownFrame> SessionFrames::make_next(const FrameRequest& request) 
         reconstruction_ = shown_picture(session_.frame(), request.view.display.tone_map, frame.exposure_stops);
         reconstruction_light_ = session_.frame().picture();
     }
-    if (competes) {
-        if (std::optional<ShownFrame> again = show_reconstruction_again(request)) return again;
-    }
-    use(is_of_movement ? small_settings_for(request, scale) : settings_for(request, scale));
-    session_.set_camera(request.camera);
-    const uint32_t wanted = is_beauty(request.view.layer) ? request.view.options.render.samples : 1;
-    const uint32_t before = session_.history().samples;
+    return competes;
+}
+
+/// Adds samples to the film until it is time to show it. Returns false if there is nothing new to show. A moving
+/// picture is always finished, because input comes faster than pictures and would stop each. At rest no whole sample
+/// is lost, because a request for another picture may end with the same one. A short sample is waited for, and a long
+/// one uses a film of its own. The first has none before it.
+bool SessionFrames::add_samples(const FrameRequest& request, const FilmSize& size, bool competes, ShownFrame& frame) {
+    const uint32_t wanted = wanted_samples(request), before = session_.history().samples;
     const bool was_begun = before > 0;
     if (!was_begun) half_samples_ = 0;
     const uint32_t until = competes ? std::min(wanted, std::bit_floor(before) * 2 + !was_begun) : wanted;
-    // A moving picture is always finished, because input comes faster than pictures and would stop each. At rest no
-    // whole sample is lost, because a request for another picture may end with the same one. A short sample is waited
-    // for, and a long one uses a film of its own. The first has none before it.
     const bool is_slow = growth_.is_slow(), is_short = was_begun && growth_.is_short(sample_s_);
     const std::atomic<bool>& stops = is_slow ? hurry_ : abandon_;
-    FlagSink flag(is_of_movement ? nullptr : &stops);
+    FlagSink flag(size.is_of_movement ? nullptr : &stops);
     session_.interrupt_passes(!is_short);
     const RayCounts rays_before = session_.rays();
     const Stopwatch render;
-    ShownFrame frame;
     uint32_t added = 0;
     ShownFrame exposed;
     expose(request, exposed);
     // After a change of tones the existing samples are shown first.
-    const bool waits = was_begun && !is_small && is_slow && shows_film_ && !is_shown_as(shown_as_, request, exposed);
+    const bool waits =
+        was_begun && !size.is_small() && is_slow && shows_film_ && !is_shown_as(shown_as_, request, exposed);
     if (before < wanted && !waits) {
         ProgressSink sink(
             [&](const Progress& now) {
@@ -447,43 +451,35 @@ std::optional<ShownFrame> SessionFrames::make_next(const FrameRequest& request) 
                 return !has_begun || now.seconds < request.budget_s;
             },
             flag);
-        added = session_.render(is_small ? 1 : until - before, sink);
+        added = session_.render(size.is_small() ? 1 : until - before, sink);
         frame.rays = session_.rays() - rays_before;
     }
     frame.render_s = render.seconds();
     if (added > 0 && session_.settings().time_kinds) frame.kind_seconds = session_.stats().kind_seconds;
-    if (added > 0 && !is_small) {
+    if (added > 0 && !size.is_small()) {
         sample_s_ = frame.render_s / added;
         growth_.took(1, sample_s_);
     }
-    if (stops && !is_of_movement && added == 0 && !waits) return std::nullopt;
+    if (stops && !size.is_of_movement && added == 0 && !waits) return false;
     frame.samples = session_.history().samples;
-    if (frame.samples == 0) return std::nullopt;
-    if (competes && frame.samples < wanted && !beats_reconstruction(request)) return std::nullopt;
-    shows_reconstruction_ = false;
-    // A moving frame outside a sequence keeps the previous exposure.
-    if (!request.is_moving && !is_growing && is_beauty(request.view.layer)) meter_still(request, is_small);
+    return frame.samples > 0 && !(competes && frame.samples < wanted && !beats_reconstruction(request));
+}
+
+/// Displays the film, or the requested layer of it.
+void SessionFrames::show_film(const FrameRequest& request, const FilmSize& size, ShownFrame& frame) {
     expose(request, frame);
     const Stopwatch display;
     frame.image = show(request, frame);
     const double display_s = display.seconds();
-    set_size(request, scale, frame);
-    shows_film_ = frame.is_reference = !is_small && is_beauty(request.view.layer);
-    frame.is_final = !is_small && frame.samples >= wanted;
+    set_size(request, size.scale, frame);
+    shows_film_ = frame.is_reference = !size.is_small() && is_beauty(request.view.layer);
+    frame.is_final = !size.is_small() && frame.samples >= wanted_samples(request);
     set_render_times(frame.render_s, frame);
     frame.stages.emplace_back("tone map", 1e3 * display_s);
-    if (frame.is_reference) {
-        const Stopwatch hash;
-        frame.hash = film_hash();
-        frame.stages.emplace_back("hash", 1e3 * hash.seconds());
-    }
-    if (is_growing) {
-        growth_.took(scale, whole.seconds());
-        growth_.showed(scale);
-    }
-    if (is_of_movement && !was_begun) pace_.took(scale, whole.seconds(), update_s);
-    if (is_of_movement) report_pace(request, frame);
-    return frame;
+    if (!frame.is_reference) return;
+    const Stopwatch hash;
+    frame.hash = film_hash();
+    frame.stages.emplace_back("hash", 1e3 * hash.seconds());
 }
 
 float SessionFrames::meter(const FrameRequest& request) {

@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "denoise/oidn/oidn_library.h"
+#include "render/film_channels.h"
 #include "session/check_integrator.h"
 #include "session/degrees.h"
 #include "settings/parse_values.h"
@@ -333,6 +334,28 @@ std::string why_no_value(const ViewSetting& setting, const SettingValue& value) 
 const char* name_of(ShownLayer layer) { return kLayers[static_cast<std::size_t>(layer)]; }
 
 bool is_of_frames(ShownLayer layer) { return layer == ShownLayer::Motion || layer == ShownLayer::Deviation; }
+
+uint32_t aovs_of(ShownLayer layer) {
+    switch (layer) {
+    case ShownLayer::Beauty:
+    case ShownLayer::NodeHeat:
+    case ShownLayer::TriangleHeat:
+    case ShownLayer::Motion:
+    case ShownLayer::Deviation:
+        return 0;
+    case ShownLayer::Albedo:
+        return kAovAlbedo;
+    case ShownLayer::Normal:
+        return kAovNormal;
+    case ShownLayer::Depth:
+        return kAovDepth;
+    case ShownLayer::Instances:
+    case ShownLayer::Triangles:
+    case ShownLayer::Materials:
+        return kAovIds;
+    }
+    return 0;
+}
 
 std::vector<ViewSetting> make_view_settings(std::span<const Setting> table) {
     std::vector<ViewSetting> all = own_settings();

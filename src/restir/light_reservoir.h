@@ -24,7 +24,13 @@ struct PreparedLight {
 };
 HD inline PreparedLight prepare_light(const SceneView& scene, const LightReservoir& reservoir) {
     const EmitterPoint& point = reservoir.point;
-    if (!point.is_there() || point.kind() != SourceKind::Environment) return {point, {}};
+    switch (point.kind()) {
+    case SourceKind::Triangle: // this is the kind, too, if there is no point
+    case SourceKind::Punctual:
+        return {point, {}};
+    case SourceKind::Environment:
+        break;
+    }
     const Vec3 wi = environment_direction(point);
     const EnvironmentHit hit = find_environment(scene.lights, Vec3(), wi, true);
     return {hit.pdf > 0 ? point : EmitterPoint(), hit.radiance};
@@ -35,8 +41,12 @@ HD inline PreparedLight prepare_light(const SceneView& scene, const LightReservo
 template <ShadingVariant kVariant>
 HD inline Rgb light_scattered(const SceneView& scene, const Receiver<kVariant>& receiver, const PreparedLight& from) {
     if (!from.point.is_there()) return {};
-    if (from.point.kind() == SourceKind::Environment) {
+    switch (from.point.kind()) {
+    case SourceKind::Environment:
         return receiver.evaluate(environment_direction(from.point)).f * from.radiance;
+    case SourceKind::Triangle:
+    case SourceKind::Punctual:
+        break;
     }
     LightSample light;
     float measure = 1;

@@ -68,8 +68,15 @@ bool Restir::are_of_scene(std::span<const std::vector<std::byte>> arrays, std::s
     // An empty reservoir is not looked at, and neither is a hit where there is none.
     const auto has_light = [&](const LightReservoir& reservoir) {
         const EmitterPoint& point = reservoir.point;
-        return !(reservoir.weight > 0) || !point.is_there() || point.kind() != SourceKind::Triangle ||
-               is_triangle(point.instance, point.index);
+        if (!(reservoir.weight > 0) || !point.is_there()) return true;
+        switch (point.kind()) {
+        case SourceKind::Punctual:
+        case SourceKind::Environment:
+            return true;
+        case SourceKind::Triangle:
+            break;
+        }
+        return is_triangle(point.instance, point.index);
     };
     const auto has_surface = [&](const Float4& hit) {
         return bits_of(hit.x) == kNoHit || is_triangle(bits_of(hit.x), bits_of(hit.y));

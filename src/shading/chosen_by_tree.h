@@ -26,8 +26,12 @@ struct ChosenByTree {
         }
         const CdfDraw far = draw_ordered(view.choice, u.x, more);
         const float pmf = cdf_pmf(far.owned);
-        if (view.kind_of(far.index) == SourceKind::Environment) {
+        switch (view.kind_of(far.index)) {
+        case SourceKind::Environment:
             return to.environment(pmf, SampleBits{number_of_rest(far), u.y});
+        case SourceKind::Triangle: // in the tree
+        case SourceKind::Punctual:
+            break;
         }
         return to.punctual(far.index - view.emitter_count, pmf);
     }

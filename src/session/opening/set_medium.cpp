@@ -64,9 +64,9 @@ void set_medium(const std::string& text, Scene& scene, Sink& sink) {
     const Rgb rates = scene.medium.sigma_t();
     if (!(min(rates.r, min(rates.g, rates.b)) > 0)) return;
     const bool has_sky = scene.environment && max_component(scene.environment->scale) > 0;
-    const bool has_sun =
-        std::ranges::any_of(scene.lights, [](const Light& light) { return light.kind == LightKind::Directional; });
-    if (!has_sky && !has_sun) return;
+    const bool has_far_light =
+        std::ranges::any_of(scene.lights, [](const Light& light) { return !parts_of(light.kind).position; });
+    if (!has_sky && !has_far_light) return;
     sink.warn({"medium", text,
                "it has no end, so that no light from infinitely far away arrives, neither the environment's nor that "
                "of directional lights"});

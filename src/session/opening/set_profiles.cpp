@@ -29,7 +29,7 @@ std::pair<std::string, std::string> parts_of_profile(const std::string& text) {
 }
 
 void set_profile(const std::shared_ptr<const IntensityTable>& table, float watts_per_steradian, Light& light) {
-    if (light.kind == LightKind::Point && light.node == kNoNode) light.direction = {0, -1, 0}, light.up = {0, 0, -1};
+    if (!parts_of(light.kind).direction && light.node == kNoNode) light.direction = {0, -1, 0}, light.up = {0, 0, -1};
     light.kind = LightKind::Goniometric;
     light.table = table;
     orient_light(light);
