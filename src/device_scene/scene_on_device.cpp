@@ -319,16 +319,20 @@ void SceneOnDevice::update_lights(Queue& queue, const PlacedScene& prepared) {
     view_.lights.environment = environment;
     list_lights(prepared.lights, view_.lights).upload(queue, lights_, "lights");
     light_tree_ = prepared.lights.tree;
-    view_.lights.tree.nodes = nullptr; // the memory of the last one is used again
-    view_.lights.tree.leaf_of_light = nullptr;
+    const uint32_t tree_lights = view_.lights.tree.light_count;
+    view_.lights.tree = {}; // the memory of the last one is used again
+    view_.lights.tree.light_count = tree_lights;
 }
 
 void SceneOnDevice::make_light_tree(Queue& queue) {
     if (view_.lights.tree.nodes != nullptr || view_.lights.tree.light_count == 0) return;
     const LightTreeData& data = light_tree_->get();
     PartArrays arrays;
-    arrays.add(std::span<const LightTreeNode>(data.nodes), view_.lights.tree.nodes);
-    arrays.add(data.leaf_of_light, view_.lights.tree.leaf_of_light);
+    LightTreeView& view = view_.lights.tree;
+    arrays.add(std::span<const LightTreeNode>(data.nodes), view.nodes);
+    arrays.add(data.leaf_of_light, view.leaf_of_light);
+    arrays.add(data.instances, view.instances);
+    arrays.add(data.leaf_of_triangle, view.leaf_of_triangle);
     arrays.upload(queue, light_nodes_, "light tree");
 }
 

@@ -1,6 +1,7 @@
 #include "shading/build_light_set.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -256,32 +257,84 @@ double power_in_tree(const PunctualLight& light, double power) {
     return power > 0 ? kPiDouble * mean_of_channels(light.intensity) : 0;
 }
 
-/// Returns the lights with a position for a tree: triangles, then punctual lights in their order. A spot's flux says
-/// little about the light in its cone, nor does that of a second face about the light of the first.
-std::vector<TreeLight> list_tree_lights(const LightSetData& data, std::span<const double> of_triangles,
-                                        std::span<const double> of_punctual) {
+/// Triangles of a mesh from which on its instances share a subtree: for a smaller one, the way into the mesh's space
+/// costs more than its nodes.
+constexpr uint32_t kShared = 64;
+
+/// Returns a triangle for a tree. A spot's flux says little about the light in its cone, nor does that of a second face
+/// about the light of the first.
+TreeLight tree_light(Vec3 a, Vec3 ab, Vec3 ac, const EmissiveTriangle& triangle, double power) {
+    TreeLight light;
+    for (const Vec3 edge : {Vec3{}, ab, ac}) light.bounds.extend(a + edge);
+    light.axis = normalize(cross(ab, ac));
+    light.emission_angle = 0.5f * kPi;
+    light.has_two_sides = triangle.is_two_sided != 0;
+    light.power = light.has_two_sides ? 0.5 * power : power;
+    return light;
+}
+
+/// Lists the instances that share the subtree of their mesh and material: two or more of at least kShared triangles.
+void list_shared(const Scene& scene, Vec3 centre, const LightSetData& data, std::span<const double> of_triangles,
+                 TreeLights& to) {
+    std::map<std::pair<uint32_t, uint32_t>, std::vector<uint32_t>> instances_of; // by mesh and material
+    for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
+        if (data.first_light[i] == kNoLight || scene.meshes[instance.mesh].triangle_count() < kShared) continue;
+        if (is_similarity(instance.world_from_local)) instances_of[{instance.mesh, instance.material}].push_back(i);
+    }
+    for (const auto& [used, instances] : instances_of) {
+        const Mesh& mesh = scene.meshes[used.first];
+        const uint64_t triangles = mesh.triangle_count();
+        const std::span powers = of_triangles.subspan(data.first_light[instances.front()], triangles);
+        if (instances.size() < 2 ||
+            std::ranges::count_if(powers, [](double power) { return power > 0 && std::isfinite(power); }) < 2)
+            continue;
+        std::vector<TreeLight>& lights = to.shared.emplace_back(triangles);
+        parallel_for(triangles, 4096, [&](uint64_t i) {
+            const uint32_t* const index = mesh.indices.data() + 3 * i;
+            const Vec3 a = mesh.positions[index[0]];
+            lights[i] = tree_light(a, mesh.positions[index[1]] - a, mesh.positions[index[2]] - a,
+                                   data.triangles[data.first_light[instances.front()]], powers[i]);
+        });
+        for (const uint32_t i : instances) {
+            SharedTreeInstance& instance = to.instances.emplace_back();
+            instance.subtree = static_cast<uint32_t>(to.shared.size() - 1);
+            instance.first_light = data.first_light[i];
+            instance.world_from_local = moved_to(scene.instances[i].world_from_local, centre);
+        }
+    }
+}
+
+/// Returns the lights with a position for a tree: triangles, then punctual lights in their order.
+TreeLights list_tree_lights(const Scene& scene, Vec3 centre, const LightSetData& data,
+                            std::span<const double> of_triangles, std::span<const double> of_punctual) {
     const std::size_t triangles = data.triangles.size();
-    std::vector<TreeLight> lights(triangles + of_punctual.size());
+    TreeLights to;
+    list_shared(scene, centre, data, of_triangles, to);
+    to.lights.resize(triangles + of_punctual.size());
     parallel_for(triangles, 4096, [&](uint64_t i) {
         if (!(of_triangles[i] > 0)) return;
         const EmissiveTriangle& triangle = data.triangles[i];
-        TreeLight& light = lights[i];
-        for (const Vec3 edge : {Vec3{}, triangle.ab, triangle.ac}) light.bounds.extend(triangle.a + edge);
-        const Vec3 normal = normalize(cross(triangle.ab, triangle.ac));
-        light.axis = triangle.is_mirrored != 0 ? -normal : normal;
-        light.emission_angle = 0.5f * kPi;
-        light.has_two_sides = triangle.is_two_sided != 0;
-        light.power = light.has_two_sides ? 0.5 * of_triangles[i] : of_triangles[i];
+        to.lights[i] = tree_light(triangle.a, triangle.ab, triangle.ac, triangle, of_triangles[i]);
+        if (triangle.is_mirrored != 0) to.lights[i].axis = -to.lights[i].axis;
     });
+    for (SharedTreeInstance& instance : to.instances) {
+        for (TreeLight& light :
+             std::span(to.lights).subspan(instance.first_light, to.shared[instance.subtree].size())) {
+            if (!(light.power > 0)) continue;
+            instance.bounds.extend(light.bounds);
+            instance.power += std::exchange(light.power, 0);
+        }
+    }
     for (std::size_t i = 0; i < of_punctual.size(); ++i) {
         const PunctualLight& punctual = data.punctual[i];
-        TreeLight& light = lights[triangles + i];
+        TreeLight& light = to.lights[triangles + i];
         light.bounds.extend(punctual.position);
         light.axis = punctual.direction;
         light.emission_angle = emission_angle(punctual);
         light.power = power_in_tree(punctual, of_punctual[i]);
     }
-    return lights;
+    return to;
 }
 
 /// Stores every triangle's probability, from the tables' integers.
@@ -348,7 +401,8 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
     if (data.environment) add_source(environment_power(*data.environment, radius), true);
     const auto of_punctual = std::span<const double>(data.source_powers)
                                  .subspan(data.emitters.size(), data.near_count - data.emitters.size());
-    data.tree = std::make_shared<const RequestedLightTree>(list_tree_lights(data, of_triangles, of_punctual));
+    data.tree =
+        std::make_shared<const RequestedLightTree>(list_tree_lights(scene, centre, data, of_triangles, of_punctual));
     share_draws(data, kEvenShare);
     return data;
 }

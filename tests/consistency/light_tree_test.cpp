@@ -11,6 +11,7 @@
 #include "session/batch_render.h"
 #include "tests/support/compare_pictures.h"
 #include "tests/support/lit_scenes.h"
+#include "tests/support/many_lights.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 
@@ -38,6 +39,12 @@ Scene mixed_scene(Surfaces surfaces) {
         material.alpha_mode = AlphaMode::Opaque;
         material.base_color_texture = material.normal_texture = material.emission_texture = {};
     }
+    if (surfaces == Surfaces::Stacked) return scene;
+    // Two instances of an emitter share a subtree; one is mirrored.
+    const Transform large = test::make_similarity({0, 0.6f, 0.8f}, 2.6f, 0.4f, {0.4f, 2, 0});
+    test::add_emitter(scene, test::make_square(6), {2, 3, 4}, large);
+    scene.instances.push_back(scene.instances.back());
+    scene.instances.back().world_from_local = test::make_similarity({0.6f, 0, 0.8f}, 2.9f, -0.2f, {-0.7f, 1.5f, 0.3f});
     return scene;
 }
 

@@ -7,6 +7,7 @@
 
 #include <cstring>
 #include <map>
+#include <utility>
 
 #include "base/parallel_for.h"
 #include "tests/support/chi_square.h"
@@ -67,9 +68,9 @@ struct Variances {
 };
 
 /// Relative variances of the light of one draw, without occlusion: means over the receivers.
-Variances variances_of(const test::ManyLights& scene) {
+Variances variances_of(const test::ManyLights& scene, TreeLights tree) {
     const std::vector<TreeLight> lights = scene.tree_lights();
-    const LightTreeData data = build_light_tree(lights);
+    const LightTreeData data = build_light_tree(std::move(tree));
     const test::PbrtLightBvh oracle(lights);
     double power = 0, count = 0;
     for (const TreeLight& light : lights) power += light.power;
@@ -95,13 +96,36 @@ Variances variances_of(const test::ManyLights& scene) {
     }
     return {sum.tree / count, sum.power / count, sum.oracle / count};
 }
+Variances variances_of(const test::ManyLights& scene) { return variances_of(scene, {scene.tree_lights()}); }
+
+/// Lights of all kinds, and copies of others that share two subtrees: turned, smaller, larger, mirrored. Normals of the
+/// second one's lie in a narrow cone, outside of which it is dark.
+test::SharedLights make_shared_lights() {
+    test::SharedLights all;
+    all.lights = make_mixed_lights(60);
+    all.tree.lights = all.lights;
+    all.tree.shared = {make_mixed_lights(80), {}};
+    for (TreeLight light : make_mixed_lights(20)) {
+        light.axis = normalize(light.axis + Vec3{0, 0, 4});
+        light.emission_angle = min(light.emission_angle, 0.5f * kPi);
+        light.has_two_sides = false;
+        all.tree.shared[1].push_back(light);
+    }
+    all.place(0, test::make_similarity({0, 0, 1}, 0, 1, {2, 0, 0}));
+    all.place(0, test::make_similarity({0.6f, 0, 0.8f}, 1.1f, 0.25f, {-4, 1, 0}));
+    all.place(0, test::make_similarity({0, 0.8f, 0.6f}, -2.3f, -2, {0, 9, 3}));
+    all.place(1, test::make_similarity({0.6f, 0.8f, 0}, 2.2f, 0.1f, {1, 1, 0}));
+    all.place(1, test::make_similarity({0, 0.8f, 0.6f}, 0.9f, -0.2f, {0, -1, 1}));
+    return all;
+}
 
 } // namespace
 
 TEST_CASE("a light tree draws lights with the probabilities that it reports, to the bit") {
-    const std::vector<TreeLight> lights = make_mixed_lights(60);
-    const LightTreeData data = build_light_tree(lights);
-    REQUIRE(data.light_count() == 59);
+    const auto [tree_lights, lights] = make_shared_lights();
+    const LightTreeData data = build_light_tree(tree_lights);
+    REQUIRE(data.light_count == 59 + 3 * 79 + 2 * 19);
+    REQUIRE(data.nodes.size() == 2 * (59 + 5 + 79 + 19)); // the copies share theirs
     test::Random random(1);
     for (const LightReceiver& to : make_receivers(24)) {
         const LightTreeView tree = data.view();
@@ -135,14 +159,14 @@ TEST_CASE("a light tree draws lights with the probabilities that it reports, to 
 
 TEST_CASE("a light tree's probabilities do not depend on the unit of length or of power") {
     const std::vector<TreeLight> lights = make_mixed_lights(200);
-    const LightTreeData data = build_light_tree(lights);
+    const LightTreeData data = build_light_tree({lights});
     for (const float scale : {1024.0f, 0x1p-12f}) {
         std::vector<TreeLight> scaled = lights;
         for (TreeLight& light : scaled) {
             light.bounds = {scale * light.bounds.lo, scale * light.bounds.hi};
             light.power *= 64;
         }
-        const LightTreeData other = build_light_tree(scaled);
+        const LightTreeData other = build_light_tree({scaled});
         uint32_t differ = 0;
         for (const LightReceiver& to : make_receivers(30)) {
             for (uint32_t i = 0; i < lights.size(); ++i) {
@@ -154,8 +178,36 @@ TEST_CASE("a light tree's probabilities do not depend on the unit of length or o
     }
 }
 
+TEST_CASE("copies of lights that share a subtree have the same probabilities for a receiver that moves with them") {
+    const std::vector<TreeLight> lights = make_mixed_lights(80);
+    const Transform placed = test::make_similarity({0.6f, 0, 0.8f}, 1.1f, -3, {-4, 1, 0});
+    test::SharedLights copy;
+    copy.tree.shared.push_back(lights);
+    copy.place(0, placed);
+    const LightTreeData own = build_light_tree({lights}), shared = build_light_tree(copy.tree);
+    double most = 0;
+    for (const LightReceiver& to : make_receivers(30)) {
+        const Vec3 normal = to.has_normal() ? normalize(transform_vector(placed, to.normal)) : Vec3{};
+        const LightReceiver moved = {transform_point(placed, to.point), normal};
+        if (!(importance_of(shared.nodes[kLightTreeRoot], moved).most > 0)) continue;
+        for (uint32_t i = 0; i < lights.size(); ++i) {
+            most = std::max(most, static_cast<double>(
+                                      std::abs(pmf_in_tree(shared.view(), moved, i) - pmf_in_tree(own.view(), to, i))));
+        }
+    }
+    CHECK(most < 1e-4);
+    CHECK(is_similarity(placed));
+    for (const Vec3 sizes : {Vec3{1.01f, 1, 1}, Vec3{1, 1.01f, 1}, Vec3{1, 1, 1.01f}, Vec3{0, 0, 0}}) {
+        Transform stretched = placed; // along an axis of the mesh
+        for (Vec3* const row : {&stretched.row0, &stretched.row1, &stretched.row2})
+            *row = {sizes.x * row->x, sizes.y * row->y, sizes.z * row->z};
+        CHECK_FALSE(is_similarity(stretched));
+    }
+    CHECK_FALSE(is_similarity({{1, 0.01f, 0}, {0, 1, 0}, {0, 0, 1}, {}}));
+}
+
 TEST_CASE("a larger number never selects an earlier leaf, and the rest of it is even within a light") {
-    const LightTreeData data = build_light_tree(make_mixed_lights(300));
+    const LightTreeData data = build_light_tree({make_mixed_lights(300)});
     for (const LightReceiver& to : make_receivers(6)) {
         uint32_t earlier = 0, last = 0;
         double rests = 0;
@@ -185,8 +237,8 @@ TEST_CASE("lights at ever smaller distances make a tree that is deep but has eac
         lights[i].emission_angle = kPi;
         lights[i].power = 1;
     }
-    const LightTreeData data = build_light_tree(lights);
-    REQUIRE(data.light_count() == 126);
+    const LightTreeData data = build_light_tree({lights});
+    REQUIRE(data.light_count == 126);
     const LightReceiver to = {{-1, 0.5f, 0}, {1, 0, 0}};
     double sum = 0;
     for (uint32_t i = 0; i < 126; ++i) sum += static_cast<double>(pmf_in_tree(data.view(), to, i));
@@ -198,7 +250,7 @@ TEST_CASE("a light tree that several threads build has each light, and does not 
     LightTreeData trees[2];
     for (const int threads : {1, 3}) {
         const UseThreads use(threads);
-        trees[threads / 2] = build_light_tree(lights);
+        trees[threads / 2] = build_light_tree({lights});
     }
     const auto& [one, three] = trees;
     REQUIRE(one.nodes.size() == 200'000);
@@ -208,7 +260,7 @@ TEST_CASE("a light tree that several threads build has each light, and does not 
     uint32_t found = 0;
     for (uint32_t i = 0; i < 100'000; ++i) {
         const LightTreeNode& leaf = one.nodes[one.leaf_of_light[i]];
-        found += leaf.is_leaf() && leaf.light() == i ? 1 : 0;
+        found += leaf.is_leaf() && leaf.number() == i ? 1 : 0;
     }
     CHECK(found == 100'000);
 }
@@ -221,8 +273,25 @@ TEST_CASE("light samples by a tree have little variance, and at most that of a p
     CHECK(hall.tree < 0.1 * hall.power);
     const Variances city = variances_of(test::make_city(8)), chandelier = variances_of(test::make_chandelier(1000));
     const Variances dust = variances_of(test::make_dust(static_cast<uint32_t>(test::effort(20'000, 1'000'000))));
+    test::ManyLights copies = test::make_chandelier(1000);
+    test::SharedLights shared;
+    shared.tree.shared.push_back(copies.tree_lights());
+    const std::vector<test::SmallLight> one = std::exchange(copies.lights, {});
+    for (const float x : {-3.0f, 0.0f, 4.0f}) {
+        const Transform placed = test::make_similarity({0, 1, 0}, x, 1, {x, 0, 0});
+        shared.place(0, placed);
+        for (const test::SmallLight& light : one) {
+            copies.add(transform_point(placed, light.a), transform_vector(placed, light.ab),
+                       transform_vector(placed, light.ac), light.emission);
+        }
+    }
     const std::pair<std::string, Variances> all[] = {
-        {"corridor", corridor}, {"hall", hall}, {"city", city}, {"chandelier", chandelier}, {"dust", dust}};
+        {"chandeliers that share a subtree", variances_of(copies, shared.tree)},
+        {"corridor", corridor},
+        {"hall", hall},
+        {"city", city},
+        {"chandelier", chandelier},
+        {"dust", dust}};
     for (const auto& [name, found] : all) {
         CAPTURE(name);
         MESSAGE(name, ": relative variance by tree ", found.tree, ", by power ", found.power, ", by the oracle ",

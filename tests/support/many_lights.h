@@ -48,6 +48,46 @@ struct ManyLights {
     }
 };
 
+/// Lights of which copies of a mesh's share a subtree, and the same lights one by one.
+struct SharedLights {
+    TreeLights tree;
+    std::vector<TreeLight> lights;
+
+    void place(uint32_t subtree, const Transform& world_from_local) {
+        SharedTreeInstance instance;
+        instance.subtree = subtree;
+        instance.first_light = static_cast<uint32_t>(lights.size());
+        instance.world_from_local = world_from_local;
+        const double larger = static_cast<double>(length_squared(column(world_from_local, 0)));
+        for (const TreeLight& local : tree.shared[subtree]) {
+            TreeLight& light = lights.emplace_back(local);
+            light.bounds = {};
+            for (uint32_t corner = 0; corner < 8; ++corner) {
+                const Vec3 at = {(corner & 1) != 0 ? local.bounds.hi.x : local.bounds.lo.x,
+                                 (corner & 2) != 0 ? local.bounds.hi.y : local.bounds.lo.y,
+                                 (corner & 4) != 0 ? local.bounds.hi.z : local.bounds.lo.z};
+                light.bounds.extend(transform_point(world_from_local, at));
+            }
+            light.axis = normalize(transform_vector(world_from_local, local.axis));
+            light.power *= larger;
+            if (!(light.power > 0)) continue;
+            instance.bounds.extend(light.bounds);
+            instance.power += light.power;
+        }
+        tree.lights.resize(lights.size());
+        tree.instances.push_back(instance);
+    }
+};
+
+/// A turn about a unit axis by an angle in radians, a uniform scaling, negative for a reflection, and a shift.
+inline Transform make_similarity(Vec3 axis, float angle, float scale, Vec3 shift) {
+    const float s = std::sin(0.5f * angle);
+    Transform placed = make_rotation(s * axis.x, s * axis.y, s * axis.z, std::cos(0.5f * angle));
+    for (Vec3* const row : {&placed.row0, &placed.row1, &placed.row2}) *row = scale * *row;
+    placed.translation = shift;
+    return placed;
+}
+
 /// Light of its middle at a receiver without occlusion, W/m2 up to a factor.
 inline double light_at(const SmallLight& light, const LightReceiver& to) {
     const Vec3 way = light.a + (light.ab + light.ac) / 3.0f - to.point;
@@ -63,8 +103,13 @@ inline double visit_tree(const LightTreeView& tree, const LightReceiver& to,
                          const std::function<void(uint32_t, double)>& visit, uint32_t at = kLightTreeRoot,
                          double probability = 1) {
     const LightTreeNode& node = tree.nodes[at];
+    if (node.is_instance()) {
+        const LightTreeInstance& instance = tree.instances[node.number()];
+        const auto visit_shared = [&](uint32_t triangle, double p) { visit(instance.first_light + triangle, p); };
+        return visit_tree(tree, local_receiver(instance, to), visit_shared, instance.root, probability);
+    }
     if (node.is_leaf()) {
-        visit(node.light(), probability);
+        visit(node.number(), probability);
         return 0;
     }
     const float p =

@@ -46,8 +46,12 @@ struct LightOfLane {
     /// Enters a source that is no triangle.
     void enter_source(Vec3 receiver, const CdfDraw& source, SampleBits u) const {
         const float pmf = cdf_pmf(source.owned);
-        if (view.kind_of(source.index) == SourceKind::Punctual) {
+        switch (view.kind_of(source.index)) {
+        case SourceKind::Punctual:
             return enter_punctual(receiver, source.index - view.emitter_count, pmf);
+        case SourceKind::Triangle: // excluded by the caller
+        case SourceKind::Environment:
+            break;
         }
         const SampleBits rest = {number_of_rest(source), u.y};
         if (view.environment.is_constant) return enter_constant_environment(pmf, rest);
@@ -130,25 +134,22 @@ public:
     /// Draws a light for each lane that has begun.
     void finish() {
         const LightTreeNode& root = tree_.nodes[kLightTreeRoot];
-        if (root.is_leaf()) return finish_leaf(root);
-        std::array<uint32_t, kLanes> next;
-        next.fill(root.next);
+        next_.fill(kLightTreeRoot + 1); // a pair of nodes for lanes that have not begun
+        for (unsigned rest = going_; rest != 0; rest &= rest - 1) {
+            const auto lane = static_cast<uint32_t>(__builtin_ctz(rest));
+            const bool is_dark = root.is_leaf() && !(importance_of(root, receiver_of(lane)).most > 0);
+            is_dark ? end(lane) : go_to(lane, root);
+        }
         while (going_ != 0) {
             alignas(64) float shares[kLanes];
-            left_probability(importances(next, 0), importances(next, 1)).store(shares);
+            left_probability(importances(0), importances(1)).store(shares);
             for (unsigned rest = going_; rest != 0; rest &= rest - 1) {
                 const auto lane = static_cast<uint32_t>(__builtin_ctz(rest));
                 const float p = shares[lane];
                 if (p < 0) {
-                    going_ &= ~(1u << lane);
-                    continue;
-                }
-                const LightTreeNode& node = tree_.nodes[next[lane] + (ways_[lane].goes_right(p) ? 1 : 0)];
-                if (node.is_leaf()) {
-                    draws[lane] = ways_[lane].at(node.light());
-                    going_ &= ~(1u << lane);
+                    end(lane);
                 } else {
-                    next[lane] = node.next;
+                    go_to(lane, tree_.nodes[next_[lane] + (ways_[lane].goes_right(p) ? 1 : 0)]);
                 }
             }
         }
@@ -157,28 +158,47 @@ public:
     std::array<LightTreeDraw, kLanes> draws;
 
 private:
-    LightImportanceOf<Floats> importances(const std::array<uint32_t, kLanes>& next, uint32_t child) const {
+    void end(uint32_t lane) { going_ &= ~(1u << lane); }
+    void go_to(uint32_t lane, const LightTreeNode& node) {
+        if (node.is_instance()) {
+            const LightTreeInstance& instance = tree_.instances[node.number()];
+            move_receiver(lane, local_receiver(instance, receiver_of(lane)));
+            first_lights_[lane] = instance.first_light;
+            next_[lane] = tree_.nodes[instance.root].next; // a shared subtree has two leaves or more
+        } else if (node.is_leaf()) {
+            draws[lane] = ways_[lane].at(first_lights_[lane] + node.number());
+            end(lane);
+        } else {
+            next_[lane] = node.next;
+        }
+    }
+    LightReceiver receiver_of(uint32_t lane) const {
+        return {{to_.point.x[lane], to_.point.y[lane], to_.point.z[lane]},
+                {to_.normal.x[lane], to_.normal.y[lane], to_.normal.z[lane]}};
+    }
+    void move_receiver(uint32_t lane, const LightReceiver& to) {
+        Table<6> lanes;
+        const Floats* const now[] = {&to_.point.x,  &to_.point.y,  &to_.point.z,
+                                     &to_.normal.x, &to_.normal.y, &to_.normal.z};
+        for (int i = 0; i < 6; ++i) now[i]->store(lanes.at[i]);
+        lanes.set(0, lane, to.point), lanes.set(3, lane, to.normal);
+        to_ = {lanes.vec3(0), lanes.vec3(3)};
+    }
+    LightImportanceOf<Floats> importances(uint32_t child) const {
         static_assert(offsetof(LightTreeNode, power) == 12 && offsetof(LightTreeNode, radius) == 16);
         std::array<const float*, kLanes> rows;
-        for (uint32_t lane = 0; lane < kLanes; ++lane) rows[lane] = &tree_.nodes[next[lane] + child].centre.x;
+        for (uint32_t lane = 0; lane < kLanes; ++lane) rows[lane] = &tree_.nodes[next_[lane] + child].centre.x;
         Floats columns[8];
         load_columns(rows, columns);
         const LightNodeOf<Floats> node = {
             {columns[0], columns[1], columns[2]}, columns[3], columns[4], bits_of(columns[5]), bits_of(columns[6])};
         return importance_of(node, to_);
     }
-    void finish_leaf(const LightTreeNode& root) {
-        for (; going_ != 0; going_ &= going_ - 1) {
-            const auto lane = static_cast<uint32_t>(__builtin_ctz(going_));
-            const LightReceiver to = {{to_.point.x[lane], to_.point.y[lane], to_.point.z[lane]},
-                                      {to_.normal.x[lane], to_.normal.y[lane], to_.normal.z[lane]}};
-            if (importance_of(root, to).most > 0) draws[lane] = ways_[lane].at(root.light());
-        }
-    }
 
     const LightTreeView& tree_;
-    const LightReceiverOf<Floats>& to_;
+    LightReceiverOf<Floats> to_; // in the space of a shared subtree, once a lane is there
     std::array<LightTreeWay, kLanes> ways_;
+    std::array<uint32_t, kLanes> next_, first_lights_ = {};
     unsigned going_ = 0;
 };
 

@@ -7,7 +7,8 @@
 // Source: Conty Estevez, Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", HPG 2018, with one
 // child a node by the mean of its least and largest importance, which Cycles takes, too.
 //
-// Lengths are compared with lengths and squares with squares, so no probability depends on the unit of length.
+// Lengths are compared with lengths and squares with squares, so no probability depends on the unit of length. Thus
+// instances of a mesh share a subtree, for which the receiver moves into the mesh's space.
 
 #include <cstdint>
 
@@ -62,6 +63,14 @@ struct LightReceiverOf {
     HD MaskOf<T> has_normal() const { return !(normal.x == 0.0f && normal.y == 0.0f && normal.z == 0.0f); }
 };
 using LightReceiver = LightReceiverOf<float>;
+
+/// Returns the receiver in the space of a shared subtree.
+HD inline LightReceiver local_receiver(const LightTreeInstance& instance, const LightReceiver& to) {
+    const auto turned = [&](Vec3 v) {
+        return Vec3{dot(instance.local_x, v), dot(instance.local_y, v), dot(instance.local_z, v)};
+    };
+    return {turned(to.point - instance.origin), instance.scale * turned(to.normal)};
+}
 
 /// The least and the largest importance of a node. Both are 0 if no light of it can reach the receiver.
 template <class T>
@@ -155,33 +164,52 @@ struct LightTreeWay {
 HD_CALL inline LightTreeDraw draw_from_tree(const LightTreeView& tree, const LightReceiver& to, uint64_t number,
                                             uint64_t width) {
     LightTreeWay way = {number, width};
+    LightReceiver here = to;
+    uint32_t first_light = 0;
     LightTreeNode node = tree.nodes[kLightTreeRoot];
     if (node.is_leaf() && !(importance_of(node, to).most > 0)) return {};
-    while (!node.is_leaf()) {
+    while (!node.is_leaf() || node.is_instance()) {
+        if (node.is_instance()) {
+            const LightTreeInstance& instance = tree.instances[node.number()];
+            here = local_receiver(instance, to);
+            first_light = instance.first_light;
+            node = tree.nodes[instance.root];
+        }
         const LightTreeNode left = tree.nodes[node.next], right = tree.nodes[node.next + 1];
-        const float p = left_probability(importance_of(left, to), importance_of(right, to));
+        const float p = left_probability(importance_of(left, here), importance_of(right, here));
         if (p < 0) return {};
         node = way.goes_right(p) ? right : left;
     }
-    return way.at(node.light());
+    return way.at(first_light + node.number());
+}
+
+/// Multiplies `pmf` by the probability of the way from a root to the leaf `leaf`. Returns false if it is 0.
+HD inline bool descend_to_leaf(const LightTreeView& tree, const LightReceiver& to, uint32_t root, uint32_t leaf,
+                               float& pmf) {
+    LightTreeNode node = tree.nodes[root];
+    for (uint32_t at = root; at != leaf;) {
+        const LightTreeNode left = tree.nodes[node.next], right = tree.nodes[node.next + 1];
+        const float p = left_probability(importance_of(left, to), importance_of(right, to));
+        const bool is_right = leaf > node.next && (leaf == node.next + 1 || (!right.is_leaf() && leaf >= right.next));
+        if (!((is_right ? 1.0f - p : p) > 0) || p < 0) return false;
+        pmf *= is_right ? 1.0f - p : p;
+        at = is_right ? node.next + 1 : node.next;
+        node = is_right ? right : left;
+    }
+    return true;
 }
 
 /// Probability with which draw_from_tree selects a light, to the bit.
 HD_CALL inline float pmf_in_tree(const LightTreeView& tree, const LightReceiver& to, uint32_t light) {
     const uint32_t leaf = tree.leaf_of_light[light];
-    LightTreeNode node = tree.nodes[kLightTreeRoot];
-    if (leaf == 0 || (node.is_leaf() && !(importance_of(node, to).most > 0))) return 0;
+    const LightTreeNode root = tree.nodes[kLightTreeRoot];
+    if (leaf == 0 || (root.is_leaf() && !(importance_of(root, to).most > 0))) return 0;
     float pmf = 1;
-    for (uint32_t at = kLightTreeRoot; at != leaf;) {
-        const LightTreeNode left = tree.nodes[node.next], right = tree.nodes[node.next + 1];
-        const float p = left_probability(importance_of(left, to), importance_of(right, to));
-        const bool is_right = leaf > node.next && (leaf == node.next + 1 || (!right.is_leaf() && leaf >= right.next));
-        if (!((is_right ? 1.0f - p : p) > 0) || p < 0) return 0;
-        pmf *= is_right ? 1.0f - p : p;
-        at = is_right ? node.next + 1 : node.next;
-        node = is_right ? right : left;
-    }
-    return pmf;
+    if ((leaf & LightTreeNode::kLeaf) == 0) return descend_to_leaf(tree, to, kLightTreeRoot, leaf, pmf) ? pmf : 0.0f;
+    const LightTreeInstance& instance = tree.instances[leaf & ~LightTreeNode::kLeaf];
+    if (!descend_to_leaf(tree, to, kLightTreeRoot, instance.leaf, pmf)) return 0;
+    const uint32_t shared = tree.leaf_of_triangle[instance.first_leaf + (light - instance.first_light)];
+    return descend_to_leaf(tree, local_receiver(instance, to), instance.root, shared, pmf) ? pmf : 0.0f;
 }
 
 } // namespace pertev
