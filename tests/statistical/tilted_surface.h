@@ -42,12 +42,11 @@ inline TiltedSampling test_tilted_sampling(const std::function<BsdfSample(float 
         return s.wi;
     };
     const auto pdf = [&](Vec3 w) { return static_cast<double>(evaluate(w).pdf); };
-    const ChiSquareResult directions =
-        chi_square_of_directions(direction, pdf,
-                                 {.samples = static_cast<uint32_t>(effort(25'000, 400'000)),
-                                  .cells_x = 12,
-                                  .cells_y = 20,
-                                  .min_quarterings = 1});
+    // 96 cells notice from 16,000 samples what 240 notice from 25,000, and cost a fifth of the integrals.
+    ChiSquareSettings settings = {
+        .samples = 16'000, .cells_x = 8, .cells_y = 12, .min_quarterings = 0, .max_quarterings = 5};
+    if (effort(0, 1) != 0) settings = {.samples = 400'000, .cells_x = 12, .cells_y = 20, .min_quarterings = 1};
+    const ChiSquareResult directions = chi_square_of_directions(direction, pdf, settings);
     return {directions, weight_error};
 }
 

@@ -34,20 +34,16 @@ double gauss(const Density& f, const Cell& c) {
     return 0.25 * (c.x1 - c.x0) * (c.y1 - c.y0) * sum;
 }
 
-// The error along a discontinuity of the density is then a small part of a cell's standard deviation. Each further
-// subdivision takes twice the time.
-constexpr int kMaxQuarterings = 6;
-
-/// Subdivides the cell into quarters until their sum agrees with the whole, at least `least` times.
+/// Subdivides the cell into quarters until their sum agrees with the whole, at least `least` and at most `depth` times.
+/// Along a discontinuity each further subdivision takes twice the time.
 double integrate(const Density& f, const Cell& c, double whole, double tolerance, int depth, int least) {
     const double xm = 0.5 * (c.x0 + c.x1), ym = 0.5 * (c.y0 + c.y1);
     const Cell quarters[4] = {{c.x0, xm, c.y0, ym}, {xm, c.x1, c.y0, ym}, {c.x0, xm, ym, c.y1}, {xm, c.x1, ym, c.y1}};
     double parts[4], sum = 0;
     for (int k = 0; k < 4; k++) sum += parts[k] = gauss(f, quarters[k]);
-    const bool may_stop = depth <= kMaxQuarterings - least;
-    if (depth == 0 || (may_stop && std::fabs(sum - whole) <= tolerance)) return sum;
+    if (depth == 0 || (least <= 0 && std::fabs(sum - whole) <= tolerance)) return sum;
     sum = 0;
-    for (int k = 0; k < 4; k++) sum += integrate(f, quarters[k], parts[k], 0.5 * tolerance, depth - 1, least);
+    for (int k = 0; k < 4; k++) sum += integrate(f, quarters[k], parts[k], 0.5 * tolerance, depth - 1, least - 1);
     return sum;
 }
 
@@ -78,11 +74,11 @@ ChiSquareResult test_grid(const Grid& grid, const std::function<int(uint32_t)>& 
     std::vector<double> observed(count + 1), expected(count + 1);
     for (uint32_t i = 0; i < samples; i++) observed[static_cast<size_t>(next(i))] += 1;
     double integral = 0;
-    const double tolerance = std::max(1e-9, 1e-2 / samples); // a hundredth of a sample
+    const double tolerance = std::max(1e-9, 0.1 / samples); // a tenth of a sample
     for (int k = 0; k < grid.count(); k++) {
         const Cell cell = grid.cell(k);
         const double part =
-            integrate(pdf, cell, gauss(pdf, cell), tolerance, kMaxQuarterings, settings.min_quarterings);
+            integrate(pdf, cell, gauss(pdf, cell), tolerance, settings.max_quarterings, settings.min_quarterings);
         integral += part;
         expected[static_cast<size_t>(k)] = samples * part;
     }

@@ -41,6 +41,7 @@ struct ChiSquareSettings {
     uint32_t seed = 1;
     int cells_x = 40, cells_y = 20; // along phi and cos(theta) of a sphere, or along x and y of a rectangle
     int min_quarterings = 2;        // the minimum per cell, so that no narrow peak is missed
+    int max_quarterings = 6; // the maximum; the error along a discontinuity must be a small part of a cell's deviation
 };
 
 /// Tests directions. `sample(lobe, u)` returns a unit vector or nothing (the sample failed), for independent uniform

@@ -134,11 +134,12 @@ ChartIntegral refine(const Piece& piece, const ChartRectangle& r, double toleran
 
 DirectionChart::Point DirectionChart::point_of(Vec3 direction) const {
     const Vec3 d = frame.to_local(direction);
-    const double across = std::hypot(static_cast<double>(d.x), static_cast<double>(d.y));
-    const double angle = std::atan2(across, static_cast<double>(d.z));
-    const double t = std::tan(0.5 * angle);
-    const double turn = std::atan2(static_cast<double>(d.y), static_cast<double>(d.x)) / kFullTurn;
-    return {t / (t + width), turn < 0 ? turn + 1 : turn};
+    const double x = static_cast<double>(d.x), y = static_cast<double>(d.y), z = static_cast<double>(d.z);
+    const double across = std::sqrt(x * x + y * y), length = std::sqrt(x * x + y * y + z * z);
+    // The tangent of half the angle, without cancellation. It is infinite behind the axis.
+    const double t = z >= 0 ? across / (length + z) : (length - z) / across;
+    const double turn = std::atan2(y, x) / kFullTurn;
+    return {1 / (1 + width / t), turn < 0 ? turn + 1 : turn};
 }
 
 DirectionChart::ChartPoint DirectionChart::chart_point(Point p) const {
