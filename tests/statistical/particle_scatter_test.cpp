@@ -37,25 +37,31 @@ double etendue(const Surface& surface, Vec3 w) {
     return n * n * std::fabs(static_cast<double>(dot(w, surface.geometric_normal)));
 }
 
+constexpr uint32_t kSequences = 96; // independent stratified sequences, whose means differ by the error
+
 /// Returns the power from the light to the camera. Paths start in evenly distributed directions from the camera,
-/// particles from the light.
+/// particles from the light. Each sequence has `count` points.
 Estimate transported(const Surface& surface, bool particles, uint32_t count) {
     double sum = 0, squares = 0;
-    for (uint32_t i = 0; i < count; ++i) {
-        const SamplePoint p = random_point(i, particles ? 31 : 32), q = random_point(i, particles ? 33 : 34);
-        const Vec3 start = sample_uniform_sphere(q.u);
-        const double at_start = particles ? light_at(surface, start) : camera_at(surface, start);
-        if (at_start == 0) continue; // applies to any scattered direction
-        const BsdfSample s =
-            particles ? sample_adjoint(surface, start, p.lobe, p.u) : surface.sample(start, p.lobe, p.u);
-        if (!(s.pdf > 0)) continue;
-        const double at_end = particles ? camera_at(surface, s.wi) : light_at(surface, s.wi);
-        const double x = at_start * at_end * etendue(surface, start) * static_cast<double>(s.weight.g);
-        sum += x;
-        squares += x * x;
+    for (uint32_t sequence = 0; sequence < kSequences; ++sequence) {
+        double of_sequence = 0;
+        for (uint32_t i = 0; i < count; ++i) {
+            const SampleKey key = {.stream = sequence, .sample = i, .seed = particles ? 31u : 32u};
+            const Vec3 start = sample_uniform_sphere(sample_2d(SamplerKind::Sobol, key, 0));
+            const double at_start = particles ? light_at(surface, start) : camera_at(surface, start);
+            if (at_start == 0) continue; // applies to any scattered direction
+            const float lobe = sample_1d(SamplerKind::Sobol, key, 1);
+            const Vec2 u = sample_2d(SamplerKind::Sobol, key, 0, Pair::Last);
+            const BsdfSample s = particles ? sample_adjoint(surface, start, lobe, u) : surface.sample(start, lobe, u);
+            if (!(s.pdf > 0)) continue;
+            const double at_end = particles ? camera_at(surface, s.wi) : light_at(surface, s.wi);
+            of_sequence += at_start * at_end * etendue(surface, start) * static_cast<double>(s.weight.g) / count;
+        }
+        sum += of_sequence;
+        squares += of_sequence * of_sequence;
     }
-    const double mean = sum / count;
-    return {mean, std::sqrt(std::max(squares / count - mean * mean, 0.0) / count)};
+    const double mean = sum / kSequences;
+    return {mean, std::sqrt(std::max(squares / kSequences - mean * mean, 0.0) / (kSequences - 1))};
 }
 
 std::vector<BsdfCase> cases_with_deltas() {
@@ -77,7 +83,7 @@ std::vector<BsdfCase> cases_with_deltas() {
 TEST_CASE("particles carry the power of paths for every BSDF, with geometric and interpolated normals") {
     const std::vector<BsdfCase> cases = cases_with_deltas();
     const auto tilts = effort(0, 1) != 0 ? std::vector<float>{0, 0.1f, 0.3f} : std::vector<float>{0, 0.3f};
-    const auto count = static_cast<uint32_t>(effort(60'000, 10'000'000));
+    const auto count = static_cast<uint32_t>(effort(256, 1 << 17));
     std::vector<Estimate> by_path(cases.size() * tilts.size()), by_particle(by_path.size());
     parallel_for(by_path.size(), 1, [&](uint64_t i) {
         const Surface surface = tilted_surface(cases[i / tilts.size()].bsdf, tilts[i % tilts.size()]);
@@ -108,7 +114,7 @@ TEST_CASE("a particle's index changes in glass and not beyond a thin wall") {
 
 TEST_CASE("the particle test detects missing cosines of both normals") {
     const Surface surface = tilted_surface(make_diffuse(grey(1)), 0.3f);
-    const Estimate by_path = transported(surface, false, 100'000);
+    const Estimate by_path = transported(surface, false, 2048);
     double bare = 0; // the BSDF's own adjoint about the shading normal
     for (uint32_t i = 0; i < 100'000; ++i) {
         const SamplePoint p = random_point(i, 35), q = random_point(i, 36);
