@@ -128,7 +128,7 @@ Worst worst_error(int function, uint64_t step, uint64_t offset) {
 } // namespace
 
 TEST_CASE("elementary functions keep their stated error bounds") {
-    const uint64_t step = test::effort(509, 1);
+    const uint64_t step = test::effort(2039, 1);
     for (int function = 0; function < test::kPortableFunctionCount; function++) {
         const Worst worst = worst_error(function, step, 0);
         const std::string name = test::portable_function_name(function);
