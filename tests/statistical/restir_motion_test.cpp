@@ -17,7 +17,9 @@ using namespace pertev::test;
 
 namespace {
 
-constexpr uint32_t kCrossingWidth = 128, kCrossingHeight = 64, kFirstCrossing = 12, kCrossingFrames = 32, kTrail = 3;
+constexpr uint32_t kCrossingWidth = 128, kCrossingHeight = 64, kFirstCrossing = 12, kTrail = 3;
+/// The number of frames whose trail is measured.
+uint32_t crossing_frames() { return static_cast<uint32_t>(effort(16, 32)); }
 constexpr float kStepOfFrame = 0.125f; // metres, five pixels
 constexpr ReconstructionSettings kRawFrames = {
     .history = 1, .passes = 0, .clamp_fireflies = false, .clamp_history = false, .anti_alias = false};
@@ -83,11 +85,11 @@ std::vector<Image> references_of_crossing(uint32_t max_depth) {
     Queue queue = requested_queue();
     Session session(queue, prepared, camera_of_crossing(), settings_of_crossing(max_depth));
     std::vector<Image> pictures;
-    for (uint32_t k = 0; k < kFirstCrossing + kCrossingFrames; ++k) {
+    for (uint32_t k = 0; k < kFirstCrossing + crossing_frames(); ++k) {
         move_block(scene, prepared, session);
         if (k + kTrail < kFirstCrossing) continue;
         session.cut();
-        session.render(16);
+        session.render(static_cast<uint32_t>(effort(4, 16)));
         pictures.push_back(session.picture());
     }
     return pictures;
@@ -104,7 +106,7 @@ double light_in_trail(const std::vector<Image>& references, const RestirSettings
     Session frames(queue, prepared, camera_of_crossing(),
                    settings_of_crossing(restir.light == RestirLight::Indirect ? 2 : 1));
     double light = 0, right = 0, pixels = 0;
-    for (uint32_t k = 0; k < kFirstCrossing + kCrossingFrames; ++k) {
+    for (uint32_t k = 0; k < kFirstCrossing + crossing_frames(); ++k) {
         move_block(scene, prepared, frames);
         frames.render_frame(k, raw, restir);
         if (k < kFirstCrossing) continue;
@@ -123,7 +125,7 @@ double light_in_trail(const std::vector<Image>& references, const RestirSettings
             }
         }
     }
-    REQUIRE(pixels > 20 * kCrossingFrames);
+    REQUIRE(pixels > 20 * crossing_frames());
     return light / right;
 }
 
