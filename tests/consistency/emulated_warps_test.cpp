@@ -31,7 +31,7 @@ constexpr uint32_t kThreads = 128; // a block
 #if defined(__SANITIZE_ADDRESS__)
 constexpr uint32_t kRays = 67, kMaxRays = 203, kFew = 1;
 #else
-constexpr uint32_t kRays = 331, kMaxRays = 2000, kFew = 3;
+constexpr uint32_t kRays = 331, kMaxRays = 1000, kFew = 3;
 #endif
 
 /// Stores the host's hits as a batch does.

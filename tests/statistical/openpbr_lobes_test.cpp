@@ -18,12 +18,12 @@ constexpr float kLobeCosines[] = {3e-3f, 0.03f, 0.12f, 0.35f, 0.65f, 1.0f};
 
 /// The smallest and largest mean weight of what `make` makes of each roughness, over all angles on one side.
 template <class Make>
-MeanWeight light_range(const Make& make, float side = 1) {
+MeanWeight light_range(const Make& make, float side = 1, uint32_t points = 1 << 13) {
     double least = 1e9, largest = 0;
     for (const float roughness : kLobeRoughnesses)
         for (const float cosine : kLobeCosines) {
             const MeanWeight mean = mean_weight(make(roughness), direction_at(side * cosine),
-                                                static_cast<uint32_t>(effort(1 << 13, 1 << 20)));
+                                                static_cast<uint32_t>(effort(points, 1 << 20)));
             least = std::min(least, mean.least());
             largest = std::max(largest, mean.largest());
         }
@@ -141,13 +141,17 @@ TEST_CASE("F82 metal has its colours at 0 and 82 degrees, Schlick's without a ti
 }
 
 TEST_CASE("Beckmann's metal, plastic and glass return all light if compensated, and less by one bounce") {
+    // The light of one bounce is far from its bounds, so half the points are enough.
+    const auto points = [](bool is_single) { return is_single ? 1u << 12 : 1u << 13; };
     for (const bool is_beckmann : {false, true}) {
         const auto metal = [&](bool is_single) {
-            return light_range([&](float r) {
-                return make_metal(
-                    grey(0), grey(2),
-                    {.base_color = {}, .roughness = r, .is_beckmann = is_beckmann, .is_single = is_single});
-            });
+            return light_range(
+                [&](float r) {
+                    return make_metal(
+                        grey(0), grey(2),
+                        {.base_color = {}, .roughness = r, .is_beckmann = is_beckmann, .is_single = is_single});
+                },
+                1, points(is_single));
         };
         const MeanWeight all = metal(false), single = metal(true);
         INFO("Beckmann " << is_beckmann << ": from " << all.least() << " to " << all.largest() << ", single from "
@@ -169,7 +173,7 @@ TEST_CASE("Beckmann's metal, plastic and glass return all light if compensated, 
                                                     .is_beckmann = is_beckmann,
                                                     .is_single = is_single});
                         },
-                        side);
+                        side, points(is_single));
                 };
                 const MeanWeight compensated = glass(false), once = glass(true);
                 CAPTURE(ior);
@@ -183,17 +187,20 @@ TEST_CASE("Beckmann's metal, plastic and glass return all light if compensated, 
                 CHECK(once.b < 1.001);
             }
         const auto plastic = [&](bool is_single) {
-            return light_range([&](float r) {
-                return make_reflection({.base_color = grey(1),
-                                        .roughness = r,
-                                        .ior = 1.8f,
-                                        .anisotropy = 1e-6f,
-                                        .is_beckmann = is_beckmann,
-                                        .is_single = is_single});
-            });
+            return light_range(
+                [&](float r) {
+                    return make_reflection({.base_color = grey(1),
+                                            .roughness = r,
+                                            .ior = 1.8f,
+                                            .anisotropy = 1e-6f,
+                                            .is_beckmann = is_beckmann,
+                                            .is_single = is_single});
+                },
+                1, points(is_single));
         };
-        CHECK(plastic(false).r > 0.85);
-        CHECK(plastic(false).b < 1.001);
+        const MeanWeight more = plastic(false);
+        CHECK(more.r > 0.85);
+        CHECK(more.b < 1.001);
         CHECK(plastic(true).b < 1.001);
     }
 }
