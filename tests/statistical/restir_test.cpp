@@ -79,14 +79,14 @@ RestirCase lights_case() {
 std::vector<RestirCase> restir_cases() {
     std::vector<RestirCase> all;
     all.push_back(builtin_case("cornell-box"));
-    all.back().frames = 64; // the noise is a sixth of the bound
+    all.back().frames = 64; // the noise is a quarter of the bound
     all.push_back(glossy_case());
     all.push_back(sky_case());
     all.back().frames = 384; // the sky is noisy
     all.push_back(lights_case());
     all.push_back(builtin_case("many-lights"));
     all.back().selection = LightSelection::Tree;
-    all.back().frames = 64; // the noise is a fifth of the bound
+    all.back().frames = 128; // the noise is a fifth of the bound
     return all;
 }
 
