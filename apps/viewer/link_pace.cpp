@@ -19,18 +19,18 @@ double min_of_late(double least, double value) { return least == 0 ? value : std
 } // namespace
 
 void LinkPace::sent(uint32_t frame, std::size_t bytes, double now_s, bool is_piece) {
-    under_way_.push_back({frame, bytes, now_s, is_piece});
+    in_flight_.push_back({frame, bytes, now_s, is_piece});
 }
 
 double LinkPace::may_send_at_s() const {
-    if (under_way_.empty()) return 0;
-    return under_way_.size() < kMaxInFlight ? under_way_.back().at_s + hold_s_
+    if (in_flight_.empty()) return 0;
+    return in_flight_.size() < kMaxInFlight ? in_flight_.back().at_s + hold_s_
                                             : std::numeric_limits<double>::infinity();
 }
 
 bool LinkPace::acknowledged(uint32_t frame, double now_s, double client_s) {
-    const auto found = std::ranges::find(under_way_, frame, &Sent::frame);
-    if (found == under_way_.end()) return false;
+    const auto found = std::ranges::find(in_flight_, frame, &Sent::frame);
+    if (found == in_flight_.end()) return false;
     const bool is_piece = found->is_piece;
     if (!is_piece) {
         round_trip_s_ = std::max(now_s - found->at_s, 1e-6);
@@ -43,7 +43,7 @@ bool LinkPace::acknowledged(uint32_t frame, double now_s, double client_s) {
     rate_ = rate_ == 0 ? rate : rate_ + 0.25 * (rate - rate_);
     last_ack_s_ = now_s;
     const double bytes = static_cast<double>(found->bytes);
-    under_way_.erase(under_way_.begin(), found + 1); // earlier ones that were not acknowledged never will be
+    in_flight_.erase(in_flight_.begin(), found + 1); // earlier ones that were not acknowledged never will be
     if (!is_piece) adapt(bytes);
     return true;
 }
@@ -68,9 +68,9 @@ void LinkPace::adapt(double bytes) {
     const double spread = bytes_squared_ - bytes_ * bytes_;
     if (spread > 0.01 * bytes_ * bytes_) {
         const double a_byte = std::max(0.0, (bytes_seconds_ - bytes_ * seconds_) / spread);
-        way_ = std::clamp(seconds_ - a_byte * bytes_, 0.0, seconds_);
+        latency_s_ = std::clamp(seconds_ - a_byte * bytes_, 0.0, seconds_);
     }
-    const double transfer_s = bytes * (seconds_ - way_) / bytes_;
+    const double transfer_s = bytes * (seconds_ - latency_s_) / bytes_;
     if (transfer_s > kLate) {
         calm_ = 0;
         if (quality_ > kLowest) {

@@ -17,7 +17,7 @@ public:
     /// Earliest time for the next picture; infinity: only after an acknowledgement.
     double may_send_at_s() const;
     bool may_send(double now_s) const { return now_s >= may_send_at_s(); }
-    bool is_idle() const { return under_way_.empty(); }
+    bool is_idle() const { return in_flight_.empty(); }
 
     /// `is_piece` means a piece of a still picture, whose time is not limited.
     void sent(uint32_t frame, std::size_t bytes, double now_s, bool is_piece = false);
@@ -47,11 +47,11 @@ private:
     void adapt(double bytes);
     void hold(double client_s);
 
-    std::deque<Sent> under_way_;
+    std::deque<Sent> in_flight_;
     double round_trip_s_ = 0, last_ack_s_ = 0, rate_ = 0;
     // Running means of the fit: sizes, times, and their products.
     double bytes_ = 0, seconds_ = 0, bytes_squared_ = 0, bytes_seconds_ = 0;
-    double way_ = 0.03; // seconds for a picture of zero bytes; a guess until sizes have varied
+    double latency_s_ = 0.03; // seconds for a picture of zero bytes; a guess until sizes have varied
     int quality_ = 80;
     float scale_ = 1;
     int calm_ = 0; // consecutive acknowledgements without delay

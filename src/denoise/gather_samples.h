@@ -173,15 +173,15 @@ struct GatherLight {
         const ExactSums& exact = sums.exact;
         const Rgb all = frame.light[pixel].w != 0 ? rgb_of(frame.light[pixel]) : Rgb{0, 0, 0},
                   emission = frame.light[pixel].w != 0 ? rgb_of(frame.emission[pixel]) : Rgb{0, 0, 0};
-        const auto add_met = [&] {
+        const auto add_emission = [&] {
             if (adds_features) SampleSums::Light::add(exact, SampleSums::kEmission, pixel, emission);
         };
         if (adds_features) exact.add(SampleSums::kFeatures, pixel, 1);
         const SampledSurfaces::Found found = samples.found(pixel);
-        if (found.object == kNoHit) return add_met();
+        if (found.object == kNoHit) return add_emission();
         if (samples.shows_own(pixel, found)) {
             add_own(pixel, found.normal);
-            return add_met();
+            return add_emission();
         }
         bool is_free = false;
         const int slot = samples.slot_of(pixel, found, is_free);
@@ -198,7 +198,7 @@ struct GatherLight {
         SampleSums::Color::add(exact, array + SampleSums::kSlotDiffuse, pixel, diffuse_divisor(frame, pixel));
         SampleSums::Color::add(exact, array + SampleSums::kSlotGloss, pixel, gloss_divisor(frame, pixel));
         exact.add(array + SampleSums::kSlotCount, pixel, 1);
-        add_met();
+        add_emission();
     }
 
 private:

@@ -7,7 +7,7 @@ namespace pertev {
 namespace {
 
 constexpr uint32_t kMostCells = 512;   // along a side
-constexpr std::size_t kMostPlaces = 8; // entries per index, on average
+constexpr std::size_t kMaxEntries = 8; // entries per index, on average
 constexpr double kMargin = 1e-6;       // in cells, far more than what rounding moves a place by
 
 /// Returns +1 or -1 if a line from `from` along `direction` meets the triangle, by the side that it meets; else 0.
@@ -58,9 +58,9 @@ LineCrossings::LineCrossings(std::span<const Vec3> positions, std::span<const ui
         x_axis_ = scaled(side_, whole_x), y_axis_ = scaled(side_, whole_y);
         starts_.assign(std::size_t(side_) * side_ + 1, 0);
         std::size_t total = 0;
-        for (std::size_t i = 0; i < indices.size() && (side_ == 1 || total <= kMostPlaces * indices.size()); i += 3)
+        for (std::size_t i = 0; i < indices.size() && (side_ == 1 || total <= kMaxEntries * indices.size()); i += 3)
             visit_cells(i, [&](uint32_t at) { ++starts_[at + 1], ++total; });
-        if (side_ == 1 || total <= kMostPlaces * indices.size()) break;
+        if (side_ == 1 || total <= kMaxEntries * indices.size()) break;
     }
     for (std::size_t at = 1; at < starts_.size(); ++at) starts_[at] += starts_[at - 1];
     triangles_.resize(starts_.back());

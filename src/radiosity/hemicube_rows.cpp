@@ -90,8 +90,9 @@ private:
             const uint32_t side =
                 side_met(view, at.instance, at.primitive, face.forward + x * face.right + y * face.up);
             Vec3 weights = {1.0f - at.u - at.v, at.u, at.v};
-            const PatchCode met = scene_.sources.view().find(face_of(view, at.instance, at.primitive, side), weights);
-            if (is_patch(met)) row.factors.push_back({number_of(met), face.shares[pixel]});
+            const PatchCode hit_patch =
+                scene_.sources.view().find(face_of(view, at.instance, at.primitive, side), weights);
+            if (is_patch(hit_patch)) row.factors.push_back({number_of(hit_patch), face.shares[pixel]});
         }
     }
 

@@ -133,9 +133,9 @@ bool LinkFactors::test_visibility(const Patch& from, const PatchPoint& start, co
 }
 
 void LinkFactors::trace() {
-    if (visibility_rays_.size() > max_met_) {
-        max_met_ = 2 * visibility_rays_.size();
-        met_ = std::make_unique<bool[]>(max_met_);
+    if (visibility_rays_.size() > max_rays_) {
+        max_rays_ = 2 * visibility_rays_.size();
+        are_occluded_ = std::make_unique<bool[]>(max_rays_);
     }
     find_occlusions(
         scene_.trees(), static_cast<uint32_t>(visibility_rays_.size()), RayOrder::Scattered,
@@ -144,7 +144,7 @@ void LinkFactors::trace() {
             return AcceptHit{scene_.view(), visibility_rays_[i].start, visibility_rays_[i].target,
                              hash_word(seed_ + i)};
         },
-        met_.get());
+        are_occluded_.get());
 }
 
 void LinkFactors::answer(Link& link) {
@@ -152,7 +152,7 @@ void LinkFactors::answer(Link& link) {
     float sum = queued.known;
     uint32_t seen = queued.seen;
     for (uint32_t i = queued.first; i < queued.first + queued.count; ++i) {
-        if (met_[i]) continue;
+        if (are_occluded_[i]) continue;
         sum += visibility_rays_[i].weight;
         ++seen;
     }

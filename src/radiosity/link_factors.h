@@ -49,8 +49,8 @@ private:
     uint32_t seed_;
     std::vector<VisibilityRay> visibility_rays_;
     std::vector<QueuedLink> queued_;
-    std::unique_ptr<bool[]> met_;
-    std::size_t max_met_ = 0;
+    std::unique_ptr<bool[]> are_occluded_;
+    std::size_t max_rays_ = 0;
     std::size_t next_ = 0;
 };
 

@@ -71,7 +71,7 @@ private:
             scene_.scene.trees(), count, RayOrder::Scattered, [&](uint32_t i) { return sent_[i]; }, accept_of, hits_);
     }
 
-    /// Adds ray i to the row. Returns the part of it, in [0, 1], that met something other than an emitter.
+    /// Adds ray i to the row. Returns the part of it, in [0, 1], that meets something other than an emitter.
     double add(uint32_t i, float each, FormFactorRow& row) const {
         const SceneView& view = scene_.scene.view();
         const LightSetView& lights = view.lights;
@@ -87,9 +87,10 @@ private:
         }
         const uint32_t side = side_met(view, hit.instance, hit.primitive, ray.direction);
         Vec3 weights = {1.0f - hit.u - hit.v, hit.u, hit.v};
-        const PatchCode met = scene_.sources.view().find(face_of(view, hit.instance, hit.primitive, side), weights);
-        if (!is_patch(met)) return static_cast<double>(each);
-        const uint32_t patch = number_of(met);
+        const PatchCode hit_patch =
+            scene_.sources.view().find(face_of(view, hit.instance, hit.primitive, side), weights);
+        if (!is_patch(hit_patch)) return static_cast<double>(each);
+        const uint32_t patch = number_of(hit_patch);
         if (!is_emitter(patch)) {
             row.factors.push_back({patch, each});
             return static_cast<double>(each);

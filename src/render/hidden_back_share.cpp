@@ -28,11 +28,11 @@ double hidden_back_share(Queue& queue, SceneTracer& tracer, const PictureView& p
                          {records.data(), instances.data()});
         return std::pair(records.download(), instances.download());
     };
-    const auto [met, met_instances] = find(RayKind::Bounce); // bounce rays hit back faces
-    const auto [seen, seen_instances] = find(RayKind::Camera);
+    const auto [hits, hit_instances] = find(RayKind::Bounce); // bounce rays hit back faces
+    const auto [seen_hits, seen_instances] = find(RayKind::Camera);
     uint32_t passed = 0;
     for (uint32_t i = 0; i < kRays; ++i) {
-        passed += met_instances[i] != seen_instances[i] || bits_of(met[i].w) != bits_of(seen[i].w) ? 1 : 0;
+        passed += hit_instances[i] != seen_instances[i] || bits_of(hits[i].w) != bits_of(seen_hits[i].w) ? 1 : 0;
     }
     return static_cast<double>(passed) / kRays;
 }

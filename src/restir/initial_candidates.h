@@ -18,7 +18,7 @@ template <ShadingVariant kVariant, class Choice = ChosenByPower>
 struct SampleInitialCandidates {
     SceneView scene;
     PixelSurfaces here;
-    const EmitterPoint* met; // light that the first bounce of each path hit
+    const EmitterPoint* hit_emitters; // light that the first bounce of each path hit
     LightReservoir* to;
     DiffuseReceiver* receivers; // where those of each pixel are stored, if all materials are diffuse
     uint32_t candidates;
@@ -51,7 +51,7 @@ struct SampleInitialCandidates {
         }
         LightSample light;
         float measure = 1;
-        const EmitterPoint point = met[pixel];
+        const EmitterPoint point = hit_emitters[pixel];
         if (find_light<emitter_look(kVariant)>(scene.lights, point, receiver.light_context(), light, measure)) {
             const BsdfValue value = receiver.evaluate(light.wi);
             if constexpr (Choice::kReadsNormal) {

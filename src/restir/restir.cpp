@@ -20,7 +20,7 @@ constexpr std::size_t kBounceArrays = 4;
 
 Restir::Restir(Queue& queue, uint32_t width, uint32_t height, RestirLight light, ShadingVariant variant)
     : queue_(&queue), width_(width), height_(height), pixels_(width * height), light_(light),
-      met_(queue, pixels_, "reservoirs"), reservoirs_(queue, std::size_t(2) * pixels_, "reservoirs"),
+      hit_emitters_(queue, pixels_, "reservoirs"), reservoirs_(queue, std::size_t(2) * pixels_, "reservoirs"),
       seen_before_(queue, std::size_t(2) * pixels_, "reservoirs"),
       receivers_(queue, has_lobes(variant) ? 0 : pixels_, "receivers"), neighbours_(queue, pixels_, "reservoirs"),
       shares_(queue, pixels_, "reservoirs"), rays_(queue, pixels_, "reservoirs' rays"),
@@ -36,10 +36,10 @@ Restir::Restir(Queue& queue, uint32_t width, uint32_t height, RestirLight light,
 }
 
 FirstBounceView Restir::first_bounce() const {
-    if (light_ != RestirLight::Indirect) return {met_.data()};
+    if (light_ != RestirLight::Indirect) return {hit_emitters_.data()};
     Float4* const numbers = bounce_numbers_.data();
     const std::size_t pixels = pixels_;
-    return {met_.data(), numbers, numbers + pixels, numbers + 2 * pixels, numbers + 3 * pixels};
+    return {hit_emitters_.data(), numbers, numbers + pixels, numbers + 2 * pixels, numbers + 3 * pixels};
 }
 
 std::vector<RowArray> Restir::rows_of_history() const {
@@ -147,8 +147,9 @@ void Restir::make_initial(LightSelection selection, Frame& frame) {
     const auto sample_candidates = [&]<class Choice>() {
         with_textures(scene.variant, [&]<ShadingVariant kVariant>() {
             launch_in_band(*queue_, "initial_candidates", rows_, width_,
-                           SampleInitialCandidates<kVariant, Choice>{scene, here, met_.data(), reservoirs_.data(),
-                                                                     receivers_.data(), frame.settings.candidates});
+                           SampleInitialCandidates<kVariant, Choice>{scene, here, hit_emitters_.data(),
+                                                                     reservoirs_.data(), receivers_.data(),
+                                                                     frame.settings.candidates});
         });
     };
     const bool is_by_tree = uses_light_tree(selection, scene);

@@ -93,7 +93,7 @@ private:
     bool has_history_ = false;
     CameraRays camera_before_ = {};
     SampleNumbers numbers_before_ = {};
-    Buffer<EmitterPoint> met_;
+    Buffer<EmitterPoint> hit_emitters_;
     Buffer<LightReservoir> reservoirs_; // two arrays: this frame's candidates, and the final reservoirs, with which
                                         // the next frame begins
     Buffer<BounceReservoir> bounces_;   // two arrays like `reservoirs_`, for indirect light

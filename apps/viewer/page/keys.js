@@ -1,8 +1,8 @@
-// Keys, mouse and touch to messages. Keys go by their place (`code`), so every layout works; never with Ctrl, which
+// Keys, mouse and touch to messages. Keys go by their position (`code`), so every layout works; never with Ctrl, which
 // belongs to the browser.
 
 /** @typedef {import("./link.js").Link} Link */
-/** @typedef {{x: number, y: number, width: number, height: number}} Place of the picture in the window */
+/** @typedef {{x: number, y: number, width: number, height: number}} Box of the picture in the window */
 
 /** The actions of keys: one table for the help and the keyboard. */
 export const kKeys = [
@@ -37,12 +37,12 @@ const kLeaving = ["Enter", "NumpadEnter", "Escape"]; // a field that a number is
 const kClickPixels = 4; // a drag is longer
 
 export class Controls {
-  /** @param {HTMLCanvasElement} canvas @param {Link} link @param {() => Place} place
+  /** @param {HTMLCanvasElement} canvas @param {Link} link @param {() => Box} box
    * @param {Record<string, (event: KeyboardEvent) => void>} actions by key code */
-  constructor(canvas, link, place, actions) {
+  constructor(canvas, link, box, actions) {
     this.canvas = canvas;
     this.link = link;
-    this.place = place;
+    this.box = box;
     this.actions = actions;
     /** @type {Set<string>} */
     this.held = new Set();
@@ -130,7 +130,7 @@ export class Controls {
     last.y = event.clientY;
     this.travelled += Math.abs(dx) + Math.abs(dy);
     if (this.travelled < kClickPixels) return;
-    const height = Math.max(this.place().height, 1);
+    const height = Math.max(this.box().height, 1);
     const now = [...this.pointers.values()];
     if (now.length === 2) { // two fingers: both at once
       const span = (/** @type {{x: number, y: number}[]} */ p) => Math.hypot(p[0].x - p[1].x, p[0].y - p[1].y);
@@ -160,8 +160,8 @@ export class Controls {
 
   /** @param {MouseEvent} event @param {string} use */
   pick(event, use) {
-    const place = this.place();
-    const x = (event.clientX - place.x) / place.width, y = (event.clientY - place.y) / place.height;
+    const box = this.box();
+    const x = (event.clientX - box.x) / box.width, y = (event.clientY - box.y) / box.height;
     if (x < 0 || x > 1 || y < 0 || y > 1) return;
     this.link.sendInput({ type: "pick", x, y, use });
   }

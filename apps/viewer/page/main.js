@@ -33,14 +33,14 @@ const timeLine = new TimeLine(link);
 const recorder = new Recorder(link);
 
 /** Where the picture lies in the window, in CSS pixels. */
-function place() {
+function pictureBox() {
   const scale = Math.min(innerWidth / fullWidth, innerHeight / fullHeight);
   const width = fullWidth * scale, height = fullHeight * scale;
   return { x: (innerWidth - width) / 2, y: (innerHeight - height) / 2, width, height };
 }
 
 function draw() {
-  const ratio = devicePixelRatio, at = place();
+  const ratio = devicePixelRatio, at = pictureBox();
   const width = Math.round(innerWidth * ratio), height = Math.round(innerHeight * ratio);
   if (canvas.width !== width || canvas.height !== height) {
     canvas.width = width;
@@ -155,8 +155,8 @@ function showReadings() {
 
 /** @param {string[]} cameras */
 function buildButtons(cameras) {
-  const place = element("buttons");
-  place.replaceChildren(
+  const box = element("buttons");
+  box.replaceChildren(
     button("Home", () => link.sendInput({ type: "home" })), button("Meter", () => link.sendInput({ type: "meter" })),
     button("Focus", () => { controls.nextUse = "focus"; notify("click on what is to be in focus"); }),
     button("Flags", copyFlags), button("PNG", () => save("png")), button("EXR", () => save("exr")),
@@ -172,7 +172,7 @@ function buildButtons(cameras) {
     });
     list.style.gridColumn = "1 / -1";
     list.style.width = "100%";
-    place.prepend(list);
+    box.prepend(list);
   }
 }
 
@@ -191,12 +191,12 @@ function tellShape() {
 let noticeTimer = 0;
 /** @param {string} text @param {string} [kind] */
 function notify(text, kind = "note") {
-  const place = element("notice");
-  place.textContent = text;
-  place.className = kind;
-  place.hidden = false;
+  const box = element("notice");
+  box.textContent = text;
+  box.className = kind;
+  box.hidden = false;
   clearTimeout(noticeTimer);
-  noticeTimer = setTimeout(() => { place.hidden = true; }, kind === "error" ? 8000 : Math.max(2500, 60 * text.length));
+  noticeTimer = setTimeout(() => { box.hidden = true; }, kind === "error" ? 8000 : Math.max(2500, 60 * text.length));
 }
 
 async function copyFlags() {
@@ -267,7 +267,7 @@ const actions = {
 };
 for (let depth = 0; depth <= 9; ++depth) actions[`Digit${depth}`] = () => set("max_depth", depth);
 
-const controls = new Controls(canvas, link, place, actions);
+const controls = new Controls(canvas, link, pictureBox, actions);
 buildHelp();
 addEventListener("resize", draw);
 watchShape(tellShape);

@@ -34,18 +34,18 @@ export function button(text, onClick, id = "", hint = "") {
 }
 
 /** Rows of [group, label, value] under headings. Elements stay while the rows are the same, so that text can be marked.
- * @param {HTMLElement} place @param {[string, string, string][]} rows
+ * @param {HTMLElement} parent @param {[string, string, string][]} rows
  * @param {(name: string) => HTMLElement} [groupFor] makes what holds a group's rows; without it there are headings */
-export function showRows(place, rows, groupFor) {
+export function showRows(parent, rows, groupFor) {
   const shape = rows.map((row) => row[0] + "\n" + row[1]).join("\n\n");
-  if (place.dataset.shape !== shape) {
-    place.dataset.shape = shape;
-    place.replaceChildren();
-    let group = "", holder = place;
+  if (parent.dataset.shape !== shape) {
+    parent.dataset.shape = shape;
+    parent.replaceChildren();
+    let group = "", holder = parent;
     for (const [name, label] of rows) {
       if (name !== group) {
-        if (groupFor) place.append((holder = groupFor(name)));
-        else place.append(make("h2", name));
+        if (groupFor) parent.append((holder = groupFor(name)));
+        else parent.append(make("h2", name));
       }
       group = name;
       const row = make("div", "", "row reading");
@@ -53,7 +53,7 @@ export function showRows(place, rows, groupFor) {
       holder.append(row);
     }
   }
-  const values = place.querySelectorAll(".value");
+  const values = parent.querySelectorAll(".value");
   rows.forEach((row, i) => {
     if (values[i].textContent !== row[2]) values[i].textContent = row[2];
   });
@@ -85,9 +85,9 @@ const kPatience = 4000; // milliseconds
 const kOpenSettings = ["Picture", "Light"]; // at first
 
 export class Settings {
-  /** @param {HTMLElement} place @param {(name: string, value: string | number) => void} onChange */
-  constructor(place, onChange) {
-    this.place = place;
+  /** @param {HTMLElement} parent @param {(name: string, value: string | number) => void} onChange */
+  constructor(parent, onChange) {
+    this.parent = parent;
     this.onChange = onChange;
     /** @type {Map<string, HTMLInputElement | HTMLSelectElement>} */
     this.fields = new Map();
@@ -97,13 +97,13 @@ export class Settings {
 
   /** @param {Setting[]} settings */
   build(settings) {
-    this.place.replaceChildren();
+    this.parent.replaceChildren();
     this.fields.clear();
-    let group = "", holder = this.place;
+    let group = "", holder = this.parent;
     for (const setting of settings) {
       if (setting.group !== group) {
         holder = makeGroup(setting.group, `settings-${setting.group}`, kOpenSettings.includes(setting.group));
-        this.place.append(holder);
+        this.parent.append(holder);
       }
       group = setting.group;
       const field = setting.kind === "choice" ? choiceField(setting) : numberField(setting);

@@ -40,9 +40,9 @@ export class People {
   }
 
   showRows() {
-    const place = element("people");
-    place.hidden = this.all.length < 2 && this.steers();
-    place.replaceChildren(make("h2", "Who is here"));
+    const list = element("people");
+    list.hidden = this.all.length < 2 && this.steers();
+    list.replaceChildren(make("h2", "Who is here"));
     for (const person of this.all) {
       const row = make("div", "", "row");
       row.append(make("b", `viewer ${person.id}${person.id === this.you ? " (you)" : ""}`));
@@ -53,8 +53,8 @@ export class People {
       } else if (person.id === this.you) {
         row.append(person.asks ? make("span", "asked", "value") : this.askButton());
       }
-      place.append(row);
-      if (person.request && person.id !== this.holder) place.append(make("p", `would like to ${person.request}`, "request"));
+      list.append(row);
+      if (person.request && person.id !== this.holder) list.append(make("p", `would like to ${person.request}`, "request"));
     }
   }
 

@@ -134,7 +134,7 @@ export class Recorder {
     this.time.step = "any";
     this.time.value = "0";
     this.time.setAttribute("aria-label", "Seconds of the next key");
-    this.add = button("Add this view", () => this.addKey(), "key-add", "a key of this place, at so many seconds");
+    this.add = button("Add this view", () => this.addKey(), "key-add", "a key of this view, at so many seconds");
     this.play = button("Play", () => link.sendInput({ type: "follow" }), "path-play", "the camera goes the path");
     this.download = button("Download", () => this.save(), "path-download", "as the file that --camera-path reads");
     const row = make("div", "", "row"), buttons = make("div", "", "pair");
@@ -157,8 +157,8 @@ export class Recorder {
     if (JSON.stringify(keys) === JSON.stringify(this.keys)) return;
     this.keys = keys;
     this.list.replaceChildren(...keys.map((key, i) => {
-      const row = make("div", "", "row key"), place = key.eye.map((x) => Number(x.toPrecision(3))).join(", ");
-      const seconds = make("b", `${Number(key.time.toPrecision(4))} s`), text = make("span", `from ${place}`);
+      const row = make("div", "", "row key"), eye = key.eye.map((x) => Number(x.toPrecision(3))).join(", ");
+      const seconds = make("b", `${Number(key.time.toPrecision(4))} s`), text = make("span", `from ${eye}`);
       row.title = `eye ${key.eye.join(", ")}; target ${key.target.join(", ")}; up ${key.up.join(", ")}; ${key.fov}°`;
       const remove = button("×", () => this.link.sendInput({ type: "unkey", index: i }), `key-remove-${i}`, "delete");
       remove.disabled = !this.may;

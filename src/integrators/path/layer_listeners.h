@@ -54,17 +54,17 @@ public:
 
     HD void begins(const PathState&) { state_ = layers().begin(); }
     HD void restore(const PathData& kept) { state_ = kept.state; }
-    HD void missed(const PathState&) { met_ = {kNoLight, kNoLight}; }
-    HD void vertex(const PathState&, const Hit& hit, Surface&) { met_ = {hit.instance, hit.primitive}; }
+    HD void missed(const PathState&) { hit_ = {kNoLight, kNoLight}; }
+    HD void vertex(const PathState&, const Hit& hit, Surface&) { hit_ = {hit.instance, hit.primitive}; }
     HD void emitted(const PathState& path, Rgb light) {
         if (!layers().is_there() || is_black(light)) return;
-        layers().add(job_.film, path.pixel, state_, layers().light_of(lights(), met_), light);
+        layers().add(job_.film, path.pixel, state_, layers().light_of(lights(), hit_), light);
     }
     HD INLINE_ON_DEVICE void direct(const PathState& path, const SurfaceVertex& at, Vec3 wi, const ShadowRay& shadow) {
         if (!layers().is_there()) return;
         const bool is_transmission = !at.surface.same_side(at.wo, wi);
         shadow_data_ = {exact_diffuse_share(at.surface, at.wo, wi, 0) * shadow.contribution, path.pixel, state_,
-                        layers().first_column(met_.instance) + scattering_column(LobeClass::Diffuse, is_transmission),
+                        layers().first_column(hit_.instance) + scattering_column(LobeClass::Diffuse, is_transmission),
                         layers().light_of(lights(), shadow.target)};
     }
     HD INLINE_ON_DEVICE void scattered(const PathState& path, const SurfaceVertex& at, const BsdfSample& sample) {
@@ -79,7 +79,7 @@ public:
             const uint32_t group = vertex_group(path.depth - 1, kGroupChoices); // group of the previous vertex
             u = sample_1d(job_.settings.sampler, key, group, kNumberLightPath);
         }
-        state_ = after_scattering(layers(), state_, layers().first_column(met_.instance), is_specular,
+        state_ = after_scattering(layers(), state_, layers().first_column(hit_.instance), is_specular,
                                   sample.is_transmission, diffuse, u);
     }
     /// A medium's scattering is diffuse, at the body that it fills.
@@ -134,7 +134,7 @@ private:
 
     const PathJob& job_;
     LightPathState state_;
-    TriangleId met_; // hit of the path's ray
+    TriangleId hit_; // hit of the path's ray
     ShadowData shadow_data_ = {};
 };
 

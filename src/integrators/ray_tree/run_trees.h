@@ -54,7 +54,7 @@ class TreesLoop : public LoopSchedule<TreeCounts> {
 public:
     TreesLoop(const HostTrees& trees, const TreeJob& job)
         : LoopSchedule(trees), hits_(job.trees.capacity),
-          met_(std::make_unique<bool[]>(hits_.size() * kShadowsAtOnce)) {}
+          are_occluded_(std::make_unique<bool[]>(hits_.size() * kShadowsAtOnce)) {}
 
     void find_hits(RayKind kind, const TreeJob& job, WorkCount rays) {
         const TreesView& trees = job.trees;
@@ -81,13 +81,13 @@ public:
                              trees.shadow_keys[i],
                              trees.shadow_times != nullptr ? trees.shadow_times[i] : kAtRest};
         };
-        pertev::find_occlusions(trees_, shadows.value(), RayOrder::Together, ray_of, accept_of, met_.get());
-        for (uint32_t i = 0; i < shadows.value(); ++i) trees.shadow_keys[i] = met_[i] ? 0 : kNoHit;
+        pertev::find_occlusions(trees_, shadows.value(), RayOrder::Together, ray_of, accept_of, are_occluded_.get());
+        for (uint32_t i = 0; i < shadows.value(); ++i) trees.shadow_keys[i] = are_occluded_[i] ? 0 : kNoHit;
     }
 
 private:
     std::vector<Hit> hits_;
-    std::unique_ptr<bool[]> met_;
+    std::unique_ptr<bool[]> are_occluded_;
 };
 
 /// Returns whether lights are selected by a tree.

@@ -17,7 +17,7 @@ namespace {
 constexpr uint64_t kMaxSamplesAtOnce = uint64_t(1) << 23; // samples of all pixels, but at least one of each
 constexpr double kMaxPiecesOfTriangle = 64;               // added to kMaxWorkOfPixel
 constexpr uint32_t kRoundsPerUpdate = 8;                  // rounds between updates of the farthest depths
-constexpr uint32_t kStack = 1u << 19, kMaxUnderWay = 1u << 16;
+constexpr uint32_t kStack = 1u << 19, kMaxPieces = 1u << 16;
 
 // Why the stack suffices: a round takes at least `kMinRound` pieces off the top and leaves at most four of each, one
 // level deeper. Thus a piece 4 kMinRound higher is one level deeper, and no level exceeds kMaxLevels. Larger rounds
@@ -26,7 +26,7 @@ constexpr uint32_t kMinRound = 1024, kReserve = 4 * kMinRound * (kMaxLevels + 2)
 
 uint32_t pieces_at_once(uint32_t height) {
     const uint32_t capacity_left = height < kStack - kReserve ? (kStack - kReserve - height) / 4 : 0;
-    return std::min({height, std::max(kMinRound, capacity_left), kMaxUnderWay});
+    return std::min({height, std::max(kMinRound, capacity_left), kMaxPieces});
 }
 
 uint64_t samples_held(uint64_t pixels, uint32_t samples) {
@@ -69,7 +69,7 @@ void ReyesIntegrator::reserve(const WorkSize& size) {
     heads_.grow(queue_, size.pixels(), "lists of samples");
     far_.grow(queue_, size.pixels(), "farthest samples");
     stack_.grow(queue_, kStack, "pieces of triangles");
-    under_way_.grow(queue_, kMaxUnderWay, "pieces of triangles");
+    pieces_.grow(queue_, kMaxPieces, "pieces of triangles");
     if (!settings_.heights || settings_.heights == uploaded_) return;
     uploaded_ = nullptr;
     heights_ = Buffer<float>(), displacements_ = Buffer<DisplacementView>(); // freed before the new allocations
@@ -122,7 +122,7 @@ void ReyesIntegrator::check_work(uint64_t pieces, uint32_t wide) const {
 
 template <HidingPass kPass>
 bool ReyesIntegrator::hide(const ReyesPass& pass, const std::function<bool()>& goes_on) {
-    const PiecesView pieces = {stack_.data(), under_way_.data(), count_.data(), kStack};
+    const PiecesView pieces = {stack_.data(), pieces_.data(), count_.data(), kStack};
     const auto triangles = static_cast<uint32_t>(picture_.scene.triangle_count);
     uint32_t height = 0, round = 0;
     uint64_t taken_in_all = 0;
@@ -137,7 +137,7 @@ bool ReyesIntegrator::hide(const ReyesPass& pass, const std::function<bool()>& g
         const bool updates = kPass == HidingPass::FindNearest ? round % kRoundsPerUpdate == 0 : round == 0;
         if (updates) launch(queue_, "find_far", pass.samples.pixels(), FindFar{pass.samples});
         const uint32_t taken = pieces_at_once(height);
-        const uint32_t more = taken == height ? std::min(kMaxUnderWay - taken, triangles - begun) : 0;
+        const uint32_t more = taken == height ? std::min(kMaxPieces - taken, triangles - begun) : 0;
         launch(queue_, "take_pieces", taken + more, TakePieces{pieces, height, taken, begun});
         launch(queue_, "split_pieces", taken + more, SplitPieces<kPass>{pass, pieces});
         begun += more;

@@ -44,7 +44,7 @@ private:
     Buffer<uint64_t> nearest_, split_paths_;
     Buffer<uint32_t> next_, heads_, count_;
     Buffer<float> far_;
-    Buffer<Piece> stack_, under_way_;
+    Buffer<Piece> stack_, pieces_;
     Buffer<float> heights_;
     Buffer<DisplacementView> displacements_;
 };

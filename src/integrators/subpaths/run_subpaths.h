@@ -63,7 +63,7 @@ class SubpathsLoop : public LoopSchedule<SubpathCounts> {
 public:
     SubpathsLoop(const HostTrees& trees, const SubpathJob& job)
         : LoopSchedule(trees), hits_(std::size_t(job.subpaths.capacity.count) * job.subpaths.capacity.connections),
-          met_(std::make_unique<bool[]>(hits_.size())) {}
+          are_occluded_(std::make_unique<bool[]>(hits_.size())) {}
 
     void find_hits(RayKind kind, const SubpathJob& job, WorkCount rays, uint32_t round) {
         const SubpathsView& subpaths = job.subpaths;
@@ -80,8 +80,8 @@ public:
         const SubpathsView& subpaths = job.subpaths;
         find_occlusions(
             trees_, connections.value(), RayOrder::Together, [&](uint32_t i) { return subpaths.connection_rays[i]; },
-            [&](uint32_t i) { return accept_connection(job, i); }, met_.get());
-        for (uint32_t i = 0; i < connections.value(); ++i) subpaths.connection_keys[i] = met_[i] ? 0 : kNoHit;
+            [&](uint32_t i) { return accept_connection(job, i); }, are_occluded_.get());
+        for (uint32_t i = 0; i < connections.value(); ++i) subpaths.connection_keys[i] = are_occluded_[i] ? 0 : kNoHit;
     }
     void find_connections_of_camera(const SubpathJob& job, WorkCount connections) {
         if (job.scene.picture.scene.any_hidden_back == 0) return find_connections(job, connections);
@@ -91,8 +91,8 @@ public:
             [&](uint32_t i) {
                 return AcceptCameraHit{accept_connection(job, i), subpaths.connection_rays[i].direction};
             },
-            met_.get());
-        for (uint32_t i = 0; i < connections.value(); ++i) subpaths.connection_keys[i] = met_[i] ? 0 : kNoHit;
+            are_occluded_.get());
+        for (uint32_t i = 0; i < connections.value(); ++i) subpaths.connection_keys[i] = are_occluded_[i] ? 0 : kNoHit;
     }
 
 private:
@@ -102,7 +102,7 @@ private:
     }
 
     std::vector<Hit> hits_;
-    std::unique_ptr<bool[]> met_;
+    std::unique_ptr<bool[]> are_occluded_;
 };
 
 /// Calls run.operator()<kVariant>() with the materials' shading variant, as far as subpaths have kernels for it.

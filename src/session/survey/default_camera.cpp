@@ -64,7 +64,7 @@ Camera fitted(const Scene& scene, const Bounds3& box, Vec3 direction, float aspe
 
 /// Unit direction towards the eye: `aside` degrees to the right of +z as seen from there, and `above` degrees above
 /// the horizon.
-Vec3 way(float aside, float above) {
+Vec3 direction_to_eye(float aside, float above) {
     const float a = aside * (kPi / 180), b = above * (kPi / 180);
     return {sin(a) * cos(b), sin(b), cos(a) * cos(b)};
 }
@@ -90,7 +90,7 @@ Vec3 view_direction(const Scene& scene, const Bounds3& box) {
     const Vec3 size = box.size();
     const float flat = clamp(1 - 4 * size.y / max(size.x, size.z), 0.0f, 1.0f); // NaN, for a point, becomes a bound
     const float above = kAbove + (kAboveFlat - kAbove) * flat;
-    const Vec3 front = way(kAside, above);
+    const Vec3 front = direction_to_eye(kAside, above);
     uint64_t triangles = 0;
     bool hides_any = false;
     for (const Instance& instance : scene.instances) {
@@ -99,18 +99,18 @@ Vec3 view_direction(const Scene& scene, const Bounds3& box) {
     }
     if (!hides_any || triangles > kMaxTrianglesSeen) return front;
     if (2 * count_hits(scene, box, front, Backs::Shown) >= count_hits(scene, box, front, Backs::All)) return front;
-    std::vector<Vec3> ways;
+    std::vector<Vec3> directions;
     std::vector<int> shown;
     for (const float up : {above, -above}) {
         for (const float aside : {kAside, -kAside, 65.0f, -65.0f, 115.0f, -115.0f, 180 - kAside, kAside - 180}) {
-            ways.push_back(way(aside, up));
-            shown.push_back(count_hits(scene, box, ways.back(), Backs::Shown));
+            directions.push_back(direction_to_eye(aside, up));
+            shown.push_back(count_hits(scene, box, directions.back(), Backs::Shown));
         }
     }
     const int most = std::ranges::max(shown);
     if (most == 0) return front;
     const auto first = std::ranges::find_if(shown, [&](int count) { return 2 * count >= most; });
-    return ways[static_cast<std::size_t>(first - shown.begin())];
+    return directions[static_cast<std::size_t>(first - shown.begin())];
 }
 
 Camera inside(const Scene& scene, const Surroundings& room, float aspect) {

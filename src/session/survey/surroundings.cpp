@@ -95,8 +95,8 @@ float share_seen_from_outside(const Scene& scene, uint64_t triangles) {
             all += kWays;
             for (int k = 0; k < kWays; ++k) {
                 const float turn = (static_cast<float>(k) + 0.38f) * (kTwoPi / kWays);
-                const Vec3 way = normalize(Vec3{sin(turn), 0.08f, cos(turn)}); // five degrees upwards
-                if (dot(way, normal) > 0.05f) rays.push_back({from, way});
+                const Vec3 direction = normalize(Vec3{sin(turn), 0.08f, cos(turn)}); // five degrees upwards
+                if (dot(direction, normal) > 0.05f) rays.push_back({from, direction});
             }
         }
         before += count;
