@@ -47,7 +47,6 @@ LONG = {  # functions that may be longer, and why
     "apps/cli/bench_frames_command.cpp: bench_frames": "its steps in order",
     "apps/cli/bench_render_command.cpp: bench_job": "its steps in order",
     "apps/cli/transport_command.cpp: run_transport_command": "its steps in order",
-    # Yet to be split.
 }
 TOGETHER = {  # files that have so many lines together at most, and why
     ("src/session/session.h", "src/session/session.cpp"): (200, "a facade has no work of its own"),

@@ -16,7 +16,7 @@ MUTATIONS = [
     ("the light that a path hits counts for ReSTIR as if power had selected it", "statistical/selected_lights",
      ("src/restir/initial_candidates.h", "light.pdf = pdf_of_found<Choice>", "light.pdf = pdf_of_found<ChosenByPower>")),
     ("a light tree weighs a spot by its flux", "statistical/chosen_by_tree",
-     ("src/shading/build_light_set.cpp", "return power > 0 ? kPiDouble * mean_of_channels(light.intensity) : 0;", "return power;")),
+     ("src/shading/list_tree_lights.cpp", "return power > 0 ? kPiDouble * mean_of_channels(light.intensity) : 0;", "return power;")),
     ("fuzz that takes one direction's fit alone", "statistical/bsdf_energy", ("src/shading/lobes/fuzz_lobe.h", "2.0f * (there * back) / both * cos_i", "there * cos_i")),
     ("fuzz drawn away from the view", "statistical/bsdf_sampling", ("src/shading/lobes/fuzz_lobe.h", "cosine.x - o.shear_by_sine", "cosine.x + o.shear_by_sine")),
     ("fuzz whose base gets all light", "statistical/openpbr_layers", ("src/shading/lobes/fuzz_lobe.h", "transmittance.pass(strength * o.albedo, strength * i.albedo, p_beneath);", "transmittance.pass(0, 0, p_beneath);")),

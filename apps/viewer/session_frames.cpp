@@ -34,7 +34,7 @@ struct FlagSink final : Sink {
 
 bool is_beauty(ShownLayer layer) { return layer == ShownLayer::Beauty; }
 
-/// Samples of the finished film; one gives every layer but the picture.
+/// Returns the samples of the finished film; one gives every layer but the picture.
 uint32_t wanted_samples(const FrameRequest& request) {
     return is_beauty(request.view.layer) ? request.view.options.render.samples : 1;
 }
@@ -384,7 +384,7 @@ std::optional<ShownFrame> SessionFrames::make_next(const FrameRequest& request) 
         return frame;
     }
     const double update_s = std::exchange(update_s_, 0);
-    const bool competes = competes_with_reconstruction(request, size);
+    const bool competes = prepare_competition(request, size);
     if (competes) {
         if (std::optional<ShownFrame> again = show_reconstruction_again(request)) return again;
     }
@@ -406,8 +406,8 @@ std::optional<ShownFrame> SessionFrames::make_next(const FrameRequest& request) 
     return frame;
 }
 
-/// Returns whether the film is shown only once it is better than the reconstruction, which is then kept as displayed.
-bool SessionFrames::competes_with_reconstruction(const FrameRequest& request, const FilmSize& size) {
+/// Decides whether the reconstruction stays until the film is better. If so, it is kept as displayed, else forgotten.
+bool SessionFrames::prepare_competition(const FrameRequest& request, const FilmSize& size) {
     const bool competes = shows_reconstruction_ && !shows_layer_ && !size.is_small() && is_beauty(request.view.layer) &&
                           !request.view.options.reconstruction.none &&
                           same_light(reconstructed_as_, settings_for(request, size.scale));

@@ -31,14 +31,14 @@ public:
     void begin_exposed(const FrameRequest& request, float stops);
 
 private:
-    /// Size of the film relative to the picture's, and why it is smaller: while the view moves, or grows at rest.
+    /// The size of the film relative to the picture's. It is smaller while the view moves, or grows at rest.
     struct FilmSize {
         float scale = 1;
         bool is_of_movement = false, is_growing = false;
         bool is_small() const { return is_of_movement || is_growing; }
     };
     std::optional<ShownFrame> make_next(const FrameRequest& request);
-    bool competes_with_reconstruction(const FrameRequest& request, const FilmSize& size);
+    bool prepare_competition(const FrameRequest& request, const FilmSize& size);
     bool add_samples(const FrameRequest& request, const FilmSize& size, bool competes, ShownFrame& frame);
     void show_film(const FrameRequest& request, const FilmSize& size, ShownFrame& frame);
     std::optional<ShownFrame> reconstruct(const FrameRequest& request, float scale, bool is_growing);

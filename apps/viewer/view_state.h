@@ -90,7 +90,7 @@ std::string set_view_setting(ViewState& state, const std::string& name, const Se
 const char* name_of(ShownLayer layer);
 /// Returns whether the layer belongs to the reconstruction, without which it does not exist.
 bool is_of_frames(ShownLayer layer);
-/// Auxiliary channels that the film needs for this layer.
+/// Returns the auxiliary channels that the film needs for this layer.
 uint32_t aovs_of(ShownLayer layer);
 
 } // namespace pertev

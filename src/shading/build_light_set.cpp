@@ -1,7 +1,6 @@
 #include "shading/build_light_set.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -13,13 +12,10 @@
 #include "math/hilbert_curve.h"
 #include "math/portable_math.h"
 #include "shading/hierarchical_warp.h"
+#include "shading/list_tree_lights.h"
 
 namespace pertev {
 namespace {
-
-double mean_of_channels(Rgb c) {
-    return (static_cast<double>(c.r) + static_cast<double>(c.g) + static_cast<double>(c.b)) / 3.0;
-}
 
 /// Pyramids of the textures of emitters in the scene, one per (image, encoding).
 using Pyramids = std::map<std::pair<int32_t, bool>, HierarchicalWarp>;
@@ -229,112 +225,6 @@ std::vector<double> build_triangle_tables(LightSetData& data, std::span<const do
             std::span(data.triangle_guides).subspan(emitter.first_guide, (std::size_t(1) << emitter.guide_bits) + 1));
     });
     return powers;
-}
-
-/// Returns the half angle, in radians, of the cone in which a light of a tree emits.
-float emission_angle(const PunctualLight& light) {
-    switch (light.kind) {
-    case LightKind::Point:
-        return kPi;
-    case LightKind::Spot:
-    case LightKind::Goniometric:
-    case LightKind::Directional: // is in no tree
-        break;
-    }
-    return acos(clamp(light.cos_outer, -1.0f, 1.0f));
-}
-
-/// Returns the power of a light of a tree: pi times its mean intensity in the cone. `power` is its own, W.
-double power_in_tree(const PunctualLight& light, double power) {
-    switch (light.kind) {
-    case LightKind::Goniometric:
-        return 0.5 * power / static_cast<double>(1 - light.cos_outer);
-    case LightKind::Point:
-    case LightKind::Spot:
-    case LightKind::Directional: // is in no tree
-        break;
-    }
-    return power > 0 ? kPiDouble * mean_of_channels(light.intensity) : 0;
-}
-
-/// Triangles of a mesh from which on its instances share a subtree: for a smaller one, the way into the mesh's space
-/// costs more than its nodes.
-constexpr uint32_t kShared = 64;
-
-/// Returns a triangle for a tree. A spot's flux says little about the light in its cone, nor does that of a second face
-/// about the light of the first.
-TreeLight tree_light(Vec3 a, Vec3 ab, Vec3 ac, const EmissiveTriangle& triangle, double power) {
-    TreeLight light;
-    for (const Vec3 edge : {Vec3{}, ab, ac}) light.bounds.extend(a + edge);
-    light.axis = normalize(cross(ab, ac));
-    light.emission_angle = 0.5f * kPi;
-    light.has_two_sides = triangle.is_two_sided != 0;
-    light.power = light.has_two_sides ? 0.5 * power : power;
-    return light;
-}
-
-/// Lists the instances that share the subtree of their mesh and material: two or more of at least kShared triangles.
-void list_shared(const Scene& scene, Vec3 centre, const LightSetData& data, std::span<const double> of_triangles,
-                 TreeLights& to) {
-    std::map<std::pair<uint32_t, uint32_t>, std::vector<uint32_t>> instances_of; // by mesh and material
-    for (uint32_t i = 0; i < scene.instances.size(); ++i) {
-        const Instance& instance = scene.instances[i];
-        if (data.first_light[i] == kNoLight || scene.meshes[instance.mesh].triangle_count() < kShared) continue;
-        if (is_similarity(instance.world_from_local)) instances_of[{instance.mesh, instance.material}].push_back(i);
-    }
-    for (const auto& [used, instances] : instances_of) {
-        const Mesh& mesh = scene.meshes[used.first];
-        const uint64_t triangles = mesh.triangle_count();
-        const std::span powers = of_triangles.subspan(data.first_light[instances.front()], triangles);
-        if (instances.size() < 2 ||
-            std::ranges::count_if(powers, [](double power) { return power > 0 && std::isfinite(power); }) < 2)
-            continue;
-        std::vector<TreeLight>& lights = to.shared.emplace_back(triangles);
-        parallel_for(triangles, 4096, [&](uint64_t i) {
-            const uint32_t* const index = mesh.indices.data() + 3 * i;
-            const Vec3 a = mesh.positions[index[0]];
-            lights[i] = tree_light(a, mesh.positions[index[1]] - a, mesh.positions[index[2]] - a,
-                                   data.triangles[data.first_light[instances.front()]], powers[i]);
-        });
-        for (const uint32_t i : instances) {
-            SharedTreeInstance& instance = to.instances.emplace_back();
-            instance.subtree = static_cast<uint32_t>(to.shared.size() - 1);
-            instance.first_light = data.first_light[i];
-            instance.world_from_local = moved_to(scene.instances[i].world_from_local, centre);
-        }
-    }
-}
-
-/// Returns the lights with a position for a tree: triangles, then punctual lights in their order.
-TreeLights list_tree_lights(const Scene& scene, Vec3 centre, const LightSetData& data,
-                            std::span<const double> of_triangles, std::span<const double> of_punctual) {
-    const std::size_t triangles = data.triangles.size();
-    TreeLights to;
-    list_shared(scene, centre, data, of_triangles, to);
-    to.lights.resize(triangles + of_punctual.size());
-    parallel_for(triangles, 4096, [&](uint64_t i) {
-        if (!(of_triangles[i] > 0)) return;
-        const EmissiveTriangle& triangle = data.triangles[i];
-        to.lights[i] = tree_light(triangle.a, triangle.ab, triangle.ac, triangle, of_triangles[i]);
-        if (triangle.is_mirrored != 0) to.lights[i].axis = -to.lights[i].axis;
-    });
-    for (SharedTreeInstance& instance : to.instances) {
-        for (TreeLight& light :
-             std::span(to.lights).subspan(instance.first_light, to.shared[instance.subtree].size())) {
-            if (!(light.power > 0)) continue;
-            instance.bounds.extend(light.bounds);
-            instance.power += std::exchange(light.power, 0);
-        }
-    }
-    for (std::size_t i = 0; i < of_punctual.size(); ++i) {
-        const PunctualLight& punctual = data.punctual[i];
-        TreeLight& light = to.lights[triangles + i];
-        light.bounds.extend(punctual.position);
-        light.axis = punctual.direction;
-        light.emission_angle = emission_angle(punctual);
-        light.power = power_in_tree(punctual, of_punctual[i]);
-    }
-    return to;
 }
 
 /// Stores every triangle's probability, from the tables' integers.

@@ -39,6 +39,11 @@ struct LightSetData {
     }
 };
 
+/// Mean of the channels, the brightness by which lights are weighed.
+inline double mean_of_channels(Rgb c) {
+    return (static_cast<double>(c.r) + static_cast<double>(c.g) + static_cast<double>(c.b)) / 3.0;
+}
+
 /// Initial share of far lights in the samples, before balance_lights; near lights get the rest.
 inline constexpr double kEvenShare = 0.5;
 

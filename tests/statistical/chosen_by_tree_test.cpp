@@ -99,6 +99,61 @@ TEST_CASE("a tree samples lights of every kind with the densities that it report
     }
 }
 
+TEST_CASE("instances of an emissive mesh share a subtree if they are alike, and others keep theirs") {
+    Scene scene;
+    Mesh mesh = test::make_square(6);
+    for (Vec3& position : mesh.positions) position += Vec3{40, 0, 0}; // far from its own origin
+    const auto corner = static_cast<uint32_t>(mesh.positions.size());
+    for (const float x : {0.25f, 0.5f, 0.75f}) { // a triangle without area, which has some where it is turned
+        mesh.positions.push_back({40 + x, x, 0.25f * x});
+        mesh.uv[0].push_back({});
+    }
+    mesh.indices.insert(mesh.indices.end(), {corner, corner + 1, corner + 2});
+    test::add_emitter(scene, mesh, {3, 2, 1}, test::make_similarity({0, 0.6f, 0.8f}, 2.1f, 0.5f, {10, 0, 15}));
+    const auto add_copy = [&](const Transform& world_from_local) -> Instance& {
+        scene.instances.push_back(scene.instances.front());
+        scene.instances.back().world_from_local = world_from_local;
+        return scene.instances.back();
+    };
+    add_copy(test::make_similarity({0.6f, 0.8f, 0}, 0.8f, -1, {20, 3, 30}));
+    add_copy(compose(make_translation({-30, 2, 1}), make_scale({1, 2, 3})));
+    add_copy(make_translation({-40, 2, 1})).is_hidden = true;
+    scene.materials.push_back(scene.materials.front());
+    scene.materials.back().emission = {1, 1, 1};
+    add_copy(make_translation({-40, 3, 1})).material = 1;
+    const uint32_t small = test::add_emitter(scene, test::make_square(2), {1, 1, 1}, make_translation({0, 4, 0}));
+    add_copy(make_translation({2, 4, 0})).mesh = scene.instances[small].mesh;
+    scene.instances.back().material = scene.instances[small].material;
+
+    const test::Lights lights(scene);
+    const LightTreeData& tree = lights.data.tree->get();
+    REQUIRE(lights.view.triangle_count == 4 * 73 + 2 * 8);
+    CHECK(tree.instances.size() == 2);
+    CHECK(tree.light_count == 4 * 72 + 2 * 8);
+    CHECK(tree.nodes.size() == 2 * (2 + 2 * 72 + 2 * 8 + 72));
+    const LightContext contexts[] = {{{0, 0, 0}, {0, 1, 0}, false, kAtRest},
+                                     {{30, 0, 20}, {0, 0, 0}, false, kAtRest},
+                                     {{-1, 5, 1}, {0, -1, 0}, true, kAtRest}};
+    test::Random random(8);
+    for (const LightContext& context : contexts) {
+        const LightReceiver to = {context.point, context.normal};
+        double sum = test::visit_tree(lights.view.tree, to, [](uint32_t, double) {});
+        for (uint32_t light = 0; light < lights.view.triangle_count; ++light)
+            sum += test::as_double(pmf_in_tree(lights.view.tree, to, light));
+        CHECK(sum == doctest::Approx(1).epsilon(1e-5));
+        uint32_t wrong = 0, shared = 0;
+        for (int i = 0; i < 2000; ++i) {
+            const uint64_t number = uint64_t{random.bits()} << 31;
+            const LightTreeDraw draw = draw_from_tree(lights.view.tree, to, number, uint64_t{1} << 63);
+            if (draw.light == LightTreeDraw::kNoLeaf) continue;
+            wrong += draw.pmf == pmf_in_tree(lights.view.tree, to, draw.light) ? 0 : 1;
+            shared += (lights.view.tree.leaf_of_light[draw.light] & LightTreeNode::kLeaf) != 0 ? 1 : 0;
+        }
+        CHECK(wrong == 0);
+        CHECK(shared > 0);
+    }
+}
+
 TEST_CASE("a draw on the floor of many-lights has a relative variance of at most 0.5") {
     Messages messages;
     const Scene scene = read_scene("many-lights", {}, messages);

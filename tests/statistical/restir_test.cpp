@@ -79,7 +79,7 @@ RestirCase lights_case() {
 std::vector<RestirCase> restir_cases() {
     std::vector<RestirCase> all;
     all.push_back(builtin_case("cornell-box"));
-    all.back().frames = 64; // the noise is a quarter of the bound
+    all.back().frames = 64; // the noise is at most 0.4 of the bound
     all.push_back(glossy_case());
     all.push_back(sky_case());
     all.back().frames = 384; // the sky is noisy

@@ -19,8 +19,8 @@ constexpr SamplerKind kKinds[] = {SamplerKind::Sobol, SamplerKind::Independent};
 constexpr int kSamplerTests = 90; // more tests than this file has
 constexpr uint32_t kPairs = 1u << 19;
 
-/// Tests by 16 x 16 boxes that the points (first, second) are uniform in the square. These notice from half as many
-/// points what 32 x 32 boxes notice.
+/// Tests by 16 x 16 boxes that the points (first, second) are uniform in the square. From half as many points, these
+/// notice deviations wider than a box that 32 x 32 boxes notice.
 template <class PairOf>
 void check_uniform(const PairOf& pair, const char* what) {
     constexpr uint32_t n = 16;

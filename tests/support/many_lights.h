@@ -48,7 +48,7 @@ struct ManyLights {
     }
 };
 
-/// Lights of which copies of a mesh's share a subtree, and the same lights one by one.
+/// Lights, some of them copies that share a subtree, and the same lights one by one.
 struct SharedLights {
     TreeLights tree;
     std::vector<TreeLight> lights;

@@ -128,7 +128,7 @@ public:
     TreeDraws(const LightTreeView& tree, const LightReceiverOf<Floats>& to) : tree_(tree), to_(to) {}
 
     void begin(uint32_t lane, uint64_t number, uint64_t width) {
-        ways_[lane] = {number, width};
+        descents_[lane] = {number, width};
         going_ |= 1u << lane;
     }
     /// Draws a light for each lane that has begun.
@@ -149,7 +149,7 @@ public:
                 if (p < 0) {
                     end(lane);
                 } else {
-                    go_to(lane, tree_.nodes[next_[lane] + (ways_[lane].goes_right(p) ? 1 : 0)]);
+                    go_to(lane, tree_.nodes[next_[lane] + (descents_[lane].goes_right(p) ? 1 : 0)]);
                 }
             }
         }
@@ -166,7 +166,7 @@ private:
             first_lights_[lane] = instance.first_light;
             next_[lane] = tree_.nodes[instance.root].next; // a shared subtree has two leaves or more
         } else if (node.is_leaf()) {
-            draws[lane] = ways_[lane].at(first_lights_[lane] + node.number());
+            draws[lane] = descents_[lane].at(first_lights_[lane] + node.number());
             end(lane);
         } else {
             next_[lane] = node.next;
@@ -197,7 +197,7 @@ private:
 
     const LightTreeView& tree_;
     LightReceiverOf<Floats> to_; // in the space of a shared subtree, once a lane is there
-    std::array<LightTreeWay, kLanes> ways_;
+    std::array<LightTreeDescent, kLanes> descents_;
     std::array<uint32_t, kLanes> next_, first_lights_ = {};
     unsigned going_ = 0;
 };

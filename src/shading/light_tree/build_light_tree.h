@@ -29,7 +29,7 @@ struct SharedTreeInstance {
 
 struct TreeLights {
     std::vector<TreeLight> lights;                   // by the numbers of lights; those of instances have no power
-    std::vector<std::vector<TreeLight>> shared = {}; // the triangles of a mesh, two of which give light
+    std::vector<std::vector<TreeLight>> shared = {}; // the triangles of a mesh, at least two of which give light
     std::vector<SharedTreeInstance> instances = {};
 
     /// Lights that a tree has leaves for.
@@ -60,7 +60,7 @@ public:
 
     /// Returns the tree.
     const LightTreeData& get() const;
-    /// Returns LightTreeData::light_count() without the tree.
+    /// Returns LightTreeData::light_count without the tree.
     uint32_t light_count() const { return light_count_; }
     bool is_built() const { return is_built_; }
 

@@ -194,7 +194,7 @@ private:
                 if (!(powers[i] > 0)) continue;
                 const TreeLight& light = lights_[i];
                 const bool has_axis = light.emission_angle < kPi && light.spread < kPi && !light.has_two_sides;
-                // About the length of the mean of normals.
+                // This is close to the length of the mean of normals.
                 const float mean_cosine = light.spread > 0 ? 0.5f * (1 + cos(light.spread)) : 1.0f;
                 const float power = max(static_cast<float>(powers[i] / sum), 0x1p-60f);
                 items_[at] = {floats4(light.bounds.lo, light.emission_angle),

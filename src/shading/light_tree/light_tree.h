@@ -8,7 +8,7 @@
 // child a node by the mean of its least and largest importance, which Cycles takes, too.
 //
 // Lengths are compared with lengths and squares with squares, so no probability depends on the unit of length. Thus
-// instances of a mesh share a subtree, for which the receiver moves into the mesh's space.
+// like instances of a mesh share a subtree, for which the receiver moves into the mesh's space.
 
 #include <cstdint>
 
@@ -139,8 +139,8 @@ struct LightTreeDraw {
     float rest = 0; // position of the number within those that select it, uniform in [0, 1)
 };
 
-/// The way of a number down a tree: which of `width` numbers of a node it is, and the node's probability.
-struct LightTreeWay {
+/// The descent of a number through a tree: which of `width` numbers of a node it is, and the node's probability.
+struct LightTreeDescent {
     uint64_t number, width;
     float pmf = 1;
 
@@ -163,7 +163,7 @@ struct LightTreeWay {
 /// 2^32.
 HD_CALL inline LightTreeDraw draw_from_tree(const LightTreeView& tree, const LightReceiver& to, uint64_t number,
                                             uint64_t width) {
-    LightTreeWay way = {number, width};
+    LightTreeDescent descent = {number, width};
     LightReceiver here = to;
     uint32_t first_light = 0;
     LightTreeNode node = tree.nodes[kLightTreeRoot];
@@ -178,9 +178,9 @@ HD_CALL inline LightTreeDraw draw_from_tree(const LightTreeView& tree, const Lig
         const LightTreeNode left = tree.nodes[node.next], right = tree.nodes[node.next + 1];
         const float p = left_probability(importance_of(left, here), importance_of(right, here));
         if (p < 0) return {};
-        node = way.goes_right(p) ? right : left;
+        node = descent.goes_right(p) ? right : left;
     }
-    return way.at(first_light + node.number());
+    return descent.at(first_light + node.number());
 }
 
 /// Multiplies `pmf` by the probability of the way from a root to the leaf `leaf`. Returns false if it is 0.

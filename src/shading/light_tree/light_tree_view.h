@@ -15,7 +15,7 @@ namespace pertev {
 /// A node, which holds what the importance needs, so that a step reads 64 bytes.
 struct alignas(16) LightTreeNode {
     Vec3 centre;     // middle of its box, metres, translated world, or the mesh's units in a shared subtree
-    float power;     // share of the power of all lights in the tree
+    float power;     // share of the power of all lights in the tree, or in the shared subtree
     float radius;    // half the diagonal of its box
     uint32_t axis;   // axis of the normals' cone (unpack_axis)
     uint32_t angles; // cosines of the cone's half angle, and of the angle from a normal at which light ends; whether
@@ -34,7 +34,7 @@ static_assert(sizeof(LightTreeNode) == 32);
 /// translation, which keep all ratios of importances.
 struct alignas(16) LightTreeInstance {
     Vec3 local_x, local_y, local_z; // rows of the linear part of local_from_world
-    Vec3 origin;                    // that of the mesh's space, metres, translated world
+    Vec3 origin;                    // middle of the mesh, metres, translated world; local points are relative to it
     float scale;                    // metres per unit of the mesh's space
     uint32_t leaf;                  // its node, 0 if it gives no light
     uint32_t root;                  // root of the shared subtree
