@@ -35,15 +35,22 @@ LightTreeInstance instance_of(const SharedTreeInstance& from, uint32_t root, uin
     return instance;
 }
 
+/// The numbers of leaves: of lights without a subtree, of each subtree, and of all lights.
+struct LeafCounts {
+    uint32_t single = 0, all = 0;
+    std::vector<uint32_t> of_subtrees;
+
+    explicit LeafCounts(const TreeLights& lights) : single(count_leaves(lights.lights)), all(single) {
+        for (const std::vector<TreeLight>& shared : lights.shared) of_subtrees.push_back(count_leaves(shared));
+        for (const SharedTreeInstance& instance : lights.instances) {
+            if (has_leaf(instance.power)) all += of_subtrees[instance.subtree];
+        }
+    }
+};
+
 } // namespace
 
-uint32_t TreeLights::count() const {
-    uint32_t count = count_leaves(lights);
-    for (const SharedTreeInstance& instance : instances) {
-        if (has_leaf(instance.power)) count += count_leaves(shared[instance.subtree]);
-    }
-    return count;
-}
+uint32_t TreeLights::count() const { return LeafCounts(*this).all; }
 
 bool is_similarity(const Transform& transform) {
     const Vec3 x = column(transform, 0), y = column(transform, 1), z = column(transform, 2);
@@ -56,16 +63,17 @@ bool is_similarity(const Transform& transform) {
 LightTreeData build_light_tree(TreeLights from) {
     LightTreeData data;
     const auto light_count = static_cast<uint32_t>(from.lights.size());
-    data.light_count = from.count();
+    const LeafCounts counts(from);
+    data.light_count = counts.all;
     data.leaf_of_light.assign(from.lights.size() + from.instances.size(), 0);
     if (data.light_count == 0) return data;
 
     std::vector<uint32_t> first_nodes, first_leaves; // shared subtrees come after the tree
     const auto placed = std::ranges::count_if(from.instances, has_leaf, &SharedTreeInstance::power);
-    uint32_t nodes = 2 * (count_leaves(from.lights) + static_cast<uint32_t>(placed)), leaves = 0;
-    for (const std::vector<TreeLight>& lights : from.shared) {
-        first_nodes.push_back(std::exchange(nodes, nodes + 2 * count_leaves(lights)));
-        first_leaves.push_back(std::exchange(leaves, leaves + static_cast<uint32_t>(lights.size())));
+    uint32_t nodes = 2 * (counts.single + static_cast<uint32_t>(placed)), leaves = 0;
+    for (std::size_t i = 0; i < from.shared.size(); ++i) {
+        first_nodes.push_back(std::exchange(nodes, nodes + 2 * counts.of_subtrees[i]));
+        first_leaves.push_back(std::exchange(leaves, leaves + static_cast<uint32_t>(from.shared[i].size())));
     }
     data.nodes.resize(nodes);
     data.leaf_of_triangle.assign(leaves, 0);
