@@ -12,6 +12,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "apps/cli/flag_checks.h"
 #include "apps/cli/flag_phrases.h"
 #include "apps/cli/interrupt.h"
 #include "base/error.h"
