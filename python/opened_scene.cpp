@@ -78,7 +78,7 @@ void OpenedScene::prepare(PictureOptions& options, const EditedScene& source, Si
     const PictureOptions asked = options; // without what the scene's file suggests
     const bool is_open = setup_ && apply_edits(source, sink) && adapt_setup(*setup_, used_, options, kRender, sink);
     if (!is_open) {
-        session_.reset(), together_.reset(), frames_together_.reset();
+        session_.reset();
         try {
             open(options, source, sink);
         } catch (const Error& error) {
@@ -106,40 +106,27 @@ PictureRecord OpenedScene::record(const PictureOptions& options, const EditedSce
 
 Session& OpenedScene::session(const PictureRecord& record, bool for_batch) {
     Session& session = updated_session(record);
-    if (!together_) return session;
-    if (for_batch) {
-        session.pictures().stop_sharing();
-    } else {
-        session.pictures().share(*together_);
-    }
+    session_->share_pictures(!for_batch);
     return session;
 }
 
 Session& OpenedScene::updated_session(const PictureRecord& record) {
     const uint32_t parts = std::exchange(setup_->changed_parts, 0);
     if (!session_) {
-        together_.reset(), frames_together_.reset();
-        const bool are_several = setup_->queues.size() > 1;
-        if (are_several) together_.emplace(setup_->queues, setup_->prepared());
-        session_.emplace(*setup_->queue, setup_->prepared(), record.camera.camera, record.settings);
-        if (are_several && uses_ == Uses::Sequence) {
-            frames_together_.emplace(setup_->queues, setup_->prepared());
-            session_->pictures().share_frames(*frames_together_);
-        }
-        return *session_;
+        const SharedWork shared = {.pictures = true, .frames = uses_ == Uses::Sequence};
+        session_.emplace(setup_->queues, setup_->prepared(), record.camera.camera, record.settings, shared);
+        return session_->session();
     }
+    Session& session = session_->session();
     try {
-        if (parts != 0) {
-            session_->update_scene(setup_->prepared(), parts);
-            if (together_) together_->change_scene(setup_->prepared(), parts);
-        }
-        session_->set_settings(record.settings);
+        if (parts != 0) session_->update_scene(setup_->prepared(), parts);
+        session.set_settings(record.settings);
     } catch (...) {
         session_.reset(); // it is made anew with the whole scene
         throw;
     }
-    session_->set_camera(record.camera.camera);
-    return *session_;
+    session.set_camera(record.camera.camera);
+    return session;
 }
 
 } // namespace pertev

@@ -10,10 +10,8 @@
 #include <vector>
 
 #include "python/scene_parameters.h"
-#include "session/devices/frames_on_devices.h"
-#include "session/devices/render_on_devices.h"
+#include "session/devices/session_on_devices.h"
 #include "session/pictures/prepare_render.h"
-#include "session/session.h"
 
 namespace pertev {
 
@@ -56,7 +54,7 @@ public:
     /// its pictures together, but `for_batch` each renders alone.
     Session& session(const PictureRecord& record, bool for_batch = false);
     /// Returns what renders by several devices, for which session() has gone before; null if there is one device.
-    RenderOnDevices* together() { return together_ ? &*together_ : nullptr; }
+    RenderOnDevices* together() { return session_->together(); }
 
 private:
     bool apply_edits(const EditedScene& source, Sink& sink);
@@ -67,9 +65,7 @@ private:
     PictureOptions used_; // options that setup_ was made or last adapted by
     std::unique_ptr<RenderSetup> setup_;
     std::optional<SceneParameters> parameters_;
-    std::optional<RenderOnDevices> together_;
-    std::optional<FramesOnDevices> frames_together_;
-    std::optional<Session> session_;
+    std::optional<SessionOnDevices> session_;
     uint64_t edits_ = 0; // how many of the source's edits the setup has
 };
 

@@ -22,8 +22,8 @@
 #include "math/portable_math.h"
 #include "session/devices/batch_on_devices.h"
 #include "session/devices/device_names.h"
-#include "session/devices/frames_on_devices.h"
 #include "session/devices/machine.h"
+#include "session/devices/session_on_devices.h"
 #include "settings/tracer_options.h"
 
 namespace pertev {
@@ -61,11 +61,10 @@ struct PictureJob {
 /// Times a picture by the first `count` devices. One alone renders as it does without others.
 TimesTaken time_devices(std::span<const std::shared_ptr<Queue>> queues, const PictureJob& job, uint32_t samples,
                         uint32_t runs) {
-    std::optional<RenderOnDevices> together;
-    if (queues.size() > 1) together.emplace(queues, job.prepared);
-    Session session(*queues.front(), job.prepared, job.camera, job.settings);
+    SessionOnDevices opened(queues, job.prepared, job.camera, job.settings, {.pictures = true});
+    Session& session = opened.session();
+    RenderOnDevices* const together = opened.together();
     TimesTaken taken;
-    if (together) session.pictures().share(*together);
     std::vector<double> seconds, sums;
     for (uint32_t run = 0; run <= runs; ++run) { // the first one takes memory and warms up
         render_again(session, run == 0 ? std::min(samples, 64u) : samples);
@@ -92,9 +91,10 @@ TimesTaken time_batch(std::span<const std::shared_ptr<Queue>> queues, const Pict
                       uint32_t runs) {
     const RenderSettings& settings = job.settings;
     Queue& queue = *queues.front();
-    std::optional<RenderOnDevices> together;
-    if (queues.size() > 1) together.emplace(queues, job.prepared);
-    Session session(queue, job.prepared, job.camera, settings);
+    SessionOnDevices opened(queues, job.prepared, job.camera, settings, {.pictures = true});
+    opened.share_pictures(false); // a batch is shared by pictures
+    PictureRenderer& pictures = opened.session().pictures();
+    RenderOnDevices* const together = opened.together();
     const std::size_t limit = batch_memory(queue, settings, {}).bytes;
     const uint32_t at_once = pictures_at_once(job.prepared, batch, settings, limit, queue.is_cuda());
     TimesTaken taken;
@@ -105,10 +105,10 @@ TimesTaken time_batch(std::span<const std::shared_ptr<Queue>> queues, const Pict
         const Stopwatch watch;
         InterruptSink sink;
         if (together) {
-            render_batch(*together, session.pictures(), batch, settings, at_once, arrays, sink);
+            render_batch(*together, pictures, batch, settings, at_once, arrays, sink);
             if (run == 0) add_colors(hasher, arrays, settings);
         } else {
-            BatchRender render(session.pictures(), batch, settings, at_once);
+            BatchRender render(pictures, batch, settings, at_once);
             while (render.next(arrays, sink)) {
                 if (run == 0) add_colors(hasher, arrays, settings);
             }
@@ -184,10 +184,8 @@ void report_batches(const DevicesFlags& flags, std::span<const std::shared_ptr<Q
 /// Times frames of a moving camera by some devices, each from its camera to the shown picture on the host.
 TimesTaken time_frames(std::span<const std::shared_ptr<Queue>> queues, const PictureJob& job, uint32_t frames,
                        float scene_size, double& reconstruction_s, double& copy_s) {
-    std::optional<FramesOnDevices> together;
-    if (queues.size() > 1) together.emplace(queues, job.prepared);
-    Session session(*queues.front(), job.prepared, job.camera, job.settings);
-    if (together) session.pictures().share_frames(*together);
+    SessionOnDevices opened(queues, job.prepared, job.camera, job.settings, {.frames = true});
+    Session& session = opened.session();
     std::vector<double> seconds, reconstructions, copies;
     for (uint32_t frame = 0; frame < frames + kFramesBefore; ++frame) {
         throw_if_interrupted();

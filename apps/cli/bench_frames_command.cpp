@@ -13,8 +13,7 @@
 #include "image/picture_hash.h"
 #include "math/portable_math.h"
 #include "session/devices/device_names.h"
-#include "session/devices/frames_on_devices.h"
-#include "session/session.h"
+#include "session/devices/session_on_devices.h"
 #include "settings/parse_values.h"
 #include "settings/settings_file.h"
 #include "settings/value_names.h"
@@ -50,10 +49,8 @@ int bench_frames(FramesFlags& flags) {
            {"integrator", std::string(integrator_name(settings)),
             "this integrator's frames are plain samples; `restir` and `resolution_scale` apply to path and hybrid"});
     BenchReport report(reporter, flags.render.report, *queue, "Frames in real time");
-    std::optional<FramesOnDevices> together;
-    if (queues.size() > 1) together.emplace(queues, prepared);
-    Session session(*queue, prepared, camera, settings);
-    if (together) session.pictures().share_frames(*together);
+    SessionOnDevices opened(queues, prepared, camera, settings, {.frames = true});
+    Session& session = opened.session();
     const ToneMap tone_map = ToneMap::Agx;
     const float exposure = session.meter(tone_map);
     session.cut();

@@ -16,7 +16,7 @@
 #include "image/metrics.h"
 #include "image/picture_hash.h"
 #include "image/tone_map_image.h"
-#include "session/devices/frames_on_devices.h"
+#include "session/devices/session_on_devices.h"
 #include "session/opening/strictness.h"
 #include "session/pictures/prepare_render.h"
 #include "settings/parse_values.h"
@@ -149,10 +149,8 @@ int bench_sequence(SequenceFlags& flags) {
     listen_for_interrupt();
     BenchReport report(reporter, flags.render.report, *ready->queue, "Frames of a moving picture");
     PictureRecord record = picture_record(flags.render, *ready, reporter.messages());
-    std::optional<FramesOnDevices> together;
-    if (ready->queues.size() > 1) together.emplace(ready->queues, ready->prepared());
-    Session session(*ready->queue, ready->prepared(), record.camera.camera, ready->settings);
-    if (together) session.pictures().share_frames(*together);
+    SessionOnDevices opened(ready->queues, ready->prepared(), record.camera.camera, ready->settings, {.frames = true});
+    Session& session = opened.session();
     const ToneMap tone_map = ToneMap::Agx;
     const float exposure = session.meter(tone_map);
     session.cut();

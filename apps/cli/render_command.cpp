@@ -19,8 +19,7 @@
 #include "base/message_text.h"
 #include "base/stopwatch.h"
 #include "device_scene/pack_texels.h"
-#include "session/devices/frames_on_devices.h"
-#include "session/devices/render_on_devices.h"
+#include "session/devices/session_on_devices.h"
 #include "session/film_file/film_file.h"
 #include "session/mpi/ranks.h"
 #include "session/opening/camera_list.h"
@@ -131,12 +130,13 @@ int render_frames(const RenderFlags& flags, const SequenceOfFrames& frames, Repo
 }
 
 int write_one(const RenderFlags& flags, const RenderSettings& settings, const PictureRecord& record,
-              std::optional<Session>& session, const Queue& queue, const Stopwatch& watch, const Ranks* ranks,
+              std::optional<SessionOnDevices>& opened, const Queue& queue, const Stopwatch& watch, const Ranks* ranks,
               Reporter& reporter) {
+    Session& session = opened->session();
     std::optional<RenderWithCheckpoint> kept;
-    if (!flags.checkpoint.empty()) kept.emplace(*session, flags, record, reporter);
+    if (!flags.checkpoint.empty()) kept.emplace(session, flags, record, reporter);
     reporter.report_messages();
-    RenderResult result = kept ? kept->render(reporter) : render_samples(*session, reporter);
+    RenderResult result = kept ? kept->render(reporter) : render_samples(session, reporter);
     reporter.end_progress();
     const uint32_t samples = settings.range().count();
     const bool cut_short = interrupted() && result.samples < samples;
@@ -156,11 +156,11 @@ int write_one(const RenderFlags& flags, const RenderSettings& settings, const Pi
     PictureFacts facts = facts_of(record, result.ids);
     std::vector<WrittenFile> films;
     if (has_film) {
-        const Film& film = kept ? kept->film() : session->film();
+        const Film& film = kept ? kept->film() : session.film();
         films = write_film_files(flags.outputs, film_header(flags, record, facts, result, film), film);
     }
     if (kept && ranks == nullptr) films.push_back(kept->written());
-    kept.reset(), session.reset();                               // writing takes memory too
+    kept.reset(), opened.reset();                                // writing takes memory too
     if (!writes_tone_mapped(flags.outputs)) facts.shown.clear(); // only film files have them
     WrittenPicture written = write_picture(flags.outputs, facts, result);
     written.files.insert(written.files.end(), films.begin(), films.end());
@@ -206,26 +206,22 @@ int render(RenderFlags& flags) {
     report_camera(record.camera, reporter);
     share_records(flags, *ready, record, reporter);
     reporter.set_work("uploading the scene");
-    std::optional<RenderOnDevices> together;
-    std::optional<FramesOnDevices> frames_together;
-    const bool are_several = ready->queues.size() > 1;
-    if (are_several && !flags.real_time) together.emplace(ready->queues, ready->prepared());
-    if (are_several && flags.real_time) frames_together.emplace(ready->queues, ready->prepared());
-    std::optional<Session> session(std::in_place, queue, ready->prepared(), record.camera.camera, settings);
-    if (together) session->pictures().share(*together);
-    if (frames_together) session->pictures().share_frames(*frames_together);
+    const SharedWork shared = {.pictures = !flags.real_time, .frames = flags.real_time};
+    std::optional<SessionOnDevices> opened(std::in_place, ready->queues, ready->prepared(), record.camera.camera,
+                                           settings, shared);
+    Session& session = opened->session();
     const bool has_film =
         (!flags.checkpoint.empty() && !flags.real_time) || std::ranges::any_of(flags.outputs, is_film_name);
     if (writes_tone_mapped(flags.outputs) || has_film) {
-        record.display = choose_display(flags, *session, reporter);
+        record.display = choose_display(flags, session, reporter);
         report_display(*record.display, is_metered(flags), reporter);
     }
     reporter.set_work("rendering");
     if (frame_range(flags)) {
         const FrameCamera camera = {*ready->camera, ready->sequence, ready->list};
-        return render_frames(flags, {camera, *ready->moving, record, *session}, reporter);
+        return render_frames(flags, {camera, *ready->moving, record, session}, reporter);
     }
-    return write_one(flags, settings, record, session, queue, watch, ranks.get(), reporter);
+    return write_one(flags, settings, record, opened, queue, watch, ranks.get(), reporter);
 }
 
 } // namespace

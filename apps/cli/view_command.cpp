@@ -22,8 +22,7 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "image/write_jpeg.h"
-#include "session/devices/frames_on_devices.h"
-#include "session/devices/render_on_devices.h"
+#include "session/devices/session_on_devices.h"
 #include "session/pictures/choose_display.h"
 #include "session/pictures/prepare_render.h"
 #include "settings/value_names.h"
@@ -126,15 +125,9 @@ int view(ViewFlags& flags) {
     listen_for_interrupt();
     reporter.set_work("uploading the scene");
     const PictureRecord record = picture_record(flags.render, *ready, reporter.messages());
-    std::optional<FramesOnDevices> together;
-    std::optional<RenderOnDevices> at_rest;
-    if (ready->queues.size() > 1) {
-        together.emplace(ready->queues, ready->prepared(), AfterLoss::Cut);
-        at_rest.emplace(ready->queues, ready->prepared());
-    }
-    Session session(*ready->queue, ready->prepared(), record.camera.camera, ready->settings);
-    if (together) session.pictures().share_frames(*together);
-    if (at_rest) session.pictures().share(*at_rest);
+    const SharedWork shared = {.pictures = true, .frames = true, .after_loss = AfterLoss::Cut};
+    SessionOnDevices opened(ready->queues, ready->prepared(), record.camera.camera, ready->settings, shared);
+    Session& session = opened.session();
     const bool on_cuda = ready->queue->is_cuda();
     SessionFrames source(session, *ready->moving, on_cuda ? kFrameOnGpu : kFrameOnCpu);
     const Display display = choose_display(flags.render, session, reporter);
