@@ -92,6 +92,24 @@ struct AcceptHit {
     }
 };
 
+/// Returns the triangle on which a light was sampled; none for lights of other kinds.
+HD inline TriangleId triangle_of(const LightSample& light) {
+    switch (light.kind()) {
+    case SourceKind::Triangle:
+        return {light.instance, light.primitive};
+    case SourceKind::Punctual:
+    case SourceKind::Environment:
+        break;
+    }
+    return {};
+}
+
+/// Returns whether the sampled point lies in a transparent part of an emitter. `key` is that of AcceptHit.
+HD inline bool is_hole(const SceneView& scene, const LightSample& light, uint32_t key) {
+    return scene.any_alpha != 0 && light.kind() == SourceKind::Triangle &&
+           !AcceptHit{scene, {}, {}, key}.passes_alpha(light.instance, light.primitive, light.b1, light.b2);
+}
+
 /// Returns whether rays that lead to a surface of the instance may pass it by chance. Blended surfaces whose alpha is 1
 /// everywhere count as opaque.
 HD inline bool is_met_by_chance(const SceneView& scene, uint32_t instance) {

@@ -75,7 +75,7 @@ HD inline float pdf_direct(const SceneView& scene, bool moves, const LightContex
 
 /// Error that ray_to_light adds for a moving emitter.
 HD inline float emitter_error_at(const SceneView& scene, const LightSample& light, float time) {
-    if (light.instance == kNoLight || scene.motions.of(light.instance) == kNoMotion) return 0;
+    if (light.kind() != SourceKind::Triangle || scene.motions.of(light.instance) == kNoMotion) return 0;
     return scene.motions.of_instance_at(light.instance, time).error(light.light_point);
 }
 

@@ -60,8 +60,7 @@ template <ShadingVariant kVariant>
 HD inline Rgb transmittance_to_light(const SceneView& scene, TriangleId start, const LightSample& light,
                                      float time = kAtRest) {
     if constexpr (kVariant == ShadingVariant::General) {
-        const TriangleId end = light.is_delta ? TriangleId{} : TriangleId{light.instance, light.primitive};
-        return transmittance_of_solid(scene, start, end, light.wi, light.distance, time);
+        return transmittance_of_solid(scene, start, triangle_of(light), light.wi, light.distance, time);
     }
     return {1, 1, 1};
 }

@@ -105,7 +105,7 @@ HD inline Ray ray_to_light(const LightSample& light, Vec3 position, Vec3 error, 
     ray.origin = offset_ray_origin(position, error, normal, light.wi);
     if (light.distance < kInfinity) { // t_max = 1 is the light's point
         Vec3 end = light.light_point;
-        if (light.instance != kNoLight) {
+        if (light.kind() == SourceKind::Triangle) {
             const Vec3 off = light_point_error(end) + Vec3{emitter_error, emitter_error, emitter_error};
             end = offset_ray_origin(end, off, light.light_normal, -light.wi);
         }

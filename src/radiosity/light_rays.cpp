@@ -57,7 +57,7 @@ void add_light_rays(const RowScene& scene, const Patch& patch, SampleKey key, co
             if (!sample_light(lights, point.position, u, light)) continue;
             const float cosine = dot(light.wi, point.normal);
             if (!(cosine > 0)) continue;
-            const bool is_emitter = light.instance != kNoLight;
+            const bool is_emitter = light.kind() == SourceKind::Triangle;
             if (is_emitter && !rays.finds_emitters) continue;
             QueuedLight& to = queued[count];
             to = {};
@@ -67,17 +67,15 @@ void add_light_rays(const RowScene& scene, const Patch& patch, SampleKey key, co
                 Vec3 weights = {1.0f - light.b1 - light.b2, light.b1, light.b2};
                 to.emitter = scene.sources.view().find(face_of(view, light.instance, light.primitive, side), weights);
                 if (!is_patch(to.emitter)) continue;
-                const bool is_hole = view.any_alpha != 0 && !AcceptHit{view, {}, {}, to.key}.passes_alpha(
-                                                                light.instance, light.primitive, light.b1, light.b2);
-                if (is_hole) continue;
+                if (is_hole(view, light, to.key)) continue;
                 to.factor = rays.weight_of_light(light.pdf, cosine) * each * cosine * kInvPi / light.pdf;
             } else {
-                const bool is_sky = !light.is_delta;
+                const bool is_sky = light.kind() == SourceKind::Environment;
                 const float weight = is_sky && !rays.finds_sky_alone ? rays.weight_of_light(light.pdf, cosine) : 1.0f;
                 to.irradiance = (weight * each * cosine / light.pdf) * light.radiance;
             }
             to.ray = ray_to_light(light, point.position, point.error, point.normal);
-            if (!light.is_delta) to.target = {light.instance, light.primitive};
+            to.target = triangle_of(light);
             ++count;
         }
         const auto accept_of = [&](uint32_t i) {

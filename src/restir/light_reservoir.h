@@ -62,10 +62,8 @@ HD inline bool make_visibility_ray(const SceneView& scene, const LightReservoir&
     LightSample light;
     if (!find_light_end(scene.lights, reservoir.point, from.position, light)) return false;
     ray = ray_to_light(light, from.position, from.error, from.normal);
-    target = {light.instance, light.primitive};
-    const bool may_be_hole = light.instance != kNoLight && scene.any_alpha != 0;
-    return !may_be_hole ||
-           AcceptHit{scene, {}, {}, coin}.passes_alpha(light.instance, light.primitive, light.b1, light.b2);
+    target = triangle_of(light);
+    return !is_hole(scene, light, coin);
 }
 
 /// Random-number groups of ReSTIR for a pixel's sample, far behind those of paths (integrators/path/path_state.h).

@@ -35,8 +35,14 @@ HD inline EmitterPoint environment_point(Vec3 direction) {
 }
 /// Sample point of a result of sample_light.
 HD inline EmitterPoint point_of(const LightSample& sample) {
-    if (sample.instance != kNoLight) return {sample.instance, sample.primitive, sample.b1, sample.b2};
-    if (sample.is_delta) return {kPunctualPoint, sample.primitive, 0, 0};
+    switch (sample.kind()) {
+    case SourceKind::Triangle:
+        return {sample.instance, sample.primitive, sample.b1, sample.b2};
+    case SourceKind::Punctual:
+        return {kPunctualPoint, sample.primitive, 0, 0};
+    case SourceKind::Environment:
+        break;
+    }
     return environment_point(sample.wi);
 }
 

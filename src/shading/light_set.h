@@ -133,6 +133,11 @@ struct LightSample {
     uint32_t instance = kNoLight, primitive = kNoLight; // ids of a triangle, or kNoLight and a punctual light's
                                                         // number
     float b1 = 0, b2 = 0;                               // weights of its second and third vertex
+
+    HD SourceKind kind() const {
+        if (is_delta) return SourceKind::Punctual;
+        return instance != kNoLight ? SourceKind::Triangle : SourceKind::Environment;
+    }
 };
 
 /// Light number of a triangle of the scene, or kNoLight.

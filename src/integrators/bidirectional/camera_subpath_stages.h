@@ -129,11 +129,8 @@ private:
         const BothWays scattered = end.scatter(wo, light.wi);
         if (is_black(scattered.camera.f)) return;
         const uint32_t coin = coin_key(key, state.depth(), true);
-        if (light.instance != kNoLight && view.any_alpha != 0 &&
-            !AcceptHit{view, {}, {}, coin}.passes_alpha(light.instance, light.primitive, light.b1, light.b2)) {
-            return; // transparent part of the light
-        }
-        const TriangleId target = light.is_delta ? TriangleId{} : TriangleId{light.instance, light.primitive};
+        if (is_hole(view, light, coin)) return;
+        const TriangleId target = triangle_of(light);
         MediumTransmittance through_media;
         if constexpr (kInMedia) {
             through_media = transmittance_of_connection(view, interior_towards(view, list, end, wo, light.wi),
@@ -168,11 +165,17 @@ private:
         const LightSetView& lights = scene.picture.scene.lights;
         if (light.distance == kInfinity) return pdf_disc(scene.world);
         const float inverse = 1.0f / square(light.distance);
-        if (light.is_delta) {
+        switch (light.kind()) {
+        case SourceKind::Punctual:
             return inverse * pdf_emission(lights.punctual[light.primitive], scene.world, -light.wi, lights.goniometric);
+        case SourceKind::Triangle: {
+            const uint32_t number = light_of(lights, light.instance, light.primitive);
+            return inverse * pdf_emission(lights.triangles[number], dot(light.light_normal, light.wi));
         }
-        const uint32_t number = light_of(lights, light.instance, light.primitive);
-        return inverse * pdf_emission(lights.triangles[number], dot(light.light_normal, light.wi));
+        case SourceKind::Environment: // it is infinitely far
+            break;
+        }
+        return 0;
     }
 
     template <class End>

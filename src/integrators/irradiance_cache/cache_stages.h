@@ -147,15 +147,12 @@ private:
         const BsdfValue scattered = evaluate_surface<kVariant>(surface, vertex.wo, light.wi);
         if (is_black(scattered.f)) return;
         const uint32_t coin = coin_key(vertex.key, state.depth(), true);
-        if (light.instance != kNoLight && view.any_alpha != 0 &&
-            !AcceptHit{view, {}, {}, coin}.passes_alpha(light.instance, light.primitive, light.b1, light.b2)) {
-            return; // transparent part of the light
-        }
+        if (is_hole(view, light, coin)) return;
         const float weight = light.is_delta ? 1.0f : power_heuristic(light.pdf, scattered.pdf);
         Connection connection;
         connection.ray = ray_to_light(light, surface.position, surface.error, surface.geometric_normal);
         connection.start = surface.triangle;
-        connection.target = light.is_delta ? TriangleId{} : TriangleId{light.instance, light.primitive};
+        connection.target = triangle_of(light);
         connection.key = coin;
         if constexpr (kVariant == ShadingVariant::General) {
             light.radiance = light.radiance * transmittance_to_light<kVariant>(view, surface.triangle, light);

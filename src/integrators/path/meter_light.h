@@ -45,10 +45,7 @@ HD inline ShadowRay draw_meter_light(const PictureView& picture, const PathSetti
     const float pdf = pdf_cosine_hemisphere(dot(normal, light.wi));
     if (!(pdf > 0)) return shadow;
     const uint32_t key = coin_key({pixel, sample, settings.seed}, 0, true);
-    if (light.instance != kNoLight && scene.any_alpha != 0 &&
-        !AcceptHit{scene, {}, {}, key}.passes_alpha(light.instance, light.primitive, light.b1, light.b2)) {
-        return shadow; // transparent part of the light
-    }
+    if (is_hole(scene, light, key)) return shadow;
     const bool is_weighted = !light.is_delta && settings.strategy == LightStrategy::Mis;
     const float weight = is_weighted ? power_heuristic(light.pdf, pdf) : 1.0f;
     const Ray ray = ray_to_light(light, point, {0, 0, 0}, normal);

@@ -188,14 +188,11 @@ private:
         const BsdfValue all = end.scatter_camera(vertex.wo, light.wi);
         if (is_black(all.f)) return nearness;
         const uint32_t coin = coin_key(vertex.key, state.depth(), true);
-        if (light.instance != kNoLight && view.any_alpha != 0 &&
-            !AcceptHit{view, {}, {}, coin}.passes_alpha(light.instance, light.primitive, light.b1, light.b2)) {
-            return nearness; // transparent part of the light
-        }
+        if (is_hole(view, light, coin)) return nearness;
         Connection connection;
         connection.ray = end.ray_to(light);
         connection.start = end.triangle();
-        connection.target = light.is_delta ? TriangleId{} : TriangleId{light.instance, light.primitive};
+        connection.target = triangle_of(light);
         connection.key = coin;
         if constexpr (kInMedia) {
             const Vec3 from = end.origin_towards(light.wi);
@@ -214,13 +211,26 @@ private:
     /// Area of an emitter over the probability to sample it, relative to the squared distance; 0 for lights without
     /// position or size.
     HD static float nearness_of(const LightSample& light) {
-        if (light.is_delta || !(light.distance < kInfinity)) return 0;
-        return 1.0f / (light.pdf * abs(dot(light.light_normal, light.wi)));
+        switch (light.kind()) {
+        case SourceKind::Triangle:
+            return 1.0f / (light.pdf * abs(dot(light.light_normal, light.wi)));
+        case SourceKind::Punctual:
+        case SourceKind::Environment:
+            break;
+        }
+        return 0;
     }
     /// Part of the scattered light of a sampled light that the subpath's own ray does not find.
     HD Rgb drawn_share(const Vertex& vertex, const LightSample& light, const BsdfValue& all) const {
-        const bool is_sky = !light.is_delta && light.instance == kNoLight;
-        if (light.is_delta || (vertex.may_search && is_sky)) return all.f;
+        switch (light.kind()) {
+        case SourceKind::Punctual:
+            return all.f;
+        case SourceKind::Environment:
+            if (vertex.may_search) return all.f;
+            break;
+        case SourceKind::Triangle:
+            break;
+        }
         return power_heuristic(light.pdf, all.pdf) * all.f;
     }
 

@@ -132,15 +132,13 @@ private:
         if (is_black(f_times_light)) return false;
         const float emitter_error = moves ? emitter_error_at(picture.scene, light, time) : 0.0f;
         shadow.ray = ray_to_light(light, surface.position, surface.error, surface.geometric_normal, emitter_error);
-        shadow.target = light.is_delta ? TriangleId{} : TriangleId{light.instance, light.primitive};
+        shadow.target = triangle_of(light);
         shadow.contribution = ray.weight * f_times_light;
         return true;
     }
     /// Returns whether the sampled point lies in a transparent part of the emitter.
     HD bool is_hole(const LightSample& light) const {
-        if (light.instance == kNoLight || picture.scene.any_alpha == 0) return false;
-        const AcceptHit accept = {picture.scene, {}, {}, tree_key(state, settings.seed, number(), true)};
-        return !accept.passes_alpha(light.instance, light.primitive, light.b1, light.b2);
+        return pertev::is_hole(picture.scene, light, tree_key(state, settings.seed, number(), true));
     }
     HD void follow_delta(Rgb weight, Vec3 wo_local, Vec3 wi_local, Branch branch, MinWeight least) const {
         Vec3 wi;

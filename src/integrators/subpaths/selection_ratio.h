@@ -30,9 +30,16 @@ template <class Choice>
 HD inline float selection_ratio(const LightSetView& view, const LightContext& context, const LightSample& light) {
     if constexpr (Choice::kReadsNormal) {
         if (!(light.distance < kInfinity)) return 1;
-        if (light.is_delta) return light.pdf / emission_pmf(view, view.triangle_count + light.primitive);
-        const uint32_t number = light_of(view, light.instance, light.primitive);
-        return light.pdf / pdf_light_hit(view, number, context, light.light_point);
+        switch (light.kind()) {
+        case SourceKind::Punctual:
+            return light.pdf / emission_pmf(view, view.triangle_count + light.primitive);
+        case SourceKind::Triangle: {
+            const uint32_t number = light_of(view, light.instance, light.primitive);
+            return light.pdf / pdf_light_hit(view, number, context, light.light_point);
+        }
+        case SourceKind::Environment: // it is infinitely far
+            break;
+        }
     }
     return 1;
 }
