@@ -67,8 +67,11 @@ int bench_cameras(CamerasFlags& flags) {
     centres.settings.layers_at = LayersAt::Centre;
     Job direct = centres, paths = centres;
     centres.settings.samples = 0;
-    direct.name = "direct";
+    direct.name = "direct"; // a camera ray through the centre of each pixel, for the layers too, and a shadow ray
     direct.settings.samples = 1, direct.settings.path.max_depth = 1;
+    direct.settings.path.strategy = LightStrategy::NeeOnly;
+    direct.settings.layers_at = LayersAt::Samples;
+    sample_centres(direct.settings);
     paths.name = "paths";
     paths.pictures = std::max(pictures / 16, 1u);
 

@@ -102,8 +102,7 @@ void PostSteps::follow(float lobe) {
 void PostSteps::find_centres(const Camera& camera, const RenderSettings& of_features, Sink* sink) {
     NoisyFrame& frame = *sample_;
     RenderSettings of_centres = of_features;
-    of_centres.filter = PixelFilter::Box;
-    of_centres.filter_radius = 0x1p-20f; // pixels
+    sample_centres(of_centres);
     Camera pinhole = camera;
     pinhole.aperture_radius = 0;
     Integrator& of_pinhole = pictures_.begin(pinhole, of_centres, 1);

@@ -128,6 +128,11 @@ std::vector<Setting> picture_settings() {
             "The choice of a light at each point: by a tree, by power, or by the tree for more than 256 lights (auto). "
             "Particle emission always selects by power.",
             Of{integrators_that(selects_lights)}, On{kLooking | kBenchRender}, Recorded::Changed, Changes::Picture),
+        row("light_sampling", "Quality", "NAME", FIELD(render.path.strategy),
+            "How paths find light: by sampling a light at each vertex (nee), by rays that hit one (bsdf; no point, "
+            "spot and directional lights), or by both with MIS weights.",
+            Of{integrators_that(makes_frames)}, Excludes{"!mis:restir!=off"}, On{kLooking | kBenchRender},
+            Recorded::Changed, Changes::Picture),
         row("time_limit", "Quality", "SECONDS", FIELD(render.time_limit_s),
             "The time after which the render stops, at the end of a sample. irradiance_cache may stop while it makes "
             "records.",

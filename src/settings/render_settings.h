@@ -86,6 +86,12 @@ inline float filter_radius_of(const RenderSettings& settings) {
     return settings.filter_radius > 0 ? settings.filter_radius : default_filter_radius(settings.filter);
 }
 
+/// Makes all samples pass through the centres of their pixels, to a millionth of a pixel.
+inline void sample_centres(RenderSettings& settings) {
+    settings.filter = PixelFilter::Box;
+    settings.filter_radius = 0x1p-20f;
+}
+
 /// Returns the requested tracers, or the device's default. `deforms` means that the scene has meshes whose vertices
 /// move; a GPU then has one tree of compressed nodes for all rays, which it refits and builds itself.
 TracerChoice tracers_of(const RenderSettings& settings, bool on_cuda, bool deforms = false);

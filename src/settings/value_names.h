@@ -31,6 +31,8 @@ inline constexpr ValueName<PixelFilter> kPixelFilters[] = {{PixelFilter::Box, "b
                                                            {PixelFilter::BlackmanHarris, "blackman-harris"}};
 inline constexpr ValueName<MipMaps> kMipMapPictures[] = {
     {MipMaps::Frames, "frames"}, {MipMaps::On, "on"}, {MipMaps::Off, "off"}};
+inline constexpr ValueName<LightStrategy> kLightStrategies[] = {
+    {LightStrategy::Mis, "mis"}, {LightStrategy::NeeOnly, "nee"}, {LightStrategy::BsdfOnly, "bsdf"}};
 inline constexpr ValueName<LightSelection> kLightSelections[] = {
     {LightSelection::Auto, "auto"}, {LightSelection::Tree, "tree"}, {LightSelection::Power, "power"}};
 inline constexpr ValueName<RestirLight> kRestirLights[] = {
@@ -57,6 +59,7 @@ constexpr const auto& names_of_all(PathLight) { return kPathLights; }
 constexpr const auto& names_of_all(SamplerKind) { return kSamplers; }
 constexpr const auto& names_of_all(PixelFilter) { return kPixelFilters; }
 constexpr const auto& names_of_all(MipMaps) { return kMipMapPictures; }
+constexpr const auto& names_of_all(LightStrategy) { return kLightStrategies; }
 constexpr const auto& names_of_all(LightSelection) { return kLightSelections; }
 constexpr const auto& names_of_all(RestirLight) { return kRestirLights; }
 constexpr const auto& names_of_all(LayersAt) { return kLayerPlaces; }

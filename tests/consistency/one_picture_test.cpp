@@ -125,13 +125,15 @@ TEST_CASE("vertices shaded in lanes give the bytes of vertices shaded one by one
         };
         CHECK(hash(in_lanes) == hash(alone));
     };
-    std::vector<RenderSettings> cases(6, odd_settings());
+    std::vector<RenderSettings> cases(8, odd_settings());
     cases[0].aovs = 0;
     cases[1].path.max_depth = 1;
     cases[2].path.clamp = 0.5f;
     cases[3].path.roulette = Roulette::Throughput, cases[3].path.roulette_depth = 1;
     cases[4].path.roulette = Roulette::NearCubeRoot, cases[4].path.sampler = SamplerKind::Independent;
     cases[5].path.max_depth = 0;
+    cases[6].path.strategy = cases[7].path.strategy = LightStrategy::NeeOnly;
+    cases[7].path.max_depth = 1;
     for (const RenderSettings& settings : cases) {
         CAPTURE(&settings - cases.data());
         check_lanes(scene, settings);

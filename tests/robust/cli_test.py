@@ -17,7 +17,7 @@ FLAGS = {
               "--allow-path --up-axis --unit --quiet -q --json --strict --camera --eye --target --up --fov --projection "
               "--view-height --aperture --aperture-blades --aperture-rotation --aperture-ratio --focus --environment --sun-sky --environment-rotation --environment-scale --medium "
               "--two-sided-lights --show-back-faces --size --tone-map --exposure --transparent --aov --spp --time-limit --denoise "
-              "--integrator --max-depth --ambient --shading --wireframe --seed --sampler --filter --filter-radius --clamp --mip-maps --light-choice --device --threads "
+              "--integrator --max-depth --ambient --shading --wireframe --seed --sampler --filter --filter-radius --clamp --mip-maps --light-choice --light-sampling --device --threads "
               "--no-bvh-cache --build --structure --traversal --rta --order --distribution --time --frames --fps --camera-path "
               "--turntable --continue --cuts --lpe --lamp --ies --efficacy --false-color --false-color-range --f-number --shutter-time --iso "
               "--shutter --shading-rate --displacement --photons --gather --radius --caustic-radius --nearest "
@@ -207,6 +207,16 @@ class WhatIsSaid(CliTest):
             output = "x.pvf" if "--part" in flags else "x.exr"
             done = self.render("--max-depth", "0", *flags, size="16x12", spp=4, output=output)
             self.assertAlmostEqual(done["samples_per_second"] / done["rays_per_second"], 1, 5, flags)  # a ray each
+
+    def test_next_event_estimation_alone_needs_no_last_ray(self):
+        for material in [], ["--material", "white roughness=0.5"]:  # vertices in lanes, and one by one
+            rays = {}
+            for name in ("mis", "nee", "bsdf"):
+                done = self.render("--max-depth", "1", "--light-sampling", name, *material, size="16x12", spp=4)
+                rays[name] = done["rays_per_second"] / done["samples_per_second"]
+            self.assertAlmostEqual(rays["mis"], rays["nee"] + rays["bsdf"] - 1, 5)  # each traces the camera's ray
+            self.assertGreater(rays["nee"], 1.25)
+            self.assertGreater(rays["bsdf"], 1.5)
 
     def test_version_is_quick(self):
         seconds = []

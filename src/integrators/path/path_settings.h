@@ -13,8 +13,9 @@ namespace pertev {
 /// most one D (the thesis's local illumination), Indirect the rest (its figure 3.6); Path = Direct + Indirect.
 enum class PathLight : uint8_t { Path, Direct, Indirect };
 
-/// Strategy to sample lights: next-event estimation and BSDF sampling combined by the power heuristic, or one alone.
-/// All three converge to one picture (if lights can be hit at all); the single ones are for tests.
+/// Strategy to sample lights: next-event estimation (NEE) and BSDF sampling combined by the power heuristic, or one
+/// alone. All three converge to one picture where lights can be hit. NEE alone, for equal samples noisier near lights
+/// and on glossy surfaces, needs no last ray: with a depth of 1 a diffuse sample is a camera ray and a shadow ray.
 enum class LightStrategy : uint8_t { Mis, NeeOnly, BsdfOnly };
 
 /// Survival probability of Russian roulette as a function of the throughput's largest channel: that itself, or its

@@ -138,10 +138,9 @@ HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path
     }
     const BsdfValue scattered = vertex.evaluate(light.wi);
     if (is_black(scattered.f)) return false;
-    if ((kFeatures & kAlpha) != 0 && light.instance != kNoLight && scene.any_alpha != 0 &&
-        !AcceptHit{scene, {}, {}, coin_key(sample_key<kFeatures>(job, path.pixel, path.sample), path.depth, true)}
-             .passes_alpha(light.instance, light.primitive, light.b1, light.b2)) {
-        return false; // transparent part of the light
+    if ((kFeatures & kAlpha) != 0 && scene.any_alpha != 0) {
+        const SampleKey of_sample = sample_key<kFeatures>(job, path.pixel, path.sample);
+        if (is_hole(scene, light, coin_key(of_sample, path.depth, true))) return false;
     }
     float weight = 1;
     if (!light.is_delta && settings.strategy == LightStrategy::Mis) {
@@ -191,6 +190,9 @@ HD INLINE_ON_DEVICE bool sample_scattering(const PathSettings& settings, PathSta
     path.rough_depth += sample.is_delta() ? 0 : 1;
     if (settings.light == PathLight::Direct && path.rough_depth > 1) return false; // nothing further would count
     const uint32_t depth = path.depth + 1;
+    if (settings.strategy == LightStrategy::NeeOnly && depth >= settings.max_depth && path.bsdf_pdf > 0) {
+        return false; // next-event estimation has found what this ray would hit
+    }
     if (may_end_by_chance(settings, depth)) {
         const float survival = survival_probability(settings.roulette, max_component(path.throughput));
         if (survival < 1) {

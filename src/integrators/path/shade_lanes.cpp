@@ -27,7 +27,7 @@ const VertexShading& vertex_shading() {
 
 bool can_shade_lanes(const PathJob& job) {
     return (features_for(job) & ~(kBatched | kLightTree)) == kPlainDiffuse && job.settings.light == PathLight::Path &&
-           job.settings.strategy == LightStrategy::Mis;
+           job.settings.strategy != LightStrategy::BsdfOnly;
 }
 
 } // namespace pertev

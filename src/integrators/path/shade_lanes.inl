@@ -248,7 +248,9 @@ unsigned sample_direct(const PathJob& job, unsigned lanes, const Paths& paths, c
     const Mask wants = lights.arrives && scattered.pdf > 0 && !is_black(scattered.f);
     const unsigned wanted = bit_mask(wants) & lanes;
     if (wanted == 0) return 0;
-    const Floats weight = select(lights.is_delta, Floats(1.0f), power_heuristic(lights.pdf, scattered.pdf));
+    const bool by_mis = job.settings.strategy == LightStrategy::Mis;
+    const Floats weight =
+        by_mis ? select(lights.is_delta, Floats(1.0f), power_heuristic(lights.pdf, scattered.pdf)) : Floats(1.0f);
     Rgbs contribution = paths.throughput * scattered.f * ((weight / lights.pdf) * lights.radiance);
     if (job.settings.clamp > 0) {
         const Floats largest = max_component(contribution), limit = weight * job.settings.clamp;
@@ -277,6 +279,15 @@ unsigned sample_direct(const PathJob& job, unsigned lanes, const Paths& paths, c
     return wanted;
 }
 
+/// Returns the lanes whose paths have scattered `depth` times.
+unsigned lanes_at_depth(uint32_t depth, const LaneVertices& vertices) {
+    unsigned lanes = 0;
+    for (uint32_t lane = 0; lane < vertices.count; ++lane) {
+        lanes |= (vertices.paths[lane]->depth == depth ? 1u : 0u) << lane;
+    }
+    return lanes;
+}
+
 /// sample_scattering; returns the lanes whose paths go on, and moves these.
 unsigned sample_scattering(const PathJob& job, unsigned lanes, const Paths& paths, const Surfaces& surfaces, Vec3s wo,
                            Vec3s wo_local, const LaneVertices& vertices, const VertexWords<Words>& words) {
@@ -292,6 +303,7 @@ unsigned sample_scattering(const PathJob& job, unsigned lanes, const Paths& path
     const Vec3s wi = normalize(surfaces.frame.to_world(raised.direction));
     goes_on = goes_on && surfaces.is_consistent(wo, wi, wo_local.z, raised.direction.z) && pdf > 0;
     unsigned going = bit_mask(goes_on) & lanes;
+    if (settings.strategy == LightStrategy::NeeOnly) going &= ~lanes_at_depth(settings.max_depth - 1, vertices);
 
     Rgbs throughput = paths.throughput * weight;
     unsigned by_chance = 0;

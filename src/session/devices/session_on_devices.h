@@ -15,7 +15,7 @@ namespace pertev {
 /// The results that several devices render together; the first device renders the others alone.
 struct SharedWork {
     bool pictures = false, frames = false;
-    AfterLoss after_loss = AfterLoss::Throw; // of frames
+    AfterLoss after_loss = AfterLoss::Throw; // for frames
 };
 
 class SessionOnDevices {
