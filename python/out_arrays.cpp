@@ -145,11 +145,12 @@ void FilmReader::read(Session& session, const std::shared_ptr<Queue>& queue, std
         }
         std::byte* const to = of_film.is_cuda() ? on_device_.data() : array.memory;
         if (is_picture(array.name)) {
-            film.picture_into(reinterpret_cast<float*>(to), pixels, session.settings().transparent);
+            film.resolve_into(reinterpret_cast<float*>(to), session.settings().transparent, {}, pixels);
         } else if (array.name == "ids") {
             of_film.copy_on_device(to, film.view().ids, bytes);
         } else {
-            film.layer_into(reinterpret_cast<float*>(to), pixels, group_named(array.name)->bit);
+            const Film::LayerMemory layer = {group_named(array.name)->bit, reinterpret_cast<float*>(to)};
+            film.resolve_into(nullptr, false, {&layer, 1}, pixels);
         }
         if (of_film.is_cuda()) of_film.copy_to_host(array.memory, to, bytes);
     }

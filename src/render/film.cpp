@@ -92,18 +92,19 @@ std::vector<PixelIds> Film::ids() const {
 
 uint64_t Film::invalid_samples() const { return invalid_->elements().download()[0]; }
 
-void Film::picture_into(float* to, uint32_t pixels, bool transparent) const {
-    sums_->resolve_into(to, width(), pixels, samples_, {0, transparent ? 4u : 3u, false});
-}
-
-void Film::layer_into(float* to, uint32_t pixels, AovBits group) const {
-    const AovGroup& of = aov_group(group);
-    const auto channels = static_cast<uint32_t>(channel_names(of).size());
-    if (centres_ == nullptr) {
-        return sums_->resolve_into(to, width(), pixels, samples_,
-                                   {channel_offset(aovs_, group), channels, of.over_hits});
+void Film::resolve_into(float* picture, bool transparent, std::span<const LayerMemory> layers, uint32_t pixels) const {
+    std::vector<FilmMeans> means;
+    if (picture != nullptr) means.push_back({0, transparent ? 4u : 3u, false, picture});
+    for (const auto& [group, to] : layers) {
+        const AovGroup& of = aov_group(group);
+        const auto channels = static_cast<uint32_t>(channel_names(of).size());
+        if (centres_ == nullptr) {
+            means.push_back({channel_offset(aovs_, group), channels, of.over_hits, to});
+        } else {
+            queue_->copy_on_device(to, centres_->arrays().of(group), std::size_t(pixels) * channels * sizeof(float));
+        }
     }
-    queue_->copy_on_device(to, centres_->arrays().of(group), std::size_t(pixels) * channels * sizeof(float));
+    if (!means.empty()) sums_->resolve_into(means, width(), pixels, samples_);
 }
 
 CentreArrays Film::centres() const {

@@ -103,10 +103,14 @@ public:
     /// Returns the mean of all samples: RGB, or RGBA (colour times coverage, coverage) if `transparent`. Rows without
     /// samples are 0.
     Image picture(bool transparent) const { return sums_->picture(width(), samples_, transparent ? 4 : 3); }
-    /// Computes picture(), and an auxiliary layer of layers(), of the first `pixels` pixels in memory of the film's
-    /// device. The work is queued.
-    void picture_into(float* to, uint32_t pixels, bool transparent) const;
-    void layer_into(float* to, uint32_t pixels, AovBits group) const;
+    /// Memory of the film's device for an auxiliary layer.
+    struct LayerMemory {
+        AovBits group;
+        float* to;
+    };
+    /// Computes picture(), if `picture` is not null, and auxiliary layers of layers(), of the first `pixels` pixels.
+    /// The work is queued.
+    void resolve_into(float* picture, bool transparent, std::span<const LayerMemory> layers, uint32_t pixels) const;
     /// The arrays of layers at centres with those of ids, for CentreLayers; all null at samples.
     CentreArrays centres() const;
     /// Computes the bytes of tone_map_image(picture(transparent), kind, exposure_stops) on the device and starts

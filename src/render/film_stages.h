@@ -65,21 +65,32 @@ struct AddFrames {
     }
 };
 
-/// The stage that computes the means of some consecutive channels of each pixel.
-struct ResolveFilm {
-    static constexpr uint32_t kHostGrain = 4096;
-
-    FilmView film;
+/// Consecutive channels of each pixel, whose means are computed together.
+struct FilmMeans {
     uint32_t first, channels; // channels of the film
     bool over_hits;           // mean over samples that hit something, 0 if none did
-    uint64_t samples;         // per pixel; 0: all means are 0
-    float* pixels;            // [pixels * channels]
+    float* to = nullptr;      // [pixels * channels]
+};
+
+/// The stage that computes means of each pixel. Several in one launch read the sums of a pixel, which lie together,
+/// once.
+struct ResolveFilm {
+    static constexpr uint32_t kHostGrain = 4096;
+    static constexpr uint32_t kMost = 1 + film_channels::kGroups; // the picture and its layers
+
+    FilmView film;
+    uint64_t samples; // per pixel; 0: all means are 0
+    FilmMeans means[kMost];
+    uint32_t count;
 
     HD void operator()(uint32_t i) const {
         const FixedSum* sums = film.at_slot(FilmSlot{i});
-        const uint64_t count = over_hits ? sums[kFilmHits].high : samples; // each hit adds one, which is 2^64 units
-        float* to = pixels + static_cast<uint64_t>(i) * channels;
-        for (uint32_t c = 0; c < channels; ++c) to[c] = count == 0 ? 0.0f : mean_of(sums[first + c], count);
+        for (uint32_t k = 0; k < count; ++k) {
+            const FilmMeans& of = means[k];
+            const uint64_t n = of.over_hits ? sums[kFilmHits].high : samples; // each hit adds one, which is 2^64 units
+            float* to = of.to + static_cast<uint64_t>(i) * of.channels;
+            for (uint32_t c = 0; c < of.channels; ++c) to[c] = n == 0 ? 0.0f : mean_of(sums[of.first + c], n);
+        }
     }
 };
 

@@ -59,19 +59,22 @@ const void* SumTarget::display(uint32_t width, const RowSamples& samples, ToneMa
     return resolved_.data();
 }
 
-void SumTarget::resolve_into(float* to, uint32_t width, uint32_t pixels, const RowSamples& samples,
-                             Channels channels) const {
+void SumTarget::resolve_into(std::span<const FilmMeans> means, uint32_t width, uint32_t pixels,
+                             const RowSamples& samples) const {
+    PERTEV_CHECK(means.size() <= ResolveFilm::kMost);
     samples.visit_pixels(width, pixels, [&](std::size_t first, std::size_t end, uint64_t count) {
-        launch(queue(), "resolve_film", static_cast<uint32_t>(end - first),
-               ResolveFilm{view_from(first), channels.first, channels.count, channels.over_hits, count,
-                           to + first * channels.count});
+        ResolveFilm stage = {view_from(first), count, {}, static_cast<uint32_t>(means.size())};
+        std::ranges::copy(means, stage.means);
+        for (uint32_t k = 0; k < stage.count; ++k) stage.means[k].to += first * stage.means[k].channels;
+        launch(queue(), "resolve_film", static_cast<uint32_t>(end - first), stage);
     });
 }
 
-Image SumTarget::resolve(uint32_t width, const RowSamples& samples, Channels channels) const {
-    resolve_into(resolved_.data(), width, pixels_, samples, channels);
-    Image image{width, pixels_ / width, channels.count, {}};
-    image.pixels.resize(std::size_t(pixels_) * channels.count);
+Image SumTarget::resolve(uint32_t width, const RowSamples& samples, FilmMeans means) const {
+    means.to = resolved_.data();
+    resolve_into({&means, 1}, width, pixels_, samples);
+    Image image{width, pixels_ / width, means.channels, {}};
+    image.pixels.resize(std::size_t(pixels_) * means.channels);
     queue().copy_to_host(image.pixels.data(), resolved_.data(), image.pixels.size() * sizeof(float));
     return image;
 }

@@ -4,6 +4,8 @@
 // render/film_channels.h. Means and displayed pixels are computed on the device (render/film_stages.h) in memory that
 // is allocated from the start, so a long render never fails because of it.
 
+#include <span>
+
 #include "image/tone_map.h"
 #include "render/film_stages.h"
 #include "render/film_target.h"
@@ -21,11 +23,6 @@ public:
     /// Returns the auxiliary layers, then the light layers.
     std::vector<FilmLayer> layers(uint32_t width, const RowSamples& samples) const override;
 
-    /// Channels of a pixel that are resolved together.
-    struct Channels {
-        uint32_t first, count;
-        bool over_hits; // mean over samples that hit something
-    };
     /// Returns the means of the first `channels` channels.
     Image picture(uint32_t width, const RowSamples& samples, uint32_t channels) const {
         return resolve(width, samples, {0, channels, false});
@@ -34,14 +31,15 @@ public:
     const void* display(uint32_t width, const RowSamples& samples, ToneMap kind, float exposure_stops,
                         bool transparent) const;
 
-    /// Computes the means of the first `pixels` pixels on the device.
-    void resolve_into(float* to, uint32_t width, uint32_t pixels, const RowSamples& samples, Channels channels) const;
+    /// Computes means of the first `pixels` pixels on the device, ResolveFilm::kMost of them at most.
+    void resolve_into(std::span<const FilmMeans> means, uint32_t width, uint32_t pixels,
+                      const RowSamples& samples) const;
 
     uint32_t aovs() const { return aovs_; }
     const std::vector<std::string>& light_layers() const { return light_layers_; }
 
 private:
-    Image resolve(uint32_t width, const RowSamples& samples, Channels channels) const;
+    Image resolve(uint32_t width, const RowSamples& samples, FilmMeans means) const;
     /// Returns the view of the pixels from number `first` on.
     FilmView view_from(std::size_t first) const {
         FilmView view = {};

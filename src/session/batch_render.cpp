@@ -146,12 +146,14 @@ void BatchRender::resolve(Film& film, uint32_t pictures, uint32_t at, BatchArray
     const uint32_t each = settings_.width * settings_.height, pixels = each * pictures;
     const std::size_t first = std::size_t(each) * at;
     const Buffer<float>& into = settings_.denoise != Denoise::None ? arrays.noisy : arrays.color;
-    film.picture_into(into.data() + first * (settings_.transparent ? 4 : 3), pixels, settings_.transparent);
-    if (!in_turn_ && has_centres(settings_)) return; // they are there
+    float* const picture = into.data() + first * (settings_.transparent ? 4 : 3);
+    const bool has_layers = in_turn_ || !has_centres(settings_); // otherwise they are there
+    std::vector<Film::LayerMemory> layers;
     for (BatchArrays::Layer& layer : arrays.layers) {
-        film.layer_into(layer.values.data() + first * layer.channels, pixels, layer.group);
+        if (has_layers) layers.push_back({layer.group, layer.values.data() + first * layer.channels});
     }
-    if ((settings_.aovs & kAovIds) == 0) return;
+    film.resolve_into(picture, settings_.transparent, layers, pixels);
+    if (!has_layers || (settings_.aovs & kAovIds) == 0) return;
     pictures_.queue().copy_on_device(arrays.ids.data() + first, film.view().ids, pixels * sizeof(PixelIds));
 }
 
