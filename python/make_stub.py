@@ -66,6 +66,7 @@ SIGNATURES = {
     "Params.__setitem__": "(self, path: str, value: Any) -> None",
     "Params.__iter__": "(self) -> Iterator[str]",
     "Params.__len__": "(self) -> int",
+    "Scene.save": "(self, path: _Text) -> None",
     "Session.__iter__": "(self) -> Session",
     "Session.__next__": "(self) -> Result",
     "Session.reset": "(self) -> None",

@@ -6,6 +6,7 @@
 #include <set>
 #include <type_traits>
 
+#include <fmt/format.h>
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
@@ -19,6 +20,8 @@
 #include "base/parallel_for.h"
 #include "formats/builtin_scenes.h"
 #include "formats/cameras/read_cameras.h"
+#include "formats/gltf_writer/write_glb.h"
+#include "image/write_image.h"
 #include "python/array_argument.h"
 #include "python/contents_hash.h"
 #include "python/images.h"
@@ -29,6 +32,7 @@
 #include "python/scene_arrays.h"
 #include "python/session.h"
 #include "scene/scene_origin.h"
+#include "session/degrees.h"
 #include "session/pictures/merge_picture.h"
 #include "settings/setting_table.h"
 
@@ -273,6 +277,30 @@ nb::object bounds_of_scene(PythonScene& scene) {
     return owned_array(corners, {2, 3});
 }
 
+/// Writes the scene as glTF, and the environment's image as EXR. Returns the settings that state the environment.
+std::map<std::string, std::string> save_scene(PythonScene& scene, const std::string& path,
+                                              const std::string& environment_path) {
+    return result_of([&](PythonSink& sink) {
+        const SceneOptions options = scene.options_of({}, sink).scene;
+        Scene saved = scene.with_source(sink, [&](const EditedScene& source) { return source.read(options, sink); });
+        std::map<std::string, std::string> settings;
+        if (!environment_path.empty() && saved.environment) {
+            auto& [image, scale, rotation] = *saved.environment;
+            settings["environment"] = fmt::format("{},{},{}", scale.r, scale.g, scale.b);
+            if (!image.pixels.empty()) {
+                const float factors[3] = {scale.r, scale.g, scale.b};
+                for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] *= factors[i % 3];
+                write_image(environment_path, image);
+                settings["environment"] = environment_path;
+            }
+            settings["environment_rotation"] = fmt::format("{}", degrees_for(rotation));
+            saved.environment.reset();
+        }
+        write_glb(path, saved, sink);
+        return settings;
+    });
+}
+
 void define_scene(nb::module_& module) {
     nb::class_<PythonScene>(module, "Scene")
         .def("__init__", &make_scene, nb::arg("name"), nb::arg("settings"), nb::arg("parts").none())
@@ -287,6 +315,7 @@ void define_scene(nb::module_& module) {
         .def("_value", &parameter)
         .def("_set_value", &set_parameter)
         .def("_edits", &edits_of)
+        .def("_save", &save_scene)
         .def_prop_ro(
             "instance_names", [](PythonScene& scene) { return names_of(scene).first; },
             "Names of the instances; an id of the layer `ids` is the index of one")

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "session/opening/open_scene.h"
 #include "session/pictures/share_records.h"
 #include "settings/settings_file.h"
 
@@ -25,6 +26,18 @@ std::string EditedScene::edited(const std::string& hash) const {
         hasher.add(std::as_bytes(std::span(edit.values)));
     }
     return hasher.result().hex();
+}
+
+void EditedScene::edit(Scene& scene) const {
+    const SceneParameters parameters(scene);
+    for (const auto& [path, edit] : edits) write_parameter(scene, parameter_of(parameters, scene, path), edit.values);
+}
+
+Scene EditedScene::read(const SceneOptions& options, Sink& sink) const {
+    Scene scene = arrays ? *arrays : read_scene_and_emitters(options.scene, read_options(options), sink);
+    change_materials(options, scene, sink);
+    edit(scene);
+    return scene;
 }
 
 const SceneParameters& OpenedScene::parameters() {
@@ -61,12 +74,7 @@ bool OpenedScene::apply_edits(const EditedScene& source, Sink& sink) {
 void OpenedScene::open(PictureOptions& options, const EditedScene& source, Sink& sink) {
     SceneInMemory in_memory;
     if (source.arrays) in_memory.read = [&](Sink&) { return *source.arrays; };
-    in_memory.edit = [&](Scene& scene) {
-        const SceneParameters parameters(scene);
-        for (const auto& [path, edit] : source.edits) {
-            write_parameter(scene, parameter_of(parameters, scene, path), edit.values);
-        }
-    };
+    in_memory.edit = [&](Scene& scene) { source.edit(scene); };
     auto made = prepare_render(options, kRender, sink, {}, in_memory);
     if (source.arrays) made->hash = source.hash_of_arrays;
     parameters_.reset();

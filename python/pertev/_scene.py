@@ -94,6 +94,14 @@ class Scene(_core.Scene):
         """Values by paths such as "materials/gold/roughness" (Params)"""
         return Params(self)
 
+    def save(self, path):
+        """Writes the scene, at rest and with all changes of its parameters, as glTF (.glb).
+
+        Settings other than those of reading and of materials are not in the file. What glTF lacks, such as an
+        environment, is left out with a warning. Raises WriteError and InputError.
+        """
+        self._save(os.fspath(path), "")
+
     def __reduce__(self):
         if self._is_of_arrays:
             raise TypeError("a scene of arrays is not pickled; make it of its arrays in each process")

@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 import threading
 import webbrowser
 
@@ -13,6 +14,8 @@ from .errors import Error
 
 
 _OF_VIEWS = {name: row for name, row in OF_PICTURES.items() if row["is_viewed"]}
+# Settings whose effects a saved scene has.
+_SAVED = {"animation", "define", "file_scene", "material", "two_sided_lights", "unit", "up_axis", "variant"}
 
 
 def _program():
@@ -27,7 +30,8 @@ class Viewer:
 
     _reader = None
 
-    def __init__(self, scene, port, values):
+    def __init__(self, scene, port, values, folder=None):
+        self._folder = folder  # the folder of a saved scene, which ends with the viewer
         flags = ["--port", str(port), "--no-browser", "--embed"]
         for name, texts in texts_of(values, _OF_VIEWS).items():
             flag = "--" + name.replace("_", "-")
@@ -59,6 +63,8 @@ class Viewer:
         if self._reader is not None:
             self._reader.join()
         self._process.stdout.close()
+        if self._folder is not None:
+            self._folder.cleanup()
 
     def __enter__(self):
         return self
@@ -81,15 +87,20 @@ def view(scene, *, port=0, browser=False, **values):
     browser  True: opens the address in the browser of this desktop
     values   settings of `pertev view`; they overrule those of load()
 
-    Raises Error if the viewer does not start, and TypeError for a scene of arrays or with changed parameters, which the
-    process could not read.
+    The viewer shows a scene of arrays, or with changed parameters, at rest as it is now. Raises Error if the viewer does
+    not start.
     """
+    folder = None
     if isinstance(scene, _core.Scene):
-        if scene._is_of_arrays or scene._edits():
-            raise TypeError("the viewer reads a scene's file: it shows no scene of arrays and no changed parameters")
         of_scene = {name: texts for name, texts in scene._settings.items() if name in _OF_VIEWS}
-        scene, values = scene.name, {**of_scene, **values}
-    viewer = Viewer(os.fspath(scene), port, values)
+        shown = scene.name
+        if scene._is_of_arrays or scene._edits():
+            folder = tempfile.TemporaryDirectory(prefix="pertev-")
+            shown = os.path.join(folder.name, "scene.glb")
+            of_environment = scene._save(shown, os.path.join(folder.name, "environment.exr"))
+            of_scene = {**of_environment, **{name: texts for name, texts in of_scene.items() if name not in _SAVED}}
+        scene, values = shown, {**of_scene, **values}
+    viewer = Viewer(os.fspath(scene), port, values, folder)
     if browser:
         webbrowser.open(viewer.url)
     return viewer

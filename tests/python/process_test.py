@@ -86,11 +86,26 @@ class Viewer(unittest.TestCase):
             self.assertEqual([command[command.index(flag) + 1] for flag in ("view", "--size", "--max-depth", "--device")],
                              ["cornell-box", "48x32", "3", "cpu"])
             self.assertNotIn("--aov", command)
-            scene.params["materials/red/base_color"] = (0, 0, 1)
-            for changed in (scene, pertev.Scene(meshes={"a": {"vertices": [(0, 0, 0), (1, 0, 0), (0, 1, 0)],
-                                                              "faces": [(0, 1, 2)]}}, instances={"a": {"mesh": "a"}})):
-                with self.assertRaises(TypeError):
-                    pertev.view(changed)
+
+    def test_view_shows_scenes_of_arrays_and_changed_parameters(self):
+        triangle = {"vertices": [(0, 0, 0), (1, 0, 0), (0, 1, 0)], "faces": [(0, 1, 2)]}
+        of_arrays = pertev.Scene(meshes={"a": triangle}, instances={"a": {"mesh": "a"}}, environment=numpy.full((4, 8, 3), 0.5),
+                                 cameras={"front": {"eye": (0.3, 0.3, 2), "target": (0.3, 0.3, 0)}}, device="cpu", size=(16, 12), spp=4)
+        of_arrays.params["environment/scale"] = (1, 0.5, 2)
+        of_arrays.params["environment/rotation"] = 90
+        changed = pertev.scene("cornell-box", device="cpu", size=(16, 12), spp=4, material=["white roughness=0.5"])
+        changed.params["materials/red/base_color"] = (0, 0, 1)
+        with unittest.mock.patch.dict(os.environ, {"PERTEV_PROGRAM": PROGRAM}):
+            for scene in (of_arrays, changed):
+                with pertev.view(scene) as viewer:
+                    words = pathlib.Path(f"/proc/{viewer._process.pid}/cmdline").read_text().split("\0")
+                    file, settings = words[words.index("view") + 1], words[words.index("view") + 2:-1]
+                    given = dict(zip(settings, settings[1:]))
+                    environment = {name: given["--" + name] for name in ("environment", "environment-rotation") if "--" + name in given}
+                    values = {name.replace("-", "_"): value for name, value in environment.items()}
+                    shown = pertev.render(file, device="cpu", size=(16, 12), spp=4, **values)
+                numpy.testing.assert_allclose(shown.color, pertev.render(scene).color, rtol=2e-3, atol=1e-4)
+                self.assertFalse(pathlib.Path(file).exists())
 
     def test_a_missing_scene_is_an_error(self):
         with unittest.mock.patch.dict(os.environ, {"PERTEV_PROGRAM": PROGRAM}):
