@@ -48,7 +48,7 @@ class Panel(unittest.TestCase):
         with Viewer(spp=1) as viewer, BROWSER.visit(viewer.address) as page:
             page.until(READY + " && document.querySelectorAll('#readings details').length > 1")
             names = page.value("[...document.querySelectorAll('#panel details')].map((d) => d.dataset.group)")
-            for before, after in [("Light", "Scene"), ("Camera", "Path of the camera"), ("Scene", "Now"), ("Now", "Stages")]:
+            for before, after in [("Light", "Scene"), ("Camera", "Camera path"), ("Scene", "Now"), ("Now", "Stages")]:
                 self.assertLess(names.index(before), names.index(after), names)
             self.assertTrue(shown(page, "#setting-max_depth"))
             self.assertFalse(shown(page, "#setting-restir"))
@@ -107,8 +107,8 @@ class TwoWindows(unittest.TestCase):
             second.until("document.body.dataset.steers == 'false' && document.body.dataset.samples")
             self.assertTrue(shown(second, "#wheel"))
             second.drag("left", 100, 0)
-            second.until("document.querySelector('#notice').textContent.includes('cannot turn the view')")
-            first.until("document.querySelector('#wheel-text').textContent.includes('would like to turn the view')")
+            second.until("document.querySelector('#notice').textContent.includes('cannot orbit the view')")
+            first.until("document.querySelector('#wheel-text').textContent.includes('would like to orbit the view')")
             second.key("Digit2", "2")
             first.until("document.querySelector('#wheel-text').textContent.includes('Max depth')")
             before = first.value("document.body.dataset.flags")
