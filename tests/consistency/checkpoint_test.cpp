@@ -148,7 +148,7 @@ TEST_CASE("two damaged generations are refused together, each with what is wrong
     const auto alone = work.refusal();
     REQUIRE(alone);
     CHECK(!test::says(alone, previous));
-    // A missing one is no reason to begin anew in silence.
+    // A missing one is no reason to start again silently.
     fs::rename(work.file, previous);
     Messages messages;
     FilmRender next = work.film();
