@@ -161,7 +161,7 @@ constexpr Form kForms[] = {
     {"rate", MessageKind::Rate, kRateKeys},
     {"shape", MessageKind::Shape, kShapeKeys},
     {"ack", MessageKind::Ack, kAckKeys},
-    {"ask", MessageKind::RequestWheel, {}},
+    {"ask", MessageKind::RequestControl, {}},
     {"hand", MessageKind::Hand, kHandKeys},
 };
 

@@ -141,7 +141,7 @@ void RenderLoop::steer(const Steer& requested) {
     case MessageKind::Shape:
     case MessageKind::Hello:
     case MessageKind::Ack:
-    case MessageKind::RequestWheel:
+    case MessageKind::RequestControl:
     case MessageKind::Hand:
         break; // handled by the audience
     }

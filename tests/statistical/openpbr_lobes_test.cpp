@@ -79,9 +79,9 @@ TEST_CASE(
         const Vec3 wo = direction_at(2.0f * p.u.x - 1.0f, p.u.y), wi = direction_at(2.0f * q.u.x - 1.0f, q.u.y);
         CHECK(near.eval(wo, wi).g == doctest::Approx(lambert.eval(wo, wi).g).epsilon(1e-4));
     }
-    const Vec3 wo = direction_at(0.3f, 0), back = wo, onwards = direction_at(0.3f, 0.5f);
+    const Vec3 wo = direction_at(0.3f, 0), back = wo, forward = direction_at(0.3f, 0.5f);
     CHECK(rough.eval(wo, back).g > 1.5f * lambert.eval(wo, back).g);
-    CHECK(rough.eval(wo, onwards).g < 0.6f * lambert.eval(wo, onwards).g);
+    CHECK(rough.eval(wo, forward).g < 0.6f * lambert.eval(wo, forward).g);
     // By the listing of the paper (section 3), in double: roughness 0.5, cosines 0.6 and 0.4, 60 degrees between.
     const Vec3 i = direction_at(0.6f, 0), o = direction_at(0.4f, 1.0f / 6);
     const Rgb f = (1 / 0.6f) * make_rough_diffuse(albedo, 0.5f).eval(o, i);

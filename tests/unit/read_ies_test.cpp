@@ -218,7 +218,7 @@ TEST_CASE("ies: a setting gives point and spot lights by name the candelas of a 
     CHECK(scene.lights[0].intensity.g == doctest::Approx(200.0 / 683));
     const test::Lights lights(scene);
     LightSample sample; // E = I / r^2 two metres below
-    REQUIRE(sample_punctual_light<EmitterLook::Coated>(lights.view, 0, 1, {0, -2, 0}, sample));
+    REQUIRE(sample_punctual_light<EmitterVariant::Coated>(lights.view, 0, 1, {0, -2, 0}, sample));
     CHECK(sample.radiance.g == doctest::Approx(200.0 / 683 / 4));
     const std::string both[] = {text, "b*=" + file};
     CHECK(test::is_about(test::thrown_error([&] { set_profiles(scene, both, 683, messages); }), ErrorCode::BadInput,

@@ -181,7 +181,7 @@ TEST_CASE("pbrt: goniometric and projection lights face where pbrt has them") {
         const Light& light = scene.lights[0];
         const Vec3 right = (light.is_mirrored ? -1.0f : 1.0f) * cross(light.direction, light.up);
         const Vec3 to = offset.x * right + offset.y * light.direction + offset.z * light.up;
-        if (!sample_punctual_light<EmitterLook::Coated>(lights.view, 0, 1, light.position + to, sample)) return 0.0f;
+        if (!sample_punctual_light<EmitterVariant::Coated>(lights.view, 0, 1, light.position + to, sample)) return 0.0f;
         return sample.radiance.g * length_squared(offset);
     };
     const Scene lamp = load("LightSource \"goniometric\" \"rgb I\" [1 3 1]" + file);

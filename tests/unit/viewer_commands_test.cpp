@@ -1,5 +1,5 @@
-// The effect of commands before they are handled (inbox.h), and requests of clients that do not steer (wheel.h,
-// audience.h).
+// The effect of commands before they are handled (inbox.h), and requests of clients that do not steer
+// (control_holder.h, audience.h).
 
 #include <atomic>
 
@@ -152,7 +152,7 @@ TEST_CASE("every message that steers has a text for its request") {
         message.kind = static_cast<MessageKind>(kind);
         const MessageKind k = message.kind;
         const bool steers = k != MessageKind::Hello && k != MessageKind::Rate && k != MessageKind::Shape &&
-                            k != MessageKind::Ack && k != MessageKind::RequestWheel && k != MessageKind::Hand;
+                            k != MessageKind::Ack && k != MessageKind::RequestControl && k != MessageKind::Hand;
         CHECK(request_text(message).empty() != steers);
     }
 }

@@ -80,8 +80,8 @@ export class People {
       if (own.asks) text += "; you have requested control";
       else buttons = [this.askButton()];
     }
-    element("wheel").hidden = text === "";
-    element("wheel-text").textContent = text;
-    element("wheel-buttons").replaceChildren(...buttons);
+    element("control").hidden = text === "";
+    element("control-text").textContent = text;
+    element("control-buttons").replaceChildren(...buttons);
   }
 }
