@@ -125,7 +125,7 @@ TEST_CASE("a checkpoint keeps the previous generation unless it is damaged") {
     CHECK(samples_in(work.file + ".previous") == 2);
 }
 
-TEST_CASE("two damaged generations are refused together, each with what is wrong") {
+TEST_CASE("two damaged generations are refused together, each with its fault") {
     Interrupted work({});
     FilmRender film = work.film();
     Checkpoint checkpoint = work.checkpoint();

@@ -107,7 +107,7 @@ class Grows(CliTest):
 
 
 class Together(CliTest):
-    def test_a_second_client_is_told_why_it_cannot_steer_and_the_first_sees_its_request(self):
+    def test_a_second_client_gets_the_reason_why_it_cannot_steer_and_the_first_sees_its_request(self):
         with Viewer() as viewer, Client(viewer, key="first") as first:
             before = first.done()["flags"]
             with Client(viewer, key="second") as second:

@@ -218,7 +218,7 @@ TEST_CASE("no sample of rough diffuse or metal has a weight above 1.5, and none 
     }
 }
 
-TEST_CASE("retroreflection sends light back along its way, as much as the mirror would forwards") {
+TEST_CASE("retroreflection sends light back towards its source, as much as the mirror would forwards") {
     const auto sign = [](float roughness, float share, Rgb color = grey(1), float metallic = 1) {
         return make_reflection(
             {.base_color = color, .metallic = metallic, .roughness = roughness, .retroreflectivity = share});

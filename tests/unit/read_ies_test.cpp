@@ -71,7 +71,7 @@ TEST_CASE("ies: candelas are exact at the file's angles and linear between them"
     CHECK(candelas_at(uneven, 30.5, 0) == 0);
 }
 
-TEST_CASE("ies: a quarter, a half or the whole of the horizontal circle") {
+TEST_CASE("ies: files may give a quarter, a half or the whole of the horizontal circle") {
     const std::string quarter = ies_text("0 90", "0 90", "10 20 10 40", 2, 2);
     for (const double h : {0.0, 180.0, 360.0})
         CHECK(candelas_at(quarter, 89.999, h) == doctest::Approx(20).epsilon(1e-3));

@@ -126,7 +126,7 @@ TEST_CASE("pbrt: an area light belongs to its block, and nothing emits through a
     CHECK(scene.materials[scene.instances[1].material].name == "default");
 }
 
-TEST_CASE("pbrt: lights without a size") {
+TEST_CASE("pbrt: point, spot and distant lights have their amounts, positions and directions") {
     const Scene scene =
         load_lit("WorldBegin Translate 1 0 0\n"
                  "LightSource \"point\" \"rgb I\" [1 2 3] \"point3 from\" [0 5 0] \"float scale\" 2\n"
@@ -283,7 +283,7 @@ TEST_CASE("pbrt: a light whose strength or place is not a finite number is left 
     CHECK(messages.left_out().size() == 1);
 }
 
-TEST_CASE("pbrt: nothing is made up for a file without light, and infinite lights add up") {
+TEST_CASE("pbrt: no default light is added to a file without light, and infinite lights add up") {
     const Scene dark = load_lit("WorldBegin\n" + kFloorText);
     REQUIRE(dark.environment);
     CHECK(is_black(dark.environment->scale));
