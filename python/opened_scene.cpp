@@ -135,7 +135,7 @@ Session& OpenedScene::updated_session(const PictureRecord& record) {
         }
         session_->set_settings(record.settings);
     } catch (...) {
-        session_.reset(); // it is made anew with the whole scene
+        session_.reset(); // it is made again with the whole scene
         throw;
     }
     session_->set_camera(record.camera.camera);

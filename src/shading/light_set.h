@@ -180,8 +180,8 @@ HD inline Rgb emitted_radiance(const LightSetView& view, uint32_t material, Vec2
 }
 
 /// Solid-angle density of a uniformly sampled point on a triangle, 1/sr. `wi` is unit and leads from the receiver to
-/// the point, at the squared distance `distance_squared`; `normal` is cross(ab, ac). Not finite if the triangle is
-/// seen edge-on.
+/// the point, at the squared distance `distance_squared`; `normal` is cross(ab, ac). Not finite if `wi` lies in the
+/// plane of the triangle.
 template <class T = float>
 HD inline T triangle_pdf(Vec3Of<T> normal, Vec3Of<T> wi, T distance_squared) {
     return 2.0f * distance_squared / abs(dot(normal, wi));

@@ -103,7 +103,7 @@ TEST_CASE("a white rough base beneath a reflection returns all light to 1 %, and
             return make_reflection({.base_color = grey(1), .roughness = r, .diffuse_roughness = diffuse_roughness});
         });
         INFO("diffuse roughness " << diffuse_roughness << ": from " << glossy.least() << " to " << glossy.largest());
-        CHECK(glossy.r > 0.93); // at grazing angles, where light goes back along its way
+        CHECK(glossy.r > 0.93); // at grazing angles, where light returns towards its source
         CHECK(glossy.b < 1.001);
         const MeanWeight varnished = light_range(
             [&](float r) { return make_coated(make_rough_diffuse(grey(1), diffuse_roughness), 1, r, 1.5f); });
