@@ -130,7 +130,7 @@ Session& OpenedScene::updated_session(const PictureRecord& record) {
         if (parts != 0) session_->update_scene(setup_->prepared(), parts);
         session.set_settings(record.settings);
     } catch (...) {
-        session_.reset(); // it is made anew with the whole scene
+        session_.reset(); // it is made again with the whole scene
         throw;
     }
     session.set_camera(record.camera.camera);

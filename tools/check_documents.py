@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Fails where a document, a comment or what a script says of itself names what is not there: a file, an anchor, a source file, a script,
 a flag or a preset. It also fails where all documents together have more than 40,000 words, the tour names more than forty files, a text
-speaks of internal targets, a picture has no licence in docs/notices.md, or a key of metadata is in no table.
+speaks of internal targets, a picture has no licence in docs/notices.md, a key of metadata is in no table, a line of a block without a
+language is no command that a test runs and is not on NOT_RUN, or status.md has too few questions or figures.
 
     tools/check_documents.py
     tools/check_documents.py --links      asks for the documents' external links instead
@@ -23,7 +24,15 @@ MOST_WORDS, MOST_FILES_OF_TOUR = 40_000, 40
 SOURCE = re.compile(r"`([\w./-]+\.(?:h|inl|cpp|cu|py|sh|js|md|cmake))`")
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 COMMAND = re.compile(r"(?:build/bin/|bench/|tools/|tests/)[\w./-]+|pertev\b(?!\.)|\./setup\.sh|cmake|ctest|ninja|python3")
-TARGETS = re.compile(r"(?i)\b(?:was|were) asked for|\basked for were|\bhoped for\b|(?<![`|\w])S[58](?![`|\w])")
+TARGETS = re.compile(r"(?i)\b(?:was|were) asked for|\basked for were|\bhoped for\b|\bwere planned\b|\b(?:aim|goal|target) (?:of [\d,.]+|is missed|was missed)|"
+                     r"\b(?:limit is|at most) \w+ files outside|\bmet it at\b|(?<![`|\w])S[58](?![`|\w])")
+LEAST_QUESTIONS, LEAST_FIGURES = 30, 10 # rows of status.md
+# Begins of commands that no test runs, and why.
+NOT_RUN = {
+    "ffmpeg ": "it is another project's program, and its input is a render of some minutes",
+    "venv/bin/pip install .": "it builds for minutes; tools/check_wheel.sh installs what it makes",
+    "venv/bin/python -c ": "tests/python/documents_test.py runs the code with the module of the build",
+}
 FLAG = re.compile(r"(?<![\w/-])--[a-z][a-z-]*[a-z]")
 FOLDERS = ["src", "apps", "tests", "tools", "bench", "cmake", "docs", "examples", "packaging", "scenes"]
 # This section's table has new files, which do not exist yet, and existing files that a change touches, with their number.
@@ -53,17 +62,48 @@ def without_fences(text):
             yield line
 
 
-def commands(text):
-    """The shell commands of fenced and indented blocks, without comments, with continued lines joined."""
-    fenced, found = False, []
+def shell_lines(text):
+    """(line, whether it must be a command) of blocks, without comments, with continued lines joined and joined commands apart. A fenced
+    block without a language, or with sh, has only commands; an indented block may be a formula."""
+    language, found = None, []
     for line in text.replace("\\\n", " ").splitlines():
         if line.startswith("```"):
-            fenced = not fenced
-        elif fenced or line.startswith("    "):
-            for part in re.split(r"\s#\s|\s{2,}#", line.strip())[0].split(" && "):
-                if COMMAND.match(re.sub(r"^[A-Z_]+=\S+ ", "", part)):
-                    found.append(part.strip())
+            language = line[3:].strip() if language is None else None
+        elif language in ("", "sh", "bash") or language is None and line.startswith("    "):
+            parts = re.split(r"\s#\s|\s{2,}#", line.strip())[0].split(" && ")
+            found += [(part.strip(), language is not None) for part in parts if part.strip() and not part.startswith("# ")]
     return found
+
+
+def is_command(line):
+    return COMMAND.match(re.sub(r"^[A-Z_]+=\S+ ", "", line)) is not None
+
+
+def commands(text):
+    """The shell commands of fenced and indented blocks that tests run."""
+    return [line for line, _ in shell_lines(text) if is_command(line)]
+
+
+def not_run(text):
+    """The lines of blocks of commands that no test runs."""
+    return [line for line, must in shell_lines(text) if must and not is_command(line)]
+
+
+def not_run_faults(texts):
+    """Faults of {name: text}: lines that are neither run nor on the list, and entries of the list that no document has."""
+    lines = [(name, line) for name, text in texts.items() for line in not_run(text)]
+    yield from (f"{name}: no test runs this, and NOT_RUN has no reason: {line}" for name, line in lines if not line.startswith(tuple(NOT_RUN)))
+    yield from (f"NOT_RUN: no document has {begin}" for begin in NOT_RUN if not any(line.startswith(begin) for _, line in lines))
+
+
+def status_faults(text):
+    """Faults of status.md if its tables have too few rows."""
+    questions = len(re.findall(r"[|] [^|]*[?] (?=[|])", text.partition("## Question and file")[2]))
+    figures = len(re.findall(r"(?m)^[|](?! what |-)", text.partition("<!-- figures -->")[2].partition("<!-- end -->")[0]))
+    if questions < LEAST_QUESTIONS:
+        yield f"status.md answers {questions} questions; {LEAST_QUESTIONS} is the least"
+    if figures < LEAST_FIGURES:
+        yield f"status.md has {figures} figures; {LEAST_FIGURES} is the least"
 
 
 def inline_commands(text):
@@ -173,6 +213,12 @@ def own_faults(name, said, code, known):
     yield from (f"{name}: says {flag}, which neither it nor pertev has" for flag in sorted(set(FLAG.findall(said))) if flag not in code + known)
 
 
+def help_faults(name, code):
+    """A fault of a script that would take --help for an argument."""
+    if '__name__ == "__main__"' in code and "argparse" not in code and '"--help"' not in code and "write_or_check" not in code:
+        yield f"{name}: has no --help"
+
+
 def named_faults(name, text):
     """Files that a source names, as its comments do, and that are not there."""
     for file in sorted(set(re.findall(r"\b(?:tools|tests|bench|docs)/[\w/.-]+\.(?:py|sh|json|cpp|h|md)\b", text))):
@@ -197,6 +243,7 @@ def faults_of_all():
     known = "".join(path.read_text(encoding="utf-8") for path in [*(ROOT / "apps/cli").glob("*.cpp"), ROOT / "docs/settings.md"])
     for script in scripts():
         yield from own_faults(script.name, *parts_of(script), known)
+        yield from help_faults(script.name, parts_of(script)[1]) if script.suffix == ".py" else ()
     settings = (ROOT / "docs/settings.md").read_text(encoding="utf-8")
     conventions = (ROOT / "docs/conventions.md").read_text(encoding="utf-8").partition("The metadata of an EXR")[2]
     for source in tracked:
@@ -204,6 +251,7 @@ def faults_of_all():
             yield from named_faults(source, (ROOT / source).read_text(encoding="utf-8"))
         if source.startswith("src/session/") and source.endswith(".cpp"):
             yield from metadata_faults(source, (ROOT / source).read_text(encoding="utf-8"), conventions, settings)
+    yield from not_run_faults({document.name: document.read_text(encoding="utf-8") for document in documents()})
     words = 0
     for document in documents():
         text = document.read_text(encoding="utf-8")
@@ -212,6 +260,8 @@ def faults_of_all():
         if document.name != "CHANGELOG.md": # it names files that are gone
             yield from source_faults(document.name, text, tracked)
         yield from command_faults(document.name, text, presets)
+        if document.name == "status.md":
+            yield from status_faults(text)
         if document.name == "architecture.md":
             yield from change_faults(text, ends_of(tracked))
         yield from (f"{document.name}: an internal target or a job's number: {match[0]}" for match in TARGETS.finditer(text))
@@ -232,6 +282,14 @@ def self_test():
     text = "# Some `code`: a title\n\n```\npertev render a \\\n  -o b  # why\ntools/x.py && ./setup.sh\n# no\n```\n\n    pertev view c\n"
     assert anchors_of(text) == {"some-code-a-title"}, anchors_of(text)
     assert commands(text) == ["pertev render a    -o b", "tools/x.py", "./setup.sh", "pertev view c"], commands(text)
+    assert commands("```\nx && ctest  # why\n# why\n```\n```python\nctest\n```\n    ninja\n    f = m a\n") == ["ctest", "ninja"]
+    listed = "".join(f"```\n{begin}x\n```\n" for begin in NOT_RUN)
+    assert not list(not_run_faults({"x": listed + "```sh\nctest\n```\n```text\nx\n```\n    x\n"}))
+    assert len(list(not_run_faults({"x": listed + "```\nx --y && ctest\n# why\n```\n"}))) == 1
+    assert len(list(not_run_faults({"x": ""}))) == len(NOT_RUN)
+    rows = "<!-- figures -->\n| what | a |\n|---|---|\n{}<!-- end -->\n## Question and file\n| question | file |\n{}"
+    for figures, questions, count in ((10, 15, 0), (9, 15, 1), (10, 14, 1), (9, 14, 2)):
+        assert len(list(status_faults(rows.format("| x | 1 |\n" * figures, "| a? | b | c? | d |\n" * questions)))) == count
     assert inline_commands("a `pertev render\nX` b\n```\n`pertev no`\n```\n") == ["pertev render X"]
     here = ROOT / "docs" / "tour.md"
     assert list(link_faults(here, "[a](none.md)", lambda _: "")) and list(link_faults(here, "[a](#none)", lambda _: "# some"))
@@ -245,6 +303,7 @@ def self_test():
     assert list(script_faults("x", "python3 examples/turntable.py a --none")) and not list(script_faults("x", "python3 examples/turntable.py --fps 3"))
     assert not list(script_faults("x", "tools/check_sizes.py -- --none")) and not list(script_faults("x", "bench/trace_bench"))
     assert list(own_faults("x", "tools/none.py or --none", "", "")) and not list(own_faults("x", "--a-b, --c", '"--a-b"', '"--c"'))
+    assert list(help_faults("x", 'if __name__ == "__main__":')) and not list(help_faults("x", 'import argparse\nif __name__ == "__main__":'))
     assert list(metadata_faults("x", '{"pertev.a", b}', "`b`", "`--b`")) and not list(metadata_faults("x", '"pertev.a" "pertev.b_c"', "`a`", "`--b-c`"))
     assert list(named_faults("x", "// see tools/none.py")) and not list(named_faults("x", "// bench/jobs.json has it"))
     assert "--self-test" in parts_of(pathlib.Path(__file__))[0] and "--self-test" in parts_of(pathlib.Path(__file__))[1]
@@ -253,6 +312,9 @@ def self_test():
     def refuse(link):
         raise OSError(link)
     assert list(broken_links(refuse))
+    for target in ("The aim of 2,500 fewer is missed", "The limit is six files outside", "sketches met it at 0c4e", "where 3,000 were planned"):
+        assert TARGETS.search(target), target
+    assert not TARGETS.search("The limit is the GPU's; a ray is aimed at 3 targets of each kind.")
     assert TARGETS.search("1.3 was asked for") and TARGETS.search("S5 is") and not TARGETS.search("`S5` and --job S5|S8")
 
 
@@ -266,4 +328,7 @@ def main(arguments):
 
 
 if __name__ == "__main__":
+    if sys.argv[1:] == ["--help"]:
+        print(__doc__)
+        sys.exit()
     sys.exit(main(sys.argv[1:]))

@@ -81,7 +81,7 @@ def fault_of(path, module, quoted, target):
     is_settings = module != "integrators" and target.endswith("_settings.h")
     is_open = is_inside or is_shared or is_settings
     if owner == "integrators" and len(parts) > 2 and parts[:2] != KINDS and not is_open:
-        return "an integrator's folder is seen by itself and integrators/kinds alone, but for its settings"
+        return "only an integrator's own folder and integrators/kinds may include it, except for its settings"
     return None
 
 
@@ -247,4 +247,7 @@ def main():
 
 
 if __name__ == "__main__":
+    if sys.argv[1:] == ["--help"]:
+        print(__doc__)
+        sys.exit()
     main()

@@ -1,10 +1,14 @@
 #!/usr/bin/env python3
-"""Refuses comments that begin as a fragment or use vague words, and commit subjects that are too long, with file and line.
+"""Refuses comments that begin as a fragment, vague words in comments and in text for users, and commit subjects that are too long.
 
 A comment, docstring or trailing comment names a thing or is a sentence, and is understood without its neighbour. One that
 begins with a word of FRAGMENTS leans on another one, and the comment of a declaration that begins with one of CLAUSES is
 half a sentence; so is a trailing comment that begins with one of JOINTS. VAGUE are words with a plain or standard one: name who acts, say "emitter", "truncated", "except". Names
-in backquotes and strings are not checked. Subjects are checked for the commits that follow the one that added
+in backquotes and quotes of a comment are not checked.
+
+Text for users is checked for VAGUE, except for "lamp", which is their word: documents, string literals and templates of C++ and
+JavaScript, HTML, and tests' names. Strings of tests are often files or keys, so only names of tests are checked there, and strings
+without a space are keys everywhere. A comment behind a command in a document is no fragment either. Subjects are checked for the commits that follow the one that added
 this file; where there is no git or no history, they are not checked.
 
 `check_words.py [ROOT]` checks the tree, `--self-test` checks this tool on text that it must refuse or accept.
@@ -26,7 +30,9 @@ CLAUSES = re.compile(r"/// *(?:its|their|whether|why|how|where|when|that|these|i
                      re.IGNORECASE)
 JOINTS = re.compile(r"(?://+|/\*+|#+)\s*(?:and|or|also|then|which|whose)\b", re.IGNORECASE)
 VAGUE = re.compile(r"\b(?:(?:is|are) (?:told|asked|seen)|asked (?:for|about)|somebody|nobody(?!\()|stuff|thrice|the very|but for|"
-                   r"cut short|proven|lamps?|what is (?:there|wrong|right)|for ever|whichever way|as it is,)\b", re.IGNORECASE)
+                   r"cut short|proven|lamps?|what is (?:there|wrong|right|to be)|what had been|for ever|whichever way|as it is,|anew|"
+                   r"leaves? no trace)\b", re.IGNORECASE)
+VAGUE_FOR_USERS = re.compile(VAGUE.pattern.replace("lamps?|", ""), re.IGNORECASE)
 LONGEST_SUBJECT = 72
 
 # Strings are matched so that a "//" in one begins no comment; a ' between digits separates them.
@@ -36,6 +42,21 @@ TOKEN = re.compile(
 
 def comments_of_c(text):
     """Yields (line, text) of each comment in C++ or JavaScript; lines that continue a comment belong to its first."""
+    yield from joined(lines_of_comments(text))
+
+
+def joined(comments):
+    """Yields (line, text) of comments from (line, text, whether it continues the one before)."""
+    first, whole = 0, ""
+    for line, text, is_continued in comments:
+        if not is_continued and whole:
+            yield first, whole
+        first, whole = (first, f"{whole}\n{text}") if is_continued else (line, text)
+    if whole:
+        yield first, whole
+
+
+def lines_of_comments(text):
     line, seen, column_above = 1, 0, {}
     for match in TOKEN.finditer(text):
         line += text.count("\n", seen, match.start())
@@ -45,8 +66,7 @@ def comments_of_c(text):
         before = text[text.rfind("\n", 0, seen) + 1:seen]
         is_continued = not before.strip() and column_above.get(line - 1) == len(before)
         column_above[line] = len(before)
-        if not is_continued:
-            yield line, match[0]
+        yield line, match[0], is_continued
 
 
 def comments_of_python(text, name):
@@ -54,23 +74,29 @@ def comments_of_python(text, name):
     for node in ast.walk(ast.parse(text, name)):
         if isinstance(node, (ast.Module, ast.FunctionDef, ast.ClassDef)) and ast.get_docstring(node):
             yield node.body[0].lineno, ast.get_docstring(node)
+    yield from joined(lines_of_python_comments(text))
+
+
+def lines_of_python_comments(text):
     column_above = {}
     for token in tokenize.generate_tokens(iter(text.splitlines(keepends=True)).__next__):
         if token.type == tokenize.COMMENT:
             line, column = token.start
-            if token.line[:column].strip() or column_above.get(line - 1) != column:
-                yield line, token.string
+            yield line, token.string, not token.line[:column].strip() and column_above.get(line - 1) == column
             column_above[line] = column
 
 
 def comments_of_script(text):
     """Yields (line, text) of each comment in a shell script or a CMake file. A "#" in quotes of its line begins none."""
+    yield from joined(lines_of_script_comments(text))
+
+
+def lines_of_script_comments(text):
     column_above = {}
     for line, content in enumerate(text.splitlines(), 1):
         match = re.match(r"""(?:"(?:\\.|[^"\\])*"|'[^']*'|[^"'#]|(?<=\S)#)*(?<!\S)(?=#)""", content)
         if match and not (line == 1 and content.startswith("#!")):
-            if match[0].strip() or column_above.get(line - 1) != match.end():
-                yield line, content[match.end():]
+            yield line, content[match.end():], not match[0].strip() and column_above.get(line - 1) == match.end()
             column_above[line] = match.end()
 
 
@@ -104,9 +130,79 @@ def comment_faults(root):
             is_joint = lines and is_trailing(comment, lines[line - 1])
             if FRAGMENTS.match(comment) or CLAUSES.match(comment) or is_joint:
                 yield f"{file.relative_to(root)}:{line}: a comment is no fragment: {comment.splitlines()[0]}"
-            vague = VAGUE.search(re.sub(r"`[^`]*`|\"[^\"]*\"|'[^']*'", "", re.sub(r"\s+(?://+|#+|\*)?\s*", " ", comment)))
-            if vague:
-                yield f"{file.relative_to(root)}:{line}: \"{vague[0]}\" is vague: {comment.splitlines()[0]}"
+            plain = re.sub(r"`[^`]*`|\"[^\"]*\"|'[^']*'", "", re.sub(r"\s+(?://+|#+|\*)?\s*", " ", comment))
+            if vague := VAGUE.search(plain):
+                yield f"{file.relative_to(root)}:{line}: \"{vague[0]}\" is vague: ...{plain[max(0, vague.start() - 40):vague.end() + 40]}..."
+
+
+def prose_of(text):
+    """Yields (line, text, is_comment) of each paragraph of a document, with blanks for names in backquotes, and of each comment in a fence."""
+    fenced, paragraph, first = False, [], 1
+    for line, content in enumerate([*text.splitlines(), ""], 1):
+        is_fence = content.startswith("```")
+        if not fenced and not is_fence and content.strip():
+            first = first if paragraph else line
+            paragraph.append(content)
+            continue
+        if paragraph:
+            yield first, re.sub(r"`[^`]*`", lambda name: re.sub(r"[^\n]", " ", name[0]), "\n".join(paragraph)), False
+        paragraph = []
+        fenced ^= is_fence
+        comment = re.search(r"(?:^|\s)(#\s.*)", content) if fenced and not is_fence else None
+        if comment:
+            yield line, comment[1], True
+
+
+def strings_of_c(text):
+    """Yields (line, text) of each string literal or template of C++ or JavaScript; adjacent literals are one."""
+    end, found, line = 0, "", 1
+    for match in re.finditer(rf"{TOKEN.pattern}|`(?:\\.|[^`\\])*`", text):
+        if match[0].startswith(("//", "/*")):
+            continue
+        if not found or text[end:match.start()].strip():
+            yield line, found
+            found, line = "", text.count("\n", 0, match.start()) + 1
+        found, end = found + match[0].strip('"'), match.end()
+    yield line, found
+
+
+def names_of_tests(file, text):
+    """Yields (line, text) of each test's name."""
+    pattern = r"def test_(\w+)" if file.suffix == ".py" else r'(?:TEST_CASE|SUBCASE|TEST_EACH)\w*\(\s*"((?:\\.|[^"\\]|"\s*")*)"'
+    for match in re.finditer(pattern, text):
+        yield text.count("\n", 0, match.start()) + 1, re.sub(r'"\s*"', "", match[1]).replace("_", " ")
+
+
+def texts_for_users(root):
+    """Yields (file, line, text) of what users and readers of tests see, except for documents."""
+    for folder in ("src", "apps", "python", "bench", "tests"):
+        for file in sorted((root / folder).rglob("*")):
+            if file.suffix not in C_SUFFIXES | {".py", ".html"}:
+                continue
+            text = file.read_text(encoding="utf-8")
+            if folder == "tests":
+                yield from ((file, *found) for found in names_of_tests(file, text))
+            elif file.suffix in C_SUFFIXES:
+                yield from ((file, line, string) for line, string in strings_of_c(text) if " " in string)
+            elif file.suffix == ".html":
+                yield from ((file, line, content) for line, content in enumerate(text.splitlines(), 1))
+
+
+def vague_faults(root, file, line, text):
+    text_of_line = re.sub(r"\s", " ", text)
+    for vague in VAGUE_FOR_USERS.finditer(text_of_line):
+        around = text_of_line[max(0, vague.start() - 40):vague.end() + 40]
+        yield f"{file.relative_to(root)}:{line + text.count(chr(10), 0, vague.start())}: \"{vague[0]}\" is vague: ...{around}..."
+
+
+def user_faults(root):
+    for file in [*sorted((root / "docs").glob("*.md")), *sorted(root.glob("*.md"))]:
+        for line, text, is_comment in prose_of(file.read_text(encoding="utf-8")):
+            if is_comment and (FRAGMENTS.match(text) or JOINTS.match(text)):
+                yield f"{file.relative_to(root)}:{line}: a comment is no fragment: {text}"
+            yield from vague_faults(root, file, line, text)
+    for file, line, text in texts_for_users(root):
+        yield from vague_faults(root, file, line, text)
 
 
 def git(root, *arguments):
@@ -168,6 +264,26 @@ CASES = [
     (".py", "a = 1  # nobody steers\n", 1),
     (".h", "/// Drops messages, as nobody() does; `lamp` sets 'a lamp'.\n", 0),
     (".cpp", 'auto a = "lamp";\n', 0),
+    (".h", "int a; // the history begins anew\n", 1),
+    (".h", "// Their order leaves\n// no trace.\nint a;\n", 1),
+]
+
+# A file's name, text, and the line of the fault in text for users; 0 if there is none.
+TEXTS = [
+    ("docs/a.md", "# A\n\nThe `view` that\nnobody steers.\n", 4),
+    ("docs/a.md", "The lamp, `nobody()` and `stuff`.\n\n```\nstuff --nobody\n```\n", 0),
+    ("README.md", "```\na -o b  # of all\n```\n", 2),
+    ("README.md", "```\na -o b  # and then\n```\n", 2),
+    ("README.md", "```\na -o b  # asked for\n```\n", 2),
+    ("README.md", "# Of all\n\n```\na -o b#of  # its pictures\n# A list\n```\n# And more\n", 0),
+    ("src/a.cpp", 'auto a = "the view is "\n         "told";\n', 1),
+    ("src/a.cpp", 'auto a = "nobody", b = "a lamp", c = "is", d = "told"; // is told\n', 0),
+    ("src/a.cpp", 'auto a = R"(one\ntwo is seen)";\n', 2),
+    ("apps/a.js", "const a = `x ${b}: nobody steers`;\n", 1),
+    ("apps/a.js", "const a = 1;\nf('nobody steers');\n", 2),
+    ("apps/a.html", "<p>\n<b aria-label=\"what is there\">\n", 2),
+    ("tests/a.cpp", 'TEST_CASE("a client is "\n          "told") {\n f("nobody knows");\n', 1),
+    ("tests/a.py", "a = 'nobody knows'\ndef test_a_client_is_told(self):\n    pass\n", 2),
 ]
 
 
@@ -180,6 +296,14 @@ def self_test():
             file.write_text(text)
             faults = list(comment_faults(pathlib.Path(folder)))
             if len(faults) != bool(line) or (line and not faults[0].startswith(f"src/a{name}:{line}: ")):
+                failures.append(f"{text!r}: {faults}")
+    for name, text, line in TEXTS:
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / name
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(text)
+            faults = list(user_faults(pathlib.Path(folder)))
+            if len(faults) != bool(line) or (line and not faults[0].startswith(f"{name}:{line}: ")):
                 failures.append(f"{text!r}: {faults}")
     with tempfile.TemporaryDirectory() as folder:
         root = pathlib.Path(folder) / "whole"
@@ -209,10 +333,13 @@ def main():
         print("\n".join(failures) or "the check refuses and accepts what it should")
         sys.exit(1 if failures else 0)
     root = pathlib.Path(sys.argv[1]) if sys.argv[1:] else pathlib.Path(__file__).resolve().parent.parent
-    faults = list(comment_faults(root)) + list(subject_faults(root))
-    print("\n".join(faults) or "no comment begins as a fragment or is vague, and no subject is too long")
+    faults = [*comment_faults(root), *user_faults(root), *subject_faults(root)]
+    print("\n".join(faults) or "no comment begins as a fragment, no text is vague, and no subject is too long")
     sys.exit(1 if faults else 0)
 
 
 if __name__ == "__main__":
+    if sys.argv[1:] == ["--help"]:
+        print(__doc__)
+        sys.exit()
     main()

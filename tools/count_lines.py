@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Counts the lines of the sources that are neither blank nor comment, by top folder: `tools/count_lines.py [REVISION ...]`.
+"""Counts the lines of the sources that are neither blank nor comment, by top folder.
 
 Without a revision the working tree is counted, formatted as it is; with some, what Git holds of each. Lines of C++, CUDA,
 C, JavaScript, shell, Python and CMake; a line with code and a comment counts. Docstrings count as comments.
 """
 
+import argparse
 import pathlib
 import re
 import subprocess
-import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FOLDERS = ["src", "apps", "bench", "tools", "python"]
@@ -43,7 +43,9 @@ def files_of(revision):
 
 
 def main():
-    for revision in sys.argv[1:] or [None]:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("revision", nargs="*", metavar="REVISION", help="a commit, branch or tag")
+    for revision in parser.parse_args().revision or [None]:
         counts = dict.fromkeys(FOLDERS, 0)
         for path, text in files_of(revision):
             counts[path.parts[0]] += code_lines(path.suffix, text)

@@ -6,6 +6,7 @@ from the lowest degree up, and the rest is fitted again after each rounding, so 
 """
 
 import struct
+import sys
 
 import numpy
 from mpmath import mp, mpf, acos, asin, atan, cos, exp, log, pi, sin, sqrt, tan
@@ -109,4 +110,7 @@ def main():
 
 
 if __name__ == "__main__":
+    if sys.argv[1:] == ["--help"]:
+        print(__doc__)
+        sys.exit()
     main()

@@ -68,7 +68,7 @@ MUTATIONS = [
      ("src/shading/lobes/microfacets.h", "(is_beckmann ? beckmann_lost(cosine, width)", "(false ? beckmann_lost(cosine, width)")),
     ("single scattering that is compensated", "statistical/mitsuba_lobes", ("src/shading/lobes/packed_lobes.h", "(widths.is_single ? kSingle : 0u)", "0u")),
     ("a coat that does not dim what glows beneath it where lights are sampled", "statistical/coated_emitter",
-     ("src/shading/light_set.h", "const Rgb radiance = emitted_radiance<kLook>(view, triangle.material, uv, normal, wi);", "const Rgb radiance = surface_emission<kLook>(view, triangle.material, uv);")),
+     ("src/shading/light_set.h", "const Rgb radiance = emitted_radiance<kEmitters>(view, triangle.material, uv, normal, wi);", "const Rgb radiance = surface_emission<kEmitters>(view, triangle.material, uv);")),
     ("a coat that does not dim the particles of what glows beneath it", "statistical/coated_emitter",
      ("src/integrators/subpaths/emit_particle.h", "surface.coat_weight > 0 ? coat_transmittance(", "false ? coat_transmittance(")),
     ("a measured metal with the numbers of another", "unit/set_materials", ("src/scene/metals.cpp", "std::ranges::find(kMetals, name, &MeasuredMetal::name)", "std::ranges::find_if(kMetals, [&](auto& m) { return m.name > name; })")),

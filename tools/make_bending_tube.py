@@ -77,6 +77,9 @@ def make(rings, segments):
 
 
 if __name__ == "__main__":
+    if sys.argv[1:] == ["--help"]:
+        print(__doc__)
+        sys.exit()
     if len(sys.argv) not in (2, 4) or sys.argv[1].startswith("-"):
         sys.exit(__doc__)
     rings, segments = (int(sys.argv[2]), int(sys.argv[3])) if len(sys.argv) == 4 else (512, 256)

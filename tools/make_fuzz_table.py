@@ -11,6 +11,7 @@ return.
 A row of the table is a node: a, b / sine of the view, the magnitude, and the albedo, rather too much between nodes.
 """
 import pathlib
+import sys
 
 import numpy as np
 from scipy.optimize import minimize
@@ -135,4 +136,7 @@ def tabulate(nodes):
 
 
 if __name__ == "__main__":
+    if sys.argv[1:] == ["--help"]:
+        print(__doc__)
+        sys.exit()
     tabulate(fit_layer())

@@ -89,6 +89,9 @@ def main(out, is_nested):
 
 
 if __name__ == "__main__":
+    if sys.argv[1:] == ["--help"]:
+        print(__doc__)
+        sys.exit()
     if len(sys.argv) not in (2, 3) or sys.argv[1].startswith("-") or sys.argv[2:] not in ([], ["--nested"]):
         sys.exit(__doc__)
     main(sys.argv[1], len(sys.argv) == 3)

@@ -42,6 +42,9 @@ def main(out, has_mirror):
 
 
 if __name__ == "__main__":
+    if sys.argv[1:] == ["--help"]:
+        print(__doc__)
+        sys.exit()
     arguments = [argument for argument in sys.argv[1:] if argument != "--mirror"]
     if len(arguments) != 1 or arguments[0].startswith("-"):
         sys.exit(__doc__)

@@ -144,7 +144,7 @@ def pick(table, options):
 
 def source_of(path, measured):
     """One line that says where the figures come from."""
-    where = measured["device"] or measured["processor"]
+    where = measured["device"] or ("any machine" if measured["processor"] == "any" else measured["processor"])
     parts = [where, f"driver {measured['driver']}" if measured["driver"] else None,
              (measured["program"] or "").removeprefix("pertev "), (measured["date"] or "")[:10]]
     return f"([{pathlib.PurePath(path).stem}](../bench/{path}): {', '.join(p for p in parts if p)})\n"
@@ -228,6 +228,7 @@ def self_test():
         assert len(list(peer_faults(tables, {"jobs": {"S": {"mitsuba": mitsuba, "pbrt": 7e6}}, "scenes": {}}))) == count
     text = render("results/x.json", good, "a", "")
     one_unit = {**good, "tables": [{**good["tables"][0], "columns": [{**column, "unit": "s" if k else None} for k, column in enumerate(good["tables"][0]["columns"])]}]}
+    assert source_of("results/x.json", {**good, "processor": "any"}) == "([x](../bench/results/x.json): any machine, 0adaae0, 2026-11-26)\n"
     assert "| scene, s | rays | seconds |" in render("results/x.json", one_unit, "a", "")
     assert "| scene | rays, Mrays/s | seconds, s |" in text and "| Sponza | 1.10 |  |" in text and "3e-5" in text, text
     chosen = render("results/x.json", good, "a", "columns=k,r where=k:two_words")
@@ -278,4 +279,7 @@ def main(arguments):
 
 
 if __name__ == "__main__":
+    if sys.argv[1:] == ["--help"]:
+        print(__doc__)
+        sys.exit()
     sys.exit(main(sys.argv[1:]))

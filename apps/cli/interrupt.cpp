@@ -47,7 +47,7 @@ void end_at_interrupt(bool json) {
     g_last_line = json ? error_object(ErrorCode::Interrupted, text) + '\n' : "pertev: " + text + '\n';
     g_last_line_goes_to = json ? STDOUT_FILENO : STDERR_FILENO;
     std::signal(SIGTERM, end_process);
-    std::signal(SIGINT, end_process); // last: where it is heard, both are
+    std::signal(SIGINT, end_process); // last, so that both are handled once SIGINT is
 }
 
 void listen_for_interrupt() {

@@ -233,7 +233,7 @@ std::string settings_document() {
         "stored there, because they\n"
         "belong to the machine and the run: threads, folders to read from, or a time limit. \"Not with: "
         "!none:max_depth=0\" is a rule\n"
-        "for all values but none.\n";
+        "for all values except none.\n";
     std::string_view group;
     std::string verbs;
     for (const Setting& setting : all_settings()) {

@@ -46,7 +46,7 @@ std::string Audience::received(uint32_t id, std::string_view text, double now_s)
     if (!client.has_joined) {
         if (message->kind != MessageKind::Hello) return "no hello";
         client.has_joined = true;
-        wheel_.join(id, message->key, now_s);
+        control_.join(id, message->key, now_s);
         clients_changed();
         inbox_.put(Joined{});
         return {};
@@ -57,19 +57,19 @@ std::string Audience::received(uint32_t id, std::string_view text, double now_s)
         changed_.notify_one();
         return {};
     }
-    if (message->kind == MessageKind::RequestWheel) {
-        wheel_.request_wheel(id);
+    if (message->kind == MessageKind::RequestControl) {
+        control_.request_control(id);
         clients_changed();
         return {};
     }
     if (message->kind == MessageKind::Hand) {
-        if (wheel_.hand(id, message->client, now_s)) clients_changed();
+        if (control_.hand(id, message->client, now_s)) clients_changed();
         return {};
     }
-    // A client that has just lost the wheel may still send commands and is not dropped for that. Every client may
+    // A client that has just lost control may still send commands and is not dropped for that. Every client may
     // pick.
-    if (!wheel_.steers(id)) note_request(id, client, *message, now_s);
-    const bool may = wheel_.steers(id) || (message->kind == MessageKind::Pick && message->use == PickUse::Show);
+    if (!control_.steers(id)) note_request(id, client, *message, now_s);
+    const bool may = control_.steers(id) || (message->kind == MessageKind::Pick && message->use == PickUse::Show);
     if (may && !inbox_.put(Steer{id, *std::move(message)}) && !inbox_.is_closed()) return "too many messages wait";
     return {};
 }
@@ -78,16 +78,17 @@ std::string Audience::received(uint32_t id, std::string_view text, double now_s)
 void Audience::note_request(uint32_t id, Client& client, const ClientMessage& message, double now_s) {
     if (message.kind == MessageKind::Pick && message.use == PickUse::Show) return; // anyone may do that
     const std::string request = request_text(message);
-    const Wheel::Request is = request.empty() ? Wheel::Request::None : wheel_.request(id, request, now_s);
-    if (is == Wheel::Request::None) return;
-    if (is == Wheel::Request::New) clients_changed();
+    const ControlHolder::Request is =
+        request.empty() ? ControlHolder::Request::None : control_.request(id, request, now_s);
+    if (is == ControlHolder::Request::None) return;
+    if (is == ControlHolder::Request::New) clients_changed();
     if (now_s - client.refused_at_s < kRefusalEvery) return; // a drag consists of many messages
     client.refused_at_s = now_s;
     const std::string why =
-        wheel_.holder() != 0
+        control_.holder() != 0
             ? fmt::format("viewer {} steers, so this page cannot {}. Viewer {} sees your request and can hand over",
-                          wheel_.holder(), request, wheel_.holder())
-            : "the viewer that steered has left and may return within seconds. \"ask to steer\" takes over";
+                          control_.holder(), request, control_.holder())
+            : "the viewer that steered has left and may return within seconds. \"request control\" takes over";
     put_text(client, notice_text("why", why));
     changed_.notify_one();
 }
@@ -107,13 +108,13 @@ void Audience::text_was_sent(uint32_t client) {
 void Audience::close(uint32_t client, double now_s) {
     const std::lock_guard lock(mutex_);
     clients_.erase(client);
-    wheel_.leave(client, now_s);
+    control_.leave(client, now_s);
     clients_changed();
 }
 
 std::vector<uint32_t> Audience::tick(double now_s) {
     const std::lock_guard lock(mutex_);
-    if (wheel_.tick(now_s)) clients_changed();
+    if (control_.tick(now_s)) clients_changed();
     std::vector<uint32_t> mute;
     for (const auto& [id, client] : clients_) {
         if (!client.has_joined && now_s - client.opened_s > kGreeting) mute.push_back(id);
@@ -163,11 +164,11 @@ bool Audience::is_behind(double now_s) const {
 
 std::string Audience::clients_text(uint32_t you) const {
     std::string people;
-    for (const Wheel::Seat& seat : wheel_.seats()) {
+    for (const ControlHolder::Seat& seat : control_.seats()) {
         people += fmt::format(R"({}{{"id":{},"asks":{},"request":{}}})", people.empty() ? "" : ",", seat.client,
-                              seat.wants_wheel, json_string(seat.request));
+                              seat.wants_control, json_string(seat.request));
     }
-    return fmt::format(R"({{"type":"people","you":{},"steers":{},"people":[{}]}})", you, wheel_.holder(), people);
+    return fmt::format(R"({{"type":"people","you":{},"steers":{},"people":[{}]}})", you, control_.holder(), people);
 }
 
 std::optional<SendJob> Audience::text_job(uint32_t id, Client& client) {

@@ -15,11 +15,11 @@
 #include <string>
 #include <vector>
 
+#include "apps/viewer/control_holder.h"
 #include "apps/viewer/frame_header.h"
 #include "apps/viewer/frame_source.h"
 #include "apps/viewer/inbox.h"
 #include "apps/viewer/link_pace.h"
-#include "apps/viewer/wheel.h"
 
 namespace pertev {
 
@@ -118,7 +118,7 @@ private:
     std::condition_variable changed_;
     std::map<uint32_t, Client> clients_;
     uint32_t last_served_ = 0; // clients are served round robin
-    Wheel wheel_;
+    ControlHolder control_;
     std::shared_ptr<const PublishedFrame> latest_;
     uint32_t published_ = 0, serial_ = 0;
     std::string state_;

@@ -143,7 +143,7 @@ struct Form {
 constexpr Form kForms[] = {
     {"hello", MessageKind::Hello, kHelloKeys},
     {"move", MessageKind::Move, kMoveKeys, "move the camera", true},
-    {"orbit", MessageKind::Orbit, kDragKeys, "turn the view", true},
+    {"orbit", MessageKind::Orbit, kDragKeys, "orbit the view", true},
     {"look", MessageKind::Look, kDragKeys, "look around", true},
     {"pan", MessageKind::Pan, kDragKeys, "pan the view", true},
     {"zoom", MessageKind::Zoom, kStepKeys, "zoom", true},
@@ -155,13 +155,13 @@ constexpr Form kForms[] = {
     {"meter", MessageKind::Meter, kPlainKeys, "meter the light"},
     {"play", MessageKind::Play, kPlayKeys, "play time"},
     {"time", MessageKind::Time, kTimeKeys, "go to another time", true},
-    {"key", MessageKind::Key, kTimeKeys, "change the path of the camera"},
-    {"unkey", MessageKind::Unkey, kCameraKeys, "change the path of the camera"},
-    {"follow", MessageKind::Follow, kPlainKeys, "play the path of the camera", true},
+    {"key", MessageKind::Key, kTimeKeys, "change the camera path"},
+    {"unkey", MessageKind::Unkey, kCameraKeys, "change the camera path"},
+    {"follow", MessageKind::Follow, kPlainKeys, "play the camera path", true},
     {"rate", MessageKind::Rate, kRateKeys},
     {"shape", MessageKind::Shape, kShapeKeys},
     {"ack", MessageKind::Ack, kAckKeys},
-    {"ask", MessageKind::RequestWheel, {}},
+    {"ask", MessageKind::RequestControl, {}},
     {"hand", MessageKind::Hand, kHandKeys},
 };
 

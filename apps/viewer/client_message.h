@@ -15,28 +15,28 @@ namespace pertev {
 inline constexpr std::size_t kMaxMessageBytes = 1024;
 
 enum class MessageKind : uint8_t {
-    Hello,        // the first message of a client: its key, by which it is recognised after a reconnect
-    Move,         // keys held for a while
-    Orbit,        // around the orbit's centre
-    Look,         // around the eye
-    Pan,          // across the view
-    Zoom,         // towards the orbit's centre
-    Speed,        // speed of Move
-    Pick,         // query at a position of the picture
-    Home,         // back to the initial camera
-    Camera,       // to one of the scene's cameras
-    Set,          // changes a setting
-    Meter,        // exposure by the light meter
-    Play,         // starts or stops time
-    Time,         // sets the scene's time
-    Key,          // adds the current view as a key of the camera's path
-    Unkey,        // removes a key
-    Follow,       // starts the camera's path from its beginning
-    Rate,         // refresh rate of the page's screen
-    Shape,        // size of the page's window
-    Ack,          // a picture was drawn
-    RequestWheel, // requests the wheel
-    Hand,         // hands the wheel to another client
+    Hello,          // the first message of a client: its key, by which it is recognised after a reconnect
+    Move,           // keys held for a while
+    Orbit,          // around the orbit's centre
+    Look,           // around the eye
+    Pan,            // across the view
+    Zoom,           // towards the orbit's centre
+    Speed,          // speed of Move
+    Pick,           // query at a position of the picture
+    Home,           // back to the initial camera
+    Camera,         // to one of the scene's cameras
+    Set,            // changes a setting
+    Meter,          // exposure by the light meter
+    Play,           // starts or stops time
+    Time,           // sets the scene's time
+    Key,            // adds the current view as a key of the camera's path
+    Unkey,          // removes a key
+    Follow,         // starts the camera's path from its beginning
+    Rate,           // refresh rate of the page's screen
+    Shape,          // size of the page's window
+    Ack,            // a picture was drawn
+    RequestControl, // requests control
+    Hand,           // hands control to another client
 };
 
 enum class Pace : uint8_t { Normal, Fast, Slow };

@@ -18,7 +18,7 @@ std::string json_of(const SettingValue& value) {
     return json_string(std::get<std::string>(value));
 }
 
-constexpr const char* kGroups[] = {"Picture", "Light", "Frames", "Camera", "Rays (the picture stays the same)"};
+constexpr const char* kGroups[] = {"Picture", "Light", "Frames", "Camera", "Ray tracing (same picture)"};
 constexpr const char* kKinds[] = {"choice", "number", "whole"}; // names of ViewSetting::Kind
 
 void append(std::string& list, const std::string& item) {

@@ -141,7 +141,7 @@ void RenderLoop::steer(const Steer& requested) {
     case MessageKind::Shape:
     case MessageKind::Hello:
     case MessageKind::Ack:
-    case MessageKind::RequestWheel:
+    case MessageKind::RequestControl:
     case MessageKind::Hand:
         break; // handled by the audience
     }
@@ -225,7 +225,7 @@ void RenderLoop::pick(const Steer& requested) {
     if (!point) return audience_.notify(requested.client, notice_text("note", "the pixel shows only background"));
     if (message.use == PickUse::Orbit) {
         camera_.turn_about(point->position);
-        return audience_.notify(requested.client, notice_text("note", "the view now turns about this point"));
+        return audience_.notify(requested.client, notice_text("note", "this point is the orbit centre"));
     }
     const Transform& from = now.world_from_camera;
     view_.lens.focus_distance = max(-dot(point->position - from.translation, column(from, 2)), 1e-6f);

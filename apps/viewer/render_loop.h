@@ -1,7 +1,7 @@
 #pragma once
 
 // The render's thread: handles requests of clients, advances time, moves the camera, gets pictures from the frame
-// source and publishes them. It renders only while somebody watches and there is something to do.
+// source and publishes them. It renders only while a client watches and there is something to do.
 
 #include <functional>
 #include <optional>

@@ -21,7 +21,7 @@ std::string setting_request(const ClientMessage& message) {
 
 std::string request_text(const ClientMessage& message) {
     if (message.kind == MessageKind::Set) return setting_request(message);
-    if (message.kind == MessageKind::Pick && message.use != PickUse::Focus) return "turn about another point";
+    if (message.kind == MessageKind::Pick && message.use != PickUse::Focus) return "set another orbit centre";
     if (message.kind == MessageKind::Play && !message.on) return "stop time";
     return request_of(message.kind);
 }

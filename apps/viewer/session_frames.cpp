@@ -424,7 +424,7 @@ bool SessionFrames::prepare_competition(const FrameRequest& request, const FilmS
 /// Adds samples to the film until it is time to show it. Returns false if there is nothing new to show. A moving
 /// picture is always finished, because input comes faster than pictures and would stop each. At rest no whole sample
 /// is lost, because a request for another picture may end with the same one. A short sample is waited for, and a long
-/// one uses a film of its own. The first has none before it.
+/// one uses a film of its own, except for the first sample.
 bool SessionFrames::add_samples(const FrameRequest& request, const FilmSize& size, bool competes, ShownFrame& frame) {
     const uint32_t wanted = wanted_samples(request), before = session_.history().samples;
     const bool was_begun = before > 0;

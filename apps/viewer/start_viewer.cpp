@@ -61,8 +61,8 @@ void let_time_move(const PictureOptions& options, const RenderSetup& ready, View
     start.clock = {.end_s = is_still ? 0 : moving.end_s(), .time_s = moving.time_s(), .plays = !moving.time_s()};
     if (is_still) {
         start.still_s = moving.time_s();
-        start.why_still = fmt::format("stands {}: radiosity is solved for one time",
-                                      start.still_s ? fmt::format("at {:g} s", *start.still_s) : "as at rest");
+        start.why_still = fmt::format("is shown {}: radiosity is solved for one time",
+                                      start.still_s ? fmt::format("at {:g} s", *start.still_s) : "at rest");
     }
     if (!options.camera_path.empty()) {
         start.camera.path = read_camera_path(options.camera_path);
@@ -86,7 +86,7 @@ void let_time_move(const PictureOptions& options, const RenderSetup& ready, View
     }
 }
 
-/// Returns the first pose. The view turns about the point in the middle of the picture, unless a target was given.
+/// Returns the first pose. The view orbits the point in the middle of the picture, unless a target was given.
 Pose start_pose(const PictureRecord& record, const Scene& scene, FrameSource& source, float scene_size) {
     const Camera& camera = record.camera.camera;
     float distance = 0.5f * scene_size;

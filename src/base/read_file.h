@@ -16,7 +16,7 @@ using InputFile = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 InputFile open_file(const std::filesystem::path& path);
 
 /// Returns the bytes of `path`. Throws Error(BadInput) with the path and the system's reason if it cannot be read or
-/// is not a regular file (a FIFO or a device could block for ever).
+/// is not a regular file (a FIFO or a device could block without end).
 std::vector<std::byte> read_file(const std::filesystem::path& path);
 
 /// Returns the hash of the bytes of `path`, 32 hexadecimal digits; memory does not depend on the file's size. Empty

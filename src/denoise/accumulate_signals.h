@@ -84,7 +84,7 @@ struct AccumulateSignals {
                 ratio = ratio_of(light, followed(light, step.gloss_was, step.gloss_is));
                 mean = with_w(ratio * rgb_of(mean), mean.w);
             }
-            mean = gone_on(of_gloss, mean, gloss, longest_gloss);
+            mean = accumulated(of_gloss, mean, gloss, longest_gloss);
             now.gloss[pixel] = mean;
             if (mean.w > 1) {
                 squares.y =
@@ -101,7 +101,7 @@ struct AccumulateSignals {
             ratio = ratio_of(light, fused_luminance(rgb_of(mean)));
         }
         if (is_known) {
-            mean = gone_on(known, mean, diffuse, longest_diffuse);
+            mean = accumulated(known, mean, diffuse, longest_diffuse);
         } else {
             mean = known.sum > kEnoughWeight ? with_w(rgb_of(mean), min(mean.w, longest_diffuse)) : Float4{0, 0, 0, 0};
         }
@@ -161,7 +161,7 @@ private:
     HD static float ratio_of(float was, float is) { return was > 1e-12f ? is / was : 1.0f; }
 
     /// Updates `mean`, which the taps hold, by this frame's sample; its w is the number of frames.
-    HD Float4 gone_on(const Taps& taps, Float4 mean, Float4 sample, float max_frames) const {
+    HD Float4 accumulated(const Taps& taps, Float4 mean, Float4 sample, float max_frames) const {
         if (!(taps.sum > kEnoughWeight)) return with_w(rgb_of(sample), 1);
         const float frames = min(mean.w + 1.0f, max_frames);
         return with_w(lerp(rgb_of(mean), rgb_of(sample), 1.0f / frames), frames);

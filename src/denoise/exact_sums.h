@@ -1,7 +1,7 @@
 #pragma once
 
-// Exact sums of what a denoiser gathers of each pixel's samples: whole numbers of 64 bits, from which the order of
-// samples leaves no trace, so that sums of parts of a picture's samples add up to those of one run. A sum takes one
+// Exact sums of what a denoiser gathers of each pixel's samples: whole numbers of 64 bits. The order of samples does
+// not affect the result, so that sums of parts of a picture's samples add up to those of one run. A sum takes one
 // number, or two or three where its values have a wide range. Each of these takes kMaxSamplesPerPixel values.
 
 #include <cstddef>

@@ -3,8 +3,8 @@
 // Denoises a single picture with few samples per pixel, without previous frames: the variance-guided wavelet passes
 // of frames (denoise/reconstruction.h), guided by the hits of rays through pixels' centres. The first samples' hits,
 // which every part of a picture has, decide which surfaces a pixel distinguishes. All else is added exactly
-// (denoise/exact_sums.h), so the parts' order leaves no trace. Every stage is one function for both devices. The
-// picture is biased: it blurs light where no guide shows an edge.
+// (denoise/exact_sums.h), so the parts' order does not affect the result. Every stage is one function for both devices.
+// The picture is biased: it blurs light where no guide shows an edge.
 
 #include "denoise/denoiser.h"
 #include "denoise/gather_samples.h"

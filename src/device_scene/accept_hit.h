@@ -112,7 +112,7 @@ HD inline bool is_hole(const SceneView& scene, const LightSample& light, uint32_
 
 /// Returns whether rays that lead to a surface of the instance may pass it by chance. Blended surfaces whose alpha is 1
 /// everywhere count as opaque.
-HD inline bool is_met_by_chance(const SceneView& scene, uint32_t instance) {
+HD inline bool has_stochastic_hits(const SceneView& scene, uint32_t instance) {
     if (scene.any_alpha == 0) return false;
     const InstanceView& placed = scene.instances[instance];
     if (placed.layers_above > 0) return true;
@@ -122,8 +122,8 @@ HD inline bool is_met_by_chance(const SceneView& scene, uint32_t instance) {
             scene.meshes[placed.mesh].colors != nullptr);
 }
 /// Probability that a ray meets a point of a surface to which it leads: the alpha of a blended surface, times what the
-/// layers above it let pass. It is 1 where is_met_by_chance() is false.
-HD inline float chance_to_meet(const SceneView& scene, uint32_t instance, uint32_t primitive, float u, float v) {
+/// layers above it let pass. It is 1 where has_stochastic_hits() is false.
+HD inline float hit_probability(const SceneView& scene, uint32_t instance, uint32_t primitive, float u, float v) {
     const auto alpha_of = [&](uint32_t layer) {
         const InstanceView& placed = scene.instances[layer];
         const MaterialParameters& material = scene.materials[placed.material];

@@ -54,12 +54,12 @@ struct EmittersAt {
 };
 
 /// Samples a light like sample_light, for a scene. `moves` means that something in it moves.
-template <EmitterLook kLook = EmitterLook::Coated, class Choice = ChosenByPower>
+template <EmitterVariant kEmitters = EmitterVariant::Coated, class Choice = ChosenByPower>
 HD INLINE_ON_DEVICE bool draw_direct(const SceneView& scene, bool moves, const LightContext& context, SampleBits u,
                                      LightSample& sample) {
-    return moves
-               ? sample_light<kLook, Choice>(scene.lights, context, u, sample, EmittersAt{scene.motions, context.time})
-               : sample_light<kLook, Choice>(scene.lights, context, u, sample);
+    return moves ? sample_light<kEmitters, Choice>(scene.lights, context, u, sample,
+                                                   EmittersAt{scene.motions, context.time})
+                 : sample_light<kEmitters, Choice>(scene.lights, context, u, sample);
 }
 
 /// Density with which draw_direct, for `context`, samples the point of `surface`, 1/sr; 0 if the surface is not an

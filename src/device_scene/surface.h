@@ -331,7 +331,7 @@ HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 dire
         emission = albedo;
     } else if ((material.emission.r > 0 || material.emission.g > 0 || material.emission.b > 0) &&
                (material.two_sided_emission || dot(triangle.normal, direction) < 0)) {
-        emission = emitted_radiance<emitter_look(kVariant)>(
+        emission = emitted_radiance<emitter_variant(kVariant)>(
             scene.lights, instance.material,
             texture_coordinate(mesh, material.emission_texture, triangle.i, hit.u, hit.v), triangle.normal, direction);
     }

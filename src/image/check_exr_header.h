@@ -14,7 +14,7 @@
 namespace pertev {
 
 /// Returns the size of the first part's display window if every part's header is complete and the file could contain
-/// its picture. Throws Error(BadInput) or Error(OverLimit) that starts with `name` and says what is wrong.
+/// its picture. Throws Error(BadInput) or Error(OverLimit) that starts with `name` and says the fault.
 ImageHeader check_exr_header(std::span<const std::byte> bytes, const std::string& name);
 
 } // namespace pertev

@@ -110,7 +110,7 @@ ResultTable structures_of(const LabReport& report) {
 }
 
 ResultTable runs_of(const LabReport& report) {
-    ResultTable table = {"runs", "All figures"};
+    ResultTable table = {"runs", "All runs"};
     for (const CombinationFigures& c : report.combinations) {
         if (c.runs.empty()) table.add(run_fields(report, c, nullptr));
         for (const RunFigures& run : c.runs) table.add(run_fields(report, c, &run));

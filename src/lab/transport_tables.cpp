@@ -41,7 +41,7 @@ ResultCell value_at(const std::optional<TransportPoint>& point, const Value& val
 }
 
 /// Makes the fields of a point: errors with half widths of their 95 % intervals, and efficiency with its ratio to
-/// path's.
+/// that of path.
 Fields point_fields(const TableLine& line, const std::optional<double>& of_path) {
     const auto own = line.point ? efficiency(*line.point) : std::nullopt;
     const auto& p = line.point;
@@ -51,7 +51,7 @@ Fields point_fields(const TableLine& line, const std::optional<double>& of_path)
         {"hdr_flip", "HDR-FLIP", value_at(p, [](const auto& at) { return at.flip.mean; }), "", "{:.3g}"},
         {"hdr_flip_half_width", "±", value_at(p, [](const auto& at) { return at.flip.half_width; }), "", "{:.2g}"},
         {"efficiency", "1/(relMSE s)", own, "", "{:.3g}"},
-        {"of_path", "of path's", own && of_path ? ResultCell(*own / *of_path) : ResultCell(), "", "{:.3g}"}};
+        {"of_path", "ratio to path", own && of_path ? ResultCell(*own / *of_path) : ResultCell(), "", "{:.3g}"}};
 }
 
 Fields scene_fields(const TransportScene& s) {
@@ -60,26 +60,27 @@ Fields scene_fields(const TransportScene& s) {
     return {{"scene", "scene", s.name},
             {"interrupted", "", s.interrupted},
             {"reference", "reference", is_made ? r.integrator : r.file},
-            {"reference_samples", "its samples", is_made ? ResultCell(r.samples) : ResultCell()},
-            {"reference_seconds", "its time", is_made ? ResultCell(r.seconds) : ResultCell(), "s", "{:.3g}"},
-            {"reference_rel_mse", "its relMSE", r.rel_mse, "", "{:.2g}"}};
+            {"reference_samples", "reference samples", is_made ? ResultCell(r.samples) : ResultCell()},
+            {"reference_seconds", "reference time", is_made ? ResultCell(r.seconds) : ResultCell(), "s", "{:.3g}"},
+            {"reference_rel_mse", "reference relMSE", r.rel_mse, "", "{:.2g}"}};
 }
 
 ResultTable scenes_of(const TransportReport& report) {
     ResultTable table = {"scenes", "Scenes"};
     for (const TransportScene& s : report.scenes) {
-        table.add(scene_fields(s) + Fields{{"reference_hdr_flip_of_halves", "HDR-FLIP of its halves", s.reference.flip},
-                                           {"reference_lacks", "it lacks", if_not_empty(s.reference.lacks)},
-                                           {"equal_seconds", "equal time", equal_seconds(s), "s"},
-                                           {"triangles", "triangles", s.triangles},
-                                           {"width", "width", report.width},
-                                           {"height", "height", report.height},
-                                           {"max_depth", "max depth", report.max_depth},
-                                           {"repetitions", "repetitions", report.repetitions},
-                                           {"seed", "seed", report.seed},
-                                           {"budget_seconds", "time per integrator", report.seconds, "s"},
-                                           {"camera", "camera", s.camera},
-                                           {"shows", "shows", if_not_empty(s.shows)}});
+        table.add(scene_fields(s) +
+                  Fields{{"reference_hdr_flip_of_halves", "HDR-FLIP of the reference's halves", s.reference.flip},
+                         {"reference_lacks", "missing light", if_not_empty(s.reference.lacks)},
+                         {"equal_seconds", "equal time", equal_seconds(s), "s"},
+                         {"triangles", "triangles", s.triangles},
+                         {"width", "width", report.width},
+                         {"height", "height", report.height},
+                         {"max_depth", "max depth", report.max_depth},
+                         {"repetitions", "repetitions", report.repetitions},
+                         {"seed", "seed", report.seed},
+                         {"budget_seconds", "time per integrator", report.seconds, "s"},
+                         {"camera", "camera", s.camera},
+                         {"shows", "shows", if_not_empty(s.shows)}});
     }
     return table;
 }
@@ -113,7 +114,7 @@ void add_points(const TransportScene& scene, ResultTable& table) {
 }
 
 ResultTable repetitions_of(const TransportReport& report) {
-    ResultTable table = {"repetitions", "All pictures"};
+    ResultTable table = {"repetitions", "All repetitions"};
     for (const TransportScene& scene : report.scenes) {
         for (const TransportRow& row : scene.rows) {
             const bool has_figures = !row.repetitions.empty();

@@ -88,7 +88,7 @@ private:
             const auto x = static_cast<float>(pixel_coordinate(column, face.width, -1, 2));
             const auto y = static_cast<float>(pixel_coordinate(row_of, face.height, face.lowest, 1 - face.lowest));
             const uint32_t side =
-                side_met(view, at.instance, at.primitive, face.forward + x * face.right + y * face.up);
+                hit_side(view, at.instance, at.primitive, face.forward + x * face.right + y * face.up);
             Vec3 weights = {1.0f - at.u - at.v, at.u, at.v};
             const PatchCode hit_patch =
                 scene_.sources.view().find(face_of(view, at.instance, at.primitive, side), weights);

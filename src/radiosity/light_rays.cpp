@@ -63,7 +63,7 @@ void add_light_rays(const RowScene& scene, const Patch& patch, SampleKey key, co
             to = {};
             to.key = coin_key(of_ray, 0, true);
             if (is_emitter) {
-                const uint32_t side = side_met(view, light.instance, light.primitive, light.wi);
+                const uint32_t side = hit_side(view, light.instance, light.primitive, light.wi);
                 Vec3 weights = {1.0f - light.b1 - light.b2, light.b1, light.b2};
                 to.emitter = scene.sources.view().find(face_of(view, light.instance, light.primitive, side), weights);
                 if (!is_patch(to.emitter)) continue;

@@ -110,7 +110,7 @@ Vec3 normal_of(const SceneView& scene, const Patch& patch, const WorldTriangle& 
     return patch.side() == 0 ? front : -front;
 }
 
-uint32_t side_met(const SceneView& scene, uint32_t instance, uint32_t primitive, Vec3 direction) {
+uint32_t hit_side(const SceneView& scene, uint32_t instance, uint32_t primitive, Vec3 direction) {
     const WorldTriangle triangle = world_triangle(scene, instance, primitive, {1.0f / 3, 1.0f / 3});
     return dot(front_of(scene, instance, triangle), direction) < 0 ? 0 : 1;
 }

@@ -44,7 +44,7 @@ WorldTriangle world_triangle(const SceneView& scene, const Patch& patch, Vec2 uv
 /// Unit normal of the patch's side.
 Vec3 normal_of(const SceneView& scene, const Patch& patch, const WorldTriangle& triangle);
 /// Side of a triangle at which a ray along `direction` arrives.
-uint32_t side_met(const SceneView& scene, uint32_t instance, uint32_t primitive, Vec3 direction);
+uint32_t hit_side(const SceneView& scene, uint32_t instance, uint32_t primitive, Vec3 direction);
 /// Number of the face of a hit.
 inline uint32_t face_of(const SceneView& scene, uint32_t instance, uint32_t primitive, uint32_t side) {
     return 2 * (scene.first_triangle[instance] + primitive) + side;

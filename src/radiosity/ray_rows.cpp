@@ -85,7 +85,7 @@ private:
             }
             return static_cast<double>(each);
         }
-        const uint32_t side = side_met(view, hit.instance, hit.primitive, ray.direction);
+        const uint32_t side = hit_side(view, hit.instance, hit.primitive, ray.direction);
         Vec3 weights = {1.0f - hit.u - hit.v, hit.u, hit.v};
         const PatchCode hit_patch =
             scene_.sources.view().find(face_of(view, hit.instance, hit.primitive, side), weights);

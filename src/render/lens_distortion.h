@@ -126,8 +126,8 @@ HD inline SeenThroughLens<T> fisheye_direction(const LensView& lens, Vec2Of<T> a
     return {{scale * at.x, scale * at.y, -c}, abs(fisheye_radius(lens, angle).radius - radius) <= tolerance};
 }
 
-/// The direction that a distorting lens images at the position `at`, in the unit of the view at distance 1. Nothing is
-/// seen where Newton's method ends farther than `tolerance` from it.
+/// The direction that a distorting lens images at the position `at`, in the unit of the view at distance 1. The lens
+/// images nothing where Newton's method ends farther than `tolerance` from it.
 template <class T>
 HD inline SeenThroughLens<T> seen_through_lens(const LensView& lens, Vec2Of<T> at, float tolerance) {
     if (is_panorama(lens.model)) return {panorama_direction(lens.model, at), MaskOf<T>(at.x == at.x)};

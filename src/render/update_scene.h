@@ -2,7 +2,7 @@
 
 // Updates a prepared scene after a frame's change. Unchanged data, above all trees, is shared with the previous
 // version. The world's origin, the environment and all images stay. The picture equals, to the bit, that of the
-// changed scene prepared anew with this origin.
+// changed scene prepared from scratch with this origin.
 
 #include <cstdint>
 
@@ -21,7 +21,7 @@ namespace pertev {
 ///                       converted to other layouts again; kd-trees and octrees, whose planes do not move, are rebuilt
 ///   replaced meshes     have their trees rebuilt
 ///   lights, materials   keep all trees
-/// If other instances would have to be baked than before, everything is prepared anew. Throws as prepare_scene.
+/// If other instances would have to be baked than before, everything is prepared again. Throws as prepare_scene.
 /// `motions` becomes PreparedScene::motions.
 PreparedScene update_scene(const PreparedScene& before, const Scene& scene, const SceneUpdate& update, Sink& sink,
                            std::shared_ptr<const MotionKeys> motions = nullptr);
@@ -30,7 +30,7 @@ PreparedScene update_scene(const PreparedScene& before, const Scene& scene, cons
 bool changes_prepared(const SceneUpdate& update);
 
 /// The parts (ScenePart) that Session::update_scene must then upload. They include lights if surfaces change, because
-/// light selection depends on positions; meshes whose vertices the renderer moves count as at rest. The
+/// light selection depends on positions; meshes whose vertices the renderer moves count in their pose at rest. The
 /// environment is not included, as it stays the same.
 uint32_t parts_of(const SceneUpdate& update);
 

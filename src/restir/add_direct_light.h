@@ -20,8 +20,8 @@ struct AddDirectLight {
         const Receiver<kVariant> receiver = here.receiver<kVariant>(scene, pixel);
         LightSample light;
         float measure = 1;
-        constexpr EmitterLook kLook = emitter_look(kVariant);
-        if (!find_light<kLook>(scene.lights, reservoir.point, receiver.light_context(), light, measure)) return;
+        constexpr EmitterVariant kEmitters = emitter_variant(kVariant);
+        if (!find_light<kEmitters>(scene.lights, reservoir.point, receiver.light_context(), light, measure)) return;
         const Rgb scattered = (reservoir.weight * measure) * (receiver.evaluate(light.wi).f * light.radiance);
         const Rgb share = film.frame.splits_light() ? receiver.diffuse_share(light.wi) : grey(1);
         add_to_sample(film, pixel, scattered, share * scattered);

@@ -37,9 +37,9 @@ struct SampleInitialCandidates {
         for (uint32_t k = 0; k < candidates; ++k) {
             const SampleKey candidate = {key.stream, key.sample * candidates + k, key.seed};
             LightSample light;
-            if (!sample_light<emitter_look(kVariant), Choice>(scene.lights, receiver.light_context(),
-                                                              sample_bits(here.sampler, candidate, kGroupCandidates),
-                                                              light)) {
+            if (!sample_light<emitter_variant(kVariant), Choice>(scene.lights, receiver.light_context(),
+                                                                 sample_bits(here.sampler, candidate, kGroupCandidates),
+                                                                 light)) {
                 continue;
             }
             const BsdfValue value = receiver.evaluate(light.wi);
@@ -52,7 +52,7 @@ struct SampleInitialCandidates {
         LightSample light;
         float measure = 1;
         const EmitterPoint point = hit_emitters[pixel];
-        if (find_light<emitter_look(kVariant)>(scene.lights, point, receiver.light_context(), light, measure)) {
+        if (find_light<emitter_variant(kVariant)>(scene.lights, point, receiver.light_context(), light, measure)) {
             const BsdfValue value = receiver.evaluate(light.wi);
             if constexpr (Choice::kReadsNormal) {
                 light.pdf = pdf_of_found<Choice>(scene.lights, point, receiver.light_context(), light);

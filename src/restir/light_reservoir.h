@@ -51,7 +51,7 @@ HD inline Rgb light_scattered(const SceneView& scene, const Receiver<kVariant>& 
     LightSample light;
     float measure = 1;
     const LightContext context = receiver.light_context();
-    if (!find_local_light<emitter_look(kVariant)>(scene.lights, from.point, context, light, measure)) return {};
+    if (!find_local_light<emitter_variant(kVariant)>(scene.lights, from.point, context, light, measure)) return {};
     return measure * (receiver.evaluate(light.wi).f * light.radiance);
 }
 

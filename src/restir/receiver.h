@@ -1,7 +1,7 @@
 #pragma once
 
 // The surface of a pixel as a receiver of light from reservoirs' points, with the direction to its viewer. Where all
-// materials are diffuse it is 64 bytes, and each pixel stores it once a frame: making it anew from a hit takes longer
+// materials are diffuse it is 64 bytes, and each pixel stores it once a frame: making it again from a hit takes longer
 // than all that is done with it, and its pixel and the neighbours would do so eight times.
 
 #include "device_scene/surface.h"

@@ -113,7 +113,7 @@ struct MaterialParameters {
     HD bool has_coat() const { return coat_weight > 0; }
     HD bool has_fuzz() const { return fuzz_weight > 0 && max_component(fuzz_color) > 0; }
     HD bool transmits() const { return kind == MaterialKind::MetallicRoughness && transmission_weight > 0; }
-    /// Returns whether the dielectric reflects other than its index says.
+    /// Returns whether the dielectric reflects otherwise than by its index.
     HD bool has_own_reflection() const {
         return kind == MaterialKind::MetallicRoughness &&
                (specular_weight != 1 || !(specular_color == Rgb{1, 1, 1}) || specular_texture.has_image() ||

@@ -10,7 +10,7 @@
 namespace pertev {
 namespace {
 
-constexpr uint64_t kAtOnce = 1u << 27, kAtOnceOnCpu = 1u << 20; // samples of a pass, so that a sink is heard soon
+constexpr uint64_t kAtOnce = 1u << 27, kAtOnceOnCpu = 1u << 20; // samples of a pass, so that cancellation is prompt
 
 CameraBatch checked(CameraBatch batch, const RenderSettings& settings) {
     check_batch(batch, settings);

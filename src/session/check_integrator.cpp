@@ -81,7 +81,7 @@ void check_integrator(const RenderSettings& settings) {
            fmt::format("`denoise={}` does not keep samples apart; leave out one of them", name_of(settings.denoise)));
     const bool takes_samples = (settings.sample_layers & (kLayerUv | kLayerObjects | kLayerMaterials)) != 0;
     refuse(takes_samples && settings.layers_at == LayersAt::Centre, "layers_at", "centre",
-           "the layers uv, crypto_object and crypto_material are of the samples");
+           "the layers uv, crypto_object and crypto_material are evaluated at samples, not at pixel centres");
     refuse(is_denoised && (settings.aovs & kAovDistance) != 0, "aov", "distance",
            fmt::format("`denoise={}` does not support it; its depth is measured along the axis",
                        name_of(settings.denoise)));

@@ -23,7 +23,7 @@ struct FrameRange {
     uint32_t turntable = 0;         // frames per revolution of the camera; 0: it does not revolve
     std::vector<std::string> names; // name of each frame's camera; empty: all frames have the same
     std::optional<Shutter> shutter; // around each frame's time; without it a frame shows one moment
-    std::vector<uint32_t> cuts;     // frames in real time whose history begins anew, in order; the first frame's does
+    std::vector<uint32_t> cuts;     // frames in real time whose history starts again, in order; the first frame's does
     std::optional<PartNumber> part; // the frames that this process writes; none: all
 
     uint32_t count() const { return last - first + 1; }

@@ -1,7 +1,7 @@
 #pragma once
 
 // The seam to what renders a picture by several devices together (session/devices/). A film asks for it through
-// PictureRenderer::sharing(), so nobody else needs to know of it.
+// PictureRenderer::sharing(), so no other module needs to know of it.
 
 #include <optional>
 

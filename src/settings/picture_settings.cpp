@@ -104,7 +104,7 @@ std::vector<Setting> picture_settings() {
                  "reyes (micropolygons) trace no rays. light traces particles and misses what mirrors and glass show. "
                  "bidirectional connects camera and light subpaths. photon_map finds caustics early. irradiance_cache "
                  "interpolates, with a small bias. radiosity solves diffuse light once."},
-            On{kLooking}, Recorded::Always, Mark::Common, Panel{"Light", PanelGroup::Light}, Changes::Picture),
+            On{kLooking}, Recorded::Always, Mark::Common, Panel{"Integrator", PanelGroup::Light}, Changes::Picture),
         row("max_depth", "Quality", "N", FIELD(render.path.max_depth),
             "The maximum number of scatterings between light and camera: 0 is emission, 1 adds direct light.",
             Range{0, kMaxPathDepth - 1}, On{kLooking | kMeasure | kLab}, Recorded::Always, Mark::Common,

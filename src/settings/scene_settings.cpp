@@ -194,7 +194,7 @@ std::vector<Setting> scene_settings() {
             "frame's number.",
             On{kRender | kBenchSequence}, Mark::Common),
         row("cuts", "Motion", "K,K,...", FIELD(cuts),
-            "The frames with which the history begins anew, because the film is cut before them.", Needs{"real_time"},
+            "The frames with which the history starts again, because the film is cut before them.", Needs{"real_time"},
             Mark::Name),
         row("fps", "Motion", "F", FIELD(fps), "The number of frames per second; frame k is at k / F seconds.",
             Above{0, 1e6}, Unit{"1/s"}, Otherwise{"24"}, On{kRender | kBenchSequence}, Needs{"frames"}),

@@ -49,14 +49,14 @@ HD inline EmitterPoint point_of(const LightSample& sample) {
 HD inline Vec3 environment_direction(const EmitterPoint& point) { return {float_of(point.index), point.u, point.v}; }
 
 /// Light that arrives at `context` from `point`, which is not in the environment: as find_light.
-template <EmitterLook kLook>
+template <EmitterVariant kEmitters>
 HD inline bool find_local_light(const LightSetView& view, const EmitterPoint& point, const LightContext& context,
                                 LightSample& sample, float& measure) {
     measure = 1;
     switch (point.kind()) {
     case SourceKind::Punctual: {
         if (point.index >= view.punctual_count) return false; // from another scene
-        const bool arrives = sample_punctual_light<kLook>(view, point.index, 1.0f, context.point, sample);
+        const bool arrives = sample_punctual_light<kEmitters>(view, point.index, 1.0f, context.point, sample);
         sample.primitive = point.index;
         return arrives;
     }
@@ -67,7 +67,7 @@ HD inline bool find_local_light(const LightSetView& view, const EmitterPoint& po
     const uint32_t light = light_of(view, point.instance, point.index);
     if (light == kNoLight) return false;
     const float pmf = ChosenByPower::pmf_of_triangle(view, context, light);
-    if (!triangle_light_at<kLook>(view, light, pmf, context.point, {point.u, point.v}, sample)) return false;
+    if (!triangle_light_at<kEmitters>(view, light, pmf, context.point, {point.u, point.v}, sample)) return false;
     measure = 2.0f * pmf / sample.pdf; // in weights, a triangle has the area 1/2
     return true;
 }
@@ -75,14 +75,14 @@ HD inline bool find_local_light(const LightSetView& view, const EmitterPoint& po
 /// Light that arrives at `context` from `point`, as sample_light returns it, except for the pdf of punctual lights,
 /// which is 1. `measure` is the ratio of the point's solid angle to its own measure. Returns false if nothing arrives;
 /// occlusion and alpha are up to the caller.
-template <EmitterLook kLook = EmitterLook::Coated>
+template <EmitterVariant kEmitters = EmitterVariant::Coated>
 HD inline bool find_light(const LightSetView& view, const EmitterPoint& point, const LightContext& context,
                           LightSample& sample, float& measure) {
     if (!point.is_there()) return false;
     switch (point.kind()) {
     case SourceKind::Triangle:
     case SourceKind::Punctual:
-        return find_local_light<kLook>(view, point, context, sample, measure);
+        return find_local_light<kEmitters>(view, point, context, sample, measure);
     case SourceKind::Environment:
         break;
     }
@@ -128,7 +128,7 @@ HD inline bool find_light_end(const LightSetView& view, const EmitterPoint& poin
         break;
     }
     float measure;
-    return find_local_light<EmitterLook::Plain>(view, point, from, sample, measure);
+    return find_local_light<EmitterVariant::Plain>(view, point, from, sample, measure);
 }
 
 } // namespace pertev

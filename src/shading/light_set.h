@@ -147,10 +147,10 @@ HD inline uint32_t light_of(const LightSetView& view, uint32_t instance, uint32_
 }
 
 /// Radiance that material `material` emits at `uv` (in the set that its emission texture uses), beneath any coat.
-template <EmitterLook kLook = EmitterLook::Coated>
+template <EmitterVariant kEmitters = EmitterVariant::Coated>
 HD inline Rgb surface_emission(const LightSetView& view, uint32_t material, Vec2 uv) {
     const SurfaceEmission& surface = view.emissions[material];
-    if (kLook == EmitterLook::Plain || surface.texture.image == kNoImage) return surface.emission;
+    if (kEmitters == EmitterVariant::Plain || surface.texture.image == kNoImage) return surface.emission;
     const Vec4 texel = lookup_texture(view.images, surface.texture, uv, view.linear_from_srgb);
     return surface.emission * Rgb{texel.x, texel.y, texel.z};
 }
@@ -171,11 +171,11 @@ HD_CALL inline Rgb coat_transmittance(const LightSetView& view, const SurfaceEmi
 }
 
 /// Radiance that leaves it at `uv` along or against the unit `direction`; `normal` is the geometric one, of any length.
-template <EmitterLook kLook>
+template <EmitterVariant kEmitters>
 HD inline Rgb emitted_radiance(const LightSetView& view, uint32_t material, Vec2 uv, [[maybe_unused]] Vec3 normal,
                                [[maybe_unused]] Vec3 direction) {
-    const Rgb radiance = surface_emission<kLook>(view, material, uv);
-    if constexpr (kLook == EmitterLook::Coated) {
+    const Rgb radiance = surface_emission<kEmitters>(view, material, uv);
+    if constexpr (kEmitters == EmitterVariant::Coated) {
         const SurfaceEmission& surface = view.emissions[material];
         if (surface.coat_weight > 0) {
             return coat_transmittance(view, surface, uv, abs(dot(normalize(normal), direction))) * radiance;
@@ -185,8 +185,8 @@ HD inline Rgb emitted_radiance(const LightSetView& view, uint32_t material, Vec2
 }
 
 /// Solid-angle density of a uniformly sampled point on a triangle, 1/sr. `wi` is unit and leads from the receiver to
-/// the point, at the squared distance `distance_squared`; `normal` is cross(ab, ac). Not finite if the triangle is
-/// seen edge-on.
+/// the point, at the squared distance `distance_squared`; `normal` is cross(ab, ac). Not finite if `wi` lies in the
+/// plane of the triangle.
 template <class T = float>
 HD inline T triangle_pdf(Vec3Of<T> normal, Vec3Of<T> wi, T distance_squared) {
     return 2.0f * distance_squared / abs(dot(normal, wi));
@@ -194,7 +194,7 @@ HD inline T triangle_pdf(Vec3Of<T> normal, Vec3Of<T> wi, T distance_squared) {
 
 /// Sets `sample` to the point `b` (weights of the second and third vertex) on triangle light `light`, as sample_light
 /// does for `from_point` if it selects the light with probability `pmf`. Returns false if nothing arrives.
-template <EmitterLook kLook>
+template <EmitterVariant kEmitters>
 HD inline bool triangle_light_at(const LightSetView& view, uint32_t light, float pmf, Vec3 from_point, Vec2 b,
                                  LightSample& sample) {
     const EmissiveTriangle& triangle = view.triangles[light];
@@ -207,7 +207,7 @@ HD inline bool triangle_light_at(const LightSetView& view, uint32_t light, float
     const float pdf = pmf * triangle_pdf(normal, wi, distance_squared);
     if (!(pdf > 0) || !is_finite(pdf)) return false; // edge-on, or the receiver lies on the light
     const Vec2 uv = (1.0f - b.x - b.y) * triangle.uv0 + b.x * triangle.uv1 + b.y * triangle.uv2;
-    const Rgb radiance = emitted_radiance<kLook>(view, triangle.material, uv, normal, wi);
+    const Rgb radiance = emitted_radiance<kEmitters>(view, triangle.material, uv, normal, wi);
     if (is_black(radiance)) return false;
     sample = {wi,  distance, point, normalize(normal), radiance, pdf, false, triangle.instance, triangle.primitive,
               b.x, b.y};
@@ -217,13 +217,13 @@ HD inline bool triangle_light_at(const LightSetView& view, uint32_t light, float
 /// Samples the punctual light `number`, as sample_light does for `from_point` if it selects it with probability `pmf`.
 /// Returns false if nothing arrives. Tables of goniometric lights count for coated emitters' look alone, which all
 /// scenes with such a light have; for others the light is a point.
-template <EmitterLook kLook>
+template <EmitterVariant kEmitters>
 HD inline bool sample_punctual_light(const LightSetView& view, uint32_t number, float pmf, Vec3 from_point,
                                      LightSample& sample) {
     const PunctualLight& light = view.punctual[number];
     PunctualArrival arrival;
     if (!find_punctual_light(light, from_point, arrival)) return false;
-    if constexpr (kLook == EmitterLook::Coated) {
+    if constexpr (kEmitters == EmitterVariant::Coated) {
         if (!apply_table(light, view.goniometric, -arrival.wi, arrival.irradiance)) return false;
     }
     sample = {};
@@ -302,7 +302,7 @@ struct ChosenByPower {
 };
 
 /// The functions with which sample_light computes a context's sample for each kind of light.
-template <EmitterLook kLook, class Emitters>
+template <EmitterVariant kEmitters, class Emitters>
 struct SampleOfKind {
     const LightSetView& view;
     const LightContext& context;
@@ -311,11 +311,11 @@ struct SampleOfKind {
 
     HD bool triangle(uint32_t light, Vec2 b, float pmf) const {
         if constexpr (std::is_same_v<Emitters, EmittersAtRest>) {
-            return triangle_light_at<kLook>(view, light, pmf, context.point, b, sample);
+            return triangle_light_at<kEmitters>(view, light, pmf, context.point, b, sample);
         } else {
             const auto motion = emitters(view.triangles[light].instance);
             const Vec3 from_point = motion.move_back(context.point);
-            if (!triangle_light_at<kLook>(view, light, pmf, from_point, b, sample)) return false;
+            if (!triangle_light_at<kEmitters>(view, light, pmf, from_point, b, sample)) return false;
             sample.wi = motion.rotate(sample.wi);
             sample.light_point = motion.move(sample.light_point);
             sample.light_normal = motion.rotate(sample.light_normal);
@@ -323,7 +323,7 @@ struct SampleOfKind {
         }
     }
     HD bool punctual(uint32_t number, float pmf) const {
-        const bool arrives = sample_punctual_light<kLook>(view, number, pmf, context.point, sample);
+        const bool arrives = sample_punctual_light<kEmitters>(view, number, pmf, context.point, sample);
         sample.primitive = number;
         return arrives;
     }
@@ -343,10 +343,11 @@ struct SampleOfKind {
 /// spot of a triangle, outside a cone, edge-on; that sample counts as 0. Occlusion and alpha are up to the caller: if
 /// the triangle's material is not opaque, radiance times alpha at (instance, primitive, b1, b2) arrives. `emitters`
 /// returns the rigid motion of an instance's emitter at the context's time (math/rigid_motion.h).
-template <EmitterLook kLook = EmitterLook::Coated, class Choice = ChosenByPower, class Emitters = EmittersAtRest>
+template <EmitterVariant kEmitters = EmitterVariant::Coated, class Choice = ChosenByPower,
+          class Emitters = EmittersAtRest>
 HD inline bool sample_light(const LightSetView& view, const LightContext& context, SampleBits u, LightSample& sample,
                             const Emitters& emitters = {}) {
-    return Choice::draw(view, context, u, SampleOfKind<kLook, Emitters>{view, context, emitters, sample});
+    return Choice::draw(view, context, u, SampleOfKind<kEmitters, Emitters>{view, context, emitters, sample});
 }
 
 /// Density with which sample_light samples, for `context`, the direction to `hit_point` on triangle light `light`,

@@ -37,10 +37,10 @@ HD constexpr bool has_lobes(ShadingVariant variant) {
 HD constexpr bool has_textures(ShadingVariant variant) { return variant != ShadingVariant::PlainDiffuse; }
 
 /// Features that emissive materials of a scene may have; each includes those before it.
-enum class EmitterLook : uint8_t { Plain, Textured, Coated };
-HD constexpr EmitterLook emitter_look(ShadingVariant variant) {
-    if (variant == ShadingVariant::General) return EmitterLook::Coated;
-    return has_textures(variant) ? EmitterLook::Textured : EmitterLook::Plain;
+enum class EmitterVariant : uint8_t { Plain, Textured, Coated };
+HD constexpr EmitterVariant emitter_variant(ShadingVariant variant) {
+    if (variant == ShadingVariant::General) return EmitterVariant::Coated;
+    return has_textures(variant) ? EmitterVariant::Textured : EmitterVariant::Plain;
 }
 
 /// Returns whether a slot of a material has a texture; constant if the variant has none.

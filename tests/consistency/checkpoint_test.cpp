@@ -125,7 +125,7 @@ TEST_CASE("a checkpoint keeps the previous generation unless it is damaged") {
     CHECK(samples_in(work.file + ".previous") == 2);
 }
 
-TEST_CASE("two damaged generations are refused together, each with what is wrong") {
+TEST_CASE("two damaged generations are refused together, each with its fault") {
     Interrupted work({});
     FilmRender film = work.film();
     Checkpoint checkpoint = work.checkpoint();
@@ -148,7 +148,7 @@ TEST_CASE("two damaged generations are refused together, each with what is wrong
     const auto alone = work.refusal();
     REQUIRE(alone);
     CHECK(!test::says(alone, previous));
-    // A missing one is no reason to begin anew in silence.
+    // A missing one is no reason to start again silently.
     fs::rename(work.file, previous);
     Messages messages;
     FilmRender next = work.film();

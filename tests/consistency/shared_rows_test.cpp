@@ -1,4 +1,4 @@
-// Rows that other devices take while a frame is made may be copied until the next meeting, so their owner leaves them
+// Rows that other devices take while a frame is made may be copied until the next barrier, so their owner leaves them
 // as they are until then. The order of threads hides a change; this exchange, which has the whole picture, looks for
 // it.
 
@@ -58,7 +58,7 @@ private:
 
 } // namespace
 
-TEST_CASE("no row that other devices may be copying is changed before the next meeting") {
+TEST_CASE("no row that other devices may be copying is changed before the next barrier") {
     Queue queue = Queue::make_cpu();
     Messages messages;
     Scene scene = test::make_mixed_scene();

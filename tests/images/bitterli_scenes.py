@@ -84,7 +84,7 @@ UNLIKE = {
 
 # The reference of water-caustic has another depth and light than the file. By 7 scatterings all three channels of walls above the
 # water and below are one share of it, 0.934 (medians of blocks); by 8, which is Mitsuba's maxDepth of 9, they are 0.98, 0.97 and
-# 0.96. Tungsten, which made it, counts the emitter's edge in its max_bounces of 8. That share is the lamp's: its own pixels add up
+# 0.96. Tungsten, which made it, counts the emitter's edge in its max_bounces of 8. That share is that of `LAMP`: its own pixels add up
 # to 1.066 times what the file's radiance over its 0.542 pixels does. Both pictures are by photons, and blurred.
 LAMP = 1.066
 RADIANCE = "541127, 381972, 127324"

@@ -220,4 +220,7 @@ def convert(source):
 
 
 if __name__ == "__main__":
+    if sys.argv[1:] == ["--help"]:
+        print(__doc__)
+        sys.exit()
     print(convert(sys.argv[1])[0])

@@ -344,7 +344,7 @@ class Cameras(unittest.TestCase):
                     self.assertEqual(read(package, array).tobytes(), array.numpy().tobytes())
 
     @unittest.skipIf(DEVICE == "cpu", "arrays on a GPU are those of CUDA")
-    def test_meshes_on_a_gpu(self):
+    def test_meshes_on_a_gpu_give_the_picture_of_those_on_the_host(self):
         try:
             import torch
         except ImportError:

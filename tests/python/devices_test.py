@@ -51,7 +51,7 @@ class Devices(unittest.TestCase):
         for name, array in out.items():
             numpy.testing.assert_array_equal(array, getattr(alone, name))
 
-    def test_pictures_and_batches_in_turn(self):
+    def test_pictures_and_batches_in_turn_have_the_bytes_of_one_device(self):
         """A batch is divided by pictures, and a picture by samples: neither disturbs the other."""
         poses = numpy.tile(numpy.eye(4), (3, 1, 1))
         poses[:, :3, :3] = numpy.diag([-1, 1, -1])
@@ -76,7 +76,7 @@ class Devices(unittest.TestCase):
             self.assertNotEqual(after, before)
             before = after
 
-    def test_parts_and_checkpoints(self):
+    def test_parts_and_checkpoints_have_the_bytes_of_one_device(self):
         folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
         whole = pertev.render(self.one, **SMALL, output=folder / "one.exr")
         pertev.render(self.two, **SMALL, output=folder / "two.exr")

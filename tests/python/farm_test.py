@@ -130,7 +130,7 @@ class Farm(unittest.TestCase):
             pertev.farm.dask(client, "cornell-box", parts=2, **{**JOB, "max_depth": -1})
         self.assertEqual(caught.exception.setting, "max_depth")
 
-    def test_what_is_wrong_everywhere_is_refused_here(self):
+    def test_errors_of_every_worker_are_raised_by_the_caller(self):
         for values, kind in [({"parts": 0}, ValueError), ({"parts": 2, "part": (1, 2)}, TypeError), ({"parts": 2, "samples": (0, 1)}, TypeError),
                              ({"parts": 2, "checkpoint": "c.pvf"}, TypeError)]:
             with self.subTest(values), self.assertRaises(kind):

@@ -88,7 +88,7 @@ class Parts(unittest.TestCase):
                         "-o", self.folder / "1.pvf", "-q"], check=True)
         self.assertEqual(pertev.merge([self.folder / "0.pvf", self.folder / "1.pvf"]).hash, whole.hash)
 
-    def test_samples_and_a_partial_picture(self):
+    def test_samples_merge_to_a_partial_picture_and_then_to_the_whole_one(self):
         first = pertev.render(self.scene, samples=(0, 3), output=self.folder / "a.pvf", **SMALL)
         self.assertEqual(first.hash, pertev.render(self.scene, spp=3, **SMALL).hash)
         pertev.render(self.scene, samples="5:8", output=self.folder / "b.pvf", **SMALL)

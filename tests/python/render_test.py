@@ -37,7 +37,7 @@ class Render(unittest.TestCase):
         self.assertEqual(picture.info["spp"], 4)
         self.assertEqual(picture.info["settings"]["settings"]["size"], "48x32")
 
-    def test_layers(self):
+    def test_a_picture_has_the_layers_that_were_requested(self):
         picture = pertev.render("cornell-box", size="16x8", spp=2, layers=["depth", "albedo", "normal", "ids"])
         self.assertEqual(sorted(picture.layers), ["albedo", "depth", "id", "normal"])
         self.assertEqual(picture.depth.shape, (8, 16))

@@ -58,7 +58,7 @@ class Sessions(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.moves = moving_scene(folder.name)
 
-    def test_a_cut_begins_the_history_anew(self):
+    def test_a_cut_starts_the_history_again(self):
         frames = [frame.hash for frame in pertev.Session(self.moves, frames="0-4", fps=4, cuts=[2], **SMALL)]
         self.assertEqual(frames, frames_of_program(self.moves, "--real-time", "--frames", "0-4", "--fps", "4", "--cuts", "2"))
         self.assertEqual(frames[2:], [frame.hash for frame in pertev.Session(self.moves, frames="2-4", fps=4, **SMALL)])

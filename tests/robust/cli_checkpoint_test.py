@@ -194,7 +194,7 @@ class Checkpoints(CliTest):
         self.done("--spp", "5")
         self.flip("c.pvf")
         self.flip("c.pvf.previous")
-        self.refuse(2, "render", "cornell-box", "-o", "y.exr", *SMALL, *FILE, says=["c.pvf", "begin anew"])
+        self.refuse(2, "render", "cornell-box", "-o", "y.exr", *SMALL, *FILE, says=["c.pvf", "start again"])
         os.remove(self.path("c.pvf"))
         events = self.go_on("--spp", "5", "-q")
         self.assertEqual([event for event in events if event["event"] == "warning"], [])

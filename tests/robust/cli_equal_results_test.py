@@ -45,17 +45,17 @@ class EqualResults(CliTest):
                 self.assertEqual(known["samples"], spp)
                 self.assertEqual(way(picture), known)
 
-    def test_two_threads(self):
+    def test_two_threads_give_the_bytes_of_one(self):
         self.each(lambda picture: self.hashes(*self.command("x.exr", picture, "--threads", "2")))
 
-    def test_two_processes_at_the_same_time(self):
+    def test_two_processes_at_the_same_time_give_the_bytes_of_one(self):
         def way(picture):
             self.together(*(self.command(f"{i}.pvf", picture, "--part", f"{i}/2") for i in (1, 2)))
             return self.hashes("merge", "2.pvf", "1.pvf", "-o", "x.exr", "--json")
 
         self.each(way)
 
-    def test_parts_of_rows_and_samples(self):
+    def test_parts_of_rows_and_samples_merge_to_the_bytes_of_one_run(self):
         def way(picture):
             if picture == "bidirectional":
                 self.refuse(2, *self.command("x.pvf", picture, "--rows", "0:9"), says=["--rows"])
@@ -87,7 +87,7 @@ class EqualResults(CliTest):
 
         self.each(way, spp)
 
-    def test_a_resumed_run(self):
+    def test_a_resumed_run_gives_the_bytes_of_an_uninterrupted_one(self):
         def way(picture):
             self.succeed(*self.command("x.exr", picture, "--checkpoint", "c.pvf", "--spp", SPP // 3))
             done = self.hashes(*self.command("x.exr", picture, "--checkpoint", "c.pvf"))
@@ -97,7 +97,7 @@ class EqualResults(CliTest):
 
         self.each(way)
 
-    def test_samples_added_to_a_merged_picture(self):
+    def test_samples_added_to_a_merged_picture_give_the_bytes_of_one_run(self):
         def way(picture):
             for i, samples in enumerate(["0:5", "5:11"]):
                 self.succeed(*self.command(f"{i}.pvf", picture, "--samples", samples))

@@ -148,7 +148,7 @@ class Ranks(CliTest):
         self.assertNotEqual(self.read("x.png"), self.read("plain.png"))
 
     @unittest.skipUnless(has_mpi(), "no mpirun, or a build without MPI")
-    def test_what_ranks_cannot_do_is_refused(self):
+    def test_settings_unsupported_with_ranks_are_refused(self):
         for flags in (["--checkpoint", "c.pvf"], ["--time-limit", "1"]):
             with self.subTest(flags):
                 self.ranks(2, "--spp", 2, *flags, status=2)

@@ -217,7 +217,7 @@ class RealTime(CliTest):
             killed += program.returncode == -signal.SIGKILL
             # A frame's checkpoint is written before the next frame begins, so one frame at most has none.
             self.assertLessEqual(sum(event["event"] == "frame" and "kept" in event and "hash" in event for event in said), 1)
-            if program.returncode == 0:  # the whole sequence: begin anew
+            if program.returncode == 0:  # the whole sequence: start again
                 self.assertEqual(self.pictures("x"), self.pictures("whole"))
                 for name in os.listdir(self.path("x")):
                     os.remove(self.path(f"x/{name}"))

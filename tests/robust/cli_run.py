@@ -20,7 +20,7 @@ from read_exr import read_exr  # noqa: E402,F401
 
 # Sanitized programs are slow and reserve terabytes of addresses.
 SANITIZED = "--sanitized" in sys.argv
-PROGRAM = os.path.abspath(next(argument for argument in sys.argv[1:] if not argument.startswith("-")))
+PROGRAM = os.path.abspath(next((argument for argument in sys.argv[1:] if not argument.startswith("-")), "build/bin/pertev"))
 # Scripts with `--device NAME` render on that device (cli_integrators), the others on the CPU.
 DEVICE = sys.argv[sys.argv.index("--device") + 1] if "--device" in sys.argv[:-1] else "cpu"
 TONED = (".png", ".jpg", ".jpeg")

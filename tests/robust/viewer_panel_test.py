@@ -48,7 +48,7 @@ class Panel(unittest.TestCase):
         with Viewer(spp=1) as viewer, BROWSER.visit(viewer.address) as page:
             page.until(READY + " && document.querySelectorAll('#readings details').length > 1")
             names = page.value("[...document.querySelectorAll('#panel details')].map((d) => d.dataset.group)")
-            for before, after in [("Light", "Scene"), ("Camera", "Path of the camera"), ("Scene", "Now"), ("Now", "Stages")]:
+            for before, after in [("Light", "Scene"), ("Camera", "Camera path"), ("Scene", "Now"), ("Now", "Stages")]:
                 self.assertLess(names.index(before), names.index(after), names)
             self.assertTrue(shown(page, "#setting-max_depth"))
             self.assertFalse(shown(page, "#setting-restir"))
@@ -98,25 +98,25 @@ class Panel(unittest.TestCase):
 
 
 class TwoWindows(unittest.TestCase):
-    def test_a_client_that_may_not_steer_is_told_why_and_control_can_be_handed_over(self):
+    def test_a_client_that_may_not_steer_gets_the_reason_and_control_can_be_handed_over(self):
         with Viewer(spp=1) as viewer, BROWSER.visit(viewer.address) as first, Chromium() as second:
             window(first, 1280, 720)
             first.until(READY)
-            self.assertFalse(shown(first, "#wheel"))
+            self.assertFalse(shown(first, "#control"))
             second.go(viewer.address)
             second.until("document.body.dataset.steers == 'false' && document.body.dataset.samples")
-            self.assertTrue(shown(second, "#wheel"))
+            self.assertTrue(shown(second, "#control"))
             second.drag("left", 100, 0)
-            second.until("document.querySelector('#notice').textContent.includes('cannot turn the view')")
-            first.until("document.querySelector('#wheel-text').textContent.includes('would like to turn the view')")
+            second.until("document.querySelector('#notice').textContent.includes('cannot orbit the view')")
+            first.until("document.querySelector('#control-text').textContent.includes('would like to orbit the view')")
             second.key("Digit2", "2")
-            first.until("document.querySelector('#wheel-text').textContent.includes('Max depth')")
+            first.until("document.querySelector('#control-text').textContent.includes('Max depth')")
             before = first.value("document.body.dataset.flags")
-            first.value("[...document.querySelectorAll('#wheel button')].find((b) => b.textContent == 'hand over').click()")
+            first.value("[...document.querySelectorAll('#control button')].find((b) => b.textContent == 'hand over').click()")
             second.until("document.body.dataset.steers == 'true'")
             second.drag("left", 100, 0)
             second.until(f"document.body.dataset.flags != {json.dumps(before)}")
-            self.assertFalse(shown(second, "#wheel"))
+            self.assertFalse(shown(second, "#control"))
             self.assertEqual(first.errors + second.errors, [])
 
 

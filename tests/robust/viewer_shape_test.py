@@ -107,7 +107,7 @@ class Grows(CliTest):
 
 
 class Together(CliTest):
-    def test_a_second_client_is_told_why_it_cannot_steer_and_the_first_sees_its_request(self):
+    def test_a_second_client_gets_the_reason_why_it_cannot_steer_and_the_first_sees_its_request(self):
         with Viewer() as viewer, Client(viewer, key="first") as first:
             before = first.done()["flags"]
             with Client(viewer, key="second") as second:
@@ -120,7 +120,7 @@ class Together(CliTest):
                 requester = next(person for person in people["people"] if person["request"])
                 self.assertIn(f"viewer {people['you']} steers", told["text"])
                 self.assertNotEqual(requester["id"], people["you"])
-                self.assertEqual(requester["request"], "turn the view")
+                self.assertEqual(requester["request"], "orbit the view")
                 first.say(type="hand", to=requester["id"])
                 second.text("people", lambda p: p["steers"] == p["you"] and not any(q["request"] for q in p["people"]))
                 second.steer(type="orbit", dx=0.1, dy=0)

@@ -480,12 +480,12 @@ class Ends(CliTest):
         self.refuse(3, "view", "cornell-box", "--size", "65501x1", "--device", "cpu", says=["--size"])
         self.refuse(2, "view", "cornell-box", "-o", "x.png", says=["-o"])
 
-    def test_view_takes_all_flags_of_render_but_the_documented_ones(self):
+    def test_view_takes_all_flags_of_render_except_the_documented_ones(self):
         def flags_of(verb):
             return set(re.findall(r"(?m)^  (?:-\w,)?(--[a-z][a-z-]+)", self.succeed(verb, "--help", "all").stdout))
 
         with open(os.path.join(SOURCES, "docs", "viewer.md"), encoding="utf-8") as file:
-            sentence = re.search(r"every flag of `pertev render` but(.*?);", file.read(), re.S).group(1)
+            sentence = re.search(r"every flag of `pertev render` except(.*?);", file.read(), re.S).group(1)
         self.assertEqual(flags_of("render") - flags_of("view") - {"--output"}, set(re.findall(r"`(--[a-z-]+)`", sentence)))
 
     def test_a_warning_explains_what_listening_on_another_host_means(self):

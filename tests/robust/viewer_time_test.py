@@ -44,14 +44,14 @@ class Times(CliTest):
             later = client.text("state", lambda s: s["clock"]["at"] != first["clock"]["at"])
             self.assertTrue(later["clock"]["on"])
             self.assertNotEqual(words_of(first), words_of(later))
-            stands = self.still(client, self.play(client, False))
-            self.assertFalse(stands["clock"]["on"])
-            words = words_of(stands)
+            paused = self.still(client, self.play(client, False))
+            self.assertFalse(paused["clock"]["on"])
+            words = words_of(paused)
             self.assertEqual(words[-2], "--time")
-            self.assertEqual(stands["hash"], self.rendered(*words))
-            self.assertEqual(stands["hash"], self.rendered("--time", words[-1]))  # the camera moves with it
+            self.assertEqual(paused["hash"], self.rendered(*words))
+            self.assertEqual(paused["hash"], self.rendered("--time", words[-1]))  # the camera moves with it
             again = client.text("state", timeout=5)  # the animation is paused
-            self.assertEqual(again["clock"]["at"], stands["clock"]["at"])
+            self.assertEqual(again["clock"]["at"], paused["clock"]["at"])
 
     def test_the_panel_lists_the_animations_and_scenes_of_the_file_and_which_is_shown(self):
         write(self.path("clips.gltf"), gltf(CLIPS, (("one", [0, 1, 2]), ("two", [3, 1, 2]))))
@@ -91,7 +91,7 @@ class Times(CliTest):
         scene["meshes"][0]["primitives"][0]["material"] = 0
         write(self.path("m.gltf"), json.dumps(scene))
         solved = ["--integrator", "radiosity", "--patch-size", "0.5", "--patch-rays", "16", "--subdivisions", "0"]
-        for given, said in [(["--time", "0.75"], "stands at 0.75 s"), ([], "stands as at rest")]:
+        for given, said in [(["--time", "0.75"], "at 0.75 s"), ([], "at rest")]:
             with self.view(*solved, *given) as viewer, Client(viewer) as client:
                 begins = client.done()
                 self.assertEqual(begins["clock"]["end"], 0)
@@ -115,7 +115,7 @@ class Times(CliTest):
                 path = self.still(client, client.set("integrator", "path"))
                 self.assertEqual(path["hash"], self.rendered(*words_of(path)))
                 viewer.end()
-                self.assertIn(f"the scene {said}", viewer.process.stderr.read().decode())
+                self.assertIn(f"the scene is shown {said}", viewer.process.stderr.read().decode())
 
     def test_time_loops_or_stops_at_its_end(self):
         with self.view("--time", "1.5") as viewer, Client(viewer) as client:

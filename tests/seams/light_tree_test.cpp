@@ -151,7 +151,8 @@ TEST_CASE("a light tree samples lights with the probabilities that it reports") 
         uint32_t other_density = 0;
         for (uint32_t i = 0; i < kDraws; ++i) {
             LightSample sample;
-            if (!sample_light<EmitterLook::Plain, test::TwoNodeTree>(view, context, test::random_bits(random), sample))
+            if (!sample_light<EmitterVariant::Plain, test::TwoNodeTree>(view, context, test::random_bits(random),
+                                                                        sample))
                 continue;
             const bool is_sky = sample.instance == kNoLight;
             const uint32_t light = is_sky ? 4 : light_of(view, sample.instance, sample.primitive);

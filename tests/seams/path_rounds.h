@@ -39,13 +39,13 @@ struct RoundPath {
 template <class Listener>
 struct RoundsView {
     RoundPath<Listener>* paths; // [pixels of the film]
-    RoundRays onwards, shadows;
+    RoundRays continuation, shadows;
     HitQueueView hits, occlusions;
 
     HD void store_ray(uint32_t i) const {
         const PathState& path = paths[i].state;
-        if (!paths[i].goes_on) return onwards.store_none(i);
-        onwards.store(i, {path.origin, 0, path.direction, kInfinity}, path.start, {});
+        if (!paths[i].goes_on) return continuation.store_none(i);
+        continuation.store(i, {path.origin, 0, path.direction, kInfinity}, path.start, {});
     }
 };
 

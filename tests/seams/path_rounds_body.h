@@ -14,7 +14,7 @@ void PathRounds<kFeatures, Listener, Job>::render(const Job& job, SceneTracer& t
     const uint32_t p = pixels_;
     Uint2* const ids = triangles_.data();
     const RoundsView<Listener> view = {.paths = paths_.data(),
-                                       .onwards = {rays_.data(), ids, ids + p},
+                                       .continuation = {rays_.data(), ids, ids + p},
                                        .shadows = {rays_.data() + p, ids + 2 * p, ids + 3 * p},
                                        .hits = {records_.data(), instances_.data()},
                                        .occlusions = {nullptr, instances_.data() + p}};
@@ -22,7 +22,7 @@ void PathRounds<kFeatures, Listener, Job>::render(const Job& job, SceneTracer& t
         launch(queue_, "begin_round", count, BeginRound<Listener, Job>{job, view, sample});
         for (uint32_t depth = 0; depth <= job.settings.max_depth; ++depth) {
             const RayKind kind = depth == 0 ? RayKind::Camera : RayKind::Bounce;
-            tracer.find_hits(kind, view.onwards.query(), count, view.hits);
+            tracer.find_hits(kind, view.continuation.query(), count, view.hits);
             launch(queue_, "shade_round", count, ShadeRound<kFeatures, Listener, Job>{job, view});
             tracer.find_occlusions(view.shadows.query(), count, view.occlusions);
             launch(queue_, "add_round_light", count, AddRoundLight<Listener, Job>{job, view});

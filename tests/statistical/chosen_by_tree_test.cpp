@@ -73,7 +73,7 @@ TEST_CASE("a tree samples lights of every kind with the densities that it report
                 slot = light;
                 LightSample sample;
                 other += pmf == ChosenByTree::pmf_of_triangle(view, context, light) ? 0 : 1;
-                if (!triangle_light_at<EmitterLook::Plain>(view, light, pmf, context.point, b, sample)) return false;
+                if (!triangle_light_at<EmitterVariant::Plain>(view, light, pmf, context.point, b, sample)) return false;
                 other += sample.pdf == pdf_light_hit<ChosenByTree>(view, light, context, sample.light_point) ? 0 : 1;
                 return true;
             }

@@ -164,7 +164,7 @@ TEST_CASE("clamping of fireflies and of history each lose little light") {
     fireflies.clamp_fireflies = true;
     held.clamp_history = true;
     bound_bias(history_alone(),
-               {{"limit_fireflies", fireflies, {0.002, 0.014, 0.002}}, {"limit_history", held, {0.002, 0.014, 0.002}}});
+               {{"clamp_fireflies", fireflies, {0.002, 0.014, 0.002}}, {"clamp_history", held, {0.002, 0.014, 0.002}}});
 }
 
 TEST_CASE("anti-aliasing and a lower resolution each lose little light") {

@@ -391,7 +391,7 @@ TEST_CASE("in a medium lights that are sampled, hit, or both have one mean, by p
     }
 }
 
-TEST_CASE("what knows no media says so") {
+TEST_CASE("integrators without media refuse or warn") {
     Scene scene = test::under_sky();
     scene.medium = kMilk;
     scene.lights = {test::point_light({0, 2, 0}, {8, 8, 8})};

@@ -138,7 +138,7 @@ TEST_CASE("no light leaks between the surfaces of a mixture") {
     CHECK(two.mean[total] == doctest::Approx(one.mean[total]).epsilon(0.01));
 }
 
-TEST_CASE("photon maps have the light of surfaces that chance lets rays meet") {
+TEST_CASE("photon maps have the light of surfaces of stochastic alpha") {
     // A room is lit by a point light and shows what its surfaces send each other. The ball in it is blended, or diffuse
     // and of metal, which keeps no photons, or diffuse beneath metal, or of two diffuse surfaces. So few photons have
     // an error of 2 %; a ball whose photons count by the wrong chance makes more.

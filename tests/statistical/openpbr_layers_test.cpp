@@ -187,7 +187,7 @@ TEST_CASE("a coat tints what is beneath by both refracted ways, by its weight, a
     CHECK(on_metal(color).weight < 1.001 * on_metal(grey(1)).weight);
 }
 
-TEST_CASE("pictures have the fuzz and the coat's colour that their materials ask for") {
+TEST_CASE("pictures have the fuzz and the coat's colour of their materials") {
     const Vec3 towards = {0, 0.5f, 0.8660254f};
     Material velvet = white(0.2f);
     velvet.fuzz_weight = 0.8f;

@@ -79,9 +79,9 @@ TEST_CASE(
         const Vec3 wo = direction_at(2.0f * p.u.x - 1.0f, p.u.y), wi = direction_at(2.0f * q.u.x - 1.0f, q.u.y);
         CHECK(near.eval(wo, wi).g == doctest::Approx(lambert.eval(wo, wi).g).epsilon(1e-4));
     }
-    const Vec3 wo = direction_at(0.3f, 0), back = wo, onwards = direction_at(0.3f, 0.5f);
+    const Vec3 wo = direction_at(0.3f, 0), back = wo, forward = direction_at(0.3f, 0.5f);
     CHECK(rough.eval(wo, back).g > 1.5f * lambert.eval(wo, back).g);
-    CHECK(rough.eval(wo, onwards).g < 0.6f * lambert.eval(wo, onwards).g);
+    CHECK(rough.eval(wo, forward).g < 0.6f * lambert.eval(wo, forward).g);
     // By the listing of the paper (section 3), in double: roughness 0.5, cosines 0.6 and 0.4, 60 degrees between.
     const Vec3 i = direction_at(0.6f, 0), o = direction_at(0.4f, 1.0f / 6);
     const Rgb f = (1 / 0.6f) * make_rough_diffuse(albedo, 0.5f).eval(o, i);
@@ -103,7 +103,7 @@ TEST_CASE("a white rough base beneath a reflection returns all light to 1 %, and
             return make_reflection({.base_color = grey(1), .roughness = r, .diffuse_roughness = diffuse_roughness});
         });
         INFO("diffuse roughness " << diffuse_roughness << ": from " << glossy.least() << " to " << glossy.largest());
-        CHECK(glossy.r > 0.93); // at grazing angles, where light goes back along its way
+        CHECK(glossy.r > 0.93); // at grazing angles, where light returns towards its source
         CHECK(glossy.b < 1.001);
         const MeanWeight varnished = light_range(
             [&](float r) { return make_coated(make_rough_diffuse(grey(1), diffuse_roughness), 1, r, 1.5f); });
@@ -218,7 +218,7 @@ TEST_CASE("no sample of rough diffuse or metal has a weight above 1.5, and none 
     }
 }
 
-TEST_CASE("retroreflection sends light back along its way, as much as the mirror would forwards") {
+TEST_CASE("retroreflection sends light back towards its source, as much as the mirror would forwards") {
     const auto sign = [](float roughness, float share, Rgb color = grey(1), float metallic = 1) {
         return make_reflection(
             {.base_color = color, .metallic = metallic, .roughness = roughness, .retroreflectivity = share});

@@ -24,7 +24,7 @@ PictureEstimate estimate_of(uint32_t renders, const std::function<Image(uint32_t
 
 /// Returns the estimate of the picture, or of the first light-path layer if the settings request any. Renders with
 /// seeds first_seed, first_seed + 1, ..., so that pictures are independent for any sampler. Stratified samples have
-/// half to a quarter of the variance of independent ones, but for a pixel whose light comes from rare samples their
+/// half to a quarter of the variance of independent ones. Where the light of a pixel comes from rare samples, their
 /// mean looks more certain than it is.
 PictureEstimate estimate_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera,
                                  RenderSettings settings, uint32_t renders, uint32_t first_seed);

@@ -50,16 +50,16 @@ std::string describe_calls(const EmulatedLane& lane) {
 }
 
 /// Describes the state of lanes that have not reached a warp operation.
-std::string describe_missing(const EmulatedWarp& warp, const Meeting& meeting) {
+std::string describe_missing(const EmulatedWarp& warp, const WarpOperation& operation) {
     uint32_t other_mask = 0, elsewhere = 0;
-    for_each_lane(meeting.mask & warp.live, [&](unsigned k) {
-        const Meeting& other = warp.lanes[k].meeting;
+    for_each_lane(operation.mask & warp.live, [&](unsigned k) {
+        const WarpOperation& other = warp.lanes[k].operation;
         const bool waits = ((warp.waiting | warp.pending) >> k & 1) != 0;
-        if (waits && other.kind == meeting.kind && other.mask == meeting.mask) return;
-        (waits && other.kind == meeting.kind ? other_mask : elsewhere) |= 1u << k;
+        if (waits && other.kind == operation.kind && other.mask == operation.mask) return;
+        (waits && other.kind == operation.kind ? other_mask : elsewhere) |= 1u << k;
     });
     std::string text;
-    const uint32_t ended = meeting.mask & ~warp.live;
+    const uint32_t ended = operation.mask & ~warp.live;
     if (ended != 0) text += "; lanes " + text_of_lanes(ended) + " of it have ended";
     if (other_mask != 0) text += "; lanes " + text_of_lanes(other_mask) + " of it name another mask";
     if (elsewhere != 0) text += "; lanes " + text_of_lanes(elsewhere) + " of it are elsewhere";
@@ -73,21 +73,21 @@ std::string describe(const EmulatedWarp& warp) {
     const uint32_t at_rest = warp.waiting | warp.pending;
     for (uint32_t left = at_rest; left != 0;) {
         const EmulatedLane& first = warp.lanes[static_cast<unsigned>(__builtin_ctz(left))];
-        const Meeting& meeting = first.meeting;
+        const WarpOperation& operation = first.operation;
         const std::string calls = describe_calls(first);
         uint32_t same = 0;
         for_each_lane(left, [&](unsigned k) {
-            const Meeting& other = warp.lanes[k].meeting;
-            const bool alike = other.kind == meeting.kind && other.mask == meeting.mask &&
-                               text_of_location(other.at) == text_of_location(meeting.at) &&
+            const WarpOperation& other = warp.lanes[k].operation;
+            const bool alike = other.kind == operation.kind && other.mask == operation.mask &&
+                               text_of_location(other.at) == text_of_location(operation.at) &&
                                describe_calls(warp.lanes[k]) == calls;
             same |= alike ? 1u << k : 0;
         });
         left &= ~same;
-        text += "\n  lanes " + text_of_lanes(same) + " wait at " + kNames[static_cast<int>(meeting.kind)];
-        if (meeting.kind != MeetingKind::ActiveMask) text += " of mask " + text_of_hex(meeting.mask);
-        text += ", " + text_of_location(meeting.at);
-        if (meeting.kind != MeetingKind::ActiveMask) text += describe_missing(warp, meeting);
+        text += "\n  lanes " + text_of_lanes(same) + " wait at " + kNames[static_cast<int>(operation.kind)];
+        if (operation.kind != WarpOperationKind::ActiveMask) text += " of mask " + text_of_hex(operation.mask);
+        text += ", " + text_of_location(operation.at);
+        if (operation.kind != WarpOperationKind::ActiveMask) text += describe_missing(warp, operation);
         text += "\n    addr2line -Cfipe build/bin/pertev_tests" + calls;
     }
     if (warp.live != 0xffffffffu) text += "\n  lanes " + text_of_lanes(~warp.live) + " have ended";

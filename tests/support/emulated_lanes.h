@@ -11,11 +11,11 @@
 
 namespace pertev::test {
 
-enum class MeetingKind : uint8_t { ActiveMask, Ballot, All, MatchAny, Shuffle, Sync };
+enum class WarpOperationKind : uint8_t { ActiveMask, Ballot, All, MatchAny, Shuffle, Sync };
 
 /// The point at which a lane waits, and its argument.
-struct Meeting {
-    MeetingKind kind;
+struct WarpOperation {
+    WarpOperationKind kind;
     uint32_t mask;  // mask that the lane passed
     uint64_t value; // argument; for __activemask a hash of the call stack
     int source;     // for __shfl_sync
@@ -32,7 +32,7 @@ struct Fiber {
 
 struct EmulatedLane {
     Fiber fiber;
-    Meeting meeting;
+    WarpOperation operation;
     uint64_t result; // the result of the warp operation
 };
 
@@ -53,7 +53,7 @@ template <class Do>
 void for_each_call(const EmulatedLane& lane, const Do& what) {
     const void *above = lane.fiber.stack, *end = lane.fiber.stack + lane.fiber.stack_bytes - 2 * sizeof(void*);
     // The bounds are needed for a caller that was compiled without frame pointers.
-    for (void* const* frame = lane.meeting.frame; frame > above && frame <= end && frame[1] != nullptr;
+    for (void* const* frame = lane.operation.frame; frame > above && frame <= end && frame[1] != nullptr;
          frame = static_cast<void* const*>(frame[0])) {
         what(frame[1]);
         above = frame;

@@ -66,8 +66,8 @@ class Machine {
 public:
     Machine();
     std::string run(const EmulatedLaunch& launch, const std::function<void()>& kernel);
-    uint64_t meet(const Meeting& meeting);
-    uint32_t wait_for_active_mask(const Meeting& meeting);
+    uint64_t wait_for_lanes(const WarpOperation& operation);
+    uint32_t wait_for_active_mask(const WarpOperation& operation);
     void step();
     bool is_running() const { return lane_ != nullptr; }
 
@@ -79,7 +79,7 @@ private:
     void go_on();
     EmulatedLane* choose_lane();
     void answer_active_mask(EmulatedWarp& warp);
-    void hold_meeting(EmulatedWarp& warp, uint32_t mask);
+    void perform(EmulatedWarp& warp, uint32_t mask);
     void fail(std::string what);
     bool chance(uint32_t of_256) { return (random_.bits() >> 24) < of_256; }
 
@@ -228,7 +228,7 @@ std::string Machine::run(const EmulatedLaunch& launch, const std::function<void(
     return std::exchange(fault_, {});
 }
 
-// ---- meetings
+// ---- warp operations
 
 void Machine::fail(std::string what) {
     if (fault_.empty()) fault_ = std::move(what);
@@ -236,53 +236,53 @@ void Machine::fail(std::string what) {
 
 void Machine::step() { go_on(); }
 
-uint64_t Machine::meet(const Meeting& meeting) {
+uint64_t Machine::wait_for_lanes(const WarpOperation& operation) {
     EmulatedWarp& warp = *warp_;
     EmulatedLane& lane = *lane_;
     const uint32_t me = 1u << (lane::thread_index.x & 31u);
-    lane.meeting = meeting;
-    if ((meeting.mask & me) == 0) fail("a lane names a mask without itself");
-    if (meeting.kind == MeetingKind::Shuffle && (meeting.mask >> meeting.source & 1) == 0) {
+    lane.operation = operation;
+    if ((operation.mask & me) == 0) fail("a lane names a mask without itself");
+    if (operation.kind == WarpOperationKind::Shuffle && (operation.mask >> operation.source & 1) == 0) {
         fail("a lane asks for the value of one that its mask does not name");
     }
     warp.ready &= ~me;
     warp.waiting |= me;
-    if ((warp.waiting & meeting.mask) == meeting.mask) {
+    if ((warp.waiting & operation.mask) == operation.mask) {
         bool agreed = true;
-        for_each_lane(meeting.mask, [&](unsigned k) {
-            const Meeting& other = warp.lanes[k].meeting;
-            agreed &= other.kind == meeting.kind && other.mask == meeting.mask;
+        for_each_lane(operation.mask, [&](unsigned k) {
+            const WarpOperation& other = warp.lanes[k].operation;
+            agreed &= other.kind == operation.kind && other.mask == operation.mask;
         });
-        if (agreed) hold_meeting(warp, meeting.mask);
+        if (agreed) perform(warp, operation.mask);
     }
     go_on();
     return lane.result;
 }
 
 /// All lanes of `mask` have arrived.
-void Machine::hold_meeting(EmulatedWarp& warp, uint32_t mask) {
+void Machine::perform(EmulatedWarp& warp, uint32_t mask) {
     uint32_t yes = 0;
-    for_each_lane(mask, [&](unsigned k) { yes |= warp.lanes[k].meeting.value != 0 ? 1u << k : 0; });
+    for_each_lane(mask, [&](unsigned k) { yes |= warp.lanes[k].operation.value != 0 ? 1u << k : 0; });
     for_each_lane(mask, [&](unsigned k) {
         EmulatedLane& lane = warp.lanes[k];
-        switch (lane.meeting.kind) {
-        case MeetingKind::Ballot:
+        switch (lane.operation.kind) {
+        case WarpOperationKind::Ballot:
             lane.result = yes;
             break;
-        case MeetingKind::All:
+        case WarpOperationKind::All:
             lane.result = yes == mask ? 1 : 0;
             break;
-        case MeetingKind::Shuffle:
-            lane.result = warp.lanes[static_cast<unsigned>(lane.meeting.source)].meeting.value;
+        case WarpOperationKind::Shuffle:
+            lane.result = warp.lanes[static_cast<unsigned>(lane.operation.source)].operation.value;
             break;
-        case MeetingKind::MatchAny:
+        case WarpOperationKind::MatchAny:
             lane.result = 0;
             for_each_lane(mask, [&](unsigned j) {
-                lane.result |= warp.lanes[j].meeting.value == lane.meeting.value ? 1u << j : 0;
+                lane.result |= warp.lanes[j].operation.value == lane.operation.value ? 1u << j : 0;
             });
             break;
-        case MeetingKind::Sync:
-        case MeetingKind::ActiveMask:
+        case WarpOperationKind::Sync:
+        case WarpOperationKind::ActiveMask:
             break;
         }
     });
@@ -290,12 +290,12 @@ void Machine::hold_meeting(EmulatedWarp& warp, uint32_t mask) {
     warp.ready |= mask;
 }
 
-uint32_t Machine::wait_for_active_mask(const Meeting& meeting) {
+uint32_t Machine::wait_for_active_mask(const WarpOperation& operation) {
     EmulatedLane& lane = *lane_;
-    lane.meeting = meeting;
+    lane.operation = operation;
     // One source line may be called from two places, so the call stack distinguishes them.
     for_each_call(lane, [&](const void* address) {
-        lane.meeting.value = (lane.meeting.value ^ reinterpret_cast<uint64_t>(address)) * 0x9e3779b97f4a7c15u;
+        lane.operation.value = (lane.operation.value ^ reinterpret_cast<uint64_t>(address)) * 0x9e3779b97f4a7c15u;
     });
     const uint32_t me = 1u << (lane::thread_index.x & 31u);
     warp_->ready &= ~me;
@@ -308,19 +308,21 @@ uint32_t Machine::wait_for_active_mask(const Meeting& meeting) {
 void Machine::answer_active_mask(EmulatedWarp& warp) {
     const uint32_t rank = random_.below(static_cast<uint32_t>(__builtin_popcount(warp.pending)));
     const uint32_t first = _pdep_u32(1u << rank, warp.pending);
-    const uint64_t site = warp.lanes[static_cast<unsigned>(__builtin_ctz(first))].meeting.value;
+    const uint64_t site = warp.lanes[static_cast<unsigned>(__builtin_ctz(first))].operation.value;
     uint32_t together = 0;
-    for_each_lane(warp.pending, [&](unsigned k) { together |= warp.lanes[k].meeting.value == site ? 1u << k : 0; });
+    for_each_lane(warp.pending, [&](unsigned k) { together |= warp.lanes[k].operation.value == site ? 1u << k : 0; });
     if (chance(partly_)) together &= random_.bits() | first;
     for_each_lane(together, [&](unsigned k) { warp.lanes[k].result = together; });
     warp.pending &= ~together;
     warp.ready |= together;
 }
 
-uint64_t meet(MeetingKind kind, uint32_t mask, uint64_t value, int source, const CodeLocation& at, void* frame) {
+uint64_t wait_for_lanes(WarpOperationKind kind, uint32_t mask, uint64_t value, int source, const CodeLocation& at,
+                        void* frame) {
     if (!machine().is_running()) std::abort(); // no lane is calling
-    const Meeting meeting = {kind, mask, value, source, at, static_cast<void* const*>(frame)};
-    return kind == MeetingKind::ActiveMask ? machine().wait_for_active_mask(meeting) : machine().meet(meeting);
+    const WarpOperation operation = {kind, mask, value, source, at, static_cast<void* const*>(frame)};
+    return kind == WarpOperationKind::ActiveMask ? machine().wait_for_active_mask(operation)
+                                                 : machine().wait_for_lanes(operation);
 }
 
 } // namespace
@@ -333,22 +335,26 @@ namespace lane {
 
 // Each function is a separate call, whose frame contains the caller's address.
 [[gnu::noinline]] uint32_t active_mask(CodeLocation at) {
-    return static_cast<uint32_t>(meet(MeetingKind::ActiveMask, 0, 0, 0, at, __builtin_frame_address(0)));
+    return static_cast<uint32_t>(
+        wait_for_lanes(WarpOperationKind::ActiveMask, 0, 0, 0, at, __builtin_frame_address(0)));
 }
 [[gnu::noinline]] uint32_t ballot(uint32_t mask, bool mine, CodeLocation at) {
-    return static_cast<uint32_t>(meet(MeetingKind::Ballot, mask, mine ? 1 : 0, 0, at, __builtin_frame_address(0)));
+    return static_cast<uint32_t>(
+        wait_for_lanes(WarpOperationKind::Ballot, mask, mine ? 1 : 0, 0, at, __builtin_frame_address(0)));
 }
 [[gnu::noinline]] bool all(uint32_t mask, bool mine, CodeLocation at) {
-    return meet(MeetingKind::All, mask, mine ? 1 : 0, 0, at, __builtin_frame_address(0)) != 0;
+    return wait_for_lanes(WarpOperationKind::All, mask, mine ? 1 : 0, 0, at, __builtin_frame_address(0)) != 0;
 }
 [[gnu::noinline]] uint32_t match_any(uint32_t mask, uint64_t key, CodeLocation at) {
-    return static_cast<uint32_t>(meet(MeetingKind::MatchAny, mask, key, 0, at, __builtin_frame_address(0)));
+    return static_cast<uint32_t>(
+        wait_for_lanes(WarpOperationKind::MatchAny, mask, key, 0, at, __builtin_frame_address(0)));
 }
 [[gnu::noinline]] uint32_t shuffle(uint32_t mask, uint32_t value, int source, CodeLocation at) {
-    return static_cast<uint32_t>(meet(MeetingKind::Shuffle, mask, value, source & 31, at, __builtin_frame_address(0)));
+    return static_cast<uint32_t>(
+        wait_for_lanes(WarpOperationKind::Shuffle, mask, value, source & 31, at, __builtin_frame_address(0)));
 }
 [[gnu::noinline]] void sync(uint32_t mask, CodeLocation at) {
-    meet(MeetingKind::Sync, mask, 0, 0, at, __builtin_frame_address(0));
+    wait_for_lanes(WarpOperationKind::Sync, mask, 0, 0, at, __builtin_frame_address(0));
 }
 void step() { machine().step(); }
 

@@ -37,7 +37,7 @@ TEST_CASE("the difference that explains the others is named") {
         {"hash of the scene's file", "a"}, {"exposure", "1.5"}, {"max_depth", "4"}, {"version", "1"}};
     CHECK(first_name(one, one) == "");
     DecidingSettings deeper = one;
-    deeper[1].second = "1.7"; // metered anew
+    deeper[1].second = "1.7"; // metered again
     deeper[2].second = "5";
     CHECK(text_of_first(one, deeper) == "`max_depth` is \"4\" there, not \"5\"");
     DecidingSettings of_another = deeper;

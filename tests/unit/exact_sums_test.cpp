@@ -1,5 +1,5 @@
-// Exact sums of what a denoiser gathers: their order leaves no trace, their values come back with the precision that
-// their kind promises, and values out of range are clamped.
+// Exact sums of what a denoiser gathers: their order does not affect the result, their values come back with the
+// precision that their kind promises, and values out of range are clamped.
 
 #include <algorithm>
 #include <random>

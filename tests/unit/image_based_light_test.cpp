@@ -54,7 +54,7 @@ Rgb radiance(const Environment& environment, double x, double y, double z) {
 
 const std::string kFaces = R"("specularImages":[[0,1,2,3,4,5]],"specularImageSize":2,"irradianceCoefficients":[])";
 
-TEST_CASE("the faces of an image-based light are seen from inside, with the viewer's right and up") {
+TEST_CASE("an image-based light shows its faces from inside, with the viewer's right and up") {
     Messages messages;
     const Scene scene = read(kFaces + R"(,"intensity":3)", messages);
     CHECK(messages.left_out().empty());

@@ -14,7 +14,7 @@ using test::GltfBuilder;
 namespace read_gltf_clips_test { // test files are compiled together
 
 /// Accessors: 0 positions, 1 times 0 2, 2 times 0 5, 3 two VEC3, 4 two scalars, 5 times that fall. Nodes 0 and 1 show
-/// the mesh, which has a morph target, node 2 is a lamp. Clips: "walk" moves node 0, "bend" reshapes node 1, "dim"
+/// the mesh, which has a morph target, node 2 is a light. Clips: "walk" moves node 0, "bend" reshapes node 1, "dim"
 /// changes the light, "broken" has an invalid channel.
 GltfBuilder key_numbers() {
     GltfBuilder builder;

@@ -71,7 +71,7 @@ TEST_CASE("ies: candelas are exact at the file's angles and linear between them"
     CHECK(candelas_at(uneven, 30.5, 0) == 0);
 }
 
-TEST_CASE("ies: a quarter, a half or the whole of the horizontal circle") {
+TEST_CASE("ies: files may give a quarter, a half or the whole of the horizontal circle") {
     const std::string quarter = ies_text("0 90", "0 90", "10 20 10 40", 2, 2);
     for (const double h : {0.0, 180.0, 360.0})
         CHECK(candelas_at(quarter, 89.999, h) == doctest::Approx(20).epsilon(1e-3));
@@ -218,7 +218,7 @@ TEST_CASE("ies: a setting gives point and spot lights by name the candelas of a 
     CHECK(scene.lights[0].intensity.g == doctest::Approx(200.0 / 683));
     const test::Lights lights(scene);
     LightSample sample; // E = I / r^2 two metres below
-    REQUIRE(sample_punctual_light<EmitterLook::Coated>(lights.view, 0, 1, {0, -2, 0}, sample));
+    REQUIRE(sample_punctual_light<EmitterVariant::Coated>(lights.view, 0, 1, {0, -2, 0}, sample));
     CHECK(sample.radiance.g == doctest::Approx(200.0 / 683 / 4));
     const std::string both[] = {text, "b*=" + file};
     CHECK(test::is_about(test::thrown_error([&] { set_profiles(scene, both, 683, messages); }), ErrorCode::BadInput,

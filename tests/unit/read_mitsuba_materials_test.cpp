@@ -89,7 +89,7 @@ float mitsuba_texel(const MitsubaMaterial& read, const TextureRef& ref, float u,
 
 } // namespace
 
-TEST_CASE("mitsuba: colours of reflectances are seen under D65") {
+TEST_CASE("mitsuba: reflectances have their colours under D65") {
     check_mitsuba_color(mitsuba_reflectance(rgb_of("reflectance", ".1, .2, .3")), {0.1f, 0.2f, 0.3f});
     check_mitsuba_color(mitsuba_reflectance(""), grey(0.5f));
     check_mitsuba_color(mitsuba_reflectance("<srgb name=\"reflectance\" value=\"#808080\"/>", "0.6.0"), grey(0.21586f));

@@ -102,7 +102,7 @@ std::span<const std::byte> bytes_in(const std::string& text) {
 
 } // namespace
 
-TEST_CASE("mitsuba: analytic shapes have their places and normals") {
+TEST_CASE("mitsuba: analytic shapes have their positions and normals") {
     check_world_box(world_box(load_mitsuba_shapes(shape_of("rectangle"))), {-1, -1, 0}, {1, 1, 0});
     check_world_box(world_box(load_mitsuba_shapes(shape_of("cube"))), {-1, -1, -1}, {1, 1, 1});
     check_world_box(
@@ -385,7 +385,7 @@ TEST_CASE("mitsuba: a projector shows its picture upright, with pi times its irr
     CHECK(*values.at(0, values.height / 2) == doctest::Approx(0).epsilon(0.01));
 }
 
-TEST_CASE("mitsuba: what a spot or a projector cannot have is left out at its place") {
+TEST_CASE("mitsuba: what a spot or a projector cannot have is left out with its line") {
     const fs::path folder = test::scratch_folder();
     Image slide{.width = 2, .height = 2, .channels = 3, .pixels = std::vector<float>(12, 1.0f)};
     slide.pixels[0] = slide.pixels[6] = 8; // the left column

@@ -208,7 +208,7 @@ TEST_CASE("mitsuba: film, sampler and integrator suggest settings") {
                     "scene.xml:2: the parameter \"crop_width\""));
 }
 
-TEST_CASE("mitsuba: nothing is made up for a file without lights") {
+TEST_CASE("mitsuba: no default light is added to a file without lights") {
     const Scene scene = load_mitsuba(in_scene(kMitsubaSquare));
     REQUIRE(scene.environment);
     CHECK(is_black(scene.environment->scale));

@@ -126,7 +126,7 @@ TEST_CASE("pbrt: an area light belongs to its block, and nothing emits through a
     CHECK(scene.materials[scene.instances[1].material].name == "default");
 }
 
-TEST_CASE("pbrt: lights without a size") {
+TEST_CASE("pbrt: point, spot and distant lights have their amounts, positions and directions") {
     const Scene scene =
         load_lit("WorldBegin Translate 1 0 0\n"
                  "LightSource \"point\" \"rgb I\" [1 2 3] \"point3 from\" [0 5 0] \"float scale\" 2\n"
@@ -181,7 +181,7 @@ TEST_CASE("pbrt: goniometric and projection lights face where pbrt has them") {
         const Light& light = scene.lights[0];
         const Vec3 right = (light.is_mirrored ? -1.0f : 1.0f) * cross(light.direction, light.up);
         const Vec3 to = offset.x * right + offset.y * light.direction + offset.z * light.up;
-        if (!sample_punctual_light<EmitterLook::Coated>(lights.view, 0, 1, light.position + to, sample)) return 0.0f;
+        if (!sample_punctual_light<EmitterVariant::Coated>(lights.view, 0, 1, light.position + to, sample)) return 0.0f;
         return sample.radiance.g * length_squared(offset);
     };
     const Scene lamp = load("LightSource \"goniometric\" \"rgb I\" [1 3 1]" + file);
@@ -283,7 +283,7 @@ TEST_CASE("pbrt: a light whose strength or place is not a finite number is left 
     CHECK(messages.left_out().size() == 1);
 }
 
-TEST_CASE("pbrt: nothing is made up for a file without light, and infinite lights add up") {
+TEST_CASE("pbrt: no default light is added to a file without light, and infinite lights add up") {
     const Scene dark = load_lit("WorldBegin\n" + kFloorText);
     REQUIRE(dark.environment);
     CHECK(is_black(dark.environment->scale));

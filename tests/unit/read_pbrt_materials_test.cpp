@@ -167,7 +167,7 @@ TEST_CASE("pbrt: coats, panes and sheets are the nearest materials") {
     CHECK(sheet.specular_weight == 0);
 }
 
-TEST_CASE("pbrt: materials of version 3") {
+TEST_CASE("pbrt: materials of version 3 become those of version 4") {
     CHECK(pbrt_material("Material \"matte\" \"rgb Kd\" [.1 .2 .3]", "WorldEnd\n").base_color == Rgb{0.1f, 0.2f, 0.3f});
     CHECK(pbrt_material("Material \"matte\" \"color Kd\" [.1 .2 .3] \"float sigma\" 20").base_diffuse_roughness > 0);
     const Material metal = pbrt_material("Material \"metal\" \"rgb eta\" [1.1 1.2 1.3] \"rgb k\" [3 4 5] \"float "

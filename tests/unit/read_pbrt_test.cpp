@@ -143,7 +143,7 @@ TEST_CASE("pbrt: instances of an object share its meshes") {
     check_at(transform_point(scene.instances[4].world_from_local, {0, 0, 1}), {2, 0, 9});
 }
 
-TEST_CASE("pbrt: an object of nobody, nested objects and stray ends are left out with their lines") {
+TEST_CASE("pbrt: an undefined object, nested objects and stray ends are left out with their lines") {
     Messages messages;
     const Scene scene =
         load_pbrt("WorldBegin\nObjectInstance \"tre\"\nObjectBegin \"tree\"\nObjectBegin \"inner\"\n" + kFlat +
@@ -216,7 +216,7 @@ TEST_CASE("pbrt: faults of syntax cost their statement or parameter alone") {
     }
 }
 
-TEST_CASE("pbrt: a file without shapes is refused with what is right") {
+TEST_CASE("pbrt: a file without shapes is refused, and the expected shapes are listed") {
     Messages messages;
     CHECK(test::thrown_error([&] { (void)load_pbrt("WorldBegin\n", messages); })->code() == ErrorCode::BadInput);
     const fs::path folder = test::scratch_folder();

@@ -154,7 +154,7 @@ TEST_CASE("rays see the front of a sheet with two coincident sides, whichever tr
     }
 }
 
-TEST_CASE("a solid object is seen completely from outside and above, at any aspect") {
+TEST_CASE("the view shows a whole solid object from outside and above, at any aspect") {
     for (const Vec3 size : {Vec3{1, 1, 1}, Vec3{10, 0.1f, 3}, Vec3{1e-3f, 2e-3f, 1e-3f}, Vec3{1, 100, 1}}) {
         for (const float aspect : {16.0f / 9.0f, 1.0f, 0.5f}) {
             Scene scene;
@@ -169,7 +169,7 @@ TEST_CASE("a solid object is seen completely from outside and above, at any aspe
     }
 }
 
-TEST_CASE("a square with a hidden back is seen from its front, wherever that points") {
+TEST_CASE("the view shows the front of a square with a hidden back, wherever that points") {
     for (const Vec3 front :
          {Vec3{0, 0, 1}, Vec3{0, 0, -1}, Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}}) {
         CAPTURE(front.x);
@@ -208,7 +208,7 @@ TEST_CASE("glass walls and hollow objects that are closed outside are not rooms"
     CHECK(!is_within(bounds_of(shoe), eye_of(make_default_camera(shoe, 1.5f, messages))));
 }
 
-TEST_CASE("a closed room and a long court open at the top are seen from inside along their length") {
+TEST_CASE("the view of a closed room or a long court open at the top is inside, along its length") {
     for (const auto& sides : {kAll, kWithoutTop}) {
         for (const bool along_x : {true, false}) {
             Scene scene;
@@ -232,7 +232,7 @@ TEST_CASE("a panel of two sheets that face each other is not a room") {
     check_shows_all(scene, camera, 1.5f);
 }
 
-TEST_CASE("a box that is open in front is seen through its open side") {
+TEST_CASE("the view of a box with an open front is through its open side") {
     Scene scene;
     add_box(scene, {-1, 0, -1}, {1, 2, 1}, kWithoutFront, true);
     Messages messages;
@@ -305,7 +305,7 @@ TEST_CASE("a closed room without light gets emitters inside it") {
     for (const Light& light : scene.lights) CHECK(is_within(bounds_of(scene), light.position));
 }
 
-TEST_CASE("Sibenik and Sponza are seen from inside, McGuire's Cornell box from in front, the bunny from outside") {
+TEST_CASE("the view is inside Sibenik and Sponza, in front of McGuire's Cornell box, and outside the bunny") {
     struct Expected {
         const char* path;
         SurroundingsKind kind;

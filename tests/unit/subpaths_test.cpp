@@ -144,9 +144,9 @@ TEST_CASE("weights of all techniques of a light path add up to 1, however next-e
 
         MisSums camera = {square(1 / at_lens), 0};
         camera.arrive(cosines[1][1], squares[2]);
-        const float onwards = of_camera[1] * cosines[0][1] / squares[1];
+        const float forward = of_camera[1] * cosines[0][1] / squares[1];
         const float backwards = of_light[0] * cosines[1][0] / squares[1];
-        const float by_connection = mis_weight(squared_density(onwards) * light_at_first.weight_sum(of_camera[0]) +
+        const float by_connection = mis_weight(squared_density(forward) * light_at_first.weight_sum(of_camera[0]) +
                                                squared_density(backwards) * camera.weight_sum(of_light[1]));
         camera.scatter(cosines[1][0], of_camera[1], of_light[1]);
         camera.arrive(cosines[0][1], squares[1]);

@@ -1,5 +1,5 @@
-// The effect of commands before they are handled (inbox.h), and requests of clients that do not steer (wheel.h,
-// audience.h).
+// The effect of commands before they are handled (inbox.h), and requests of clients that do not steer
+// (control_holder.h, audience.h).
 
 #include <atomic>
 
@@ -120,7 +120,7 @@ TEST_CASE("clients that do not steer are informed, and the steering one sees the
     CHECK(notices.find("viewer 1 steers") != std::string::npos);
     CHECK(notices.find("viewer 1 steers", notices.find("viewer 1 steers") + 1) ==
           std::string::npos); // one request for the whole drag
-    CHECK(seen.find(R"("id":2,"asks":false,"request":"turn the view")") != std::string::npos);
+    CHECK(seen.find(R"("id":2,"asks":false,"request":"orbit the view")") != std::string::npos);
     CHECK(audience.received(2, R"({"type":"set","n":1,"name":"exposure","value":2})", 2) ==
           ""); // another request follows immediately
     CHECK(texts_for(audience, 1).find(R"("request":"set \"Stops\" to 2")") != std::string::npos);
@@ -152,7 +152,7 @@ TEST_CASE("every message that steers has a text for its request") {
         message.kind = static_cast<MessageKind>(kind);
         const MessageKind k = message.kind;
         const bool steers = k != MessageKind::Hello && k != MessageKind::Rate && k != MessageKind::Shape &&
-                            k != MessageKind::Ack && k != MessageKind::RequestWheel && k != MessageKind::Hand;
+                            k != MessageKind::Ack && k != MessageKind::RequestControl && k != MessageKind::Hand;
         CHECK(request_text(message).empty() != steers);
     }
 }

@@ -1,4 +1,5 @@
-// Sizes in motion (frame_pace.h), links (link_pace.h), who steers (wheel.h), and what each client gets (audience.h).
+// Sizes in motion (frame_pace.h), links (link_pace.h), who steers (control_holder.h), and what each client gets
+// (audience.h).
 
 #include <algorithm>
 #include <deque>
@@ -243,42 +244,42 @@ TEST_CASE("a link with high latency is not treated as slow") {
 }
 
 TEST_CASE("the first client steers, can hand over, and keeps control after a reconnect") {
-    Wheel wheel;
-    wheel.join(1, "a", 0);
-    wheel.join(2, "b", 0);
-    CHECK(wheel.steers(1));
-    CHECK_FALSE(wheel.hand(2, 2));
-    CHECK_FALSE(wheel.hand(1, 9));
-    wheel.request_wheel(2);
-    CHECK(wheel.seats()[1].wants_wheel);
-    CHECK(wheel.hand(1, 2));
-    CHECK(wheel.steers(2));
-    CHECK_FALSE(wheel.seats()[1].wants_wheel);
-    wheel.leave(2, 10);
-    CHECK(wheel.holder() == 0); // the client waits
-    wheel.join(3, "b", 12);
-    CHECK(wheel.steers(3));
-    wheel.leave(3, 20);
-    wheel.tick(25);
-    CHECK(wheel.holder() == 0);
-    wheel.tick(31);
-    CHECK(wheel.steers(1));
-    wheel.leave(1, 40);
-    CHECK_FALSE(wheel.steers(0));
-    wheel.join(4, "d", 60);
-    CHECK(wheel.steers(4));
+    ControlHolder control;
+    control.join(1, "a", 0);
+    control.join(2, "b", 0);
+    CHECK(control.steers(1));
+    CHECK_FALSE(control.hand(2, 2));
+    CHECK_FALSE(control.hand(1, 9));
+    control.request_control(2);
+    CHECK(control.seats()[1].wants_control);
+    CHECK(control.hand(1, 2));
+    CHECK(control.steers(2));
+    CHECK_FALSE(control.seats()[1].wants_control);
+    control.leave(2, 10);
+    CHECK(control.holder() == 0); // the client waits
+    control.join(3, "b", 12);
+    CHECK(control.steers(3));
+    control.leave(3, 20);
+    control.tick(25);
+    CHECK(control.holder() == 0);
+    control.tick(31);
+    CHECK(control.steers(1));
+    control.leave(1, 40);
+    CHECK_FALSE(control.steers(0));
+    control.join(4, "d", 60);
+    CHECK(control.steers(4));
 }
 
 TEST_CASE("a page that reconnects before its timeout regains control, and no other page does") {
-    Wheel wheel;
-    wheel.join(1, "a", 0);
-    wheel.join(2, "b", 0);
-    CHECK(wheel.steers(1));
-    wheel.join(3, "a", 1);
-    CHECK(wheel.steers(3));
-    wheel.leave(1, 2);
-    CHECK(wheel.steers(3));
-    Wheel nameless;
+    ControlHolder control;
+    control.join(1, "a", 0);
+    control.join(2, "b", 0);
+    CHECK(control.steers(1));
+    control.join(3, "a", 1);
+    CHECK(control.steers(3));
+    control.leave(1, 2);
+    CHECK(control.steers(3));
+    ControlHolder nameless;
     nameless.join(1, "", 0);
     nameless.join(2, "", 0);
     CHECK(nameless.steers(1));
@@ -300,12 +301,12 @@ TEST_CASE("pieces of a still picture do not affect the estimate for moving ones"
 }
 
 TEST_CASE("free control goes to the first client that requests it") {
-    Wheel wheel;
-    wheel.join(1, "a", 0);
-    wheel.join(2, "b", 0);
-    wheel.leave(1, 1);
-    wheel.request_wheel(2);
-    CHECK(wheel.steers(2));
+    ControlHolder control;
+    control.join(1, "a", 0);
+    control.join(2, "b", 0);
+    control.leave(1, 1);
+    control.request_control(2);
+    CHECK(control.steers(2));
 }
 
 TEST_CASE("a client gets nothing before its hello, then the welcome, then pictures as it acknowledges them") {

@@ -20,7 +20,7 @@ export function showGone(now, reason, scene) {
   const texts = /** @type {Record<string, string>} */ ({
     trying: "The page tries again.",
     lost: `The network is down, or the viewer has ended: then ${start}`,
-    ended: `It said: ${reason}. Its address leads nowhere now. ${start}`,
+    ended: `It said: ${reason}. Its address is no longer valid. ${start}`,
     refused: `It said: ${reason}.`,
   });
   element("gone-text").textContent = texts[now];
@@ -33,7 +33,7 @@ async function lookForAnother(start) {
   try {
     const answer = await fetch(location.pathname, { cache: "no-store" });
     if (answer.status === 403) {
-      element("gone-text").textContent = `The viewer of this page has ended, and another one is at its address: open what that one printed. Or ${start}`;
+      element("gone-text").textContent = `The viewer of this page has ended, and another one is at its address: open the address that it printed. Or ${start}`;
     }
   } catch { // no viewer answers
   }

@@ -158,7 +158,7 @@ function buildButtons(cameras) {
   const box = element("buttons");
   box.replaceChildren(
     button("Home", () => link.sendInput({ type: "home" })), button("Meter", () => link.sendInput({ type: "meter" })),
-    button("Focus", () => { controls.nextUse = "focus"; notify("click on what is to be in focus"); }),
+    button("Focus", () => { controls.nextUse = "focus"; notify("click the surface to focus on"); }),
     button("Flags", copyFlags), button("PNG", () => save("png")), button("EXR", () => save("exr")),
     button("Keys", () => help.showModal()));
   if (cameras.length > 0) {

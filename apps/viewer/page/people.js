@@ -1,4 +1,4 @@
-// Who is there, who steers, and what the others request: in the panel, and in a bar that is there without it.
+// Shows the viewers, who of them steers, and what the others request: in the panel, and in a bar that needs no panel.
 
 import { button, element, make } from "./panel.js";
 
@@ -36,22 +36,22 @@ export class People {
   }
 
   askButton() {
-    return button("ask to steer", () => this.link.send({ type: "ask" }));
+    return button("request control", () => this.link.send({ type: "ask" }));
   }
 
   showRows() {
     const list = element("people");
     list.hidden = this.all.length < 2 && this.steers();
-    list.replaceChildren(make("h2", "Who is here"));
+    list.replaceChildren(make("h2", "Viewers"));
     for (const person of this.all) {
       const row = make("div", "", "row");
       row.append(make("b", `viewer ${person.id}${person.id === this.you ? " (you)" : ""}`));
       if (person.id === this.holder) {
         row.append(make("span", "steers", "value"));
       } else if (this.steers()) {
-        row.append(button(person.asks ? "asks: hand over" : "hand over", () => this.hand(person.id)));
+        row.append(button(person.asks ? "hand over (requested)" : "hand over", () => this.hand(person.id)));
       } else if (person.id === this.you) {
-        row.append(person.asks ? make("span", "asked", "value") : this.askButton());
+        row.append(person.asks ? make("span", "requested", "value") : this.askButton());
       }
       list.append(row);
       if (person.request && person.id !== this.holder) list.append(make("p", `would like to ${person.request}`, "request"));
@@ -70,18 +70,18 @@ export class People {
     if (this.steers()) {
       if (requester && !this.declined) {
         text = `viewer ${requester.id} would like to ${requester.request || "steer"}`;
-        buttons = [button("hand over", () => this.hand(requester.id)), button("not now", () => {
+        buttons = [button("hand over", () => this.hand(requester.id)), button("decline", () => {
           this.declined = request;
           this.showBar();
         })];
       }
     } else if (own) {
-      text = this.holder ? `viewer ${this.holder} steers` : "nobody steers";
-      if (own.asks) text += "; you have asked to";
+      text = this.holder ? `viewer ${this.holder} steers` : "no viewer steers";
+      if (own.asks) text += "; you have requested control";
       else buttons = [this.askButton()];
     }
-    element("wheel").hidden = text === "";
-    element("wheel-text").textContent = text;
-    element("wheel-buttons").replaceChildren(...buttons);
+    element("control").hidden = text === "";
+    element("control-text").textContent = text;
+    element("control-buttons").replaceChildren(...buttons);
   }
 }

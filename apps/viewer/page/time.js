@@ -24,7 +24,7 @@ export class TimeLine {
     this.link = link;
     /** @type {Clock} */
     this.clock = { at: 0, end: 0, on: false, loops: true, speed: 1 };
-    this.receivedAt = 0; // when the clock was so
+    this.receivedAt = 0; // when this state of the clock arrived
     this.pending = new PendingInput();
     this.button = button("", () => this.toggle(), "play", "Space");
     this.slider = input("range", "time-at");
@@ -56,7 +56,7 @@ export class TimeLine {
     requestAnimationFrame(() => this.step());
   }
 
-  /** Time runs or stands. */
+  /** Plays or pauses. */
   toggle() {
     if (this.clock.end > 0 && !this.button.disabled) this.play({ on: !this.clock.on });
   }
@@ -95,7 +95,7 @@ export class TimeLine {
     this.show();
   }
 
-  /** Seconds, as they have gone on since the viewer told of them. */
+  /** Returns the current seconds: those of the last state plus what has passed since. */
   now() {
     const { at, end, on, loops, speed } = this.clock;
     const now = on ? at + ((performance.now() - this.receivedAt) / 1000) * speed : at;
@@ -134,13 +134,13 @@ export class Recorder {
     this.time.step = "any";
     this.time.value = "0";
     this.time.setAttribute("aria-label", "Seconds of the next key");
-    this.add = button("Add this view", () => this.addKey(), "key-add", "a key of this view, at so many seconds");
-    this.play = button("Play", () => link.sendInput({ type: "follow" }), "path-play", "the camera goes the path");
-    this.download = button("Download", () => this.save(), "path-download", "as the file that --camera-path reads");
+    this.add = button("Add this view", () => this.addKey(), "key-add", "add a key of this view at that time");
+    this.play = button("Play", () => link.sendInput({ type: "follow" }), "path-play", "play the camera path");
+    this.download = button("Download", () => this.save(), "path-download", "save as JSON for --camera-path");
     const row = make("div", "", "row"), buttons = make("div", "", "pair");
     row.append(this.time, this.add);
     buttons.append(this.play, this.download);
-    const group = makeGroup("Path of the camera", "recorder", false);
+    const group = makeGroup("Camera path", "recorder", false);
     group.append(this.list, row, buttons);
     element("recorder").replaceChildren(group);
     this.allow(true);

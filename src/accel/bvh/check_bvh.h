@@ -11,7 +11,7 @@
 namespace pertev {
 
 /// Checks that traversal stays within the arrays and within a stack of kMaxBvhDepth: every link in range, every node
-/// and triangle reached exactly once, the depth correct. Returns what is wrong, or nothing. `sink`
+/// and triangle reached exactly once, the depth correct. Returns the first fault, or nothing. `sink`
 /// may end it.
 std::optional<std::string> find_broken_link(const Bvh& bvh, Sink& sink = nobody());
 

@@ -20,7 +20,7 @@ HD inline OidnGuide oidn_guide(const NoisyFrameView& frame, uint32_t pixel) {
     return {{min(albedo.r, 1.0f), min(albedo.g, 1.0f), min(albedo.b, 1.0f), 0}, {normal.x, normal.y, normal.z, 0}};
 }
 
-/// Exact sums of guides over samples, from which their order leaves no trace.
+/// Exact sums of guides over samples, whose order does not affect the result.
 struct OidnSums {
     using Guide = SumsOfRgb<SmallSum<1>>;
     static constexpr uint32_t kAlbedo = 0, kNormal = kAlbedo + Guide::kArrays, kCount = kNormal + Guide::kArrays,

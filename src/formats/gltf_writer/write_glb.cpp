@@ -198,7 +198,7 @@ private:
     void add_light(Light light) {
         JsonMembers object;
         if (is_round_cone(light)) {
-            sink_.leave_out(fmt::format("{}: the course of its edge is lost; it becomes a spot light of its cone",
+            sink_.leave_out(fmt::format("{}: its falloff is lost; it becomes a spot light of its cone",
                                         numbered("light", lights_.size(), light.name, light.origin)));
             light = spot_of(light);
         } else if (parts_of(light.kind).table) {

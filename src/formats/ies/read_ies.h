@@ -7,7 +7,7 @@
 // above. A file with horizontal angles from 0 to 0, 90 or 180 (or from 90 to 270) is symmetric. In types A and B both
 // angles are 0 at +z and grow to +x and +y; the poles are at +y and -y in type A, at +x and -x in type B, and
 // horizontal angles from 0 are symmetric. Candelas are multiplied by the file's multiplier and ballast factor, before
-// 1995 also by the ballast-lamp factor. Lumens of lamps, sizes, watts and keywords do not matter; neither does TILT,
+// 1995 also by the `ballast-lamp factor`. Lumens, sizes, watts and keywords do not matter; neither does TILT,
 // which is about a luminaire that hangs otherwise.
 
 #include <filesystem>

@@ -210,7 +210,7 @@ void Bsdfs::read_roughness(Object& bsdf, Surface& surface) {
     const TextureValue v = parameters.has("alpha_v") ? textures_.number(bsdf, "alpha_v", 0.1f) : both;
     set_roughness(surface, u, v, Curve::RoughnessOfWidth);
     if ((u.has_image() || v.has_image()) && parameters.contains("alpha_u"))
-        parameters.leave_out({"alpha_v"}, "a stretched reflection with textures is even", sink);
+        parameters.leave_out({"alpha_v"}, "anisotropy is ignored for textured roughness", sink);
 }
 
 Surface Bsdfs::dielectric(Object& bsdf) {
@@ -233,7 +233,8 @@ Surface Bsdfs::dielectric(Object& bsdf) {
     }
     set_color(surface, &M::base_color, &M::base_color_texture, transmitted);
     if (reflected.has_image() || !(reflected.factor == grey(1)))
-        parameters.leave_out({"specular_reflectance"}, "glass reflects as its index says", reading_.sink());
+        parameters.leave_out({"specular_reflectance"}, "the reflectance of glass follows from its index",
+                             reading_.sink());
     return surface;
 }
 
@@ -285,7 +286,8 @@ Surface Bsdfs::coating(Object& bsdf) {
     });
     bsdf.parameters.leave_out({"sigma_a", "thickness"}, "coats absorb nothing", reading_.sink());
     if (color(bsdf, "specular_reflectance", 1).factor.r != 1)
-        bsdf.parameters.leave_out({"specular_reflectance"}, "coats reflect as their index says", reading_.sink());
+        bsdf.parameters.leave_out({"specular_reflectance"}, "the reflectance of a coat follows from its index",
+                                  reading_.sink());
     warn_of_nearest(bsdf, "a coat of GGX");
     return surface;
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 // Spectra of Mitsuba's files as linear Rec. 709, as its variants of RGB have them: that of a light is the colour of its
-// radiance, others are seen under D65.
+// radiance, others have their colour under D65.
 
 #include <optional>
 #include <string_view>

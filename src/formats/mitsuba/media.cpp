@@ -16,8 +16,9 @@ float Media::read_phase(Object& medium) {
     if (phase.type == "hg") {
         g = static_cast<float>(phase.parameters.number("g", 0.8, reading_.sink()));
     } else if (phase.type != "isotropic") {
-        reading_.sink().leave_out({phase.location(), fmt::format("the phase function {} is left out; it is isotropic",
-                                                                 shortened(phase.type))});
+        reading_.sink().leave_out(
+            {phase.location(),
+             fmt::format("the phase function {} is not supported; an isotropic one is used", shortened(phase.type))});
         return 0;
     }
     phase.parameters.leave_out_unknown(reading_.sink());

@@ -287,7 +287,7 @@ void read_roughness(const MaterialSource& source, double missing, std::string_vi
                         : source.context.is_version_3 ? Curve::RoughnessOfVersion3
                                                       : Curve::RoughnessOfRoot;
     if ((u.has_image() || v.has_image()) && source.parameters.has(names.u) && source.parameters.has(names.v))
-        source.parameters.leave_out({names.v}, "a stretched reflection with textures is even", sink);
+        source.parameters.leave_out({names.v}, "anisotropy is ignored for textured roughness", sink);
     set_roughness(surface, u, v, curve);
 }
 

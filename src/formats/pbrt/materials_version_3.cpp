@@ -84,7 +84,7 @@ Surface glass(const MaterialSource& source) {
     set_color(surface, &M::base_color, &M::base_color_texture, source.textures.color(source.parameters, "Kt", grey(1)));
     const TextureValue kr = source.textures.color(source.parameters, "Kr", grey(1));
     if (kr.has_image() || !(kr.factor == grey(1)))
-        source.parameters.leave_out({"Kr"}, "glass reflects as its index says", source.context.sink);
+        source.parameters.leave_out({"Kr"}, "the reflectance of glass follows from its index", source.context.sink);
     return surface;
 }
 

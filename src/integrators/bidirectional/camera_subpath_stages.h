@@ -125,7 +125,7 @@ private:
         LightSample light;
         const SampleBits bits = sample_bits(scene.settings.sampler, key, light_group(state.depth()), Pair::Last);
         const LightContext context = end.light_context(wo);
-        if (!sample_light<emitter_look(kVariant), Choice>(view.lights, context, bits, light)) return;
+        if (!sample_light<emitter_variant(kVariant), Choice>(view.lights, context, bits, light)) return;
         const BothWays scattered = end.scatter(wo, light.wi);
         if (is_black(scattered.camera.f)) return;
         const uint32_t coin = coin_key(key, state.depth(), true);
@@ -224,11 +224,11 @@ struct VertexToConnect : SubpathVertex, SolidsAround<kInMedia> {
 /// An end of a connection between two vertices. Its solids are those on the side of the connection.
 template <bool kInMedia>
 struct ConnectedEnd : SolidsAround<kInMedia> {
-    Rgb f;                       // scattered along the connection, per solid angle
-    float onwards_density = 0;   // density of the subpath's own continuation along the connection, 1/sr
-    float backwards_density = 0; // density of the other subpath's continuation from here backwards, 1/sr
-    float density_factor = 0;    // SurfaceEnd::density_factor
-    Vec3 start;                  // origin of a ray along the connection
+    Rgb f;                     // scattered along the connection, per solid angle
+    float forward_density = 0; // density of the subpath's own continuation along the connection, 1/sr
+    float reverse_density = 0; // density of the other subpath's continuation from here backwards, 1/sr
+    float density_factor = 0;  // SurfaceEnd::density_factor
+    Vec3 start;                // origin of a ray along the connection
     TriangleId triangle;
 };
 
@@ -240,8 +240,8 @@ HD INLINE_ON_DEVICE ConnectedEnd<kInMedia> connect_vertex(const SceneView& scene
     const BothWays scattered = of.scatter(is_camera ? from : along, is_camera ? along : from);
     ConnectedEnd<kInMedia> end;
     end.f = is_camera ? scattered.camera.f : (1.0f / of.squared_index_along(from, along, 1)) * scattered.particle.f;
-    end.onwards_density = is_camera ? scattered.camera.pdf : scattered.particle.pdf;
-    end.backwards_density = is_camera ? scattered.particle.pdf : scattered.camera.pdf;
+    end.forward_density = is_camera ? scattered.camera.pdf : scattered.particle.pdf;
+    end.reverse_density = is_camera ? scattered.particle.pdf : scattered.camera.pdf;
     end.density_factor = of.density_factor(along);
     end.start = of.origin_towards(along);
     end.triangle = of.triangle();
@@ -324,8 +324,8 @@ struct ConnectSubpaths {
         if (!connect_ends<kVariant, kInMedia>(view, ends, along, connected)) return;
         const ConnectedEnd<kInMedia>&camera = connected[0], &particle = connected[1];
         const float inverse = 1.0f / distance_squared;
-        float by_camera = camera.onwards_density * particle.density_factor * inverse;
-        float by_particle = particle.onwards_density * camera.density_factor * inverse;
+        float by_camera = camera.forward_density * particle.density_factor * inverse;
+        float by_particle = particle.forward_density * camera.density_factor * inverse;
         MediumTransmittance through_media;
         if constexpr (kInMedia) {
             through_media = transmittance_of_connection(view, camera.interior, camera.start, along,
@@ -334,9 +334,8 @@ struct ConnectSubpaths {
             by_camera *= through_media.probability;
             by_particle *= through_media.probability;
         }
-        const float weight =
-            mis_weight(squared_density(by_camera) * ends[1].mis.weight_sum(particle.backwards_density) +
-                       squared_density(by_particle) * ends[0].mis.weight_sum(camera.backwards_density));
+        const float weight = mis_weight(squared_density(by_camera) * ends[1].mis.weight_sum(particle.reverse_density) +
+                                        squared_density(by_particle) * ends[0].mis.weight_sum(camera.reverse_density));
         const SubpathState& state = subpaths.states[subpath];
         Connection connection;
         connection.ray = {camera.start, 0, particle.start - camera.start, 1};

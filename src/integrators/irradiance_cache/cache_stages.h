@@ -143,7 +143,7 @@ private:
         LightSample light;
         const SampleBits bits = sample_bits(scene.settings.sampler, vertex.key, light_group(state.depth()), Pair::Last);
         const LightContext context = surface.light_context(vertex.wo);
-        if (!sample_light<emitter_look(kVariant), Choice>(view.lights, context, bits, light)) return;
+        if (!sample_light<emitter_variant(kVariant), Choice>(view.lights, context, bits, light)) return;
         const BsdfValue scattered = evaluate_surface<kVariant>(surface, vertex.wo, light.wi);
         if (is_black(scattered.f)) return;
         const uint32_t coin = coin_key(vertex.key, state.depth(), true);
@@ -171,8 +171,8 @@ private:
             draw_scatter(settings, vertex.key, surface.bsdf, camera_group(state.depth(), kSubpathScatter), choices);
         BsdfSample sample = sample_surface<kVariant>(surface, vertex.wo, draw.lobe, draw.u);
         if (!(sample.pdf > 0)) return;
-        Rgb onwards = sample.weight;
-        if (!sample.is_delta() && vertex.is_cached) onwards = others_share(vertex, sample, choices);
+        Rgb path_weight = sample.weight;
+        if (!sample.is_delta() && vertex.is_cached) path_weight = others_share(vertex, sample, choices);
         const Rgb before = sample.weight;
         if (!survives(settings, vertex.key, choices, state.depth() + 1, sample.weight)) return;
         const float made_up = max_component(before) > 0 ? max_component(sample.weight) / max_component(before) : 0.0f;
@@ -181,7 +181,7 @@ private:
         const Rgb path = cache.path_of(subpath) * sample.weight;
         cache_state =
             sample.is_delta() ? CacheState{path, 0} : CacheState{state.throughput * sample.weight, sample.pdf};
-        state.throughput = made_up * (state.throughput * onwards);
+        state.throughput = made_up * (state.throughput * path_weight);
         const bool counts = !is_black(cache_state.seen) || !is_black(state.throughput);
         if (!counts && (is_black(path) || !mirrored->are_possible())) return;
         cache.store_path(subpath, path);

@@ -76,7 +76,7 @@ private:
     bool at(Vec3 receiver, LightSample& sample, const Draw& draw) const {
         const LightContext context(receiver);
         const EmittersAtRest at_rest;
-        return draw(SampleOfKind<EmitterLook::Plain, EmittersAtRest>{view, context, at_rest, sample});
+        return draw(SampleOfKind<EmitterVariant::Plain, EmittersAtRest>{view, context, at_rest, sample});
     }
     void enter_punctual(Vec3 receiver, uint32_t number, float pmf) const {
         LightSample sample;

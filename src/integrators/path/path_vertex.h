@@ -131,9 +131,9 @@ HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path
     if (!counts(settings.light, path.rough_depth + 1)) return false;
     LightSample light;
     constexpr bool kMoves = (kFeatures & kMoving) != 0;
-    constexpr EmitterLook kLook = emitter_look(variant_of(kFeatures));
+    constexpr EmitterVariant kEmitters = emitter_variant(variant_of(kFeatures));
     const SampleBits u = numbers.light(settings, path);
-    if (!draw_direct<kLook, LightChoice<kFeatures>>(scene, kMoves, context, u, light)) {
+    if (!draw_direct<kEmitters, LightChoice<kFeatures>>(scene, kMoves, context, u, light)) {
         return false;
     }
     const BsdfValue scattered = vertex.evaluate(light.wi);

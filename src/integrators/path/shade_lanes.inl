@@ -351,7 +351,7 @@ void add_emission(const PathJob& job, unsigned lanes, const LaneVertices& vertic
         Surface surface = {};
         surface.position = {surfaces.position.x[lane], surfaces.position.y[lane], surfaces.position.z[lane]};
         surface.triangle = {hit.instance, hit.primitive};
-        surface.emission = surface_emission<EmitterLook::Plain>(scene.lights, material, {});
+        surface.emission = surface_emission<EmitterVariant::Plain>(scene.lights, material, {});
         Listeners<> listener(job);
         if (features_of_lanes(job) == kPlainDiffuse) {
             add_surface_emission<kPlainDiffuse>(job, path, hit, surface, listener);

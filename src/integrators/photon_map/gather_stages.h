@@ -183,7 +183,7 @@ private:
         LightSample light;
         const SampleBits bits = sample_bits(scene.settings.sampler, vertex.key, light_group(state.depth()), Pair::Last);
         const LightContext context = end.light_context(vertex.wo);
-        if (!sample_light<emitter_look(kVariant), Choice>(view.lights, context, bits, light)) return 0;
+        if (!sample_light<emitter_variant(kVariant), Choice>(view.lights, context, bits, light)) return 0;
         const float nearness = nearness_of(light);
         const BsdfValue all = end.scatter_camera(vertex.wo, light.wi);
         if (is_black(all.f)) return nearness;

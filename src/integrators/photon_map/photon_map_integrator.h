@@ -2,7 +2,7 @@
 
 // Photon mapping: each sample of the film is a pass. Photons leave the lights and are stored on diffuse surfaces
 // (photon_stages.h); a structure is built over them (photon_maps.h); then the camera subpath of each pixel looks up
-// light there (gather_stages.h, estimate_radiance.h). Each pass starts anew with a radius that depends only on the
+// light there (gather_stages.h, estimate_radiance.h). Each pass starts again with a radius that depends only on the
 // pass's number, so passes may be rendered in any order and anywhere, and are added like samples.
 //
 // Sources: Jensen, "Global Illumination using Photon Maps", EGWR 1996; Knaus, Zwicker, "Progressive Photon Mapping: A

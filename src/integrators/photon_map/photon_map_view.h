@@ -33,7 +33,7 @@ struct Photon {
 /// A lookup counts only photons of its own owner. Where there is chance, their power is divided by it, because the
 /// lookup itself is met by the same chance.
 HD inline uint32_t owner_of(const SceneView& scene, uint32_t instance) {
-    if (!is_met_by_chance(scene, instance)) return 0;
+    if (!has_stochastic_hits(scene, instance)) return 0;
     const InstanceView& placed = scene.instances[instance];
     return (hash_words(placed.material, placed.layers_above, 0).x & 0x7fffffu) + 1;
 }

@@ -160,7 +160,7 @@ private:
         Rgb power = (1.0f / gather.index_squared(subpath)) * state.throughput;
         const SceneView& view = scene.picture.scene;
         const uint32_t owner = owner_of(view, hit.instance);
-        if (owner != 0) power = (1.0f / chance_to_meet(view, hit.instance, hit.primitive, hit.u, hit.v)) * power;
+        if (owner != 0) power = (1.0f / hit_probability(view, hit.instance, hit.primitive, hit.u, hit.v)) * power;
         if (!(max_component(power) <= kMaxSampleValue)) {
             atomic_add(pass.invalid, 1);
             return;

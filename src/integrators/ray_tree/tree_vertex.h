@@ -73,7 +73,8 @@ struct TreeVertex {
         LightSample sample;
         const LightSetView& lights = picture.scene.lights;
         if (surface.bsdf.has_delta_only()) return false;
-        if (!sample_punctual_light<emitter_look(kVariant)>(lights, light, 1.0f, surface.position, sample)) return false;
+        if (!sample_punctual_light<emitter_variant(kVariant)>(lights, light, 1.0f, surface.position, sample))
+            return false;
         const BsdfValue all = evaluate_surface<kVariant>(surface, wo(), sample.wi);
         return make_shadow_ray(sample, all.f * sample.radiance, shadow);
     }
@@ -85,8 +86,8 @@ struct TreeVertex {
         const uint32_t of = number() == 0 ? uint32_t(kGroupCamera) : group(kTreeScatter);
         LightSample sample;
         const SampleBits u = sample_bits(settings.sampler, key(), of, Pair::Last);
-        constexpr EmitterLook kLook = emitter_look(kVariant);
-        if (!draw_direct<kLook, Choice>(picture.scene, moves, surface.light_context(wo(), time), u, sample)) {
+        constexpr EmitterVariant kEmitters = emitter_variant(kVariant);
+        if (!draw_direct<kEmitters, Choice>(picture.scene, moves, surface.light_context(wo(), time), u, sample)) {
             return false;
         }
         const BsdfValue all = evaluate_surface<kVariant>(surface, wo(), sample.wi);

@@ -153,18 +153,18 @@ HD inline bool emit_particle(const SceneView& scene, const WorldSphere& world, S
 /// Densities of a light that a camera subpath has hit: of the point (1/m2; for distant light of the direction, 1/sr),
 /// and of the direction from there (1/sr; for distant light of the point on the disc, 1/m2).
 struct LightDensities {
-    float position = 0, onwards = 0;
+    float position = 0, direction = 0;
     float selection = 1; // density with which next-event estimation samples the point, over `position`
 
     /// MIS weight sum of all techniques that find this light, except the subpath's own.
     HD float weight_sum(const MisSums& subpath) const {
-        return squared_density(position) * min(subpath.weight_sum(onwards), kMaxWeightSum);
+        return squared_density(position) * min(subpath.weight_sum(direction), kMaxWeightSum);
     }
     /// MIS weight sum where next-event estimation and emission select the light with different probabilities.
     HD float weight_sum_by_tree(const MisSums& subpath) const {
         const MisSums emitted = {0, subpath.earlier};
         return squared_density(selection * position) * subpath.last +
-               squared_density(position) * emitted.weight_sum(onwards);
+               squared_density(position) * emitted.weight_sum(direction);
     }
 };
 

@@ -327,7 +327,7 @@ function showMeasurement(m, id, isAlone) {
   return make("main", { id }, isAlone ? null : make("h2", {}, m.title ?? "Measurement"),
     make("div", { class: "facts" }, facts.filter(([, value]) => value).map(([name, value]) => make("span", {}, `${name} `, make("b", {}, String(value))))),
     m.command ? make("p", {}, make("code", {}, m.command)) : null,
-    m.interrupted ? make("p", { class: "wrong" }, "Interrupted: this is what had been measured.") : null,
+    m.interrupted ? make("p", { class: "wrong" }, "Interrupted: the results are incomplete.") : null,
     (m.notes ?? []).filter(isAlarm).map((note) => make("p", { class: "wrong" }, note)),
     tables.filter((table) => !isLarge(table)).map(showAny),
     make("div", { class: "plots" }, kind.views.map((view) => show(m, view))),

@@ -22,7 +22,7 @@ HD inline Rgb local_light(const LightSetView& lights, const Surface& surface, Ve
     if (surface.bsdf.has_delta_only()) return sum;
     for (uint32_t k = 0; k < lights.punctual_count; ++k) {
         LightSample sample;
-        if (!sample_punctual_light<emitter_look(kVariant)>(lights, k, 1.0f, surface.position, sample)) continue;
+        if (!sample_punctual_light<emitter_variant(kVariant)>(lights, k, 1.0f, surface.position, sample)) continue;
         sum += evaluate_surface<kVariant>(surface, wo, sample.wi).f * sample.radiance;
     }
     return sum;

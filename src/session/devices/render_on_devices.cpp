@@ -119,7 +119,7 @@ void RenderOnDevices::drive(SharedRun& run, const SharedPicture& picture, Sample
 }
 
 /// Adds a device's film to the sum. It is on the host before the first number is added, so that a device that fails
-/// meanwhile leaves no trace.
+/// meanwhile does not affect the result.
 void RenderOnDevices::fold(SharedRun& run, const FilledFilm& film, Film& into) {
     const auto& targets = film.film->targets();
     try {

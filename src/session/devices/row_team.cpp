@@ -54,7 +54,7 @@ public:
     }
     void finish_taking_last() override { landing.wait(); }
 
-    bool any(bool here) override { return team_.has_cpu_ && meet(here); }
+    bool any(bool here) override { return team_.has_cpu_ && wait_at_barrier(here); }
 
     /// Copies rows of arrays of device `owner`, of which none is being changed.
     template <class RowsOf>
@@ -81,11 +81,11 @@ private:
     void publish(const std::vector<RowArray>& arrays) {
         turn_ ^= 1;
         published_[turn_] = arrays;
-        meet(false);
+        wait_at_barrier(false);
     }
-    bool meet(bool here) {
+    bool wait_at_barrier(bool here) {
         const Stopwatch watch;
-        const bool any = team_.meet(here);
+        const bool any = team_.wait_at_barrier(here);
         waited += watch.seconds();
         return any;
     }
@@ -99,7 +99,7 @@ private:
     std::size_t number_;
     std::vector<std::optional<Queue>> readers_; // queues that read the GPUs' memory, for a CPU
     std::vector<RowArray> published_[2];
-    int turn_ = 0; // is the same on all devices between two meetings
+    int turn_ = 0; // is the same on all devices between two barriers
 };
 
 RowTeam::RowTeam(std::span<Queue* const> queues) : shares_(queues.size(), 1.0 / static_cast<double>(queues.size())) {
@@ -157,20 +157,20 @@ void RowTeam::end(std::span<const double> seconds) {
 }
 
 /// Waits until all threads are here. Returns whether any of them says so.
-bool RowTeam::meet(bool here) {
+bool RowTeam::wait_at_barrier(bool here) {
     std::unique_lock lock(mutex_);
     if (is_abandoned_) throw FrameAbandoned();
     any_ |= here;
     if (++arrived_ == members_.size()) {
         arrived_ = 0;
         result_ = std::exchange(any_, false);
-        ++meetings_;
+        ++barriers_;
         changed_.notify_all();
         return result_;
     }
-    const uint64_t meeting = meetings_;
-    changed_.wait(lock, [&] { return meetings_ != meeting || is_abandoned_; });
-    if (meetings_ == meeting) throw FrameAbandoned();
+    const uint64_t barrier = barriers_;
+    changed_.wait(lock, [&] { return barriers_ != barrier || is_abandoned_; });
+    if (barriers_ == barrier) throw FrameAbandoned();
     return result_;
 }
 

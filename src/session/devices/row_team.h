@@ -1,7 +1,7 @@
 #pragma once
 
 // The devices that make frames together, as RowExchange shows them to each other: bands of rows, which follow the
-// devices' speeds, a meeting point of their threads, and copies of rows from one device to another.
+// devices' speeds, a barrier of their threads, and copies of rows from one device to another.
 
 #include <condition_variable>
 #include <cstdint>
@@ -48,7 +48,7 @@ private:
     using Bounds = std::vector<uint32_t>; // where bands begin and end, in parts of a picture's height
 
     static RowBand rows_between(const Bounds& bounds, std::size_t number, uint32_t height);
-    bool meet(bool here);
+    bool wait_at_barrier(bool here);
 
     std::vector<std::unique_ptr<Member>> members_;
     Bounds bounds_, bounds_before_; // bands of this frame and the last one
@@ -58,7 +58,7 @@ private:
     std::mutex mutex_;
     std::condition_variable changed_;
     std::size_t arrived_ = 0;
-    uint64_t meetings_ = 0;
+    uint64_t barriers_ = 0;
     bool any_ = false, result_ = false, is_abandoned_ = false;
 };
 

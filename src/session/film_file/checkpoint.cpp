@@ -25,7 +25,7 @@ Checkpoint::Checkpoint(std::string file, FilmHeader picture)
 
 void Checkpoint::check_header(const std::string& file, const FilmHeader& header) const {
     const auto refuse = [&](const std::string& why) {
-        Remark remark(FileLocation{file}, why + "; name another file, or delete it to begin anew");
+        Remark remark(FileLocation{file}, why + "; name another file, or delete it to start again");
         remark.setting = "checkpoint";
         throw RefusedGeneration(ErrorCode::BadInput, std::move(remark));
     };
@@ -65,7 +65,7 @@ std::string Checkpoint::take(const std::string& file, FilmRender& film) const {
 void Checkpoint::restore(FilmRender& film, Sink& sink) {
     std::string notice; // follows a warning about the generation that was not taken
     const auto damage = generations_.take([&](const std::string& file) { notice = take(file, film); }, sink);
-    if (damage) throw Error(damage->code(), damage->remark().and_then("; delete what is there to begin anew"));
+    if (damage) throw Error(damage->code(), damage->remark().and_then("; delete both files to start again"));
     if (!notice.empty()) sink.note(std::move(notice));
 }
 

@@ -44,7 +44,7 @@ T value_at(std::span<const std::byte> bytes, std::size_t at) {
 } // namespace
 
 Error RecordsFile::damaged(const std::string& why) const {
-    Remark remark(FileLocation{file_}, why + "; name another file, or delete it to make it anew");
+    Remark remark(FileLocation{file_}, why + "; name another file, or delete it to compute it again");
     remark.setting = "records";
     return Error(ErrorCode::BadInput, std::move(remark));
 }

@@ -121,14 +121,14 @@ Surroundings survey_surroundings(const Scene& scene) {
     const std::vector<Vec3> points = {centre, centre - down, centre - down + along, centre - down - along};
     const std::vector<RayHits> all_hits = cast_visibility_rays(scene, points);
 
-    int rooms = 0, ways_out = 0;
+    int rooms = 0, escaped_rays = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const RayHits& hits_there = all_hits[i];
         if (!hits_there.is_in_the_open()) continue;
         const int closed = hits_there.closed_sides();
         if (closed == kAxes || (closed == kAxes - 1 && !hits_there.is_closed(kUp) && is_long(size))) {
             if (rooms++ == 0) result.inside = points[i];
-            ways_out += 5 * kAxes - hits_there.all;
+            escaped_rays += 5 * kAxes - hits_there.all;
         }
         for (int axis = 0; axis < kAxes; ++axis) {
             if (axis / 2 != 1 && closed == kAxes - 1 && hits_there.is_open(axis)) {
@@ -139,7 +139,7 @@ Surroundings survey_surroundings(const Scene& scene) {
     }
     if (rooms >= 2 && share_seen_from_outside(scene, triangles) < kMaxOutsideShare) {
         result.kind = SurroundingsKind::Room;
-        result.is_dark = ways_out == 0;
+        result.is_dark = escaped_rays == 0;
     }
     return result;
 }

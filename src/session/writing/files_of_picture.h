@@ -25,7 +25,7 @@ struct FileOfPicture {
 /// reported them. Of more than 1024 found files, one entry has the hash of all that follow.
 std::vector<FileOfPicture> files_of_scene(const PictureOptions& options, std::span<const std::filesystem::path> found);
 
-/// Describes the files of the settings `displacement`, `lut` and `camera_from`, which each picture reads anew.
+/// Describes the files of the settings `displacement`, `lut` and `camera_from`, which each picture reads again.
 std::vector<FileOfPicture> files_of_settings(const PictureOptions& options);
 
 /// Numbers equal names in their order: "a.png", "a.png (2)".

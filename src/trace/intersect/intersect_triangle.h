@@ -6,7 +6,7 @@
 // Source: Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013, section 3; edge functions by
 // Kahan's difference of products (Jeannerod, Louvet, Muller 2013: at most 1.5 ulp off).
 // Why it cannot leak: each edge function has its exact sign, and the two neighbours of an edge see opposite signs or
-// both see zero. That needs the very same sheared vertices in both: the build turns contraction off.
+// both see zero. That needs the same sheared vertices in both: the build turns contraction off.
 
 #include "base/host_device.h"
 #include "math/difference_of_products.h"

@@ -1,21 +1,21 @@
-#include "apps/viewer/wheel.h"
+#include "apps/viewer/control_holder.h"
 
 #include <algorithm>
 #include <utility>
 
 namespace pertev {
 
-void Wheel::give(uint32_t client) {
+void ControlHolder::give(uint32_t client) {
     holder_ = client;
     kept_for_.clear();
     for (Seat& seat : seats_) {
         if (seat.client != client) continue;
-        seat.wants_wheel = false;
+        seat.wants_control = false;
         seat.request.clear();
     }
 }
 
-void Wheel::join(uint32_t client, const std::string& key, double now_s) {
+void ControlHolder::join(uint32_t client, const std::string& key, double now_s) {
     const auto holder = std::ranges::find(seats_, holder_, &Seat::client);
     const bool held_it = holder != seats_.end() && !key.empty() && holder->key == key;
     seats_.push_back({client, key, false, {}, 0});
@@ -25,7 +25,7 @@ void Wheel::join(uint32_t client, const std::string& key, double now_s) {
     if (kept_for_.empty() || (!key.empty() && key == kept_for_)) give(client);
 }
 
-void Wheel::leave(uint32_t client, double now_s) {
+void ControlHolder::leave(uint32_t client, double now_s) {
     const auto seat = std::ranges::find(seats_, client, &Seat::client);
     if (seat == seats_.end()) return;
     if (holder_ == client) {
@@ -37,14 +37,14 @@ void Wheel::leave(uint32_t client, double now_s) {
     tick(now_s);
 }
 
-void Wheel::request_wheel(uint32_t client) {
+void ControlHolder::request_control(uint32_t client) {
     const auto seat = std::ranges::find(seats_, client, &Seat::client);
     if (seat == seats_.end() || holder_ == client) return;
-    seat->wants_wheel = true;
+    seat->wants_control = true;
     if (holder_ == 0) give(client);
 }
 
-bool Wheel::hand(uint32_t from, uint32_t to, double now_s) {
+bool ControlHolder::hand(uint32_t from, uint32_t to, double now_s) {
     if (!steers(from) || std::ranges::find(seats_, to, &Seat::client) == seats_.end()) return false;
     give(to);
     handed_by_ = from;
@@ -52,7 +52,7 @@ bool Wheel::hand(uint32_t from, uint32_t to, double now_s) {
     return true;
 }
 
-Wheel::Request Wheel::request(uint32_t client, const std::string& what, double now_s) {
+ControlHolder::Request ControlHolder::request(uint32_t client, const std::string& what, double now_s) {
     const auto seat = std::ranges::find(seats_, client, &Seat::client);
     if (seat == seats_.end() || steers(client)) return Request::None;
     if (client == handed_by_ && now_s - handed_s_ < kHandingOver) return Request::None;
@@ -60,7 +60,7 @@ Wheel::Request Wheel::request(uint32_t client, const std::string& what, double n
     return std::exchange(seat->request, what) == what ? Request::Known : Request::New;
 }
 
-bool Wheel::tick(double now_s) {
+bool ControlHolder::tick(double now_s) {
     bool has_changed = false;
     for (Seat& seat : seats_) {
         if (seat.request.empty() || now_s - seat.requested_s < kRequestStays) continue;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Decides who steers, one client at a time. The first client has the wheel. It may hand it over. When it disconnects,
-// the wheel waits a while for it to return, recognised by its key, and then goes to the client that has waited
+// Decides who steers, one client at a time. The first client has control. It may hand it over. When it disconnects,
+// control waits a while for it to return, recognised by its key, and then goes to the client that has waited
 // longest.
 
 #include <cstdint>
@@ -10,30 +10,30 @@
 
 namespace pertev {
 
-class Wheel {
+class ControlHolder {
 public:
     struct Seat {
         uint32_t client = 0;
         std::string key; // key of the page, kept over reconnects
-        bool wants_wheel = false;
+        bool wants_control = false;
         std::string request; // recent attempt to steer while another client did; empty: none
         double requested_s = 0;
     };
     static constexpr double kRequestStays = 20; // seconds
     static constexpr double kHandingOver = 1;   // seconds in which the former holder may not have received the change
-    static constexpr double kPatience = 10;     // seconds that the wheel waits for a disconnected holder
+    static constexpr double kPatience = 10;     // seconds that control waits for a disconnected holder
 
     void join(uint32_t client, const std::string& key, double now_s);
     void leave(uint32_t client, double now_s);
-    /// Requests the wheel, which is granted if it is free.
-    void request_wheel(uint32_t client);
+    /// Requests control, which is granted if it is free.
+    void request_control(uint32_t client);
     /// Returns false and does nothing unless `from` steers and `to` exists.
     bool hand(uint32_t from, uint32_t to, double now_s = 0);
     enum class Request : uint8_t { None, Known, New };
     /// Records the request of a client that does not steer. Returns None if it steered a moment ago and may not have
     /// received the change.
     Request request(uint32_t client, const std::string& what, double now_s);
-    /// Must be called regularly, because the wheel and requests expire. Returns whether anything has changed.
+    /// Must be called regularly, because control and requests expire. Returns whether anything has changed.
     bool tick(double now_s);
 
     bool steers(uint32_t client) const { return holder_ == client && client != 0; }
