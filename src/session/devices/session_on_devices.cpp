@@ -25,7 +25,7 @@ void SessionOnDevices::share_pictures(bool by_all) {
 
 void SessionOnDevices::update_scene(const PreparedScene& scene, uint32_t parts) {
     session_.update_scene(scene, parts);
-    const bool is_known = session_.pictures().sharing() != nullptr; // which passes it on
+    const bool is_known = session_.pictures().sharing() != nullptr; // it then gets the change from there
     if (together_ && !is_known) together_->change_scene(scene, parts);
 }
 
