@@ -22,7 +22,7 @@ bool has_emitter(const Scene& scene) {
         scene.instances, [&](const Instance& instance) { return scene.materials[instance.material].is_emitter(); });
 }
 auto is_unlit_in(const Scene& scene) {
-    return [&](const Instance& instance) { return scene.materials[instance.material].kind == MaterialKind::Unlit; };
+    return [&](const Instance& instance) { return scene.materials[instance.material].is_unlit(); };
 }
 bool is_all_unlit(const Scene& scene) { return std::ranges::all_of(scene.instances, is_unlit_in(scene)); }
 /// Returns whether the scene has unlit surfaces. Paths carry their colour on, though they are no lights.
