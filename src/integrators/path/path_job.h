@@ -31,7 +31,7 @@ enum Feature : Features {
     kLayered = 4,     // surfaces other than diffuse ones
     kMoving = 8,      // paths have a time
     kBatched = 16,    // several pictures (PictureView::batch); code without it renders one
-    kStacked = 32,    // coats, fuzz, thin walls and weighted reflections
+    kStacked = 32,    // materials that are stacked (MaterialParameters::is_stacked)
     kMipMapped = 64,  // textures are filtered; code with it filters where the settings say so
     kNested = 128,    // solids lie in each other; code with it also serves scenes without
     kLightTree = 256, // lights are selected by a tree
