@@ -140,7 +140,7 @@ int bench_sequence(SequenceFlags& flags) {
     flags.render.settings.read(flags.render, reporter);
     refuse(!frame_range(flags.render), {"frames", "", "the frames are missing; set `frames` or `turntable`"});
     const std::string denoise(name_of(flags.render.render.denoise));
-    refuse(flags.reference == 0 && flags.render.render.denoise != Denoise::None,
+    refuse(flags.reference == 0 && flags.render.render.is_denoised(),
            {"denoise", denoise, "the reference is missing; add --reference SPP"});
     const std::unique_ptr<RenderSetup> ready =
         prepare_render(flags.render, kBenchSequence, reporter, report_solving(reporter));

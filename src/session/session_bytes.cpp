@@ -31,8 +31,7 @@ bool splits_light(const PreparedScene& scene) { return has_lobes(shading_variant
 struct DenoisingMemory {
     DenoisingMemory(Queue& queue, const PreparedScene& scene, const RenderSettings& settings)
         : steps(make_denoisers(queue, settings)) {
-        if (settings.denoise != Denoise::None)
-            sample.emplace(queue, settings.width, settings.height, splits_light(scene));
+        if (settings.is_denoised()) sample.emplace(queue, settings.width, settings.height, splits_light(scene));
     }
 
     std::optional<NoisyFrame> sample;
@@ -41,7 +40,7 @@ struct DenoisingMemory {
 
 /// Returns the work of a picture: its samples are rendered one at a time if they are denoised.
 WorkSize work_of_picture(const PreparedScene& scene, const RenderSettings& settings) {
-    if (settings.denoise == Denoise::None) return {.samples = settings.samples};
+    if (!settings.is_denoised()) return {.samples = settings.samples};
     return {.samples = 1, .splits_light = splits_light(scene)};
 }
 
