@@ -35,7 +35,7 @@ MUTATIONS = [
     ("ReSTIR sees textures without mip-maps", "unit/mip_maps", ("src/restir/pixel_surfaces.h", "filters ? camera.pixel_width(distance) : 0.0f", "0 * distance")),
     ("mip-maps stay when their textures change", "unit/mip_maps", ("src/device_scene/scene_on_device.cpp", "    mip_maps_.reset(); // made of the former ones\n", "")),
     ("a kernel for batches draws a batch's numbers without one", "unit/mip_maps", ("src/integrators/path/path_stages.h", "const bool is_tall = (kFeatures & kBatched) != 0 && job.picture.batch.is_there();", "const bool is_tall = (kFeatures & kBatched) != 0;")),
-    ("films are filtered like frames", "unit/mip_maps", ("src/integrators/path/path_job.h", "job.settings.mip_maps == MipMaps::On &&", "job.settings.mip_maps != MipMaps::Off &&"),
+    ("films are filtered like frames", "unit/mip_maps", ("src/integrators/path/path_code.cpp", "job.settings.mip_maps == MipMaps::On &&", "job.settings.mip_maps != MipMaps::Off &&"),
      ("src/integrators/path/path_vertex.h", "job.settings.mip_maps != MipMaps::On", "job.settings.mip_maps == MipMaps::Off"),
      ("src/session/picture_renderer.cpp", "settings.path.mip_maps == MipMaps::On", "settings.path.mip_maps != MipMaps::Off")),
     ("denormal halves are rounded", "unit/pack_texels", ("src/device_scene/pack_texels.cpp", "return multiple == floor(multiple);", "return true;")),

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "integrators/irradiance_cache/irradiance_cache_integrator.h"
+#include "integrators/path/path_code.h"
 #include "integrators/path/path_integrator.h"
 #include "integrators/photon_map/photon_map_integrator.h"
 #include "integrators/radiosity/radiosity_integrator.h"
@@ -248,6 +249,14 @@ std::span<const IntegratorDescriptor> integrators() { return kIntegrators; }
 const IntegratorDescriptor& describe(IntegratorKind kind) { return kIntegrators[static_cast<std::size_t>(kind)]; }
 
 bool same_light(const IntegratorSettings& a, const IntegratorSettings& b) {
+bool has_tree_in_media(const IntegratorSettings& settings, bool of_frames) {
+    if (!makes_frames(settings.integrator)) return true; // its stages do not depend on what it writes
+    const PathOutput output = of_frames              ? PathOutput::Frames
+                              : settings.light_paths ? PathOutput::Layers
+                                                     : PathOutput::Films;
+    return is_compiled(output, kMedia | kLightTree);
+}
+
     return a.integrator == b.integrator && a.path == b.path && a.ambient == b.ambient && a.display == b.display &&
            a.shading_rate == b.shading_rate && same_heights(a, b) && a.photon_map == b.photon_map &&
            a.irradiance_cache == b.irradiance_cache && a.radiosity == b.radiosity && a.light_paths == b.light_paths &&

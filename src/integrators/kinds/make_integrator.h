@@ -156,6 +156,10 @@ inline bool uses_light_tree(const IntegratorSettings& settings, uint32_t lights,
 bool same_light(const IntegratorSettings& a, const IntegratorSettings& b);
 
 /// Makes the integrator of the settings; `queue` outlives it.
+/// Returns whether the integrator has code that selects lights by a tree in scenes with media, for frames or for
+/// pictures with the layers of the settings.
+bool has_tree_in_media(const IntegratorSettings& settings, bool of_frames);
+
 std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettings& settings);
 
 /// Changes the settings of `integrator` from `from` to `to` and keeps its memory; begin() must follow. Returns false

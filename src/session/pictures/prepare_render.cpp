@@ -121,9 +121,10 @@ void set_light(const RenderSettings& settings, const Scene& rest, RenderSetup& r
 void report_light_choice(const PictureOptions& options, const RenderSettings& settings, const PreparedScene& prepared,
                          Sink& sink) {
     if (settings.path.light_choice != LightSelection::Tree) return;
-    const bool is_plain = !options.real_time && settings.denoise == Denoise::None && !settings.light_paths;
+    const bool of_frames = options.real_time || settings.is_denoised();
+    const bool has_code = !has_media(*prepared.scene) || has_tree_in_media(settings, of_frames);
     const char* const why = prepared.motions != nullptr                ? "the tree is that of lights at rest"
-                            : !is_plain && has_media(*prepared.scene)  ? "frames and layers of media have no tree"
+                            : !has_code                                ? "frames and layers of media have no tree"
                             : settings.irradiance                      ? "a light meter samples lights by power"
                             : prepared.lights.tree->light_count() == 0 ? "no light has a position"
                                                                        : nullptr;
