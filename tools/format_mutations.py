@@ -37,7 +37,7 @@ MUTATIONS = [
     ("a kernel for batches draws a batch's numbers without one", "unit/mip_maps", ("src/integrators/path/path_stages.h", "const bool is_tall = (kFeatures & kBatched) != 0 && job.picture.batch.is_there();", "const bool is_tall = (kFeatures & kBatched) != 0;")),
     ("films are filtered like frames", "unit/mip_maps", ("src/integrators/path/path_code.cpp", "job.settings.mip_maps == MipMaps::On &&", "job.settings.mip_maps != MipMaps::Off &&"),
      ("src/integrators/path/path_vertex.h", "job.settings.mip_maps != MipMaps::On", "job.settings.mip_maps == MipMaps::Off"),
-     ("src/session/picture_renderer.cpp", "settings.path.mip_maps == MipMaps::On", "settings.path.mip_maps != MipMaps::Off")),
+     ("src/session/device_scene.cpp", "settings.path.mip_maps == MipMaps::On", "settings.path.mip_maps != MipMaps::Off")),
     ("denormal halves are rounded", "unit/pack_texels", ("src/device_scene/pack_texels.cpp", "return multiple == floor(multiple);", "return true;")),
     ("16-bit texels are a product with 1 / 65535", "unit/pack_texels", ("src/shading/texture_lookup.h", "fma(fma(-quotient, 65535.0f, value), inv, quotient)", "quotient")),
     ("a device's 16-bit colours are linear", "unit/pack_texels", ("src/shading/texture_lookup.h", "return {of_words[r], of_words[g], of_words[b], unit_of_word(a)};", "return {unit_of_word(r), of_words[g], of_words[b], unit_of_word(a)};")),
