@@ -1,23 +1,13 @@
 #include "settings/picture_flags.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "base/shell_word.h"
 #include "settings/settings_file.h"
 
 namespace pertev {
-namespace {
-
-/// Settings whose flags are not made of their names.
-constexpr std::pair<std::string_view, std::string_view> kOtherFlags[] = {{"output", "-o"}, {"scene", "SCENE"}};
-
-} // namespace
 
 std::string flag_of(std::string_view setting) {
-    for (const auto& [name, flag] : kOtherFlags) {
-        if (setting == name) return std::string(flag);
-    }
     std::string flag = "--" + std::string(setting);
     std::ranges::replace(flag, '_', '-');
     return flag;
