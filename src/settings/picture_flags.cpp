@@ -24,7 +24,7 @@ std::string flags_of(const Setting& setting, const std::vector<std::string>& tex
 std::string picture_flags(const PictureOptions& options, const std::string& view) {
     std::string flags;
     for (const Setting& setting : all_settings()) {
-        if ((setting.verbs & kRender) == 0 || setting.group == std::string_view("Camera")) continue;
+        if ((setting.verbs & kRender) == 0 || setting.group == SettingGroup::Camera) continue;
         const std::vector<std::string> texts = texts_of(options, setting);
         const bool is_of_view = (view + ' ').find(flag_of(setting.name) + ' ') != std::string::npos;
         if (!is_of_view && is_written(options, setting) && texts != texts_of({}, setting)) {

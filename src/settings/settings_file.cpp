@@ -102,7 +102,7 @@ std::string reconstruction_json(const ReconstructionOptions& options) {
     used.reconstruction = {.settings = options.used(), .sharing = options.sharing};
     std::string members;
     for (const Setting& setting : all_settings()) {
-        if (setting.needs != "real_time" || setting.group != std::string_view("Frames")) continue;
+        if (setting.needs != "real_time" || setting.group != SettingGroup::Frames) continue;
         members += fmt::format("{}\"{}\":{}", members.empty() ? "" : ",", setting.name, json_of(used, setting));
     }
     return '{' + members + '}';

@@ -217,6 +217,7 @@ constexpr std::array kIntegrators = {
          .finds_all_light = true,
          .ignores_nesting = true,
          .selects_lights = true,
+         .makes_records = true,
          .memory = memory_of_records}),
     row<RadiosityIntegrator, radiosity_settings>(
         {.value = Kind::Radiosity,
@@ -248,7 +249,6 @@ std::span<const IntegratorDescriptor> integrators() { return kIntegrators; }
 
 const IntegratorDescriptor& describe(IntegratorKind kind) { return kIntegrators[static_cast<std::size_t>(kind)]; }
 
-bool same_light(const IntegratorSettings& a, const IntegratorSettings& b) {
 bool has_tree_in_media(const IntegratorSettings& settings, bool of_frames) {
     if (!makes_frames(settings.integrator)) return true; // its stages do not depend on what it writes
     const PathOutput output = of_frames              ? PathOutput::Frames
@@ -257,6 +257,7 @@ bool has_tree_in_media(const IntegratorSettings& settings, bool of_frames) {
     return is_compiled(output, kMedia | kLightTree);
 }
 
+bool same_light(const IntegratorSettings& a, const IntegratorSettings& b) {
     return a.integrator == b.integrator && a.path == b.path && a.ambient == b.ambient && a.display == b.display &&
            a.shading_rate == b.shading_rate && same_heights(a, b) && a.photon_map == b.photon_map &&
            a.irradiance_cache == b.irradiance_cache && a.radiosity == b.radiosity && a.light_paths == b.light_paths &&

@@ -61,7 +61,7 @@ MetadataValue metadata_value(const PictureOptions& options, const Setting& setti
 /// Returns the settings of cameras, or all others.
 std::vector<Setting> rows_of(bool camera) {
     std::vector<Setting> rows = all_settings();
-    std::erase_if(rows, [&](const Setting& row) { return (row.group == std::string_view("Camera")) != camera; });
+    std::erase_if(rows, [&](const Setting& row) { return (row.group == SettingGroup::Camera) != camera; });
     return rows;
 }
 
