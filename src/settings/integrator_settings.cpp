@@ -143,6 +143,10 @@ std::vector<Setting> frame_settings() {
             "The resolution of light, relative to each side of the picture; less is faster. Edges and textures keep "
             "theirs.",
             Range{0.1, 1}, Panel{"Light resolution, per side", PanelGroup::Frames, 0.05}),
+        row("moving_depth", "Frames", "N", FIELD(render.frame_depth),
+            "The maximum number of scatterings in frames, if below max_depth. Less is faster, but may be darker.",
+            Range{0, kMaxPathDepth - 1}, Otherwise{"max_depth; in the viewer 4, unless max_depth is given"},
+            Panel{"Max depth in motion", PanelGroup::Frames}),
     };
     for (Setting& row : rows) {
         row.verbs = kRender | kView | kBenchFrames | kBenchSequence;

@@ -206,7 +206,8 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
     }
     if (record.frame) {
         append(metadata,
-               {{"pertev.reconstruction", reconstruction_json({record.frame->reconstruction, record.frame->restir})},
+               {{"pertev.reconstruction",
+                 reconstruction_json({record.frame->reconstruction, record.frame->restir}, settings.frame_depth)},
                 {"pertev.frame", static_cast<int32_t>(record.frame->number)},
                 {"pertev.first_frame", static_cast<int32_t>(record.frame->cut)}});
     }
