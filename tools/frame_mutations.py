@@ -56,6 +56,6 @@ MUTATIONS = [
      ("src/integrators/path/path_code.cpp", "return FrameFeatures::has(features);", "return FilmFeatures::has(features);")),
     ("frames of a sequence have all scatterings", "robust/cli_real_time",
      ("src/settings/render_settings.cpp", "if (settings.frame_depth) settings.path", "if (settings.aovs == ~0u) settings.path")),
-    ("a file of a setting counts by its folder too", "unit/settings unit/deciding_settings",
+    ("a file of a setting counts by its folder too", "unit/settings",
      ("src/settings/integrator_settings.cpp", "Mark::Name, Mark::OpensScene, HoldsFile::Whole),", "Mark::Name, Mark::OpensScene),")),
 ]
