@@ -168,7 +168,7 @@ void PythonBatch::render(OpenedScene& opened, Session& session, const CamerasArg
         render.next(arrays_, sink);
     } else {
         const uint64_t pixels = uint64_t(width_) * height_;
-        arrays_.noisy_hashes.assign(settings.denoise != Denoise::None ? count : 0, {});
+        arrays_.noisy_hashes.assign(settings.is_denoised() ? count : 0, {});
         for (BatchArrays part; render.next(part, sink);) {
             copy_chunk(queue, part, pixels, color_channels_, arrays_);
         }

@@ -41,8 +41,6 @@ namespace nb = nanobind;
 namespace pertev {
 namespace {
 
-constexpr std::string_view kPartsGroup = "Parts";
-
 /// Names the type of a setting's values: bool, int, float, size, vector, list, choice or text.
 const char* type_of(const Setting& setting) {
     if (is_switch(setting)) return "bool";
@@ -62,7 +60,7 @@ const char* type_of(const Setting& setting) {
 nb::dict row_of(const Setting& setting) {
     nb::dict row;
     row["name"] = setting.name;
-    row["group"] = setting.group;
+    row["group"] = std::string(name_of(setting.group));
     row["form"] = setting.form;
     row["sentence"] = setting.sentence;
     row["unit"] = setting.unit;
@@ -77,7 +75,7 @@ nb::dict row_of(const Setting& setting) {
 std::vector<nb::dict> settings_of_parts() {
     std::vector<nb::dict> rows;
     for (const Setting& setting : all_settings())
-        if (setting.group == kPartsGroup) rows.push_back(row_of(setting));
+        if (setting.group == SettingGroup::Parts) rows.push_back(row_of(setting));
     return rows;
 }
 
@@ -91,7 +89,7 @@ std::vector<nb::dict> settings_of(bool frames) {
         const auto is_of_sequences = [&](const std::string& name) { return of_sequences.contains(name); };
         if (!needs.empty() && std::ranges::all_of(needs, is_of_sequences)) of_sequences.insert(setting.name);
         if ((setting.verbs & kRender) == 0 || is_of_sequences(setting.name) != frames) continue;
-        if (setting.name != std::string_view("continue") && setting.group != kPartsGroup)
+        if (setting.name != std::string_view("continue") && setting.group != SettingGroup::Parts)
             rows.push_back(row_of(setting));
     }
     return rows;

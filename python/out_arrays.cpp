@@ -124,7 +124,7 @@ void take_back(std::span<const OutArray> arrays, RenderResult& result) {
 }
 
 bool FilmReader::reads(std::span<const OutArray> arrays, const RenderSettings& settings) {
-    if (settings.denoise != Denoise::None || settings.range().count() == 0) return false;
+    if (settings.is_denoised() || settings.range().count() == 0) return false;
     return std::ranges::all_of(arrays, [](const OutArray& array) {
         const AovGroup* const group = group_named(array.name);
         return is_picture(array.name) || (group != nullptr && group->bit != kAovMotion);

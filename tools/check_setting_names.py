@@ -10,7 +10,8 @@ import re
 import sys
 
 SUFFIXES = {".h", ".inl", ".cpp", ".cu"}
-FLAG = re.compile(r"(?<![\w)\]-])--(?=[a-z])")
+FLAG = re.compile(r"(?<![\w)\]-])--(?=[a-z])|\bSCENE\b")
+SHORT = re.compile(r"-[a-zA-Z]") # a whole text; some formats of files have such words
 TOKEN = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\((.*?)\)\1"|"((?:\\.|[^"\\\n])*)"|\'(?:\\.|[^\'\\\n])+\'', re.DOTALL)
 NAMED = re.compile(r"`([a-z][a-z0-9_]*)(?:=[^`]*)?`")
 OTHERS = {"scene"} # settings that the command line has without a flag
@@ -37,9 +38,9 @@ def settings_of(cli, tables=()):
     return flags | {name for source in tables for name in re.findall(r'"([a-z][a-z0-9_]*)"', source)} | OTHERS
 
 
-def faults_of(source, settings):
+def faults_of(source, settings, is_format=False):
     for line, text, is_comment in comments_and_texts(source):
-        if FLAG.search(text):
+        if FLAG.search(text) or (not is_format and not is_comment and SHORT.fullmatch(text)):
             yield f"{line}: a flag is named; say the setting's name, `max_depth`, which front ends phrase"
         for name in [] if is_comment else NAMED.findall(text):
             if name not in settings:
@@ -52,8 +53,9 @@ def self_test():
                  'f("see ARRAY[k--x] --- -- 1");']:
         assert not list(faults_of(good, settings)), good
     for bad in ['f("--max-depth 3")', '// of --lpe', 'f("say `depth`")', 'f(R"(a --eye)")', 'f("(--eye)")', '/* --eye */',
-                'f("a `depth"\n  "=1` b")']:
+                'f("a `depth"\n  "=1` b")', '{"output", "-o"}', '{"scene", "SCENE"}']:
         assert list(faults_of(bad, settings)), bad
+    assert not list(faults_of('option == "-o"', settings, is_format=True))
     assert list(faults_of('\n\nf("a"\n"--b")', settings)) == list(faults_of('\n\nf("a" "--b")', settings))
 
 
@@ -67,7 +69,7 @@ def main(arguments):
     settings = settings_of([text for file, text in files.items() if (root / "src") not in file.parents],
                            [text for file, text in files.items() if (root / "src/settings") in file.parents])
     faults = [f"{file.relative_to(root)}:{fault}" for file, text in files.items() if (root / "src") in file.parents
-              for fault in faults_of(text, settings)]
+              for fault in faults_of(text, settings, (root / "src/formats") in file.parents)]
     print("\n".join(faults) or "src/ names settings, and no flag")
     return 1 if faults else 0
 

@@ -2,7 +2,7 @@
 
 MUTATIONS = [
     ("a light tree is built at every start", "consistency/light_tree",
-     ("src/session/picture_renderer.cpp", "    if (uses_light_tree(", "    if (settings.width > 0 || uses_light_tree(")),
+     ("src/session/device_scene.cpp", "    if (uses_light_tree(", "    if (settings.width > 0 || uses_light_tree(")),
     ("a tree of rays forgets the normal by which a light was selected", "statistical/selected_lights",
      ("src/integrators/ray_tree/tree_vertex.h", "surface.light_context(wo(), time).normal", "{}")),
     ("a subpath forgets the normal by which a light was selected", "statistical/selected_lights",

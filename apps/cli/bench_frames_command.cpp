@@ -86,24 +86,25 @@ int bench_frames(FramesFlags& flags) {
     const RunTimes times = summarize_runs(whole);
     const Image last = reconstructs ? session.frame().picture() : session.picture();
     reporter.end_progress();
-    report.add_alone("frames", {{"scene", "scene", flags.render.scene.scene},
-                                {"device", "device", names_of(queues)},
-                                {"integrator", "integrator", integrator_name(settings)},
-                                {"width", "width", settings.width},
-                                {"height", "height", settings.height},
-                                {"max_depth", "max depth", settings.path.max_depth},
-                                {"frames", "frames", flags.frames},
-                                {"still", "camera is still", flags.still},
-                                {"reconstruction", "reconstruction", ResultCell::raw(reconstruction_json(options))},
-                                {"median_seconds", "frame, median", times.median, "s", "{:.6f}"},
-                                {"least_seconds", "least", times.least, "s", "{:.6f}"},
-                                {"greatest_seconds", "greatest", times.greatest, "s", "{:.6f}"},
-                                {"frames_per_second", "frames per second", 1 / times.median, "", "{:.1f}"},
-                                {"reconstruction_seconds", "reconstruction time", summarize_runs(reconstruction).median,
-                                 "s", "{:.6f}"},
-                                {"copy_seconds", "copy to the host", summarize_runs(copy).median, "s", "{:.6f}"},
-                                {"mrays_per_s", "Mrays/s", millions_a_second(rays.total(), seconds), "", "{:.1f}"},
-                                {"picture", "last frame", picture_hash(last).hex()}});
+    report.add_alone(
+        "frames",
+        {{"scene", "scene", flags.render.scene.scene},
+         {"device", "device", names_of(queues)},
+         {"integrator", "integrator", integrator_name(settings)},
+         {"width", "width", settings.width},
+         {"height", "height", settings.height},
+         {"max_depth", "max depth", settings.path.max_depth},
+         {"frames", "frames", flags.frames},
+         {"still", "camera is still", flags.still},
+         {"reconstruction", "reconstruction", ResultCell::raw(reconstruction_json(options, settings.frame_depth))},
+         {"median_seconds", "frame, median", times.median, "s", "{:.6f}"},
+         {"least_seconds", "least", times.least, "s", "{:.6f}"},
+         {"greatest_seconds", "greatest", times.greatest, "s", "{:.6f}"},
+         {"frames_per_second", "frames per second", 1 / times.median, "", "{:.1f}"},
+         {"reconstruction_seconds", "reconstruction time", summarize_runs(reconstruction).median, "s", "{:.6f}"},
+         {"copy_seconds", "copy to the host", summarize_runs(copy).median, "s", "{:.6f}"},
+         {"mrays_per_s", "Mrays/s", millions_a_second(rays.total(), seconds), "", "{:.1f}"},
+         {"picture", "last frame", picture_hash(last).hex()}});
     report.write();
     return 0;
 }

@@ -140,7 +140,7 @@ int bench_sequence(SequenceFlags& flags) {
     flags.render.settings.read(flags.render, reporter);
     refuse(!frame_range(flags.render), {"frames", "", "the frames are missing; set `frames` or `turntable`"});
     const std::string denoise(name_of(flags.render.render.denoise));
-    refuse(flags.reference == 0 && flags.render.render.denoise != Denoise::None,
+    refuse(flags.reference == 0 && flags.render.render.is_denoised(),
            {"denoise", denoise, "the reference is missing; add --reference SPP"});
     const std::unique_ptr<RenderSetup> ready =
         prepare_render(flags.render, kBenchSequence, reporter, report_solving(reporter));
@@ -165,7 +165,8 @@ int bench_sequence(SequenceFlags& flags) {
                       {"height", "height", ready->settings.height},
                       {"frames", "frames", ready->sequence.count()},
                       {"max_depth", "max depth", ready->settings.path.max_depth},
-                      {"reconstruction", "", ResultCell::raw(reconstruction_json(flags.render.reconstruction))},
+                      {"reconstruction", "",
+                       ResultCell::raw(reconstruction_json(flags.render.reconstruction, ready->settings.frame_depth))},
                       {"reference_spp", "samples of the references", flags.reference},
                       {"reference_noise", "HDR-FLIP of their halves", scores.noise, "", "{:.4f}"},
                       {"reference_flicker", "flicker of their own noise", scores.half.mean_flicker(), "", "{:.5f}"},

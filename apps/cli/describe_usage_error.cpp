@@ -173,7 +173,7 @@ Remark by_setting(const std::string& text) {
     const std::string flag = text.substr(0, end);
     std::string setting = flag.substr(std::min<std::size_t>(flag.size(), 2));
     std::ranges::replace(setting, '-', '_');
-    return end < text.size() && flag_of(setting) == flag ? Remark(setting, "", text.substr(end + 2)) : text;
+    return end < text.size() && shown_flag(setting) == flag ? Remark(setting, "", text.substr(end + 2)) : text;
 }
 
 } // namespace

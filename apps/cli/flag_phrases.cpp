@@ -1,6 +1,7 @@
 #include "apps/cli/flag_phrases.h"
 
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -11,8 +12,11 @@
 namespace pertev {
 namespace {
 
+/// Settings whose flags are not made of their names.
+constexpr std::pair<std::string_view, std::string_view> kOtherFlags[] = {{"output", "-o"}, {"scene", "SCENE"}};
+
 std::string flag_and_value(std::string_view setting, std::string_view value) {
-    return flag_of(setting) + (value.empty() ? "" : ' ' + shell_word(value));
+    return shown_flag(setting) + (value.empty() ? "" : ' ' + shell_word(value));
 }
 
 std::string location_json(const FileLocation& location) {
@@ -39,6 +43,13 @@ std::string named_settings_json(const std::string& reason) {
 }
 
 } // namespace
+
+std::string shown_flag(std::string_view setting) {
+    for (const auto& [name, flag] : kOtherFlags) {
+        if (setting == name) return std::string(flag);
+    }
+    return flag_of(setting);
+}
 
 std::string phrase(const Remark& remark) {
     std::string text;

@@ -4,11 +4,15 @@
 // that can be copied into a shell.
 
 #include <string>
+#include <string_view>
 
 #include "base/remark.h"
 #include "settings/picture_flags.h"
 
 namespace pertev {
+
+/// Returns the flag of a setting, -o for the output, and SCENE for the scene, which has no flag.
+std::string shown_flag(std::string_view setting);
 
 /// All parts as one text: "with --integrator cast at most 12" for "with `integrator=cast` at most 12".
 std::string phrase(const Remark& remark);

@@ -81,9 +81,7 @@ std::vector<std::string> words_of(const CLI::App& verb) {
     return {path};
 }
 
-bool is_of_settings(const std::string& group) {
-    return std::ranges::any_of(all_settings(), [&](const Setting& setting) { return setting.group == group; });
-}
+bool is_of_settings(const std::string& group) { return value_named<SettingGroup>(group).has_value(); }
 
 /// Groups that have flags which a short help leaves out.
 std::set<std::string> groups_with_more(const CLI::App& verb) {
@@ -158,7 +156,7 @@ std::string take_help_group(std::vector<std::string>& words) {
         std::ranges::find_if(words, [](const std::string& word) { return word == "--help" || word == "-h"; });
     if (help == words.end() || help + 1 == words.end() || help[1].starts_with('-')) return "";
     std::set<std::string> groups = {"all"};
-    for (const Setting& setting : all_settings()) groups.insert(small_letters(setting.group));
+    for (const auto& [group, name] : kSettingGroups) groups.insert(small_letters(std::string(name)));
     const std::string group = small_letters(help[1]);
     if (!groups.contains(group)) {
         if (help == words.begin()) return ""; // a verb, for example

@@ -33,7 +33,7 @@ const Setting* setting_of(const CLI::Option& flag) {
     std::string name = flag.get_lnames().empty() ? "" : flag.get_lnames().front();
     std::ranges::replace(name, '-', '_');
     const Setting* const setting = find_setting(name);
-    return setting != nullptr && flag.get_group() == setting->group ? setting : nullptr;
+    return setting != nullptr && flag.get_group() == name_of(setting->group) ? setting : nullptr;
 }
 
 void SettingFlags::add(CLI::App& verb, uint32_t verbs, const PictureOptions& options, std::span<const Setting> table,
@@ -57,7 +57,7 @@ void SettingFlags::add(CLI::App& verb, uint32_t verbs, const PictureOptions& opt
         } else {
             flag.option = verb.add_option(name, flag.text, text);
         }
-        flag.option->group(setting.group);
+        flag.option->group(std::string(name_of(setting.group)));
         flag.option->default_str(otherwise);
         if (is_switch(setting)) continue;
         flag.option->type_name(setting.form); // set_value checks the text

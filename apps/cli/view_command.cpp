@@ -20,7 +20,6 @@
 #include "apps/viewer/start_viewer.h"
 #include "apps/viewer/viewer.h"
 #include "base/error.h"
-#include "base/limits.h"
 #include "image/write_jpeg.h"
 #include "session/devices/session_on_devices.h"
 #include "session/pictures/choose_display.h"
@@ -41,7 +40,6 @@ struct ViewFlags {
     uint32_t port = 8080;
     bool no_browser = false, embed = false;
     std::string token_file, token;
-    std::optional<uint32_t> moving_depth;
     std::string jpeg = "auto";
 };
 
@@ -132,7 +130,7 @@ int view(ViewFlags& flags) {
     SessionFrames source(session, *ready->moving, on_cuda ? kFrameOnGpu : kFrameOnCpu);
     const Display display = choose_display(flags.render, session, reporter);
     report_display(display, is_metered(flags.render), reporter);
-    const ViewerStart start = start_viewer(flags.render, *ready, record, display, source, flags.moving_depth);
+    const ViewerStart start = start_viewer(flags.render, *ready, record, display, source);
     if (!start.why_still.empty()) {
         reporter.note({FileLocation{flags.render.scene.scene},
                        fmt::format("the scene {}; `time` shows it at another time, `integrator=path` in motion",
@@ -181,10 +179,6 @@ void add_view_command(CLI::App& app, int& status) {
     verb.add_flag("--no-browser", flags->no_browser, "opens no browser")->group(group);
     verb.add_flag("--embed", flags->embed, "lets other pages, such as notebooks, show the viewer in a frame")
         ->group(group);
-    add_whole(verb, "--moving-depth", flags->moving_depth,
-              fmt::format("maximum path depth in motion ({}, or --max-depth if given)", kMovingDepth), 0,
-              kMaxPathDepth - 1)
-        ->group("Frames");
     flags->render.settings.add_file(verb);
     add_report_flags(verb, flags->render.report);
     flags->render.settings.add(verb, kView, flags->render);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -156,12 +157,22 @@ std::string verbs_with(const Setting& setting) {
 }
 
 /// The verbs that most settings of a group belong to.
-std::string common_verbs(std::string_view group) {
+std::string common_verbs(SettingGroup group) {
     std::map<std::string, int> counts;
     for (const Setting& setting : all_settings()) {
         if (group == setting.group) ++counts[verbs_with(setting)];
     }
     return std::ranges::max_element(counts, {}, &std::pair<const std::string, int>::second)->first;
+}
+
+/// The integrators of a group's settings, as bits, if these are the same ones and not all.
+uint32_t common_integrators(SettingGroup group) {
+    std::optional<uint32_t> common;
+    for (const Setting& setting : all_settings()) {
+        if (group == setting.group && common.value_or(setting.integrators) != setting.integrators) return 0;
+        if (group == setting.group) common = setting.integrators;
+    }
+    return common.value_or(0);
 }
 
 std::string range_of(const Setting& setting) {
@@ -177,6 +188,12 @@ std::string default_of(const Setting& setting) {
     if (*setting.otherwise != '\0') return setting.otherwise;
     const std::vector<std::string> texts = texts_of({}, setting);
     return is_switch(setting) ? "off" : fmt::format("{}", fmt::join(texts, ", "));
+}
+
+/// Names the integrators that have the setting, or some of its values.
+std::string integrators_text(const Setting& setting) {
+    return fmt::format(" Integrators{}{}: {}.", setting.integrators_of.empty() ? "" : " of ", setting.integrators_of,
+                       fmt::join(integrators_with(setting), ", "));
 }
 
 /// Escapes text for a Markdown cell.
@@ -229,25 +246,24 @@ std::string settings_document() {
         "SCENE --settings FILE` makes the\nsame picture. "
         "Such a file is `{\"version\":1,\"scene\":{\"name\":...,\"hash\":...},\"settings\":{...}}`. "
         "Unknown entries are\n"
-        "left out with a warning, and `--strict` refuses them. Settings marked \"not kept\" are not "
-        "stored there, because they\n"
-        "belong to the machine and the run: threads, folders to read from, or a time limit. \"Not with: "
-        "!none:max_depth=0\" is a rule\n"
-        "for all values except none.\n";
-    std::string_view group;
+        "left out with a warning, and `--strict` refuses them. Settings marked \"not kept\" belong to the machine "
+        "and the run, and\n"
+        "are not stored there. \"Not with: A,B:fov\" is a rule for the values A and B, \"!A:fov\" for all "
+        "others.\n";
+    std::optional<SettingGroup> group;
     std::string verbs;
     for (const Setting& setting : all_settings()) {
         if (group != setting.group) {
             group = setting.group;
-            verbs = common_verbs(group);
-            text += fmt::format("\n## {}\n\nVerbs, where a row names no others: {}.\n\n"
+            verbs = common_verbs(*group);
+            const uint32_t all_of = common_integrators(*group);
+            text += fmt::format("\n## {}\n\nVerbs of most rows: {}.{}\n\n"
                                 "| setting | values | default | |\n|---|---|---|---|\n",
-                                group, verbs);
+                                name_of(*group), verbs, all_of != 0 ? integrators_text(setting) : "");
         }
         std::string says = setting.sentence;
         if (*setting.more != '\0') says += fmt::format(" {}", setting.more);
-        if (setting.integrators != 0)
-            says += fmt::format(" Integrators: {}.", fmt::join(integrators_with(setting), ", "));
+        if (setting.integrators != 0 && common_integrators(setting.group) == 0) says += integrators_text(setting);
         if (!setting.needs.empty())
             says += fmt::format(" Needs{}: {}.", setting.needs.find(' ') != setting.needs.npos ? " one of" : "",
                                 setting.needs);

@@ -112,7 +112,6 @@ RenderSettings SessionFrames::settings_for(const FrameRequest& request, float sc
     settings.width = scaled_side(settings.width, scale);
     settings.height = scaled_side(settings.height, scale);
     settings.aovs |= aovs_of(request.view.layer);
-    settings.frame_depth = request.view.moving_depth;
     // Layers and heat maps need no light.
     if (!is_beauty(request.view.layer) && !is_of_frames(request.view.layer)) settings.path.max_depth = 0;
     if (settings.time_kinds) settings.body = PathBody::Wavefront; // a loop over paths cannot time kinds of rays
@@ -125,7 +124,7 @@ RenderSettings SessionFrames::settings_for(const FrameRequest& request, float sc
 /// Settings of a moving picture that belongs to no sequence.
 RenderSettings SessionFrames::small_settings_for(const FrameRequest& request, float scale) {
     RenderSettings settings = settings_for(request, scale);
-    settings.path.max_depth = std::min(settings.path.max_depth, request.view.moving_depth);
+    if (settings.frame_depth) settings.path.max_depth = std::min(settings.path.max_depth, *settings.frame_depth);
     return settings;
 }
 

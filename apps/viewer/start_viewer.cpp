@@ -114,7 +114,7 @@ std::vector<std::pair<IntegratorKind, std::string>> dark_integrators(RenderSetti
 } // namespace
 
 ViewerStart start_viewer(const PictureOptions& options, const RenderSetup& ready, const PictureRecord& record,
-                         const Display& display, SessionFrames& source, std::optional<uint32_t> moving_depth) {
+                         const Display& display, SessionFrames& source) {
     const Camera& camera = record.camera.camera;
     ViewerStart start;
     start.scene = &ready.scene();
@@ -131,8 +131,8 @@ ViewerStart start_viewer(const PictureOptions& options, const RenderSetup& ready
     start.view.dark = dark_integrators(ready.settings, ready.scene());
     start.view.lens = camera;
     start.view.on_cuda = ready.queue->is_cuda();
-    start.view.moving_depth =
-        moving_depth.value_or(options.is_given("max_depth") ? ready.settings.path.max_depth : kMovingDepth);
+    RenderSettings& shown = start.view.options.render;
+    if (!shown.frame_depth) shown.frame_depth = options.is_given("max_depth") ? shown.path.max_depth : kMovingDepth;
     if (start.view.finds_exposure) {
         source.begin_exposed({.camera = camera, .view = start.view}, start.view.display.exposure_stops);
         start.view.display.exposure_stops = 0;

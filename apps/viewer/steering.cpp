@@ -46,7 +46,7 @@ std::string flags_with_lens(PictureOptions options, const Camera& camera) {
     if (camera.aperture_radius == 0) choice.aperture.reset();
     std::string flags;
     for (const Setting& setting : all_settings()) {
-        if (setting.group != std::string_view("Camera")) continue;
+        if (setting.group != SettingGroup::Camera) continue;
         const std::vector<std::string> texts = texts_of(options, setting);
         if (texts != texts_of({}, setting)) flags += flags_of(setting, texts);
     }

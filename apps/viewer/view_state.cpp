@@ -12,7 +12,6 @@
 #include "apps/viewer/steering.h"
 #include "apps/viewer/window_shape.h"
 #include "base/error.h"
-#include "base/limits.h"
 #include "denoise/oidn/oidn_library.h"
 #include "render/film_channels.h"
 #include "session/check_integrator.h"
@@ -145,7 +144,8 @@ std::string set_option(ViewState& state, const Setting& setting, const std::stri
         if (std::string why_not = why_no_integrator(wanted); !why_not.empty()) return why_not;
     }
     if (picture.path.max_depth != before.render.path.max_depth) {
-        wanted.moving_depth = picture.path.max_depth = std::min(picture.path.max_depth, max_depth(picture.integrator));
+        picture.path.max_depth = std::min(picture.path.max_depth, max_depth(picture.integrator));
+        picture.frame_depth = picture.path.max_depth;
     }
     if (rasterises_camera(picture.integrator)) wanted.lens.aperture_radius = 0;
     state = wanted;
@@ -266,11 +266,6 @@ std::vector<ViewSetting> own_settings() {
         "reference: samples accumulate to the picture of pertev render; real time: as in motion",
         {"reference", "real time"}, [](const ViewState& s) { return s.is_real_time ? "real time" : "reference"; },
         [](ViewState& s, const std::string& name) { s.is_real_time = name == "real time"; });
-    numeric(
-        "moving_depth", "Max depth in motion", PanelGroup::Frames,
-        "Less is faster, but darker where light is scattered often. A picture at rest has full depth", Kind::Whole, 0,
-        kMaxPathDepth - 1, 1, [](const ViewState& s) { return s.moving_depth; },
-        [](ViewState& s, float v) { s.moving_depth = static_cast<uint32_t>(v); });
     std::vector<std::string> denoisers = names_of<FrameDenoiser>();
     denoisers.emplace_back(kNoDenoiser);
     choice(

@@ -32,7 +32,7 @@ enum class ShownLayer : uint8_t {
     Deviation,
 };
 
-/// Maximum number of scatterings in moving pictures, unless a depth was chosen.
+/// Maximum number of scatterings in moving pictures (RenderSettings::frame_depth), unless a depth was chosen.
 inline constexpr uint32_t kMovingDepth = 4;
 
 struct ViewState {
@@ -44,9 +44,8 @@ struct ViewState {
     ShownLayer layer = ShownLayer::Beauty;
     bool is_real_time = false; // pictures at rest are like moving ones
     // Moving frames; none of this affects the picture at rest.
-    float moving_scale = 0;               // scale; 0: chosen to meet the frame rate
-    uint32_t moving_depth = kMovingDepth; // maximum number of scatterings, if that is below the picture's
-    float screen_rate = 0;                // refresh rate of the screen of the client that steers; 0: unknown
+    float moving_scale = 0; // scale; 0: chosen to meet the frame rate
+    float screen_rate = 0;  // refresh rate of the screen of the client that steers; 0: unknown
     bool on_cuda = false;
     uint64_t window_pixels = 0; // maximum pixels of a picture with the window's shape; 0: its size was requested
     std::vector<std::pair<IntegratorKind, std::string>> dark; // integrators that would show the scene as black, and

@@ -61,7 +61,7 @@ using MaterialAxesOf = std::conditional_t<kVariant == ShadingVariant::General, M
 template <ShadingVariant kVariant>
 HD inline Bsdf make_unstacked_bsdf(const SceneView& scene, const MaterialParameters& material, const MeshView& mesh,
                                    TriangleIndices i, float u, float v, Rgb base_color) {
-    if (!has_lobes(kVariant) || material.kind == MaterialKind::Diffuse || material.kind == MaterialKind::Unlit) {
+    if (!has_lobes(kVariant) || material.kind == MaterialKind::Diffuse || material.is_unlit()) {
         return make_diffuse(base_color);
     }
     const float roughness =

@@ -325,7 +325,7 @@ HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 dire
         }
         if (material.has_anisotropy()) set_anisotropy(scene, instance, mesh, material, triangle, hit, frame, axes);
     }
-    const bool is_unlit = material.kind == MaterialKind::Unlit;
+    const bool is_unlit = material.is_unlit();
     Rgb emission = {};
     if (is_unlit) {
         emission = albedo;

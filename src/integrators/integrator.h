@@ -42,16 +42,21 @@ struct WorkSize {
     uint64_t pixels() const { return uint64_t(width) * height; }
     uint64_t all() const { return pixels() * samples; }
 };
+/// Completes `size` by what the scene determines. The view may be that of a dry run.
+inline WorkSize with_scene(WorkSize size, const SceneView& scene) {
+    size.triangles = scene.triangle_count;
+    size.has_times = scene.motions.is_there();
+    size.has_interiors = scene.nesting.is_there();
+    size.has_media = scene.has_media != 0;
+    size.tree_lights = scene.lights.tree.light_count;
+    return size;
+}
 inline WorkSize size_of(const PictureView& picture, const SceneTracer& tracer, uint32_t samples) {
-    return {.width = picture.camera.width,
-            .height = picture.camera.height,
-            .samples = samples,
-            .triangles = picture.scene.triangle_count,
-            .traverses_on_host = tracer.host_trees() != nullptr,
-            .has_times = picture.scene.motions.is_there(),
-            .has_interiors = picture.scene.nesting.is_there(),
-            .has_media = picture.scene.has_media != 0,
-            .tree_lights = picture.scene.lights.tree.light_count};
+    return with_scene({.width = picture.camera.width,
+                       .height = picture.camera.height,
+                       .samples = samples,
+                       .traverses_on_host = tracer.host_trees() != nullptr},
+                      picture.scene);
 }
 
 class Integrator {

@@ -5,15 +5,10 @@
 #include <fmt/format.h>
 
 #include "settings/value_names.h"
+#include "shading/may_be_specular.h"
 
 namespace pertev {
 namespace {
-
-bool is_smooth(const Material& material) {
-    const bool has_mirror = material.kind == MaterialKind::Dielectric || material.kind == MaterialKind::Conductor ||
-                            (material.kind == MaterialKind::MetallicRoughness && material.metallic > 0);
-    return has_mirror && material.roughness == 0;
-}
 
 bool has_diffuse_lobe(const Material& material) {
     const bool may_have = material.kind == MaterialKind::Diffuse ||
@@ -24,8 +19,8 @@ bool has_diffuse_lobe(const Material& material) {
 /// Returns whether all materials are diffuse only. Emitters count as diffuse: their surfaces are diffuse and black.
 bool is_all_diffuse(const Scene& scene) {
     return std::ranges::all_of(scene.instances, [&](const Instance& i) {
-        const MaterialKind kind = scene.materials[i.material].kind;
-        return i.is_hidden || kind == MaterialKind::Diffuse || kind == MaterialKind::Unlit;
+        const Material& material = scene.materials[i.material];
+        return i.is_hidden || material.kind == MaterialKind::Diffuse || material.is_unlit();
     });
 }
 
@@ -33,7 +28,7 @@ bool is_all_diffuse(const Scene& scene) {
 bool has_caustics_of_points(const Scene& scene) {
     return std::ranges::any_of(scene.lights, [](const Light& l) { return max_component(l.intensity) > 0; }) &&
            std::ranges::any_of(scene.instances,
-                               [&](const Instance& i) { return is_smooth(scene.materials[i.material]); });
+                               [&](const Instance& i) { return may_be_specular(scene.materials[i.material]); });
 }
 
 } // namespace

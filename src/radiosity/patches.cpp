@@ -80,9 +80,9 @@ PatchCode divide(const DividedScene& divided, PatchTree& tree, Patch patch, uint
 
 /// Returns whether a material could reflect diffusely or emit.
 bool may_count(const MaterialParameters& material) {
-    if (material.kind == MaterialKind::Unlit) return false;
-    const bool emits = material.emission.r > 0 || material.emission.g > 0 || material.emission.b > 0;
-    return emits || material.kind == MaterialKind::Diffuse || material.kind == MaterialKind::MetallicRoughness;
+    if (material.is_unlit()) return false;
+    return material.is_emissive() || material.kind == MaterialKind::Diffuse ||
+           material.kind == MaterialKind::MetallicRoughness;
 }
 
 /// Calls body for each triangle of the instances that may have patches, judged without their triangles.

@@ -38,7 +38,7 @@ public:
     }
 
     void add(const Material& material) {
-        const bool is_unlit = material.kind == MaterialKind::Unlit; // seen by the camera alone
+        const bool is_unlit = material.is_unlit(); // seen by the camera alone
         const bool is_diffuse = material.kind == MaterialKind::Diffuse;
         const bool is_layered = material.kind == MaterialKind::MetallicRoughness;
         hasher_.add_value(static_cast<uint32_t>(is_unlit ? 1 : is_diffuse ? 2 : is_layered ? 3 : 0));

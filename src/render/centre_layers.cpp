@@ -56,10 +56,17 @@ void CentreLayers::find(const PictureView& picture, SceneTracer& tracer, uint32_
         };
         if (has_times) {
             store.template operator()<ShadingVariant::General, true>();
-        } else if (scene.variant == ShadingVariant::PlainDiffuse) {
+            continue;
+        }
+        switch (scene.variant) {
+        case ShadingVariant::PlainDiffuse:
             store.template operator()<ShadingVariant::PlainDiffuse, false>();
-        } else {
+            break;
+        case ShadingVariant::General:
+        case ShadingVariant::Unstacked:
+        case ShadingVariant::Diffuse:
             store.template operator()<ShadingVariant::General, false>();
+            break;
         }
     }
 }

@@ -130,8 +130,17 @@ HD inline SeenThroughLens<T> fisheye_direction(const LensView& lens, Vec2Of<T> a
 /// images nothing where Newton's method ends farther than `tolerance` from it.
 template <class T>
 HD inline SeenThroughLens<T> seen_through_lens(const LensView& lens, Vec2Of<T> at, float tolerance) {
-    if (is_panorama(lens.model)) return {panorama_direction(lens.model, at), MaskOf<T>(at.x == at.x)};
-    return lens.model == LensModel::Fisheye ? fisheye_direction(lens, at, tolerance) : undistort(lens, at, tolerance);
+    switch (lens.model) {
+    case LensModel::Equirectangular:
+    case LensModel::Cube:
+        return {panorama_direction(lens.model, at), MaskOf<T>(at.x == at.x)};
+    case LensModel::Fisheye:
+        return fisheye_direction(lens, at, tolerance);
+    case LensModel::Straight: // all its coefficients are 0
+    case LensModel::OpenCv:
+        break;
+    }
+    return undistort(lens, at, tolerance);
 }
 
 /// The picture position at which a lens images a point, and the scale of areas there.
@@ -141,27 +150,42 @@ struct LensProjection {
     bool is_seen;
 };
 
-/// Projects a point of camera space through a distorting lens.
-HD inline LensProjection project_through_lens(const LensView& lens, Vec3 point) {
+HD inline LensProjection project_to_panorama(const LensView& lens, Vec3 point) {
+    const PanoramaPosition there = panorama_position(lens.model, point);
+    return {there.at, there.growth, is_finite(there.growth)};
+}
+HD inline LensProjection project_through_fisheye(const LensView& lens, Vec3 point) {
     const float depth = -point.z;
-    if (is_panorama(lens.model)) {
-        const PanoramaPosition there = panorama_position(lens.model, point);
-        return {there.at, there.growth, is_finite(there.growth)};
-    }
-    if (lens.model == LensModel::Fisheye) {
-        const float away = sqrt(point.x * point.x + point.y * point.y);
-        const float angle = atan2(away, depth);
-        const FisheyeRadius<float> there = fisheye_radius(lens, angle);
-        const bool is_on_axis = !(away > 0);
-        const float scale = is_on_axis ? 1.0f / depth : there.radius / away;
-        const float sine = away / sqrt(away * away + depth * depth);
-        const float growth = is_on_axis ? 1.0f : there.slope * there.radius / sine;
-        return {{scale * point.x, scale * point.y}, growth, angle <= lens.limit && (depth > 0 || away > 0)};
-    }
+    const float away = sqrt(point.x * point.x + point.y * point.y);
+    const float angle = atan2(away, depth);
+    const FisheyeRadius<float> there = fisheye_radius(lens, angle);
+    const bool is_on_axis = !(away > 0);
+    const float scale = is_on_axis ? 1.0f / depth : there.radius / away;
+    const float sine = away / sqrt(away * away + depth * depth);
+    const float growth = is_on_axis ? 1.0f : there.slope * there.radius / sine;
+    return {{scale * point.x, scale * point.y}, growth, angle <= lens.limit && (depth > 0 || away > 0)};
+}
+HD inline LensProjection project_by_polynomial(const LensView& lens, Vec3 point) {
+    const float depth = -point.z;
     const Vec2 p = {point.x / depth, point.y / depth};
     const DistortedPoint<float> there = distort(lens, p);
     const float growth = there.determinant();
     return {there.at, growth, depth > 0 && growth > 0 && p.x * p.x + p.y * p.y <= lens.limit * lens.limit};
+}
+
+/// Projects a point of camera space through a distorting lens.
+HD inline LensProjection project_through_lens(const LensView& lens, Vec3 point) {
+    switch (lens.model) {
+    case LensModel::Equirectangular:
+    case LensModel::Cube:
+        return project_to_panorama(lens, point);
+    case LensModel::Fisheye:
+        return project_through_fisheye(lens, point);
+    case LensModel::Straight: // all its coefficients are 0
+    case LensModel::OpenCv:
+        break;
+    }
+    return project_by_polynomial(lens, point);
 }
 
 } // namespace pertev

@@ -17,19 +17,27 @@ namespace pertev {
 
 /// Half of a panorama's width and height in the view.
 HD inline Vec2 panorama_half_size(LensModel lens) {
-    return lens == LensModel::Cube ? Vec2{6, 1} : Vec2{kPi, 0.5f * kPi};
+    switch (lens) {
+    case LensModel::Cube:
+        return {6, 1};
+    case LensModel::Straight: // this and the next two are no panoramas
+    case LensModel::OpenCv:
+    case LensModel::Fisheye:
+    case LensModel::Equirectangular:
+        break;
+    }
+    return {kPi, 0.5f * kPi};
 }
 
-/// The direction of camera space, of any length, at a position of the view. Longitudes and latitudes beyond the borders
-/// go on around the sphere.
 template <class T>
-HD inline Vec3Of<T> panorama_direction(LensModel lens, Vec2Of<T> at) {
-    if (lens == LensModel::Equirectangular) {
-        T sine, cosine, height, radius;
-        sin_cos_2pi(at.x * (0.5f * kInvPi), sine, cosine);
-        sin_cos_2pi(at.y * (0.5f * kInvPi), height, radius);
-        return {sine * radius, height, -(cosine * radius)};
-    }
+HD inline Vec3Of<T> equirectangular_direction(Vec2Of<T> at) {
+    T sine, cosine, height, radius;
+    sin_cos_2pi(at.x * (0.5f * kInvPi), sine, cosine);
+    sin_cos_2pi(at.y * (0.5f * kInvPi), height, radius);
+    return {sine * radius, height, -(cosine * radius)};
+}
+template <class T>
+HD inline Vec3Of<T> cube_direction(Vec2Of<T> at) {
     T face = 0.0f;
     for (int k = 1; k < 6; ++k) face = select(at.x >= static_cast<float>(2 * k - 6), T(static_cast<float>(k)), face);
     const T u = at.x + 5.0f - 2.0f * face, v = at.y, one = 1.0f;
@@ -40,16 +48,32 @@ HD inline Vec3Of<T> panorama_direction(LensModel lens, Vec2Of<T> at) {
     return {of(u, one, -u, -one, u, u), of(v, v, v, v, one, -one), of(-one, u, one, -u, v, -v)};
 }
 
+/// The direction of camera space, of any length, at a position of the view. Longitudes and latitudes beyond the borders
+/// go on around the sphere.
+template <class T>
+HD inline Vec3Of<T> panorama_direction(LensModel lens, Vec2Of<T> at) {
+    switch (lens) {
+    case LensModel::Equirectangular:
+        return equirectangular_direction(at);
+    case LensModel::Straight: // this and the next two are no panoramas
+    case LensModel::OpenCv:
+    case LensModel::Fisheye:
+    case LensModel::Cube:
+        break;
+    }
+    return cube_direction(at);
+}
+
 /// The position of a direction in the view, and the area there over the solid angle.
 struct PanoramaPosition {
     Vec2 at;
     float growth;
 };
-HD inline PanoramaPosition panorama_position(LensModel lens, Vec3 d) {
-    if (lens == LensModel::Equirectangular) {
-        const float radius = sqrt(d.x * d.x + d.z * d.z);
-        return {{atan2(d.x, -d.z), atan2(d.y, radius)}, sqrt(radius * radius + d.y * d.y) / radius};
-    }
+HD inline PanoramaPosition equirectangular_position(Vec3 d) {
+    const float radius = sqrt(d.x * d.x + d.z * d.z);
+    return {{atan2(d.x, -d.z), atan2(d.y, radius)}, sqrt(radius * radius + d.y * d.y) / radius};
+}
+HD inline PanoramaPosition cube_position(Vec3 d) {
     const float x = abs(d.x), y = abs(d.y), z = abs(d.z), most = max(x, max(y, z));
     const Vec3 on_cube = (1.0f / most) * d;
     const float growth = length_squared(on_cube) * length(on_cube);
@@ -66,6 +90,18 @@ HD inline PanoramaPosition panorama_position(LensModel lens, Vec3 d) {
         on_face = {d.z > 0 ? -on_cube.x : on_cube.x, on_cube.y};
     }
     return {{on_face.x + static_cast<float>(2 * face - 5), on_face.y}, growth};
+}
+HD inline PanoramaPosition panorama_position(LensModel lens, Vec3 d) {
+    switch (lens) {
+    case LensModel::Equirectangular:
+        return equirectangular_position(d);
+    case LensModel::Straight: // this and the next two are no panoramas
+    case LensModel::OpenCv:
+    case LensModel::Fisheye:
+    case LensModel::Cube:
+        break;
+    }
+    return cube_position(d);
 }
 
 } // namespace pertev

@@ -113,6 +113,9 @@ struct MaterialParameters {
     HD bool has_coat() const { return coat_weight > 0; }
     HD bool has_fuzz() const { return fuzz_weight > 0 && max_component(fuzz_color) > 0; }
     HD bool transmits() const { return kind == MaterialKind::MetallicRoughness && transmission_weight > 0; }
+    /// Returns whether it is clear and the surface of a solid, which refracts light, not of a thin wall.
+    HD bool is_solid() const { return kind == MaterialKind::Dielectric || (transmits() && !thin_walled); }
+    HD bool is_unlit() const { return kind == MaterialKind::Unlit; }
     /// Returns whether the dielectric reflects otherwise than by its index.
     HD bool has_own_reflection() const {
         return kind == MaterialKind::MetallicRoughness &&
@@ -120,15 +123,12 @@ struct MaterialParameters {
                 specular_color_texture.has_image());
     }
     /// Returns whether it is a solid, which light enters, that absorbs by distance.
-    HD bool absorbs() const {
-        return transmission_depth > 0 && (kind == MaterialKind::Dielectric || (transmits() && !thin_walled));
-    }
+    HD bool absorbs() const { return transmission_depth > 0 && is_solid(); }
     /// Returns whether it is the surface of a body that light enters and that a medium may fill.
     HD bool encloses() const {
-        return kind == MaterialKind::Dielectric || is_clear_boundary || (transmits() && !thin_walled) ||
-               (medium.is_there() && has_diffuse_transmission());
+        return is_solid() || is_clear_boundary || (medium.is_there() && has_diffuse_transmission());
     }
-    HD bool has_microfacets() const { return kind != MaterialKind::Diffuse && kind != MaterialKind::Unlit; }
+    HD bool has_microfacets() const { return kind != MaterialKind::Diffuse && !is_unlit(); }
     HD bool has_anisotropy() const { return has_microfacets() && specular_roughness_anisotropy > 0; }
     /// Returns whether its microfacets are not those that most materials have, which are faster.
     HD bool has_other_microfacets() const {
@@ -140,8 +140,7 @@ struct MaterialParameters {
     }
     /// Returns the reciprocal of Abbe's number of a solid.
     HD float dispersion() const {
-        const bool is_solid = kind == MaterialKind::Dielectric || (transmits() && !thin_walled);
-        return is_solid ? transmission_dispersion_scale / transmission_dispersion_abbe_number : 0.0f;
+        return is_solid() ? transmission_dispersion_scale / transmission_dispersion_abbe_number : 0.0f;
     }
     HD bool has_thin_film() const {
         return (kind == MaterialKind::MetallicRoughness || kind == MaterialKind::Dielectric) && thin_film_weight > 0;
@@ -154,7 +153,7 @@ struct MaterialParameters {
     }
     /// Returns whether its BSDF needs more than one reflection on a base, or it absorbs by distance.
     HD bool is_stacked() const {
-        return kind != MaterialKind::Unlit &&
+        return !is_unlit() &&
                (has_coat() || has_fuzz() || transmits() || has_own_reflection() || absorbs() || has_anisotropy() ||
                 has_thin_film() || has_diffuse_transmission() || has_rough_diffuse() || has_other_microfacets() ||
                 dispersion() > 0 || has_retroreflection());
@@ -162,7 +161,7 @@ struct MaterialParameters {
     bool is_emissive() const { return max_component(emission) > 0; }
     /// Returns whether it is sampled as an emitter. An unlit one is not: rays from the camera or a surface that hit it
     /// return its colour.
-    bool is_emitter() const { return is_emissive() && kind != MaterialKind::Unlit; }
+    bool is_emitter() const { return is_emissive() && !is_unlit(); }
 };
 
 /// Sets the index of refraction that glTF writes as `ior`, 0 or at least kLeastIor: 0 is an infinite one, with which

@@ -31,7 +31,7 @@ bool BatchRender::next(BatchArrays& arrays, Sink& sink) {
     const uint32_t count = std::min(at_once_, batch_.count() - done_);
     arrays.fit(pictures_.queue(), settings_, at_once_);
     arrays.first = done_, arrays.pictures = count;
-    arrays.noisy_hashes.assign(settings_.denoise != Denoise::None ? count : 0, {});
+    arrays.noisy_hashes.assign(settings_.is_denoised() ? count : 0, {});
     if (!(in_turn_ ? render_in_turn(arrays, sink) : render_together(arrays, sink))) return false;
     done_ += count;
     return true;
@@ -145,7 +145,7 @@ bool BatchRender::render_in_turn(BatchArrays& arrays, Sink& sink) {
 void BatchRender::resolve(Film& film, uint32_t pictures, uint32_t at, BatchArrays& arrays) {
     const uint32_t each = settings_.width * settings_.height, pixels = each * pictures;
     const std::size_t first = std::size_t(each) * at;
-    const Buffer<float>& into = settings_.denoise != Denoise::None ? arrays.noisy : arrays.color;
+    const Buffer<float>& into = settings_.is_denoised() ? arrays.noisy : arrays.color;
     float* const picture = into.data() + first * (settings_.transparent ? 4 : 3);
     const bool has_layers = in_turn_ || !has_centres(settings_); // otherwise they are there
     std::vector<Film::LayerMemory> layers;

@@ -21,7 +21,7 @@ void check_batch(const CameraBatch& batch, const RenderSettings& settings) {
     refuse(batch.cameras.empty(), "cameras", "", "a batch needs at least one camera");
     refuse(batch.seeds.size() > 1 && batch.seeds.size() != batch.cameras.size(), "seeds",
            fmt::format("{}", batch.seeds.size()), "expected one seed, or one for each camera");
-    refuse(settings.denoise != Denoise::None && settings.samples == 0, "denoise", "",
+    refuse(settings.is_denoised() && settings.samples == 0, "denoise", "",
            "without samples there is no picture to denoise");
     refuse(settings.light_paths != nullptr, "lpe", "", "batches of pictures have no layers of light paths");
     refuse(settings.irradiance, "false_color", "illuminance", "batches of pictures show radiance");
@@ -38,14 +38,13 @@ void check_batch(const CameraBatch& batch, const RenderSettings& settings) {
 }
 
 bool is_one_job(const RenderSettings& settings) {
-    return settings.samples == 0 ||
-           (settings.denoise == Denoise::None && describe(settings.integrator).renders_batches);
+    return settings.samples == 0 || (!settings.is_denoised() && describe(settings.integrator).renders_batches);
 }
 
 void BatchArrays::fit(Queue& queue, const RenderSettings& settings, uint32_t count) {
     const std::size_t pixels = std::size_t(settings.width) * settings.height * count;
     if (settings.samples > 0) color.grow(queue, pixels * (settings.transparent ? 4 : 3), "pictures of a batch");
-    if (settings.denoise != Denoise::None) noisy.grow(queue, color.size(), "pictures of a batch");
+    if (settings.is_denoised()) noisy.grow(queue, color.size(), "pictures of a batch");
     if ((settings.aovs & kAovIds) != 0) ids.grow(queue, pixels, "ids of a batch");
     std::size_t number = 0;
     for (const AovGroup& group : kAovTable) {

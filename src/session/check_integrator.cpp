@@ -7,8 +7,10 @@
 #include "base/error.h"
 #include "denoise/oidn/oidn_library.h"
 #include "device_scene/nest_solids.h"
+#include "render/film_channels.h"
 #include "render/lens_distortion.h"
 #include "render/raster/pinhole.h"
+#include "settings/check_settings.h"
 #include "settings/value_names.h"
 
 namespace pertev {
@@ -22,7 +24,7 @@ bool has_emitter(const Scene& scene) {
         scene.instances, [&](const Instance& instance) { return scene.materials[instance.material].is_emitter(); });
 }
 auto is_unlit_in(const Scene& scene) {
-    return [&](const Instance& instance) { return scene.materials[instance.material].kind == MaterialKind::Unlit; };
+    return [&](const Instance& instance) { return scene.materials[instance.material].is_unlit(); };
 }
 bool is_all_unlit(const Scene& scene) { return std::ranges::all_of(scene.instances, is_unlit_in(scene)); }
 /// Returns whether the scene has unlit surfaces. Paths carry their colour on, though they are no lights.
@@ -50,7 +52,28 @@ void refuse(bool is_wrong, const char* setting, std::string_view value, std::str
     if (is_wrong) throw Error(ErrorCode::BadInput, setting, std::string(value), std::move(why));
 }
 
-std::string those_that(bool (*has)(IntegratorKind)) { return list_of(integrator_names(integrators_that(has))); }
+void give(const char* setting, PictureOptions& options) { options.given.emplace(setting, SettingOrigin::Caller); }
+
+/// Returns the settings as options, of which those are given that the table has rules for.
+PictureOptions options_of(const RenderSettings& settings) {
+    PictureOptions options;
+    options.render = settings;
+    if (settings.is_denoised()) give("denoise", options);
+    for (const AovGroup& group : kAovTable)
+        if ((settings.aovs & group.bit) != 0) options.aovs.emplace_back(group.name);
+    for (std::string& name : sample_layer_names(settings.sample_layers)) options.aovs.push_back(std::move(name));
+    if (!options.aovs.empty()) give("aov", options);
+    if (!options.aovs.empty() && settings.layers_at == LayersAt::Centre) give("layers_at", options);
+    if (settings.light_paths) {
+        options.lpe = light_layers_of(settings);
+        options.lpe.resize(options.lpe.size() - settings.light_groups.size());
+        options.light_groups = settings.light_groups;
+        if (!options.lpe.empty()) give("lpe", options);
+        if (!options.light_groups.empty()) give("light_group", options);
+    }
+    if (settings.irradiance) options.false_color = "illuminance", give("false_color", options);
+    return options;
+}
 
 /// Returns whether there are surfaces to be lit but no lights that the integrator supports.
 bool lacks_lights(const RenderSettings& settings, const Scene& scene) {
@@ -73,43 +96,21 @@ std::string lights_of(const Scene& scene) {
 } // namespace
 
 void check_integrator(const RenderSettings& settings) {
-    const std::string_view name = integrator_name(settings);
-    const bool is_denoised = settings.denoise != Denoise::None;
-    refuse(is_denoised && !makes_frames(settings.integrator), "denoise", name_of(settings.denoise),
-           fmt::format("supports {}, not {}", those_that(makes_frames), name));
-    refuse(is_denoised && (settings.sample_layers & kLayerVariance) != 0, "aov", "variance",
-           fmt::format("`denoise={}` does not keep samples apart; leave out one of them", name_of(settings.denoise)));
-    const bool takes_samples = (settings.sample_layers & (kLayerUv | kLayerObjects | kLayerMaterials)) != 0;
-    refuse(takes_samples && settings.layers_at == LayersAt::Centre, "layers_at", "centre",
-           "the layers uv, crypto_object and crypto_material are evaluated at samples, not at pixel centres");
-    refuse(is_denoised && (settings.aovs & kAovDistance) != 0, "aov", "distance",
-           fmt::format("`denoise={}` does not support it; its depth is measured along the axis",
-                       name_of(settings.denoise)));
-    if (settings.light_paths) {
-        refuse(!has_light_path_layers(settings.integrator), "lpe", "",
-               fmt::format("{} distinguish light paths, {} does not", those_that(has_light_path_layers), name));
-        refuse(is_denoised, "lpe", "",
-               fmt::format("layers are means of samples, which `denoise={}` does not keep; leave out one of them",
-                           name_of(settings.denoise)));
-    }
-    refuse(settings.irradiance && (is_denoised || !has_light_path_layers(settings.integrator)), "false_color",
-           "illuminance",
-           fmt::format("only {} without denoising compute it, not {}{}", those_that(has_light_path_layers), name,
-                       is_denoised ? ", denoised" : ""));
+    check_settings(options_of(settings), kRender);
     if (settings.path.max_depth > max_depth(settings.integrator)) {
         throw Error(ErrorCode::OverLimit, "max_depth", fmt::format("{}", settings.path.max_depth),
-                    fmt::format("the limit with `integrator={}` is {}", name, max_depth(settings.integrator)));
+                    fmt::format("the limit with `integrator={}` is {}", integrator_name(settings),
+                                max_depth(settings.integrator)));
     }
     describe(settings.integrator).check(settings);
     if (settings.denoise == Denoise::Oidn) OidnLibrary::find("denoise");
 }
 
 void check_shutter(const RenderSettings& settings) {
-    refuse(!has_shutter(settings.integrator), "shutter", "",
-           fmt::format("{} support motion blur, {} does not", those_that(has_shutter), integrator_name(settings)));
-    refuse(settings.denoise != Denoise::None, "shutter", "",
-           fmt::format("`denoise={}` needs one surface per pixel, and motion blur shows several; leave out one of them",
-                       name_of(settings.denoise)));
+    PictureOptions options = options_of(settings);
+    options.time_s = 0, options.shutter = "1";
+    give("time", options), give("shutter", options);
+    check_settings(options, kRender);
 }
 
 void check_camera(const RenderSettings& settings, const Camera& camera) {
@@ -162,7 +163,8 @@ void check_light(const RenderSettings& settings, const Scene& scene, Sink& sink)
     }
     if (has_media(scene) && !has_media(settings.integrator)) {
         sink.leave_out({"integrator", std::string(integrator_name(settings)),
-                        fmt::format("it renders a vacuum in place of media; {} know them", those_that(has_media))});
+                        fmt::format("it renders a vacuum in place of media; {} know them",
+                                    list_of(integrator_names(integrators_that(has_media))))});
     }
     if (has_media(scene)) check_media(settings);
     if (const auto why = why_dark(settings, scene)) throw Error(ErrorCode::BadInput, *why);

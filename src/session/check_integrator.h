@@ -10,7 +10,8 @@
 
 namespace pertev {
 
-/// Checks that the settings are compatible. Throws Error(BadInput), Error(OverLimit) for a ray tree that is too deep.
+/// Checks that the settings are compatible, by the rules of the table of settings, which a caller of the library has
+/// not asked. Throws Error(BadInput), Error(OverLimit) for a ray tree that is too deep.
 void check_integrator(const RenderSettings& settings);
 
 /// Checks that motion can be blurred if the shutter is open. Throws Error(BadInput).

@@ -28,6 +28,12 @@ void name_arrays(const PreparedScene& prepared, uint32_t parts, SharedUploads& u
 
 } // namespace
 
+void make_what_is_used(Queue& queue, const RenderSettings& settings, SceneOnDevice& scene) {
+    if (settings.path.mip_maps == MipMaps::On) scene.make_mip_maps(queue);
+    const SceneView& view = scene.view();
+    if (uses_light_tree(settings, view.lights.tree.light_count, view.motions.is_there())) scene.make_light_tree(queue);
+}
+
 void DeviceScene::set(const PreparedScene& scene, const RenderSettings& settings) {
     tracer_.reset(); // freed with its trees, so that those of two scenes need not fit
     upload(scene, kAllParts, settings);

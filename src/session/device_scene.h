@@ -15,6 +15,10 @@
 
 namespace pertev {
 
+/// Makes the mip-maps and the light tree if pictures of these settings use them and they are missing. Throws
+/// Error(OutOfMemory), without an effect.
+void make_what_is_used(Queue& queue, const RenderSettings& settings, SceneOnDevice& scene);
+
 class DeviceScene {
 public:
     /// Makes an empty object; call set() before use. `queue` must outlive this object.
@@ -32,13 +36,9 @@ public:
     /// set(); if it throws, there is no tracer until the next call.
     bool set_tracer(const RenderSettings& settings);
 
-    /// Makes mip-maps, by SceneOnDevice::make_mip_maps, if there is a scene.
-    void make_mip_maps() {
-        if (scene_) scene_->make_mip_maps(queue_);
-    }
-    /// Uploads the light tree, by SceneOnDevice::make_light_tree, if there is a scene.
-    void make_light_tree() {
-        if (scene_) scene_->make_light_tree(queue_);
+    /// Makes what pictures of these settings need, by make_what_is_used, if there is a scene.
+    void make_what_is_used(const RenderSettings& settings) {
+        if (scene_) pertev::make_what_is_used(queue_, settings, *scene_);
     }
 
     /// Lets the next calls copy what `other`, which has the same scene, has just uploaded from its device. It must not

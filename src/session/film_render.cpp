@@ -88,7 +88,7 @@ Film& FilmRender::film() {
 
 /// Returns what adds the targets of new films: those that set_targets() requests, and what a post step gathers.
 AddTargets FilmRender::targets_of_films() {
-    if (settings_.denoise == Denoise::None) return add_targets_;
+    if (!settings_.is_denoised()) return add_targets_;
     const DenoiserStateSize size = denoiser_state_size(settings_.denoise, settings_.width, settings_.height);
     return [add = add_targets_, size, steps = steps_, are_several = pictures_.sharing() != nullptr](Film& film) {
         if (add) add(film);
@@ -110,7 +110,7 @@ void FilmRender::restore(SampleRange samples, const std::function<void(Film&)>& 
     Film& into = film();
     try {
         add(into);
-        if (settings_.denoise != Denoise::None && pictures_.sharing() == nullptr) {
+        if (settings_.is_denoised() && pictures_.sharing() == nullptr) {
             DenoiserTarget* const target = denoiser_target(into);
             PERTEV_CHECK(target != nullptr);
             steps_->begin(camera_, settings_, nullptr);
@@ -285,7 +285,7 @@ void FilmRender::find_hidden_backs() {
 }
 
 std::optional<Image> FilmRender::denoised() {
-    if (settings_.denoise == Denoise::None || samples().count() == 0) return std::nullopt;
+    if (!settings_.is_denoised() || samples().count() == 0) return std::nullopt;
     if (pictures_.sharing() == nullptr) {
         Image image = steps_->apply(picture());
         denoiser_ = steps_->names();
@@ -321,7 +321,7 @@ RenderStats FilmRender::stats() {
 
 RenderResult render_with_steps(PictureRenderer& pictures, const Camera& camera, const RenderSettings& settings,
                                uint32_t first) {
-    if (settings.denoise == Denoise::None) return pictures.render_separately(camera, settings, first);
+    if (!settings.is_denoised()) return pictures.render_separately(camera, settings, first);
     FilmRender film(pictures, camera, settings);
     film.render({first, first + settings.samples});
     return film.result();

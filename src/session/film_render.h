@@ -62,7 +62,7 @@ public:
     /// Returns the picture after the post steps; none if the settings request no step, or without samples.
     std::optional<Image> denoised();
     /// The name of what denoised it (Denoiser::name).
-    std::string denoiser() const { return settings_.denoise == Denoise::None ? "" : denoiser_; }
+    std::string denoiser() const { return settings_.is_denoised() ? denoiser_ : ""; }
     std::vector<FilmLayer> layers() { return film().layers(); }
     /// Returns statistics, for which it reads two numbers from the device. The share of hidden backs is computed once
     /// per scene, camera and size.
@@ -76,7 +76,7 @@ public:
 private:
     struct Passes;
 
-    bool has_steps() const { return settings_.denoise != Denoise::None; }
+    bool has_steps() const { return settings_.is_denoised(); }
     bool on_cpu() const { return !pictures_.queue().is_cuda(); } // a GPU's passes are short
     /// Returns whether samples are rendered alone, because the film gets their squares, too.
     bool has_moments() const { return (settings_.sample_layers & kLayerVariance) != 0; }

@@ -65,11 +65,8 @@ void PictureRenderer::update_other_devices(const PreparedScene& scene, uint32_t 
 }
 
 PictureView PictureRenderer::view_of(const Camera& camera, const RenderSettings& settings) {
-    if (settings.path.mip_maps == MipMaps::On) scene_.make_mip_maps();
+    scene_.make_what_is_used(settings);
     const SceneView& scene = scene_.view();
-    if (uses_light_tree(settings, scene.lights.tree.light_count, scene.motions.is_there())) {
-        scene_.make_light_tree();
-    }
     PictureView picture = {scene,
                            make_camera_rays(camera, filter_.set(settings.filter, filter_radius_of(settings)),
                                             settings.width, settings.height, scene.centre),

@@ -18,6 +18,7 @@
 #include "render/film.h"
 #include "restir/restir.h"
 #include "session/camera_batch.h"
+#include "session/device_scene.h"
 #include "session/picture_renderer.h"
 #include "session/post_steps.h"
 #include "tracer/structure_on_device.h"
@@ -31,8 +32,7 @@ bool splits_light(const PreparedScene& scene) { return has_lobes(shading_variant
 struct DenoisingMemory {
     DenoisingMemory(Queue& queue, const PreparedScene& scene, const RenderSettings& settings)
         : steps(make_denoisers(queue, settings)) {
-        if (settings.denoise != Denoise::None)
-            sample.emplace(queue, settings.width, settings.height, splits_light(scene));
+        if (settings.is_denoised()) sample.emplace(queue, settings.width, settings.height, splits_light(scene));
     }
 
     std::optional<NoisyFrame> sample;
@@ -41,7 +41,7 @@ struct DenoisingMemory {
 
 /// Returns the work of a picture: its samples are rendered one at a time if they are denoised.
 WorkSize work_of_picture(const PreparedScene& scene, const RenderSettings& settings) {
-    if (settings.denoise == Denoise::None) return {.samples = settings.samples};
+    if (!settings.is_denoised()) return {.samples = settings.samples};
     return {.samples = 1, .splits_light = splits_light(scene)};
 }
 
@@ -51,22 +51,12 @@ public:
     /// Completes `size` with values that the scene and its tracers determine.
     Tracing(Queue& queue, const PreparedScene& scene, const RenderSettings& settings, WorkSize size)
         : queue_(queue), scene_(queue, scene) {
-        if (settings.path.mip_maps == MipMaps::On) scene_.make_mip_maps(queue);
+        make_what_is_used(queue, settings, scene_);
         const TracerChoice tracers = tracers_of(settings, queue.is_cuda(), !scene.poses.empty());
         size.width = settings.width, size.height = settings.height;
-        for (const Instance& instance : scene.scene->instances) {
-            size.triangles += scene.scene->meshes[instance.mesh].triangle_count();
-        }
         size.traverses_on_host = can_traverse_on_host(tracers, queue.is_cuda());
-        size.has_times = scene.motions != nullptr;
-        size.has_interiors = !scene_.nested_solids().is_empty();
-        size.has_media = scene_.view().has_media != 0;
-        size.tree_lights = scene_.view().lights.tree.light_count;
-        if (uses_light_tree(settings, size.tree_lights, size.has_times)) {
-            scene_.make_light_tree(queue);
-        }
         if (size.samples > 0) integrator_ = make_integrator(queue, settings);
-        if (integrator_) integrator_->reserve(size);
+        if (integrator_) integrator_->reserve(with_scene(size, scene_.view()));
         take_deforming_trees(scene, tracers);
         if (queue.is_cuda()) take_structures(*scene.structures, tracers);
     }

@@ -25,6 +25,7 @@ bool holds(const PictureOptions& options, const std::string& condition) {
     const Setting& setting = *setting_of(condition);
     const std::vector<std::string> texts = texts_of(options, setting);
     if (const std::size_t equals = condition.find('='); equals != std::string::npos) {
+        if (texts.empty()) return false; // it has no value, thus no other one either
         const bool is_there = std::ranges::find(texts, condition.substr(equals + 1)) != texts.end();
         return is_there != (condition[equals - 1] == '!');
     }
@@ -38,25 +39,34 @@ std::string with_value(const PictureOptions& options, const std::string& conditi
     return fmt::format("{}={}", setting.name, texts_of(options, setting).front());
 }
 
+/// Returns whether the setting has one of the values A,B, or another one than those of !A,B; true for no values.
+bool is_among(const PictureOptions& options, const Setting& setting, std::string_view values) {
+    if (values.empty()) return true;
+    const bool is_other = values.starts_with('!');
+    std::string words(values.substr(is_other ? 1 : 0));
+    std::ranges::replace(words, ',', ' ');
+    const std::vector<std::string> named = words_of(words), texts = texts_of(options, setting);
+    return is_other != (std::ranges::find_first_of(texts, named) != texts.end());
+}
+
 std::optional<SettingConflict> conflict_of(const PictureOptions& options, const Setting& setting, uint32_t verbs) {
     using Kind = SettingConflict::Kind;
-    if (!has_setting(options.render.integrator, setting)) {
-        return SettingConflict{&setting, Kind::Integrator, integrators_with(setting)};
+    const auto value_in = [&](std::string_view rule) {
+        return rule.empty() ? std::string() : texts_of(options, setting).front();
+    };
+    if (!has_setting(options.render.integrator, setting) && is_among(options, setting, setting.integrators_of)) {
+        return SettingConflict{&setting, Kind::Integrator, integrators_with(setting), value_in(setting.integrators_of)};
     }
     std::vector<std::string> needs = words_of(setting.needs);
     std::erase_if(needs, [&](const std::string& other) { return (setting_of(other)->verbs & verbs) == 0; });
     const auto is_so = [&](const std::string& other) { return holds(options, other); };
     if (!needs.empty() && std::ranges::none_of(needs, is_so)) return SettingConflict{&setting, Kind::Needs, needs};
     for (std::string& other : words_of(setting.excludes)) {
-        // VALUE:OTHER is a rule for this value alone, !VALUE:OTHER for all others.
         const std::size_t colon = other.find(':');
         const std::string rule = other.substr(0, colon == std::string::npos ? 0 : colon);
-        const std::string own = setting.name + (rule.starts_with('!') ? "!=" + rule.substr(1) : "=" + rule);
-        if (!rule.empty() && !is_so(own)) continue;
         other.erase(0, colon + 1); // npos + 1: 0
-        if (!is_so(other)) continue;
-        const std::string value = rule.empty() ? "" : texts_of(options, setting).front();
-        return SettingConflict{&setting, Kind::Excludes, {with_value(options, other)}, value};
+        if (!is_among(options, setting, rule) || !is_so(other)) continue;
+        return SettingConflict{&setting, Kind::Excludes, {with_value(options, other)}, value_in(rule)};
     }
     return std::nullopt;
 }

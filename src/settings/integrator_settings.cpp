@@ -35,7 +35,7 @@ std::vector<Setting> integrator_settings() {
         row("displacement", "Reyes", "MATERIAL=FILE,SCALE[,MIDDLE]", FIELD(displacement),
             "A height map that displaces surfaces of this material along their normals by SCALE (height - MIDDLE) in "
             "the mesh's own unit; MIDDLE defaults to 0. It may be given again.",
-            Recorded::AsUsed),
+            HoldsFile::Named, Recorded::AsUsed),
 
         row("photons", "Photons", "N", FIELD(render.photon_map.edit().photons),
             "The number of photons from the lights per sample; as many again are aimed at mirrors and glass.",
@@ -61,7 +61,7 @@ std::vector<Setting> integrator_settings() {
             "The maximum number of rays that sample a record's hemisphere.",
             Range{kFewestHemisphereRays, kMaxHemisphereRays}, Recorded::WhereUsed),
         row("show_records", "Records", "", FIELD(render.irradiance_cache.edit().show_records),
-            "The picture shows the records' positions.", Recorded::WhereUsed),
+            "The picture shows the records' positions.", Mark::AfterRecords, Recorded::WhereUsed),
 
         row("patch_size", "Radiosity", "METRES", FIELD(radiosity.solving.patch_size), "The longest edge of a patch.",
             Above{0, kMaxCoordinate}, Unit{"m"}, Otherwise{"a 16th of the scene's longest side"}, Excludes{"solution"}),
@@ -92,12 +92,12 @@ std::vector<Setting> integrator_settings() {
             Excludes{"solution"}),
         row("solution", "Radiosity", "FILE", FIELD(radiosity.solution),
             "A solution that was solved and written before, to be rendered.", Otherwise{"the scene is solved first"},
-            Mark::Name, Mark::OpensScene),
+            Mark::Name, Mark::OpensScene, HoldsFile::Whole),
         row("flat_patches", "Radiosity", "", FIELD(radiosity.flat_patches),
             "Patches have constant radiosity, without interpolation.", Recorded::AsUsed),
     };
     for (Setting& row : rows) {
-        const bool is_solved = std::string_view(row.group) == "Radiosity" && !row.is_name && !is_switch(row);
+        const bool is_solved = row.group == SettingGroup::Radiosity && !row.is_name && !is_switch(row);
         row.verbs = kLooking | (is_solved ? uint32_t(kSolve) : 0);
     }
     return rows;
@@ -143,6 +143,10 @@ std::vector<Setting> frame_settings() {
             "The resolution of light, relative to each side of the picture; less is faster. Edges and textures keep "
             "theirs.",
             Range{0.1, 1}, Panel{"Light resolution, per side", PanelGroup::Frames, 0.05}),
+        row("moving_depth", "Frames", "N", FIELD(render.frame_depth),
+            "The maximum number of scatterings in frames, if below max_depth. Less is faster, but may be darker.",
+            Range{0, kMaxPathDepth - 1}, Otherwise{"max_depth; in the viewer 4, unless max_depth is given"},
+            Panel{"Max depth in motion", PanelGroup::Frames}),
     };
     for (Setting& row : rows) {
         row.verbs = kRender | kView | kBenchFrames | kBenchSequence;

@@ -61,6 +61,7 @@ struct RenderSettings : IntegratorSettings {
     std::optional<TracerChoice> tracers; // none: the device's default
     bool time_kinds = false;             // fills RenderStats::kind_seconds, which slows the wavefront down
 
+    bool is_denoised() const { return denoise != Denoise::None; }
     SampleRange range() const { return {first_sample, samples}; }
     /// The window of the picture that the film holds.
     PixelWindow window() const {

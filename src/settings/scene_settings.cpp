@@ -106,8 +106,10 @@ std::vector<Setting> scene_settings() {
             "equirectangular "
             "(2:1) or cube (six faces in a row).",
             Otherwise{"opencv"}, On{kDistorted},
-            Excludes{"projection=orthographic fisheye:aperture fisheye:denoise=svgf fisheye:real_time "
-                     "equirectangular:fov cube:fov cube:filter!=box"},
+            Excludes{"projection=orthographic fisheye,equirectangular,cube:aperture!=0 "
+                     "fisheye,equirectangular,cube:denoise=svgf fisheye,equirectangular,cube:real_time "
+                     "equirectangular,cube:fov equirectangular,cube:eye_offset!=0 equirectangular,cube:stereo "
+                     "cube:filter!=box"},
             Recorded::AsUsed, Changes::Camera),
         row("distortion", "Camera", "K1,K2,...", FIELD(scene.camera.distortion),
             "The lens's coefficients: k1,k2,p1,p2[,k3[,k4,k5,k6]], or of a fisheye k1,k2,k3,k4.", Counts{{4, 5, 8}},
@@ -121,11 +123,11 @@ std::vector<Setting> scene_settings() {
             Excludes{"projection=orthographic"}, Changes::Camera),
         row("camera_from", "Camera", "FILE", FIELD(scene.camera.camera_from),
             "An EXR of Pertev's whose camera is used, to the bit, unless other settings override it.", On{kAimed},
-            Excludes{"camera camera_path"}, Mark::Name, Changes::Camera),
+            Excludes{"camera camera_path"}, Mark::Name, HoldsFile::Whole, Changes::Camera),
 
         row("environment", "Environment", "FILE|R,G,B", FIELD(scene.environment),
             "Light from infinitely far away: an .hdr or .exr panorama, or a radiance R,G,B.", On{kScenes}, Mark::Common,
-            Mark::OpensScene, Recorded::AsUsed),
+            Mark::OpensScene, HoldsFile::Whole, Mark::Numbers, Recorded::AsUsed),
         row("sun_sky", "Environment", "ELEVATION,AZIMUTH[,TURBIDITY]", FIELD(scene.sun_sky),
             "A clear sky by Preetham's formulas, with the sun this high and this far from -z towards +x. The turbidity "
             "is from 2 (clear) to 10, by default 3.",
@@ -151,7 +153,7 @@ std::vector<Setting> scene_settings() {
         row("ies", "Lamps", "NAME=FILE", FIELD(scene.profiles),
             "The IES photometric file of all point and spot lights with this name, which gives them its candelas. It "
             "may be given again.",
-            On{kScenes}, Mark::OpensScene, Recorded::AsUsed),
+            On{kScenes}, Mark::OpensScene, HoldsFile::Named, Recorded::AsUsed),
         row("efficacy", "Lamps", "LM_PER_W", FIELD(scene.efficacy), "The number of lumens per watt.", Above{0, 1e6},
             Unit{"lm/W"}, Otherwise{"683; 1 for glTF, whose candela, lux and nits are read as watts"}, On{kScenes},
             Mark::OpensScene),
@@ -173,18 +175,18 @@ std::vector<Setting> scene_settings() {
             "The times at which the shutter opens (by default 0) and closes, after the time of the picture or frame. "
             "Motion between them is blurred.",
             Unit{"s"}, Of{integrators_that(has_shutter)}, Needs{"time frames"}, Excludes{"denoise!=none"}, Mark::Name,
-            Recorded::AsUsed),
+            Mark::Numbers, Recorded::AsUsed),
         row("camera_path", "Motion", "FILE", FIELD(camera_path),
             "A JSON file of keys (time, eye, target, up, fov) that the camera follows.",
-            On{kRender | kView | kBenchSequence}, Mark::Name, Mark::OpensScene),
+            On{kRender | kView | kBenchSequence}, Mark::Name, Mark::OpensScene, HoldsFile::Whole),
         row("turntable", "Motion", "N", FIELD(turntable),
             "The number of pictures in which the camera orbits its target once; in the viewer, in N / 24 s.",
             Range{1, 1e9}, On{kRender | kView | kBenchSequence}, Excludes{"camera_path"}),
         row("cameras", "Motion", "FILE", FIELD(cameras),
             "A file of cameras with a picture each: JSON, NeRF's transforms.json or COLMAP's folder. {name} in an "
             "output's name becomes the camera's, # its number.",
-            Excludes{"frames turntable camera_path camera camera_from eye target up camera_pose real_time"},
-            Mark::Name),
+            Excludes{"frames turntable camera_path camera camera_from eye target up camera_pose real_time"}, Mark::Name,
+            HoldsFile::Whole),
         row("stereo", "Motion", "M", FIELD(stereo),
             "Renders a stereo pair by cameras this far apart, left and right. {name} in an output's name becomes the "
             "eye's.",

@@ -65,6 +65,45 @@ SettingField field_of(Value& field) {
     return &field;
 }
 
+/// Groups of settings, whose names are headings of help and documents, in their order.
+enum class SettingGroup : uint8_t {
+    File,
+    Camera,
+    Environment,
+    Lamps,
+    Faces,
+    Motion,
+    Picture,
+    Quality,
+    Parts,
+    Tracing,
+    Machine,
+    Raster,
+    Reyes,
+    Photons,
+    Records,
+    Radiosity,
+    Frames,
+};
+inline constexpr ValueName<SettingGroup> kSettingGroups[] = {{SettingGroup::File, "File"},
+                                                             {SettingGroup::Camera, "Camera"},
+                                                             {SettingGroup::Environment, "Environment"},
+                                                             {SettingGroup::Lamps, "Lamps"},
+                                                             {SettingGroup::Faces, "Faces"},
+                                                             {SettingGroup::Motion, "Motion"},
+                                                             {SettingGroup::Picture, "Picture"},
+                                                             {SettingGroup::Quality, "Quality"},
+                                                             {SettingGroup::Parts, "Parts"},
+                                                             {SettingGroup::Tracing, "Tracing"},
+                                                             {SettingGroup::Machine, "Machine"},
+                                                             {SettingGroup::Raster, "Raster"},
+                                                             {SettingGroup::Reyes, "Reyes"},
+                                                             {SettingGroup::Photons, "Photons"},
+                                                             {SettingGroup::Records, "Records"},
+                                                             {SettingGroup::Radiosity, "Radiosity"},
+                                                             {SettingGroup::Frames, "Frames"}};
+constexpr const auto& names_of_all(SettingGroup) { return kSettingGroups; }
+
 /// The verbs that have settings, as bits.
 enum SettingVerbs : uint32_t {
     kRender = 1,
@@ -116,8 +155,15 @@ enum class Recorded : uint8_t {
 };
 
 /// The part of a prepared render that another value of a setting changes. One that could be less costs time, and no
-/// picture.
-enum class Changes : uint8_t { Scene, Camera, Picture };
+/// picture. Display: only how PNG and JPEG show it.
+enum class Changes : uint8_t { Scene, Camera, Picture, Display };
+
+/// The place of a file's path in a text of a setting. Such a file counts by its contents, wherever it lies.
+enum class HoldsFile : uint8_t {
+    No,    // there is none, or the setting decides no picture
+    Whole, // the text is a path, unless it is another value
+    Named, // NAME=FILE
+};
 
 /// Group of the viewer's panel, in the panel's order.
 enum class PanelGroup : uint8_t { Picture, Light, Frames, Camera, Rays };
@@ -130,8 +176,8 @@ struct Panel {
 };
 
 struct Setting {
-    const char* name;      // name in C++, JSON and metadata, from which the flag is made
-    const char* group;     // a heading, one word
+    const char* name; // name in C++, JSON and metadata, from which the flag is made
+    SettingGroup group;
     const char* form = ""; // format of a value, such as N or X,Y,Z; empty: a switch
     /// Returns the place of the value, which these options no longer share with copies (SharedValue::edit).
     SettingField (*field)(PictureOptions&);
@@ -148,18 +194,22 @@ struct Setting {
     bool is_name = false;                  // a text that must not be empty
     bool is_by_ray = false;                // whether KIND=, a kind of ray, may stand before a value
     uint32_t verbs = kRender;
-    uint32_t integrators = 0;       // bits by IntegratorKind of those that have it; 0: all. all_settings() adds those
-                                    // whose IntegratorDescriptor::settings names it
-    std::string_view needs = "";    // names of settings, or NAME=VALUE, at least one of which must be satisfied
-    std::string_view excludes = ""; // names of settings, NAME=VALUE or NAME!=VALUE, that must not be satisfied;
-                                    // VALUE: or !VALUE: before it restricts the rule to some values of this setting
+    uint32_t integrators = 0; // bits by IntegratorKind of those that have it; 0: all. all_settings() adds those
+                              // whose IntegratorDescriptor::settings names it
+    std::string_view integrators_of = ""; // values for which `integrators` holds, as in `excludes`; empty: all
+    std::string_view needs = "";          // names of settings, or NAME=VALUE, at least one of which must be satisfied
+    std::string_view excludes = ""; // names of settings, NAME=VALUE or NAME!=VALUE, that must not be satisfied; A: or
+                                    // A,B: before it restricts the rule to these values of this setting, !A: to others
     uint32_t formats = 0;           // bits by ImageFormat of files that show it; 0: all
     Recorded recorded = Recorded::No;
     Changes changes = Changes::Scene; // Scene: also its trees and the machine
-    bool is_kept = true;              // settings files contain it, because the picture depends on it
-    bool opens_scene = false;         // takes effect before the scene's file is read, which thus cannot suggest it
-    bool is_common = false;           // used by most people
-    Panel panel = {};                 // only if the viewer can change it between frames
+    HoldsFile holds_file = HoldsFile::No;
+    bool may_be_numbers = false;   // JSON shows a text that is a list of numbers as an array
+    bool is_after_records = false; // irradiance records do not depend on it, nor on what changes the display alone
+    bool is_kept = true;           // settings files contain it, because the picture depends on it
+    bool opens_scene = false;      // takes effect before the scene's file is read, which thus cannot suggest it
+    bool is_common = false;        // used by most people
+    Panel panel = {};              // only if the viewer can change it between frames
 };
 
 /// Returns what `visit` returns for the field of a copy of the options, so that these stay as they are.

@@ -57,6 +57,7 @@ struct On {
 };
 struct Of {
     uint32_t integrators;
+    const char* values = ""; // Setting::integrators_of
 };
 struct Letter { // a short flag, as another program has it
     const char* text;
@@ -70,7 +71,13 @@ struct Excludes {
 struct In {
     uint32_t formats;
 };
-enum class Mark { Name, NotKept, Common, OpensScene, ByRay };
+enum class Mark { Name, NotKept, Common, OpensScene, ByRay, Numbers, AfterRecords };
+
+/// A group by its heading, which the compiler finds.
+struct GroupName {
+    SettingGroup value;
+    consteval GroupName(const char* heading) : value(*value_named<SettingGroup>(heading)) {}
+};
 
 inline void put(Setting& s, Range range) { s.low = range.low, s.high = range.high; }
 inline void put(Setting& s, Above range) { s.low = range.low, s.high = range.high, s.above = true; }
@@ -82,26 +89,29 @@ inline void put(Setting& s, More more) { s.more = more.text; }
 inline void put(Setting& s, Choices choices) { s.choices = std::move(choices.names); }
 inline void put(Setting& s, Counts counts) { s.counts = std::move(counts.numbers); }
 inline void put(Setting& s, On on) { s.verbs = on.verbs; }
-inline void put(Setting& s, Of of) { s.integrators = of.integrators; }
+inline void put(Setting& s, Of of) { s.integrators = of.integrators, s.integrators_of = of.values; }
 inline void put(Setting& s, Needs needs) { s.needs = needs.text; }
 inline void put(Setting& s, Excludes excludes) { s.excludes = excludes.text; }
 inline void put(Setting& s, In in) { s.formats = in.formats; }
 inline void put(Setting& s, Panel panel) { s.panel = panel; }
 inline void put(Setting& s, Recorded recorded) { s.recorded = recorded; }
 inline void put(Setting& s, Changes changes) { s.changes = changes; }
+inline void put(Setting& s, HoldsFile holds) { s.holds_file = holds; }
 inline void put(Setting& s, Mark mark) {
     if (mark == Mark::Name) s.is_name = true;
     if (mark == Mark::NotKept) s.is_kept = false;
     if (mark == Mark::Common) s.is_common = true;
     if (mark == Mark::OpensScene) s.opens_scene = true;
     if (mark == Mark::ByRay) s.is_by_ray = true;
+    if (mark == Mark::Numbers) s.may_be_numbers = true;
+    if (mark == Mark::AfterRecords) s.is_after_records = true;
 }
 
 /// Makes a row; the parts may be in any order.
 template <class... Parts>
-Setting row(const char* name, const char* group, const char* form, SettingField (*field)(PictureOptions&),
+Setting row(const char* name, GroupName group, const char* form, SettingField (*field)(PictureOptions&),
             const char* sentence, Parts... parts) {
-    Setting setting = {.name = name, .group = group, .form = form, .field = field, .sentence = sentence};
+    Setting setting = {.name = name, .group = group.value, .form = form, .field = field, .sentence = sentence};
     (put(setting, std::move(parts)), ...);
     return setting;
 }

@@ -97,12 +97,14 @@ std::string with_setting(const std::string& json, const PictureOptions& options,
     return fmt::format("{}{}{}", json.substr(0, begin), value, json.substr(std::min(end, json.size())));
 }
 
-std::string reconstruction_json(const ReconstructionOptions& options) {
+std::string reconstruction_json(const ReconstructionOptions& options, std::optional<uint32_t> frame_depth) {
     PictureOptions used;
     used.reconstruction = {.settings = options.used(), .sharing = options.sharing};
+    used.render.frame_depth = frame_depth;
     std::string members;
     for (const Setting& setting : all_settings()) {
-        if (setting.needs != "real_time" || setting.group != std::string_view("Frames")) continue;
+        if (setting.needs != "real_time" || setting.group != SettingGroup::Frames) continue;
+        if (texts_of(used, setting).empty()) continue;
         members += fmt::format("{}\"{}\":{}", members.empty() ? "" : ",", setting.name, json_of(used, setting));
     }
     return '{' + members + '}';

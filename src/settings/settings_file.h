@@ -33,8 +33,9 @@ std::string with_samples(const std::string& json, std::string_view samples);
 /// Returns it with the value that `options` have for a setting, which it may lack.
 std::string with_setting(const std::string& json, const PictureOptions& options, std::string_view name);
 
-/// Returns the settings that determine a real-time frame besides those of its picture, as a JSON object.
-std::string reconstruction_json(const ReconstructionOptions& options);
+/// Returns the settings that determine a real-time frame besides those of its picture, as a JSON object: `options`,
+/// and the depth of frames if they have their own.
+std::string reconstruction_json(const ReconstructionOptions& options, std::optional<uint32_t> frame_depth);
 
 /// Adds the settings of a file to `options`. Entries that the table or `verbs` do not have are skipped with a
 /// warning; another scene than that of `options` gives a warning too. Settings in `overruled` are skipped. Throws

@@ -13,7 +13,7 @@ HD inline bool may_be_specular(const MaterialParameters& material) {
     const auto may_be_smooth = [](float roughness, const TextureRef& texture) {
         return texture.has_image() || !(alpha_from_roughness(roughness) >= kSmoothAlpha);
     };
-    if (material.kind == MaterialKind::Unlit) return false;
+    if (material.is_unlit()) return false;
     if (material.has_coat() && may_be_smooth(material.coat_roughness, material.coat_roughness_texture)) return true;
     switch (material.kind) {
     case MaterialKind::Diffuse:

@@ -13,7 +13,7 @@ namespace pertev {
 /// Shading variants. A kernel compiled for the simplest variant that covers the scene uses fewer registers.
 enum class ShadingVariant : uint8_t {
     General,
-    Unstacked,    // no material has a coat, fuzz, thin walls or a weighted reflection
+    Unstacked,    // no material is stacked (MaterialParameters::is_stacked)
     Diffuse,      // all materials are diffuse
     PlainDiffuse, // all are diffuse, opaque and without textures
 };

@@ -79,7 +79,7 @@ void check_resumed(const RenderSettings& settings) {
         CHECK(bytes_of_film(next.film()) == bytes_of_film(whole.film()));
         CHECK(next.film().part() == whole.film().part());
         CHECK(next.rays().total() == whole.rays().total());
-        if (settings.denoise != Denoise::None) CHECK(next.denoised().value().pixels == whole.denoised().value().pixels);
+        if (settings.is_denoised()) CHECK(next.denoised().value().pixels == whole.denoised().value().pixels);
     }
 }
 

@@ -167,7 +167,7 @@ void check_rows(Renders& renders, const std::vector<FilmPart>& parts) {
     CHECK(bytes_of(film) == bytes_of(whole->film()));
     const ExrMetadata known = FilmFileReader(renders.file(all)).header().facts.origin;
     CHECK(merge.header().facts.origin == known);
-    if (renders.settings.denoise == Denoise::None) return;
+    if (!renders.settings.is_denoised()) return;
     Film sums = merge.film(cpu, nobody());
     const RenderResult result = result_of(merge.header(), sums, cpu);
     const Image expected = whole->denoised().value();
@@ -314,7 +314,7 @@ void check_uneven(Renders& renders) {
     Film film = merge.film(cpu, nobody());
     const RenderResult result = result_of(merge.header(), film, cpu);
     CHECK(result.samples == 5);
-    if (renders.settings.denoise == Denoise::None) {
+    if (!renders.settings.is_denoised()) {
         check_rows_of(result, 0, 7, renders, 5);
         check_rows_of(result, 7, 12, renders, 2);
         check_rows_of(result, 12, 15, renders, 0);

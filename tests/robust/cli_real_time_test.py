@@ -243,7 +243,7 @@ class RealTime(CliTest):
         motion = ["--fps", "4", "--frames", "0-1"]
         self.render("x", *motion)
         for flags in (["--passes", "4"], ["--history", "8"], ["--restir", "di"], ["--restir-history", "3"],
-                      ["--resolution-scale", "0.5"], ["--no-anti-alias"], ["--no-firefly-clamping"], ["--no-history-clamping"],
+                      ["--resolution-scale", "0.5"], ["--moving-depth", "1"], ["--no-anti-alias"], ["--no-firefly-clamping"], ["--no-history-clamping"],
                       ["--no-temporal-gradients"], ["--no-reconstruction"]):
             self.refuse_to_render("x", *motion, "--continue", *flags, says=[flags[0], "--continue"])
         self.refuse(2, "render", "m.gltf", "-o", "x/f-##.png", *SMALL, "--spp", "1", *motion, "--continue",
@@ -279,13 +279,17 @@ class RealTime(CliTest):
         self.assertEqual(self.pictures("x"), self.pictures("again"))
 
     def test_an_exr_holds_the_frame_its_layers_and_its_settings(self):
-        said = self.render("x", "--frames", "3-4", "--fps", "4", "--restir", "di", "--passes", "2", "--aov", "albedo,ids",
-                           output="f-#.exr")
+        frames = ["--frames", "3-4", "--fps", "4", "--restir", "di", "--passes", "2"]
+        said = self.render("x", *frames, "--moving-depth", "0", "--aov", "albedo,ids", output="f-#.exr")
+        hashes = [[event["hash"] for event in self.render("z", *frames, *depth).events("frame")] for depth in ([], ["--max-depth", "0"])]
+        self.assertEqual([event["hash"] for event in said.events("frame")], hashes[1])
+        self.assertNotEqual(*hashes)
         info = self.info("x/f-4.exr")
         self.assertEqual(info["pertev.hash"], said.events("frame")[1]["hash"])
         self.assertEqual((info["pertev.frame"], info["pertev.first_frame"], info["pertev.spp"]), (4, 3, 1))
         made = json.loads(info["pertev.reconstruction"])
         self.assertEqual((made["restir"], made["passes"], made["history"], made["no_anti_alias"]), ("di", 2, 32, False))
+        self.assertEqual(made["moving_depth"], 0)
         write(self.path("kept.json"), json.dumps({"version": 1, "settings": made})) # the names are those of the table
         said = self.render("y", "--frames", "3-4", "--fps", "4", "--settings", "kept.json", output="f-#.exr")
         self.assertEqual(said.events("frame")[1]["hash"], info["pertev.hash"])

@@ -22,7 +22,7 @@ FLAGS = {
               "--turntable --continue --cuts --lpe --lamp --ies --efficacy --false-color --false-color-range --f-number --shutter-time --iso "
               "--shutter --shading-rate --displacement --photons --gather --radius --caustic-radius --nearest "
               "--accuracy --hemisphere-rays --show-records --patch-size --subdivisions --contrast --form-factors --patch-rays --hemicube "
-              "--solver --tolerance --steps --link-error --max-memory --solution --flat-patches --real-time --restir --restir-history --resolution-scale --history --passes --no-anti-alias "
+              "--solver --tolerance --steps --link-error --max-memory --solution --flat-patches --real-time --restir --restir-history --resolution-scale --moving-depth --history --passes --no-anti-alias "
               "--no-firefly-clamping --no-temporal-gradients --no-history-clamping --no-reconstruction --animation --file-scene --variant --define --movable --material --max-texture-size --ground --author --license --settings",
     "measure": "--at --normal --spp --max-depth --seed --lamp --ies --efficacy --time --allow-path --up-axis --unit --environment --sun-sky --environment-rotation "
                "--environment-scale --medium --two-sided-lights --device --threads --no-bvh-cache --animation --file-scene --variant --define --material --max-texture-size --strict --quiet -q --json",

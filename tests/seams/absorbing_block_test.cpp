@@ -62,8 +62,8 @@ float column_of_block(uint32_t column) { return -3 + 0.2f * (static_cast<float>(
 
 TEST_CASE("camera rays and shadow rays are attenuated in a block by Beer's law on both devices") {
     const Scene scene = sunny_scene({1, -1, 0}, true);
-    Queue cpu = Queue::make_cpu(), shadow_data = test::requested_queue();
-    const Image picture = render_block<test::kAbsorbing>(shadow_data, scene, {}, 4);
+    Queue cpu = Queue::make_cpu(), queue = test::requested_queue();
+    const Image picture = render_block<test::kAbsorbing>(queue, scene, {}, 4);
     CHECK(picture_hash(picture) == picture_hash(render_block<test::kAbsorbing>(cpu, scene, {}, 4)));
     uint32_t seen_through = 0, in_shadow = 0;
     for (uint32_t column = 0; column < kBlockColumns; ++column) {
@@ -86,11 +86,11 @@ TEST_CASE("camera rays and shadow rays are attenuated in a block by Beer's law o
 
 TEST_CASE("light scattered once in a block equals the integral along the camera ray on both devices") {
     const Scene scene = sunny_scene({0, -1, 0}, false);
-    Queue cpu = Queue::make_cpu(), shadow_data = test::requested_queue();
+    Queue cpu = Queue::make_cpu(), queue = test::requested_queue();
     PathSettings settings;
     settings.sampler = SamplerKind::Independent;
-    const Image picture = render_block<test::kScattering>(shadow_data, scene, settings, 8192);
-    CHECK(picture_hash(render_block<test::kScattering>(shadow_data, scene, settings, 8)) ==
+    const Image picture = render_block<test::kScattering>(queue, scene, settings, 8192);
+    CHECK(picture_hash(render_block<test::kScattering>(queue, scene, settings, 8)) ==
           picture_hash(render_block<test::kScattering>(cpu, scene, settings, 8)));
     CHECK(picture.at(2, 2)[0] == 0); // outside the block
     std::vector<uint32_t> within;

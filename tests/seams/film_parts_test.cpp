@@ -66,8 +66,8 @@ Film film_of_bytes(Queue& queue, const RenderSettings& settings, const std::vect
 
 TEST_CASE("two parts of a film stored as bytes add up to the bytes of the film rendered at once") {
     const BlindingWorld world;
-    Queue cpu = Queue::make_cpu(), shadow_data = test::requested_queue();
-    FilmParts on_cpu(cpu, world), on_asked(shadow_data, world);
+    Queue cpu = Queue::make_cpu(), queue = test::requested_queue();
+    FilmParts on_cpu(cpu, world), on_asked(queue, world);
     FilmRender whole = on_cpu.film({0, 5});
     const auto bytes = bytes_of_targets(whole.film());
     REQUIRE(bytes.size() == 3); // sums, ids, invalid samples
@@ -82,7 +82,7 @@ TEST_CASE("two parts of a film stored as bytes add up to the bytes of the film r
         for (std::size_t i = 0; i < bytes.size(); ++i) CHECK(bytes_of_second[i] != bytes[i]);
         CHECK(bytes_of_first[0] != bytes[0]);
         Film sum = film_of_bytes(cpu, world.settings, bytes_of_first, {0, a});
-        sum.add(film_of_bytes(shadow_data, world.settings, bytes_of_second, {a, 5}));
+        sum.add(film_of_bytes(queue, world.settings, bytes_of_second, {a, 5}));
         CHECK(bytes_of_targets(sum) == bytes);
         CHECK(sum.part() == whole.film().part());
         second.film().add(first.film());

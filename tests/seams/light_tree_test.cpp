@@ -91,8 +91,8 @@ TEST_CASE("a schedule defined by a test over the path tracer's functions gives t
 }
 
 TEST_CASE("a light tree gives the same bytes on both devices, which differ from those of the light table") {
-    Queue cpu = Queue::make_cpu(), shadow_data = test::requested_queue();
-    TwoEmitters on_cpu(cpu), emitters(shadow_data);
+    Queue cpu = Queue::make_cpu(), queue = test::requested_queue();
+    TwoEmitters on_cpu(cpu), emitters(queue);
     const Hash128 hash = picture_hash(on_cpu.render<test::TreeRounds>({}, 4));
     CHECK(picture_hash(emitters.render<test::TreeRounds>({}, 4)) == hash);
     CHECK(picture_hash(emitters.render<test::TableRounds>({}, 4)) != hash);

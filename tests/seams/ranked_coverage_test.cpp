@@ -68,8 +68,8 @@ struct Matte {
 /// the bytes of the whole film.
 template <uint32_t kIds>
 void check_parts(const PreparedScene& prepared) {
-    Queue cpu = Queue::make_cpu(), shadow_data = test::requested_queue();
-    Matte<kIds> whole(cpu, prepared), first(shadow_data, prepared), second(cpu, prepared), again(shadow_data, prepared);
+    Queue cpu = Queue::make_cpu(), queue = test::requested_queue();
+    Matte<kIds> whole(cpu, prepared), first(queue, prepared), second(cpu, prepared), again(queue, prepared);
     whole.render(0, kMatteSamples);
     first.render(0, 3);
     second.render(3, 5);

@@ -30,6 +30,41 @@ bool names(const Remark& remark, const std::string& text) { return remark.reason
 
 } // namespace
 
+TEST_CASE("callers of the library get the rules of the table of settings") {
+    const auto refusal = [](const auto& change) {
+        RenderSettings settings;
+        change(settings);
+        return test::thrown_error([&] { check_integrator(settings); });
+    };
+    const auto layers = std::make_shared<LightPathLayers>();
+    layers->expressions.emplace_back();
+    const auto is_about = [](const std::optional<Error>& error, const char* setting, const char* value = "") {
+        return test::is_about(error, ErrorCode::BadInput, setting, value);
+    };
+    CHECK(!refusal([](RenderSettings& s) { s.denoise = Denoise::Svgf; }));
+    CHECK(is_about(refusal([](RenderSettings& s) { s.denoise = Denoise::Svgf, s.aovs = kAovDistance; }), "denoise",
+                   "svgf"));
+    CHECK(is_about(refusal([](RenderSettings& s) { s.denoise = Denoise::Svgf, s.sample_layers = kLayerVariance; }),
+                   "denoise", "svgf"));
+    CHECK(is_about(refusal([](RenderSettings& s) { s.denoise = Denoise::Svgf, s.integrator = IntegratorKind::Light; }),
+                   "denoise", "svgf"));
+    CHECK(is_about(refusal([](RenderSettings& s) { s.layers_at = LayersAt::Centre, s.sample_layers = kLayerUv; }),
+                   "layers_at", "centre"));
+    CHECK(is_about(refusal([](RenderSettings& s) { s.irradiance = true, s.integrator = IntegratorKind::Light; }),
+                   "false_color", "illuminance"));
+    for (const bool is_group : {false, true}) {
+        const char* const setting = is_group ? "light_group" : "lpe";
+        const auto with_layers = [&](RenderSettings& s) {
+            s.light_paths = layers;
+            if (is_group) s.light_groups = {"a=*"};
+        };
+        CHECK(!refusal(with_layers));
+        CHECK(is_about(refusal([&](RenderSettings& s) { with_layers(s), s.integrator = IntegratorKind::Light; }),
+                       setting));
+        CHECK(is_about(refusal([&](RenderSettings& s) { with_layers(s), s.denoise = Denoise::Oidn; }), setting));
+    }
+}
+
 TEST_CASE("a scene that cast or whitted would render black is refused with alternatives") {
     Scene scene;
     test::add(scene, test::floor_at(0, 1), test::white());

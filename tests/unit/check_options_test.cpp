@@ -6,7 +6,9 @@
 #include <doctest/doctest.h>
 
 #include "session/writing/check_outputs.h"
+#include "settings/check_settings.h"
 #include "settings/setting_table.h"
+#include "settings/value_names.h"
 #include "tests/support/options.h"
 #include "tests/support/thrown_error.h"
 
@@ -52,6 +54,13 @@ TEST_CASE("incompatible options are refused with the name of one of them") {
               "hemicube"},
              {{{"denoise", "svgf"}, {"max_depth", "0"}}, "denoise", "svgf"},
              {{{"denoise", "svgf"}, {"integrator", "cast"}}, "denoise", "svgf"},
+             {{{"denoise", "svgf"}, {"aov", "variance"}}, "denoise", "svgf"},
+             {{{"denoise", "oidn"}, {"aov", "distance"}}, "denoise", "oidn"},
+             {{{"false_color", "illuminance"}, {"denoise", "svgf"}}, "false_color", "illuminance"},
+             {{{"false_color", "illuminance"}, {"integrator", "light"}}, "false_color", "illuminance"},
+             {{{"lpe", "a=LE"}, {"integrator", "light"}}, "lpe"},
+             {{{"lpe", "a=LE"}, {"denoise", "svgf"}}, "lpe"},
+             {{{"aov", "uv"}, {"layers_at", "centre"}}, "layers_at", "centre"},
              {{{"transparent", "true"}, {"ground", "on"}}, "transparent"},
              {{{"view_height", "2"}, {"projection", "perspective"}}, "view_height"},
              {{{"focus", "2"}, {"aperture", "0"}}, "focus"},
@@ -92,6 +101,9 @@ TEST_CASE("compatible options are accepted") {
                              {{"real_time", "true"}, {"frames", "0-1"}, {"spp", "1"}, {"integrator", "hybrid"}},
                              {{"device", "cpu,cpu"}, {"frames", "0-1"}, {"real_time", "true"}, {"spp", "1"}},
                              {{"denoise", "svgf"}, {"part", "1/2"}},
+                             {{"denoise", "none"}, {"integrator", "light"}, {"aov", "distance"}},
+                             {{"false_color", "luminance"}, {"integrator", "light"}},
+                             {{"real_time", "true"}, {"frames", "0-1"}, {"spp", "1"}, {"moving_depth", "3"}},
                              {{"denoise", "svgf"}, {"samples", "3:9"}, {"device", "cpu,cpu"}},
                              {{"exposure", "auto"}, {"max_memory", "5"}}}) {
         const std::optional<Error> error = refusal(values);
@@ -133,6 +145,23 @@ TEST_CASE("outputs that coincide, need a frame number or ignore a given setting 
     REQUIRE(messages.all().size() == 1);
     CHECK(messages.all().front().remark.setting == "transparent");
     CHECK(messages.all().front().remark.location->file == outputs.front());
+}
+
+TEST_CASE("the rules of lenses name all that see behind, and all panoramas") {
+    for (const auto& [lens, name] : kLensModels) {
+        CAPTURE(name);
+        const auto is_refused = [&](const char* other, const char* text) {
+            PictureOptions options = options_of({{"lens", std::string(name)}, {"filter", "box"}, {other, text}});
+            const auto conflict = find_conflict(options, kRender);
+            return conflict && conflict->setting->name == std::string_view("lens") && conflict->value == name;
+        };
+        for (const auto& [other, text] : {std::pair("aperture", "0.1"), {"denoise", "svgf"}, {"real_time", "true"}})
+            CHECK(is_refused(other, text) == sees_behind(lens));
+        for (const auto& [other, text] : {std::pair("fov", "40"), {"eye_offset", "0.1"}, {"stereo", "0.1"}})
+            CHECK(is_refused(other, text) == is_panorama(lens));
+        CHECK_FALSE(is_refused("aperture", "0"));
+        CHECK_FALSE(is_refused("denoise", "oidn"));
+    }
 }
 
 TEST_CASE("the settings of frames and of motion blur belong to the integrators that have them") {

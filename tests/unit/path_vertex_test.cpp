@@ -8,6 +8,7 @@
 
 #include "device_scene/scene_on_device.h"
 #include "integrators/path/compiled_features.h"
+#include "integrators/path/path_code.h"
 #include "integrators/path/path_vertex.h"
 #include "render/prepare_scene.h"
 #include "tests/support/flat_scenes.h"
@@ -183,6 +184,7 @@ TEST_CASE("path vertex: the variant of a mask of features is the smallest that c
     CHECK(chosen(films, kMoving) == kMoving);
     CHECK(chosen(films, kTextured | kMoving) == (kDiffuse | kMoving));
     CHECK(chosen(FrameFeatures(), kMoving) == ~0u);
+    CHECK_FALSE(is_compiled(PathOutput::Frames, kMoving));
     CHECK(chosen(LayerFeatures(), 0) == kUnstacked);
     CHECK(chosen(LayerFeatures(), kStacked) == (kAllMaterials | kMoving | kMipMapped | kNested));
     for (const ShadingVariant variant :

@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "base/error.h"
+#include "image/image_format.h"
 #include "integrators/photon_map/photon_map_settings.h"
 #include "integrators/raster/raster_settings.h"
 #include "session/writing/picture_metadata.h"
@@ -49,6 +50,65 @@ TEST_CASE("each setting has a unique name, a sentence, and rules that name setti
         CHECK_NOTHROW(find_conflict(options, ~0u)); // its rules name existing settings
     }
     CHECK(find_setting("max-depth") == nullptr);
+}
+
+TEST_CASE("rules for some values of a setting name values that it has") {
+    for (const Setting& setting : all_settings()) {
+        std::vector<std::string> rules = words_of(setting.excludes);
+        if (!setting.integrators_of.empty()) rules.push_back(std::string(setting.integrators_of) + ':');
+        for (std::string values : rules) {
+            INFO(setting.name << ": " << values);
+            values.resize(values.find(':') != std::string::npos ? values.find(':') : 0);
+            std::ranges::replace(values, ',', ' ');
+            for (const std::string& value : words_of(values.starts_with('!') ? values.substr(1) : values)) {
+                const std::vector<std::string> known = choices_of(setting);
+                CHECK(std::ranges::find(known, value) != known.end());
+            }
+        }
+    }
+}
+
+TEST_CASE("groups of settings stand together, in the order of their names") {
+    std::vector<SettingGroup> groups;
+    for (const Setting& setting : all_settings()) {
+        if (groups.empty() || groups.back() != setting.group) groups.push_back(setting.group);
+    }
+    CHECK(std::ranges::equal(groups, kValuesOf<SettingGroup>));
+}
+
+TEST_CASE("each kept setting with a file says where in its text the path is") {
+    for (const Setting& setting : all_settings()) {
+        INFO(setting.name);
+        const std::string_view form = setting.form;
+        const HoldsFile holds = !setting.is_kept || form.find("FILE") == form.npos ? HoldsFile::No
+                                : form.find("=FILE") != form.npos                  ? HoldsFile::Named
+                                                                                   : HoldsFile::Whole;
+        CHECK(setting.holds_file == holds);
+        if (setting.may_be_numbers)
+            CHECK(
+                std::holds_alternative<std::string*>(read_field({}, setting, [](auto f) { return SettingField(f); })));
+    }
+}
+
+TEST_CASE("settings of PNG and JPEG change the display alone, and irradiance records do not depend on those") {
+    const uint32_t toned = bit_of(ImageFormat::Png) | bit_of(ImageFormat::Jpeg);
+    const auto is_after_records = [](const Setting& setting) {
+        return setting.is_after_records || setting.changes == Changes::Display;
+    };
+    for (const Setting& setting : all_settings()) {
+        if (!setting.is_kept) continue;
+        INFO(setting.name);
+        if (setting.formats != 0 && (setting.formats & ~toned) == 0) CHECK(setting.changes == Changes::Display);
+        const std::vector<std::string> needs = words_of(setting.needs);
+        const auto needs_only = [&](auto has) {
+            return !needs.empty() && std::ranges::all_of(needs, [&](const std::string& other) {
+                return has(*find_setting(other.substr(0, other.find('='))));
+            });
+        };
+        if (needs_only([](const Setting& s) { return s.changes == Changes::Display; }))
+            CHECK(setting.changes == Changes::Display);
+        if (needs_only(is_after_records)) CHECK(is_after_records(setting));
+    }
 }
 
 TEST_CASE("an error about a value names the setting, the value and what is expected") {

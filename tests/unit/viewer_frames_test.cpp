@@ -168,7 +168,7 @@ TEST_CASE(
     RenderSettings& picture = request.view.options.render;
     picture.path.max_depth = 8;
     picture.samples = 32;
-    request.view.moving_depth = 2;
+    request.view.options.render.frame_depth = 2;
     Session plain = watched.session();
     plain.render(picture.samples);
     RenderSettings shallow = picture;
@@ -210,7 +210,7 @@ TEST_CASE("a change of the depth in motion restarts frames but keeps the picture
     request.is_moving = true;
     CHECK(gathered() == 1);
     CHECK(gathered() == 2);
-    request.view.moving_depth = 1;
+    request.view.options.render.frame_depth = 1;
     CHECK(gathered() == 1);
     CHECK(gathered() == 2);
     request.is_moving = false;
@@ -218,7 +218,7 @@ TEST_CASE("a change of the depth in motion restarts frames but keeps the picture
     std::optional<ShownFrame> rests;
     while (!rests || !rests->is_final) rests = frames.next(request);
     CHECK(session.history().samples == 2);
-    request.view.moving_depth = 2;
+    request.view.options.render.frame_depth = 2;
     CHECK(frames.next(request).value().hash == rests->hash);
     CHECK(session.history().samples == 2);
 }
@@ -228,7 +228,7 @@ TEST_CASE("single pictures have the depth in motion, and the metered exposure at
     FrameRequest& request = watched.request;
     request.view.options.render.integrator = IntegratorKind::Distributed;
     request.view.is_real_time = request.view.finds_exposure = true;
-    request.view.moving_depth = 2;
+    request.view.options.render.frame_depth = 2;
     Session session = watched.session(), alone = watched.session();
     SessionFrames frames(session, watched.scene, 0.1);
     RenderSettings shallow = request.view.options.render;

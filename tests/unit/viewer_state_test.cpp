@@ -90,14 +90,16 @@ TEST_CASE("fixing the exposure keeps its value, and metering resets the stops") 
 
 TEST_CASE("frames in motion have a smaller depth until a depth is chosen for both") {
     ViewState state;
-    CHECK(state.moving_depth == kMovingDepth);
+    state.options.render.frame_depth = kMovingDepth;
     CHECK(state.options.render.path.max_depth > kMovingDepth);
+    CHECK(find_setting("moving_depth")->otherwise ==
+          fmt::format("max_depth; in the viewer {}, unless max_depth is given", kMovingDepth));
     CHECK(set_view_setting(state, "moving_depth", 2.0) == "");
-    CHECK(state.moving_depth == 2);
+    CHECK(state.options.render.frame_depth == 2);
     CHECK(state.options.render.path.max_depth ==
           ViewState{}.options.render.path.max_depth); // the picture at rest is unchanged
     CHECK(set_view_setting(state, "max_depth", 9.0) == "");
-    CHECK(state.moving_depth == 9);
+    CHECK(state.options.render.frame_depth == 9);
     CHECK(state.options.render.path.max_depth == 9);
 }
 

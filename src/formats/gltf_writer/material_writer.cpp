@@ -51,7 +51,6 @@ private:
     }
     void lose(const char* what) { sink_.leave_out(fmt::format("{}: {}", owner_, what)); }
 
-    bool is_solid() const { return m_.kind == MaterialKind::Dielectric || (m_.transmits() && !m_.thin_walled); }
     bool is_glossy() const { return m_.kind == MaterialKind::MetallicRoughness; }
 
     void name_losses() {
@@ -121,7 +120,7 @@ private:
     }
 
     void add_extensions() {
-        if (m_.kind == MaterialKind::Unlit) return extend("KHR_materials_unlit", {});
+        if (m_.is_unlit()) return extend("KHR_materials_unlit", {});
         if (m_.kind == MaterialKind::Diffuse) {
             extend("KHR_materials_specular", JsonMembers().add("specularFactor", "0"));
         } else if (m_.kind != MaterialKind::Conductor) {
@@ -145,7 +144,7 @@ private:
             add_channel(members, "transmissionTexture", m_.transmission_texture, 0);
         }
         if (!members.is_empty()) extend("KHR_materials_transmission", members);
-        if (is_solid()) {
+        if (m_.is_solid()) {
             JsonMembers volume;
             volume.add("thicknessFactor", "1"); // any number above 0
             if (m_.transmission_depth > 0) {

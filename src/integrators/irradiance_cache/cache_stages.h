@@ -29,7 +29,7 @@ struct CountMirroredEmitters {
         const InstanceView& instance = scene.instances[i];
         if (instance.is_hidden != 0) return;
         const MaterialParameters& material = scene.materials[instance.material];
-        const bool glows = material.kind == MaterialKind::Unlit || !is_black(material.emission);
+        const bool glows = material.is_unlit() || !is_black(material.emission);
         if (may_be_specular(material)) atomic_add(&count->mirrors, 1);
         if (glows || scene.lights.has_environment()) atomic_add(&count->emitters, 1);
     }

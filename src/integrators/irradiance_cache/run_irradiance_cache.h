@@ -100,7 +100,7 @@ void run_overture(Schedule& schedule, const CacheJob& job) {
 template <class Schedule>
 void run_hemispheres(Schedule& schedule, const CacheJob& job) {
     schedule.run("begin_subpaths", 1, BeginSubpaths{job.subpaths.counts, 0});
-    with_variant(job.scene.picture.scene.variant, [&]<ShadingVariant kVariant>() {
+    with_plain_diffuse(job.scene.picture.scene.variant, [&]<ShadingVariant kVariant>() {
         schedule.run("begin_hemispheres", job.count,
                      BeginHemispheres<kVariant>{job.scene, job.subpaths, job.cache, job.hemispheres,
                                                 static_cast<uint32_t>(job.first)});
@@ -113,7 +113,7 @@ void run_hemispheres(Schedule& schedule, const CacheJob& job) {
 template <class Schedule>
 void finish_records(Schedule& schedule, const CacheJob& job, uint32_t count) {
     schedule.run("read_cells", count * job.hemispheres.grid.cells(), ReadCells{job.cache});
-    with_variant(job.scene.picture.scene.variant, [&]<ShadingVariant kVariant>() {
+    with_plain_diffuse(job.scene.picture.scene.variant, [&]<ShadingVariant kVariant>() {
         schedule.run("finish_records", count, FinishRecords<kVariant>{job.scene, job.cache, job.hemispheres, job.made});
     });
 }

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "integrators/irradiance_cache/irradiance_cache_integrator.h"
+#include "integrators/path/path_code.h"
 #include "integrators/path/path_integrator.h"
 #include "integrators/photon_map/photon_map_integrator.h"
 #include "integrators/radiosity/radiosity_integrator.h"
@@ -216,6 +217,7 @@ constexpr std::array kIntegrators = {
          .finds_all_light = true,
          .ignores_nesting = true,
          .selects_lights = true,
+         .makes_records = true,
          .memory = memory_of_records}),
     row<RadiosityIntegrator, radiosity_settings>(
         {.value = Kind::Radiosity,
@@ -246,6 +248,14 @@ bool same_heights(const IntegratorSettings& a, const IntegratorSettings& b) {
 std::span<const IntegratorDescriptor> integrators() { return kIntegrators; }
 
 const IntegratorDescriptor& describe(IntegratorKind kind) { return kIntegrators[static_cast<std::size_t>(kind)]; }
+
+bool has_tree_in_media(const IntegratorSettings& settings, bool of_frames) {
+    if (!makes_frames(settings.integrator)) return true; // its stages do not depend on what it writes
+    const PathOutput output = of_frames              ? PathOutput::Frames
+                              : settings.light_paths ? PathOutput::Layers
+                                                     : PathOutput::Films;
+    return is_compiled(output, kMedia | kLightTree);
+}
 
 bool same_light(const IntegratorSettings& a, const IntegratorSettings& b) {
     return a.integrator == b.integrator && a.path == b.path && a.ambient == b.ambient && a.display == b.display &&

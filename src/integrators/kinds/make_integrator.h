@@ -114,6 +114,9 @@ struct IntegratorDescriptor {
     bool selects_lights = false;
     /// True if the scene's light is solved before the first sample (radiosity/).
     bool is_solved = false;
+    /// True if it makes irradiance records before the first sample, which parts of a picture may share
+    /// (IrradianceCacheSettings::shared).
+    bool makes_records = false;
     /// The largest PathSettings::max_depth.
     uint32_t max_depth = kMaxPathDepth - 1;
     /// Returns how many samples per pixel together take hardly longer than one.
@@ -142,6 +145,7 @@ inline bool needs_punctual_lights(IntegratorKind kind) { return describe(kind).n
 inline bool has_media(IntegratorKind kind) { return describe(kind).has_media; }
 inline bool selects_lights(IntegratorKind kind) { return describe(kind).selects_lights; }
 inline bool is_solved(IntegratorKind kind) { return describe(kind).is_solved; }
+inline bool makes_records(IntegratorKind kind) { return describe(kind).makes_records; }
 inline uint32_t max_depth(IntegratorKind kind) { return describe(kind).max_depth; }
 inline uint32_t samples_at_once(const IntegratorSettings& settings, uint64_t pixels) {
     return describe(settings.integrator).samples_at_once(pixels);
@@ -151,6 +155,10 @@ inline uint32_t samples_at_once(const IntegratorSettings& settings, uint64_t pix
 inline bool uses_light_tree(const IntegratorSettings& settings, uint32_t lights, bool has_times) {
     return selects_lights(settings.integrator) && uses_light_tree(settings.path.light_choice, lights, has_times);
 }
+
+/// Returns whether the integrator has code that selects lights by a tree in scenes with media, for frames or for
+/// pictures with the layers of the settings.
+bool has_tree_in_media(const IntegratorSettings& settings, bool of_frames);
 
 /// Returns whether the settings `a` and `b` give the same samples.
 bool same_light(const IntegratorSettings& a, const IntegratorSettings& b);

@@ -17,6 +17,7 @@
 #include "base/error.h"
 #include "integrators/path/compiled_features.h"
 #include "integrators/path/host_shading.h"
+#include "integrators/path/path_code.h"
 
 namespace pertev {
 

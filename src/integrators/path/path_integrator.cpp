@@ -8,6 +8,7 @@
 #include "integrators/path/begin_and_trace.h"
 #include "integrators/path/compiled_features.h"
 #include "integrators/path/meter_light.h"
+#include "integrators/path/path_code.h"
 #include "integrators/path/path_loop.h"
 #include "integrators/path/path_stages.h"
 
@@ -51,14 +52,15 @@ void choose_shading(const PathJob& job, const With& with) {
             with.template operator()<kFeatures, std::conditional_t<(kFeatures & kLayered) == 0, Plain, Listener>>();
         }));
     };
-    if (job.layers.is_there() || job.is_meter) {
-        choose.template operator()<LayerFeatures, LayerListeners, LayerListeners>();
-    } else if (!job.film.frame.is_there()) {
-        choose.template operator()<FilmFeatures, FilmListeners, FilmListeners>();
-    } else if (job.film.frame.first_bounce.leaves_direct_light()) {
-        choose.template operator()<ReuseFeatures, PlainReuseListeners, ReuseListeners>();
-    } else {
-        choose.template operator()<FrameFeatures, PlainFrameListeners, FrameListeners>();
+    switch (output_of(job)) {
+    case PathOutput::Layers:
+        return choose.template operator()<LayerFeatures, LayerListeners, LayerListeners>();
+    case PathOutput::Films:
+        return choose.template operator()<FilmFeatures, FilmListeners, FilmListeners>();
+    case PathOutput::ReusedFrames:
+        return choose.template operator()<ReuseFeatures, PlainReuseListeners, ReuseListeners>();
+    case PathOutput::Frames:
+        return choose.template operator()<FrameFeatures, PlainFrameListeners, FrameListeners>();
     }
 }
 

@@ -31,7 +31,7 @@ enum Feature : Features {
     kLayered = 4,     // surfaces other than diffuse ones
     kMoving = 8,      // paths have a time
     kBatched = 16,    // several pictures (PictureView::batch); code without it renders one
-    kStacked = 32,    // coats, fuzz, thin walls and weighted reflections
+    kStacked = 32,    // materials that are stacked (MaterialParameters::is_stacked)
     kMipMapped = 64,  // textures are filtered; code with it filters where the settings say so
     kNested = 128,    // solids lie in each other; code with it also serves scenes without
     kLightTree = 256, // lights are selected by a tree
@@ -64,26 +64,6 @@ inline Features features_of(ShadingVariant variant) {
     return kAllMaterials;
 }
 
-/// Returns whether the job's vertices select lights by a tree. The draws of a light meter are by power, which must then
-/// hold for the lights that a path hits.
-inline bool uses_light_tree(const PathJob& job) {
-    const PictureView& picture = job.picture;
-    const bool has_no_code = picture.scene.has_media != 0 && (job.film.frame.is_there() || job.layers.is_there());
-    return !picture.camera.is_meter() && !has_no_code && uses_light_tree(job.settings.light_choice, picture.scene);
-}
-
-/// Returns the features that the job needs. A moving camera's depth is along its axis at the ray's time.
-inline Features features_for(const PathJob& job) {
-    const PictureView& picture = job.picture;
-    const bool has_times = picture.scene.motions.is_there() ||
-                           (picture.camera.is_open && !job.film.frame.is_there() && (job.film.aovs & kAovDepth) != 0);
-    const bool filters = job.settings.mip_maps == MipMaps::On && has_textures(picture.scene.variant);
-    return features_of(picture.scene.variant) | (has_times ? Features{kMoving} : 0) |
-           (picture.batch.is_there() ? Features{kBatched} : 0) | (filters ? Features{kMipMapped} : 0) |
-           (picture.scene.nesting.is_there() ? Features{kNested} : 0) |
-           (uses_light_tree(job) ? Features{kLightTree} : 0) | (picture.scene.has_media != 0 ? Features{kMedia} : 0);
-}
-
 /// Returns the key of the random numbers of a path.
 template <Features kFeatures>
 HD inline SampleKey sample_key(const PathJob& job, uint32_t pixel, uint32_t sample) {
@@ -104,6 +84,7 @@ struct CompiledFor {
     static bool choose(Features wanted, const With& with) {
         return (((wanted & ~kMasks) == 0 && (with.template operator()<kMasks>(), true)) || ...);
     }
+    static constexpr bool has(Features wanted) { return (((wanted & ~kMasks) == 0) || ...); }
 };
 inline constexpr Features kAnyFilm = kAllMaterials | kMoving | kBatched | kMipMapped | kNested;
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstring>
 
+#include "integrators/path/path_code.h"
 #include "integrators/path/path_vertex.h"
 #include "integrators/path/shade_lanes.h"
 #include "integrators/path/vertex_numbers.h"

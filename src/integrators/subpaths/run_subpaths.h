@@ -105,19 +105,11 @@ private:
     std::unique_ptr<bool[]> are_occluded_;
 };
 
-/// Calls run.operator()<kVariant>() with the materials' shading variant, as far as subpaths have kernels for it.
-template <class Run>
-void with_variant(ShadingVariant variant, const Run& run) {
-    if (variant == ShadingVariant::PlainDiffuse) return run.template operator()<ShadingVariant::PlainDiffuse>();
-    if (variant == ShadingVariant::General) return run.template operator()<ShadingVariant::General>();
-    run.template operator()<ShadingVariant::Unstacked>();
-}
-
 /// Calls run.operator()<kVariant, kInMedia>() for a scene of either kind.
 template <class Run>
 void with_media(const SceneView& scene, const Run& run) {
     if (scene.has_media != 0) return run.template operator()<ShadingVariant::General, true>();
-    with_variant(scene.variant, [&]<ShadingVariant kVariant>() { run.template operator()<kVariant, false>(); });
+    with_plain_diffuse(scene.variant, [&]<ShadingVariant kVariant>() { run.template operator()<kVariant, false>(); });
 }
 
 /// Calls run.operator()<kVariant, Choice>() with the materials' variant and the class that selects lights
@@ -128,7 +120,8 @@ void with_choice(const SubpathScene& scene, const Run& run) {
     if (uses_light_tree(scene)) {
         with_stacks(variant, [&]<ShadingVariant kVariant>() { run.template operator()<kVariant, ChosenByTree>(); });
     } else {
-        with_variant(variant, [&]<ShadingVariant kVariant>() { run.template operator()<kVariant, ChosenByPower>(); });
+        with_plain_diffuse(variant,
+                           [&]<ShadingVariant kVariant>() { run.template operator()<kVariant, ChosenByPower>(); });
     }
 }
 

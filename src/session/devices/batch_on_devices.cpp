@@ -208,7 +208,7 @@ SharedBatch render_batch(RenderOnDevices& together, PictureRenderer& pictures, c
     Queue& first_queue = pictures.queue();
     arrays.fit(first_queue, settings, batch.count());
     arrays.first = 0, arrays.pictures = batch.count();
-    arrays.noisy_hashes.assign(settings.denoise != Denoise::None ? batch.count() : 0, {});
+    arrays.noisy_hashes.assign(settings.is_denoised() ? batch.count() : 0, {});
     first_queue.wait(); // others write into the arrays
     return BatchOnDevices(together, pictures, batch, settings, chunk, arrays).render(sink);
 }

@@ -116,7 +116,7 @@ void DeviceWorker::render(SharedRun& run, const SharedPicture& picture, uint32_t
         if (hooks.before_samples) hooks.before_samples(number_);
         make_films(picture, into);
         DropSink drops(run);
-        const bool has_steps = picture.settings.denoise != Denoise::None;
+        const bool has_steps = picture.settings.is_denoised();
         if (has_steps) {
             begin_steps(picture, pictures, drops);
         } else {

@@ -221,8 +221,7 @@ std::string json_of_targets(const FilmHeader& header) {
 Film FilmHeader::make_film(Queue& queue) const {
     Film film(queue, width, height, aovs, light_layers, layers_at);
     hold_sample_layers(queue, sample_layers, film);
-    if (denoise != Denoise::None)
-        film.hold(std::make_unique<DenoiserTarget>(denoiser_state_size(denoise, width, height)));
+    if (is_denoised()) film.hold(std::make_unique<DenoiserTarget>(denoiser_state_size(denoise, width, height)));
     return film;
 }
 
@@ -273,8 +272,8 @@ std::string json_of(const FilmHeader& header) {
         R"("metadata":{},"display_metadata":{},"origin":{},"display":{},"transparent":{},"rays":{{"camera":{},"bounce":{},"shadow":{}}},"seconds":{}}})",
         fmt::join(settings, ","), header.width, header.height, json_of_place(facts.place), json_of_parts(header.parts),
         header.spp, json_strings(layers), json_strings(header.light_layers), name_of(header.layers_at),
-        header.denoise == Denoise::None ? "" : fmt::format(R"(,"denoise":"{}")", name_of(header.denoise)),
-        json_of_mattes(facts), json_of_targets(header), json_of_metadata(facts.settings), json_of_metadata(facts.shown),
+        header.is_denoised() ? fmt::format(R"(,"denoise":"{}")", name_of(header.denoise)) : "", json_of_mattes(facts),
+        json_of_targets(header), json_of_metadata(facts.settings), json_of_metadata(facts.shown),
         json_of_metadata(facts.origin), facts.display ? json_of_display(*facts.display) : "null", facts.transparent,
         header.rays.camera, header.rays.bounce, header.rays.shadow, exact_number(header.render_seconds));
 }

@@ -29,6 +29,7 @@ struct FilmHeader {
     RayCounts rays;            // the rays that the part took
     double render_seconds = 0; // time that the part took
 
+    bool is_denoised() const { return denoise != Denoise::None; }
     /// Returns the only part. Throws std::logic_error if there are several.
     const FilmPart& part() const {
         PERTEV_CHECK(parts.size() == 1);

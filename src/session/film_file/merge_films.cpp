@@ -146,7 +146,7 @@ RenderResult result_of(const FilmHeader& header, Film& film, Queue& queue) {
     result.picture = film.picture(header.facts.transparent);
     result.layers = film.layers();
     result.ids = film.ids();
-    if (header.denoise == Denoise::None) return result;
+    if (!header.is_denoised()) return result;
     RenderSettings settings;
     settings.width = header.width, settings.height = header.height, settings.denoise = header.denoise;
     DenoiserTarget* const gathered = denoiser_target(film);

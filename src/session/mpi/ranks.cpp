@@ -180,7 +180,7 @@ void Ranks::sum(uint32_t spp, FilmRender& film, RenderResult& result) const {
     MPI_Reduce(rays, all_rays, 3, MPI_UINT64_T, MPI_SUM, 0, MPI_COMM_WORLD);
     MPI_Reduce(&result.render_seconds, &seconds, 1, MPI_DOUBLE, MPI_SUM, 0, MPI_COMM_WORLD);
     const RayCounts sum_of_rays = {all_rays[0], all_rays[1], all_rays[2]};
-    const bool is_denoised = film.settings().denoise != Denoise::None;
+    const bool is_denoised = film.settings().is_denoised();
     if (is_denoised) {
         sum_denoised(spp, film, sum_of_rays, seconds);
     } else {

@@ -59,8 +59,7 @@ PictureOptions options_of_camera(const PictureOptions& options, uint32_t number,
     };
     for (const auto& [name, text] : camera.settings) {
         const Setting* const setting = find_setting(name);
-        const bool is_of_cameras =
-            setting != nullptr && (setting->group == std::string_view("Camera") || name == "size");
+        const bool is_of_cameras = setting != nullptr && (setting->group == SettingGroup::Camera || name == "size");
         if (!is_of_cameras) refuse(Remark(name, text, "not a setting of a camera"));
         try {
             set_value(own, *setting, {&text, 1});

@@ -55,9 +55,8 @@ void check_denoiser(const PictureOptions& options, const FilmHeader& header, std
     if (!options.is_given("denoise") || options.render.denoise == header.denoise) return;
     const std::string_view there = name_of(header.denoise);
     Remark remark(FileLocation{files.front()},
-                  header.denoise == Denoise::None
-                      ? "the film lacks what a denoiser gathers; render its parts with `denoise` too"
-                      : fmt::format("the film was rendered with `denoise={}`", there));
+                  header.is_denoised() ? fmt::format("the film was rendered with `denoise={}`", there)
+                                       : "the film lacks what a denoiser gathers; render its parts with `denoise` too");
     remark.setting = "denoise", remark.value = name_of(options.render.denoise);
     throw Error(ErrorCode::BadInput, std::move(remark));
 }

@@ -121,9 +121,10 @@ void set_light(const RenderSettings& settings, const Scene& rest, RenderSetup& r
 void report_light_choice(const PictureOptions& options, const RenderSettings& settings, const PreparedScene& prepared,
                          Sink& sink) {
     if (settings.path.light_choice != LightSelection::Tree) return;
-    const bool is_plain = !options.real_time && settings.denoise == Denoise::None && !settings.light_paths;
+    const bool of_frames = options.real_time || settings.is_denoised();
+    const bool has_code = !has_media(*prepared.scene) || has_tree_in_media(settings, of_frames);
     const char* const why = prepared.motions != nullptr                ? "the tree is that of lights at rest"
-                            : !is_plain && has_media(*prepared.scene)  ? "frames and layers of media have no tree"
+                            : !has_code                                ? "frames and layers of media have no tree"
                             : settings.irradiance                      ? "a light meter samples lights by power"
                             : prepared.lights.tree->light_count() == 0 ? "no light has a position"
                                                                        : nullptr;
@@ -195,7 +196,8 @@ bool adapt_setup(RenderSetup& ready, const PictureOptions& before, PictureOption
     bool has_same_camera = !ready.must_choose && options.scene.camera.camera_from.empty();
     for (const Setting& setting : all_settings()) {
         const bool is_given = before.is_given(setting.name) || options.is_given(setting.name);
-        if (!is_given || setting.changes == Changes::Picture) continue;
+        const bool is_of_picture = setting.changes == Changes::Picture || setting.changes == Changes::Display;
+        if (!is_given || is_of_picture) continue;
         if (texts_of(before, setting) == texts_of(options, setting)) continue;
         if (setting.changes == Changes::Scene) return false;
         has_same_camera = false;
@@ -287,10 +289,11 @@ void record_settings(const PictureOptions& options, const Scene& scene, uint32_t
     const Camera* const own = scene_camera(choice.camera, scene);
     const bool is_own = own != nullptr && !choice.places_camera() && options.camera_path.empty();
     auto origins = options.given; // the scene's own camera has no value that a settings file could contain
-    // The picture is that of all parts, with or without a checkpoint.
-    for (const char* name : {"rows", "part", "part_base", "checkpoint", "checkpoint_every", "records"})
-        origins.erase(name);
     if (const auto range = origins.extract("samples")) origins.try_emplace("spp", range.mapped());
+    // The picture is that of all parts, with or without a checkpoint.
+    for (const Setting& setting : all_settings()) {
+        if (setting.group == SettingGroup::Parts) origins.erase(setting.name);
+    }
     if (is_own) origins.try_emplace("camera", SettingOrigin::Scene);
     if (own != nullptr && own->aspect > 0) origins.try_emplace("size", SettingOrigin::Scene);
     source.by_default = source.by_scene = source.by_settings = source.by_caller = "";

@@ -9,6 +9,7 @@
 #include "session/picture_renderer.h"
 #include "session/records/records_file.h"
 #include "session/render_progress.h"
+#include "settings/setting_table.h"
 
 namespace pertev {
 namespace {
@@ -17,12 +18,10 @@ namespace {
 DecidingSettings what_decides(const PictureOptions& options, PictureRecord record) {
     std::erase_if(record.scene.files, &FileOfPicture::is_lut);
     DecidingSettings settings = deciding_settings(options, record);
-    std::erase_if(settings, [](const auto& setting) {
-        constexpr std::string_view kOthers[] = {
-            "aov",      "exposure",  "f_number",     "false_color",  "false_color_range",
-            "iso",      "scene",     "shutter_time", "show_records", "spp",
-            "tone_map", "layers_at", "crop",         "lut",          "lut_input"};
-        return std::ranges::find(kOthers, setting.first) != std::end(kOthers);
+    std::erase_if(settings, [](const auto& entry) {
+        if (entry.first == "scene") return true; // its name; its hash counts
+        const Setting* const setting = find_setting(entry.first);
+        return setting != nullptr && (setting->is_after_records || setting->changes == Changes::Display);
     });
     return settings;
 }
@@ -47,7 +46,7 @@ void make_records(RenderSetup& ready, const PictureRecord& record, Sink& sink) {
 void share_records(const PictureOptions& options, RenderSetup& ready, PictureRecord& record, Sink& sink) {
     const std::string& name = options.radiosity.records;
     RenderSettings& settings = record.settings;
-    if (name.empty() || settings.integrator != IntegratorKind::IrradianceCache) return;
+    if (name.empty() || !makes_records(settings.integrator)) return;
     const RecordsFile file(name, what_decides(options, record));
     std::optional<std::vector<std::byte>> known = file.read();
     const auto records = std::make_shared<std::vector<std::byte>>(known ? std::move(*known) : std::vector<std::byte>());

@@ -66,8 +66,9 @@ void show_merged(const PictureOptions& options, const std::string& film, Picture
     }
     facts.display = display;
     facts.shown = display_metadata(display);
-    for (const char* name : {"tone_map", "exposure", "lut", "lut_input"}) {
-        if (!options.is_given(name)) continue;
+    for (const Setting& setting : all_settings()) {
+        const std::string name = setting.name;
+        if (setting.changes != Changes::Display || !options.is_given(name)) continue;
         note_given(name, facts.origin);
         for (auto& [entry, value] : facts.origin) {
             auto* const text = std::get_if<std::string>(&value);

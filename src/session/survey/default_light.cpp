@@ -59,7 +59,7 @@ OwnLight own_light(const Scene& scene) {
              has_light(scene.images[static_cast<std::size_t>(material.emission_texture.image)]))) {
             return OwnLight::Glowing;
         }
-        is_all_unlit = is_all_unlit && material.kind == MaterialKind::Unlit;
+        is_all_unlit = is_all_unlit && material.is_unlit();
     }
     return is_all_unlit ? OwnLight::Enough : OwnLight::None;
 }

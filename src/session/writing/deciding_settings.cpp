@@ -1,7 +1,6 @@
 #include "session/writing/deciding_settings.h"
 
 #include <algorithm>
-#include <array>
 #include <span>
 #include <variant>
 
@@ -59,21 +58,17 @@ DecidingSettings with_names_of(const DecidingSettings& after, DecidingSettings b
     return before;
 }
 
-/// Settings whose texts contain the path of a file, which counts by its contents; those of the second list have
-/// NAME=FILE.
-constexpr std::array<std::string_view, 5> kFileSettings = {"environment", "camera_path", "camera_from", "lut",
-                                                           "solution"};
-constexpr std::array<std::string_view, 2> kNamedFileSettings = {"ies", "displacement"};
-
-bool is_among(std::span<const std::string_view> names, std::string_view name) {
-    return std::ranges::find(names, name) != names.end();
+/// Names of metadata that are no settings hold no file.
+HoldsFile holds_file(std::string_view name) {
+    const Setting* const setting = find_setting(name);
+    return setting != nullptr ? setting->holds_file : HoldsFile::No;
 }
 
 /// Returns the text of a setting without the folder of its file, which another machine has elsewhere.
 std::string without_folder(std::string_view setting, std::string text) {
-    const bool is_named = is_among(kNamedFileSettings, setting);
-    if (!is_named && !is_among(kFileSettings, setting)) return text;
-    const std::size_t begin = is_named ? text.find('=') + 1 : 0; // 0 without one
+    const HoldsFile holds = holds_file(setting);
+    if (holds == HoldsFile::No) return text;
+    const std::size_t begin = holds == HoldsFile::Named ? text.find('=') + 1 : 0; // 0 without one
     const std::size_t slash = text.rfind('/');
     return slash == std::string::npos || slash < begin ? text : text.erase(begin, slash + 1 - begin);
 }
@@ -104,7 +99,7 @@ DecidingSettings deciding_settings(const PictureOptions& options, const PictureR
     constexpr std::string_view kPrefix = "pertev.";
     for (const auto& [key, value] : settings_metadata(record)) {
         const std::string name = key.substr(kPrefix.size());
-        if (is_among(kNamedFileSettings, name)) continue; // the options have their texts
+        if (holds_file(name) == HoldsFile::Named) continue; // the options have their texts
         put(name, without_folder(name, std::visit([](const auto& v) { return fmt::format("{}", v); }, value)));
     }
     put("size", fmt::format("{}x{}", record.settings.width, record.settings.height));

@@ -11,15 +11,15 @@
 namespace pertev {
 namespace {
 
-/// Entries that may be lists of numbers beside settings that are vectors.
-constexpr std::string_view kLists[] = {"pertev.world_from_camera", "pertev.position_origin", "pertev.shutter",
-                                       "pertev.environment"};
+/// Entries that are lists of numbers and no settings.
+constexpr std::string_view kLists[] = {"pertev.world_from_camera", "pertev.position_origin"};
 
 /// Returns whether the text may be a list of numbers. Others may look like one by chance, such as a camera's name.
 bool may_be_list(std::string_view name) {
     constexpr std::string_view kPrefix = "pertev.";
     const Setting* const setting = name.starts_with(kPrefix) ? find_setting(name.substr(kPrefix.size())) : nullptr;
-    return (setting != nullptr && is_vector(*setting)) || std::ranges::find(kLists, name) != std::end(kLists);
+    if (setting == nullptr) return std::ranges::find(kLists, name) != std::end(kLists);
+    return is_vector(*setting) || setting->may_be_numbers;
 }
 
 } // namespace

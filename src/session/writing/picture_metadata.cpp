@@ -61,7 +61,7 @@ MetadataValue metadata_value(const PictureOptions& options, const Setting& setti
 /// Returns the settings of cameras, or all others.
 std::vector<Setting> rows_of(bool camera) {
     std::vector<Setting> rows = all_settings();
-    std::erase_if(rows, [&](const Setting& row) { return (row.group == std::string_view("Camera")) != camera; });
+    std::erase_if(rows, [&](const Setting& row) { return (row.group == SettingGroup::Camera) != camera; });
     return rows;
 }
 
@@ -206,7 +206,8 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
     }
     if (record.frame) {
         append(metadata,
-               {{"pertev.reconstruction", reconstruction_json({record.frame->reconstruction, record.frame->restir})},
+               {{"pertev.reconstruction",
+                 reconstruction_json({record.frame->reconstruction, record.frame->restir}, settings.frame_depth)},
                 {"pertev.frame", static_cast<int32_t>(record.frame->number)},
                 {"pertev.first_frame", static_cast<int32_t>(record.frame->cut)}});
     }
