@@ -96,5 +96,6 @@ TEST_CASE("the version has three numbers") {
     CHECK(std::ranges::count(text, '.') == 2);
     CHECK(text.find_first_not_of("0123456789.") == std::string::npos);
     const std::string commit = git_commit();
-    CHECK((commit == "unknown" || (commit.size() >= 12 && commit.find_first_not_of("0123456789abcdef+") == std::string::npos)));
+    CHECK((commit == "unknown" ||
+           (commit.size() >= 12 && commit.find_first_not_of("0123456789abcdef+") == std::string::npos)));
 }
