@@ -33,6 +33,7 @@
 #include "python/session.h"
 #include "scene/scene_origin.h"
 #include "session/degrees.h"
+#include "session/photometry.h"
 #include "session/pictures/merge_picture.h"
 #include "settings/setting_table.h"
 
@@ -275,13 +276,17 @@ nb::object bounds_of_scene(PythonScene& scene) {
     return owned_array(corners, {2, 3});
 }
 
-/// Writes the scene as glTF, and the environment's image as EXR. Returns the settings that state the environment.
+/// Writes the opened scene as glTF, and the environment's image as EXR if it has a path. Returns the settings that
+/// state what glTF does not: environment, lumens per watt and a generated ground.
 std::map<std::string, std::string> save_scene(PythonScene& scene, const std::string& path,
                                               const std::string& environment_path) {
     return result_of([&](PythonSink& sink) {
         const SceneOptions options = scene.options_of({}, sink).scene;
-        Scene saved = scene.with_source(sink, [&](const EditedScene& source) { return source.read(options, sink); });
-        std::map<std::string, std::string> settings;
+        const double efficacy = lumens_per_watt(options.scene, static_cast<double>(options.efficacy));
+        Scene saved = scene.copy(sink);
+        const bool has_ground = std::erase_if(saved.instances, [](const Instance& of) { return of.is_background; }) > 0;
+        std::map<std::string, std::string> settings = {{"ground", has_ground ? "on" : "off"},
+                                                       {"efficacy", fmt::format("{}", efficacy)}};
         if (!environment_path.empty() && saved.environment) {
             auto& [image, scale, rotation] = *saved.environment;
             settings["environment"] = fmt::format("{},{},{}", scale.r, scale.g, scale.b);

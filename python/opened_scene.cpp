@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "base/hash.h"
-#include "session/opening/open_scene.h"
 #include "session/pictures/share_records.h"
 #include "settings/settings_file.h"
 
@@ -31,13 +30,6 @@ std::string EditedScene::edited(const std::string& hash) const {
 void EditedScene::edit(Scene& scene) const {
     const SceneParameters parameters(scene);
     for (const auto& [path, edit] : edits) write_parameter(scene, parameter_of(parameters, scene, path), edit.values);
-}
-
-Scene EditedScene::read(const SceneOptions& options, Sink& sink) const {
-    Scene scene = arrays ? *arrays : read_scene_and_emitters(options.scene, read_options(options), sink);
-    change_materials(options, scene, sink);
-    edit(scene);
-    return scene;
 }
 
 const SceneParameters& OpenedScene::parameters() {

@@ -32,9 +32,6 @@ struct EditedScene {
     std::string edited(const std::string& hash) const;
     /// Makes all edits in a scene. Throws Error(BadInput) for one of a parameter that it has not.
     void edit(Scene& scene) const;
-    /// Returns the scene as it was given, with the options' materials and all edits, without what other settings add.
-    /// Throws as read_scene.
-    Scene read(const SceneOptions& options, Sink& sink) const;
 };
 
 class OpenedScene {

@@ -72,6 +72,16 @@ void PythonScene::open(Sink& sink) {
     open_in_turn(sink);
 }
 
+Scene PythonScene::copy(Sink& sink) {
+    const std::unique_lock turn = wait_for_turn(sink);
+    last_.reset();
+    PictureOptions options = options_of({}, sink);
+    opened_.prepare(options, source_, sink);
+    Scene scene = opened_.setup()->scene();
+    if (scene.cameras.empty()) scene.cameras.push_back(opened_.record(options, source_, sink).camera.camera);
+    return scene;
+}
+
 /// Makes record_ and options_ those of a call.
 const PictureRecord& PythonScene::prepare(const CallSettings& settings, const std::vector<std::string>& outputs,
                                           Sink& sink) {

@@ -71,6 +71,9 @@ public:
         }
         work(opened_.setup()->scene());
     }
+    /// Returns the scene with the settings that hold for all pictures, and with the camera of such a picture if it has
+    /// none.
+    Scene copy(Sink& sink);
 
     /// Returns what was changed, by path.
     std::map<std::string, Value> edits(Sink& sink);

@@ -95,10 +95,10 @@ class Scene(_core.Scene):
         return Params(self)
 
     def save(self, path):
-        """Writes the scene, at rest and with all changes of its parameters, as glTF (.glb).
+        """Writes the scene as glTF (.glb), with what the settings of load() and changed parameters made of it.
 
-        Settings other than those of reading and of materials are not in the file. What glTF lacks, such as an
-        environment, is left out with a warning. Raises WriteError and InputError.
+        What glTF lacks, such as an environment, media, lenses of cameras and a generated ground, is left out with a
+        warning. Raises WriteError, and as render().
         """
         self._save(os.fspath(path), "")
 

@@ -15,7 +15,8 @@ from .errors import Error
 
 _OF_VIEWS = {name: row for name, row in OF_PICTURES.items() if row["is_viewed"]}
 # Settings whose effects a saved scene has.
-_SAVED = {"animation", "define", "file_scene", "material", "two_sided_lights", "unit", "up_axis", "variant"}
+_SAVED = {"animation", "define", "environment", "environment_rotation", "environment_scale", "file_scene", "ground", "ies", "lamp",
+          "material", "sun_sky", "two_sided_lights", "unit", "up_axis", "variant"}
 
 
 def _program():
@@ -87,20 +88,27 @@ def view(scene, *, port=0, browser=False, **values):
     browser  True: opens the address in the browser of this desktop
     values   settings of `pertev view`; they overrule those of load()
 
-    The viewer shows a scene of arrays, or with changed parameters, at rest as it is now. Raises Error if the viewer does
-    not start.
+    The viewer shows a scene of arrays, or with changed parameters, as save() writes it, with its environment. Raises Error
+    if the viewer does not start.
     """
     folder = None
-    if isinstance(scene, _core.Scene):
-        of_scene = {name: texts for name, texts in scene._settings.items() if name in _OF_VIEWS}
-        shown = scene.name
-        if scene._is_of_arrays or scene._edits():
-            folder = tempfile.TemporaryDirectory(prefix="pertev-")
-            shown = os.path.join(folder.name, "scene.glb")
-            of_environment = scene._save(shown, os.path.join(folder.name, "environment.exr"))
-            of_scene = {**of_environment, **{name: texts for name, texts in of_scene.items() if name not in _SAVED}}
-        scene, values = shown, {**of_scene, **values}
-    viewer = Viewer(os.fspath(scene), port, values, folder)
+    try:
+        if isinstance(scene, _core.Scene):
+            of_scene = {name: texts for name, texts in scene._settings.items() if name in _OF_VIEWS}
+            shown = scene.name
+            if scene._is_of_arrays or scene._edits():
+                folder = tempfile.TemporaryDirectory(prefix="pertev-")
+                shown = os.path.join(folder.name, "scene.glb")
+                of_saved = scene._save(shown, os.path.join(folder.name, "environment.exr"))
+                if not {"environment", "sun_sky"}.isdisjoint(values):
+                    of_saved = {name: text for name, text in of_saved.items() if not name.startswith("environment")}
+                of_scene = {**of_saved, **{name: texts for name, texts in of_scene.items() if name not in _SAVED}}
+            scene, values = shown, {**of_scene, **values}
+        viewer = Viewer(os.fspath(scene), port, values, folder)
+    except BaseException:
+        if folder is not None:
+            folder.cleanup()
+        raise
     if browser:
         webbrowser.open(viewer.url)
     return viewer

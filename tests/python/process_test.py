@@ -87,25 +87,37 @@ class Viewer(unittest.TestCase):
                              ["cornell-box", "48x32", "3", "cpu"])
             self.assertNotIn("--aov", command)
 
+    def command_of(self, viewer):
+        """Returns the viewer's file and settings."""
+        words = pathlib.Path(f"/proc/{viewer._process.pid}/cmdline").read_text().split("\0")
+        at = words.index("view")
+        flags = words[at + 2:-1]
+        return words[at + 1], {name[2:].replace("-", "_"): value for name, value in zip(flags, flags[1:]) if name.startswith("--")}
+
     def test_view_shows_scenes_of_arrays_and_changed_parameters(self):
         triangle = {"vertices": [(0, 0, 0), (1, 0, 0), (0, 1, 0)], "faces": [(0, 1, 2)]}
-        of_arrays = pertev.Scene(meshes={"a": triangle}, instances={"a": {"mesh": "a"}}, environment=numpy.full((4, 8, 3), 0.5),
-                                 cameras={"front": {"eye": (0.3, 0.3, 2), "target": (0.3, 0.3, 0)}}, device="cpu", size=(16, 12), spp=4)
+        sky = numpy.random.default_rng(1).random((4, 8, 3))
+        small = {"device": "cpu", "size": (16, 12), "spp": 4}
+        of_arrays = pertev.Scene(meshes={"a": triangle}, instances={"a": {"mesh": "a"}}, environment=sky,
+                                 cameras={"front": {"eye": (0.3, 0.3, 2), "target": (0.3, 0.3, 0)}}, **small)
         of_arrays.params["environment/scale"] = (1, 0.5, 2)
         of_arrays.params["environment/rotation"] = 90
-        changed = pertev.scene("cornell-box", device="cpu", size=(16, 12), spp=4, material=["white roughness=0.5"])
+        changed = pertev.scene("cornell-box", environment=(0.3, 0.2, 0.1), environment_scale=2, material=["white roughness=0.5"], **small)
+        changed.params["environment/scale"] = (1, 2, 3)
         changed.params["materials/red/base_color"] = (0, 0, 1)
+        of_defaults = pertev.Scene(meshes={"a": triangle}, instances={"a": {"mesh": "a"}}, **small)  # a sky and a ground
         with unittest.mock.patch.dict(os.environ, {"PERTEV_PROGRAM": PROGRAM}):
-            for scene in (of_arrays, changed):
-                with pertev.view(scene) as viewer:
-                    words = pathlib.Path(f"/proc/{viewer._process.pid}/cmdline").read_text().split("\0")
-                    file, settings = words[words.index("view") + 1], words[words.index("view") + 2:-1]
-                    given = dict(zip(settings, settings[1:]))
-                    environment = {name: given["--" + name] for name in ("environment", "environment-rotation") if "--" + name in given}
-                    values = {name.replace("-", "_"): value for name, value in environment.items()}
-                    shown = pertev.render(file, device="cpu", size=(16, 12), spp=4, **values)
-                numpy.testing.assert_allclose(shown.color, pertev.render(scene).color, rtol=2e-3, atol=1e-4)
+            for scene in of_arrays, changed, of_defaults:
+                with self.subTest(scene=scene.name), pertev.view(scene) as viewer:
+                    file, settings = self.command_of(viewer)
+                    self.assertEqual(settings["efficacy"], "683")
+                    kept = {name: value for name, value in settings.items() if name.startswith("environment") or name == "ground"}
+                    shown, wanted = (pertev.render(of, **small, **values).color for of, values in ((file, kept), (scene, {})))
+                    self.assertLess(numpy.abs(shown - wanted).mean(), 0.01 * wanted.mean())
                 self.assertFalse(pathlib.Path(file).exists())
+            with pertev.view(of_arrays, environment=(1, 1, 1)) as viewer:
+                settings = self.command_of(viewer)[1]
+                self.assertEqual((settings["environment"], "environment_rotation" in settings), ("1,1,1", False))
 
     def test_a_missing_scene_is_an_error(self):
         with unittest.mock.patch.dict(os.environ, {"PERTEV_PROGRAM": PROGRAM}):
