@@ -365,7 +365,7 @@ MUTATIONS = [
     ("an aperture of one blade is accepted", "unit/check_options",
      ("src/session/pictures/check_options.cpp", "    check_aperture(options.scene.camera);\n", "")),
     ("next-event estimation alone traces a last ray", "robust/cli",
-     ("src/integrators/path/path_vertex.h", "depth >= settings.max_depth && path.bsdf_pdf > 0", "depth > settings.max_depth && path.bsdf_pdf > 0")),
+     ("src/integrators/path/path_vertex.h", "path.depth >= job.settings.max_depth && path.bsdf_pdf > 0", "path.depth > job.settings.max_depth && path.bsdf_pdf > 0")),
     ("lanes trace a last ray by next-event estimation alone", "robust/cli",
      ("src/integrators/path/shade_lanes.inl", "lanes_at_depth(settings.max_depth - 1, vertices)", "lanes_at_depth(settings.max_depth, vertices)")),
     ("lanes weight next-event estimation alone", "consistency/one_picture",
@@ -374,5 +374,8 @@ MUTATIONS = [
      ("src/render/sum_target.cpp", "stage.means[k].to += first * stage.means[k].channels;", "stage.means[k].to += 0;")),
     ("a layer's means are those of the picture's channels", "consistency/camera_batch",
      ("src/render/film_stages.h", "mean_of(sums[of.first + c], n)", "mean_of(sums[c], n)")),
-    ("a saved scene lacks its changes", "python/process", ("python/opened_scene.cpp", "    edit(scene);\n    return scene;", "    return scene;")),
+    ("a saved scene lacks its environment's rotation", "python/process",
+     ("python/module.cpp", "degrees_for(rotation)", "degrees_for(0 * rotation)")),
+    ("next-event estimation alone loses unlit surfaces", "statistical/emitter_faces",
+     ("src/integrators/path/path_integrator.cpp", "picture_.scene.any_unlit == 0", "true")),
 ]

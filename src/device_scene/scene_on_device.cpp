@@ -60,6 +60,7 @@ uint16_t layers_above(const Scene& scene, std::size_t instance) {
 PartArrays list_instances(const PlacedScene& prepared, Instances& instances, SceneView& view) {
     const Scene& scene = *prepared.scene;
     view.any_alpha = 0;
+    view.any_unlit = 0;
     view.any_hidden_back = 0;
     view.centre = prepared.centre;
     // Relative to the file's origin; in a far scene positions stay relative to the scene's own, because floats could
@@ -80,6 +81,7 @@ PartArrays list_instances(const PlacedScene& prepared, Instances& instances, Sce
         const uint16_t hides_back = material.double_sided ? 0 : 1;
         if (instance.is_background) view.background = static_cast<uint32_t>(i) + 1;
         view.any_alpha |= has_alpha;
+        view.any_unlit |= material.is_unlit() ? 1u : 0u;
         view.any_hidden_back |= hides_back;
         instances.passing[i / 32] |= uint32_t(has_alpha | hides_back) << i % 32;
         instances.views.push_back({world_from_local, inverse(world_from_local), instance.mesh, instance.material,

@@ -55,6 +55,7 @@ struct SceneView {
     const float* linear_from_srgb; // [kSrgbBytes], and [kSrgbWords] if there is an image of depth Srgb16
     LightSetView lights;
     uint32_t any_alpha;       // 0 if hits need not check their instance for alpha
+    uint32_t any_unlit;       // 0 if no surface is unlit, which rays find though it is no light
     uint32_t any_hidden_back; // 0 if hits of camera rays need not check their instance for culled backs
     Vec3 centre;              // origin of the translated world, in the scene's coordinates, metres
                               // (device_scene/place_meshes.h)

@@ -89,6 +89,18 @@ TEST_CASE("emitters emit from the front or both faces under every sampling strat
     }
 }
 
+TEST_CASE("next-event estimation alone finds unlit surfaces, which are no lights, at the maximum depth") {
+    Scene scene = emitter_over_floor(true, false, false);
+    scene.materials[1] = {{.kind = MaterialKind::Unlit, .base_color = grey(0.8f)}, "sign"};
+    scene.environment = Environment{{}, grey(0.1f), 0};
+    const test::Estimate by_mis = render(scene, {.max_depth = 1});
+    const test::Estimate by_nee = render(scene, {.max_depth = 1, .strategy = LightStrategy::NeeOnly});
+    CAPTURE(by_mis.mean);
+    CAPTURE(by_nee.mean);
+    CHECK(by_mis.mean > 0.06); // the sky alone gives 0.05
+    CHECK(std::abs(by_nee.mean - by_mis.mean) < 4 * std::hypot(by_mis.error, by_nee.error));
+}
+
 TEST_CASE("clamping leaves light scattered once unchanged under every sampling strategy") {
     CHECK(floor_radiance() == doctest::Approx(7.74).epsilon(1e-3));
     const Scene scene = emitter_over_floor(true, false, false);

@@ -204,6 +204,10 @@ PathJob PathIntegrator::job_for(const FilmView& film) const {
     if (film.frame.first_bounce.leaves_direct_light()) {
         job.settings.roulette_depth = std::max(job.settings.roulette_depth, 2u);
     }
+    // Frames reproject reflections by what the last ray hits.
+    const bool by_nee = settings_.path.strategy == LightStrategy::NeeOnly && !film.frame.is_there();
+    job.ends_by_nee = by_nee && picture_.scene.any_unlit == 0;
+    job.selects_by_tree = uses_light_tree(job);
     return job;
 }
 

@@ -19,8 +19,10 @@ struct PathJob {
     PictureView picture;
     PathSettings settings;
     FilmView film;
-    LightPathView layers;  // may be empty
-    bool is_meter = false; // the picture shows the irradiance of visible surfaces, W/m2
+    LightPathView layers;         // may be empty
+    bool is_meter = false;        // the picture shows the irradiance of visible surfaces, W/m2
+    bool ends_by_nee = false;     // at the maximum depth no ray finds what next-event estimation has not
+    bool selects_by_tree = false; // uses_light_tree(), for vertices in lanes
 };
 
 /// Features that a scene and a request use. Code for absent features would cost registers.

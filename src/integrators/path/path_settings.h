@@ -15,7 +15,8 @@ enum class PathLight : uint8_t { Path, Direct, Indirect };
 
 /// Strategy to sample lights: next-event estimation (NEE) and BSDF sampling combined by the power heuristic, or one
 /// alone. All three converge to one picture where lights can be hit. NEE alone, for equal samples noisier near lights
-/// and on glossy surfaces, needs no last ray: with a depth of 1 a diffuse sample is a camera ray and a shadow ray.
+/// and on glossy surfaces, needs no last ray (PathJob::ends_by_nee): with a depth of 1 a sample of a diffuse surface is
+/// a camera ray and a shadow ray.
 enum class LightStrategy : uint8_t { Mis, NeeOnly, BsdfOnly };
 
 /// Survival probability of Russian roulette as a function of the throughput's largest channel: that itself, or its

@@ -190,9 +190,6 @@ HD INLINE_ON_DEVICE bool sample_scattering(const PathSettings& settings, PathSta
     path.rough_depth += sample.is_delta() ? 0 : 1;
     if (settings.light == PathLight::Direct && path.rough_depth > 1) return false; // nothing further would count
     const uint32_t depth = path.depth + 1;
-    if (settings.strategy == LightStrategy::NeeOnly && depth >= settings.max_depth && path.bsdf_pdf > 0) {
-        return false; // next-event estimation has found what this ray would hit
-    }
     if (may_end_by_chance(settings, depth)) {
         const float survival = survival_probability(settings.roulette, max_component(path.throughput));
         if (survival < 1) {
@@ -203,6 +200,11 @@ HD INLINE_ON_DEVICE bool sample_scattering(const PathSettings& settings, PathSta
     path.depth = depth;
     listener.scattered(path, vertex, sample);
     return listener.goes_on(path);
+}
+
+/// Returns whether next-event estimation has found all that the path's next ray could add.
+HD inline bool has_found_all(const PathJob& job, const PathState& path) {
+    return job.ends_by_nee && path.depth >= job.settings.max_depth && path.bsdf_pdf > 0;
 }
 
 /// Width in metres of what the path's ray stands for at the hit; 0 if textures are not filtered. A sampled direction
@@ -246,7 +248,7 @@ HD INLINE_ON_DEVICE bool shade_in_medium(const PathJob& job, PathState& path, co
     has_shadow_ray =
         sample_direct<kFeatures>(job, path, vertex, vertex.light_context(path.time), numbers, shadow, listener);
     path.normal = {0, 0, 0};
-    return sample_scattering(job.settings, path, vertex, numbers, listener);
+    return sample_scattering(job.settings, path, vertex, numbers, listener) && !has_found_all(job, path);
 }
 
 /// Follows the path to a surface among nested solids: which of them hold it there, what they absorb on the way, and
@@ -313,7 +315,7 @@ HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const
     has_shadow_ray = listener.samples_direct(path, hit, surface) &&
                      sample_direct<kFeatures>(job, path, vertex, context, numbers, shadow, listener);
     if constexpr (LightChoice<kFeatures>::kReadsNormal) path.normal = context.normal;
-    const bool goes_on = sample_scattering(job.settings, path, vertex, numbers, listener);
+    const bool goes_on = sample_scattering(job.settings, path, vertex, numbers, listener) && !has_found_all(job, path);
     if constexpr ((kFeatures & kNested) != 0) path.interior = interior_towards(scene, path, vertex, path.direction);
     if ((kFeatures & kMipMapped) != 0 && !(path.bsdf_pdf > 0)) path.bsdf_pdf = -width;
     return goes_on;

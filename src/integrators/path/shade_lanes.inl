@@ -53,7 +53,7 @@ struct WordTable {
 
 /// Features of a job whose vertices may be shaded in lanes.
 Features features_of_lanes(const PathJob& job) {
-    return uses_light_tree(job) ? kPlainDiffuse | kLightTree : kPlainDiffuse;
+    return job.selects_by_tree ? kPlainDiffuse | kLightTree : kPlainDiffuse;
 }
 
 /// Random numbers of the vertices.
@@ -304,7 +304,7 @@ unsigned sample_scattering(const PathJob& job, unsigned lanes, const Paths& path
     const Vec3s wi = normalize(surfaces.frame.to_world(raised.direction));
     goes_on = goes_on && surfaces.is_consistent(wo, wi, wo_local.z, raised.direction.z) && pdf > 0;
     unsigned going = bit_mask(goes_on) & lanes;
-    if (settings.strategy == LightStrategy::NeeOnly) going &= ~lanes_at_depth(settings.max_depth - 1, vertices);
+    if (job.ends_by_nee) going &= ~lanes_at_depth(settings.max_depth - 1, vertices);
 
     Rgbs throughput = paths.throughput * weight;
     unsigned by_chance = 0;
