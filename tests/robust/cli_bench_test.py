@@ -199,9 +199,13 @@ class Bench(CliTest):
         jobs = {event["job"]: event for event in run.events("cameras")}
         self.assertEqual([(name, job["pictures"], job["samples"], job["max_depth"]) for name, job in jobs.items()],
                          [("centres", 33, 0, 5), ("direct", 33, 1, 1), ("paths", 2, 2, 5)])
-        for job in jobs.values():
+        rays = {}  # per pixel
+        for name, job in jobs.items():
             self.assertAlmostEqual(job["pictures_per_second"] * job["median_seconds"] / job["pictures"], 1, delta=1e-3)
-            self.assertGreater(job["rays_per_second"], 64 * job["pictures_per_second"] * (1 + job["samples"]) * 0.999)
+            rays[name] = job["rays_per_second"] / job["pictures_per_second"] / 64
+        self.assertAlmostEqual(rays["centres"], 1, 3)
+        self.assertTrue(1 < rays["direct"] <= 2.001, rays)  # one serves sample and layers, and a shadow ray follows it
+        self.assertGreater(rays["paths"], 2.999)
         self.assertIsNone(jobs["centres"]["in_turn_pictures_per_second"])
         large = run.events("large_picture")[0]
         self.assertAlmostEqual(large["ratio_of_batch"], jobs["paths"]["samples_per_second"] / large["samples_per_second"], delta=1e-3)

@@ -61,5 +61,5 @@ TEST_CASE("settings between backquotes are phrased, and the rest of a text is un
 
 TEST_CASE("the viewer names the row of a setting, or the setting in plain words") {
     CHECK(panel_phrase(Remark("integrator", "cast", "`allow_path=/a` shows it")) ==
-          "\"Light\" cast: allow path /a shows it");
+          "\"Integrator\" cast: allow path /a shows it");
 }
