@@ -372,7 +372,7 @@ MUTATIONS = [
      ("src/integrators/path/shade_lanes.inl", "const bool by_mis = job.settings.strategy == LightStrategy::Mis;", "const bool by_mis = true;")),
     ("means of later rows lie at the first pixel", "consistency/film_files",
      ("src/render/sum_target.cpp", "stage.means[k].to += first * stage.means[k].channels;", "stage.means[k].to += 0;")),
-    ("a layer's means are those of the picture's channels", "consistency/camera_batch",
+    ("a layer's means are those of the picture's channels", "unit/film",
      ("src/render/film_stages.h", "mean_of(sums[of.first + c], n)", "mean_of(sums[c], n)")),
     ("a saved scene lacks its environment's rotation", "python/process",
      ("python/module.cpp", "degrees_for(rotation)", "degrees_for(0 * rotation)")),
