@@ -113,8 +113,7 @@ Session& OpenedScene::session(const PictureRecord& record, bool for_batch) {
 Session& OpenedScene::updated_session(const PictureRecord& record) {
     const uint32_t parts = std::exchange(setup_->changed_parts, 0);
     if (!session_) {
-        const SharedWork shared = {.pictures = true, .frames = uses_ == Uses::Sequence};
-        session_.emplace(setup_->queues, setup_->prepared(), record.camera.camera, record.settings, shared);
+        session_.emplace(setup_->queues, setup_->prepared(), record.camera.camera, record.settings, shared_);
         return session_->session();
     }
     Session& session = session_->session();

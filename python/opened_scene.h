@@ -36,11 +36,8 @@ struct EditedScene {
 
 class OpenedScene {
 public:
-    enum class Uses {
-        Pictures, // all devices render its pictures and batches of them
-        Sequence, // all devices render its pictures and frames
-    };
-    explicit OpenedScene(Uses uses = Uses::Pictures) : uses_(uses) {}
+    /// `shared` is what all devices render together.
+    explicit OpenedScene(const SharedWork& shared = {.pictures = true}) : shared_(shared) {}
 
     /// Prepares a picture of the source by `options`, which get what the scene suggests, as it was opened, or opens it.
     /// Throws as prepare_render; the scene stays open if a setting is wrong.
@@ -63,7 +60,7 @@ private:
     void open(PictureOptions& options, const EditedScene& source, Sink& sink);
     Session& updated_session(const PictureRecord& record);
 
-    Uses uses_;
+    SharedWork shared_;
     PictureOptions used_; // options that setup_ was made or last adapted by
     std::unique_ptr<RenderSetup> setup_;
     std::optional<SceneParameters> parameters_;

@@ -1,6 +1,5 @@
 #include "python/scene.h"
 
-#include <algorithm>
 #include <chrono>
 
 #include <fmt/format.h>
@@ -128,7 +127,7 @@ PythonResult PythonScene::render(const CallSettings& settings, const std::vector
     const bool is_read =
         !out.empty() && outputs.empty() && !has_checkpoint && FilmReader::reads(out, session.settings());
     std::shared_ptr<const PictureRecord> shown = record_;
-    if (writes_tone_mapped(outputs) || has_checkpoint || std::ranges::any_of(outputs, is_film_name)) {
+    if (writes_tone_mapped(outputs) || has_checkpoint || writes_films(outputs)) {
         PictureRecord with_display = *record_;
         with_display.display = choose_display(options_, session, sink);
         shown = std::make_shared<const PictureRecord>(std::move(with_display));
@@ -143,7 +142,7 @@ PythonResult PythonScene::render(const CallSettings& settings, const std::vector
     WrittenPicture written;
     if (!outputs.empty()) {
         RenderResult result = made.result; // files take the layers out of it
-        if (std::ranges::any_of(outputs, is_film_name)) {
+        if (writes_films(outputs)) {
             const Film& film = kept ? kept->film() : session.film();
             const FilmHeader header = film_header(options_, *shown, facts_of(*shown, result.ids), result, film);
             written.files = write_film_files(outputs, header, film);

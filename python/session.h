@@ -30,7 +30,7 @@ private:
 
     PythonScene& scene_;
     SettingTexts settings_;
-    OpenedScene opened_{OpenedScene::Uses::Sequence};
+    OpenedScene opened_{{.pictures = true, .frames = true}};
     PictureOptions options_;
     std::optional<PictureRecord> record_; // none: the settings have changed
     uint64_t edits_ = 0, cuts_ = 0;

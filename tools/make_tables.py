@@ -87,7 +87,7 @@ def origin_faults(measured):
     if isinstance(program, str) and not re.fullmatch(r"pertev (?:\d+\.\d+\.\d+ )?\(?[0-9a-f]{7,}\+?\)?", program):
         yield f"the program {program} names no commit"
     for one in command.split("; ") if isinstance(command, str) else []:
-        if not re.match(r"(?:(?:\S*/)?pertev|pertev_tests|(?:tools|bench|tests)/\S+)(?: |$)", one):
+        if not re.match(r"(?:(?:\S*/)?pertev|pertev_tests|(?:tools|bench|tests)/\S+|setup\.sh|\.ci/run)(?:,? |$)", one):
             yield f"{one} begins with neither the program nor a script"
         yield from check_documents.script_faults("command", one)
         for pattern in re.findall(r"--source-file=(\S+)", one):

@@ -152,10 +152,9 @@ int write_one(const RenderFlags& flags, const RenderSettings& settings, const Pi
         }
     }
     reporter.set_work("writing");
-    const bool has_film = std::ranges::any_of(flags.outputs, is_film_name);
     PictureFacts facts = facts_of(record, result.ids);
     std::vector<WrittenFile> films;
-    if (has_film) {
+    if (writes_films(flags.outputs)) {
         const Film& film = kept ? kept->film() : session.film();
         films = write_film_files(flags.outputs, film_header(flags, record, facts, result, film), film);
     }
@@ -210,9 +209,8 @@ int render(RenderFlags& flags) {
     std::optional<SessionOnDevices> opened(std::in_place, ready->queues, ready->prepared(), record.camera.camera,
                                            settings, shared);
     Session& session = opened->session();
-    const bool has_film =
-        (!flags.checkpoint.empty() && !flags.real_time) || std::ranges::any_of(flags.outputs, is_film_name);
-    if (writes_tone_mapped(flags.outputs) || has_film) {
+    const bool keeps_film = !flags.checkpoint.empty() && !flags.real_time;
+    if (writes_tone_mapped(flags.outputs) || keeps_film || writes_films(flags.outputs)) {
         record.display = choose_display(flags, session, reporter);
         report_display(*record.display, is_metered(flags), reporter);
     }

@@ -15,19 +15,22 @@
 
 namespace pertev {
 
-/// Half of a panorama's width and height in the view.
-HD inline Vec2 panorama_half_size(LensModel lens) {
-    switch (lens) {
+/// Returns whether a panorama is the strip of a cube's faces.
+HD inline bool is_cube(LensModel panorama) {
+    switch (panorama) {
     case LensModel::Cube:
-        return {6, 1};
+        return true;
     case LensModel::Straight: // this and the next two are no panoramas
     case LensModel::OpenCv:
     case LensModel::Fisheye:
     case LensModel::Equirectangular:
         break;
     }
-    return {kPi, 0.5f * kPi};
+    return false;
 }
+
+/// Half of a panorama's width and height in the view.
+HD inline Vec2 panorama_half_size(LensModel lens) { return is_cube(lens) ? Vec2{6, 1} : Vec2{kPi, 0.5f * kPi}; }
 
 template <class T>
 HD inline Vec3Of<T> equirectangular_direction(Vec2Of<T> at) {
@@ -52,16 +55,7 @@ HD inline Vec3Of<T> cube_direction(Vec2Of<T> at) {
 /// go on around the sphere.
 template <class T>
 HD inline Vec3Of<T> panorama_direction(LensModel lens, Vec2Of<T> at) {
-    switch (lens) {
-    case LensModel::Equirectangular:
-        return equirectangular_direction(at);
-    case LensModel::Straight: // this and the next two are no panoramas
-    case LensModel::OpenCv:
-    case LensModel::Fisheye:
-    case LensModel::Cube:
-        break;
-    }
-    return cube_direction(at);
+    return is_cube(lens) ? cube_direction(at) : equirectangular_direction(at);
 }
 
 /// The position of a direction in the view, and the area there over the solid angle.
@@ -92,16 +86,7 @@ HD inline PanoramaPosition cube_position(Vec3 d) {
     return {{on_face.x + static_cast<float>(2 * face - 5), on_face.y}, growth};
 }
 HD inline PanoramaPosition panorama_position(LensModel lens, Vec3 d) {
-    switch (lens) {
-    case LensModel::Equirectangular:
-        return equirectangular_position(d);
-    case LensModel::Straight: // this and the next two are no panoramas
-    case LensModel::OpenCv:
-    case LensModel::Fisheye:
-    case LensModel::Cube:
-        break;
-    }
-    return cube_position(d);
+    return is_cube(lens) ? cube_position(d) : equirectangular_position(d);
 }
 
 } // namespace pertev

@@ -1,6 +1,6 @@
 // The page shows this without a connection: what is known, and what the user can do.
 
-import { element } from "./panel.js";
+import { element } from "./elements.js";
 
 /** @typedef {import("./link.js").LinkState} LinkState */
 

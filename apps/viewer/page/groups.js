@@ -1,6 +1,6 @@
 // Groups of the panel that fold, and what this browser remembers of them: which are open, and whether the panel is.
 
-import { make } from "./panel.js";
+import { make } from "./elements.js";
 
 /** @param {string} key @param {boolean} otherwise where nothing is remembered */
 export function remembered(key, otherwise) {

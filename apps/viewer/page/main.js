@@ -1,11 +1,12 @@
 // The page of pertev view: draws the pictures that come, sends what keys and mouse ask for, shows the panel.
 
+import { button, element, make } from "./elements.js";
 import { showGone } from "./gone.js";
 import { makeGroup, remember, remembered } from "./groups.js";
 import { Controls, kKeys } from "./keys.js";
 import { Link } from "./link.js";
 import { People } from "./people.js";
-import { Settings, button, element, make, showRows } from "./panel.js";
+import { Settings, showRows } from "./panel.js";
 import { watchRate, watchShape, windowShape } from "./screen.js";
 import { Recorder, TimeLine } from "./time.js";
 

@@ -1,37 +1,11 @@
 // The panel: rows of numbers and settings as the viewer describes them. Nothing here knows a single setting: a new one is
 // a row of the program's own table (apps/viewer/view_state.cpp).
 
+import { make } from "./elements.js";
 import { makeGroup } from "./groups.js";
 
 /** @typedef {{name: string, label: string, group: string, hint: string, kind: "choice" | "number" | "whole", choices: string[],
  *   low: number, high: number, step: number}} Setting */
-
-/** @param {string} id @returns {HTMLElement} */
-export function element(id) {
-  const found = document.getElementById(id);
-  if (!found) throw new Error(`the page lacks #${id}`);
-  return found;
-}
-
-/** @param {string} tag @param {string} text @param {string} [name] */
-export function make(tag, text, name = "") {
-  const made = document.createElement(tag);
-  made.textContent = text;
-  if (name) made.className = name;
-  return made;
-}
-
-/** @param {string} text @param {() => void} onClick @param {string} [id] @param {string} [hint] */
-export function button(text, onClick, id = "", hint = "") {
-  const made = /** @type {HTMLButtonElement} */ (make("button", text));
-  made.id = id;
-  made.title = hint;
-  made.addEventListener("click", () => {
-    onClick();
-    made.blur(); // keys steer again
-  });
-  return made;
-}
 
 /** Rows of [group, label, value] under headings. Elements stay while the rows are the same, so that text can be marked.
  * @param {HTMLElement} parent @param {[string, string, string][]} rows

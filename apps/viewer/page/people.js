@@ -1,6 +1,6 @@
 // Shows the viewers, who of them steers, and what the others request: in the panel, and in a bar that needs no panel.
 
-import { button, element, make } from "./panel.js";
+import { button, element, make } from "./elements.js";
 
 /** @typedef {import("./link.js").Link} Link */
 /** @typedef {{id: number, asks: boolean, request: string}} Person */

@@ -1,8 +1,9 @@
 // The time line of a scene that moves, and the recorder of the camera's path. Both show what the viewer says and send
 // what is set; time and keys are the viewer's, so that all pages see the same.
 
+import { button, element, make } from "./elements.js";
 import { makeGroup } from "./groups.js";
-import { PendingInput, button, element, make } from "./panel.js";
+import { PendingInput } from "./panel.js";
 
 /** @typedef {import("./link.js").Link} Link */
 /** @typedef {{at: number, end: number, on: boolean, loops: boolean, speed: number}} Clock */

@@ -106,6 +106,8 @@ void check_film_file(const PictureOptions& options, const std::string& setting, 
 
 bool is_film_name(const std::string& output) { return lower_case_extension(output) == ".pvf"; }
 
+bool writes_films(std::span<const std::string> outputs) { return std::ranges::any_of(outputs, is_film_name); }
+
 bool writes_tone_mapped(std::span<const std::string> outputs) {
     return std::ranges::any_of(outputs, [](const std::string& output) {
         if (is_film_name(output)) return false;

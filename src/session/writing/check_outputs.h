@@ -12,6 +12,8 @@ namespace pertev {
 
 /// Returns whether the name is that of a film file (session/film_file/): .pvf, in either case.
 bool is_film_name(const std::string& output);
+/// Returns whether one of outputs is a film file.
+bool writes_films(std::span<const std::string> outputs);
 /// Returns whether one of the files is tone-mapped: PNG or JPEG.
 bool writes_tone_mapped(std::span<const std::string> outputs);
 
