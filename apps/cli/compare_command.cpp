@@ -176,10 +176,10 @@ void add_compare_command(CLI::App& app, int& status) {
         ->check(one_of({std::begin(kMetrics), std::end(kMetrics)}))
         ->capture_default_str();
     verb.add_option("--threshold", flags->threshold,
-                    "ends with status 1 if the metric is above X; p_value, if it "
-                    "is below")
+                    "ends with status 1 if the metric is above X; p_value, which is "
+                    "of independent samples (--sampler independent), if below")
         ->type_name("X")
-        ->check(number_above_zero());
+        ->check(number_from_zero());
     add_report_flags(verb, flags->report);
     verb.callback([flags, &status] { status = compare(*flags); });
 }

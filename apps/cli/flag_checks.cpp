@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -29,6 +30,11 @@ CLI::Validator refused_by(std::function<std::string(const std::string&)> why_not
 
 CLI::Validator number_above_zero(float high) {
     return refused_by([high](const std::string& text) { return why_not_above(text, 0, high); });
+}
+
+CLI::Validator number_from_zero() {
+    return refused_by(
+        [](const std::string& text) { return why_no_number(text, 0, std::numeric_limits<float>::max()); });
 }
 
 CLI::Validator whole_between(uint32_t low, uint32_t high) {

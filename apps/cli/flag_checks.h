@@ -27,6 +27,8 @@ void name_standard_output(const std::string& format, bool is_json, std::vector<s
 
 /// Accepts a finite number above 0 and at most `high`.
 CLI::Validator number_above_zero(float high = std::numeric_limits<float>::max());
+/// Accepts a finite number of at least 0.
+CLI::Validator number_from_zero();
 /// Accepts a whole number in [low, high], in decimal digits.
 CLI::Validator whole_between(uint32_t low, uint32_t high);
 

@@ -128,6 +128,9 @@ class Compare(CliTest):
         self.assertAlmostEqual(found["smape"], sum(abs(a - b) / ((abs(a) + abs(b)) / 2 + 0.01) for a, b in pairs) / len(pairs), places=6)
         self.refuse(2, "compare", "1.exr", "2.exr", "--metric", "p_value", "--threshold", "0.01", says=["--metric", "variance"])
         self.refuse(2, "compare", "1.exr", "2.exr", "--metric", "psnr", says=["--metric"])
+        for other, status in ("1.exr", 0), ("2.exr", 1):
+            self.compare("1.exr", other, "--metric", "mse", "--threshold", "0", status=status)
+        self.refuse(2, "compare", "1.exr", "2.exr", "--threshold", "-1", says=["--threshold"])
 
     def test_a_difference_and_its_p_values_tell_noise_from_bias(self):
         flags = ["--aov", "variance", "--sampler", "independent", "--spp", "64", "--filter", "box"]
