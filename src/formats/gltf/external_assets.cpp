@@ -12,6 +12,7 @@
 #include "base/read_file.h"
 #include "formats/gltf/attached_bytes.h"
 #include "formats/gltf/leave_out.h"
+#include "formats/gltf/light.h"
 #include "formats/gltf/uri.h"
 
 namespace fs = std::filesystem;
@@ -127,7 +128,7 @@ Scene copy_objects(const Scene& part, const NodeTransform& base) {
     }
     for (Light light : part.lights) {
         const Transform& world = world_from_node[light.node];
-        if (is_in_reach(world) && transform_light(world, light)) copy.lights.push_back(std::move(light));
+        if (is_in_reach(world) && place_light(world, light)) copy.lights.push_back(std::move(light));
     }
     return copy;
 }

@@ -390,7 +390,8 @@ void PosedScene::update_lights() {
         if (light.node != kNoNode && node_moves_[light.node]) {
             bool stands = transform_light(world_from_node_[light.node], light);
             light.direction = normalize_safely(light.direction);
-            stands = stands && is_within_limits(make_translation(light.position), Bounds3{{0, 0, 0}, {0, 0, 0}});
+            stands = stands && is_oriented(light) &&
+                     is_within_limits(make_translation(light.position), Bounds3{{0, 0, 0}, {0, 0, 0}});
             if (!stands) {
                 light = rest;
                 light.intensity = {0, 0, 0};
