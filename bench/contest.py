@@ -13,6 +13,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "tests/images"), str(ROOT / "tests/support"), str(ROOT / "tools")]
 import make_corridor  # noqa: E402
+import make_material_balls  # noqa: E402
 from measurement import write_measurement  # noqa: E402
 from mitsuba_to_gltf import convert  # noqa: E402
 from reference_job import last_event  # noqa: E402
@@ -35,6 +36,7 @@ class Job:
     `materials` has reflectance and emission of each material of the OBJ."""
 
     sky, roulette_depth = None, 5
+    peers = ("Mitsuba", "Cycles")
     cpu_size, gpu_size = (640, 360), (1920, 1080)
 
     def __init__(self, scenes, folder, on_gpu):
@@ -86,8 +88,15 @@ class Corridor(Job):
         make_corridor.write(self.file)
 
 
-class CornellBox(Job):
-    """Bitterli's Cornell box; its file has materials and camera."""
+class SceneFile(Job):
+    """A scene whose Mitsuba file `xml` has materials and camera."""
+
+    def render_flags(self):
+        return ["render", self.file, "--filter", "box", "--max-depth", self.depth]
+
+
+class CornellBox(SceneFile):
+    """Bitterli's Cornell box."""
 
     name, stem, depth = "Cornell box, depth 8", "cornell-box", 7
     cpu_size, gpu_size = (512, 512), (1024, 1024)
@@ -97,15 +106,23 @@ class CornellBox(Job):
         self.file = self.file.with_suffix(".gltf")
         self.file.write_text(convert(self.xml)[0])
 
-    def render_flags(self):
-        return ["render", self.file, "--filter", "box", "--max-depth", self.depth]
-
 
 class DeepCornellBox(CornellBox):
     name, stem, depth = "Cornell box, depth 65", "cornell-box-65", 64
 
 
-JOBS = [SponzaJob, Sponza, CornellBox, DeepCornellBox, Bunny, Corridor]
+class MaterialBalls(SceneFile):
+    """Metals, glass, plastics and principled materials. Both read one file, and Pertev has the nearest material of principled ones, which
+    is brighter where these lose light to their microfacets."""
+
+    name, stem, depth, peers = "40 material balls, depth 8", "material-balls", 8, ("Mitsuba",)
+
+    def write(self, scenes):
+        self.xml = self.file = self.file.with_suffix(".xml")
+        make_material_balls.write(self.file)
+
+
+JOBS = [SponzaJob, Sponza, CornellBox, DeepCornellBox, Bunny, Corridor, MaterialBalls]
 
 
 class Contest:
@@ -190,7 +207,7 @@ def main(description, make_peer, devices):
         folder = arguments.work or pathlib.Path(temporary)
         folder.mkdir(parents=True, exist_ok=True)
         for kind in JOBS:
-            if arguments.jobs and kind.stem not in arguments.jobs:
+            if peer.name not in kind.peers or (arguments.jobs and kind.stem not in arguments.jobs):
                 continue
             try:
                 job = kind(pathlib.Path(os.environ["PERTEV_SCENES"]), folder, arguments.device == "cuda")

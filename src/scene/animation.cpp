@@ -58,7 +58,7 @@ std::vector<bool> may_emit(const Scene& scene) {
     std::vector<bool> emits(scene.materials.size());
     for (const Animation& animation : scene.animations) {
         for (const AnimationChannel& channel : animation.channels) {
-            if (!is_of_material(channel.part)) continue;
+            if (channel.part != AnimatedPart::MaterialNumbers) continue;
             const bool is_emission = std::ranges::any_of(channel.numbers, [](uint8_t number) {
                 return std::ranges::count(material_numbers("emission"), number) > 0;
             });

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "scene/texture.h"
+
 namespace pertev {
 
 struct Scene;
@@ -22,20 +24,24 @@ enum class AnimatedPart : uint8_t { // properties of nodes, then of cameras, the
     LightRange,
     LightInnerCone, // angles from a spot light's axis
     LightOuterCone,
-    MaterialNumbers // AnimationChannel::numbers
+    MaterialNumbers, // AnimationChannel::numbers
+    TextureOffset,   // parts of AnimationChannel::texture_at_rest
+    TextureScale,
+    TextureRotation
 };
 constexpr bool is_of_node(AnimatedPart part) { return part <= AnimatedPart::Weights; }
 constexpr bool is_of_camera(AnimatedPart part) { return !is_of_node(part) && part <= AnimatedPart::CameraHeight; }
 constexpr bool is_of_light(AnimatedPart part) {
     return part >= AnimatedPart::LightIntensity && part <= AnimatedPart::LightOuterCone;
 }
-constexpr bool is_of_material(AnimatedPart part) { return part == AnimatedPart::MaterialNumbers; }
+constexpr bool is_of_material(AnimatedPart part) { return part >= AnimatedPart::MaterialNumbers; }
+constexpr bool is_of_texture(AnimatedPart part) { return part >= AnimatedPart::TextureOffset; }
 constexpr bool places_node(AnimatedPart part) { return part <= AnimatedPart::Scale; }
 /// Returns the number of components of a value; 0 for weights, of which a mesh has one per morph target, and for
 /// numbers of materials.
 constexpr std::size_t numbers_of(AnimatedPart part) {
-    constexpr uint8_t kNumbers[] = {3, 4, 3, 0, 1, 1, 3, 1, 1, 1, 0}; // in the order of the enumerators
-    static_assert(sizeof kNumbers == static_cast<std::size_t>(AnimatedPart::MaterialNumbers) + 1);
+    constexpr uint8_t kNumbers[] = {3, 4, 3, 0, 1, 1, 3, 1, 1, 1, 0, 2, 2, 1}; // in the order of the enumerators
+    static_assert(sizeof kNumbers == static_cast<std::size_t>(AnimatedPart::TextureRotation) + 1);
     return kNumbers[static_cast<std::size_t>(part)];
 }
 
@@ -50,12 +56,15 @@ struct AnimationChannel {
     std::vector<float> times;
     /// Values for all times, one after the other; for CubicSpline three each: in-tangent, value, out-tangent, with
     /// tangents per second. A value has 3 components (Translation in metres, Scale, LightIntensity), 4 (Rotation: a
-    /// nonzero quaternion x, y, z, w), as many as the node has morph_weights or as there are `numbers`, or 1 (CameraFov
-    /// and cones in radians, CameraHeight and LightRange in metres).
+    /// nonzero quaternion x, y, z, w), as many as the node has morph_weights or as a channel of MaterialNumbers has
+    /// `numbers`, 2 (TextureOffset, TextureScale) or 1 (CameraFov, cones and TextureRotation in radians, CameraHeight
+    /// and LightRange in metres).
     std::vector<float> values;
     /// The numbers of a material that the channel changes, in the order of visit_parameters, where the first is 0. One
-    /// outside its range is clamped.
+    /// outside its range is clamped. A channel of a texture has the slots that it changes, in the order of
+    /// visit_textures; other parts of their transform are those at rest, unless other channels change them.
     std::vector<uint8_t> numbers;
+    TextureTransform texture_at_rest;
 };
 
 /// An animation. All of Scene::animations play at once, each from time 0, and hold their last value. If two change

@@ -10,6 +10,7 @@
 
 #include "base/host_device.h"
 #include "image/image.h"
+#include "math/vec2.h"
 
 namespace pertev {
 
@@ -39,5 +40,15 @@ struct TextureRef {
 
     HD bool has_image() const { return image != kNoImage; }
 };
+
+/// The transform of texture coordinates, which are scaled, then rotated, then moved.
+struct TextureTransform {
+    Vec2 offset = {0, 0}, scale = {1, 1};
+    float rotation = 0; // radians, counter-clockwise in u right, v down
+};
+
+/// Sets the matrix of a texture. Source: KHR_texture_transform, whose rotation's sign is that of its words, pictures
+/// and test model; the GLSL in its text turns the other way (KhronosGroup/glTF #1563).
+void set_transform(TextureRef& texture, const TextureTransform& transform);
 
 } // namespace pertev

@@ -20,6 +20,19 @@ constexpr std::string_view kOfReflection[] = {
     "metallic", "roughness", "ior", "specular_weight", "specular_color", "transmission_weight", "metal_fresnel"};
 constexpr std::string_view kOfConductor[] = {"eta", "k"};
 
+/// Names of OpenPBR Surface 1.1.1 for parameters that have another one here.
+struct OpenPbrName {
+    std::string_view name, own;
+    float factor = 1; // the numbers of this name are multiplied by it
+};
+constexpr std::string_view kOpacity = "geometry_opacity";
+constexpr OpenPbrName kOfOpenPbr[] = {{"base_metalness", "metallic"},
+                                      {"specular_roughness", "roughness"},
+                                      {"specular_ior", "ior"},
+                                      {"thin_film_thickness", "thin_film_thickness_nm", 1e3f}, // from micrometres
+                                      {"geometry_thin_walled", "thin_walled"},
+                                      {kOpacity, "alpha"}};
+
 bool is_one_of(std::span<const std::string_view> names, std::string_view name) {
     return std::ranges::find(names, name) != names.end();
 }
@@ -44,6 +57,22 @@ public:
     Changer(const MaterialChange& change, Material& material) : change_(change), material_(material) {}
 
     void set(const std::string& key, const std::string& value) {
+        const auto* const other = std::ranges::find(kOfOpenPbr, key, &OpenPbrName::name);
+        if (other == std::end(kOfOpenPbr)) return set_own(key, value, 1);
+        set_own(std::string(other->own), value, other->factor);
+        const bool shows_opacity = material_.alpha_mode != AlphaMode::Opaque || material_.alpha == 1;
+        if (key == kOpacity && !shows_opacity) material_.alpha_mode = AlphaMode::Blend;
+    }
+
+    /// Ends the change, after all its keys.
+    void finish(Sink& sink) {
+        if (material_.is_clear_boundary) material_.make_clear_boundary();
+        if (material_.medium.is_there() && !material_.encloses() && sets_medium())
+            sink.leave_out({"material", change_.text, "its medium is left out, because no light enters the material"});
+    }
+
+private:
+    void set_own(const std::string& key, const std::string& value, float factor) {
         if (is_one_of(kOfReflection, key) && material_.kind == MaterialKind::Diffuse) {
             material_.kind = MaterialKind::MetallicRoughness;
         }
@@ -66,18 +95,10 @@ public:
             flag = value == "true";
             if (key == "is_clear_boundary" && !flag) refuse(fmt::format("{} can only be true", key));
         });
-        set_numbers(key, value, is_known);
+        set_numbers(key, value, factor, is_known);
         if (!is_known) refuse(fmt::format("there is no {}; there are {}", key, fmt::join(known_names(), ", ")));
     }
 
-    /// Ends the change, after all its keys.
-    void finish(Sink& sink) {
-        if (material_.is_clear_boundary) material_.make_clear_boundary();
-        if (material_.medium.is_there() && !material_.encloses() && sets_medium())
-            sink.leave_out({"material", change_.text, "its medium is left out, because no light enters the material"});
-    }
-
-private:
     bool sets_medium() const {
         return std::ranges::any_of(change_.values, [](const auto& of) { return of.first.starts_with("medium_"); });
     }
@@ -95,7 +116,7 @@ private:
         material_.k = metal->k;
     }
 
-    void set_numbers(const std::string& key, const std::string& text, bool& is_known) {
+    void set_numbers(const std::string& key, const std::string& text, float factor, bool& is_known) {
         std::vector<float*> channels;
         float least = 0, most = 0;
         visit_parameters(
@@ -116,7 +137,8 @@ private:
         std::vector<float> values;
         for (std::string_view rest = text;;) {
             const std::size_t comma = std::min(rest.find(','), rest.size());
-            const std::optional<float> value = parse_whole_float(rest.substr(0, comma));
+            std::optional<float> value = parse_whole_float(rest.substr(0, comma));
+            if (value) *value *= factor;
             if (!value || !(*value >= least && *value <= most)) {
                 refuse(fmt::format("{} is {} from {} to {}", key, channels.size() > 1 ? "R,G,B, each" : "a number",
                                    least, most));

@@ -26,8 +26,10 @@ MaterialChange parse_material_change(std::string_view text);
 /// Sets the parameters of every material with one of these names, in order. A value is a number, a colour (R,G,B or one
 /// number), true or false, a name for a choice (visit_choices) and for `metal`, which makes a conductor of a measured
 /// one (scene/metals.h), or `none` to drop a texture. Textures multiply their parameter as before. A Diffuse material
-/// whose reflection is set (metallic, roughness, ior, specular, transmission) becomes MetallicRoughness. Throws for an
-/// unknown name or parameter, and for a value beyond the parameter's range.
+/// whose reflection is set (metallic, roughness, ior, specular, transmission) becomes MetallicRoughness. OpenPBR's
+/// names of parameters that have others here are known, too (base_metalness, specular_roughness, specular_ior,
+/// thin_film_thickness in micrometres, geometry_thin_walled, geometry_opacity, which blends). Throws for an unknown
+/// name or parameter, and for a value beyond the parameter's range.
 void set_materials(Scene& scene, std::span<const MaterialChange> changes, Sink& sink = nobody());
 
 /// Describes a material as NAME KEY=VALUE ...: its kind, its colour, and what differs from the defaults. A texture has

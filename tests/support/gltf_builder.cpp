@@ -49,14 +49,13 @@ int GltfBuilder::add_view_of_bytes(std::span<const std::byte> bytes, const std::
 }
 
 int GltfBuilder::add_compressed_view(const std::vector<unsigned char>& bytes, std::size_t stride, std::size_t count,
-                                     const std::string& members) {
+                                     const std::string& members, const std::string& prefix) {
     const std::size_t at = (data_.size() + 3) / 4 * 4;
-    return add_view_of_bytes(
-        std::as_bytes(std::span(bytes)),
-        ",\"byteStride\":" + std::to_string(stride) +
-            ",\"extensions\":{\"EXT_meshopt_compression\":{\"buffer\":0,\"byteOffset\":" + std::to_string(at) +
-            ",\"byteLength\":" + std::to_string(bytes.size()) + ",\"byteStride\":" + std::to_string(stride) +
-            ",\"count\":" + std::to_string(count) + members + "}}");
+    return add_view_of_bytes(std::as_bytes(std::span(bytes)),
+                             ",\"byteStride\":" + std::to_string(stride) + ",\"extensions\":{\"" + prefix +
+                                 "_meshopt_compression\":{\"buffer\":0,\"byteOffset\":" + std::to_string(at) +
+                                 ",\"byteLength\":" + std::to_string(bytes.size()) + ",\"byteStride\":" +
+                                 std::to_string(stride) + ",\"count\":" + std::to_string(count) + members + "}}");
 }
 
 int GltfBuilder::add_accessor(const std::string& members) {

@@ -29,9 +29,9 @@ public:
     }
     int add_view_of_bytes(std::span<const std::byte> bytes, const std::string& members = "");
     /// Adds a view of `count` elements of `stride` bytes, compressed by EXT_meshopt_compression into `bytes`.
-    /// `members` are the extension's mode and filter.
+    /// `members` are the extension's mode and filter, `prefix` begins its name.
     int add_compressed_view(const std::vector<unsigned char>& bytes, std::size_t stride, std::size_t count,
-                            const std::string& members);
+                            const std::string& members, const std::string& prefix = "EXT");
 
     /// Appends numbers and returns the index of an accessor over all of them.
     template <class T>

@@ -1,6 +1,7 @@
 // Nodes, skins and animations that the glTF reader returns, and files with invalid animations.
 
 #include <algorithm>
+#include <cmath>
 
 #include <doctest/doctest.h>
 
@@ -303,6 +304,76 @@ TEST_CASE("KHR_animation_pointer animates numbers of materials, within their ran
     CHECK(test::read_gltf_text(document(channel("0/alphaCutoff", 0)), unused).animations.at(0).channels.empty());
     test::read_gltf_text(document(channel("1/doubleSided", 0) + "," + channel("7/alphaCutoff", 0)), unknown);
     CHECK(unknown.left_out().size() == 2);
+}
+
+TEST_CASE("KHR_animation_pointer animates the transforms of textures, whose other parts stay those at rest") {
+    GltfBuilder builder;
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}); // 0
+    builder.add("SCALAR", std::vector<float>{0, 1});                    // 1
+    builder.add("VEC2", std::vector<float>{0, 0, 0.5f, 0.25f});         // 2
+    builder.add("SCALAR", std::vector<float>{0, 0.5f});                 // 3
+    builder.add("VEC2", std::vector<float>{0, 0, 0, 0});                // 4
+    builder.add("VEC2", std::vector<float>{0, 0, 1, 0, 0, 1});          // 5
+    const auto channel = [](const std::string& to, int number) {
+        return R"({"sampler":)" + std::to_string(number) +
+               R"(,"target":{"path":"pointer","extensions":{"KHR_animation_pointer":{"pointer":"/materials/0/)" + to +
+               R"("}}}})";
+    };
+    const std::string transform = "/extensions/KHR_texture_transform/";
+    const std::string red =
+        "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGP4z8AAAAMBAQDJ/pLvAAAAAElFTkSuQmCC";
+    const auto document = [&](const std::string& channels) {
+        return builder.json(
+            R"("extensionsUsed":["KHR_animation_pointer","KHR_texture_transform"],"images":[{"uri":"data:image/png;base64,)" +
+            red +
+            R"("}],"textures":[{"source":0}],"materials":[{"emissiveFactor":[1,1,1],"emissiveTexture":{"index":0},)"
+            R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0,"extensions":{"KHR_texture_transform":)"
+            R"({"offset":[0.5,0.25],"scale":[-1,2]}}},"metallicRoughnessTexture":{"index":0}}}],)"
+            R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":5},"material":0}]}],"nodes":[{"mesh":0}],)"
+            R"("animations":[{"samplers":[)" +
+            sampler(1, 2) + "," + sampler(1, 3) + "," + sampler(1, 4) + R"(],"channels":[)" + channels + "]}]");
+    };
+    Messages messages;
+    PosedScene posed(test::read_gltf_text(
+        document(channel("pbrMetallicRoughness/baseColorTexture" + transform + "rotation", 1) + "," +
+                 channel("pbrMetallicRoughness/metallicRoughnessTexture" + transform + "offset", 0)),
+        messages));
+    CHECK(messages.left_out().empty());
+    const Material& material = posed.scene().materials.at(0);
+    SceneUpdate update = posed.set_time(1);
+    CHECK(update.materials_changed);
+    CHECK_FALSE(update.lights_changed);
+    CHECK(update.keeps_surfaces());
+    const TextureRef& color = material.base_color_texture;
+    CHECK(color.m00 == doctest::Approx(-std::cos(0.5)));
+    CHECK(color.m01 == doctest::Approx(2 * std::sin(0.5)));
+    CHECK(color.m10 == doctest::Approx(std::sin(0.5)));
+    CHECK(color.m11 == doctest::Approx(2 * std::cos(0.5)));
+    CHECK(color.m02 == 0.5f);
+    CHECK(color.m12 == 0.25f);
+    for (const TextureRef& both : {material.metallic_texture, material.roughness_texture}) {
+        CHECK(both.m02 == 0.5f);
+        CHECK(both.m12 == 0.25f);
+        CHECK(both.m00 == 1);
+    }
+    CHECK(posed.set_time(1).is_empty());
+    posed.set_time(0);
+    CHECK(color.m00 == -1);
+    CHECK(color.m11 == 2);
+    CHECK(material.roughness_texture.m02 == 0);
+
+    PosedScene glowing(test::read_gltf_text(document(channel("emissiveTexture" + transform + "scale", 2) + "," +
+                                                     channel("emissiveTexture" + transform + "offset", 0)),
+                                            messages));
+    update = glowing.set_time(0.5);
+    CHECK(update.lights_changed);
+    CHECK(glowing.scene().materials.at(0).emission_texture.m00 == 0);
+    CHECK(glowing.scene().materials.at(0).emission_texture.m02 == 0.25f);
+    CHECK(messages.left_out().empty());
+    test::read_gltf_text(document(channel("emissiveTexture" + transform + "texCoord", 1) + "," +
+                                  channel("occlusionTexture" + transform + "scale", 0)),
+                         messages);
+    CHECK(messages.left_out().size() == 2);
 }
 
 TEST_CASE("nodes with one mesh share it, except those with animated weights") {

@@ -9,7 +9,9 @@
 
 #include "base/error.h"
 #include "base/write_file_atomically.h"
+#include "formats/gltf/meshopt_attributes.h"
 #include "formats/gltf/read_gltf.h"
+#include "formats/gltf/uri.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/options.h"
 
@@ -265,6 +267,59 @@ TEST_CASE("buffer views compressed with EXT_meshopt_compression are decoded, inc
     for (std::size_t i = 0; i < grid.size(); ++i) {
         CHECK(length(mesh.normals[i] - Vec3{directions[i].x, directions[i].y, directions[i].z}) < 0.02f);
     }
+}
+
+TEST_CASE("KHR_meshopt_compression's attributes of version 1, and its colours, are decoded; damaged ones are errors") {
+    // By meshoptimizer 1.3: 20 points (i, i i / 4, 7) at level 2, with 2-byte deltas, and at level 3, with XOR.
+    const char* const streams[] = {
+        "oToyqgAAAICAQEBAQCAgICAgICAgEBAQAQYAfwEEDgD///8A/wDf4JCQaHhETFQ8MjY6PiAkJAI6CACAfAAAAAAAAAAAAAAAAAAAAAAAAADg"
+        "QAEAAA==",
+        "oWgyqgEGAAcPAg/49MTyYuJi8PAYPA8AHgEDAQQOAP///wD/AN/gkJBoeERMVDwyNjo+ICQkAjoIAIB8AAAAAAAAAAAAAAAAAAAAAAAAAOBA"
+        "UgAA"};
+    // Colours (i, 19 - i, 19 / 4, 19 / 2 or 19) / 19 of 8 bits.
+    const char* const colors =
+        "ofUCBVdXVXVXVVcPAAUFBwUCDuzs7s7uzuwPAA4ODgwAExMTExMTExMTExURExMTExMVEQB+fX59fn1+fX59fn1+"
+        "fX59fn1+AAAAAAAAAAAAAAAAAAAAAAAAAI/gb8AA";
+    const auto bytes_of = [](const std::string& base64) {
+        const std::vector<std::byte> bytes = *gltf::decode_data_uri("data:application/octet-stream;base64," + base64);
+        const auto* const first = reinterpret_cast<const unsigned char*>(bytes.data());
+        return std::vector<unsigned char>(first, first + bytes.size());
+    };
+    for (const char* const stream : streams) {
+        GltfBuilder builder;
+        builder.add_compressed_view(bytes_of(stream), 12, 20, ",\"mode\":\"ATTRIBUTES\"", "KHR");
+        builder.add_compressed_view(bytes_of(colors), 4, 20, ",\"mode\":\"ATTRIBUTES\",\"filter\":\"COLOR\"", "KHR");
+        builder.add_accessor("\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\",\"count\":20");
+        builder.add_accessor(
+            "\"bufferView\":1,\"componentType\":5121,\"normalized\":true,\"type\":\"VEC4\",\"count\":20");
+        const Mesh mesh =
+            read_primitive(builder, "\"mode\":5,\"attributes\":{\"POSITION\":0,\"COLOR_0\":1}").meshes.at(0);
+        REQUIRE(mesh.positions.size() == 20);
+        REQUIRE(mesh.colors.size() == 20);
+        for (std::size_t i = 0; i < 20; ++i) {
+            const auto x = static_cast<float>(i);
+            CHECK(mesh.positions[i] == Vec3{x, x * x / 4, 7});
+            const Vec4 expected = {x / 19, 1 - x / 19, 0.25f, i % 2 == 0 ? 0.5f : 1};
+            const Vec4 read = mesh.colors[i];
+            CHECK(length(Vec3{read.x, read.y, read.z} - Vec3{expected.x, expected.y, expected.z}) < 0.01f);
+            CHECK(std::abs(read.w - expected.w) < 0.006f);
+        }
+    }
+    std::vector<unsigned char> stream = bytes_of(streams[0]);
+    std::vector<std::byte> to(20 * 12);
+    const auto is_good = [&] { return gltf::decode_meshopt_attributes(std::as_bytes(std::span(stream)), 12, to); };
+    CHECK(is_good());
+    for (const std::size_t size : {std::size_t(1), std::size_t(20), stream.size() - 1}) {
+        const std::vector<unsigned char> whole = stream;
+        stream.resize(size);
+        CHECK_FALSE(is_good());
+        stream = whole;
+    }
+    stream.back() = 3; // there is no such mode
+    CHECK_FALSE(is_good());
+    stream.back() = 0;
+    stream.insert(stream.begin() + 30, 0); // a byte too many
+    CHECK_FALSE(is_good());
 }
 
 TEST_CASE("damaged or impossible compressed buffer views are errors that name the view") {

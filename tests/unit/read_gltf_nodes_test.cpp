@@ -1,10 +1,15 @@
-// Effects of glTF nodes: transforms, instancing, cameras, lights, skins, morph targets, scenes.
+// Effects of glTF nodes: transforms, instancing, cameras, lights, skins, morph targets, scenes, external assets.
 
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <filesystem>
 
+#include "formats/gltf/read_gltf.h"
+#include "scene/pose/posed_scene.h"
 #include "tests/support/gltf_builder.h"
+#include "tests/support/options.h"
+#include "tests/support/write_text.h"
 
 using namespace pertev;
 using test::GltfBuilder;
@@ -23,6 +28,46 @@ std::string only_nodes(const std::string& members) { return R"({"asset":{"versio
 bool same_place(Vec3 a, Vec3 b) { return length(a - b) < 1e-6f; }
 
 const std::string kQuarterTurnAboutZ = R"("rotation":[0,0,0.70710678,0.70710678])";
+
+const std::string kRedPixel =
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGP4z8AAAAMBAQDJ/pLvAAAAAElFTkSuQmCC";
+
+std::filesystem::path asset_folder() {
+    const std::filesystem::path made = test::scratch_folder();
+    std::filesystem::create_directories(made / "parts");
+    return made;
+}
+
+/// A chair: node 0 moves node 1, which shows a triangle; a light and a camera lie at node 0.
+std::string chair_asset() {
+    GltfBuilder builder;
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+    builder.add("SCALAR", std::vector<float>{0, 1});
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 0, 0, 5});
+    builder.add("VEC2", std::vector<float>{0, 0, 1, 0, 0, 1});
+    return builder.json(
+        R"("images":[{"uri":"data:image/png;base64,)" + kRedPixel +
+        R"("}],"textures":[{"source":0}],"materials":[{},{"name":"seat",)"
+        R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}],"cameras":[{"type":"perspective","perspective":{"yfov":1}}],)"
+        R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point"}]}},)"
+        R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":3},"material":1}]}],)"
+        R"("nodes":[{"name":"legs","children":[1],"translation":[1,0,0],"camera":0,"extensions":{"KHR_lights_punctual":{"light":0}}},)"
+        R"({"name":"seat","mesh":0}],"scenes":[{"nodes":[0]}],"animations":[{"name":"swing","samplers":[{"input":1,"output":2}],)"
+        R"("channels":[{"sampler":0,"target":{"node":1,"path":"translation"}}]}])");
+}
+
+std::string room_with_assets(const std::string& files, const std::string& nodes) {
+    GltfBuilder builder;
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 9, 0, 0, 0, 9, 0});
+    return builder.json(R"("files":[)" + files +
+                        R"(],"externalAssets":[{"file":0},{"file":1}],)"
+                        R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0},)" +
+                        nodes + "]");
+}
+
+Scene read_assets(const std::filesystem::path& path, Messages& messages) {
+    return read_gltf(path, FileAccess(path, {}), {}, messages);
+}
 
 } // namespace
 
@@ -316,4 +361,85 @@ TEST_CASE("morph targets are added with the node's weights, or the mesh's if it 
     CHECK(scene.meshes[0].normals == std::vector<Vec3>{{1, 0, 0}, {0, 0, 1}, {0, 0, 1}});
     CHECK(scene.meshes[1].positions == std::vector<Vec3>{{0, 0, 0}, {1, 0, 8}, {0, 1, 0}});
     CHECK(scene.instances[0].mesh == scene.instances[2].mesh);
+}
+
+TEST_CASE("an external asset is shown by nodes, with its own materials, textures, lights, cameras and animations") {
+    const std::filesystem::path at = asset_folder();
+    test::write_text(at / "parts/chair.gltf", chair_asset());
+    const std::string uri = R"({"uri":"parts/chair.gltf","mimeType":"model/gltf+json"})";
+    const std::filesystem::path outer = test::write_text(
+        at / "room.gltf",
+        room_with_assets(uri, R"({"externalAsset":0,"translation":[0,2,0],"scale":[2,2,2]},{"externalAsset":0},)"
+                              R"({"externalAsset":0,"extensions":{"KHR_node_visibility":{"visible":false}}})"));
+    Messages messages;
+    Scene scene = read_assets(outer, messages);
+    CHECK(messages.left_out().empty());
+    CHECK(scene.meshes.size() == 2); // both copies have one
+    CHECK(scene.images.size() == 1);
+    CHECK(scene.nodes.size() == 4 + 2 * 3);
+    REQUIRE(scene.instances.size() == 3);
+    CHECK(scene.instances[0].name.empty());
+    for (const std::size_t i : {1, 2}) {
+        const Instance& seat = scene.instances[i];
+        CHECK(seat.mesh == 1);
+        CHECK(scene.nodes.at(seat.node).name == "seat");
+        const Material& material = scene.materials.at(seat.material);
+        CHECK(material.name == "seat");
+        CHECK(material.base_color_texture.image == 0);
+        CHECK(scene.cameras.at(i - 1).world_from_camera.translation.x == (i == 1 ? 2 : 1));
+    }
+    CHECK(transform_point(scene.instances[1].world_from_local, {1, 0, 0}) == Vec3{4, 2, 0});
+    CHECK(transform_point(scene.instances[2].world_from_local, {1, 0, 0}) == Vec3{2, 0, 0});
+    REQUIRE(scene.lights.size() == 2);
+    CHECK(scene.lights[0].position == Vec3{2, 2, 0});
+    CHECK(scene.lights[1].position == Vec3{1, 0, 0});
+    CHECK(scene.animations.size() == 2);
+    CHECK(column(scene.cameras[0].world_from_camera, 2) == Vec3{0, 0, 1});
+    PosedScene posed(std::move(scene));
+    posed.set_time(1);
+    CHECK(transform_point(posed.scene().instances[1].world_from_local, {1, 0, 0}) == Vec3{4, 2, 10});
+    CHECK(transform_point(posed.scene().instances[2].world_from_local, {1, 0, 0}) == Vec3{2, 0, 5});
+
+    // A room that shows the first one, and a chair that is inside it.
+    const std::string text = chair_asset();
+    const std::string inside = R"({"mimeType":"model/gltf+json","uri":"data:model/gltf+json;base64,)" +
+                               test::base64(std::as_bytes(std::span(text))) + R"("})";
+    const std::filesystem::path house = test::write_text(
+        at / "house.gltf",
+        room_with_assets(R"({"uri":"room.gltf","mimeType":"model/gltf+json"},)" + inside,
+                         R"({"externalAsset":0,"rotation":[0,1,0,0]},{"externalAsset":1,"translation":[0,0,7]})"));
+    const Scene nested = read_assets(house, messages);
+    CHECK(messages.left_out().empty());
+    REQUIRE(nested.instances.size() == 5);
+    CHECK(length(transform_point(nested.instances[2].world_from_local, {1, 0, 0}) - Vec3{-4, 2, 0}) < 1e-6f);
+    CHECK(transform_point(nested.instances[4].world_from_local, {1, 0, 0}) == Vec3{2, 0, 7});
+    for (const std::size_t i : {2, 3, 4})
+        CHECK(nested.materials.at(nested.instances[i].material).base_color_texture.image == (i < 4 ? 0 : 1));
+    for (const Node& node : nested.nodes) CHECK((node.parent == kNoNode || node.parent < nested.nodes.size()));
+}
+
+TEST_CASE("external assets that show themselves, are damaged, missing or in other folders are left out") {
+    const std::filesystem::path at = asset_folder();
+    const auto shows = [&](const std::string& name, const std::string& other) {
+        return test::write_text(
+            at / name,
+            room_with_assets(R"({"uri":")" + other + R"(","mimeType":"model/gltf+json"})", R"({"externalAsset":0})"));
+    };
+    test::write_text(at / "parts/bad.gltf", "no JSON");
+    test::write_text(at / "chair.gltf", chair_asset());
+    const auto left_out = [&](const std::filesystem::path& path) {
+        Messages messages;
+        CHECK(read_assets(path, messages).instances.size() == (path.stem() == "a" ? 2 : 1));
+        const std::vector<std::string> texts = messages.left_out();
+        REQUIRE(texts.size() == 1);
+        return texts[0];
+    };
+    shows("b.gltf", "a.gltf");
+    CHECK(left_out(shows("a.gltf", "b.gltf")).find("shows itself") != std::string::npos);
+    CHECK(left_out(shows("itself.gltf", "./itself.gltf")).find("shows itself") != std::string::npos);
+    left_out(shows("c.gltf", "parts/bad.gltf"));
+    left_out(shows("d.gltf", "parts/none.gltf"));
+    left_out(shows("parts/outside.gltf", "../chair.gltf"));
+    left_out(test::write_text(at / "e.gltf", room_with_assets("", R"({"externalAsset":0})")));
+    left_out(test::write_text(at / "f.gltf", room_with_assets("", R"({"externalAsset":5})")));
 }

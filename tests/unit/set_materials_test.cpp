@@ -81,6 +81,26 @@ TEST_CASE("materials are changed by name, by wildcards, or by number where they 
     CHECK(scene.materials[2].is_stacked());
 }
 
+TEST_CASE("names of OpenPBR set the parameters that have others here") {
+    Scene scene = three_materials();
+    change(scene, "gold leaf base_metalness=1 specular_roughness=0.25 specular_ior=1.25 thin_film_thickness=0.5");
+    const Material& leaf = scene.materials[0];
+    CHECK(leaf.kind == MaterialKind::MetallicRoughness);
+    CHECK(leaf.metallic == 1);
+    CHECK(leaf.roughness == 0.25f);
+    CHECK(leaf.ior == 1.25f);
+    CHECK(leaf.thin_film_thickness_nm == 500);
+    change(scene, "gold leaf geometry_thin_walled=false geometry_opacity=1");
+    CHECK_FALSE(leaf.thin_walled);
+    CHECK(leaf.alpha_mode == AlphaMode::Opaque);
+    change(scene, "gold leaf geometry_opacity=0.5");
+    CHECK(leaf.alpha == 0.5f);
+    CHECK(leaf.alpha_mode == AlphaMode::Blend);
+    change(scene, "gold leaf alpha_mode=mask geometry_opacity=0.25");
+    CHECK(leaf.alpha_mode == AlphaMode::Mask);
+    CHECK(refuses_change("gold leaf specular_roughness=2", "from 0 to 1"));
+}
+
 TEST_CASE("measured metals reflect as published, and an unknown one is answered with the list") {
     Scene scene = three_materials();
     change(scene, "gold* metal=gold");

@@ -48,11 +48,21 @@ struct Target {
     bool is_scalar = false;            // ...one number per value and not a colour
     float scale = 1;                   // factor of the values
     std::vector<uint8_t> numbers = {}; // AnimationChannel::numbers
+    TextureTransform texture_at_rest = {};
 };
 
 ElementType element_of(const Target& target) {
-    const std::size_t numbers = is_of_material(target.part) ? target.numbers.size() : numbers_of(target.part);
-    return numbers == 4 ? ElementType::Vec4 : numbers == 3 ? ElementType::Vec3 : ElementType::Scalar;
+    const bool has_numbers = target.part == AnimatedPart::MaterialNumbers;
+    switch (has_numbers ? target.numbers.size() : numbers_of(target.part)) {
+    case 2:
+        return ElementType::Vec2;
+    case 3:
+        return ElementType::Vec3;
+    case 4:
+        return ElementType::Vec4;
+    default:
+        return ElementType::Scalar;
+    }
 }
 
 /// Single-number properties of cameras and lights, which are copied or multiplied by `scale`.
@@ -113,9 +123,12 @@ std::optional<Target> pointed_at(const Document& document, const JsonValue& json
     const std::string_view pointer = json.to_string();
     if (const auto material = find_material_pointer(document, pointer)) {
         const std::optional<uint32_t> index = materials.index_of(material->material);
-        Target target = {.part = AnimatedPart::MaterialNumbers, .scale = material->scale, .numbers = material->numbers};
-        target.is_scalar = material->components == 1;
-        if (material->components < material->numbers.size()) target.factor = material->factor;
+        Target target = {.part = material->part, .scale = material->scale, .numbers = material->numbers};
+        target.texture_at_rest = material->texture_at_rest;
+        if (!is_of_texture(material->part)) {
+            target.is_scalar = material->components == 1;
+            if (material->components < material->numbers.size()) target.factor = material->factor;
+        }
         if (index) target.indices = {*index};
         return target;
     }
@@ -168,10 +181,12 @@ std::optional<Target> read_target(const Document& document, const JsonValue& tar
         if (!found) {
             sink.leave_out(
                 {pointer.location(),
-                 fmt::format("\"{}\" is not animated; expected a node's translation, rotation, scale or "
-                             "weights, a camera's /perspective/yfov or /orthographic/ymag, a light's color, "
-                             "intensity, range, /spot/innerConeAngle or /spot/outerConeAngle, or a material's factor",
-                             shortened(pointer.to_string()))});
+                 fmt::format(
+                     "\"{}\" is not animated; expected a node's translation, rotation, scale or "
+                     "weights, a camera's /perspective/yfov or /orthographic/ymag, a light's color, "
+                     "intensity, range, /spot/innerConeAngle or /spot/outerConeAngle, or a material's factor or "
+                     "KHR_texture_transform",
+                     shortened(pointer.to_string()))});
         }
         return found;
     }
@@ -190,6 +205,7 @@ AnimationChannel read_keys(const Document& document, Buffers& buffers, const Jso
     AnimationChannel channel;
     channel.part = target.part;
     channel.numbers = target.numbers;
+    channel.texture_at_rest = target.texture_at_rest;
     const uint64_t number = reference.to_unsigned();
     if (number >= samplers.size()) {
         throw reference.error(fmt::format("{}; expected an index into \"samplers\", which has {}", number,
@@ -240,7 +256,8 @@ std::vector<JsonValue> animations_of(const Document& document, Sink& sink) {
 
 /// Returns whether the target is the absorption of a solid whose medium has it (KHR_materials_volume_scatter).
 bool attenuates_medium(const Target& target, const Scene& scene) {
-    if (!is_of_material(target.part) || !scene.materials[target.indices[0]].medium.is_there()) return false;
+    if (target.part != AnimatedPart::MaterialNumbers || !scene.materials[target.indices[0]].medium.is_there())
+        return false;
     return target.numbers == material_numbers("transmission_depth") ||
            target.numbers == material_numbers("transmission_color");
 }

@@ -6,13 +6,25 @@
 #include "base/limits.h"
 #include "base/message_text.h"
 #include "base/read_file.h"
+#include "formats/gltf/meshopt_attributes.h"
 #include "formats/gltf/uri.h"
 
 namespace pertev::gltf {
 namespace {
 
-// The vertex codec spends at least two bits on a group of 16 bytes, the others more: no stream can grow further.
-constexpr uint64_t kMaxCodecRatio = 64;
+// Version 0 of the vertex codec spends at least two bits on a group of 16 bytes, version 1 on 256 bytes, the others
+// more: no stream can grow further.
+constexpr uint64_t kMaxCodecRatio = 64, kMaxRatioOfVersion1 = 1024;
+
+constexpr std::string_view kCodecs[] = {"KHR_meshopt_compression", "EXT_meshopt_compression"};
+
+/// Returns what a view or buffer has of either extension; they have the same members.
+std::optional<JsonValue> meshopt_compression(const JsonValue& json) {
+    for (const std::string_view name : kCodecs) {
+        if (std::optional<JsonValue> found = json.extension(name)) return found;
+    }
+    return std::nullopt;
+}
 
 } // namespace
 
@@ -104,11 +116,13 @@ std::vector<std::byte> Buffers::decompress(const JsonValue& compressed) {
     if (mode == "TRIANGLES" && count % 3 != 0) throw compressed.error("count is not a multiple of 3");
     const bool good_filter =
         filter == "NONE" || (is_vertices && filter == "OCTAHEDRAL" && (stride == 4 || stride == 8)) ||
-        (is_vertices && filter == "QUATERNION" && stride == 8) || (is_vertices && filter == "EXPONENTIAL");
+        (is_vertices && filter == "QUATERNION" && stride == 8) || (is_vertices && filter == "EXPONENTIAL") ||
+        (is_vertices && filter == "COLOR" && (stride == 4 || stride == 8));
     if (!good_filter) {
         throw compressed.error(fmt::format("filter \"{}\" is not allowed for {} of {} bytes", filter, mode, stride));
     }
-    if (count > kMaxCodecRatio * source.size() / stride) {
+    const bool has_version_1 = is_vertices && has_meshopt_version_1(source);
+    if (count > (has_version_1 ? kMaxRatioOfVersion1 : kMaxCodecRatio) * source.size() / stride) {
         throw compressed.error(
             fmt::format("{} compressed bytes cannot hold {} elements of {} bytes", source.size(), count, stride));
     }
@@ -118,7 +132,9 @@ std::vector<std::byte> Buffers::decompress(const JsonValue& compressed) {
     const auto* data = reinterpret_cast<const unsigned char*>(source.data());
     int failure = 0;
     if (count == 0) return bytes;
-    if (is_vertices)
+    if (has_version_1)
+        failure = decode_meshopt_attributes(source, stride, bytes) ? 0 : 1;
+    else if (is_vertices)
         failure = meshopt_decodeVertexBuffer(bytes.data(), count, stride, data, source.size());
     else if (mode == "TRIANGLES")
         failure = meshopt_decodeIndexBuffer(bytes.data(), count, stride, data, source.size());
@@ -128,13 +144,14 @@ std::vector<std::byte> Buffers::decompress(const JsonValue& compressed) {
     if (filter == "OCTAHEDRAL") meshopt_decodeFilterOct(bytes.data(), count, stride);
     if (filter == "QUATERNION") meshopt_decodeFilterQuat(bytes.data(), count, stride);
     if (filter == "EXPONENTIAL") meshopt_decodeFilterExp(bytes.data(), count, stride);
+    if (filter == "COLOR") decode_meshopt_colors(bytes, stride);
     return bytes;
 }
 
 BufferView Buffers::view(const JsonValue& reference) {
     const uint32_t index = document_.index_into("bufferViews", reference);
     const JsonValue& view = document_.table("bufferViews")[index];
-    const std::optional<JsonValue> compressed = view.extension("EXT_meshopt_compression");
+    const std::optional<JsonValue> compressed = meshopt_compression(view);
     if (!compressed) return {slice(view), view.unsigned_or("byteStride", 0)};
     if (!decompressed_[index]) decompressed_[index] = decompress(*compressed);
     return {*decompressed_[index], view.unsigned_or("byteStride", 0)};

@@ -1,9 +1,9 @@
 #pragma once
 
-// The binary data of a document: its buffers, and the views into them, decompressed for EXT_meshopt_compression.
-// Every view lies within its buffer.
+// The binary data of a document: its buffers, and the views into them, decompressed for EXT_ and
+// KHR_meshopt_compression. Every view lies within its buffer.
 //
-// Source: glTF 2.0 section 3.6.1; EXT_meshopt_compression.
+// Source: glTF 2.0 section 3.6.1; EXT_meshopt_compression and KHR_meshopt_compression (release candidate).
 
 #include <cstddef>
 #include <cstdint>

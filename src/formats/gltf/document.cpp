@@ -19,9 +19,9 @@
 namespace pertev::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 12> kTables = {"accessors", "bufferViews", "buffers", "cameras",
-                                                      "images",    "materials",   "meshes",  "nodes",
-                                                      "samplers",  "scenes",      "skins",   "textures"};
+constexpr std::array<std::string_view, 14> kTables = {
+    "accessors", "bufferViews", "buffers", "cameras",  "externalAssets", "files", "images",
+    "materials", "meshes",      "nodes",   "samplers", "scenes",         "skins", "textures"};
 
 constexpr uint32_t kGlbMagic = 0x46546c67;    // "glTF"
 constexpr uint32_t kJsonChunk = 0x4e4f534a;   // "JSON"

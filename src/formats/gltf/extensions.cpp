@@ -10,7 +10,7 @@
 namespace pertev::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 24> kRead = {"EXT_lights_ies",
+constexpr std::array<std::string_view, 25> kRead = {"EXT_lights_ies",
                                                     "EXT_lights_image_based",
                                                     "EXT_mesh_gpu_instancing",
                                                     "EXT_meshopt_compression",
@@ -32,6 +32,7 @@ constexpr std::array<std::string_view, 24> kRead = {"EXT_lights_ies",
                                                     "KHR_materials_volume",
                                                     "KHR_materials_volume_scatter",
                                                     "KHR_mesh_quantization",
+                                                    "KHR_meshopt_compression",
                                                     "KHR_node_visibility",
                                                     "KHR_texture_transform"};
 

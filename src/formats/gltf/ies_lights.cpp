@@ -10,6 +10,7 @@
 #include "base/limits.h"
 #include "formats/gltf/attached_bytes.h"
 #include "formats/gltf/leave_out.h"
+#include "formats/gltf/light.h"
 #include "formats/ies/read_ies.h"
 
 namespace pertev::gltf {
@@ -97,7 +98,7 @@ void place_ies_lights(const Document& document, Buffers& buffers, const FileAcce
             if (light.name.empty()) light.name = scene.nodes[index].name;
             light.origin = node.pointer();
             light.node = index;
-            if (!transform_light(nodes.world_from_node(index), light))
+            if (!place_light(nodes.world_from_node(index), light))
                 throw node.error("the light's transform is singular");
             if (!(max_component(abs(light.position)) <= kMaxCoordinate))
                 throw node.error("the light lies beyond 2^40 metres");

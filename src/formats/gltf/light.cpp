@@ -87,4 +87,9 @@ Light read_light(const JsonValue& source, Sink& sink) {
     return light;
 }
 
+bool place_light(const Transform& world_from_node, Light& light) {
+    return transform_light(world_from_node, light) &&
+           (!parts_of(light.kind).direction || length_squared(light.direction) > 0.5f);
+}
+
 } // namespace pertev::gltf

@@ -19,4 +19,8 @@ std::span<const std::string_view> light_extensions();
 /// with a warning. A negative strength becomes 0, and any other unreadable member is left out.
 Light read_light(const JsonValue& light, Sink& sink);
 
+/// Places a light at its node. Returns false if a direction that it needs is lost, as by a transform so large that it
+/// has no length.
+bool place_light(const Transform& world_from_node, Light& light);
+
 } // namespace pertev::gltf

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "formats/files/parse_number.h"
+#include "formats/gltf/textures.h"
 
 namespace pertev::gltf {
 namespace {
@@ -46,6 +47,76 @@ constexpr NamedNumber kNumbers[] = {
     {"/extensions/KHR_materials_diffuse_transmission/diffuseTransmissionFactor", "diffuse_transmission_weight"},
     {"/extensions/KHR_materials_diffuse_transmission/diffuseTransmissionColorFactor", "diffuse_transmission_color"}};
 
+struct NamedTexture {
+    std::string_view path; // beneath the material
+    const char *slot, *further = nullptr;
+};
+constexpr NamedTexture kTextures[] = {
+    {"/pbrMetallicRoughness/baseColorTexture", "base_color_texture"},
+    {"/pbrMetallicRoughness/metallicRoughnessTexture", "metallic_texture", "roughness_texture"},
+    {"/normalTexture", "normal_texture"},
+    {"/emissiveTexture", "emission_texture"},
+    {"/extensions/KHR_materials_transmission/transmissionTexture", "transmission_texture"},
+    {"/extensions/KHR_materials_clearcoat/clearcoatTexture", "coat_texture"},
+    {"/extensions/KHR_materials_clearcoat/clearcoatRoughnessTexture", "coat_roughness_texture"},
+    {"/extensions/KHR_materials_clearcoat/clearcoatNormalTexture", "coat_normal_texture"},
+    {"/extensions/KHR_materials_sheen/sheenColorTexture", "fuzz_color_texture"},
+    {"/extensions/KHR_materials_sheen/sheenRoughnessTexture", "fuzz_roughness_texture"},
+    {"/extensions/KHR_materials_specular/specularTexture", "specular_texture"},
+    {"/extensions/KHR_materials_specular/specularColorTexture", "specular_color_texture"},
+    {"/extensions/KHR_materials_anisotropy/anisotropyTexture", "anisotropy_texture"},
+    {"/extensions/KHR_materials_iridescence/iridescenceTexture", "thin_film_texture"},
+    {"/extensions/KHR_materials_iridescence/iridescenceThicknessTexture", "thin_film_thickness_texture"},
+    {"/extensions/KHR_materials_retroreflection/retroreflectionTexture", "retroreflectivity_texture"},
+    {"/extensions/KHR_materials_diffuse_transmission/diffuseTransmissionTexture", "diffuse_transmission_texture"},
+    {"/extensions/KHR_materials_diffuse_transmission/diffuseTransmissionColorTexture",
+     "diffuse_transmission_color_texture"},
+    {"/extensions/KHR_materials_pbrSpecularGlossiness/diffuseTexture", "base_color_texture"},
+    {"/extensions/KHR_materials_pbrSpecularGlossiness/specularGlossinessTexture", "specular_color_texture",
+     "roughness_texture"}};
+
+struct PartOfTransform {
+    std::string_view name;
+    AnimatedPart part;
+};
+constexpr PartOfTransform kParts[] = {{"offset", AnimatedPart::TextureOffset},
+                                      {"scale", AnimatedPart::TextureScale},
+                                      {"rotation", AnimatedPart::TextureRotation}};
+constexpr std::string_view kTransform = "/extensions/KHR_texture_transform/";
+
+/// Returns the member at a path "/name/name" of names without special characters.
+std::optional<JsonValue> member_at(const JsonValue& object, std::string_view path) {
+    std::optional<JsonValue> found = object;
+    while (found && !path.empty()) {
+        const std::size_t end = std::min(path.find('/', 1), path.size());
+        found = found->find(path.substr(1, end - 1));
+        path.remove_prefix(end);
+    }
+    return found;
+}
+
+/// Returns what a path beneath a material names of a texture's transform.
+std::optional<MaterialPointer> find_texture(const JsonValue& material, std::string_view path) {
+    const std::size_t end = path.rfind(kTransform);
+    if (end == path.npos) return std::nullopt;
+    const auto* const part = std::ranges::find(kParts, path.substr(end + kTransform.size()), &PartOfTransform::name);
+    const auto* const texture = std::ranges::find(kTextures, path.substr(0, end), &NamedTexture::path);
+    if (part == std::end(kParts) || texture == std::end(kTextures)) return std::nullopt;
+    MaterialPointer found;
+    found.part = part->part;
+    uint8_t slot = 0;
+    MaterialParameters any;
+    visit_textures(any, [&](TextureRef&, std::string_view name) {
+        if (name == texture->slot || (texture->further != nullptr && name == texture->further))
+            found.numbers.push_back(slot);
+        ++slot;
+    });
+    const std::string_view of_transform = path.substr(0, end + kTransform.size() - 1);
+    if (const auto transform = member_at(material, of_transform))
+        found.texture_at_rest = read_texture_transform(*transform);
+    return found;
+}
+
 } // namespace
 
 std::optional<MaterialPointer> find_material_pointer(const Document& document, std::string_view pointer) {
@@ -56,6 +127,10 @@ std::optional<MaterialPointer> find_material_pointer(const Document& document, s
     const std::optional<uint32_t> index = parse_whole_number<uint32_t>(rest.substr(0, end));
     if (!index || *index >= document.table("materials").size()) return std::nullopt;
     const std::string_view path = rest.substr(end);
+    if (auto texture = find_texture(document.table("materials")[*index], path)) {
+        texture->material = *index;
+        return texture;
+    }
     for (const NamedNumber& number : kNumbers) {
         if (path != number.path) continue;
         MaterialPointer found = {.material = *index, .numbers = material_numbers(number.name)};

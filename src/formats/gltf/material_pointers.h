@@ -1,7 +1,8 @@
 #pragma once
 
-// The numbers of materials that animations may change. Source: KHR_animation_pointer and the glTF 2.0 Asset Object
-// Model, for the factors of the core material and of the extensions that are read.
+// The numbers of materials, and the transforms of their textures, that animations may change. Source:
+// KHR_animation_pointer and the glTF 2.0 Asset Object Model, for the factors of the core material and of the extensions
+// that are read.
 
 #include <optional>
 #include <string_view>
@@ -12,11 +13,13 @@
 namespace pertev::gltf {
 
 struct MaterialPointer {
-    uint32_t material = 0;        // index in the file
+    uint32_t material = 0; // index in the file
+    AnimatedPart part = AnimatedPart::MaterialNumbers;
     std::vector<uint8_t> numbers; // AnimationChannel::numbers
     std::size_t components = 1;   // number in a value of the file; 1 if it sets all numbers
     float scale = 1;              // factor of the values
     Rgb factor = {1, 1, 1};       // factor of a value that sets three numbers
+    TextureTransform texture_at_rest;
 };
 
 /// Returns what a JSON pointer names; nothing if it is no such number.

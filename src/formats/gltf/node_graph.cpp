@@ -36,11 +36,21 @@ std::variant<NodePose, DoubleTransform> pose_of(const JsonValue& node, Sink& sin
 
 } // namespace
 
-NodeGraph::NodeGraph(const Document& document, uint32_t shown, Sink& sink) {
+NodeGraph::NodeGraph(const Document& document, uint32_t shown, Sink& sink, const std::optional<NodeTransform>& base) {
     read_children(document, sink);
     cut_cycles(document, sink);
+    const std::vector<uint32_t> roots = scene_roots(document, shown, sink);
+    if (base) hold_all(*base);
     place_nodes(document, sink);
-    for_each_below(scene_roots(document, shown, sink), [&](uint32_t node) { scene_nodes_.push_back(node); });
+    for_each_below(roots, [&](uint32_t node) { scene_nodes_.push_back(node); });
+}
+
+void NodeGraph::hold_all(const NodeTransform& base) {
+    const auto holder = static_cast<uint32_t>(nodes_.size());
+    for (Node& node : nodes_) {
+        if (node.parent == kNoNode) node.parent = holder;
+    }
+    nodes_.push_back({.pose = base.world_from_node});
 }
 
 void NodeGraph::read_children(const Document& document, Sink& sink) {
@@ -101,8 +111,9 @@ void NodeGraph::place_nodes(const Document& document, Sink& sink) {
         attempt("the name", [&] { nodes_[node].name = nodes[node].string_or("name", ""); });
         attempt("the transform", [&] { nodes_[node].pose = pose_of(nodes[node], sink); });
     }
-    is_hidden_.resize(nodes.size());
+    is_hidden_.resize(nodes_.size());
     for (const uint32_t node : order) {
+        if (node >= nodes.size()) continue; // the one that holds all
         const uint32_t parent = nodes_[node].parent;
         bool is_visible = true;
         read_or_leave_out(nodes[node].pointer() + "/extensions/KHR_node_visibility", sink, [&] {

@@ -5,6 +5,7 @@
 // Source: glTF 2.0 section 3.5. Nothing here recurses: a chain of a million nodes is a loop.
 
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -17,8 +18,9 @@ namespace pertev::gltf {
 class NodeGraph {
 public:
     /// Reads the nodes. Cycles are cut, and if a node has two parents the first counts, each with a warning. `shown` is
-    /// the index of the document's scene that is shown; without scenes all nodes are shown.
-    NodeGraph(const Document& document, uint32_t shown, Sink& sink);
+    /// the index of the document's scene that is shown; without scenes all nodes are shown. With `base` a further last
+    /// node, which has this transform and which the document lacks, holds all others.
+    NodeGraph(const Document& document, uint32_t shown, Sink& sink, const std::optional<NodeTransform>& base = {});
 
     /// The scene's nodes, each before its children, in the order of the file.
     const std::vector<uint32_t>& scene_nodes() const { return scene_nodes_; }
@@ -33,6 +35,7 @@ public:
 
 private:
     void read_children(const Document& document, Sink& sink);
+    void hold_all(const NodeTransform& base);
     void cut_cycles(const Document& document, Sink& sink);
     void place_nodes(const Document& document, Sink& sink);
     std::vector<uint32_t> scene_roots(const Document& document, uint32_t shown, Sink& sink) const;

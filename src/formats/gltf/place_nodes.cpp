@@ -153,7 +153,7 @@ private:
         if (!is_near(world_from_node)) {
             throw node.error("the light lies beyond 2^40 metres");
         }
-        if (transform_light(world_from_node, light)) {
+        if (place_light(world_from_node, light)) {
             scene_.lights.push_back(std::move(light));
         } else {
             sink_.leave_out({node.location(), "the light's transform is singular; it is left out"});

@@ -8,6 +8,7 @@
 #include "formats/files/load_textures.h"
 #include "formats/gltf/animations.h"
 #include "formats/gltf/credits.h"
+#include "formats/gltf/external_assets.h"
 #include "formats/gltf/ies_lights.h"
 #include "formats/gltf/image_based_light.h"
 #include "formats/gltf/leave_out.h"
@@ -64,6 +65,34 @@ void choose(const Document& document, Buffers& buffers, const ReadOptions& optio
 
 } // namespace
 
+Scene read_asset(const std::filesystem::path& path, std::vector<std::byte> bytes, const FileAccess& access,
+                 const ReadOptions& options, const AssetPlace& place, Sink& sink) {
+    Scene scene;
+    const Document document(path, std::move(bytes), sink);
+    Buffers buffers(document, access, sink);
+    choose(document, buffers, options, scene, sink);
+    choose_variant(document, buffers, options, scene, sink);
+    read_credits(document, scene, sink);
+    NodeGraph nodes(document, scene.file_scene, sink, place.base);
+    ExternalAssets assets(document, buffers, access, nodes, options, place, sink);
+
+    TextureLoader loader(access, sink);
+    loader.shrink_to(options.max_texture_size);
+    Textures textures(document, buffers, loader, sink);
+    Materials materials(document, options.geometry_only ? nullptr : &textures, scene, sink);
+    Meshes meshes(document, buffers, nodes, materials, scene, options.geometry_only, sink);
+    scene.nodes = nodes.take_nodes();
+    read_node_shapes(document, buffers, scene, sink);
+    place_nodes(document, buffers, nodes, meshes, scene, sink);
+    if (!options.geometry_only) place_ies_lights(document, buffers, access, nodes, scene, sink);
+    read_animations(document, buffers, materials, scene, sink);
+    if (!options.geometry_only) read_image_based_light(document, buffers, access, scene, sink);
+    loader.load_into(scene, buffers.file_bytes());
+    materials.convert_textures(justified_bytes(kFreeImageBytes, buffers.file_bytes()));
+    assets.append_to(scene);
+    return scene;
+}
+
 } // namespace pertev::gltf
 
 namespace pertev {
@@ -74,28 +103,11 @@ Scene read_gltf(const std::filesystem::path& path, const FileAccess& access, con
 
 Scene read_gltf(const std::filesystem::path& path, std::vector<std::byte> bytes, const FileAccess& access,
                 const ReadOptions& options, Sink& sink) {
-    Scene scene;
-    const gltf::Document document(path, std::move(bytes), sink);
-    gltf::Buffers buffers(document, access, sink);
-    gltf::choose(document, buffers, options, scene, sink);
-    gltf::choose_variant(document, buffers, options, scene, sink);
-    gltf::read_credits(document, scene, sink);
-    gltf::NodeGraph nodes(document, scene.file_scene, sink);
-
-    TextureLoader loader(access, sink);
-    loader.shrink_to(options.max_texture_size);
-    gltf::Textures textures(document, buffers, loader, sink);
-    gltf::Materials materials(document, options.geometry_only ? nullptr : &textures, scene, sink);
-    gltf::Meshes meshes(document, buffers, nodes, materials, scene, options.geometry_only, sink);
-    scene.nodes = nodes.take_nodes();
-    gltf::read_node_shapes(document, buffers, scene, sink);
-    gltf::place_nodes(document, buffers, nodes, meshes, scene, sink);
-    if (!options.geometry_only) gltf::place_ies_lights(document, buffers, access, nodes, scene, sink);
+    std::error_code none;
+    uint32_t read = 0;
+    const gltf::AssetPlace place = {.file = std::filesystem::weakly_canonical(path, none), .read = read};
+    Scene scene = gltf::read_asset(path, std::move(bytes), access, options, place, sink);
     subtract_centre(scene);
-    gltf::read_animations(document, buffers, materials, scene, sink);
-    if (!options.geometry_only) gltf::read_image_based_light(document, buffers, access, scene, sink);
-    loader.load_into(scene, buffers.file_bytes());
-    materials.convert_textures(justified_bytes(kFreeImageBytes, buffers.file_bytes()));
     return scene;
 }
 

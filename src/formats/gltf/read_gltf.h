@@ -3,7 +3,7 @@
 // Reads glTF 2.0, .gltf and .glb, by the files in formats/gltf, one for each part of the format.
 //
 // Supported extensions: KHR_texture_transform, KHR_lights_punctual, KHR_materials_unlit, _ior and _emissive_strength,
-// KHR_mesh_quantization, EXT_meshopt_compression, EXT_mesh_gpu_instancing; in part (formats/gltf/materials.h)
+// KHR_mesh_quantization, EXT_ and KHR_meshopt_compression, EXT_mesh_gpu_instancing; in part (formats/gltf/materials.h)
 // KHR_materials_specular, _transmission, _volume, _anisotropy, _iridescence and _diffuse_transmission. Others are an
 // error if the file requires them and give a warning if it only uses them.
 

@@ -35,25 +35,16 @@ constexpr std::string_view kOtherImages[] = {"KHR_texture_basisu", "EXT_texture_
 
 constexpr float kMaxTransform = 0x1p39f;
 
-// The order is translation * rotation * scale. The rotation's sign is that of the extension's words, pictures and test
-// model (counter-clockwise in u right, v down); the GLSL in its text turns the other way (KhronosGroup/glTF #1563).
-void read_transform(const JsonValue& transform, TextureRef& texture) {
+} // namespace
+
+TextureTransform read_texture_transform(const JsonValue& transform) {
     const std::array<float, 2> offset = transform.floats_or<2>("offset", {0, 0});
     const std::array<float, 2> scale = transform.floats_or<2>("scale", {1, 1});
-    const float rotation = transform.float_or("rotation", 0);
     for (const float number : {offset[0], offset[1], scale[0], scale[1]}) {
         if (abs(number) > kMaxTransform) throw transform.error(fmt::format("{}; expected at most 2^39", number));
     }
-    const float s = sin(rotation), c = cos(rotation);
-    texture.m00 = c * scale[0];
-    texture.m01 = s * scale[1];
-    texture.m02 = offset[0];
-    texture.m10 = -s * scale[0];
-    texture.m11 = c * scale[1];
-    texture.m12 = offset[1];
+    return {{offset[0], offset[1]}, {scale[0], scale[1]}, transform.float_or("rotation", 0)};
 }
-
-} // namespace
 
 Textures::Textures(const Document& document, Buffers& buffers, TextureLoader& loader, Sink& sink)
     : document_(document), buffers_(buffers), loader_(loader), sink_(sink), images_(document.table("images").size()) {
@@ -68,7 +59,7 @@ TextureRef Textures::read(const JsonValue& info) {
     if (const std::optional<JsonValue> transform = info.extension("KHR_texture_transform")) {
         read_or_leave_out(*transform, sink_, [&] {
             uv_set = transform->unsigned_or("texCoord", uv_set);
-            read_transform(*transform, texture);
+            set_transform(texture, read_texture_transform(*transform));
         });
     }
     read_member(source, "sampler", sink_,

@@ -17,6 +17,9 @@
 
 namespace pertev::gltf {
 
+/// Reads KHR_texture_transform. Throws Error(BadInput) for one that is invalid.
+TextureTransform read_texture_transform(const JsonValue& transform);
+
 class Textures {
 public:
     Textures(const Document& document, Buffers& buffers, TextureLoader& loader, Sink& sink);

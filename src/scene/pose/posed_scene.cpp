@@ -1,6 +1,7 @@
 #include "scene/pose/posed_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <type_traits>
@@ -23,6 +24,7 @@ namespace {
 // Splines may overshoot the valid range.
 constexpr float kMinFov = 0x1p-12f;    // radians
 constexpr float kMinLength = 0x1p-20f; // metres
+constexpr float kMaxTextureTransform = 0x1p39f;
 
 std::vector<uint32_t> numbers_of(const std::vector<bool>& flags) {
     std::vector<uint32_t> numbers;
@@ -55,6 +57,30 @@ void set_numbers(const std::vector<uint8_t>& indices, const std::vector<float>& 
         [](auto&&...) {});
 }
 
+/// Sets the part of textures' transforms that a channel changes.
+void set_textures(const AnimationChannel& channel, const std::vector<float>& v,
+                  std::map<uint8_t, TextureTransform>& textures) {
+    const auto within = [](float x) { return clamp(x, -kMaxTextureTransform, kMaxTextureTransform); };
+    for (const uint8_t slot : channel.numbers) {
+        TextureTransform& now = textures.try_emplace(slot, channel.texture_at_rest).first->second;
+        if (channel.part == AnimatedPart::TextureRotation) {
+            now.rotation = v[0];
+        } else {
+            Vec2& moved = channel.part == AnimatedPart::TextureOffset ? now.offset : now.scale;
+            moved = {within(v[0]), within(v[1])};
+        }
+    }
+}
+
+void set_transforms(const std::map<uint8_t, TextureTransform>& textures, MaterialParameters& material) {
+    uint8_t slot = 0;
+    visit_textures(material, [&](TextureRef& texture, const char*) {
+        if (const auto found = textures.find(slot++); found != textures.end()) set_transform(texture, found->second);
+    });
+}
+
+std::array<float, 6> matrix_of(const TextureRef& t) { return {t.m00, t.m01, t.m02, t.m10, t.m11, t.m12}; }
+
 } // namespace
 
 PosedScene::PosedScene(Scene rest, bool leaves_vertices)
@@ -73,7 +99,7 @@ PosedScene::PosedScene(Scene rest, bool leaves_vertices)
         for (const AnimationChannel& channel : animation.channels) {
             if (!is_of_material(channel.part) || material_at(channel.target) != nullptr) continue;
             const MaterialParameters& at_rest = scene_.materials[channel.target];
-            materials_.push_back({channel.target, at_rest, at_rest});
+            materials_.push_back({channel.target, at_rest, at_rest, {}});
         }
     }
     drop_shapes_at_rest();
@@ -180,7 +206,10 @@ PosedScene::Placements PosedScene::placements_at(double time_s) {
 
 void PosedScene::read_channels(double time_s) {
     const bool is_moved = !(scene_.origin_in_file == DoubleVec3{0, 0, 0});
-    for (MovingMaterial& material : materials_) material.now = material.rest;
+    for (MovingMaterial& material : materials_) {
+        material.now = material.rest;
+        material.textures.clear();
+    }
     for (const Animation& animation : scene_.animations) {
         for (const AnimationChannel& channel : animation.channels) {
             value_.resize(numbers_in_value(channel, scene_));
@@ -221,9 +250,15 @@ void PosedScene::read_channels(double time_s) {
             case AnimatedPart::MaterialNumbers:
                 set_numbers(channel.numbers, v, material_at(channel.target)->now);
                 break;
+            case AnimatedPart::TextureOffset:
+            case AnimatedPart::TextureScale:
+            case AnimatedPart::TextureRotation:
+                set_textures(channel, v, material_at(channel.target)->textures);
+                break;
             }
         }
     }
+    for (MovingMaterial& material : materials_) set_transforms(material.textures, material.now);
 }
 
 PosedScene::MovingMaterial* PosedScene::material_at(uint32_t index) {
@@ -234,11 +269,18 @@ PosedScene::MovingMaterial* PosedScene::material_at(uint32_t index) {
 void PosedScene::update_materials() {
     for (const MovingMaterial& material : materials_) {
         MaterialParameters& shown = scene_.materials[material.index];
-        if (!same_bits(shown.emission, material.now.emission)) lights_changed_ = true;
+        if (!same_bits(shown.emission, material.now.emission) ||
+            !same_bits(matrix_of(shown.emission_texture), matrix_of(material.now.emission_texture))) {
+            lights_changed_ = true;
+        }
         const auto numbers_in = [](const MaterialParameters& parameters) {
             std::vector<float> numbers;
             visit_parameters(
-                parameters, [&](float number, auto&&...) { numbers.push_back(number); }, [](auto&&...) {});
+                parameters, [&](float number, auto&&...) { numbers.push_back(number); },
+                [&](const TextureRef& texture, const char*) {
+                    const std::array<float, 6> matrix = matrix_of(texture);
+                    numbers.insert(numbers.end(), matrix.begin(), matrix.end());
+                });
             return numbers;
         };
         const std::vector<float> now = numbers_in(material.now), before = numbers_in(shown);
@@ -348,7 +390,8 @@ void PosedScene::update_lights() {
         if (light.node != kNoNode && node_moves_[light.node]) {
             bool stands = transform_light(world_from_node_[light.node], light);
             light.direction = normalize_safely(light.direction);
-            stands = stands && is_within_limits(make_translation(light.position), Bounds3{{0, 0, 0}, {0, 0, 0}});
+            stands = stands && is_oriented(light) &&
+                     is_within_limits(make_translation(light.position), Bounds3{{0, 0, 0}, {0, 0, 0}});
             if (!stands) {
                 light = rest;
                 light.intensity = {0, 0, 0};

@@ -12,6 +12,7 @@
 // its pose at rest, and a light gives no light.
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -81,6 +82,7 @@ private:
     struct MovingMaterial {
         uint32_t index;
         MaterialParameters rest, now;
+        std::map<uint8_t, TextureTransform> textures; // the transforms that channels change, by slot
     };
     std::vector<MovingMaterial> materials_;
     MovingMaterial* material_at(uint32_t index);

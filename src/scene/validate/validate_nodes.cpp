@@ -38,7 +38,7 @@ std::pair<const char*, std::size_t> targets_of(AnimatedPart part, const Scene& s
 } // namespace
 
 std::size_t numbers_in_value(const AnimationChannel& channel, const Scene& scene) {
-    if (is_of_material(channel.part)) return channel.numbers.size();
+    if (channel.part == AnimatedPart::MaterialNumbers) return channel.numbers.size();
     const bool has_weights = channel.part == AnimatedPart::Weights;
     return has_weights ? scene.nodes[channel.target].morph_weights.size() : numbers_of(channel.part);
 }
