@@ -2,6 +2,7 @@
 bench/against_cycles.py bring the other renderer."""
 
 import argparse
+import errno
 import json
 import os
 import pathlib
@@ -41,7 +42,7 @@ class Job:
 
     def __init__(self, scenes, folder, on_gpu):
         self.width, self.height = self.gpu_size if on_gpu else self.cpu_size
-        self.file = folder / f"{self.stem}.obj"
+        self.folder, self.file = folder, folder / f"{self.stem}.obj"
         self.write(scenes)
 
     def render_flags(self):
@@ -95,6 +96,18 @@ class SceneFile(Job):
         return ["render", self.file, "--filter", "box", "--max-depth", self.depth]
 
 
+class VeachAjar(SceneFile):
+    """Bitterli's room behind a door, at its file's size and depth."""
+
+    name, stem, depth, peers = "Veach's door, depth 12", "veach-ajar", 12, ("Mitsuba",)
+    cpu_size, gpu_size = (320, 180), (1280, 720)
+
+    def write(self, scenes):
+        self.xml = self.file = scenes / "bitterli/veach-ajar/scene_mitsuba3.xml"
+        if not self.xml.exists():
+            raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(self.xml))
+
+
 class CornellBox(SceneFile):
     """Bitterli's Cornell box."""
 
@@ -122,7 +135,7 @@ class MaterialBalls(SceneFile):
         make_material_balls.write(self.file)
 
 
-JOBS = [SponzaJob, Sponza, CornellBox, DeepCornellBox, Bunny, Corridor, MaterialBalls]
+JOBS = [SponzaJob, Sponza, CornellBox, DeepCornellBox, Bunny, Corridor, VeachAjar, MaterialBalls]
 
 
 class Contest:

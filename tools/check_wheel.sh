@@ -45,17 +45,24 @@ in_root() { # ROOT COMMAND: with /proc, /dev, this machine's names and certifica
 }
 export wheels
 
+checked=0
 for suite in bookworm trixie; do
     root=$roots/$suite
     [[ -e $root.made ]] || { debootstrap --variant=minbase --include=python3,python3-venv,ca-certificates "$suite" "$root" \
         >"$work/log" && touch "$root.made" "$root/etc/resolv.conf"; }
-    rm -rf "$root/tmp/v" && cp "$work"/*.py "$root/tmp"
-    start=$SECONDS
-    in_root "$root" "python3 -m venv /tmp/v && /tmp/v/bin/pip -q install --find-links /mnt pertev"
-    printf '%s: %s, installed in %d s, %s: ' "$suite" "$(chroot "$root" python3 --version)" $((SECONDS - start)) \
-        "$(du -sh --total "$root"/tmp/v/lib/python3*/site-packages/pertev* | tail -1 | cut -f1)"
-    in_root "$root" "cd /tmp; v/bin/python check.py $hash"
-    [[ $(in_root "$root" "cd /tmp; v/bin/pertev render ${picture[*]} --json -o a.png" | hash_of) == "$hash" ]]
-    in_root "$root" "cd /tmp; v/bin/pip -q install --find-links /mnt 'pertev[oidn]' && v/bin/python denoised.py $hash"
+    cp "$work"/*.py "$root/tmp"
+    [[ $suite == bookworm ]] && tag=cp311 || tag=abi3
+    for wheel in "$wheels"/pertev-*"$tag"*.whl; do # with CUDA and without; by their names, because pip would take the former
+        name=/mnt/$(basename "$wheel")
+        rm -rf "$root/tmp/v"
+        start=$SECONDS
+        in_root "$root" "python3 -m venv /tmp/v && /tmp/v/bin/pip -q install '$name'"
+        printf '%s: %s, %s, installed in %d s, %s: ' "$suite" "$(basename "$wheel")" "$(du -h "$wheel" | cut -f1)" $((SECONDS - start)) \
+            "$(du -sh --total "$root"/tmp/v/lib/python3*/site-packages/pertev* | tail -1 | cut -f1)"
+        in_root "$root" "cd /tmp; v/bin/python check.py $hash"
+        [[ $(in_root "$root" "cd /tmp; v/bin/pertev render ${picture[*]} --json -o a.png" | hash_of) == "$hash" ]]
+        in_root "$root" "cd /tmp; v/bin/pip -q install '${name}[oidn]' && v/bin/python denoised.py $hash"
+        checked=$((checked + 1))
+    done
 done
-echo "the wheels of $wheels give the picture $hash"
+echo "$checked wheels of $wheels give the picture $hash"

@@ -46,3 +46,5 @@ for python in ${PERTEV_PYTHONS:-python3.11 python3.12 python3.13}; do
 done
 [[ $made == " cp311 abi3 " ]] || echo "make_wheel.sh: made only:$made(of cp311 and abi3, by the Pythons that are there)"
 du -h "$out"/*.whl
+large=$(find "$out" -name '*.whl' -size +80000000c)
+[[ -z $large ]] || { echo "make_wheel.sh: larger than 80 MB: $large" >&2; exit 1; }
