@@ -98,6 +98,7 @@ MUTATIONS = [
     ("pbrt: the octahedron's lower half is not turned", "unit/read_pbrt_lights", ("src/math/octahedron.h", "is_below ? 1 - across : along", "is_below ? across : along")),
     ("pbrt: an infinite light ignores its transform", "unit/read_pbrt_lights", ("src/formats/described/assemble.cpp", "inverse(without_translation(compose(scene_from_file, light.world_from_light)));", "inverse(without_translation(scene_from_file));")),
     ("pbrt: remapped roughness is the width", "unit/read_pbrt_materials", ("src/formats/described/surface.cpp", "return sqrt(sqrt(clamp(value, 0.0f, 1.0f)));", "return sqrt(clamp(value, 0.0f, 1.0f));")),
+    ("pbrt: glass of version 3 is rough at roughness 0", "unit/read_pbrt_materials", ("src/formats/described/surface.cpp", "return value == 0 ? 0.0f : converted(", "return converted(")),
     ("pbrt: roughness along u is that along v", "unit/read_pbrt_materials", ("src/formats/described/make_surface.cpp", "along > across ? 0.0f", "along < across ? 0.0f")),
     ("light passes rough coats unshadowed", "statistical/mitsuba_lobes", ("src/formats/described/rough_coat.cpp", "weight * facets.seen(min(down, 1.0f)) *", "weight *")),
     ("Mitsuba's light inside plastic is summed without its error", "statistical/mitsuba_lobes", ("src/formats/described/rough_coat.cpp", "if (model == CoatModel::Mitsuba && width > kSmoothWidth)", "if (false)")),

@@ -98,6 +98,8 @@ float converted(Curve curve, float amount, float value) {
         return sqrt(clamp(value, 0.0f, 1.0f));
     case Curve::RoughnessOfRoot:
         return sqrt(sqrt(clamp(value, 0.0f, 1.0f)));
+    case Curve::RoughnessOfGlass3:
+        return value == 0 ? 0.0f : converted(Curve::RoughnessOfVersion3, amount, value);
     case Curve::RoughnessOfVersion3: {
         const float x = log(max(value, 1e-3f)); // the polynomial of pbrt-v3's documentation
         const float width = 1.62142f + x * (0.819955f + x * (0.1734f + x * (0.0171201f + x * 0.000640711f)));

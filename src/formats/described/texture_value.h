@@ -18,6 +18,7 @@ enum class Curve {
     RoughnessOfWidth,    // a microfacet width: roughness is its root
     RoughnessOfRoot,     // pbrt-v4's remapped roughness, of which the width is the root
     RoughnessOfVersion3, // pbrt-v3's remapped roughness
+    RoughnessOfGlass3,   // that of pbrt-v3's glass, where 0 stays smooth
     BeneathCoat,         // the albedo of a diffuse surface beneath a smooth coat that reflects `amount` from inside
 };
 

@@ -80,7 +80,7 @@ Surface glass(const MaterialSource& source) {
     Surface surface = make_surface(MaterialKind::Dielectric);
     set_index(source, kLeastIor, surface);
     surface.material.has_relative_ior = true;
-    read_roughness(source, 0, "", surface);
+    read_glass_roughness(source, surface);
     set_color(surface, &M::base_color, &M::base_color_texture, source.textures.color(source.parameters, "Kt", grey(1)));
     const TextureValue kr = source.textures.color(source.parameters, "Kr", grey(1));
     if (kr.has_image() || !(kr.factor == grey(1)))
