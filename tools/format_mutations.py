@@ -22,6 +22,7 @@ MUTATIONS = [
     ("the sun's light depends on the pixels that it covers", "unit/sun_sky", ("src/formats/sun_sky/sun_sky.cpp", "covered > 0 ? kSolidAngle / covered : 0", "1")),
     ("the sun shines from below the horizon", "unit/sun_sky", ("src/formats/sun_sky/sun_sky.cpp", "if (dot(d, sky.zenith) > 0) coverage", "coverage")),
     ("Mitsuba's sky has y up", "unit/read_mitsuba", ("src/formats/mitsuba/skies.cpp", "sky.zenith = is_old ? Vec3{0, 1, 0} : Vec3{0, 0, 1};", "sky.zenith = {0, 1, 0};")),
+    ("Mitsuba's sun turns with the sky", "unit/read_mitsuba", ("src/formats/mitsuba/skies.cpp", "is_finite(turned) ? transform_point(turned, of_world) : of_world", "is_finite(turned) ? of_world : of_world")),
     ("normal maps of Mitsuba's mirrored shapes turn over", "unit/read_mitsuba_shapes",
      ("src/formats/mitsuba/shapes.cpp", "needs.tangents && (determinant(to_world) < 0) != needs.mirrors;", "false;")),
     ("a strong dispersion is cut", "unit/read_gltf_layers", ("src/formats/gltf/material_layers.cpp", "max(usual / max(dispersion, 1.0f), 1.0f);", "usual;")),

@@ -384,6 +384,7 @@ TEST_CASE("mitsuba: a lens that is too near to focus is a pinhole") {
 TEST_CASE("mitsuba: a sky has its sun where the file says, about the axis that points up there") {
     const auto brightest = [](const Scene& scene) {
         const Image& image = scene.environment->image;
+        REQUIRE_FALSE(image.pixels.empty());
         std::size_t best = 0;
         for (std::size_t i = 0; i < image.pixels.size(); i += 3) best = image.pixels[i] > image.pixels[best] ? i : best;
         const float x = (static_cast<float>(best / 3 % image.width) + 0.5f) / static_cast<float>(image.width);
@@ -408,6 +409,16 @@ TEST_CASE("mitsuba: a sky has its sun where the file says, about the axis that p
                  "0.6.0"),
         messages);
     CHECK(length(brightest(old) - Vec3{0.6f, 0.8f, 0}) < 0.01f);
+    // The direction is one of the world, however the sky lies: here with +y up, and moved and scaled in 0.6.
+    const std::string turned = "<emitter type=\"sunsky\"><vector name=\"sun_direction\" x=\"0\" y=\"0.6\" z=\"0.8\"/>"
+                               "<transform name=\"to_world\"><rotate x=\"1\" angle=\"-90\"/></transform></emitter>";
+    CHECK(length(brightest(load_mitsuba(in_scene(kMitsubaSquare + turned), messages)) - Vec3{0, 0.6f, 0.8f}) < 0.01f);
+    const std::string on_side = "<emitter type=\"sunsky\"><vector name=\"sunDirection\" x=\"0\" y=\"-0.6\" z=\"0.8\"/>"
+                                "<transform name=\"toWorld\"><translate y=\"9\"/><scale value=\"3\"/><rotate x=\"1\" "
+                                "angle=\"90\"/></transform></emitter>";
+    CHECK(length(brightest(load_mitsuba(in_scene(kMitsubaSquare + on_side, "0.6.0"), messages)) -
+                 Vec3{0, -0.6f, 0.8f}) < 0.01f);
+    CHECK(messages.left_out().empty());
     // An afternoon in Tokyo: in the west, which is +y, and somewhat south, 46 degrees high.
     const Vec3 tokyo = brightest(load_mitsuba(in_scene(kMitsubaSquare + "<emitter type=\"sun\"/>"), messages));
     CHECK(tokyo.z == doctest::Approx(0.72f).epsilon(0.02));
