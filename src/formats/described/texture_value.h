@@ -25,6 +25,14 @@ enum class Curve {
 /// Returns `value` converted; those of roughness are Pertev's, the root of the width.
 float converted(Curve curve, float amount, float value);
 
+/// The number that a coloured texel stands for.
+enum class GreyOf {
+    Channels,         // each channel counts for itself
+    Mean,             // pbrt-v4, Mitsuba 0.6
+    Luminance,        // Mitsuba 3
+    EncodedLuminance, // before the encoding is taken off: pbrt-v3
+};
+
 /// Two colours mixed by the direction of a surface: the first with the share |normal . direction|.
 struct NormalMix {
     DoubleVec3 direction; // unit, in the world of the file
@@ -40,10 +48,11 @@ struct NormalMix {
 /// The value of a texture: offset + factor * texel. Without an image it is `factor`.
 struct TextureValue {
     Rgb factor = {1, 1, 1}, offset = {0, 0, 0};
-    TextureRef ref;             // its image is one of the loader, or kNoImage
-    int32_t made = -1;          // index into Parts::made; -1: none
-    float exponent = 1;         // the gamma of the stored values; applied before factor and offset
-    bool ignores_alpha = false; // an opacity is that of the colour, even if the image has an alpha channel
+    TextureRef ref;                    // its image is one of the loader, or kNoImage
+    int32_t made = -1;                 // index into Parts::made; -1: none
+    float exponent = 1;                // the gamma of the stored values; applied before factor and offset
+    GreyOf grey_of = GreyOf::Channels; // applied to the texels before factor and offset
+    bool ignores_alpha = false;        // an opacity is that of the colour, even if the image has an alpha channel
 
     bool is_of_vertices = false;                // the colours of a mesh's vertices, times factor
     std::shared_ptr<const NormalMix> by_normal; // the value by direction, of which `factor` is the mean

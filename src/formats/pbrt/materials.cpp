@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/message_text.h"
+#include "formats/described/make_texture.h"
 #include "formats/described/mix_surfaces.h"
 #include "formats/described/rough_coat.h"
 #include "formats/files/closest_name.h"
@@ -238,6 +239,7 @@ Surface mixture(const MaterialSource& source) {
         source.context.sink.leave_out({location, "the colour of the amount of a mix is left out; its mean counts"});
         amount = constant(grey((c.r + c.g + c.b) / 3));
     }
+    if (names != nullptr) amount = as_number(amount); // that of version 3 is a colour
     const MixedSurface mixed = mix_surfaces(*first, *second, names == nullptr ? one_less(amount) : amount);
     if (mixed.left_out)
         source.context.sink.leave_out({location, fmt::format("of the mix the material {} is left out, because {}",
