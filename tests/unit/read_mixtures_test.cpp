@@ -377,3 +377,16 @@ TEST_CASE("mitsuba: where a number stands, a bitmap is its luminance, in 0.6 its
     const GreyRead colour = read_mitsuba_colors("<bsdf type=\"diffuse\">" + mitsuba_bitmap("reflectance") + "</bsdf>");
     check_texel(colour, colour.material.base_color_texture, 1, kSecond);
 }
+
+TEST_CASE("mitsuba: the checks of a checkerboard of numbers are exchanged, but not in 0.6") {
+    const auto opacity = [](const std::string& version) {
+        const GreyRead read = read_mitsuba_colors("<bsdf type=\"mask\"><texture name=\"opacity\" type=\"checkerboard\">"
+                                                  "<rgb name=\"color0\" value=\".9 .6 .9\"/><float name=\"color1\" "
+                                                  "value=\".1\"/></texture><bsdf type=\"diffuse\"/></bsdf>",
+                                                  version);
+        // The first texel is that of small u and v, which has color0 in a colour.
+        return grey_texel(read, read.material.alpha_texture, 0).g;
+    };
+    CHECK(opacity("3.0.0") == doctest::Approx(0.1));
+    CHECK(opacity("0.6.0") == doctest::Approx(0.8));
+}

@@ -116,6 +116,7 @@ TextureValue Textures::checkerboard(Object& texture, ColorUse use) {
     TextureValue first = color(texture, "color0", use, grey(0.4f)), second = color(texture, "color1", use, grey(0.2f));
     if (use == ColorUse::Index) {
         first = number_of(first), second = number_of(second);
+        if (!reading_.context.is_old) std::swap(first, second); // Mitsuba 3 exchanges the checks of numbers
     }
     TextureValue value;
     read_placing(texture, value.ref);
