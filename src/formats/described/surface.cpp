@@ -118,6 +118,8 @@ float converted(Curve curve, float amount, float value) {
         const float width = 1.62142f + x * (0.819955f + x * (0.1734f + x * (0.0171201f + x * 0.000640711f)));
         return sqrt(clamp(width, 0.0f, 1.0f));
     }
+    case Curve::Root:
+        return sqrt(max(value, 0.0f));
     case Curve::BeneathCoat: {
         const float albedo = clamp(value, 0.0f, 1.0f), inside = min(amount, 0.9999f);
         return albedo * (1 - inside) / (1 - albedo * inside);

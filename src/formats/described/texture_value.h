@@ -19,6 +19,7 @@ enum class Curve {
     RoughnessOfRoot,     // pbrt-v4's remapped roughness, of which the width is the root
     RoughnessOfVersion3, // pbrt-v3's remapped roughness
     RoughnessOfGlass3,   // that of pbrt-v3's glass, where 0 stays smooth
+    Root,                // one of two interfaces transmits it, for the colour of both
     BeneathCoat,         // the albedo of a diffuse surface beneath a smooth coat that reflects `amount` from inside
 };
 
