@@ -28,6 +28,7 @@ MUTATIONS = [
     ("a coloured picture as a number is its first channel", "unit/read_mixtures", ("src/formats/described/surface.cpp", "image.change.grey_of = value.grey_of;", "")),
     ("mitsuba: checks of numbers are not exchanged", "unit/read_mixtures", ("src/formats/mitsuba/textures.cpp", "if (!reading_.context.is_old) std::swap", "if (false) std::swap")),
     ("mitsuba: a clear principled body is tinted twice", "unit/read_mitsuba_materials", ("src/formats/mitsuba/principled_bsdf.cpp", "Curve::Root);", "Curve::None);")),
+    ("mitsuba: an opacity dims emission", "unit/read_mitsuba", ("src/formats/mitsuba/world.cpp", "return 1 / material.alpha;", "return 1;")),
     ("normal maps of Mitsuba's mirrored shapes turn over", "unit/read_mitsuba_shapes",
      ("src/formats/mitsuba/shapes.cpp", "needs.tangents && (determinant(to_world) < 0) != needs.mirrors;", "false;")),
     ("a strong dispersion is cut", "unit/read_gltf_layers", ("src/formats/gltf/material_layers.cpp", "max(usual / max(dispersion, 1.0f), 1.0f);", "usual;")),

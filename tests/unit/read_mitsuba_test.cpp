@@ -429,6 +429,23 @@ TEST_CASE("mitsuba: a sky has its sun where the file says, about the axis that p
     CHECK(below.size() == 1);
 }
 
+TEST_CASE("mitsuba: an opacity does not dim what its surface emits") {
+    const auto shape = [](const std::string& opacity) {
+        return "<shape type=\"rectangle\"><bsdf type=\"mask\">" + opacity +
+               "<bsdf type=\"diffuse\"/></bsdf><ref id=\"lamp\"/></shape>";
+    };
+    const std::string lamp = "<emitter type=\"area\" id=\"lamp\"><rgb name=\"radiance\" value=\"1 2 3\"/></emitter>";
+    const Scene scene = load_mitsuba(
+        in_scene("<shape type=\"rectangle\">" + lamp + "</shape>" + shape("<float name=\"opacity\" value=\".5\"/>") +
+                 shape("<float name=\"opacity\" value=\".25\"/>") + shape("<float name=\"opacity\" value=\"1\"/>")));
+    REQUIRE(scene.instances.size() == 4);
+    for (const Instance& instance : scene.instances) {
+        const Material& material = scene.materials.at(instance.material);
+        CHECK(material.alpha * material.emission == Rgb{1, 2, 3});
+    }
+    CHECK(mitsuba_left_out(shape("<float name=\"opacity\" value=\"0\"/>").replace(0, 7, lamp + "<shape ")).size() >= 1);
+}
+
 TEST_CASE("mitsuba: every metal of its list that has published indices is known by its short name") {
     const auto metal_of = [](const std::string& name) {
         return in_scene("<shape type=\"rectangle\"><bsdf type=\"conductor\"><string name=\"material\" value=\"" + name +
