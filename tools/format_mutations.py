@@ -29,6 +29,8 @@ MUTATIONS = [
     ("mitsuba: checks of numbers are not exchanged", "unit/read_mixtures", ("src/formats/mitsuba/textures.cpp", "if (!reading_.context.is_old) std::swap", "if (false) std::swap")),
     ("mitsuba: a clear principled body is tinted twice", "unit/read_mitsuba_materials", ("src/formats/mitsuba/principled_bsdf.cpp", "Curve::Root);", "Curve::None);")),
     ("mitsuba: an opacity dims emission", "unit/read_mitsuba", ("src/formats/mitsuba/world.cpp", "return 1 / material.alpha;", "return 1;")),
+    ("mitsuba: unknown attributes are silent", "unit/read_mitsuba", ("src/formats/mitsuba/read_document.cpp", "!known.empty())\n            leave_out_unknown_attributes", "false)\n            leave_out_unknown_attributes")),
+    ("pbrt: unknown types before the world are silent", "unit/read_pbrt", ("src/formats/pbrt/camera.cpp", "if (std::ranges::find(known, stated.type) != known.end()) return;", "if (!known.empty()) return;")),
     ("normal maps of Mitsuba's mirrored shapes turn over", "unit/read_mitsuba_shapes",
      ("src/formats/mitsuba/shapes.cpp", "needs.tangents && (determinant(to_world) < 0) != needs.mirrors;", "false;")),
     ("a strong dispersion is cut", "unit/read_gltf_layers", ("src/formats/gltf/material_layers.cpp", "max(usual / max(dispersion, 1.0f), 1.0f);", "usual;")),

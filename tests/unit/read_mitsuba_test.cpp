@@ -227,6 +227,11 @@ TEST_CASE("mitsuba: defaults and defined values replace $NAME") {
     REQUIRE(messages.all().size() >= 1);
     CHECK(messages.all()[0].remark.setting == "define");
     CHECK(messages.all()[0].remark.value == "zz");
+    CHECK(messages.all()[0].remark.reason == "the file has no $zz"); // a name does not mean itself
+    options.defines = {"abc=1"};
+    Messages close;
+    (void)load_mitsuba(text, close, options);
+    CHECK(close.all().at(0).remark.reason.find("\"ab\"") != std::string::npos);
     options.defines = {"a"};
     Messages refused;
     CHECK(test::is_about(test::thrown_error([&] { load_mitsuba(text, refused, options); }), ErrorCode::BadInput,
@@ -444,6 +449,30 @@ TEST_CASE("mitsuba: an opacity does not dim what its surface emits") {
         CHECK(material.alpha * material.emission == Rgb{1, 2, 3});
     }
     CHECK(mitsuba_left_out(shape("<float name=\"opacity\" value=\"0\"/>").replace(0, 7, lamp + "<shape ")).size() >= 1);
+}
+
+TEST_CASE("mitsuba: unknown attributes, types and names are left out with the nearest") {
+    const auto about = [](const std::string& text) { return mitsuba_left_out(text).size(); };
+    const auto moved = [](const std::string& step) {
+        return "<shape type=\"cube\"><transform name=\"to_world\">" + step + "</transform></shape>";
+    };
+    CHECK(begins_with(
+        mitsuba_left_out(moved("<scale valu=\"2\"/>")),
+        "scene.xml:2: the attribute \"valu\" of <scale> is unknown and left out (did you mean \"value\"?)"));
+    CHECK(about(moved("<translate xx=\"3\"/>")) == 1);
+    CHECK(about(moved("<lookat origin=\"0 0 1\" target=\"0 0 0\" upp=\"0 1 0\"/>")) == 1);
+    CHECK(about(moved("<rotate y=\"1\" angle=\"3\"/><matrix value=\"1 0 0 0 1 0 0 0 1\"/><lookat origin=\"0 0 1\" "
+                      "target=\"0 0 0\" up=\"0 1 0\"/><scale x=\"2\" y=\"2\" z=\"2\"/><translate value=\"1\"/>")) == 0);
+    CHECK(about("<shape type=\"cube\" typ=\"sphere\"/>") == 1);
+    CHECK(about("<shape xmlns:a=\"b\" a:c=\"d\" type=\"cube\" id=\"e\"/>") == 0);
+    CHECK(about("<shape type=\"sphere\"><float nam=\"radius\" value=\"2\"/></shape>") == 2); // it has no name, too
+    CHECK(begins_with(mitsuba_left_out("<integrator type=\"pth\"/>"),
+                      "scene.xml:2: the integrator pth is unknown and left out (did you mean \"path\"?)"));
+    CHECK(about("<integrator type=\"ptracer\"/>") == 0);
+    const auto sensor = [](const std::string& inner) { return "<sensor type=\"perspective\">" + inner + "</sensor>"; };
+    CHECK(about(sensor("<sampler type=\"independant\"/>")) == 1);
+    CHECK(about(sensor("<film type=\"hdrflim\"/>")) == 1);
+    CHECK(about(sensor("<film type=\"specfilm\"/><sampler type=\"halton\"/>")) == 0);
 }
 
 TEST_CASE("mitsuba: every metal of its list that has published indices is known by its short name") {
