@@ -300,6 +300,10 @@ TEST_CASE("mitsuba: principled has its parameters") {
     const MitsubaMaterial opaque = load_bsdf(bsdf_of("principled", bubble)); // reflects the same at 0 degrees
     CHECK(opaque.material.ior == doctest::Approx(1 / 0.75));
     CHECK(opaque.messages.left_out().size() == 1);
+    // Two interfaces have the base colour together.
+    const std::string clear = rgb_of("base_color", ".04 .25 1") + number_of("spec_trans", 1);
+    check_mitsuba_color(mitsuba_material(bsdf_of("principled", clear)).base_color, {0.2f, 0.5f, 1});
+    check_mitsuba_color(mitsuba_material(bsdf_of("principledthin", clear)).base_color, {0.04f, 0.25f, 1});
     CHECK(mitsuba_material(bsdf_of("principledthin", number_of("diff_trans", 1))).diffuse_transmission_weight == 0.5f);
 }
 

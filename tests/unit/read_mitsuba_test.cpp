@@ -227,6 +227,11 @@ TEST_CASE("mitsuba: defaults and defined values replace $NAME") {
     REQUIRE(messages.all().size() >= 1);
     CHECK(messages.all()[0].remark.setting == "define");
     CHECK(messages.all()[0].remark.value == "zz");
+    CHECK(messages.all()[0].remark.reason == "the file has no $zz"); // a name does not mean itself
+    options.defines = {"abc=1"};
+    Messages close;
+    (void)load_mitsuba(text, close, options);
+    CHECK(close.all().at(0).remark.reason.find("\"ab\"") != std::string::npos);
     options.defines = {"a"};
     Messages refused;
     CHECK(test::is_about(test::thrown_error([&] { load_mitsuba(text, refused, options); }), ErrorCode::BadInput,
@@ -384,6 +389,7 @@ TEST_CASE("mitsuba: a lens that is too near to focus is a pinhole") {
 TEST_CASE("mitsuba: a sky has its sun where the file says, about the axis that points up there") {
     const auto brightest = [](const Scene& scene) {
         const Image& image = scene.environment->image;
+        REQUIRE_FALSE(image.pixels.empty());
         std::size_t best = 0;
         for (std::size_t i = 0; i < image.pixels.size(); i += 3) best = image.pixels[i] > image.pixels[best] ? i : best;
         const float x = (static_cast<float>(best / 3 % image.width) + 0.5f) / static_cast<float>(image.width);
@@ -408,6 +414,16 @@ TEST_CASE("mitsuba: a sky has its sun where the file says, about the axis that p
                  "0.6.0"),
         messages);
     CHECK(length(brightest(old) - Vec3{0.6f, 0.8f, 0}) < 0.01f);
+    // The direction is one of the world, however the sky lies: here with +y up, and moved and scaled in 0.6.
+    const std::string turned = "<emitter type=\"sunsky\"><vector name=\"sun_direction\" x=\"0\" y=\"0.6\" z=\"0.8\"/>"
+                               "<transform name=\"to_world\"><rotate x=\"1\" angle=\"-90\"/></transform></emitter>";
+    CHECK(length(brightest(load_mitsuba(in_scene(kMitsubaSquare + turned), messages)) - Vec3{0, 0.6f, 0.8f}) < 0.01f);
+    const std::string on_side = "<emitter type=\"sunsky\"><vector name=\"sunDirection\" x=\"0\" y=\"-0.6\" z=\"0.8\"/>"
+                                "<transform name=\"toWorld\"><translate y=\"9\"/><scale value=\"3\"/><rotate x=\"1\" "
+                                "angle=\"90\"/></transform></emitter>";
+    CHECK(length(brightest(load_mitsuba(in_scene(kMitsubaSquare + on_side, "0.6.0"), messages)) -
+                 Vec3{0, -0.6f, 0.8f}) < 0.01f);
+    CHECK(messages.left_out().empty());
     // An afternoon in Tokyo: in the west, which is +y, and somewhat south, 46 degrees high.
     const Vec3 tokyo = brightest(load_mitsuba(in_scene(kMitsubaSquare + "<emitter type=\"sun\"/>"), messages));
     CHECK(tokyo.z == doctest::Approx(0.72f).epsilon(0.02));
@@ -416,6 +432,47 @@ TEST_CASE("mitsuba: a sky has its sun where the file says, about the axis that p
     const auto below =
         mitsuba_left_out("<emitter type=\"sky\"><vector name=\"sun_direction\" x=\"0\" y=\"0\" z=\"-1\"/></emitter>");
     CHECK(below.size() == 1);
+}
+
+TEST_CASE("mitsuba: an opacity does not dim what its surface emits") {
+    const auto shape = [](const std::string& opacity) {
+        return "<shape type=\"rectangle\"><bsdf type=\"mask\">" + opacity +
+               "<bsdf type=\"diffuse\"/></bsdf><ref id=\"lamp\"/></shape>";
+    };
+    const std::string lamp = "<emitter type=\"area\" id=\"lamp\"><rgb name=\"radiance\" value=\"1 2 3\"/></emitter>";
+    const Scene scene = load_mitsuba(
+        in_scene("<shape type=\"rectangle\">" + lamp + "</shape>" + shape("<float name=\"opacity\" value=\".5\"/>") +
+                 shape("<float name=\"opacity\" value=\".25\"/>") + shape("<float name=\"opacity\" value=\"1\"/>")));
+    REQUIRE(scene.instances.size() == 4);
+    for (const Instance& instance : scene.instances) {
+        const Material& material = scene.materials.at(instance.material);
+        CHECK(material.alpha * material.emission == Rgb{1, 2, 3});
+    }
+    CHECK(mitsuba_left_out(shape("<float name=\"opacity\" value=\"0\"/>").replace(0, 7, lamp + "<shape ")).size() >= 1);
+}
+
+TEST_CASE("mitsuba: unknown attributes, types and names are left out with the nearest") {
+    const auto about = [](const std::string& text) { return mitsuba_left_out(text).size(); };
+    const auto moved = [](const std::string& step) {
+        return "<shape type=\"cube\"><transform name=\"to_world\">" + step + "</transform></shape>";
+    };
+    CHECK(begins_with(
+        mitsuba_left_out(moved("<scale valu=\"2\"/>")),
+        "scene.xml:2: the attribute \"valu\" of <scale> is unknown and left out (did you mean \"value\"?)"));
+    CHECK(about(moved("<translate xx=\"3\"/>")) == 1);
+    CHECK(about(moved("<lookat origin=\"0 0 1\" target=\"0 0 0\" upp=\"0 1 0\"/>")) == 1);
+    CHECK(about(moved("<rotate y=\"1\" angle=\"3\"/><matrix value=\"1 0 0 0 1 0 0 0 1\"/><lookat origin=\"0 0 1\" "
+                      "target=\"0 0 0\" up=\"0 1 0\"/><scale x=\"2\" y=\"2\" z=\"2\"/><translate value=\"1\"/>")) == 0);
+    CHECK(about("<shape type=\"cube\" typ=\"sphere\"/>") == 1);
+    CHECK(about("<shape xmlns:a=\"b\" a:c=\"d\" type=\"cube\" id=\"e\"/>") == 0);
+    CHECK(about("<shape type=\"sphere\"><float nam=\"radius\" value=\"2\"/></shape>") == 2); // it has no name, too
+    CHECK(begins_with(mitsuba_left_out("<integrator type=\"pth\"/>"),
+                      "scene.xml:2: the integrator pth is unknown and left out (did you mean \"path\"?)"));
+    CHECK(about("<integrator type=\"ptracer\"/>") == 0);
+    const auto sensor = [](const std::string& inner) { return "<sensor type=\"perspective\">" + inner + "</sensor>"; };
+    CHECK(about(sensor("<sampler type=\"independant\"/>")) == 1);
+    CHECK(about(sensor("<film type=\"hdrflim\"/>")) == 1);
+    CHECK(about(sensor("<film type=\"specfilm\"/><sampler type=\"halton\"/>")) == 0);
 }
 
 TEST_CASE("mitsuba: every metal of its list that has published indices is known by its short name") {

@@ -1,5 +1,5 @@
 // Mixtures of materials of pbrt and Mitsuba: one material, or surfaces in one place. What they show is tested in
-// tests/statistical/mixed_surfaces_test.cpp.
+// tests/statistical/mixed_surfaces_test.cpp. Coloured pictures that are weights and other numbers are tested here too.
 
 #include <cmath>
 
@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 
 #include "formats/read_scene.h"
+#include "image/srgb.h"
 #include "image/write_image.h"
+#include "image/write_png.h"
 #include "math/portable_math.h"
 #include "tests/support/options.h"
 #include "tests/support/write_text.h"
@@ -63,6 +65,65 @@ std::string stack_of(const Scene& scene) {
     }
     return text;
 }
+
+constexpr Rgb kFirst = {0.2f, 0.6f, 0.8f}, kSecond = {0.9f, 0.1f, 0.35f};
+
+struct GreyRead {
+    Scene scene;
+    Material material; // the first shape has it
+};
+
+float mean_of_texel(Rgb c) { return (c.r + c.g + c.b) / 3; }
+
+/// Reads a scene in a folder with the pictures c.exr and c.png, of two coloured pixels, and g.exr of their means.
+GreyRead read_beside_colors(const std::string& name, const std::string& text) {
+    const std::filesystem::path folder = test::scratch_folder();
+    const Image colors = {.width = 2,
+                          .height = 1,
+                          .channels = 3,
+                          .pixels = {kFirst.r, kFirst.g, kFirst.b, kSecond.r, kSecond.g, kSecond.b}};
+    write_image(folder / "c.exr", colors);
+    const float a = mean_of_texel(kFirst), b = mean_of_texel(kSecond);
+    write_image(folder / "g.exr", Image{.width = 2, .height = 1, .channels = 3, .pixels = {a, a, a, b, b, b}});
+    write_png(folder / "c.png", Rgba8Image{.width = 2, .height = 1, .pixels = {51, 153, 204, 255, 230, 26, 89, 255}});
+    Messages messages;
+    GreyRead read;
+    read.scene = read_scene(test::write_text(folder / name, text), {}, messages);
+    CHECK(messages.left_out() == std::vector<std::string>{});
+    read.material = read.scene.materials.at(read.scene.instances.at(0).material);
+    return read;
+}
+GreyRead read_pbrt_colors(const std::string& text, const std::string& shape = "", const std::string& end = "") {
+    const std::string face = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 2 0 0 0 2 0] \"point2 uv\" [0 0 1 0 0 1] "
+                             "\"integer indices\" [0 1 2] ";
+    return read_beside_colors("scene.pbrt",
+                              "WorldBegin\nTexture \"t\" \"float\" \"imagemap\" \"string filename\" \"c.exr\"\n"
+                              "Texture \"p\" \"float\" \"imagemap\" \"string filename\" \"c.png\"\n" +
+                                  text + "\n" + face + shape + "\n" + end);
+}
+GreyRead read_mitsuba_colors(const std::string& bsdf, const std::string& version = "3.0.0") {
+    return read_beside_colors("scene.xml", fmt::format("<scene version=\"{}\"><shape type=\"rectangle\">{}</shape>"
+                                                       "</scene>",
+                                                       version, bsdf));
+}
+
+/// Returns the first or second texel of a texture, which are floats.
+Rgb grey_texel(const GreyRead& read, const TextureRef& ref, std::size_t i) {
+    const std::vector<float>& p = read.scene.images.at(static_cast<std::size_t>(ref.image)).rgba_float.pixels;
+    return {p.at(4 * i), p.at(4 * i + 1), p.at(4 * i + 2)};
+}
+void check_texel(const GreyRead& read, const TextureRef& ref, std::size_t i, Rgb wanted) {
+    const Rgb texel = grey_texel(read, ref, i);
+    CHECK(texel.r == doctest::Approx(wanted.r).epsilon(2e-3));
+    CHECK(texel.g == doctest::Approx(wanted.g).epsilon(2e-3));
+    CHECK(texel.b == doctest::Approx(wanted.b).epsilon(2e-3));
+}
+
+const std::string kBitmap = "<texture name=\"{}\" type=\"bitmap\"><string name=\"filename\" value=\"c.exr\"/>"
+                            "<boolean name=\"raw\" value=\"true\"/></texture>";
+std::string mitsuba_bitmap(const std::string& name) { return fmt::format(fmt::runtime(kBitmap), name); }
+const std::string kTwo = "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\".8 .2 .2\"/></bsdf>"
+                         "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\".2 .2 .6\"/></bsdf>";
 
 } // namespace
 
@@ -242,4 +303,90 @@ TEST_CASE("mitsuba: parts that differ in more than a number are surfaces in one 
     const std::string placed_parts = bsdf_of("blendbsdf", bitmap_of("weight") + red + bsdf_of("conductor"));
     CHECK(load_mixture(bsdf_of("mask", number_of("opacity", 0.5) + placed_parts)).messages.left_out().size() == 1);
     CHECK(load_mixture(bsdf_of("mask", bitmap_of("opacity") + placed_parts)).messages.left_out().size() == 1);
+}
+
+TEST_CASE("pbrt: where a number stands, a coloured picture is its mean, in version 3 its encoded luminance") {
+    const std::string metal = "Material \"conductor\" \"bool remaproughness\" false \"texture roughness\" ";
+    const GreyRead rough = read_pbrt_colors(metal + "\"t\"");
+    check_texel(rough, rough.material.roughness_texture, 0, grey(std::sqrt(mean_of_texel(kFirst))));
+    check_texel(rough, rough.material.roughness_texture, 1, grey(std::sqrt(mean_of_texel(kSecond))));
+    const GreyRead old = read_pbrt_colors(metal + "\"t\"", "", "WorldEnd\n");
+    check_texel(old, old.material.roughness_texture, 0, grey(std::sqrt(luminance(kFirst))));
+    const GreyRead decoded = read_pbrt_colors(metal + "\"p\"");
+    const auto linear = [](Rgb c) { return Rgb{srgb_decode(c.r), srgb_decode(c.g), srgb_decode(c.b)}; };
+    check_texel(decoded, decoded.material.roughness_texture, 0, grey(std::sqrt(mean_of_texel(linear(kFirst)))));
+    const GreyRead decoded_later = read_pbrt_colors(metal + "\"p\"", "", "WorldEnd\n");
+    check_texel(decoded_later, decoded_later.material.roughness_texture, 0,
+                grey(std::sqrt(srgb_decode(luminance(kFirst)))));
+    const GreyRead cut = read_pbrt_colors("Material \"diffuse\"", "\"texture alpha\" \"t\"");
+    check_texel(cut, cut.material.alpha_texture, 1, grey(mean_of_texel(kSecond)));
+}
+
+TEST_CASE("pbrt: a coloured picture mixes all channels by its mean, and each by its own in version 3") {
+    const std::string two = "MakeNamedMaterial \"a\" \"string type\" \"{0}\" \"rgb {1}\" [.8 .2 .2]\n"
+                            "MakeNamedMaterial \"b\" \"string type\" \"{0}\" \"rgb {1}\" [.2 .2 .6]\n";
+    const float share = mean_of_texel(kFirst);
+    const GreyRead mixed = read_pbrt_colors(fmt::format(fmt::runtime(two), "diffuse", "reflectance") +
+                                            "Material \"mix\" \"string materials\" [\"a\" \"b\"] \"texture amount\" "
+                                            "\"t\"");
+    check_texel(mixed, mixed.material.base_color_texture, 0, lerp(Rgb{0.8f, 0.2f, 0.2f}, Rgb{0.2f, 0.2f, 0.6f}, share));
+    const GreyRead old = read_pbrt_colors(
+        "Texture \"c\" \"spectrum\" \"imagemap\" \"string filename\" \"c.exr\"\n" +
+            fmt::format(fmt::runtime(two), "matte", "Kd") +
+            "Material \"mix\" \"string namedmaterial1\" \"b\" \"string namedmaterial2\" \"a\" \"texture amount\" \"c\"",
+        "", "WorldEnd\n");
+    check_texel(old, old.material.base_color_texture, 0, {0.8f - 0.6f * kFirst.r, 0.2f, 0.2f + 0.4f * kFirst.b});
+    const GreyRead veil = read_pbrt_colors("Texture \"c\" \"spectrum\" \"imagemap\" \"string filename\" \"c.exr\"\n"
+                                           "Material \"uber\" \"texture opacity\" \"c\"");
+    check_texel(veil, veil.material.alpha_texture, 0, grey(share));
+    // A spectrum that a picture mixes by a number keeps its colours.
+    const GreyRead between =
+        read_pbrt_colors("Texture \"m\" \"spectrum\" \"mix\" \"texture amount\" \"t\" \"rgb tex1\" "
+                         "[.8 .2 .2] \"rgb tex2\" [.2 .2 .6]\n"
+                         "Material \"diffuse\" \"texture reflectance\" \"m\"");
+    check_texel(between, between.material.base_color_texture, 0,
+                lerp(Rgb{0.8f, 0.2f, 0.2f}, Rgb{0.2f, 0.2f, 0.6f}, share));
+}
+
+TEST_CASE("pbrt: bumps have the mean of a coloured picture as heights") {
+    const auto normals_of = [](const std::string& picture) {
+        const GreyRead read = read_pbrt_colors(picture + "Material \"diffuse\" \"texture displacement\" \"h\"");
+        return grey_texel(read, read.material.normal_texture, 0);
+    };
+    const Rgb coloured = normals_of("Texture \"h\" \"float\" \"imagemap\" \"string filename\" \"c.exr\"\n");
+    const Rgb of_means = normals_of("Texture \"h\" \"float\" \"imagemap\" \"string filename\" \"g.exr\"\n");
+    CHECK(coloured.r == doctest::Approx(of_means.r));
+    CHECK(coloured.b == doctest::Approx(of_means.b));
+}
+
+TEST_CASE("mitsuba: where a number stands, a bitmap is its luminance, in 0.6 its mean, and a colour its mean") {
+    const std::string mask = "<bsdf type=\"mask\">" + mitsuba_bitmap("opacity") + "<bsdf type=\"diffuse\"/></bsdf>";
+    const GreyRead masked = read_mitsuba_colors(mask), old = read_mitsuba_colors(mask, "0.6.0");
+    check_texel(masked, masked.material.alpha_texture, 0, grey(luminance(kFirst)));
+    check_texel(masked, masked.material.alpha_texture, 1, grey(luminance(kSecond)));
+    check_texel(old, old.material.alpha_texture, 1, grey(mean_of_texel(kSecond)));
+    const GreyRead rough = read_mitsuba_colors("<bsdf type=\"roughconductor\">" + mitsuba_bitmap("alpha") + "</bsdf>");
+    check_texel(rough, rough.material.roughness_texture, 0, grey(std::sqrt(luminance(kFirst))));
+    const GreyRead blended =
+        read_mitsuba_colors("<bsdf type=\"blendbsdf\">" + mitsuba_bitmap("weight") + kTwo + "</bsdf>");
+    check_texel(blended, blended.material.base_color_texture, 1,
+                lerp(Rgb{0.8f, 0.2f, 0.2f}, Rgb{0.2f, 0.2f, 0.6f}, luminance(kSecond)));
+    const GreyRead constant = read_mitsuba_colors(
+        "<bsdf type=\"mask\"><rgb name=\"opacity\" value=\".9 .2 .1\"/><bsdf type=\"diffuse\"/></bsdf>");
+    CHECK(constant.material.alpha == doctest::Approx(0.4));
+    const GreyRead colour = read_mitsuba_colors("<bsdf type=\"diffuse\">" + mitsuba_bitmap("reflectance") + "</bsdf>");
+    check_texel(colour, colour.material.base_color_texture, 1, kSecond);
+}
+
+TEST_CASE("mitsuba: the checks of a checkerboard of numbers are exchanged, but not in 0.6") {
+    const auto opacity = [](const std::string& version) {
+        const GreyRead read = read_mitsuba_colors("<bsdf type=\"mask\"><texture name=\"opacity\" type=\"checkerboard\">"
+                                                  "<rgb name=\"color0\" value=\".9 .6 .9\"/><float name=\"color1\" "
+                                                  "value=\".1\"/></texture><bsdf type=\"diffuse\"/></bsdf>",
+                                                  version);
+        // The first texel is that of small u and v, which has color0 in a colour.
+        return grey_texel(read, read.material.alpha_texture, 0).g;
+    };
+    CHECK(opacity("3.0.0") == doctest::Approx(0.1));
+    CHECK(opacity("0.6.0") == doctest::Approx(0.8));
 }

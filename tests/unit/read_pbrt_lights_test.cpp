@@ -116,10 +116,13 @@ TEST_CASE("pbrt: area lights have the radiance that the file states") {
 }
 
 TEST_CASE("pbrt: an area light belongs to its block, and nothing emits through an interface") {
-    const Scene scene =
-        load_lit("WorldBegin AttributeBegin AreaLightSource \"diffuse\" \"bool twosided\" true\n" + kFloorText +
-                 "AttributeEnd\n" + kFloorText + "AttributeBegin Material \"interface\" AreaLightSource \"diffuse\"\n" +
-                 kFloorText + "AttributeEnd\n");
+    Messages messages;
+    const Scene scene = load_lit("WorldBegin AttributeBegin AreaLightSource \"diffuse\" \"bool twosided\" true\n" +
+                                     kFloorText + "AttributeEnd\n" + kFloorText +
+                                     "AttributeBegin Material \"interface\" AreaLightSource \"diffuse\"\n" +
+                                     kFloorText + "AttributeEnd\n",
+                                 messages);
+    CHECK(messages.left_out().size() == 1);
     REQUIRE(scene.instances.size() == 2);
     CHECK(scene.materials[scene.instances[0].material].two_sided_emission);
     CHECK(scene.materials[scene.instances[1].material].emission == Rgb{0, 0, 0});

@@ -136,6 +136,28 @@ TEST_CASE("pbrt: roughness is remapped as each version does, and may differ alon
     CHECK(across.specular_roughness_anisotropy == along.specular_roughness_anisotropy);
 }
 
+TEST_CASE("pbrt: glass of version 3 is smooth at roughness 0, which its other materials remap") {
+    const std::string at_0 = " \"float uroughness\" 0 \"float vroughness\" 0", along = " \"float uroughness\" .1";
+    for (const std::string type : {"glass", "kdsubsurface"}) {
+        CAPTURE(type);
+        CHECK(pbrt_material("Material \"" + type + "\"").roughness == 0);
+        CHECK(pbrt_material("Material \"" + type + "\"" + at_0).roughness == 0);
+        const Material rough = pbrt_material("Material \"" + type + "\"" + along);
+        CHECK(square(rough.roughness) == doctest::Approx(0.0473).epsilon(2e-3)); // that of 1e-3
+        CHECK(rough.specular_roughness_anisotropy > 0.5f);
+    }
+    // Only version 3 ends a world.
+    CHECK(pbrt_material("Material \"subsurface\"", "WorldEnd\n").roughness == 0);
+    CHECK(square(pbrt_material("Material \"metal\"" + at_0).roughness) == doctest::Approx(0.0473).epsilon(2e-3));
+    CHECK(described::converted(described::Curve::RoughnessOfGlass3, 0, 0.1f) ==
+          described::converted(described::Curve::RoughnessOfVersion3, 0, 0.1f));
+    const OneMaterial read =
+        load_pbrt_material("Texture \"t\" \"float\" \"checkerboard\" \"float tex1\" 0 \"float tex2\" 1\n"
+                           "Material \"glass\" \"texture uroughness\" \"t\" \"texture vroughness\" \"t\"");
+    CHECK(pbrt_texel(read.scene, read.material.roughness_texture, 0.2f, 0.2f) == 0);
+    CHECK(pbrt_texel(read.scene, read.material.roughness_texture, 1.2f, 0.2f) == 1);
+}
+
 TEST_CASE("pbrt: coats, panes and sheets are the nearest materials") {
     // 59.6 % of diffuse light inside glass of 1.5 is reflected back.
     CHECK(described::reflected_inside(1.5f) == doctest::Approx(0.5963).epsilon(2e-3));

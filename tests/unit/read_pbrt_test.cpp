@@ -178,6 +178,45 @@ TEST_CASE("pbrt: what is unknown is left out with its line, and the right word i
     CHECK(messages.left_out().size() == 6);
 }
 
+TEST_CASE("pbrt: unknown types and parameters of statements before the world are left out with their line") {
+    Messages messages;
+    const Scene scene = load_pbrt("Sampler \"halto\" \"integer pixelsample\" 16\n"
+                                  "Integrator \"volpth\" \"integer maxdept\" 7\n"
+                                  "Film \"rgbb\" \"integer xresolution\" 8\n"
+                                  "Accelerator \"bvhh\" \"integer maxprim\" 4\n"
+                                  "Option \"integer sed\" 3\n"
+                                  "WorldBegin\n" +
+                                      kFlat,
+                                  messages);
+    CHECK(scene.instances.size() == 1);
+    CHECK(messages.left_out().size() == 8);
+    CHECK(left_out_at(messages, 1).find("\"halton\"") != std::string::npos);
+    CHECK(left_out_at(messages, 2).find("\"volpath\"") != std::string::npos);
+    CHECK(left_out_at(messages, 3).find("\"rgb\"") != std::string::npos);
+    CHECK(left_out_at(messages, 4).find("\"bvh\"") != std::string::npos);
+    CHECK(left_out_at(messages, 5).find("\"seed\"") != std::string::npos);
+    (void)load_whole("Option \"integer seed\" 4\nOption \"bool disablepixeljitter\" true\n"
+                     "Sampler \"stratified\" \"integer xsamples\" 4 \"integer ysamples\" 4 \"bool jitter\" true\n"
+                     "Integrator \"mlt\" \"integer maxdepth\" 4 \"integer mutationsperpixel\" 9\n"
+                     "Accelerator \"kdtree\" \"float emptybonus\" .2\nWorldBegin\n" +
+                     kFlat);
+}
+
+TEST_CASE("pbrt: a light of a surface that is not there, a motion and an unknown spectrum are reported by line") {
+    Messages messages;
+    (void)load_pbrt("WorldBegin\nAttributeBegin\nAreaLightSource \"diffuse\"\nMaterial \"interface\"\n" + kFlat +
+                        "AttributeEnd\nMaterial \"conductor\" \"spectrum eta\" \"metal-Aux-eta\"\n"
+                        "ActiveTransform EndTime Translate 5 0 0\n" +
+                        kFlat + kFlat,
+                    messages);
+    CHECK_FALSE(left_out_at(messages, 5).empty());
+    CHECK(left_out_at(messages, 7).find("\"metal-au-eta\"") != std::string::npos);
+    CHECK_FALSE(left_out_at(messages, 9).empty());
+    CHECK(left_out_at(messages, 10).empty()); // once
+    const Scene named = load_whole("WorldBegin\nMaterial \"dielectric\" \"spectrum eta\" \"glass-F11\"\n" + kFlat);
+    CHECK(named.materials.at(named.instances.at(0).material).ior == 1.78472f);
+}
+
 TEST_CASE("pbrt: faults of syntax cost their statement or parameter alone") {
     for (const std::string fault :
          {"Translate 1 2",

@@ -2,28 +2,33 @@
 
 #include <cmath>
 
+#include "formats/described/make_texture.h"
 #include "formats/obj/bump_normals.h"
 #include "formats/obj/texel_values.h"
-#include "image/srgb.h"
 #include "math/portable_math.h"
 
 namespace pertev::described {
 namespace {
 
 /// Returns the picture with linear values.
-TextureImage linear_image(const TextureImage& from, bool is_srgb, float exponent) {
-    if (from.rgba8.pixels.empty()) return from;
+TextureImage linear_image(const TextureImage& from, ImageChange change, bool is_srgb) {
+    const bool is_bytes = !from.rgba8.pixels.empty();
+    if (!has_colors(from)) change.grey_of = GreyOf::Channels;
+    if (!is_bytes) {
+        if (change.grey_of == GreyOf::Channels) return from;
+        change.exponent = 1;
+    }
     TextureImage to;
     to.name = from.name;
-    to.rgba_float = {.width = from.rgba8.width, .height = from.rgba8.height, .channels = 4, .pixels = {}};
-    to.rgba_float.pixels.resize(from.rgba8.pixels.size());
+    to.rgba_float = {.width = max(from.rgba8.width, from.rgba_float.width),
+                     .height = max(from.rgba8.height, from.rgba_float.height),
+                     .channels = 4,
+                     .pixels = {}};
+    to.rgba_float.pixels.reserve(4 * pixel_count(from));
     for (std::size_t i = 0; i < pixel_count(from); ++i) {
-        for (std::size_t c = 0; c < 4; ++c) {
-            float value = texel_value(from, i, c);
-            if (c < 3 && is_srgb) value = srgb_decode(value);
-            if (c < 3 && exponent != 1) value = pow(value, exponent);
-            to.rgba_float.pixels[4 * i + c] = value;
-        }
+        for (const float value : linear_texel(from, i, change, is_bytes && is_srgb))
+            to.rgba_float.pixels.push_back(value);
+        to.rgba_float.pixels.push_back(texel_value(from, i, 3));
     }
     return to;
 }
@@ -69,14 +74,18 @@ double world_area(const Mesh& mesh, const DoubleTransform& world_from_mesh) {
     return sum;
 }
 
-int32_t Bumps::normals_of(const TextureRef& heights, float exponent, int32_t made) {
+int32_t Bumps::normals_of(const TextureRef& ref, const TextureValue& heights) {
+    ImageChange change;
+    change.exponent = heights.exponent;
+    // The normals are those of the luminance anyway.
+    change.grey_of = heights.grey_of == GreyOf::Luminance ? GreyOf::Channels : heights.grey_of;
     const auto [number, is_new] =
-        numbers_.try_emplace({heights.image, made, heights.is_srgb, exponent, heights.wrap_s}, kNoImage);
+        numbers_.try_emplace({ref.image, heights.made, ref.is_srgb, change, ref.wrap_s}, kNoImage);
     if (!is_new) return number->second;
-    const TextureImage from = made >= 0 ? enlarged(made_[static_cast<std::size_t>(made)])
-                                        : scene_.images[static_cast<std::size_t>(heights.image)];
+    const TextureImage from = heights.made >= 0 ? enlarged(made_[static_cast<std::size_t>(heights.made)])
+                                                : scene_.images[static_cast<std::size_t>(ref.image)];
     budget_.charge(from);
-    TextureImage normals = normals_of_heights(linear_image(from, heights.is_srgb, exponent), 'm', heights.wrap_s);
+    TextureImage normals = normals_of_heights(linear_image(from, change, ref.is_srgb), 'm', ref.wrap_s);
     number->second = static_cast<int32_t>(scene_.images.size());
     scene_.images.push_back(std::move(normals));
     return number->second;
@@ -93,7 +102,7 @@ void Bumps::set(const TextureValue& heights, const Mesh& mesh, const DoubleTrans
         ref = {};
         return;
     }
-    ref.image = normals_of(ref, heights.exponent, heights.made);
+    ref.image = normals_of(ref, heights);
     ref.is_srgb = false;
     const Image& normals = scene_.images[static_cast<std::size_t>(ref.image)].rgba_float;
     const double width = normals.width, height = normals.height;

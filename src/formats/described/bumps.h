@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "formats/described/image_budget.h"
-#include "formats/described/texture_value.h"
+#include "formats/described/surface.h"
 #include "math/double_transform.h"
 #include "scene/scene.h"
 
@@ -32,12 +32,13 @@ public:
     void set(const TextureValue& heights, const Mesh& mesh, const DoubleTransform& world_from_mesh, Material& material);
 
 private:
-    int32_t normals_of(const TextureRef& heights, float exponent, int32_t made);
+    /// `ref` has the decoded image of `heights`, if that has one.
+    int32_t normals_of(const TextureRef& ref, const TextureValue& heights);
 
     ImageBudget& budget_;
     const std::vector<TextureImage>& made_;
     Scene& scene_;
-    std::map<std::tuple<int32_t, int32_t, bool, float, Wrap>, int32_t> numbers_; // by image, encoding and wrap
+    std::map<std::tuple<int32_t, int32_t, bool, ImageChange, Wrap>, int32_t> numbers_; // by image, encoding and wrap
 };
 
 } // namespace pertev::described

@@ -33,9 +33,6 @@ Surface stacked(std::vector<Surface> parts) {
     return surface;
 }
 
-bool has_alpha_image(const Surface& part) {
-    return std::ranges::any_of(part.images, [](const SlotImage& use) { return use.slot == &M::alpha_texture; });
-}
 bool is_opaque(const Surface& part) { return part.material.alpha == 1 && !has_alpha_image(part); }
 
 /// A part with the share of rays that meet it.
@@ -126,6 +123,10 @@ Surface main_part(const Surface& surface) {
 }
 
 } // namespace
+
+bool has_alpha_image(const Surface& part) {
+    return std::ranges::any_of(part.images, [](const SlotImage& use) { return use.slot == &M::alpha_texture; });
+}
 
 TextureValue one_less(const TextureValue& value) {
     if (!value.has_image()) return constant(grey(1) - value.factor);

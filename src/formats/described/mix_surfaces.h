@@ -29,6 +29,8 @@ MixedSurface mix_surfaces(const Surface& first, const Surface& second, TextureVa
 /// Returns the mixture of two surfaces as one block of parameters; nothing if that cannot express it exactly.
 std::optional<Surface> mix_in_one_block(const Surface& first, const Surface& second, const TextureValue& of_second);
 
+bool has_alpha_image(const Surface& part);
+
 /// Returns the share of what is not `value`.
 TextureValue one_less(const TextureValue& value);
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/parallel_for.h"
+#include "formats/described/make_texture.h"
 #include "formats/obj/texel_values.h"
 #include "image/srgb.h"
 #include "math/portable_math.h"
@@ -29,6 +30,7 @@ Rgb put_image(Surface& surface, TextureSlot slot, const TextureValue& value, Cur
     std::erase_if(surface.images, [slot](const SlotImage& earlier) { return earlier.slot == slot; });
     SlotImage image{.slot = slot, .made = value.made, .change = {}};
     image.change.exponent = value.exponent;
+    image.change.grey_of = value.grey_of;
     image.change.curve = curve;
     image.change.amount = amount;
     const bool keeps_factor = curve == Curve::None && is_black(value.offset) && is_unit(value.factor);
@@ -58,11 +60,9 @@ TextureImage changed_image(const TextureImage& from, const ImageChange& change, 
     to.rgba_float = {
         .width = width, .height = height, .channels = 4, .pixels = std::vector<float>(4 * pixel_count(from))};
     parallel_for(pixel_count(from), 4096, [&](uint64_t i) {
+        const std::array<float, 3> texel = linear_texel(from, i, change, is_bytes && is_srgb);
         for (std::size_t c = 0; c < 3; ++c) {
-            float value = texel_value(from, i, c);
-            if (is_bytes && is_srgb) value = srgb_decode(value);
-            if (change.exponent != 1) value = pow(max(value, 0.0f), change.exponent);
-            value = converted(change.curve, change.amount, change.offset[c] + change.factor[c] * value);
+            const float value = converted(change.curve, change.amount, change.offset[c] + change.factor[c] * texel[c]);
             to.rgba_float.pixels[4 * i + c] = max(value, 0.0f);
         }
         to.rgba_float.pixels[4 * i + 3] = change.is_opaque ? 1.0f : texel_value(from, i, 3);
@@ -90,6 +90,19 @@ void remove_unused(Scene& scene) {
 
 } // namespace
 
+std::array<float, 3> linear_texel(const TextureImage& from, std::size_t i, const ImageChange& change, bool decodes) {
+    if (change.is_alpha) return numbers_of(grey(texel_value(from, i, 3)));
+    const auto linear = [&](float value) {
+        if (decodes) value = srgb_decode(value);
+        return change.exponent != 1 ? pow(max(value, 0.0f), change.exponent) : value;
+    };
+    const Rgb stored = {texel_value(from, i, 0), texel_value(from, i, 1), texel_value(from, i, 2)};
+    if (change.grey_of == GreyOf::EncodedLuminance) return numbers_of(grey(linear(luminance(stored))));
+    const Rgb c = {linear(stored.r), linear(stored.g), linear(stored.b)};
+    if (change.grey_of == GreyOf::Luminance) return numbers_of(grey(luminance(c)));
+    return numbers_of(change.grey_of == GreyOf::Mean ? grey((c.r + c.g + c.b) / 3) : c);
+}
+
 float converted(Curve curve, float amount, float value) {
     switch (curve) {
     case Curve::None:
@@ -98,11 +111,15 @@ float converted(Curve curve, float amount, float value) {
         return sqrt(clamp(value, 0.0f, 1.0f));
     case Curve::RoughnessOfRoot:
         return sqrt(sqrt(clamp(value, 0.0f, 1.0f)));
+    case Curve::RoughnessOfGlass3:
+        return value == 0 ? 0.0f : converted(Curve::RoughnessOfVersion3, amount, value);
     case Curve::RoughnessOfVersion3: {
         const float x = log(max(value, 1e-3f)); // the polynomial of pbrt-v3's documentation
         const float width = 1.62142f + x * (0.819955f + x * (0.1734f + x * (0.0171201f + x * 0.000640711f)));
         return sqrt(clamp(width, 0.0f, 1.0f));
     }
+    case Curve::Root:
+        return sqrt(max(value, 0.0f));
     case Curve::BeneathCoat: {
         const float albedo = clamp(value, 0.0f, 1.0f), inside = min(amount, 0.9999f);
         return albedo * (1 - inside) / (1 - albedo * inside);
@@ -127,8 +144,9 @@ void set_color(Surface& surface, Rgb MaterialParameters::*color, TextureSlot slo
         value.has_image() ? put_image(surface, slot, value, curve, amount) : converted(curve, amount, value.factor);
 }
 
-void set_number(Surface& surface, float MaterialParameters::*number, TextureSlot slot, const TextureValue& value,
+void set_number(Surface& surface, float MaterialParameters::*number, TextureSlot slot, const TextureValue& texture,
                 Curve curve) {
+    const TextureValue value = as_number(texture);
     if (!value.has_image()) {
         surface.material.*number = converted(curve, 0.0f, value.factor.r);
         return;
@@ -137,7 +155,8 @@ void set_number(Surface& surface, float MaterialParameters::*number, TextureSlot
     surface.images.back().change.decodes = value.ref.is_srgb;
 }
 
-void set_alpha(Surface& surface, const TextureValue& value) {
+void set_alpha(Surface& surface, const TextureValue& texture) {
+    const TextureValue value = as_number(texture);
     Material& material = surface.material;
     if (!value.has_image()) {
         material.alpha *= clamp(value.factor.r, 0.0f, 1.0f);
@@ -160,19 +179,22 @@ void finish_images(const std::vector<const Surface*>& surfaces, std::vector<Text
             TextureRef& ref = scene.materials[i].*use.slot;
             if (use.made >= 0) ref.image = first_made + use.made;
             if (!ref.has_image()) continue;
+            const TextureImage& image = scene.images[static_cast<std::size_t>(ref.image)];
             ImageChange change = use.change;
-            if (scene.images[static_cast<std::size_t>(ref.image)].rgba8.pixels.empty()) change.decodes = false;
-            const bool may_be_alpha = std::exchange(change.is_alpha, false),
-                       decodes = std::exchange(change.decodes, false);
-            if (may_be_alpha && change.is_identity() && has_alpha(scene.images[static_cast<std::size_t>(ref.image)])) {
-                ref.channel = 3;
-                continue;
+            if (image.rgba8.pixels.empty()) change.decodes = false;
+            if (change.is_alpha) change.is_alpha = has_alpha(image);
+            if (change.is_alpha || (change.grey_of != GreyOf::Channels && !has_colors(image)))
+                change.grey_of = GreyOf::Channels;
+            if (change.is_alpha) {
+                change.decodes = false;
+                if (change == ImageChange{.is_alpha = true}) {
+                    ref.channel = 3;
+                    continue;
+                }
             }
-            change.decodes = decodes;
             // The colour's alpha would count as an opacity.
             change.is_opaque = use.slot == &MaterialParameters::base_color_texture &&
-                               scene.materials[i].alpha_mode != AlphaMode::Opaque &&
-                               has_alpha(scene.images[static_cast<std::size_t>(ref.image)]);
+                               scene.materials[i].alpha_mode != AlphaMode::Opaque && has_alpha(image);
             if (change.is_identity()) continue;
             const auto [number, is_new] = numbers.try_emplace({ref.image, ref.is_srgb, change}, kNoImage);
             if (is_new) {

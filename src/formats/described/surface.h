@@ -21,7 +21,8 @@ struct ImageChange {
     std::array<float, 3> factor = {1, 1, 1}, offset = {0, 0, 0};
     Curve curve = Curve::None;
     float amount = 0;
-    bool is_alpha = false;  // the alpha channel counts if it varies, else the first
+    GreyOf grey_of = GreyOf::Channels;
+    bool is_alpha = false;  // the alpha channel counts if it is not 1 everywhere, else the colour
     bool decodes = false;   // numbers are sRGB-encoded; slots decode only colours
     bool is_opaque = false; // the alpha channel is 1, because it is no opacity
     auto operator<=>(const ImageChange&) const = default;
@@ -52,11 +53,14 @@ struct Surface {
 /// Sets a colour and its texture.
 void set_color(Surface& surface, Rgb MaterialParameters::*color, TextureSlot slot, const TextureValue& value,
                Curve curve = Curve::None, float amount = 0);
-/// Sets a number and its texture, of which the first channel counts.
-void set_number(Surface& surface, float MaterialParameters::*number, TextureSlot slot, const TextureValue& value,
+/// Sets a number and its texture.
+void set_number(Surface& surface, float MaterialParameters::*number, TextureSlot slot, const TextureValue& texture,
                 Curve curve = Curve::None);
 /// Multiplies the alpha of a surface by a number or a texture. Surfaces of alpha 1 stay opaque.
-void set_alpha(Surface& surface, const TextureValue& value);
+void set_alpha(Surface& surface, const TextureValue& texture);
+
+/// Returns a texel decoded, and as grey as `change` says, before its factor.
+std::array<float, 3> linear_texel(const TextureImage& from, std::size_t i, const ImageChange& change, bool decodes);
 
 /// Applies the changes to the images of `scene`, whose materials `surfaces` belong to, one to one. The loader has put
 /// its images there. Images that no material uses any more are removed.

@@ -18,11 +18,21 @@ enum class Curve {
     RoughnessOfWidth,    // a microfacet width: roughness is its root
     RoughnessOfRoot,     // pbrt-v4's remapped roughness, of which the width is the root
     RoughnessOfVersion3, // pbrt-v3's remapped roughness
+    RoughnessOfGlass3,   // that of pbrt-v3's glass, where 0 stays smooth
+    Root,                // one of two interfaces transmits it, for the colour of both
     BeneathCoat,         // the albedo of a diffuse surface beneath a smooth coat that reflects `amount` from inside
 };
 
 /// Returns `value` converted; those of roughness are Pertev's, the root of the width.
 float converted(Curve curve, float amount, float value);
+
+/// The number that a coloured texel stands for.
+enum class GreyOf {
+    Channels,         // each channel counts for itself
+    Mean,             // pbrt-v4, Mitsuba 0.6
+    Luminance,        // Mitsuba 3
+    EncodedLuminance, // before the encoding is taken off: pbrt-v3
+};
 
 /// Two colours mixed by the direction of a surface: the first with the share |normal . direction|.
 struct NormalMix {
@@ -39,10 +49,11 @@ struct NormalMix {
 /// The value of a texture: offset + factor * texel. Without an image it is `factor`.
 struct TextureValue {
     Rgb factor = {1, 1, 1}, offset = {0, 0, 0};
-    TextureRef ref;             // its image is one of the loader, or kNoImage
-    int32_t made = -1;          // index into Parts::made; -1: none
-    float exponent = 1;         // the gamma of the stored values; applied before factor and offset
-    bool ignores_alpha = false; // an opacity is that of the colour, even if the image has an alpha channel
+    TextureRef ref;                    // its image is one of the loader, or kNoImage
+    int32_t made = -1;                 // index into Parts::made; -1: none
+    float exponent = 1;                // the gamma of the stored values; applied before factor and offset
+    GreyOf grey_of = GreyOf::Channels; // applied to the texels before factor and offset
+    bool ignores_alpha = false;        // an opacity is that of the colour, even if the image has an alpha channel
 
     bool is_of_vertices = false;                // the colours of a mesh's vertices, times factor
     std::shared_ptr<const NormalMix> by_normal; // the value by direction, of which `factor` is the mean

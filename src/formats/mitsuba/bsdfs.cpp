@@ -332,8 +332,7 @@ Surface Bsdfs::mixture(Object& bsdf) {
     if (bsdf.type == "blendbsdf") {
         TextureValue weight = textures_.number(bsdf, "weight", 0.5f);
         if (!bsdf.parameters.contains("weight")) {
-            if (Object* const texture = child_of(bsdf, "texture", reading_))
-                weight = textures_.value_of(*texture, ColorUse::Index);
+            if (Object* const texture = child_of(bsdf, "texture", reading_)) weight = textures_.number_of(*texture);
         }
         return mix(bsdf, part(*parts[0]), *parts[1], weight);
     }
@@ -362,8 +361,7 @@ Surface Bsdfs::mask(Object& bsdf) {
     Surface surface = nested(bsdf);
     TextureValue opacity = textures_.number(bsdf, "opacity", 0.5f);
     if (!bsdf.parameters.contains("opacity")) {
-        if (Object* const texture = child_of(bsdf, "texture", reading_))
-            opacity = textures_.value_of(*texture, ColorUse::Index);
+        if (Object* const texture = child_of(bsdf, "texture", reading_)) opacity = textures_.number_of(*texture);
     }
     if (!set_opacity(surface, opacity))
         reading_.sink().leave_out(
@@ -389,7 +387,8 @@ Surface Bsdfs::bumpy(Object& bsdf) {
         for_each_part(surface, [&](Surface& part) { part.material.normal_texture = map.ref; });
         return surface;
     }
-    const TextureValue heights = map.scaled(grey(static_cast<float>(bsdf.parameters.number("scale", 1, sink))));
+    const TextureValue heights =
+        textures_.number_of(map).scaled(grey(static_cast<float>(bsdf.parameters.number("scale", 1, sink))));
     for_each_part(surface, [&](Surface& part) { part.heights = heights, part.has_heights = true; });
     return surface;
 }

@@ -4,6 +4,7 @@
 
 #include "base/message_text.h"
 #include "formats/described/make_surface.h"
+#include "formats/described/make_texture.h"
 #include "formats/mitsuba/bsdfs.h"
 #include "formats/spectra/named_spectra.h"
 #include "math/portable_math.h"
@@ -19,14 +20,6 @@ Rgb usable_index(Rgb index, float least) {
 }
 
 bool is_grey(Rgb c) { return c.r == c.g && c.g == c.b; }
-
-bool has_greys_alone(const TextureImage& image) {
-    const std::vector<float>& p = image.rgba_float.pixels;
-    for (std::size_t i = 0; i + 3 < p.size(); i += 4) {
-        if (!is_grey({p[i], p[i + 1], p[i + 2]})) return false;
-    }
-    return true;
-}
 
 /// Returns Fresnel's reflectance of a metal at a cosine, of unpolarised light.
 float reflectance_of(float eta, float k, float cosine) {
@@ -82,7 +75,7 @@ void Bsdfs::tint_metal(const Object& bsdf, const TextureValue& tint, Surface& su
     const auto made = static_cast<std::size_t>(tint.made);
     const bool is_white = !tint.has_image() && tint.factor == grey(1);
     if (is_white ||
-        (tint.made >= 0 ? has_greys_alone(reading_.parts.made[made]) : !tint.has_image() && is_grey(tint.factor))) {
+        (tint.made >= 0 ? !has_colors(reading_.parts.made[made]) : !tint.has_image() && is_grey(tint.factor))) {
         set_number(surface, &M::specular_weight, &M::specular_texture, tint);
         return;
     }

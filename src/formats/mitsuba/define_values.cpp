@@ -69,10 +69,14 @@ std::string DefineValues::put_into(std::string_view text, const FileLocation& fr
 }
 
 void DefineValues::report_unused() const {
+    std::vector<std::string_view> known; // names in the file
+    for (const auto& [name, value] : values_) {
+        if (known.size() < kMostSuggestions && (!defined_.contains(name) || used_.contains(name)))
+            known.push_back(name);
+    }
     for (const std::string& name : defined_) {
         if (!used_.contains(name))
-            sink_.warn(Remark("define", name,
-                              fmt::format("the file has no ${}{}", name, did_you_mean(name, first_names(values_)))));
+            sink_.warn(Remark("define", name, fmt::format("the file has no ${}{}", name, did_you_mean(name, known))));
     }
 }
 

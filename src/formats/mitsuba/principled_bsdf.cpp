@@ -28,6 +28,9 @@ Surface Bsdfs::principled(Object& bsdf) {
     set_number(surface, &M::roughness, &M::roughness_texture, textures_.number(bsdf, "roughness", 0.5f));
     if (!is_thin) set_number(surface, &M::metallic, &M::metallic_texture, textures_.number(bsdf, "metallic", 0));
     material.transmission_weight = number("spec_trans", 0);
+    const bool is_clear = material.transmission_weight == 1 && material.metallic == 0;
+    if (is_clear && !is_thin && !material.metallic_texture.has_image()) // two interfaces have the colour together
+        set_color(surface, &M::base_color, &M::base_color_texture, color(bsdf, "base_color", 0.5f), Curve::Root);
     material.thin_walled = is_thin;
     material.has_relative_ior = !is_thin && material.transmits();
     if (parameters.contains("eta")) {

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <set>
+#include <span>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -30,6 +32,38 @@ constexpr std::array<std::string_view, 12> kObjectTags = {"bsdf",   "emitter", "
 constexpr std::array<std::string_view, 16> kOtherTags = {
     "alias", "animation", "blackbody", "boolean", "default", "float",  "include",   "integer",
     "path",  "point",     "ref",       "rgb",     "srgb",    "string", "transform", "vector"};
+
+/// Returns the attributes of an element; none for one that is unknown.
+std::span<const std::string_view> attributes_of(std::string_view tag, bool has_type) {
+    constexpr static std::string_view kOfObject[] = {"type", "id", "name", "version"},
+                                      kVector[] = {"name", "value", "x", "y", "z"},
+                                      kColor[] = {"name", "value", "intent"}, kRef[] = {"id", "name"},
+                                      kAlias[] = {"id", "as"}, kInclude[] = {"filename"}, kPath[] = {"value"},
+                                      kBlackbody[] = {"name", "value", "temperature", "scale"},
+                                      kSpectrum[] = {"name", "value", "intent", "filename"}, kNamed[] = {"name"},
+                                      kRotate[] = {"value", "x", "y", "z", "angle"},
+                                      kLookat[] = {"origin", "target", "up"};
+    const auto is = [tag](std::initializer_list<std::string_view> tags) {
+        return std::ranges::find(tags, tag) != tags.end();
+    };
+    if (std::ranges::find(kObjectTags, tag) != kObjectTags.end() || is({"subsurface"}) ||
+        (tag == "spectrum" && has_type))
+        return kOfObject;
+    if (is({"float", "integer", "boolean", "string", "default"})) return std::span(kColor).first(2);
+    if (is({"point", "vector"})) return kVector;
+    if (is({"translate", "scale"})) return std::span(kVector).last(4);
+    if (is({"rgb", "srgb"})) return kColor;
+    if (is({"spectrum"})) return kSpectrum;
+    if (is({"blackbody"})) return kBlackbody;
+    if (is({"ref"})) return kRef;
+    if (is({"alias"})) return kAlias;
+    if (is({"include"})) return kInclude;
+    if (is({"path", "matrix"})) return kPath;
+    if (is({"rotate"})) return kRotate;
+    if (is({"lookat", "look_at"})) return kLookat;
+    if (is({"transform", "animation"})) return kNamed;
+    return {};
+}
 
 class Reader {
 public:
@@ -85,6 +119,18 @@ private:
         return attribute ? values_.put_into(attribute.value(), location_of(node)) : std::string(missing);
     }
 
+    /// Leaves out the attributes of an element that are not in `known`. A colon is of another namespace.
+    void leave_out_unknown_attributes(const pugi::xml_node& node, std::span<const std::string_view> known) {
+        for (const pugi::xml_attribute& attribute : node.attributes()) {
+            const std::string_view name = attribute.name();
+            if (std::ranges::find(known, name) != known.end() || name.find(':') != name.npos || name == "xmlns")
+                continue;
+            context_.sink.leave_out(
+                {location_of(node), fmt::format("the attribute \"{}\" of <{}> is unknown and left out{}",
+                                                shortened(name), shortened(node.name()), did_you_mean(name, known))});
+        }
+    }
+
     void read_root(const pugi::xml_node& root) {
         if (!root) return;
         if (files_ == 1) {
@@ -122,6 +168,8 @@ private:
         std::string tag = snake_case(node.name());
         if (tag == "luminaire") tag = "emitter";
         if (tag == "camera") tag = "sensor";
+        if (const auto known = attributes_of(tag, node.attribute("type")); !known.empty())
+            leave_out_unknown_attributes(node, known);
         if (tag == "default") return values_.set_default(text(node, "name"), text(node, "value"), location_of(node));
         if (tag == "include") return include(node, parent, depth);
         if (tag == "path") return context_.search_paths.emplace_back(location_of(node), text(node, "value")), void();
@@ -197,6 +245,7 @@ private:
     Parameter read_parameter(const pugi::xml_node& node, const std::string& tag) {
         Parameter to;
         to.name = snake_case(text(node, "name"));
+        if (to.name.empty()) throw error(node, "it has no name");
         to.line = location_of(node).line;
         if (tag == "float" || tag == "integer") {
             to.type = tag == "float" ? ParameterType::Float : ParameterType::Integer;
@@ -270,6 +319,7 @@ private:
         for (const pugi::xml_node& step : node.children()) {
             if (step.type() != pugi::node_element) continue;
             const std::string tag = snake_case(step.name());
+            if (const auto known = attributes_of(tag, false); !known.empty()) leave_out_unknown_attributes(step, known);
             TransformStep read;
             if (tag == "translate" || tag == "scale" || tag == "rotate") {
                 read.vector = vector_of(step, tag == "scale" ? 1 : 0);

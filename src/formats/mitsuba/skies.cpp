@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "formats/described/transforms.h"
 #include "formats/described/usable_values.h"
 #include "math/portable_math.h"
 
@@ -17,6 +18,13 @@ int64_t day_of_year(int64_t year, int64_t month, int64_t day) {
     constexpr int64_t kDaysBefore[] = {0, 31, 59, 90, 120, 151, 181, 212, 243, 273, 304, 334};
     const bool is_leap = (year % 4 == 0 && year % 100 != 0) || year % 400 == 0;
     return kDaysBefore[std::clamp<int64_t>(month, 1, 12) - 1] + day + (is_leap && month > 2 ? 1 : 0);
+}
+
+/// Returns a direction of the world in the axes of a light. A transform without an inverse leaves it.
+Vec3 light_direction(DoubleVec3 of_world, const DoubleTransform& world_from_light) {
+    DoubleTransform turned = described::inverse(world_from_light);
+    turned.translation = {0, 0, 0};
+    return normalize_safely(to_float(described::is_finite(turned) ? transform_point(turned, of_world) : of_world));
 }
 
 } // namespace
@@ -64,7 +72,7 @@ void set_sky(Object& emitter, Reading& reading, InfiniteLight& light) {
     sky.sun_radius = static_cast<float>(std::clamp(0.5 * degrees, 0.05, 90.0)) * kPerDegree;
     const auto given = parameters.vector("sun_direction", sink);
     if (given) {
-        sky.sun = normalize_safely(to_float(*given));
+        sky.sun = light_direction(*given, light.world_from_light);
     } else {
         const SunPosition sun = sun_position_at(parameters, sink);
         const float south = cos(sun.height) * cos(sun.from_south), west = cos(sun.height) * sin(sun.from_south);

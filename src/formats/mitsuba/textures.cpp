@@ -113,8 +113,11 @@ TextureValue Textures::bitmap(Object& texture) {
 }
 
 TextureValue Textures::checkerboard(Object& texture, ColorUse use) {
-    const TextureValue first = color(texture, "color0", use, grey(0.4f)),
-                       second = color(texture, "color1", use, grey(0.2f));
+    TextureValue first = color(texture, "color0", use, grey(0.4f)), second = color(texture, "color1", use, grey(0.2f));
+    if (use == ColorUse::Index) {
+        first = number_of(first), second = number_of(second);
+        if (!reading_.context.is_old) std::swap(first, second); // Mitsuba 3 exchanges the checks of numbers
+    }
     TextureValue value;
     read_placing(texture, value.ref);
     if (first.has_image() || second.has_image()) {
@@ -138,8 +141,12 @@ TextureValue Textures::color(Object& object, std::string_view name, ColorUse use
     return constant(color_of(object, *found, use, reading_).value_or(missing));
 }
 
+TextureValue Textures::number_of(const TextureValue& value) const {
+    return as_number(value, reading_.context.is_old ? GreyOf::Mean : GreyOf::Luminance);
+}
+
 TextureValue Textures::number(Object& object, std::string_view name, float missing) {
-    return color(object, name, ColorUse::Index, grey(missing));
+    return number_of(color(object, name, ColorUse::Index, grey(missing)));
 }
 
 } // namespace pertev::mitsuba

@@ -22,6 +22,9 @@ public:
     TextureValue color(Object& object, std::string_view name, ColorUse use, Rgb missing);
     /// Returns the number `name`, or a texture of numbers.
     TextureValue number(Object& object, std::string_view name, float missing);
+    /// Returns a texture as one of numbers: of bitmaps the luminance in Mitsuba 3, the mean in 0.6.
+    TextureValue number_of(const TextureValue& value) const;
+    TextureValue number_of(Object& texture) { return number_of(value_of(texture, ColorUse::Index)); }
     /// Returns the value of an object <texture>; 0.5 after a warning if it is left out.
     TextureValue value_of(Object& texture, ColorUse use);
     /// Returns whether a value since the last call was that of a mesh's vertices.

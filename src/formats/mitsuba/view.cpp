@@ -23,7 +23,44 @@ struct FilmSize {
     double aspect() const { return static_cast<double>(width) / static_cast<double>(height); }
 };
 
+constexpr std::array<std::string_view, 29> kOtherIntegrators = {"ao",
+                                                                "bdpt",
+                                                                "depth",
+                                                                "direct_projective",
+                                                                "emission",
+                                                                "erpt",
+                                                                "field",
+                                                                "irrcache",
+                                                                "mlt",
+                                                                "motion",
+                                                                "photonmapper",
+                                                                "ppm",
+                                                                "prb",
+                                                                "pssmlt",
+                                                                "prb_basic",
+                                                                "prb_projective",
+                                                                "prbvolpath",
+                                                                "ptracer",
+                                                                "sppm",
+                                                                "stokes",
+                                                                "vpl",
+                                                                "volpath_simple",
+                                                                "volprim_rf_basic",
+                                                                "adaptive",
+                                                                "aov",
+                                                                "moment",
+                                                                "multichannel",
+                                                                "albedo",
+                                                                "normal"};
+
 float tangent_of_half(double degrees) { return tan(static_cast<float>(degrees) * (kPi / 360)); }
+
+/// Leaves out the type of an object, such as "the sampler sobl", if it is not one of `known`.
+void leave_out_unknown_type(const Object& object, std::span<const std::string_view> known, Sink& sink) {
+    if (std::ranges::find(known, object.type) != known.end()) return;
+    sink.leave_out({object.location(), fmt::format("{} is unknown and left out{}", object.parameters.what(),
+                                                   did_you_mean(object.type, known))});
+}
 
 void suggest_filter(Object& film, Reading& reading, Scene& scene) {
     const std::vector<Object*> filters = objects_in(film, "rfilter", reading);
@@ -41,8 +78,10 @@ void suggest_filter(Object& film, Reading& reading, Scene& scene) {
         name = "gaussian", radius = 3 * parameters.number("stddev", 0.5, sink);
     } else {
         parameters.ignore({"radius", "lobes", "b", "c", "B", "C"});
-        sink.leave_out(
-            {filter.location(), fmt::format("the filter {} is left out; the default is used", shortened(filter.type))});
+        constexpr std::array<std::string_view, 6> kFilters = {"box",      "tent",       "gaussian",
+                                                              "mitchell", "catmullrom", "lanczos"};
+        sink.leave_out({filter.location(), fmt::format("the filter {} is left out; the default is used{}",
+                                                       shortened(filter.type), did_you_mean(filter.type, kFilters))});
     }
     parameters.leave_out_unknown(sink);
     if (!(radius > 0)) return;
@@ -60,6 +99,8 @@ FilmSize size_of(Object& sensor, Reading& reading, Scene* suggest) {
     size.width = std::clamp<int64_t>(parameters.integer("width", size.width, sink), 1, kMaxImageSide);
     size.height = std::clamp<int64_t>(parameters.integer("height", size.height, sink), 1, kMaxImageSide);
     if (suggest == nullptr) return size;
+    constexpr std::array<std::string_view, 5> kFilms = {"hdrfilm", "ldrfilm", "mfilm", "specfilm", "tiledhdrfilm"};
+    leave_out_unknown_type(film, kFilms, sink);
     const bool is_cropped = parameters.integer("crop_offset_x", 0, sink) != 0 ||
                             parameters.integer("crop_offset_y", 0, sink) != 0 ||
                             parameters.integer("crop_width", size.width, sink) != size.width ||
@@ -145,6 +186,9 @@ void suggest_samples(Object& sensor, Reading& reading, Scene& scene) {
         const int64_t count = sampler->parameters.integer("sample_count", 0, reading.sink());
         if (count > 0)
             scene.suggested.push_back({"spp", fmt::format("{}", std::min<int64_t>(count, kMaxSamplesPerPixel))});
+        constexpr std::array<std::string_view, 8> kSamplers = {"independent", "stratified", "multijitter", "orthogonal",
+                                                               "ldsampler",   "halton",     "hammersley",  "sobol"};
+        leave_out_unknown_type(*sampler, kSamplers, reading.sink());
         sampler->parameters.ignore({"seed", "scramble", "dimension", "jitter"});
         sampler->parameters.leave_out_unknown(reading.sink());
     }
@@ -166,6 +210,8 @@ void suggest_depth(Object* integrator, Reading& reading, Scene& scene) {
     scene.suggested.push_back({"max_depth", fmt::format("{}", std::min<int64_t>(depth, kMaxPathDepth - 1))});
     constexpr std::array<std::string_view, 4> kPaths = {"path", "volpath", "volpathmis", "direct"};
     if (std::ranges::find(kPaths, integrator->type) == kPaths.end()) {
+        if (std::ranges::find(kOtherIntegrators, integrator->type) == kOtherIntegrators.end())
+            return leave_out_unknown_type(*integrator, kPaths, sink);
         sink.warn({integrator->location(),
                    fmt::format("the integrator {} has no effect; paths are traced", shortened(integrator->type))});
         return;

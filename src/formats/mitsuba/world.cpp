@@ -8,6 +8,7 @@
 #include "base/message_text.h"
 #include "formats/described/assemble.h"
 #include "formats/described/make_surface.h"
+#include "formats/described/mix_surfaces.h"
 #include "formats/described/transforms.h"
 #include "formats/mitsuba/emitters.h"
 
@@ -55,6 +56,17 @@ void World::add_shape(Object& shape, const DoubleTransform& world_from_group) {
     }
 }
 
+/// Returns what the radiance of an emitter is multiplied by: opacity dims the light of a surface here, but not in
+/// Mitsuba.
+float World::over_opacity(const Surface& surface, const Object& emitter) {
+    const Material& material = surface.material;
+    if (surface.is_nothing || !surface.beneath.empty() || material.alpha_mode == AlphaMode::Opaque) return 1;
+    if (!described::has_alpha_image(surface) && material.alpha > 0) return 1 / material.alpha;
+    context_.sink.leave_out({emitter.location(), "the light of a surface whose opacity is a picture or 0 is dimmed by "
+                                                 "it, though it is not in Mitsuba"});
+    return 1;
+}
+
 void World::place(Object& shape, const DoubleTransform& world_from_group) {
     Sink& sink = context_.sink;
     if (parts_.placed.size() >= most_placed_)
@@ -79,12 +91,14 @@ void World::place(Object& shape, const DoubleTransform& world_from_group) {
     if (!bsdfs.empty() && !context_.options.geometry_only) placed.surface = bsdfs_.surface_of(*bsdfs.front());
     if (!emitters.empty() && !context_.options.geometry_only) {
         Object& emitter = *emitters.front();
-        const auto known = area_lights_.find(emitter.number);
+        const float factor = over_opacity(parts_.surfaces[placed.surface], emitter);
+        const auto known = area_lights_.find({emitter.number, factor});
         if (known != area_lights_.end()) {
             placed.area_light = known->second;
         } else if (auto light = read_area_light(emitter, textures_, reading_)) {
             placed.area_light = static_cast<uint32_t>(parts_.area_lights.size());
-            area_lights_[emitter.number] = *placed.area_light;
+            area_lights_[{emitter.number, factor}] = *placed.area_light;
+            light->radiance = factor * light->radiance;
             parts_.area_lights.push_back(*std::move(light));
         }
         if (bsdfs.empty() && placed.area_light && !context_.is_old) placed.surface = 1;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "formats/mitsuba/bsdfs.h"
@@ -28,6 +29,7 @@ private:
     void add_shape(Object& shape, const DoubleTransform& world_from_group);
     void add_instance(Object& instance);
     void place(Object& shape, const DoubleTransform& world_from_group);
+    float over_opacity(const Surface& surface, const Object& emitter);
 
     Context& context_;
     Objects& objects_;
@@ -38,7 +40,7 @@ private:
     Bsdfs bsdfs_{reading_, textures_};
     Media media_{reading_};
     View view_;
-    std::map<uint32_t, uint32_t> area_lights_; // by the emitter's number
+    std::map<std::pair<uint32_t, float>, uint32_t> area_lights_; // by the emitter's number and its factor
     uint64_t most_placed_ = 0, visited_ = 0;
 };
 

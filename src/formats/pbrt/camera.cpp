@@ -90,6 +90,8 @@ FilmSize read_film(View& view, const Context& context, Scene& scene) {
     const double most = film.number(context.is_version_3 ? "maxsampleluminance" : "maxcomponentvalue", 0, sink);
     if (most > 0 && most < 1e30) scene.suggested.push_back({"clamp", fmt::format("{:.6g}", most)});
     read_sensor(film, sink);
+    constexpr std::array<std::string_view, 4> kFilms = {"rgb", "gbuffer", "spectral", "image"};
+    leave_out_unknown_type(*view.film, "film", kFilms, sink);
     film.ignore({"filename", "savefp16", "diagonal", "lambdamin", "lambdamax", "nbuckets", "coordinatesystem"});
     film.leave_out_unknown(sink);
     return size;
@@ -129,9 +131,49 @@ void suggest_settings(View& view, const Context& context, Scene& scene) {
         const int64_t samples =
             across > 0 && down > 0 ? many(across) * many(down) : sampler.integer("pixelsamples", 0, sink);
         if (samples > 0) scene.suggested.push_back({"spp", fmt::format("{}", many(samples))});
+        constexpr std::array<std::string_view, 11> kSamplers = {
+            "halton", "independent", "paddedsobol",    "pmj02bn",    "sobol", "stratified",
+            "zsobol", "02sequence",  "lowdiscrepancy", "maxmindist", "random"};
+        leave_out_unknown_type(*view.sampler, "sampler", kSamplers, sink);
+        sampler.ignore({"jitter", "randomization", "seed", "dimensions", "samplepixelcenter"});
+        sampler.leave_out_unknown(sink);
     }
     int64_t depth = 5; // pbrt renders this depth without one
-    if (view.integrator) depth = std::max<int64_t>(view.integrator->parameters.integer("maxdepth", depth, sink), 0);
+    if (view.integrator) {
+        Parameters& integrator = view.integrator->parameters;
+        depth = std::max<int64_t>(integrator.integer("maxdepth", depth, sink), 0);
+        constexpr std::array<std::string_view, 14> kIntegrators = {
+            "path",    "volpath",   "simplepath", "simplevolpath",    "bdpt",     "mlt",           "sppm", "ao",
+            "whitted", "lightpath", "randomwalk", "ambientocclusion", "function", "directlighting"};
+        leave_out_unknown_type(*view.integrator, "integrator", kIntegrators, sink);
+        integrator.ignore({"regularize",
+                           "lightsampler",
+                           "lightsamplestrategy",
+                           "rrthreshold",
+                           "pixelbounds",
+                           "visualizestrategies",
+                           "visualizeweights",
+                           "samplelights",
+                           "samplebsdf",
+                           "cossample",
+                           "maxdistance",
+                           "nsamples",
+                           "bootstrapsamples",
+                           "chains",
+                           "mutationsperpixel",
+                           "largestepprobability",
+                           "sigma",
+                           "photonsperiteration",
+                           "radius",
+                           "seed",
+                           "iterations",
+                           "numiterations",
+                           "imagewritefrequency",
+                           "strategy",
+                           "function",
+                           "skipbad"});
+        integrator.leave_out_unknown(sink);
+    }
     scene.suggested.push_back({"max_depth", fmt::format("{}", std::min<int64_t>(depth, kMaxPathDepth - 1))});
     suggest_filter(view, context, scene);
 }
@@ -232,6 +274,14 @@ std::optional<Camera> make_camera(View& view, const FilmSize& size, DoubleVec3 o
 }
 
 } // namespace
+
+void leave_out_unknown_type(const ViewStatement& stated, std::string_view what, std::span<const std::string_view> known,
+                            Sink& sink) {
+    if (std::ranges::find(known, stated.type) != known.end()) return;
+    sink.leave_out(
+        {stated.parameters.location(), fmt::format("the {} {} is unknown and left out{}", what, shortened(stated.type),
+                                                   did_you_mean(stated.type, known))});
+}
 
 bool is_left_handed(const View& view) { return view.camera && determinant(view.camera_from_world) > 0; }
 

@@ -7,7 +7,9 @@
 // here, so that pictures are those of pbrt.
 
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "formats/described/parameters.h"
@@ -29,6 +31,9 @@ struct View {
     DoubleTransform camera_from_world;
 };
 
+/// Leaves out a statement's type, such as "the sampler halto", if it is not one of `known`.
+void leave_out_unknown_type(const ViewStatement& stated, std::string_view what, std::span<const std::string_view> known,
+                            Sink& sink);
 /// Returns whether the world has to be mirrored.
 bool is_left_handed(const View& view);
 /// The map from the file's world to that of the scene.

@@ -7,6 +7,7 @@
 
 #include "base/message_text.h"
 #include "base/read_file.h"
+#include "formats/files/closest_name.h"
 #include "formats/files/parse_number.h"
 #include "formats/pbrt/tokens.h"
 #include "formats/spectra/spectrum.h"
@@ -118,6 +119,16 @@ std::optional<Rgb> color_of(Parameters& parameters, std::string_view name, const
         if (const auto spectrum = stated_spectrum(parameters, *found, context)) color = of_spectrum(*spectrum);
     }
     if (color && is_finite(*color)) return color;
+    if (found->type == ParameterType::Spectrum && !found->texts.empty()) {
+        const std::vector<std::string> names = names_of_spectra();
+        const std::string& name_there = found->texts.front();
+        leave_out_color(
+            parameters, *found,
+            fmt::format("there is no spectrum {}{}", shortened(name_there),
+                        did_you_mean(name_there, std::vector<std::string_view>(names.begin(), names.end()))),
+            context);
+        return std::nullopt;
+    }
     leave_out_color(parameters, *found, "expected a colour, a \"blackbody\" or a spectrum", context);
     return std::nullopt;
 }

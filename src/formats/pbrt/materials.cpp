@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/message_text.h"
+#include "formats/described/make_texture.h"
 #include "formats/described/mix_surfaces.h"
 #include "formats/described/rough_coat.h"
 #include "formats/files/closest_name.h"
@@ -30,6 +31,36 @@ void set_ior(const MaterialSource& source, std::string_view name, float Material
         surface.material.transmission_dispersion_scale = 1;
         surface.material.transmission_dispersion_abbe_number = index->abbe_number;
     }
+}
+
+struct StatedRoughness {
+    TextureValue u, v;
+    Curve curve;
+};
+
+/// Reads the roughness along u and v with the curve that converts it.
+StatedRoughness stated_roughness(const MaterialSource& source, double missing, std::string_view prefix) {
+    struct Names {
+        const char *both, *u, *v;
+    };
+    const Names names =
+        prefix == "interface."   ? Names{"interface.roughness", "interface.uroughness", "interface.vroughness"}
+        : prefix == "conductor." ? Names{"conductor.roughness", "conductor.uroughness", "conductor.vroughness"}
+                                 : Names{"roughness", "uroughness", "vroughness"};
+    Sink& sink = source.context.sink;
+    const auto fallback = static_cast<float>(missing);
+    const TextureValue both = source.textures.number(source.parameters, names.both, fallback);
+    const auto part = [&](const char* name) {
+        return source.parameters.has(name) ? source.textures.number(source.parameters, name, fallback) : both;
+    };
+    const TextureValue u = part(names.u), v = part(names.v);
+    const bool is_remapped = source.parameters.truth("remaproughness", true, sink);
+    const Curve curve = !is_remapped                  ? Curve::RoughnessOfWidth
+                        : source.context.is_version_3 ? Curve::RoughnessOfVersion3
+                                                      : Curve::RoughnessOfRoot;
+    if ((u.has_image() || v.has_image()) && source.parameters.has(names.u) && source.parameters.has(names.v))
+        source.parameters.leave_out({names.v}, "anisotropy is ignored for textured roughness", sink);
+    return {u, v, curve};
 }
 
 Rgb usable_index(Rgb index, float least) {
@@ -171,7 +202,7 @@ Surface read_subsurface(const MaterialSource& source) {
     surface.material.has_relative_ior = true;
     if (source.parameters.has("eta")) set_ior(source, "eta", &Material::ior, surface, kLeastIor, kSubsurfaceIor);
     surface.material.transmission_dispersion_scale = 0;
-    read_roughness(source, 0, "", surface);
+    read_glass_roughness(source, surface);
     surface.material.medium = read_subsurface_medium(source);
     return surface;
 }
@@ -208,6 +239,7 @@ Surface mixture(const MaterialSource& source) {
         source.context.sink.leave_out({location, "the colour of the amount of a mix is left out; its mean counts"});
         amount = constant(grey((c.r + c.g + c.b) / 3));
     }
+    if (names != nullptr) amount = as_number(amount); // that of version 3 is a colour
     const MixedSurface mixed = mix_surfaces(*first, *second, names == nullptr ? one_less(amount) : amount);
     if (mixed.left_out)
         source.context.sink.leave_out({location, fmt::format("of the mix the material {} is left out, because {}",
@@ -268,27 +300,17 @@ void warn_of_nearest(const MaterialSource& source, std::string_view nearest) {
 }
 
 void read_roughness(const MaterialSource& source, double missing, std::string_view prefix, Surface& surface) {
-    struct Names {
-        const char *both, *u, *v;
-    };
-    const Names names =
-        prefix == "interface."   ? Names{"interface.roughness", "interface.uroughness", "interface.vroughness"}
-        : prefix == "conductor." ? Names{"conductor.roughness", "conductor.uroughness", "conductor.vroughness"}
-                                 : Names{"roughness", "uroughness", "vroughness"};
-    Sink& sink = source.context.sink;
-    const auto fallback = static_cast<float>(missing);
-    const TextureValue both = source.textures.number(source.parameters, names.both, fallback);
-    const auto part = [&](const char* name) {
-        return source.parameters.has(name) ? source.textures.number(source.parameters, name, fallback) : both;
-    };
-    const TextureValue u = part(names.u), v = part(names.v);
-    const bool is_remapped = source.parameters.truth("remaproughness", true, sink);
-    const Curve curve = !is_remapped                  ? Curve::RoughnessOfWidth
-                        : source.context.is_version_3 ? Curve::RoughnessOfVersion3
-                                                      : Curve::RoughnessOfRoot;
-    if ((u.has_image() || v.has_image()) && source.parameters.has(names.u) && source.parameters.has(names.v))
-        source.parameters.leave_out({names.v}, "anisotropy is ignored for textured roughness", sink);
-    set_roughness(surface, u, v, curve);
+    const StatedRoughness stated = stated_roughness(source, missing, prefix);
+    set_roughness(surface, stated.u, stated.v, stated.curve);
+}
+
+void read_glass_roughness(const MaterialSource& source, Surface& surface) {
+    StatedRoughness stated = stated_roughness(source, 0, "");
+    const auto may_be_0 = [](const TextureValue& value) { return value.has_image() || value.factor.r == 0; };
+    // pbrt-v3 looks for 0 before it remaps.
+    if (stated.curve == Curve::RoughnessOfVersion3 && may_be_0(stated.u) && may_be_0(stated.v))
+        stated.curve = Curve::RoughnessOfGlass3;
+    set_roughness(surface, stated.u, stated.v, stated.curve);
 }
 
 void read_bumps(const MaterialSource& source, Surface& surface) {

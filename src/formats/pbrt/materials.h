@@ -35,8 +35,10 @@ std::optional<Surface> read_version_3_material(const MaterialSource& source);
 /// Returns the types of pbrt-v3.
 std::span<const std::string_view> version_3_materials();
 
-/// Reads roughness, uroughness, vroughness and remaproughness.
+/// Reads roughness, uroughness, vroughness and remaproughness. pbrt-v3 remaps a roughness of 0 to 0.22.
 void read_roughness(const MaterialSource& source, double missing, std::string_view prefix, Surface& surface);
+/// Reads the roughness of glass, which is smooth in pbrt-v3 too if it is 0 along both u and v.
+void read_glass_roughness(const MaterialSource& source, Surface& surface);
 /// Reads a subsurface material as a medium in a body of glass, in which paths scatter at random.
 Surface read_subsurface(const MaterialSource& source);
 /// Reads the bump map or normal map that all materials may have.

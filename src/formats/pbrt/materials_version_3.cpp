@@ -80,7 +80,7 @@ Surface glass(const MaterialSource& source) {
     Surface surface = make_surface(MaterialKind::Dielectric);
     set_index(source, kLeastIor, surface);
     surface.material.has_relative_ior = true;
-    read_roughness(source, 0, "", surface);
+    read_glass_roughness(source, surface);
     set_color(surface, &M::base_color, &M::base_color_texture, source.textures.color(source.parameters, "Kt", grey(1)));
     const TextureValue kr = source.textures.color(source.parameters, "Kr", grey(1));
     if (kr.has_image() || !(kr.factor == grey(1)))
@@ -121,12 +121,7 @@ Surface uber(const MaterialSource& source) {
         parameters.leave_out({"Kr"}, "uber has one reflection, Ks", source.context.sink);
     if (kt.has_image() || !is_black(kt.factor))
         parameters.leave_out({"Kt"}, "uber transmits by its opacity alone", source.context.sink);
-    const TextureValue opacity = source.textures.color(parameters, "opacity", grey(1));
-    if (!opacity.has_image()) {
-        set_alpha(surface, constant(grey((opacity.factor.r + opacity.factor.g + opacity.factor.b) / 3)));
-    } else {
-        set_alpha(surface, opacity);
-    }
+    set_alpha(surface, source.textures.color(parameters, "opacity", grey(1)));
     const bool has_reflection = ks.has_image() || !is_black(ks.factor);
     if (surface.material.alpha == 0) surface.is_nothing = true; // light passes unchanged
     if (has_reflection && !surface.is_nothing) warn_of_nearest(source, "a diffuse surface beneath a coat");

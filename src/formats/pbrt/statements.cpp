@@ -32,7 +32,7 @@ struct Statements::Statement {
 const std::vector<Statements::Statement>& Statements::all() {
     using S = Statements;
     static const std::vector<Statement> statements = {
-        {"Accelerator", &S::ignored},
+        {"Accelerator", &S::accelerator},
         {"ActiveTransform", &S::active_transform},
         {"AreaLightSource", &S::area_light},
         {"Attribute", &S::attribute},

@@ -71,7 +71,7 @@ private:
     void sampler(Tokens& tokens, const FileLocation& location);
     void integrator(Tokens& tokens, const FileLocation& location);
     void pixel_filter(Tokens& tokens, const FileLocation& location);
-    void ignored(Tokens& tokens, const FileLocation& location);
+    void accelerator(Tokens& tokens, const FileLocation& location);
     void option(Tokens& tokens, const FileLocation& location);
     void color_space(Tokens& tokens, const FileLocation& location);
     void attribute(Tokens& tokens, const FileLocation& location);

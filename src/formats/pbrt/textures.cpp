@@ -235,7 +235,12 @@ TextureValue Textures::color(Parameters& parameters, std::string_view name, Rgb 
 
 TextureValue Textures::number(Parameters& parameters, std::string_view name, float missing) {
     const Parameter* const found = parameters.find(name);
-    if (found != nullptr && found->type == ParameterType::Texture) return look_up(parameters, *found, grey(missing));
+    if (found != nullptr && found->type == ParameterType::Texture) {
+        TextureValue value = as_number(look_up(parameters, *found, grey(missing)),
+                                       context_.is_version_3 ? GreyOf::EncodedLuminance : GreyOf::Mean);
+        value.ignores_alpha = context_.is_version_3;
+        return value;
+    }
     return constant(grey(static_cast<float>(parameters.number(name, static_cast<double>(missing), context_.sink))));
 }
 

@@ -54,13 +54,21 @@ void Statements::pixel_filter(Tokens& tokens, const FileLocation& location) {
     world_.view.filter = take_view(tokens, location, "filter");
 }
 
-void Statements::ignored(Tokens& tokens, const FileLocation& location) {
-    const std::string type = take_text(tokens, location);
-    (void)take_parameters(tokens, location, shortened(type));
+void Statements::accelerator(Tokens& tokens, const FileLocation& location) {
+    ViewStatement stated = take_view(tokens, location, "accelerator");
+    constexpr std::array<std::string_view, 3> kTypes = {"bvh", "kdtree", "grid"};
+    leave_out_unknown_type(stated, "accelerator", kTypes, context_.sink);
+    stated.parameters.ignore(
+        {"maxnodeprims", "splitmethod", "intersectcost", "traversalcost", "emptybonus", "maxprims", "maxdepth"});
+    stated.parameters.leave_out_unknown(context_.sink);
 }
 
 void Statements::option(Tokens& tokens, const FileLocation& location) { // about how pbrt renders
-    (void)take_parameters(tokens, location, "an option");
+    Parameters parameters = take_parameters(tokens, location, "an option");
+    parameters.ignore({"disablepixeljitter", "disabletexturefiltering", "disablewavelengthjitter",
+                       "displacementedgescale", "forcediffuse", "msereferenceimage", "msereferenceout", "pixelstats",
+                       "rendercoordsys", "seed", "wavefront"});
+    parameters.leave_out_unknown(context_.sink);
 }
 
 void Statements::color_space(Tokens& tokens, const FileLocation& location) {

@@ -1,6 +1,7 @@
 #include "formats/pbrt/world.h"
 
 #include <filesystem>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -28,11 +29,10 @@ World::World(const Context& context)
     parts_.surfaces.push_back(std::move(grey_surface));
 }
 
-/// Returns the present transform; that at the end of the shutter's time is left out.
+/// Returns the present transform; that at the end of the shutter's time is left out, and reported once.
 DoubleTransform World::place(const FileLocation& from) {
-    if (!(state.transforms[0] == state.transforms[1])) {
-        context_.sink.leave_out(
-            {FileLocation{from.file}, "the motion between the transforms of StartTime and EndTime is left out"});
+    if (!(state.transforms[0] == state.transforms[1]) && !std::exchange(has_motion_, true)) {
+        context_.sink.leave_out({from, "the motion between the transforms of StartTime and EndTime is left out"});
     }
     return state.transforms[0];
 }
@@ -134,6 +134,9 @@ std::optional<uint32_t> World::alpha_of(Parameters& parameters) {
 
 void World::add_shape(const std::string& type, Parameters& parameters) {
     Placed placed;
+    if (parts_.surfaces[state.surface].is_nothing && state.area_light)
+        context_.sink.leave_out(
+            {parameters.location(), "the light of a shape without a surface is left out, as pbrt does"});
     if (!fill(placed)) return;
     const auto read = shapes_.read(type, state.is_reversed, parameters);
     if (!read) return;

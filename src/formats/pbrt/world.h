@@ -88,6 +88,7 @@ private:
     NamedMedium& medium_called(const std::string& name, const FileLocation& from);
     std::map<std::string, NamedMedium, std::less<>> media_;
     std::string around_;
+    bool has_motion_ = false; // a motion has been reported
 };
 
 } // namespace pertev::pbrt

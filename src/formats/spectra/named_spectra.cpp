@@ -101,7 +101,9 @@ std::optional<ComplexIndex> find_metal_index(std::string_view name) {
 }
 
 std::optional<GlassIndex> find_glass(std::string_view name) {
-    const auto* found = find_named(kGlasses, name);
+    const std::string lower = lower_case(name);
+    const bool is_short = lower == "f5" || lower == "f10" || lower == "f11";
+    const auto* found = find_named(kGlasses, is_short ? "s" + lower : lower);
     if (found == std::end(kGlasses)) return std::nullopt;
     return found->glass;
 }
@@ -110,6 +112,18 @@ std::optional<Rgb> find_illuminant(std::string_view name) {
     const auto* found = find_named(kIlluminants, name);
     if (found == std::end(kIlluminants)) return std::nullopt;
     return color_of_chromaticity(found->x, found->y);
+}
+
+std::vector<std::string> names_of_spectra() {
+    std::vector<std::string> names;
+    const auto add_metal = [&](std::string_view metal) {
+        for (const char* const part : {"-eta", "-k"}) names.push_back("metal-" + std::string(metal) + part);
+    };
+    for (const ShortName& row : kShortNames) add_metal(row.name);
+    for (const Crystal& row : kCrystals) add_metal(row.name);
+    for (const NamedGlass& row : kGlasses) names.push_back("glass-" + std::string(row.name));
+    for (const Illuminant& row : kIlluminants) names.emplace_back(row.name);
+    return names;
 }
 
 } // namespace pertev
