@@ -4,6 +4,7 @@
 #include <array>
 
 #include "formats/read_scene.h"
+#include "math/portable_math.h"
 #include "session/survey/cast_rays.h"
 #include "session/survey/default_camera.h"
 #include "session/survey/default_light.h"
