@@ -58,4 +58,6 @@ MUTATIONS = [
      ("src/settings/render_settings.cpp", "if (settings.frame_depth) settings.path", "if (settings.aovs == ~0u) settings.path")),
     ("a file of a setting counts by its folder too", "unit/settings",
      ("src/settings/integrator_settings.cpp", "Mark::Name, Mark::OpensScene, HoldsFile::Whole),", "Mark::Name, Mark::OpensScene),")),
+    ("settings of a call with many cameras are lost", "python/cameras",
+     ("python/pertev/_cameras.py", "return K, {**texts, **own}", "return K, {**texts_of(self.settings), **{name: text for name, text in texts.items() if name not in self.settings}}")),
 ]

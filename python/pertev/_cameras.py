@@ -32,6 +32,8 @@ class Cameras:
     intrinsics_size  the size for which K holds; None: that of the pictures
     lens, distortion as the settings: one lens for all
 
+    What is left out is that of the call, as its `convention` or `intrinsics`, and what differs from the call is an error.
+
     Arrays may be on a GPU. `names` are those of a file's cameras (read_cameras), and `size` is that of pictures for which the
     call has none.
     """
@@ -64,9 +66,16 @@ class Cameras:
         K = [self.K] if self.K is not None and self._has_one_K() else self.K
         first = {"camera_pose": self.poses[0] if len(self.poses) else None, "intrinsics": None if K is None else K[0]}
         # Numbers that are not finite are refused with the arrays.
-        rows = {name: row if row is None else numpy.nan_to_num(row.astype(float)).ravel() for name, row in first.items()}
-        size = {} if values.get("size") is not None else {"size": self.size}
-        return K, texts_of({**values, **rows, **self.settings, **size})
+        rows = {name: numpy.nan_to_num(row.astype(float)).ravel() for name, row in first.items() if row is not None}
+        given = {name: value for name, value in values.items() if value is not None}
+        for name, of in (("camera_pose", "poses"), *([("intrinsics", "K")] if K is not None else [])):
+            if name in given:
+                raise input_error(name, f"the cameras' {of} state it already")
+        texts, own = texts_of({"size": self.size, **given, **rows}), texts_of(self.settings)
+        for name in own.keys() & texts.keys():
+            if own[name] != texts[name]:
+                raise input_error(name, f"that of the call differs from that of the cameras, {', '.join(own[name])}", ", ".join(texts[name]))
+        return K, {**texts, **own}
 
 
 def read_cameras(path, *, size=None, convention=None):
