@@ -236,6 +236,10 @@ of them does. The first axis counts the cameras (a single picture has no such ax
             "Samples of each pixel")
         .def("picture", &picture_of, nb::arg("number") = 0, "A copy of one picture as a Result, in the host's memory")
         .def("_repr_png_", &png_of_batch)
+        .def("__reduce__",
+             [](const PythonBatch&) -> nb::object {
+                 throw nb::type_error("a BatchResult is not pickled; send copies of its arrays");
+             })
         .def_prop_ro("seconds", &PythonBatch::seconds, "Seconds of rendering alone")
         .def("__len__", &PythonBatch::count)
         .def("__repr__", [](const PythonBatch& self) {

@@ -321,6 +321,10 @@ void define_scene(nb::module_& module) {
             "frame",
             [](PythonSession& session) { return result_of([&](PythonSink& sink) { return session.frame(sink); }); },
             "Number of the next frame; None before the first")
+        .def("__reduce__",
+             [](const PythonSession&) -> nb::object {
+                 throw nb::type_error("a Session is not pickled; send its scene, and make one in each process");
+             })
         .def("__repr__", [](const PythonSession& session) { return "<pertev.Session " + session.scene_name() + ">"; });
 }
 

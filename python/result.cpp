@@ -201,6 +201,8 @@ Arrays share the memory of the result, which lives as long as one of them does, 
           Named{"depth", "depth", "float32 (height, width): its distance along the camera's axis, metres"},
           Named{"distance", "distance", "float32 (height, width): its distance along the ray, metres"},
           Named{"position", "position", "float32 (height, width, 3): its position in the file's coordinates, metres"},
+          Named{"motion", "motion", "float32 (height, width, 2): its motion since the frame before, pixels"},
+          Named{"uv", "uv", "float32 (height, width, 2): its texture coordinates"},
           Named{"ids", "id", "uint32 (height, width, 3): its instance, primitive and material"}}) {
         result.def_prop_ro(
             named.name, [layer = named.layer](nb::handle self) { return layer_of(self, layer); }, named.text);
@@ -220,6 +222,9 @@ Arrays share the memory of the result, which lives as long as one of them does, 
         },
         "float64 (3, 3): focal lengths and principal point in pixels from the upper left corner");
     result.def("_repr_png_", &png_of_result);
+    result.def("__reduce__", [](const PythonResult&) -> nb::object {
+        throw nb::type_error("a Result is not pickled; send its arrays, or a file of pertev.write()");
+    });
     result.def_prop_ro(
         "_first_pixel_seconds", [](const PythonResult& self) { return self.result.first_pixel_seconds; },
         "Seconds that Session::render took until each pixel had its first sample, for tests");

@@ -15,7 +15,7 @@ from ._images import compare, read, tone_map, write
 from ._process import check_process
 from ._parts import merge, names_of
 from ._scene import Params, Scene, Session, load, scene, scene_of
-from ._settings import OF_PARTS, OF_STILLS, file_name, number_of, texts_of, with_layers
+from ._settings import OF_PARTS, OF_STILLS, file_name, number_of, of_layers, texts_of, with_layers
 from ._viewer import Viewer, view
 from .errors import (DeviceError, Error, InputError, InterruptedRender, LimitError, MemoryLimitError, MissingFileError, WriteError,
                      input_error)
@@ -62,15 +62,17 @@ def render(scene, *, cameras=None, seeds=None, color=True, layers=(), output=(),
             raise TypeError(f"{name} is of a single picture, not of many cameras or of arrays on the device")
         if output:
             raise TypeError("output: pictures of many cameras or on the device are arrays; `pertev render` writes files")
-        return render_batch(used, cameras_of(cameras, values), seeds, color, _settings_file(settings),
-                            with_layers(values, layers), out)
+        with of_layers(values):
+            return render_batch(used, cameras_of(cameras, values), seeds, color, _settings_file(settings),
+                                with_layers(values, layers), out)
     if seeds is not None or not color:
         raise TypeError("seeds and color are for many `cameras`, or for `on_device`")
     if isinstance(out, BatchResult):
         raise TypeError("out: a BatchResult is for `cameras` or `on_device`; expected arrays, as {'color': array}")
     out = out if out is None or isinstance(out, dict) else {"color": out}
-    return used._render(_settings_file(settings), texts_of(with_layers(values, layers), OF_STILLS),
-                        names_of(output, "output"), out)
+    with of_layers(values):
+        return used._render(_settings_file(settings), texts_of(with_layers(values, layers), OF_STILLS),
+                            names_of(output, "output"), out)
 
 
 def render_chunks(scene, cameras, *, chunk=None, seeds=None, color=True, layers=(), settings=None, **values):
@@ -88,10 +90,11 @@ def render_chunks(scene, cameras, *, chunk=None, seeds=None, color=True, layers=
         raise TypeError("cameras: expected Cameras, an array of poses (N, 4, 4), or a file")
     if chunk is not None and (chunk := number_of(chunk, "chunk", whole=True)) < 1:
         raise input_error("chunk", f"expected at least 1, not {chunk}", str(chunk))
-    values, settings = with_layers(values, layers), _settings_file(settings)
-    seeds = seeds_of(seeds, len(cameras))
-    at_once = chunk_size(used, cameras, seeds, color, settings, values)
-    return _chunks(used, cameras, chunk or at_once, seeds, color, settings, values)
+    seeds, settings = seeds_of(seeds, len(cameras)), _settings_file(settings)
+    with of_layers(values):
+        given = with_layers(values, layers)
+        at_once = chunk_size(used, cameras, seeds, color, settings, given)
+    return _chunks(used, cameras, chunk or at_once, seeds, color, settings, given)
 
 
 def _chunks(scene, cameras, chunk, seeds, color, settings, values):

@@ -6,7 +6,7 @@ import operator
 import os
 
 from . import _core
-from .errors import input_error
+from .errors import Error, input_error
 
 OF_PICTURES = {row["name"]: row for row in _core.settings()}
 OF_FRAMES = {**OF_PICTURES, **{row["name"]: row for row in _core.frame_settings()}}
@@ -99,3 +99,17 @@ def with_layers(values, layers):
                 raise input_error(argument, f"'{name}' is not one of {', '.join(choices)}", name)
         requested += names
     return {**values, "aov": requested} if requested else values
+
+
+class of_layers:
+    """Errors about `aov` in this block are about `layers` if the call's layers came by that argument alone."""
+
+    def __init__(self, values):
+        self._values = values
+
+    def __enter__(self):
+        pass
+
+    def __exit__(self, kind, error, trace):
+        if isinstance(error, Error) and error.setting == "aov" and self._values.get("aov") is None:
+            error.setting, error.args = "layers", (str(error).replace("aov", "layers", 1),)

@@ -118,7 +118,8 @@ class Errors(unittest.TestCase):
             cameras[3]
 
     def test_settings_have_the_names_of_python(self):
-        for values, setting in [({"filter_radius": -1}, "filter_radius"), ({"layers": "deepness"}, "layers"), ({"aov": "deepness"}, "aov"), ({"transparent": 1}, "transparent"), ({"eye": (1, 2)}, "eye"),
+        for values, setting in [({"filter_radius": -1}, "filter_radius"), ({"layers": "deepness"}, "layers"), ({"aov": "deepness"}, "aov"), ({"transparent": 1}, "transparent"),
+                                ({"layers": "motion", "cameras": POSES}, "layers"), ({"aov": "motion", "cameras": POSES}, "aov"), ({"eye": (1, 2)}, "eye"),
                                 ({"camera_pose": range(5)}, "camera_pose"), ({"device": "cuda:99"}, "device"),
                                 ({"false_color_range": "1", "false_color": "luminance"}, "false_color_range")]:
             with self.subTest(values):
@@ -223,11 +224,13 @@ class Errors(unittest.TestCase):
             self.assertEqual(error.value, "color")
         self.refused(pertev.InputError, "out", lambda: pertev.render(self.scene, **SMALL, out={"depth": read_only}))
 
-    def test_objects_that_cannot_be_pickled_raise_an_error(self):
+    def test_results_have_their_layers_and_say_why_they_are_not_pickled(self):
         result = pertev.render(self.scene, **SMALL)
         for thing in (result, pertev.Session(self.scene, **SMALL), pertev.render(self.scene, cameras=POSES, **SMALL)):
-            with self.assertRaises(TypeError):
+            with self.assertRaisesRegex(TypeError, "is not pickled; "):
                 pickle.dumps(thing)
+        layers = pertev.render(self.scene, **SMALL, layers=["uv", "motion"])
+        self.assertEqual((layers.uv.shape, layers.motion.shape), ((6, 8, 2), (6, 8, 2)))
         cameras = pickle.loads(pickle.dumps(pertev.Cameras(POSES, [8, 8, 4, 3], convention="opencv")))
         self.assertEqual((cameras.poses == POSES).all() and cameras.settings["convention"], "opencv")
 
