@@ -155,6 +155,8 @@ Light light_of(ArgumentFields& fields, DoubleVec3 origin) {
         for (const auto& [name, angle] : {std::pair("inner_cone", inner), {"outer_cone", outer}})
             if (!(angle >= 0 && angle <= 180))
                 refuse_argument(fields.path_of(name), fmt::format("expected 0 to 180 degrees, not {:g}", angle));
+        if (inner > outer)
+            refuse_argument(fields.path_of("inner_cone"), fmt::format("expected at most the outer cone, {:g}", outer));
         light.cos_inner = cos(inner * kRadiansPerDegree);
         light.cos_outer = min(cos(outer * kRadiansPerDegree), light.cos_inner - kSharpestEdge);
     }

@@ -55,8 +55,8 @@ class Scene(_core.Scene):
               lights={"lamp": {"kind": "point", "position": (0, 2, 0), "intensity": (9, 9, 9)}},
               environment=(1, 1, 1), cameras={"front": {"eye": (0, 1, 3), "target": (0, 0, 0), "fov": 45}})
 
-    Arrays are of NumPy or of anything with DLPack or the buffer protocol, also on a GPU, and are copied. Only
-    meshes and instances must be given. `values` are settings for all pictures that do not overrule them. Raises
+    Arrays are of NumPy or of anything with DLPack or the buffer protocol, also on a GPU, and are copied. `colors` are
+    from 0 to 1, or uint8. Only meshes and instances must be given. `values` are settings for all pictures that do not overrule them. Raises
     InputError, whose `setting` is the path of a wrong argument, such as "meshes/floor/faces".
 
     materials    kind "metallic_roughness" (default), "diffuse", "conductor", "dielectric" or "unlit", or a measured metal

@@ -65,6 +65,8 @@ def made(status, text, setting, value, reason, file, line, pointer):
     name = file or value
     number = _NUMBERS.get(reason.rpartition(": ")[2]) if name else None
     kind = MissingFileError if status == 2 and number == errno.ENOENT else _KINDS[status]
+    # Names with capitals or slashes, as meshes/floor/faces, are no settings of the table.
+    text = text.replace(f"`{setting}`", setting).replace(f"`{setting}={value}`", f"{setting}='{value}'")
     error = kind(text)
     error.setting, error.value, error.reason, error.file, error.line, error.pointer = setting, value, reason, file, line, pointer
     if issubclass(kind, _OfFile) and name:

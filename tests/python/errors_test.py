@@ -176,12 +176,14 @@ class Errors(unittest.TestCase):
     def test_parts_of_scenes_that_are_no_dictionaries_or_not_finite_are_named(self):
         mesh = {"vertices": numpy.eye(3), "faces": [[0, 1, 2]]}
         good = {"meshes": {"m": mesh}, "instances": {"i": {"mesh": "m"}}}
+        error = self.refused(pertev.InputError, "instances/i/mesh", lambda: pertev.Scene(**{**good, "instances": {"i": {"mesh": "n"}}}))
+        self.assertTrue(str(error).startswith("instances/i/mesh='n'"), error)
         error = self.refused(pertev.InputError, "meshes/m", lambda: pertev.Scene(**{**good, "meshes": {"m": numpy.eye(3)}}))
         self.assertIn("faces", str(error))
         for name, change in [("instances/i", {"instances": {"i": "m"}}), ("instances/i/transform", {"instances": {"i": {"mesh": "m", "transform": numpy.full((4, 4), numpy.inf)}}}),
                              ("cameras/c/eye", {"cameras": {"c": {"eye": (0, numpy.nan, 0), "target": (0, 0, 0)}}}),
                              ("materials/a/roughness", {"materials": {"a": {"roughness": numpy.nan}}}), ("lights/l/range", {"lights": {"l": {"range": numpy.nan}}}),
-                             ("lights/l/intensity", {"lights": {"l": {"intensity": (1, -1, 1)}}}), ("lights/l/outer_cone", {"lights": {"l": {"kind": "spot", "outer_cone": 181}}}),
+                             ("lights/l/intensity", {"lights": {"l": {"intensity": (1, -1, 1)}}}), ("lights/l/outer_cone", {"lights": {"l": {"kind": "spot", "outer_cone": 181}}}), ("lights/l/inner_cone", {"lights": {"l": {"kind": "spot", "inner_cone": 50, "outer_cone": 20}}}),
                              ("lights/l/direction", {"lights": {"l": {"kind": "spot", "direction": (0, 0, 0)}}}), ("cameras/c/view_height", {"cameras": {"c": {"projection": "orthographic", "view_height": 0}}}),
                              ("cameras/c/aperture", {"cameras": {"c": {"aperture": -1}}}), ("cameras/c/aspect", {"cameras": {"c": {"aspect": -1}}}),
                              ("materials/a/roughness", {"materials": {"a": {"roughness": 2}}}), ("materials/a/base_color", {"materials": {"a": {"base_color": (1, 2, 1)}}}),
