@@ -23,6 +23,8 @@ def file_name(value, name):
 
 
 def _encodable(text, name):
+    if text.isascii():
+        return text
     try:
         text.encode()
     except UnicodeEncodeError:
@@ -87,6 +89,8 @@ def texts_of(values, known=OF_PICTURES):
 
 def with_layers(values, layers):
     """Returns the values with the names of layers as those of `aov`. Raises TypeError and InputError of the argument's name."""
+    if isinstance(layers, (tuple, list)) and not layers and values.get("aov") is None:
+        return values
     requested, choices = [], OF_PICTURES["aov"]["choices"]
     for argument, names in (("layers", layers), ("aov", values.get("aov"))):
         names = [] if names is None else [names] if isinstance(names, str) else names
