@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -58,8 +59,16 @@ public:
         const auto value = take(field);
         return value ? text_argument(*value, path_of(field)) : otherwise;
     }
+    /// Returns the numbers of a field that is there, which numbers() then has.
+    std::optional<std::vector<double>> finite(const char* field, std::initializer_list<std::size_t> shape) {
+        const auto given = array(field);
+        if (!given) return std::nullopt;
+        return numbers_.emplace_back(field, given->of_shape(shape).of_finite_numbers().doubles()).second;
+    }
+    /// The numbers of all fields that are no arrays of a mesh or an image.
+    const std::vector<std::pair<std::string, std::vector<double>>>& numbers() const { return numbers_; }
     void number(const char* field, float& value) {
-        if (const auto given = array(field)) value = given->of_shape({}).of_finite_numbers().floats().front();
+        if (const auto given = finite(field, {})) value = static_cast<float>(given->front());
     }
     void flag(const char* field, bool& value) {
         const auto given = take(field);
@@ -68,10 +77,9 @@ public:
         if (given) value = nanobind::cast<bool>(*given);
     }
     void vector(const char* field, Vec3& value) {
-        const auto given = array(field);
+        const auto given = finite(field, {3});
         if (!given) return;
-        const std::vector<float> v = given->of_shape({3}).of_finite_numbers().floats();
-        value = {v[0], v[1], v[2]};
+        value = {static_cast<float>((*given)[0]), static_cast<float>((*given)[1]), static_cast<float>((*given)[2])};
     }
     void color(const char* field, Rgb& value) {
         Vec3 v = {value.r, value.g, value.b};
@@ -79,17 +87,14 @@ public:
         value = {v.x, v.y, v.z};
     }
     std::optional<DoubleVec3> point(const char* field) {
-        const auto given = array(field);
-        if (!given) return std::nullopt;
-        const std::vector<double> v = given->of_shape({3}).of_finite_numbers().doubles();
-        return DoubleVec3{v[0], v[1], v[2]};
+        const auto given = finite(field, {3});
+        return given ? std::optional(DoubleVec3{(*given)[0], (*given)[1], (*given)[2]}) : std::nullopt;
     }
     std::optional<std::vector<double>> transform(const char* field) {
-        const auto given = array(field);
-        if (!given) return std::nullopt;
-        std::vector<double> values = given->of_shape({4, 4}).of_finite_numbers().doubles();
+        const auto values = finite(field, {4, 4});
         const double last[] = {0, 0, 0, 1};
-        if (!std::equal(last, last + 4, values.begin() + 12)) given->fail("expected 0, 0, 0, 1 as the last row");
+        if (values && !std::equal(last, last + 4, values->begin() + 12))
+            refuse_argument(path_of(field), "expected 0, 0, 0, 1 as the last row");
         return values;
     }
     /// Returns the index of a text among names.
@@ -115,6 +120,7 @@ private:
     nanobind::dict values_;
     std::string path_;
     std::vector<std::string> known_;
+    std::vector<std::pair<std::string, std::vector<double>>> numbers_;
 };
 
 } // namespace pertev

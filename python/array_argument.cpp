@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -96,6 +97,9 @@ bool ArrayArgument::is_whole() const {
 template <class From, class To>
 std::vector<To> ArrayArgument::values_of() const {
     std::vector<To> values;
+    // A short copy keeps the interpreter's lock, because another thread may hold it for milliseconds.
+    std::optional<nb::gil_scoped_release> unlocked;
+    if (array_.size() >= 1 << 16) unlocked.emplace();
     values.reserve(array_.size());
     const From* const from = static_cast<const From*>(array_.data());
     for_each_offset(array_, 0, 0, [&](int64_t offset) {

@@ -28,6 +28,7 @@ public:
     std::size_t length(std::size_t axis) const { return array_.shape(axis); }
     std::size_t axes() const { return array_.ndim(); }
     bool is_uint8() const;
+    bool is_whole() const; // integers of any size
 
     /// Returns the values in the order of C. Floats are float16, float32, float64 or integers.
     std::vector<float> floats() const;
@@ -43,7 +44,6 @@ private:
     std::vector<To> values() const;
     template <class From, class To>
     std::vector<To> values_of() const;
-    bool is_whole() const;
 
     nanobind::ndarray<nanobind::ro> array_;
     std::string name_;

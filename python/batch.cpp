@@ -11,6 +11,7 @@
 #include "base/stopwatch.h"
 #include "device/wait_for_device.h"
 #include "image/picture_hash.h"
+#include "python/unlocked.h"
 #include "session/batch_render.h"
 #include "session/devices/batch_on_devices.h"
 #include "session/opening/calibrated_camera.h"
@@ -132,6 +133,7 @@ bool PythonBatch::fits(const RenderSettings& settings, const CamerasArgument& ca
 
 void PythonBatch::render(OpenedScene& opened, Session& session, const CamerasArgument& cameras,
                          std::shared_ptr<const PictureRecord> record, const PictureOptions& options, Sink& sink) {
+    const std::unique_lock turn = wait_for_turn(sink);
     const RenderSetup& setup = *opened.setup();
     const RenderSettings settings = cameras.settings_of(session.settings());
     Queue& queue = *setup.queue;
@@ -179,6 +181,8 @@ void PythonBatch::render(OpenedScene& opened, Session& session, const CamerasArg
     invalid_samples_ = render.invalid_samples(), rays_ = render.rays();
     seconds_ = watch.seconds();
 }
+
+std::unique_lock<std::timed_mutex> PythonBatch::wait_for_turn(Sink& sink) const { return wait_for(*turn_, sink); }
 
 std::vector<std::size_t> PythonBatch::shape() const {
     if (is_single_) return {height_, width_};

@@ -4,6 +4,7 @@
 // rendered them.
 
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,6 +32,7 @@ struct CamerasArgument {
     RenderSettings settings_of(RenderSettings settings) const;
 };
 
+/// Several threads may use one. Whatever render() changes they read in turn, by wait_for_turn().
 class PythonBatch {
 public:
     /// Renders with the settings and the device of `session`, which is that of `opened`. `record` and `options` are
@@ -40,6 +42,8 @@ public:
     void render(OpenedScene& opened, Session& session, const CamerasArgument& cameras,
                 std::shared_ptr<const PictureRecord> record, const PictureOptions& options, Sink& sink);
 
+    /// Waits until no other thread fills the arrays or reads them. Throws Error(Interrupted) if the sink stops.
+    std::unique_lock<std::timed_mutex> wait_for_turn(Sink& sink) const;
     bool is_single() const { return is_single_; }
     bool is_empty() const { return queue_ == nullptr; }
     /// Returns the hash of a picture, as its array holds it now, or of its samples if it is denoised; nothing if it
@@ -78,7 +82,8 @@ private:
     RenderStats stats() const;
     bool fits(const RenderSettings& settings, const CamerasArgument& cameras, const Queue& queue) const;
 
-    std::shared_ptr<Queue> queue_; // outlives the buffers
+    std::unique_ptr<std::timed_mutex> turn_ = std::make_unique<std::timed_mutex>(); // so that batches can be moved
+    std::shared_ptr<Queue> queue_;                                                  // outlives the buffers
     BatchArrays arrays_;
     uint32_t width_ = 0, height_ = 0, color_channels_ = 0;
     bool is_single_ = false;

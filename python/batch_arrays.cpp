@@ -14,6 +14,7 @@
 #include "python/batch.h"
 #include "python/owned_array.h"
 #include "python/result.h"
+#include "python/unlocked.h"
 
 namespace nb = nanobind;
 
@@ -33,6 +34,14 @@ struct DeviceArray {
                                                    nb::device::cuda::value, device));
     }
 };
+
+/// Returns what `work` gives while no other thread fills the batch, without the interpreter's lock.
+auto in_turn(const PythonBatch& batch, const auto& work) {
+    return result_of([&](PythonSink& sink) {
+        const std::unique_lock turn = batch.wait_for_turn(sink);
+        return work();
+    });
+}
 
 std::vector<std::size_t> shape_of(const PythonBatch& batch, const PythonBatch::Array& array) {
     std::vector<std::size_t> shape = batch.shape();
@@ -55,46 +64,46 @@ nb::object array_of(const PythonBatch::Array& array, nb::handle self) {
 }
 
 nb::object array_named(nb::handle self, const std::string& name) {
-    for (const PythonBatch::Array& array : nb::cast<const PythonBatch&>(self).arrays()) {
+    const PythonBatch& batch = nb::cast<const PythonBatch&>(self);
+    for (const PythonBatch::Array& array : in_turn(batch, [&] { return batch.arrays(); })) {
         if (array.name == name) return array_of(array, self);
     }
     throw nb::attribute_error(fmt::format("there is no array '{}'; request it by layers=['{}']", name, name).c_str());
 }
 
-/// Returns what `work` gives without the interpreter's lock, which work that it waits for may need.
-auto unlocked(const auto& work) {
-    const nb::gil_scoped_release released;
-    return work();
+/// Returns what `of` gives for each picture, all of them of one call.
+auto of_all(const PythonBatch& batch, const auto& of) {
+    return in_turn(batch, [&] {
+        std::vector<decltype(of(0))> all;
+        for (std::size_t k = 0; k < batch.count(); ++k) all.push_back(of(k));
+        return all;
+    });
 }
 
-/// Returns what `of` gives for the single picture, or a list of it for all pictures.
-template <class Of>
-nb::object of_pictures(const PythonBatch& batch, const Of& of) {
-    if (batch.is_single()) return of(0);
+/// Returns the object that `made` makes of the single picture's value, or a list of those of all pictures.
+nb::object of_pictures(const PythonBatch& batch, const auto& values, const auto& made) {
+    if (batch.is_single()) return made(values.front());
     nb::list all;
-    for (std::size_t k = 0; k < batch.count(); ++k) all.append(of(k));
+    for (const auto& value : values) all.append(made(value));
     return all;
 }
 
 nb::object hashes_of(const PythonBatch& batch) {
-    return of_pictures(batch, [&](std::size_t k) -> nb::object {
-        const std::optional<std::string> hash = unlocked([&] { return batch.hash(k); });
-        if (!hash) throw nb::attribute_error("a hash is that of `color`, which was not requested");
-        return nb::str(hash->c_str());
-    });
+    if (!batch.has_color()) throw nb::attribute_error("a hash is that of `color`, which was not requested");
+    const auto hashes = of_all(batch, [&](std::size_t k) { return batch.hash(k).value_or(""); });
+    return of_pictures(batch, hashes, [](const std::string& hash) -> nb::object { return nb::str(hash.c_str()); });
 }
 
 nb::object infos_of(const PythonBatch& batch) {
-    return of_pictures(batch, [&](std::size_t k) -> nb::object {
-        return info_of_metadata(unlocked([&] { return batch.metadata(k); }));
-    });
+    const auto metadata = of_all(batch, [&](std::size_t k) { return batch.metadata(k); });
+    return of_pictures(batch, metadata, [](const ExrMetadata& of) -> nb::object { return info_of_metadata(of); });
 }
 
 /// Returns an array of float64 of what `of` gives for the record of each picture, with `rows` rows.
 nb::object of_records(const PythonBatch& batch, std::size_t rows, const auto& of) {
     std::vector<double> values;
-    for (std::size_t k = 0; k < batch.count(); ++k) {
-        const std::vector<double> own = of(batch.record_of(k));
+    for (const PictureRecord& record : of_all(batch, [&](std::size_t k) { return batch.record_of(k); })) {
+        const std::vector<double> own = of(record);
         values.insert(values.end(), own.begin(), own.end());
     }
     if (batch.is_single()) return owned_array(std::move(values), {rows, rows});
@@ -104,30 +113,36 @@ nb::object of_records(const PythonBatch& batch, std::size_t rows, const auto& of
 /// Returns the first pictures as PNG for notebooks, at most 16; none without colour.
 nb::object png_of_batch(const PythonBatch& batch) {
     if (!batch.has_color()) return nb::none();
-    std::vector<Image> pictures;
-    for (std::size_t k = 0; k < std::min<std::size_t>(batch.count(), 16); ++k) {
-        RenderResult result = unlocked([&] { return batch.picture(k).result; });
-        pictures.push_back(std::move(result.denoised ? *result.denoised : result.picture));
-    }
-    const auto columns = static_cast<uint32_t>(std::ceil(std::sqrt(static_cast<double>(pictures.size()))));
-    return png_of(pictures, columns);
+    const std::vector<std::byte> png = in_turn(batch, [&] {
+        std::vector<Image> pictures;
+        for (std::size_t k = 0; k < std::min<std::size_t>(batch.count(), 16); ++k) {
+            RenderResult result = batch.picture(k).result;
+            pictures.push_back(std::move(result.denoised ? *result.denoised : result.picture));
+        }
+        const auto columns = static_cast<uint32_t>(std::ceil(std::sqrt(static_cast<double>(pictures.size()))));
+        return png_of(pictures, columns);
+    });
+    return nb::bytes(reinterpret_cast<const char*>(png.data()), png.size());
 }
 
 /// Returns the array of means of samples, denoised or not.
 nb::object noisy_of(nb::handle self) {
-    return array_named(self, nb::cast<const PythonBatch&>(self).is_denoised() ? "noisy" : "color");
+    const PythonBatch& batch = nb::cast<const PythonBatch&>(self);
+    return array_named(self, in_turn(batch, [&] { return batch.is_denoised(); }) ? "noisy" : "color");
 }
 
 PythonResult picture_of(const PythonBatch& batch, int64_t number) {
     const auto count = static_cast<int64_t>(batch.count());
     if (number < -count || number >= count) throw nb::index_error(fmt::format("there are {} pictures", count).c_str());
     if (!batch.has_color()) throw nb::attribute_error("a batch without colour has arrays alone");
-    return unlocked([&] { return batch.picture(static_cast<std::size_t>(number < 0 ? number + count : number)); });
+    return in_turn(batch,
+                   [&] { return batch.picture(static_cast<std::size_t>(number < 0 ? number + count : number)); });
 }
 
 nb::dict arrays_of(nb::handle self) {
     nb::dict arrays;
-    for (const PythonBatch::Array& array : nb::cast<const PythonBatch&>(self).arrays()) {
+    const PythonBatch& batch = nb::cast<const PythonBatch&>(self);
+    for (const PythonBatch::Array& array : in_turn(batch, [&] { return batch.arrays(); })) {
         arrays[array.name.c_str()] = array_of(array, self);
     }
     return arrays;
@@ -136,7 +151,7 @@ nb::dict arrays_of(nb::handle self) {
 /// Returns a copy of an array in the memory of the host, as NumPy's.
 nb::object host_copy(const DeviceArray& self) {
     const PythonBatch& batch = nb::cast<const PythonBatch&>(self.batch);
-    auto* bytes = new std::vector<std::byte>(unlocked([&] { return batch.download(self.array); }));
+    auto* bytes = new std::vector<std::byte>(in_turn(batch, [&] { return batch.download(self.array); }));
     const nb::capsule owner(bytes, [](void* p) noexcept { delete static_cast<std::vector<std::byte>*>(p); });
     const auto type = self.array.is_float ? nb::dtype<float>() : nb::dtype<uint32_t>();
     return nb::cast(nb::ndarray<nb::numpy>(bytes->data(), self.shape.size(), self.shape.data(), owner, nullptr, type));
@@ -216,9 +231,15 @@ of them does. The first axis counts the cameras (a single picture has no such ax
         .def_prop_ro(
             "K", [](const PythonBatch& self) { return of_records(self, 3, &intrinsics_of); },
             "float64 (N, 3, 3): focal lengths and principal points in pixels from the upper left corner")
-        .def_prop_ro("samples", &PythonBatch::samples, "Samples of each pixel")
+        .def_prop_ro(
+            "samples", [](const PythonBatch& self) { return in_turn(self, [&] { return self.samples(); }); },
+            "Samples of each pixel")
         .def("picture", &picture_of, nb::arg("number") = 0, "A copy of one picture as a Result, in the host's memory")
         .def("_repr_png_", &png_of_batch)
+        .def("__reduce__",
+             [](const PythonBatch&) -> nb::object {
+                 throw nb::type_error("a BatchResult is not pickled; send copies of its arrays");
+             })
         .def_prop_ro("seconds", &PythonBatch::seconds, "Seconds of rendering alone")
         .def("__len__", &PythonBatch::count)
         .def("__repr__", [](const PythonBatch& self) {

@@ -13,8 +13,8 @@
 #include "image/write_image.h"
 #include "python/array_argument.h"
 #include "python/owned_array.h"
-#include "python/python_sink.h"
 #include "python/result.h"
+#include "python/unlocked.h"
 #include "session/writing/check_outputs.h"
 #include "session/writing/write_picture.h"
 
@@ -31,18 +31,17 @@ Image image_of(nb::handle value, const std::string& name) {
         array.fail("expected the shape (height, width), or (height, width, channels) with 1 to 4 channels");
     }
     if (array.length(0) > UINT32_MAX || array.length(1) > UINT32_MAX) array.fail("the image is too large");
+    if (array.length(0) == 0 || array.length(1) == 0) array.fail("the image has no pixels");
     return {static_cast<uint32_t>(array.length(1)), static_cast<uint32_t>(array.length(0)),
             static_cast<uint32_t>(channels), array.floats()};
 }
 
 nb::object read(const std::string& path) {
-    Messages messages;
-    Image image;
-    {
-        const nb::gil_scoped_release unlocked;
-        image = read_image(path, messages);
-    }
-    log_messages(messages);
+    Image image = result_of([&](PythonSink& sink) {
+        Image read = read_image(path, sink);
+        sink.check();
+        return read;
+    });
     return owned_array(std::move(image.pixels), {image.height, image.width, image.channels});
 }
 
@@ -60,8 +59,7 @@ void write(const std::string& path, nb::handle array, const std::string& curve, 
     WriteImageOptions options;
     options.display = {curve_of(curve), exposure};
     options.transparent = image.channels == 2 || image.channels == 4;
-    const nb::gil_scoped_release unlocked;
-    write_image(path, image, options);
+    run_unlocked([&](PythonSink&) { write_image(path, image, options); });
 }
 
 /// Writes a result with all that the format holds: its layers and metadata too.
@@ -74,43 +72,61 @@ void write_result(const std::string& path, const PythonResult& result, const std
     } else if (result.merged) {
         facts.shown.clear();
     }
-    RenderResult written = result.whole(); // the copy loses its layers
-    const nb::gil_scoped_release unlocked;
-    image_format_for(path);
-    const std::string failures = failures_of(write_picture(paths, facts, written));
-    if (!failures.empty()) throw Error(ErrorCode::FileWrite, failures);
+    run_unlocked([&](PythonSink&) {
+        image_format_for(path);
+        RenderResult written = result.whole(); // the copy loses its layers
+        refuse_faults(write_picture(paths, facts, written), 0, false);
+    });
 }
 
 nb::object tone_map_array(nb::handle array, const std::string& curve, float exposure) {
-    Rgba8Image image = tone_map_image(image_of(array, "picture"), curve_of(curve), exposure);
+    const Image picture = image_of(array, "picture");
+    const ToneMap shape = curve_of(curve);
+    Rgba8Image image = result_of([&](PythonSink&) { return tone_map_image(picture, shape, exposure); });
     return owned_array(std::move(image.pixels), {image.height, image.width, 4});
 }
 
-nb::dict compare(nb::handle picture, nb::handle reference, uint32_t blocks) {
-    if (blocks == 0) throw Error(ErrorCode::BadInput, "blocks", "0", "expected at least 1");
-    Image a = image_of(picture, "picture"), b = image_of(reference, "reference");
+/// Returns a picture that can be compared.
+Image compared(nb::handle value, const std::string& name) {
+    Image image = image_of(value, name);
+    if (image.channels >= 3) return image;
+    throw Error(ErrorCode::BadInput, name, "", fmt::format("expected 3 or 4 channels, not {}", image.channels));
+}
+
+struct Differences {
+    bool equal = false;
+    double rel_mse = 0, trimmed = 0, mse = 0, flip = 0, hdr_flip = 0;
+};
+
+Differences differences(Image a, Image b, uint32_t blocks, Sink& sink) {
     check_comparable(a, b);
-    const bool equal = picture_hash(a) == picture_hash(b);
+    Differences made = {.equal = picture_hash(a) == picture_hash(b)};
     if (blocks > 1) {
         a = block_means(a, blocks);
         b = block_means(b, blocks);
     }
-    double rel_mse = 0, trimmed = 0, mse = 0, flip_mean = 0, hdr_mean = 0;
-    {
-        const nb::gil_scoped_release unlocked;
-        rel_mse = relative_error(a, b, 1.0).rel_mse;
-        trimmed = relative_error(a, b).rel_mse;
-        mse = mean_squared_error(a, b);
-        flip_mean = flip(a, b).mean;
-        hdr_mean = hdr_flip(a, b).mean;
-    }
+    made.rel_mse = relative_error(a, b, 1.0).rel_mse;
+    made.trimmed = relative_error(a, b).rel_mse;
+    made.mse = mean_squared_error(a, b);
+    sink.check();
+    made.flip = flip(a, b).mean;
+    sink.check();
+    made.hdr_flip = hdr_flips({&a}, b, kDefaultPixelsPerDegree, &sink).front().mean;
+    return made;
+}
+
+nb::dict compare(nb::handle picture, nb::handle reference, uint32_t blocks) {
+    if (blocks == 0) throw Error(ErrorCode::BadInput, "blocks", "0", "expected at least 1");
+    Image a = compared(picture, "picture"), b = compared(reference, "reference");
+    const Differences made =
+        result_of([&](PythonSink& sink) { return differences(std::move(a), std::move(b), blocks, sink); });
     nb::dict result;
-    result["rel_mse"] = rel_mse;
-    result["rel_mse_98"] = trimmed;
-    result["mse"] = mse;
-    result["flip"] = flip_mean;
-    result["hdr_flip"] = hdr_mean;
-    result["equal"] = equal;
+    result["rel_mse"] = made.rel_mse;
+    result["rel_mse_98"] = made.trimmed;
+    result["mse"] = made.mse;
+    result["flip"] = made.flip;
+    result["hdr_flip"] = made.hdr_flip;
+    result["equal"] = made.equal;
     return result;
 }
 
@@ -118,10 +134,10 @@ nb::dict compare(nb::handle picture, nb::handle reference, uint32_t blocks) {
 
 void define_images(nb::module_& module) {
     module.def("read", &read);
-    module.def("write", &write);
+    module.def("write", &write, nb::arg("path"), nb::arg("picture").none(), nb::arg("curve"), nb::arg("exposure"));
     module.def("write_result", &write_result);
-    module.def("tone_map", &tone_map_array);
-    module.def("compare", &compare);
+    module.def("tone_map", &tone_map_array, nb::arg("picture").none(), nb::arg("curve"), nb::arg("exposure"));
+    module.def("compare", &compare, nb::arg("picture").none(), nb::arg("reference").none(), nb::arg("blocks"));
 }
 
 } // namespace pertev

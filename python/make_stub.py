@@ -7,27 +7,39 @@ import pathlib
 import sys
 import textwrap
 
-TYPES = {"bool": "bool", "int": "int", "float": "float", "size": "tuple[int, int] | str",
-         "vector": "Sequence[float] | str", "list": "_Text | Sequence[_Text]",
-         "text": "_Text | float | Sequence[float]"}
+TYPES = {"bool": "bool", "int": "_Int", "float": "_Float", "size": "_Size", "vector": "_Vector | str",
+         "list": "_Text | Sequence[_Text]", "text": "_Text | _Float | _Vector"}
 
 HEAD = '''# Made by python/make_stub.py from the table of settings.
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from types import TracebackType
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, Protocol, SupportsFloat, SupportsIndex, TypeAlias, overload
 
 import numpy
 from numpy.typing import NDArray
 
 from .errors import DeviceError as DeviceError, Error as Error, InputError as InputError
 from .errors import InterruptedRender as InterruptedRender, LimitError as LimitError
-from .errors import MemoryLimitError as MemoryLimitError, WriteError as WriteError
+from .errors import MemoryLimitError as MemoryLimitError, MissingFileError as MissingFileError, WriteError as WriteError
 
+class _Array(Protocol): # of NumPy, PyTorch and others
+    def __array__(self) -> Any: ...
+
+class _OnDevice(Protocol): # as CuPy's, which are not converted unasked
+    def __dlpack__(self) -> Any: ...
+
+_Int: TypeAlias = int | SupportsIndex
+_Float: TypeAlias = float | SupportsFloat
+_Vector: TypeAlias = Sequence[_Float] | Sequence[Sequence[_Float]] | _Array
+_Numbers: TypeAlias = _Vector | Sequence[Sequence[Sequence[_Float]]] | _OnDevice
+_Size: TypeAlias = tuple[_Int, _Int] | Sequence[_Int] | _Array | str
 _Text: TypeAlias = str | os.PathLike[str]
 _Floats: TypeAlias = NDArray[numpy.float32]
-_Picture: TypeAlias = Result | Any
+_Picture: TypeAlias = Result | BatchResult | _Numbers
 _Parts: TypeAlias = Mapping[str, Mapping[str, Any]]
+
+__version__: str
 
 def builtin_scenes() -> list[str]: ...
 '''
@@ -44,23 +56,23 @@ OF_BATCHES = {"color": "Any", "noisy": "Any", "albedo": "Any", "normal": "Any", 
               "info": "dict[str, Any] | list[dict[str, Any]]", "hash": "str | list[str]"}
 SIGNATURES = {
     "merge": "(files: _Text | Sequence[_Text], *, output: _Text | Sequence[_Text] = (), partial: bool = False, "
-             "tone_map: _Curve | None = None, exposure: float | str | None = None) -> Result",
+             "tone_map: _Curve | None = None, exposure: _Float | str | None = None) -> Result",
     "read": "(path: _Text) -> _Floats",
-    "read_cameras": "(path: _Text, *, size: tuple[int, int] | None = None, "
+    "read_cameras": "(path: _Text, *, size: _Size | None = None, "
                     "convention: _Convention | None = None) -> Cameras",
-    "write": '(path: _Text, picture: _Picture, *, curve: _Curve = "srgb", exposure: float = 0.0) -> None',
-    "tone_map": '(picture: _Picture, *, curve: _Curve = "agx", exposure: float = 0.0) -> NDArray[numpy.uint8]',
-    "compare": "(picture: _Picture | _Text, reference: _Picture | _Text, *, blocks: int = 1) -> dict[str, float | bool]",
+    "write": '(path: _Text, picture: _Picture, *, curve: _Curve = "srgb", exposure: _Float = 0.0) -> None',
+    "tone_map": '(picture: _Picture, *, curve: _Curve = "agx", exposure: _Float = 0.0) -> NDArray[numpy.uint8]',
+    "compare": "(picture: _Picture | _Text, reference: _Picture | _Text, *, blocks: _Int = 1) -> dict[str, float | bool]",
     "DeviceArray.__dlpack__": "(self, **how: Any) -> Any",
     "DeviceArray.__dlpack_device__": "(self) -> tuple[int, int]",
     "DeviceArray.numpy": "(self) -> NDArray[Any]",
     "BatchResult.picture": "(self, number: int = 0) -> Result",
     "BatchResult.__len__": "(self) -> int",
-    "Cameras.__init__": "(self, poses: Any, K: Any = None, *, convention: _Convention | None = None, "
-                        "intrinsics_size: tuple[int, int] | str | None = None, "
-                        "lens: _Lens | None = None, distortion: Sequence[float] | None = None) -> None",
+    "Cameras.__init__": "(self, poses: _Numbers, K: _Numbers | None = None, *, convention: _Convention | None = None, "
+                        "intrinsics_size: _Size | None = None, "
+                        "lens: _Lens | None = None, distortion: _Vector | str | None = None) -> None",
     "Cameras.__len__": "(self) -> int",
-    "Cameras.__getitem__": "(self, part: slice) -> Cameras",
+    "Cameras.__getitem__": "(self, part: slice | _Int | Sequence[int] | _Array) -> Cameras",
     "Params.__init__": "(self, scene: Scene) -> None",
     "Params.__getitem__": "(self, path: str) -> Any",
     "Params.__setitem__": "(self, path: str, value: Any) -> None",
@@ -79,7 +91,7 @@ PARTS = ["meshes: _Parts | None = None,", "materials: _Parts | None = None,", "i
          "lights: _Parts | None = None,", "environment: Any = None,", "cameras: _Parts | None = None,",
          'name: str = "arrays",']
 LAYERS = "layers: str | Sequence[str] = (),"
-BATCH = ["seeds: int | Sequence[int] | Any = None,", "color: bool = True,", LAYERS]
+BATCH = ["seeds: _Int | Sequence[_Int] | _Array | _OnDevice | None = None,", "color: bool = True,", LAYERS]
 
 
 def type_of(row):
@@ -94,15 +106,29 @@ def doc_of(thing, indent):
 
 
 def takes_settings(name, first, returned, rows, thing):
-    """A function whose last parameters are settings."""
+    """A function whose last parameters are settings. Further overloads, whose `thing` is None, have no comments."""
     yield f"def {name}("
     yield from (f"    {line}" for line in first)
     for row in rows:
-        yield from textwrap.wrap(row["sentence"], 110, initial_indent="    # ", subsequent_indent="    # ")
+        if thing is not None:
+            yield from textwrap.wrap(row["sentence"], 110, initial_indent="    # ", subsequent_indent="    # ")
         yield f"    {row['name']}: {type_of(row)} | None = None,"
     yield f") -> {returned}:"
-    yield doc_of(thing, "    ")
+    yield "    ..." if thing is None else doc_of(thing, "    ")
     yield ""
+
+
+def renders(rows, thing):
+    """render(), whose result depends on `cameras` and `on_device`."""
+    one, many = "cameras: None = None,", "cameras: Cameras | _Text | _Numbers,"
+    here, there, any_place = "on_device: Literal[False] = False,", "on_device: Literal[True],", "on_device: bool = False,"
+    arrays, batch = "out: Mapping[str, Any] | _Array | None = None,", "out: BatchResult | None = None,"
+    for cameras, place, out, returned in ((one, here, arrays, "Result"), (many, any_place, batch, "BatchResult"),
+                                          (one, there, batch, "BatchResult")):
+        yield "@overload"
+        yield from takes_settings("render", ["scene: Scene | _Text,", "*,", cameras, *BATCH, "output: _Text | Sequence[_Text] = (),",
+                                             "settings: _Text | None = None,", out, place], returned, rows,
+                                  thing if returned == "Result" else None)
 
 
 def properties_of(kind, types=MEMBERS):
@@ -147,17 +173,14 @@ def main():
                       takes_settings("set", ["self,", "*,"], "None", all_rows, session.set))
     lines += class_of("Viewer", viewer, "", ["url: str"])
     lines += takes_settings("load", ["scene: _Text,", "*,"], "Scene", rows, package.load)
-    lines += takes_settings("render", ["scene: Scene | _Text,", "*,", "cameras: Cameras | _Text | Any = None,", *BATCH,
-                                       "output: _Text | Sequence[_Text] = (),", "settings: _Text | None = None,",
-                                       "out: Mapping[str, Any] | BatchResult | Any = None,", "on_device: bool = False,"],
-                            "Any", of_parts, package.render)
-    lines += takes_settings("render_chunks", ["scene: Scene | _Text,", "cameras: Cameras | _Text | Any,", "*,",
-                                              "chunk: int | None = None,", *BATCH, "settings: _Text | None = None,"],
+    lines += renders(of_parts, package.render)
+    lines += takes_settings("render_chunks", ["scene: Scene | _Text,", "cameras: Cameras | _Text | _Numbers,", "*,",
+                                              "chunk: _Int | None = None,", *BATCH, "settings: _Text | None = None,"],
                             "Iterator[BatchResult]", rows, package.render_chunks)
     lines += takes_settings("scene", ["name: str,", "*,"], "Scene", rows, package.scene)
-    viewed = [row for row in rows if row["is_viewed"]]
-    lines += takes_settings("view", ["scene: Scene | _Text,", "*,", "port: int = 0,", "browser: bool = False,"], "Viewer", viewed,
-                            package.view)
+    viewed = [row for row in all_rows if row["is_viewed"]]
+    lines += takes_settings("view", ["scene: Scene | _Text,", "*,", "port: int = 0,", "host: str | None = None,", "token_file: _Text | None = None,",
+                                     'jpeg: Literal["auto", "cpu"] | None = None,', "browser: bool = False,"], "Viewer", viewed, package.view)
     for name in ("merge", "read", "read_cameras", "write", "tone_map", "compare"):
         lines += [f"def {name}{SIGNATURES[name]}:", doc_of(getattr(package, name), "    "), ""]
     print("\n".join(lines))

@@ -18,6 +18,7 @@
 #include "apps/cli/commands.h"
 #include "base/error.h"
 #include "base/parallel_for.h"
+#include "base/version.h"
 #include "formats/builtin_scenes.h"
 #include "formats/cameras/read_cameras.h"
 #include "formats/gltf_writer/write_glb.h"
@@ -31,7 +32,9 @@
 #include "python/scene.h"
 #include "python/scene_arrays.h"
 #include "python/session.h"
+#include "python/unlocked.h"
 #include "scene/scene_origin.h"
+#include "scene/validate/validate.h"
 #include "session/degrees.h"
 #include "session/photometry.h"
 #include "session/pictures/merge_picture.h"
@@ -96,36 +99,6 @@ std::vector<nb::dict> settings_of(bool frames) {
     return rows;
 }
 
-/// Calls `work` without the interpreter's lock, and then logs its messages. Throws what it throws, or what a signal's
-/// handler raised.
-template <class Work>
-void run_unlocked(Work work) {
-    PythonSink sink;
-    std::exception_ptr failure;
-    {
-        const nb::gil_scoped_release unlocked;
-        try {
-            work(sink);
-        } catch (...) {
-            failure = std::current_exception();
-        }
-    }
-    if (sink.has_raised()) throw nb::python_error();
-    try {
-        log_messages(sink.messages());
-    } catch (nb::python_error& raised) { // a handler of the caller's; the picture or the failure counts
-        raised.discard_as_unraisable("pertev");
-    }
-    if (failure) std::rethrow_exception(failure);
-}
-
-template <class Work>
-auto result_of(Work work) {
-    std::optional<decltype(work(std::declval<PythonSink&>()))> made;
-    run_unlocked([&](PythonSink& sink) { made.emplace(work(sink)); });
-    return std::move(*made);
-}
-
 PythonResult render(PythonScene& scene, const std::string& settings_file, const SettingTexts& settings,
                     const std::vector<std::string>& outputs, const std::optional<nb::dict>& out) {
     std::vector<OutArray> arrays = out ? out_arrays(*out) : std::vector<OutArray>();
@@ -158,10 +131,13 @@ PythonResult merge(const std::vector<std::string>& files, bool is_partial, const
 void make_scene(PythonScene* scene, const std::string& name, const SettingTexts& settings, const nb::object& parts) {
     EditedScene source = {.name = name, .arrays = nullptr, .hash_of_arrays = "", .edits = {}};
     if (!parts.is_none()) {
-        Messages messages;
-        source.arrays = std::make_shared<const Scene>(scene_of_arrays(name, nb::cast<nb::dict>(parts), messages));
-        source.hash_of_arrays = hash_of_contents(*source.arrays);
-        log_messages(messages);
+        auto arrays = std::make_shared<Scene>(scene_of_arrays(nb::cast<nb::dict>(parts)));
+        source.hash_of_arrays = result_of([&](PythonSink& sink) {
+            validate(*arrays, name, sink);
+            sink.check();
+            return hash_of_contents(*arrays);
+        });
+        source.arrays = std::move(arrays);
     }
     new (scene) PythonScene(std::move(source), settings);
 }
@@ -232,8 +208,8 @@ nb::object render_batch(PythonScene& scene, const std::string& settings_file, co
 }
 
 uint32_t batch_size(PythonScene& scene, const std::string& settings_file, const SettingTexts& settings,
-                    nb::handle poses, nb::handle intrinsics, bool has_color) {
-    const CamerasArgument cameras = cameras_of(poses, intrinsics, nb::none(), has_color);
+                    nb::handle poses, nb::handle intrinsics, nb::handle seeds, bool has_color) {
+    const CamerasArgument cameras = cameras_of(poses, intrinsics, seeds, has_color);
     return result_of([&](PythonSink& sink) { return scene.batch_size({settings_file, settings}, cameras, sink); });
 }
 
@@ -312,11 +288,11 @@ void define_scene(nb::module_& module) {
         .def("_render_batch", &render_batch, nb::arg("file"), nb::arg("settings"), nb::arg("poses").none(),
              nb::arg("intrinsics").none(), nb::arg("seeds").none(), nb::arg("has_color"), nb::arg("out").none())
         .def("_batch_size", &batch_size, nb::arg("file"), nb::arg("settings"), nb::arg("poses"),
-             nb::arg("intrinsics").none(), nb::arg("has_color"))
+             nb::arg("intrinsics").none(), nb::arg("seeds").none(), nb::arg("has_color"))
         .def("_paths",
              [](PythonScene& scene) { return result_of([&](PythonSink& sink) { return scene.paths(sink); }); })
         .def("_value", &parameter)
-        .def("_set_value", &set_parameter)
+        .def("_set_value", &set_parameter, nb::arg("path"), nb::arg("value").none())
         .def("_edits", &edits_of)
         .def("_save", &save_scene)
         .def_prop_ro(
@@ -334,9 +310,22 @@ void define_scene(nb::module_& module) {
         .def(nb::init<PythonScene&, SettingTexts>(), nb::keep_alive<1, 2>())
         .def("_next",
              [](PythonSession& session) { return result_of([&](PythonSink& sink) { return session.next(sink); }); })
-        .def("_set", &PythonSession::set)
-        .def("reset", &PythonSession::reset, "Forgets earlier frames, so that the next one is the first.")
-        .def_prop_ro("frame", &PythonSession::frame, "Number of the next frame; None before the first");
+        .def("_set",
+             [](PythonSession& session, const SettingTexts& settings) {
+                 run_unlocked([&](PythonSink& sink) { session.set(settings, sink); });
+             })
+        .def(
+            "reset", [](PythonSession& session) { run_unlocked([&](PythonSink& sink) { session.reset(sink); }); },
+            "Forgets earlier frames, so that the next one is the first.")
+        .def_prop_ro(
+            "frame",
+            [](PythonSession& session) { return result_of([&](PythonSink& sink) { return session.frame(sink); }); },
+            "Number of the next frame; None before the first")
+        .def("__reduce__",
+             [](const PythonSession&) -> nb::object {
+                 throw nb::type_error("a Session is not pickled; send its scene, and make one in each process");
+             })
+        .def("__repr__", [](const PythonSession& session) { return "<pertev.Session " + session.scene_name() + ">"; });
 }
 
 /// Returns the name of each camera of a file, and the settings that state it.
@@ -352,25 +341,20 @@ cameras_of_file(const std::string& path, uint32_t width, uint32_t height) {
 
 /// Raises the package's exception for the error's code, with its parts as attributes.
 void raise(const Error& error) {
-    static constexpr std::pair<ErrorCode, const char*> kClasses[] = {
-        {ErrorCode::BadInput, "InputError"},          {ErrorCode::OverLimit, "LimitError"},
-        {ErrorCode::OutOfMemory, "MemoryLimitError"}, {ErrorCode::DeviceFault, "DeviceError"},
-        {ErrorCode::FileWrite, "WriteError"},         {ErrorCode::Interrupted, "InterruptedRender"}};
-    const nb::module_ errors = nb::module_::import_("pertev.errors");
-    for (const auto& [code, name] : kClasses) {
-        if (code != error.code()) continue;
-        const nb::object kind = errors.attr(name);
-        const nb::object raised = kind(python_text(error.remark()));
-        raised.attr("setting") = error.setting();
-        raised.attr("value") = error.value();
-        raised.attr("reason") = error.reason();
-        const FileLocation where = error.location().value_or(FileLocation{});
-        raised.attr("file") = where.file;
-        raised.attr("line") = where.line;
-        raised.attr("pointer") = where.pointer.value_or("");
-        PyErr_SetObject(kind.ptr(), raised.ptr());
-        return;
-    }
+    const FileLocation where = error.location().value_or(FileLocation{});
+    const nb::object raised =
+        nb::module_::import_("pertev.errors")
+            .attr("made")(exit_status(error.code()), python_text(error.remark()), error.setting(), error.value(),
+                          error.reason(), where.file, where.line, where.pointer.value_or(""));
+    PyErr_SetObject(raised.type().ptr(), raised.ptr());
+}
+
+/// Raises the exception for an error that the program has printed as JSON.
+void raise_parts(int status, const std::string& setting, const std::string& value, const std::string& reason,
+                 const std::string& file, std::size_t line, const std::optional<std::string>& pointer) {
+    Remark remark(setting, value, reason);
+    if (!file.empty()) remark.location = FileLocation{file, line, pointer};
+    throw Error(static_cast<ErrorCode>(status), std::move(remark));
 }
 
 } // namespace
@@ -384,6 +368,7 @@ NB_MODULE(_core, module) {
         }
     });
     nb::set_leak_warnings(false); // a thread may still render when the interpreter ends
+    module.attr("__version__") = version();
     define_result(module);
     define_batch(module);
     module.def(
@@ -392,6 +377,8 @@ NB_MODULE(_core, module) {
         "frame_settings", [] { return settings_of(true); }, "Additional settings of frames");
     module.def("part_settings", &settings_of_parts, "Additional settings of single pictures");
     module.def("read_cameras", &cameras_of_file);
+    module.def("raise_parts", &raise_parts, nb::arg("status"), nb::arg("setting"), nb::arg("value"), nb::arg("reason"),
+               nb::arg("file"), nb::arg("line"), nb::arg("pointer").none());
     module.def("builtin_scenes", &builtin_scene_names, "Names of the scenes that are part of Pertev");
     define_scene(module);
     define_images(module);

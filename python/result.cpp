@@ -15,6 +15,7 @@
 #include "image/write_png.h"
 #include "python/owned_array.h"
 #include "python/transform_values.h"
+#include "python/unlocked.h"
 #include "render/camera_view.h"
 #include "render/film_channels.h"
 #include "session/writing/metadata_json.h"
@@ -31,10 +32,18 @@ nb::object array_of(Value* values, const Image& size, std::size_t channels, nb::
     return nb::cast(nb::ndarray<nb::numpy, Value>(values, channels > 1 ? 3 : 2, shape, owner));
 }
 
+/// Returns the hash, which is made without the interpreter's lock at the first request.
+const std::string& hash_of(PythonResult& self) {
+    if (!self.hash.empty()) return self.hash;
+    std::string made = result_of([&](PythonSink&) { return picture_hash(self.result.picture).hex(); });
+    if (self.hash.empty()) self.hash = std::move(made); // else another thread has made it, and may have changed arrays
+    return self.hash;
+}
+
 /// Returns the result, whose hash is known before its arrays can be changed.
-PythonResult& result_of(nb::handle owner) {
+PythonResult& hashed(nb::handle owner) {
     PythonResult& result = nb::cast<PythonResult&>(owner);
-    result.known_hash();
+    hash_of(result);
     return result;
 }
 
@@ -43,21 +52,21 @@ nb::object array_of(Image& image, nb::handle owner) {
 }
 
 nb::object noisy_of(nb::handle owner) {
-    PythonResult& self = result_of(owner);
+    PythonResult& self = hashed(owner);
     const OutArray* array = find_array(self.out, "noisy");
     if (array == nullptr && self.result.picture.pixels.empty()) array = find_array(self.out, "color");
     return array != nullptr ? array->array : array_of(self.result.picture, owner);
 }
 
 nb::object color_of(nb::handle owner) {
-    PythonResult& self = result_of(owner);
+    PythonResult& self = hashed(owner);
     if (const OutArray* array = find_array(self.out, "color")) return array->array;
     return self.result.denoised ? array_of(*self.result.denoised, owner) : array_of(self.result.picture, owner);
 }
 
 /// Returns the layers by their names; `id` is of uint32.
 nb::dict layers_of(nb::handle owner) {
-    PythonResult& self = result_of(owner);
+    PythonResult& self = hashed(owner);
     nb::dict layers;
     for (const OutArray& array : self.out) {
         if (!is_picture(array.name)) layers[array.name == "ids" ? "id" : array.name.c_str()] = array.array;
@@ -82,7 +91,7 @@ nb::object layer_of(nb::handle owner, const char* name) {
 }
 
 nb::dict info_of(PythonResult& self) {
-    return info_of_metadata(picture_metadata(self.facts(), self.result, self.known_hash()));
+    return info_of_metadata(picture_metadata(self.facts(), self.result, hash_of(self)));
 }
 
 /// Returns the record of a rendered picture. Throws AttributeError for a merged one.
@@ -93,8 +102,11 @@ const PictureRecord& record_of(const PythonResult& self) {
 
 /// Returns the picture as PNG for notebooks, at the exposure that fits it.
 nb::bytes png_of_result(const PythonResult& self) {
-    const RenderResult whole = self.whole();
-    return png_of({whole.denoised ? &*whole.denoised : &whole.picture, 1}, 1);
+    const std::vector<std::byte> png = result_of([&](PythonSink&) {
+        const RenderResult whole = self.whole();
+        return png_of({whole.denoised ? &*whole.denoised : &whole.picture, 1}, 1);
+    });
+    return nb::bytes(reinterpret_cast<const char*>(png.data()), png.size());
 }
 
 /// Metadata that are texts of JSON.
@@ -120,7 +132,7 @@ std::vector<double> intrinsics_of(const PictureRecord& record) {
     return {x * k.focal_x, 0, x * k.centre_x - window.x, 0, y * k.focal_y, y * k.centre_y - window.y, 0, 0, 1};
 }
 
-nb::bytes png_of(std::span<const Image> pictures, uint32_t columns) {
+std::vector<std::byte> png_of(std::span<const Image> pictures, uint32_t columns) {
     const Image& first = pictures.front();
     const auto rows = static_cast<uint32_t>((pictures.size() + columns - 1) / columns);
     Image image = {first.width * columns, first.height * rows, first.channels, {}};
@@ -133,8 +145,7 @@ nb::bytes png_of(std::span<const Image> pictures, uint32_t columns) {
         }
     }
     const float stops = auto_exposure_stops(image, ToneMap::Agx);
-    const std::vector<std::byte> png = encode_png(tone_map_image(image, ToneMap::Agx, stops), image.channels == 4);
-    return nb::bytes(reinterpret_cast<const char*>(png.data()), png.size());
+    return encode_png(tone_map_image(image, ToneMap::Agx, stops), image.channels == 4);
 }
 
 nb::dict info_of_metadata(const ExrMetadata& metadata) {
@@ -190,13 +201,14 @@ Arrays share the memory of the result, which lives as long as one of them does, 
           Named{"depth", "depth", "float32 (height, width): its distance along the camera's axis, metres"},
           Named{"distance", "distance", "float32 (height, width): its distance along the ray, metres"},
           Named{"position", "position", "float32 (height, width, 3): its position in the file's coordinates, metres"},
+          Named{"motion", "motion", "float32 (height, width, 2): its motion since the frame before, pixels"},
+          Named{"uv", "uv", "float32 (height, width, 2): its texture coordinates"},
           Named{"ids", "id", "uint32 (height, width, 3): its instance, primitive and material"}}) {
         result.def_prop_ro(
             named.name, [layer = named.layer](nb::handle self) { return layer_of(self, layer); }, named.text);
     }
     result.def_prop_ro("info", &info_of, "The metadata that an EXR of this picture has, without their prefix");
-    result.def_prop_ro("hash", &PythonResult::known_hash,
-                       "The picture's hash, as `pertev render` and `pertev info` print it");
+    result.def_prop_ro("hash", &hash_of, "The picture's hash, as `pertev render` and `pertev info` print it");
     result.def_prop_ro(
         "pose",
         [](const PythonResult& self) {
@@ -210,6 +222,9 @@ Arrays share the memory of the result, which lives as long as one of them does, 
         },
         "float64 (3, 3): focal lengths and principal point in pixels from the upper left corner");
     result.def("_repr_png_", &png_of_result);
+    result.def("__reduce__", [](const PythonResult&) -> nb::object {
+        throw nb::type_error("a Result is not pickled; send its arrays, or a file of pertev.write()");
+    });
     result.def_prop_ro(
         "_first_pixel_seconds", [](const PythonResult& self) { return self.result.first_pixel_seconds; },
         "Seconds that Session::render took until each pixel had its first sample, for tests");
@@ -221,7 +236,7 @@ Arrays share the memory of the result, which lives as long as one of them does, 
     result.def("__repr__", [](PythonResult& self) {
         const Image& picture = self.result.picture;
         return fmt::format("<pertev.Result {}x{}, {} spp, {}>", picture.width, picture.height, self.result.samples,
-                           self.known_hash());
+                           hash_of(self));
     });
 }
 

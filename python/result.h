@@ -37,7 +37,7 @@ std::vector<double> pose_of(const PictureRecord& record);
 std::vector<double> intrinsics_of(const PictureRecord& record);
 
 /// Returns pictures of one size, in rows of `columns`, as PNG for notebooks, at the exposure that fits all.
-nanobind::bytes png_of(std::span<const Image> pictures, uint32_t columns);
+std::vector<std::byte> png_of(std::span<const Image> pictures, uint32_t columns);
 
 /// Returns metadata by their names, without their prefix; texts of JSON as what they hold.
 nanobind::dict info_of_metadata(const ExrMetadata& metadata);

@@ -1,12 +1,11 @@
 #include "python/scene.h"
 
-#include <chrono>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "base/error.h"
 #include "image/picture_hash.h"
+#include "python/unlocked.h"
 #include "session/film_file/film_file.h"
 #include "session/opening/strictness.h"
 #include "session/pictures/choose_display.h"
@@ -41,11 +40,7 @@ void set_all(PictureOptions& options, const SettingTexts& settings) {
 
 } // namespace
 
-std::unique_lock<std::timed_mutex> PythonScene::wait_for_turn(Sink& sink) {
-    std::unique_lock turn(turn_, std::defer_lock);
-    while (!turn.try_lock_for(std::chrono::milliseconds(20))) sink.check();
-    return turn;
-}
+std::unique_lock<std::timed_mutex> PythonScene::wait_for_turn(Sink& sink) { return wait_for(turn_, sink); }
 
 PictureOptions PythonScene::options_of(const CallSettings& settings, Sink& sink) const {
     PictureOptions options;

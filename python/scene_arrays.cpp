@@ -9,10 +9,10 @@
 
 #include "base/error.h"
 #include "python/argument_fields.h"
+#include "python/scene_parameters.h"
 #include "python/transform_values.h"
 #include "scene/metals.h"
 #include "scene/scene_origin.h"
-#include "scene/validate/validate.h"
 #include "session/degrees.h"
 
 namespace nb = nanobind;
@@ -48,7 +48,13 @@ Mesh mesh_of(ArgumentFields& fields) {
     }
     if (const auto uv = fields.array("uv")) mesh.uv[0] = packed<Vec2, 2>(uv->of_shape({count, 2}).floats());
     if (const auto colors = fields.array("colors")) {
-        mesh.colors = packed<Vec4, 4>(colors->of_shape({count, 4}).floats());
+        std::vector<float> values = colors->of_shape({count, 4}).floats();
+        if (colors->is_uint8()) {
+            for (float& value : values) value /= 255;
+        } else if (colors->is_whole() && std::ranges::any_of(values, [](float value) { return value > 1; })) {
+            colors->fail("expected uint8, or numbers from 0 to 1");
+        }
+        mesh.colors = packed<Vec4, 4>(values);
     }
     return mesh;
 }
@@ -73,6 +79,8 @@ TextureImage image_of(const ArrayArgument& array) {
     const auto height = static_cast<uint32_t>(array.length(0)), width = static_cast<uint32_t>(array.length(1));
     if (array.is_uint8()) {
         image.rgba8 = {width, height, expand(array.bytes(), uint8_t(255))};
+    } else if (array.is_whole()) {
+        array.fail("the array's dtype is neither uint8 nor a float");
     } else {
         image.rgba_float = {width, height, 4, expand(array.floats(), 1.0f)};
     }
@@ -120,11 +128,8 @@ Material material_of(ArgumentFields& fields, std::vector<TextureImage>& images) 
         });
     for (const char* name : names) {
         const std::vector<float*>& values = numbers[name];
-        const auto given = fields.array(name);
-        if (!given) continue;
-        const ArrayArgument& shaped = values.size() == 1 ? given->of_shape({}) : given->of_shape({3});
-        const std::vector<float> read = shaped.of_finite_numbers().floats();
-        for (std::size_t i = 0; i < values.size(); ++i) *values[i] = read[i];
+        const auto given = values.size() == 1 ? fields.finite(name, {}) : fields.finite(name, {3});
+        for (std::size_t i = 0; given && i < values.size(); ++i) *values[i] = static_cast<float>((*given)[i]);
     }
     return material;
 }
@@ -147,6 +152,11 @@ Light light_of(ArgumentFields& fields, DoubleVec3 origin) {
         float inner = 0, outer = 45; // degrees from the axis
         fields.number("inner_cone", inner);
         fields.number("outer_cone", outer);
+        for (const auto& [name, angle] : {std::pair("inner_cone", inner), {"outer_cone", outer}})
+            if (!(angle >= 0 && angle <= 180))
+                refuse_argument(fields.path_of(name), fmt::format("expected 0 to 180 degrees, not {:g}", angle));
+        if (inner > outer)
+            refuse_argument(fields.path_of("inner_cone"), fmt::format("expected at most the outer cone, {:g}", outer));
         light.cos_inner = cos(inner * kRadiansPerDegree);
         light.cos_outer = min(cos(outer * kRadiansPerDegree), light.cos_inner - kSharpestEdge);
     }
@@ -178,6 +188,7 @@ Camera camera_of(ArgumentFields& fields, DoubleVec3 origin) {
     camera.fov_y = fov_deg * kRadiansPerDegree;
     fields.number("view_height", camera.ortho_height);
     fields.number("aspect", camera.aspect);
+    if (!(camera.aspect >= 0)) refuse_argument(fields.path_of("aspect"), "expected at least 0");
     fields.number("aperture", camera.aperture_radius);
     float blades = 0;
     fields.number("aperture_blades", blades);
@@ -200,6 +211,7 @@ std::optional<Environment> environment_of(nb::handle value) {
         environment.scale = {color[0], color[1], color[2]};
     } else {
         array.of_shape({ArrayArgument::kAny, ArrayArgument::kAny, 3});
+        if (array.is_whole()) array.fail("the array's dtype is no float; a radiance is");
         environment.image = {static_cast<uint32_t>(array.length(1)), static_cast<uint32_t>(array.length(0)), 3,
                              array.floats()};
     }
@@ -235,6 +247,24 @@ void for_each(const nb::dict& parts, const char* group,
     }
 }
 
+/// Numbers of an object, which are checked once the scene is there.
+struct GivenNumbers {
+    ParameterOwner owner;
+    uint32_t index;
+    std::string path;
+    std::vector<std::pair<std::string, std::vector<double>>> numbers;
+};
+
+/// Throws Error(BadInput) for a number that scene.params would refuse.
+void check_given(const Scene& scene, const std::vector<GivenNumbers>& given) {
+    for (const GivenNumbers& of : given) {
+        for (const auto& [name, values] : of.numbers) {
+            const auto parameter = SceneParameters::find(scene, of.owner, of.index, name);
+            if (parameter) check_parameter(scene, *parameter, values, fmt::format("{}/{}", of.path, name));
+        }
+    }
+}
+
 /// The box of all instances in double, whose middle is the origin of a far scene.
 DoubleBounds3 box_of(const Scene& scene, const std::vector<std::vector<double>>& transforms) {
     DoubleBounds3 box;
@@ -255,9 +285,13 @@ DoubleBounds3 box_of(const Scene& scene, const std::vector<std::vector<double>>&
 
 } // namespace
 
-Scene scene_of_arrays(const std::string& name, const nb::dict& parts, Sink& sink) {
+Scene scene_of_arrays(const nb::dict& parts) {
     Scene scene;
     Names meshes, materials;
+    std::vector<GivenNumbers> given;
+    const auto keep = [&](ParameterOwner owner, std::size_t count, const ArgumentFields& fields) {
+        given.push_back({owner, static_cast<uint32_t>(count - 1), fields.path(), fields.numbers()});
+    };
     for_each(parts, "meshes", [&](const std::string& of, ArgumentFields& fields) {
         meshes.emplace(of, static_cast<uint32_t>(scene.meshes.size()));
         scene.meshes.push_back(mesh_of(fields));
@@ -267,6 +301,7 @@ Scene scene_of_arrays(const std::string& name, const nb::dict& parts, Sink& sink
         materials.emplace(of, static_cast<uint32_t>(scene.materials.size()));
         scene.materials.push_back(material_of(fields, scene.images));
         scene.materials.back().name = of;
+        keep(ParameterOwner::Material, scene.materials.size(), fields);
     });
     std::optional<uint32_t> grey;
     std::vector<std::vector<double>> transforms;
@@ -292,13 +327,15 @@ Scene scene_of_arrays(const std::string& name, const nb::dict& parts, Sink& sink
     for_each(parts, "lights", [&](const std::string& of, ArgumentFields& fields) {
         scene.lights.push_back(light_of(fields, origin));
         scene.lights.back().name = of;
+        keep(ParameterOwner::Light, scene.lights.size(), fields);
     });
     for_each(parts, "cameras", [&](const std::string& of, ArgumentFields& fields) {
         scene.cameras.push_back(camera_of(fields, origin));
         scene.cameras.back().name = of;
+        keep(ParameterOwner::Camera, scene.cameras.size(), fields);
     });
     scene.environment = environment_of(parts["environment"]);
-    validate(scene, name, sink);
+    check_given(scene, given);
     return scene;
 }
 

@@ -340,10 +340,14 @@ std::optional<SceneParameter> SceneParameters::find(const Scene& scene, std::str
     const std::string_view name = first == last ? "" : path.substr(first + 1, last - first - 1);
     const auto index = owners_[kind].indices.find(std::string(name));
     if (index == owners_[kind].indices.end()) return std::nullopt;
-    for (const Property& property : properties_of(static_cast<ParameterOwner>(kind))) {
-        if (property.name != path.substr(last + 1) || !property.is_there(scene, index->second)) continue;
-        return SceneParameter{static_cast<ParameterOwner>(kind), index->second, property.name};
-    }
+    return find(scene, static_cast<ParameterOwner>(kind), index->second, path.substr(last + 1));
+}
+
+std::optional<SceneParameter> SceneParameters::find(const Scene& scene, ParameterOwner owner, uint32_t index,
+                                                    std::string_view name) {
+    for (const Property& property : properties_of(owner))
+        if (property.name == name && property.is_there(scene, index))
+            return SceneParameter{owner, index, property.name};
     return std::nullopt;
 }
 

@@ -33,6 +33,9 @@ public:
     /// Returns the paths of all parameters of the scene from which it was made.
     std::vector<std::string> paths(const Scene& scene) const;
     std::optional<SceneParameter> find(const Scene& scene, std::string_view path) const;
+    /// Returns the parameter of an object by its number.
+    static std::optional<SceneParameter> find(const Scene& scene, ParameterOwner owner, uint32_t index,
+                                              std::string_view name);
 
 private:
     struct Owners {

@@ -1,12 +1,14 @@
 #include "python/session.h"
 
 #include "base/error.h"
+#include "python/unlocked.h"
 #include "session/pictures/frame_settings.h"
 #include "session/pictures/render_sequence.h"
 
 namespace pertev {
 
-void PythonSession::set(const SettingTexts& settings) {
+void PythonSession::set(const SettingTexts& settings, Sink& sink) {
+    const std::unique_lock turn = wait_for(turn_, sink);
     for (const auto& [name, texts] : settings) {
         if (texts.empty()) {
             settings_.erase(name);
@@ -17,7 +19,15 @@ void PythonSession::set(const SettingTexts& settings) {
     record_.reset();
 }
 
-void PythonSession::reset() { frame_.reset(), cut_.reset(); }
+void PythonSession::reset(Sink& sink) {
+    const std::unique_lock turn = wait_for(turn_, sink);
+    frame_.reset(), cut_.reset();
+}
+
+std::optional<uint32_t> PythonSession::frame(Sink& sink) {
+    const std::unique_lock turn = wait_for(turn_, sink);
+    return frame_;
+}
 
 /// Makes the record that of the settings and the scene as they are now.
 void PythonSession::prepare(Sink& sink) {
@@ -34,6 +44,7 @@ void PythonSession::prepare(Sink& sink) {
 }
 
 std::optional<PythonResult> PythonSession::next(Sink& sink) {
+    const std::unique_lock turn = wait_for(turn_, sink);
     prepare(sink);
     RenderSetup& setup = *opened_.setup();
     if (!frame_) frame_ = setup.sequence.first;

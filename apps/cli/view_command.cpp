@@ -1,6 +1,7 @@
 // pertev view SCENE
 
 #include <fcntl.h>
+#include <poll.h>
 #include <spawn.h>
 #include <unistd.h>
 
@@ -95,10 +96,20 @@ std::unique_ptr<Queue> queue_for_jpeg(const ViewFlags& flags, const Queue& rende
     }
 }
 
-/// After a request to end, the program ends in any case: nothing would be lost.
-void end_soon() {
-    std::thread([] {
-        while (!interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+/// Returns whether the standard output is a pipe whose reader has gone.
+bool has_lost_reader() {
+    pollfd output = {.fd = STDOUT_FILENO, .events = 0, .revents = 0};
+    return ::poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0;
+}
+
+/// After a request to end, the program ends in any case: nothing would be lost. If a program shows the viewer, it also
+/// ends when that program has ended, even if it was killed.
+void end_soon(bool has_reader) {
+    std::thread([has_reader] {
+        while (!interrupted()) {
+            if (has_reader && has_lost_reader()) std::_Exit(0);
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        }
         std::this_thread::sleep_for(kLongestEnd);
         std::_Exit(0);
     }).detach();
@@ -139,7 +150,7 @@ int view(ViewFlags& flags) {
     }
     const std::unique_ptr<Queue> jpeg_queue = queue_for_jpeg(flags, *ready->queue);
     reporter.set_work(""); // messages printed so far are not repeated
-    end_soon();
+    end_soon(flags.embed && reporter.json());
     run_viewer(
         {.host = flags.host,
          .port = static_cast<uint16_t>(flags.port),

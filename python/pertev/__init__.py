@@ -8,21 +8,20 @@
 """
 
 import importlib
-import operator
-import os
 
 from ._cameras import BatchResult, Cameras, DeviceArray, cameras_of, chunk_size, read_cameras, render_batch, seeds_of
-from ._core import Result, builtin_scenes
+from ._core import Result, __version__, builtin_scenes
 from ._images import compare, read, tone_map, write
 from ._process import check_process
 from ._parts import merge, names_of
 from ._scene import Params, Scene, Session, load, scene, scene_of
-from ._settings import OF_PARTS, OF_STILLS, texts_of, with_layers
+from ._settings import OF_PARTS, OF_STILLS, file_name, number_of, of_layers, texts_of, with_layers
 from ._viewer import Viewer, view
-from .errors import DeviceError, Error, InputError, InterruptedRender, LimitError, MemoryLimitError, WriteError
+from .errors import (DeviceError, Error, InputError, InterruptedRender, LimitError, MemoryLimitError, MissingFileError, WriteError,
+                     input_error)
 
 __all__ = ["BatchResult", "Cameras", "DeviceArray", "DeviceError", "Error", "InputError", "InterruptedRender", "LimitError",
-           "MemoryLimitError", "Params", "Result", "Scene", "Session", "Viewer", "WriteError", "builtin_scenes", "compare",
+           "MemoryLimitError", "MissingFileError", "Params", "Result", "Scene", "Session", "Viewer", "WriteError", "builtin_scenes", "compare",
            "load", "merge", "read", "read_cameras", "render", "render_chunks", "scene", "tone_map", "view", "write"]
 
 
@@ -63,15 +62,17 @@ def render(scene, *, cameras=None, seeds=None, color=True, layers=(), output=(),
             raise TypeError(f"{name} is of a single picture, not of many cameras or of arrays on the device")
         if output:
             raise TypeError("output: pictures of many cameras or on the device are arrays; `pertev render` writes files")
-        return render_batch(used, cameras_of(cameras, values), seeds, color, os.fspath(settings or ""),
-                            with_layers(values, layers), out)
+        with of_layers(values):
+            return render_batch(used, cameras_of(cameras, values), seeds, color, _settings_file(settings),
+                                with_layers(values, layers), out)
     if seeds is not None or not color:
         raise TypeError("seeds and color are for many `cameras`, or for `on_device`")
     if isinstance(out, BatchResult):
         raise TypeError("out: a BatchResult is for `cameras` or `on_device`; expected arrays, as {'color': array}")
     out = out if out is None or isinstance(out, dict) else {"color": out}
-    return used._render(os.fspath(settings or ""), texts_of(with_layers(values, layers), OF_STILLS),
-                        names_of(output), out)
+    with of_layers(values):
+        return used._render(_settings_file(settings), texts_of(with_layers(values, layers), OF_STILLS),
+                            names_of(output, "output"), out)
 
 
 def render_chunks(scene, cameras, *, chunk=None, seeds=None, color=True, layers=(), settings=None, **values):
@@ -80,18 +81,28 @@ def render_chunks(scene, cameras, *, chunk=None, seeds=None, color=True, layers=
     chunk   the number of cameras of a part, at least 1; None: as many as keep the device busy and fit into its memory
 
     The other arguments are those of render(). A BatchResult that is no longer used frees its memory. Raises ValueError
-    for a chunk below 1, and for seeds that are neither one nor one per camera.
+    for a chunk below 1, and for seeds that are neither one nor one per camera. The call itself checks all arguments.
     """
     check_process()
     used = scene_of(scene)
     cameras = cameras_of(cameras, values)
-    values, settings = with_layers(values, layers), os.fspath(settings or "")
-    if chunk is None:
-        chunk = chunk_size(used, cameras, color, settings, values)
-    elif (chunk := operator.index(chunk)) < 1:
-        raise ValueError(f"chunk: expected at least 1, not {chunk}")
-    seeds = seeds_of(seeds, len(cameras))
+    if cameras is None:
+        raise TypeError("cameras: expected Cameras, an array of poses (N, 4, 4), or a file")
+    if chunk is not None and (chunk := number_of(chunk, "chunk", whole=True)) < 1:
+        raise input_error("chunk", f"expected at least 1, not {chunk}", str(chunk))
+    seeds, settings = seeds_of(seeds, len(cameras)), _settings_file(settings)
+    with of_layers(values):
+        given = with_layers(values, layers)
+        at_once = chunk_size(used, cameras, seeds, color, settings, given)
+    return _chunks(used, cameras, chunk or at_once, seeds, color, settings, given)
+
+
+def _chunks(scene, cameras, chunk, seeds, color, settings, values):
     one_for_all = seeds is None or len(seeds) == 1
     for first in range(0, len(cameras), chunk):
         part = slice(first, first + chunk)
-        yield render_batch(used, cameras[part], seeds if one_for_all else seeds[part], color, settings, values, None)
+        yield render_batch(scene, cameras[part], seeds if one_for_all else seeds[part], color, settings, values, None)
+
+
+def _settings_file(settings):
+    return "" if settings is None else file_name(settings, "settings")

@@ -9,5 +9,8 @@ def on_host(value):
         value = value.detach()
     for name in ("cpu", "get", "numpy"):  # methods of PyTorch, CuPy, and Warp and a DeviceArray
         if callable(copy := getattr(value, name, None)):
-            return copy()
+            try:
+                return copy()
+            except TypeError:  # another method of this name, as a dictionary's
+                continue
     return numpy.asarray(value)

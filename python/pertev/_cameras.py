@@ -5,7 +5,7 @@ import os
 
 from . import _core
 from ._arrays import on_host
-from ._settings import texts_of
+from ._settings import file_name, number_of, texts_of
 from .errors import InputError, input_error
 
 
@@ -32,6 +32,8 @@ class Cameras:
     intrinsics_size  the size for which K holds; None: that of the pictures
     lens, distortion as the settings: one lens for all
 
+    What is left out is that of the call, as its `convention` or `intrinsics`, and what differs from the call is an error.
+
     Arrays may be on a GPU. `names` are those of a file's cameras (read_cameras), and `size` is that of pictures for which the
     call has none.
     """
@@ -47,11 +49,18 @@ class Cameras:
         return len(self.poses)
 
     def __getitem__(self, part):
-        """The cameras of a slice."""
-        few = Cameras(self.poses[part], self.K if self._has_one_K() else self.K[part])
+        """The cameras of a slice, or the one of a number: Cameras too."""
+        import numpy
+
+        numbers = numpy.atleast_1d(numpy.arange(len(self))[part])
+        few = Cameras(self.poses[numbers], self.K if self._has_one_K() else self.K[numbers])
         few.settings = self.settings
-        few.names, few.size = self.names and self.names[part], self.size
+        few.names, few.size = self.names and [self.names[number] for number in numbers], self.size
         return few
+
+    def __repr__(self):
+        given = [f", {name}={value!r}" for name, value in self.settings.items() if value is not None]
+        return f"<pertev.Cameras of {len(self)} poses{'' if self.K is None else ', K'}{''.join(given)}>"
 
     def _has_one_K(self):
         return self.K is None or self.K.shape in ((3, 3), (4,))
@@ -64,9 +73,25 @@ class Cameras:
         K = [self.K] if self.K is not None and self._has_one_K() else self.K
         first = {"camera_pose": self.poses[0] if len(self.poses) else None, "intrinsics": None if K is None else K[0]}
         # Numbers that are not finite are refused with the arrays.
-        rows = {name: row if row is None else numpy.nan_to_num(row.astype(float)).ravel() for name, row in first.items()}
-        size = {} if values.get("size") is not None else {"size": self.size}
-        return K, texts_of({**values, **rows, **self.settings, **size})
+        rows = {name: numpy.nan_to_num(row.astype(float)).ravel() for name, row in first.items() if row is not None}
+        given = {name: value for name, value in values.items() if value is not None}
+        for name, of in (("camera_pose", "poses"), *([("intrinsics", "K")] if K is not None else [])):
+            if name in given:
+                raise input_error(name, f"the cameras' {of} state it already")
+        texts, own = texts_of({"size": self.size, **given, **rows}), texts_of(self.settings)
+        for name in own.keys() & texts.keys():
+            if own[name] != texts[name]:
+                raise input_error(name, f"that of the call differs from that of the cameras, {', '.join(own[name])}", ", ".join(texts[name]))
+        return K, {**texts, **own}
+
+
+def _size_of(size):
+    """Returns width and height of the setting `size`, zeros of None. Raises TypeError and InputError of its name."""
+    text = texts_of({"size": size}).get("size", ["0x0"])[0]
+    numbers = text.lower().split("x")
+    if len(numbers) != 2 or not all(number.isdecimal() and int(number) < 2**32 for number in numbers):
+        raise input_error("size", "expected (width, height)", text)
+    return int(numbers[0]), int(numbers[1])
 
 
 def read_cameras(path, *, size=None, convention=None):
@@ -79,7 +104,8 @@ def read_cameras(path, *, size=None, convention=None):
     """
     import numpy
 
-    rows = _core.read_cameras(os.fspath(path), *((0, 0) if size is None else size))
+    width, height = _size_of(size)
+    rows = _core.read_cameras(path := file_name(path, "path"), width, height)
     others = {name for _, settings in rows for name in settings} - {"camera_pose", "intrinsics", "size", *Cameras([]).settings}
     if others:
         raise InputError(f"{path}: {', '.join(sorted(others))}: use `pertev render --cameras` for these settings")
@@ -110,8 +136,7 @@ def cameras_of(cameras, values):
     if cameras is None or isinstance(cameras, Cameras):
         return cameras
     if isinstance(cameras, (str, os.PathLike)):
-        width, height = texts_of({"size": values.get("size")}).get("size", ["0x0"])[0].split("x")
-        return read_cameras(cameras, size=(int(width), int(height)), convention=values.get("convention"))
+        return read_cameras(cameras, size=values.get("size"), convention=values.get("convention"))
     return Cameras(cameras)
 
 
@@ -139,9 +164,10 @@ def render_batch(scene, cameras, seeds, color, settings, values, out):
     return scene._render_batch(settings, texts, cameras.poses, K, seeds, color, out)
 
 
-def chunk_size(scene, cameras, color, settings, values):
+def chunk_size(scene, cameras, seeds, color, settings, values):
+    """Returns how many pictures are rendered at once. Raises what a render of the first would."""
     K, texts = cameras._arguments(values)
-    return scene._batch_size(settings, texts, cameras.poses, K, color)
+    return scene._batch_size(settings, texts, cameras.poses, K, seeds, color)
 
 
 BatchResult, DeviceArray = _core.BatchResult, _core.DeviceArray

@@ -3,6 +3,7 @@
 import os
 
 from . import _core
+from ._settings import file_name, number_of
 from .errors import input_error
 
 
@@ -20,9 +21,15 @@ def _array(picture, name="picture"):
     return picture.color if isinstance(picture, _core.Result) else picture
 
 
+def _curve(name):
+    if not isinstance(name, str):
+        raise TypeError(f"curve: expected the name of a curve, not {type(name).__name__}")
+    return name
+
+
 def read(path):
     """Returns the picture of a file (.exr .png .jpg .hdr) as float32 (height, width, 3 or 4), linear Rec. 709."""
-    return _core.read(os.fspath(path))
+    return _core.read(file_name(path, "path"))
 
 
 def write(path, picture, *, curve="srgb", exposure=0.0):
@@ -33,12 +40,12 @@ def write(path, picture, *, curve="srgb", exposure=0.0):
     """
     picture = _one(picture)
     writer = _core.write_result if isinstance(picture, _core.Result) else _core.write
-    writer(os.fspath(path), picture, curve, exposure)
+    writer(file_name(path, "path"), picture, _curve(curve), number_of(exposure, "exposure"))
 
 
 def tone_map(picture, *, curve="agx", exposure=0.0):
     """Returns uint8 (height, width, 4), sRGB: the picture times 2**exposure by a curve of the setting tone_map."""
-    return _core.tone_map(_array(picture), curve, exposure)
+    return _core.tone_map(_array(picture), _curve(curve), number_of(exposure, "exposure"))
 
 
 def compare(picture, reference, *, blocks=1):
@@ -48,4 +55,6 @@ def compare(picture, reference, *, blocks=1):
     """
     a, b = (read(one) if isinstance(one, (str, os.PathLike)) else _array(one, name)
             for one, name in ((picture, "picture"), (reference, "reference")))
+    if not 1 <= (blocks := number_of(blocks, "blocks", whole=True)) < 2**32:
+        raise input_error("blocks", "expected at least 1", str(blocks))
     return _core.compare(a, b, blocks)

@@ -4,12 +4,13 @@ import os
 
 from . import _core
 from ._process import check_process
-from ._settings import texts_of
+from ._settings import file_name, texts_of
 
 
-def names_of(files):
-    """Returns a list of names for one file or several."""
-    return [os.fspath(file) for file in ([files] if isinstance(files, (str, os.PathLike)) else files)]
+def names_of(files, name):
+    """Returns a list of names for one file or several. Raises TypeError of the argument's name."""
+    is_one = isinstance(files, (str, bytes, os.PathLike)) or not hasattr(files, "__iter__")
+    return [file_name(file, name) for file in ([files] if is_one else files)]
 
 
 def merge(files, *, output=(), partial=False, tone_map=None, exposure=None):
@@ -25,4 +26,4 @@ def merge(files, *, output=(), partial=False, tone_map=None, exposure=None):
     """
     check_process()
     shown = texts_of({"tone_map": tone_map, "exposure": exposure})
-    return _core.merge(names_of(files), partial, names_of(output), *("".join(shown.get(name, ())) for name in ("tone_map", "exposure")))
+    return _core.merge(names_of(files, "files"), bool(partial), names_of(output, "output"), *("".join(shown.get(name, ())) for name in ("tone_map", "exposure")))

@@ -6,8 +6,8 @@ import os
 
 from . import _core
 from ._process import check_process
-from ._settings import OF_FRAMES, texts_of, with_layers
-from .errors import InputError
+from ._settings import OF_FRAMES, file_name, texts_of, with_layers
+from .errors import InputError, input_error
 
 
 class Params(collections.abc.Mapping):
@@ -23,13 +23,13 @@ class Params(collections.abc.Mapping):
         self._scene = scene
 
     def __getitem__(self, path):
-        value = self._scene._value(path)
+        value = self._scene._value(path) if isinstance(path, str) else None
         if value is None:
             raise self._unknown(path)
         return value
 
     def __setitem__(self, path, value):
-        if not self._scene._set_value(path, value):
+        if not (isinstance(path, str) and self._scene._set_value(path, value)):
             raise self._unknown(path)
 
     def __iter__(self):
@@ -38,8 +38,11 @@ class Params(collections.abc.Mapping):
     def __len__(self):
         return len(self._scene._paths())
 
+    def __repr__(self):
+        return f"<pertev.Params of {self._scene.name}, {len(self)} values>"
+
     def _unknown(self, path):
-        near = difflib.get_close_matches(path, self, 1)
+        near = difflib.get_close_matches(str(path), self, 1)
         return KeyError(f"there is no '{path}'" + (f"; did you mean '{near[0]}'?" if near else ""))
 
 
@@ -52,8 +55,8 @@ class Scene(_core.Scene):
               lights={"lamp": {"kind": "point", "position": (0, 2, 0), "intensity": (9, 9, 9)}},
               environment=(1, 1, 1), cameras={"front": {"eye": (0, 1, 3), "target": (0, 0, 0), "fov": 45}})
 
-    Arrays are of NumPy or of anything with DLPack or the buffer protocol, also on a GPU, and are copied. Only
-    meshes and instances must be given. `values` are settings for all pictures that do not overrule them. Raises
+    Arrays are of NumPy or of anything with DLPack or the buffer protocol, also on a GPU, and are copied. `colors` are
+    from 0 to 1, or uint8. Only meshes and instances must be given. `values` are settings for all pictures that do not overrule them. Raises
     InputError, whose `setting` is the path of a wrong argument, such as "meshes/floor/faces".
 
     materials    kind "metallic_roughness" (default), "diffuse", "conductor", "dielectric" or "unlit", or a measured metal
@@ -85,7 +88,9 @@ class Scene(_core.Scene):
         parts["environment"] = None if is_setting else environment
         if source is None and (meshes is None or instances is None):
             raise TypeError("a scene of arrays needs meshes and instances")
-        super().__init__(name if source is None else os.fspath(source), texts_of(values),
+        if not isinstance(name, str):
+            raise TypeError(f"name: expected a text, not {type(name).__name__}")
+        super().__init__(name if source is None else file_name(source, "source"), texts_of(values),
                          parts if source is None else None)
         self._is_of_arrays = source is None
 
@@ -100,7 +105,10 @@ class Scene(_core.Scene):
         What glTF lacks, such as an environment, media, lenses of cameras and a generated ground, is left out with a
         warning. Raises WriteError, and as render().
         """
-        self._save(os.fspath(path), "")
+        path = file_name(path, "path")
+        if not path.lower().endswith(".glb"):
+            raise input_error("path", "a scene is written as glTF, whose name ends in .glb", path)
+        self._save(path, "")
 
     def __reduce__(self):
         if self._is_of_arrays:

@@ -6,7 +6,7 @@ import operator
 import os
 
 from . import _core
-from .errors import input_error
+from .errors import Error, input_error
 
 OF_PICTURES = {row["name"]: row for row in _core.settings()}
 OF_FRAMES = {**OF_PICTURES, **{row["name"]: row for row in _core.frame_settings()}}
@@ -15,16 +15,47 @@ OF_STILLS = {**OF_PICTURES, **OF_PARTS}
 SEPARATORS = {"A:B": ":", "I/N": "/"}  # by the form of a value
 
 
+def file_name(value, name):
+    """Returns a file's name as a text. Raises TypeError and InputError of the argument's name."""
+    if not isinstance(value, (str, bytes, os.PathLike)):
+        raise TypeError(f"{name}: expected a file's name, not {type(value).__name__}")
+    return _encodable(os.fsdecode(value), name)
+
+
+def _encodable(text, name):
+    if text.isascii():
+        return text
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        raise input_error(name, f"{ascii(text)} is not a text of Unicode") from None
+    return text
+
+
+def number_of(value, name, whole=False):
+    """Returns a finite number as Python's float or int. Raises TypeError and InputError of the argument's name."""
+    try:
+        number = operator.index(value) if whole else float(value)
+    except (TypeError, ValueError):
+        kind = "a whole number" if whole else "a number"
+        raise TypeError(f"{name}: expected {kind}, not {value!r}"[:200]) from None
+    if not math.isfinite(number):
+        raise input_error(name, f"expected a finite number, not {number}", str(number))
+    return number
+
+
 def _text(row, value):
     """Returns one value in the syntax of settings: True as "true", (1, 2, 3) as "1,2,3", a size as "640x480", a part as "1/4"."""
     if isinstance(value, str):
-        return value
+        return _encodable(value, row["name"])
     if isinstance(value, os.PathLike):
-        return os.fspath(value)
+        return file_name(value, row["name"])
     if isinstance(value, bool) or type(value).__name__ in ("bool", "bool_"):  # names in Python, NumPy 2 and 1
         if row["type"] == "bool":
             return "true" if value else "false"
     elif hasattr(value, "__float__") and getattr(value, "ndim", 0) == 0:
+        if row["type"] == "bool":
+            raise input_error(row["name"], f"expected True or False, not {value}", str(value))
         try:
             return str(operator.index(value))  # exact: integers of Python, NumPy or PyTorch
         except TypeError:
@@ -57,7 +88,32 @@ def texts_of(values, known=OF_PICTURES):
 
 
 def with_layers(values, layers):
-    """Returns the values with the names of layers as those of `aov`."""
-    aov = () if values.get("aov") is None else values["aov"]
-    requested = [name for names in (layers, aov) for name in ([names] if isinstance(names, str) else names)]
+    """Returns the values with the names of layers as those of `aov`. Raises TypeError and InputError of the argument's name."""
+    if isinstance(layers, (tuple, list)) and not layers and values.get("aov") is None:
+        return values
+    requested, choices = [], OF_PICTURES["aov"]["choices"]
+    for argument, names in (("layers", layers), ("aov", values.get("aov"))):
+        names = [] if names is None else [names] if isinstance(names, str) else names
+        names = list(names) if hasattr(names, "__iter__") else [names]
+        if not all(isinstance(name, str) for name in names):
+            raise TypeError(f"{argument}: expected names of layers, such as 'depth'")
+        names = [name for listed in names for name in listed.split(",")]
+        for name in names:
+            if name not in choices:
+                raise input_error(argument, f"'{name}' is not one of {', '.join(choices)}", name)
+        requested += names
     return {**values, "aov": requested} if requested else values
+
+
+class of_layers:
+    """Errors about `aov` in this block are about `layers` if the call's layers came by that argument alone."""
+
+    def __init__(self, values):
+        self._values = values
+
+    def __enter__(self):
+        pass
+
+    def __exit__(self, kind, error, trace):
+        if isinstance(error, Error) and error.setting == "aov" and self._values.get("aov") is None:
+            error.setting, error.args = "layers", (str(error).replace("aov", "layers", 1),)

@@ -6,14 +6,15 @@ import subprocess
 import sys
 import tempfile
 import threading
+import weakref
 import webbrowser
 
 from . import _core
-from ._settings import OF_PICTURES, texts_of
+from ._settings import OF_FRAMES, OF_STILLS, file_name, number_of, texts_of
 from .errors import Error
 
 
-_OF_VIEWS = {name: row for name, row in OF_PICTURES.items() if row["is_viewed"]}
+OF_VIEWS = {name: row for name, row in OF_FRAMES.items() if row["is_viewed"]}
 # Settings whose effects a saved scene has.
 _SAVED = {"animation", "define", "environment", "environment_rotation", "environment_scale", "file_scene", "ground", "ies", "lamp",
           "material", "sun_sky", "two_sided_lights", "unit", "up_axis", "variant"}
@@ -25,47 +26,52 @@ def _program():
     return [given] if given else [sys.executable, "-m", "pertev_program"]
 
 
+def _end(process, readers, folder, owner):
+    """Ends a viewer, unless this process is a child that was forked from the viewer's owner."""
+    if os.getpid() != owner:
+        return
+    process.terminate()
+    process.wait()
+    for reader in readers:
+        reader.join()
+    process.stdout.close()
+    if folder is not None:
+        folder.cleanup()
+
+
 class Viewer:
-    """A running viewer: `url` is its address. Leaving a `with` block or close() ends it. Notebooks show it as a frame,
-    if they run in a browser on the machine of the viewer or its port is forwarded."""
+    """A running viewer: `url` is its address. It ends with a `with` block, by close(), when no variable holds it any more,
+    and with Python. Notebooks show it as a frame, if they run in a browser on the machine of the viewer or its port is
+    forwarded."""
 
-    _reader = None
-
-    def __init__(self, scene, port, values, folder=None):
-        self._folder = folder  # the folder of a saved scene, which ends with the viewer
-        flags = ["--port", str(port), "--no-browser", "--embed"]
-        for name, texts in texts_of(values, _OF_VIEWS).items():
-            flag = "--" + name.replace("_", "-")
-            is_switch = _OF_VIEWS[name]["type"] == "bool"
-            flags += ([flag] if texts == ["true"] else []) if is_switch else [x for text in texts for x in (flag, text)]
-        self._process = subprocess.Popen([*_program(), "view", scene, *flags, "--json"], stdout=subprocess.PIPE,
-                                         stderr=subprocess.DEVNULL, text=True)
+    def __init__(self, scene, flags, folder=None):
+        """`folder` is that of a saved scene, which ends with the viewer."""
+        self._process = subprocess.Popen([*_program(), "view", scene, *flags, "--no-browser", "--embed", "--json"],
+                                         stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        readers = []
+        self._end = weakref.finalize(self, _end, self._process, readers, folder, os.getpid())
         try:
             self.url = self._address()
         except BaseException:
             self.close()
             raise
-        self._reader = threading.Thread(target=self._process.stdout.read, daemon=True) # so that it never waits for one
-        self._reader.start()
+        readers.append(threading.Thread(target=self._process.stdout.read, daemon=True)) # so that it never waits for one
+        readers[0].start()
 
     def _address(self):
-        why = "it ended"
         for line in self._process.stdout:
             event = json.loads(line)
             if event.get("event") == "listening":
                 return event["address"]
-            why = event.get("text", event.get("reason", why)) if event.get("event") == "error" else why
-        raise Error(f"the viewer did not start: {why}")
+            if event.get("event") == "error":
+                place = event.get("place", {})
+                _core.raise_parts(event["status"], event.get("setting", ""), event.get("value", ""), event.get("reason", event["text"]),
+                                  place.get("file", ""), place.get("line", 0), place.get("pointer"))
+        raise Error("the viewer did not start: it ended")
 
     def close(self):
         """Ends the viewer."""
-        self._process.terminate()
-        self._process.wait()
-        if self._reader is not None:
-            self._reader.join()
-        self._process.stdout.close()
-        if self._folder is not None:
-            self._folder.cleanup()
+        self._end()
 
     def __enter__(self):
         return self
@@ -80,21 +86,36 @@ class Viewer:
         return f'<iframe src="{self.url}" width="100%" height="600" style="border:0"></iframe>'
 
 
-def view(scene, *, port=0, browser=False, **values):
+def _flags_of(values):
+    for name in values:
+        if name in OF_STILLS and name not in OF_VIEWS:
+            raise TypeError(f"{name} is a setting of render(), which the viewer does not have")
+    flags = []
+    for name, texts in texts_of(values, OF_VIEWS).items():
+        flag = "--" + name.replace("_", "-")
+        is_switch = OF_VIEWS[name]["type"] == "bool"
+        flags += ([flag] if texts == ["true"] else []) if is_switch else [x for text in texts for x in (flag, text)]
+    return flags
+
+
+def view(scene, *, port=0, host=None, token_file=None, jpeg=None, browser=False, **values):
     """Starts the viewer of a scene (a file, the name of a built-in scene, or what load() returns) as a process of its own,
     and returns it as a Viewer.
 
     port     that it listens on; 0 is any free one
+    host, token_file, jpeg  the flags of `pertev view`; with a token_file, `url` lacks the token
     browser  True: opens the address in the browser of this desktop
     values   settings of `pertev view`; they overrule those of load()
 
     The viewer shows a scene of arrays, or with changed parameters, as save() writes it, with its environment. Raises Error
-    if the viewer does not start.
+    as render() if the viewer does not start.
     """
-    folder = None
+    folder, server = None, ["--port", str(number_of(port, "port", whole=True))]
+    for flag, value in (("--host", host), ("--jpeg", jpeg), ("--token-file", token_file)):
+        server += [] if value is None else [flag, file_name(value, flag[2:].replace("-", "_"))]
     try:
         if isinstance(scene, _core.Scene):
-            of_scene = {name: texts for name, texts in scene._settings.items() if name in _OF_VIEWS}
+            of_scene = {name: texts for name, texts in scene._settings.items() if name in OF_VIEWS}
             shown = scene.name
             if scene._is_of_arrays or scene._edits():
                 folder = tempfile.TemporaryDirectory(prefix="pertev-")
@@ -104,7 +125,7 @@ def view(scene, *, port=0, browser=False, **values):
                     of_saved = {name: text for name, text in of_saved.items() if not name.startswith("environment")}
                 of_scene = {**of_saved, **{name: texts for name, texts in of_scene.items() if name not in _SAVED}}
             scene, values = shown, {**of_scene, **values}
-        viewer = Viewer(os.fspath(scene), port, values, folder)
+        viewer = Viewer(file_name(scene, "scene"), server + _flags_of(values), folder)
     except BaseException:
         if folder is not None:
             folder.cleanup()

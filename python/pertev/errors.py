@@ -1,5 +1,8 @@
 """Exceptions of Pertev, one for each code of docs/conventions.md. Each is also Python's own exception of its kind."""
 
+import errno
+import os
+
 
 class Error(Exception):
     """An error of Pertev, with the parts of its message.
@@ -23,6 +26,16 @@ def input_error(setting, reason, value=""):
     return error
 
 
+class _OfFile(Error):
+    """`errno` and `filename` are those of OSError, or None. Attributes of Python in place of OSError's own leave str() as it is."""
+
+    errno = filename = strerror = None
+
+
+class MissingFileError(InputError, _OfFile, FileNotFoundError):
+    """A file is not there."""
+
+
 class LimitError(Error, ValueError):
     """Valid, but larger than Pertev's limits."""
 
@@ -35,9 +48,27 @@ class DeviceError(Error, RuntimeError):
     """The GPU failed; only a new process can use it."""
 
 
-class WriteError(Error, OSError):
+class WriteError(_OfFile, OSError):
     """A file could not be written; nothing was replaced."""
 
 
 class InterruptedRender(Error, RuntimeError):
     """A time limit ended the render before there was anything to keep."""
+
+
+_KINDS = {2: InputError, 3: LimitError, 4: MemoryLimitError, 5: DeviceError, 6: WriteError, 75: InterruptedRender}
+_NUMBERS = {os.strerror(number): number for number in errno.errorcode}
+
+
+def made(status, text, setting, value, reason, file, line, pointer):
+    """Returns the exception for an exit status of the program, with the parts of its message."""
+    name = file or value
+    number = _NUMBERS.get(reason.rpartition(": ")[2]) if name else None
+    kind = MissingFileError if status == 2 and number == errno.ENOENT else _KINDS[status]
+    # Names with capitals or slashes, as meshes/floor/faces, are no settings of the table.
+    text = text.replace(f"`{setting}`", setting).replace(f"`{setting}={value}`", f"{setting}='{value}'")
+    error = kind(text)
+    error.setting, error.value, error.reason, error.file, error.line, error.pointer = setting, value, reason, file, line, pointer
+    if issubclass(kind, _OfFile) and name:
+        error.errno, error.filename, error.strerror = number, name, reason
+    return error

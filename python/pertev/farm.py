@@ -11,11 +11,15 @@ import operator
 import os
 import shutil
 import tempfile
+from collections.abc import Mapping, Sequence
+from typing import Any, SupportsIndex, TypeAlias
 
-from . import render
+from . import Result, Scene, render
 from ._parts import merge
 from ._process import check_process
 from ._scene import scene_of
+
+_Text: TypeAlias = str | os.PathLike[str]
 
 
 def _render_part(scene, part, count, values):
@@ -59,7 +63,8 @@ def _merged(films, output):
     return picture
 
 
-def ray(scene, *, parts, output=(), retries=3, options=None, **values):
+def ray(scene: Scene | _Text, *, parts: SupportsIndex, output: _Text | Sequence[_Text] = (), retries: SupportsIndex = 3,
+        options: Mapping[str, Any] | None = None, **values: Any) -> Result:
     """Renders a picture by Ray, and returns it as merge() does.
 
     scene    a file or a built-in scene, or what load() returns
@@ -91,7 +96,7 @@ def ray(scene, *, parts, output=(), retries=3, options=None, **values):
         raise failure.cause from None
 
 
-def dask(client, scene, *, parts, output=(), **values):
+def dask(client: Any, scene: Scene | _Text, *, parts: SupportsIndex, output: _Text | Sequence[_Text] = (), **values: Any) -> Result:
     """Renders a picture by Dask, and returns it as merge() does.
 
     client   a distributed.Client

@@ -300,7 +300,7 @@ FlipResult hdr_flip(const Image& picture, const Image& reference, float pixels_p
 }
 
 std::vector<FlipResult> hdr_flips(const std::vector<const Image*>& pictures, const Image& reference,
-                                  float pixels_per_degree) {
+                                  float pixels_per_degree, Sink* sink) {
     for (const Image* picture : pictures) check_comparable(*picture, reference);
     PERTEV_CHECK(pixels_per_degree > 0);
     const std::vector<Vec3> colours_of_reference = colours_of(reference);
@@ -312,6 +312,7 @@ std::vector<FlipResult> hdr_flips(const std::vector<const Image*>& pictures, con
     for (int k = 0; k < count; ++k) {
         const float stops =
             range.first + (range.last - range.first) * static_cast<float>(k) / static_cast<float>(count - 1);
+        if (sink != nullptr) sink->check();
         const auto perceived = [&, scale = exp2(stops)](const std::vector<Vec3>& from) {
             std::vector<Vec3> to(from.size());
             parallel_for(from.size(), kPixels, [&](uint64_t i) {

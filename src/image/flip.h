@@ -8,6 +8,7 @@
 
 #include <vector>
 
+#include "base/sink.h"
 #include "image/image.h"
 
 namespace pertev {
@@ -29,8 +30,9 @@ FlipResult flip(const Image& picture, const Image& reference, float pixels_per_d
 /// luminance, each through the ACES curve of the source. The number of exposures grows with the reference's contrast.
 FlipResult hdr_flip(const Image& picture, const Image& reference, float pixels_per_degree = kDefaultPixelsPerDegree);
 
-/// HDR-FLIP of each of `pictures`; the reference is processed once for all of them.
+/// HDR-FLIP of each of `pictures`; the reference is processed once for all of them. Throws Error(Interrupted) if `sink`
+/// stops; each exposure checks it.
 std::vector<FlipResult> hdr_flips(const std::vector<const Image*>& pictures, const Image& reference,
-                                  float pixels_per_degree = kDefaultPixelsPerDegree);
+                                  float pixels_per_degree = kDefaultPixelsPerDegree, Sink* sink = nullptr);
 
 } // namespace pertev

@@ -6,6 +6,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import unittest
 
 import numpy
@@ -45,6 +46,26 @@ class Batches(unittest.TestCase):
                     self.assertEqual({name: value for name, value in info.items() if name not in OF_A_RUN}, expected)
                     self.assertFalse({"rays", "render_seconds"} & info.keys())
         self.assertEqual(len(set(batch.hash)), 3)
+
+    def test_a_thread_reads_what_another_fills_in_turn(self):
+        batch = pertev.render(self.scene, cameras=POSES, seeds=1, **SMALL)
+        states = [pertev.render(self.scene, cameras=POSES, seeds=seed, **SMALL).hash for seed in (1, 2)]
+        done = threading.Event()
+
+        def fill():
+            for seed in (2, 1) * 20:
+                pertev.render(self.scene, cameras=POSES, seeds=seed, out=batch, **SMALL)
+            done.set()
+
+        thread = threading.Thread(target=fill)
+        thread.start()
+        while not done.is_set():
+            self.assertIn(batch.hash, states)
+            seed, hashes = zip(*((int(info["seed"]), info["hash"]) for info in batch.info))
+            self.assertEqual(list(hashes), states[seed[0] - 1])
+            self.assertEqual(batch.picture(1).hash in (states[0][1], states[1][1]), True)
+        thread.join()
+        self.assertEqual(batch.hash, states[0])
 
     def test_a_single_picture_on_the_device_has_those_of_a_result(self):
         picture = pertev.render(self.scene, layers="ids", **SMALL)

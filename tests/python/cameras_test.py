@@ -111,6 +111,29 @@ class Cameras(unittest.TestCase):
                     for of, convention in ((poses(2), None), (turned, "opencv"))]
         self.assertEqual(pictures[0].tobytes(), pictures[1].tobytes())
 
+    def test_settings_of_the_call_hold_where_cameras_have_none(self):
+        turned = poses(2) @ numpy.diag([1, -1, -1, 1])
+        straight = host(pertev.render(self.scene, cameras=poses(2), **SMALL).color)
+        for cameras in (turned, pertev.Cameras(turned)):
+            self.assertEqual(host(pertev.render(self.scene, cameras=cameras, convention="opencv", **SMALL).color).tobytes(), straight.tobytes())
+            chunks = pertev.render_chunks(self.scene, cameras, chunk=1, convention="opencv", **SMALL)
+            self.assertEqual(b"".join(host(chunk.color).tobytes() for chunk in chunks), straight.tobytes())
+        K, bent = [22, 20, 11, 9], (-0.3, 0.1, 0, 0)
+        for more in ({"intrinsics": K}, {"intrinsics": K, "distortion": bent}, {"intrinsics": K, "intrinsics_size": (48, 32)},
+                     {"intrinsics": K, "lens": "fisheye"}):
+            own = {**more}
+            of_cameras = pertev.Cameras(poses(2), own.pop("intrinsics"), **own)
+            alone = [pertev.render(self.scene, camera_pose=pose.ravel(), **more, **SMALL).color.tobytes() for pose in poses(2)]
+            for call in ({"cameras": of_cameras}, {"cameras": poses(2), **more}, {"cameras": of_cameras, **own}):
+                color = host(pertev.render(self.scene, **call, **SMALL).color)
+                self.assertEqual([picture.tobytes() for picture in color], alone, call)
+                self.assertNotEqual(color.tobytes(), straight.tobytes())
+        known = pertev.Cameras(poses(2), K, convention="opengl", distortion=bent)
+        for name, value in (("convention", "opencv"), ("distortion", (0.1, 0, 0, 0)), ("intrinsics", K), ("camera_pose", poses(1)[0].ravel())):
+            with self.assertRaises(pertev.InputError) as refused:
+                pertev.render(self.scene, cameras=known, **{name: value}, **SMALL)
+            self.assertEqual(refused.exception.setting, name)
+
     def test_chunks_are_the_parts_of_the_whole(self):
         whole = pertev.render(self.scene, cameras=poses(5), seeds=numpy.arange(5), layers=LAYERS, **SMALL)
         parts = list(pertev.render_chunks(self.scene, poses(5), chunk=2, seeds=numpy.arange(5), layers=LAYERS, **SMALL))

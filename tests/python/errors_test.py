@@ -1,6 +1,7 @@
 """Tests errors: each has its kind and names the wrong setting or argument by its Python name."""
 
 import ctypes
+import errno
 import pathlib
 import pickle
 import signal
@@ -68,8 +69,57 @@ class Errors(unittest.TestCase):
         for kind, of_python in ((pertev.DeviceError, RuntimeError), (pertev.InterruptedRender, RuntimeError)):
             self.assertTrue(issubclass(kind, of_python) and issubclass(kind, pertev.Error))
 
+    def test_errors_of_files_have_the_attributes_of_python(self):
+        folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+        gone, picture = str(folder / "a.glb"), pertev.render(self.scene, **SMALL)
+        for call in (lambda: pertev.load(gone), lambda: pertev.read(gone), lambda: pertev.read_cameras(gone), lambda: pertev.merge(gone),
+                     lambda: pertev.render(self.scene, settings=gone, **SMALL)):
+            error = self.refused(pertev.MissingFileError, "", call)
+            self.assertIsInstance(error, FileNotFoundError)
+            self.assertIsInstance(error, pertev.InputError)
+            self.check_file(error, gone)
+        gone = str(folder / "none" / "a.exr")
+        self.assertEqual(self.refused(pertev.MissingFileError, "scene", lambda: pertev.load(gone)).filename, str(folder / "none"))
+        for call in (lambda: pertev.write(gone, picture), lambda: pertev.write(gone, picture.color),
+                     lambda: pertev.render(self.scene, output=gone, **SMALL)):
+            self.check_file(self.refused(pertev.WriteError, "", call), gone)
+
+    def check_file(self, error, file):
+        for same in (error, pickle.loads(pickle.dumps(error))):
+            self.assertEqual((same.errno, same.filename, same.file), (errno.ENOENT, file, file))
+            self.assertIn(file, str(same))
+
+    def test_arguments_of_a_wrong_type_are_named(self):
+        surrogate = "\udcff"
+        for name, call in [("layers", lambda: pertev.render(self.scene, layers=3)), ("output", lambda: pertev.render(self.scene, output=3)),
+                           ("settings", lambda: pertev.render(self.scene, settings={"spp": 3})), ("cameras", lambda: pertev.render_chunks(self.scene, None)),
+                           ("size", lambda: pertev.read_cameras("a.json", size=3)), ("chunk", lambda: pertev.render_chunks(self.scene, POSES, chunk="a")),
+                           ("name", lambda: pertev.Scene(meshes={}, instances={}, name=3)), ("source", lambda: pertev.Scene(3)),
+                           ("path", lambda: pertev.read(None))]:
+            with self.subTest(name), self.assertRaises((TypeError, pertev.InputError)) as caught:
+                call()
+            self.assertTrue(str(caught.exception).startswith(name + ": "), caught.exception)
+        for name, call in [("cameras", lambda: pertev.Cameras({})), ("path", lambda: pertev.read(surrogate)), ("source", lambda: pertev.load(surrogate)),
+                           ("environment", lambda: pertev.render(self.scene, environment=surrogate, **SMALL)), ("path", lambda: self.scene.save("a.obj")),
+                           ("chunk", lambda: pertev.render_chunks(self.scene, POSES, chunk=0)), ("seeds", lambda: pertev.render_chunks(self.scene, POSES, seeds=[0.5], **SMALL)),
+                           ("cameras", lambda: pertev.render_chunks(self.scene, 0 * POSES, **SMALL)), ("max_depth", lambda: pertev.render_chunks(self.scene, POSES, max_depth=-1))]:
+            with self.subTest(name):
+                self.refused(pertev.InputError, name, call)
+        for wrong in (3, None):
+            with self.assertRaises(KeyError):
+                self.scene.params[wrong]
+
+    def test_cameras_are_chosen_by_number(self):
+        cameras = pertev.Cameras(numpy.arange(3 * 16).reshape(3, 4, 4), [[8, 8, 4, k] for k in range(3)], convention="opencv")
+        self.assertEqual([(len(one), one.poses[0, 0, 0], one.K[0, 3], one.settings["convention"]) for one in cameras],
+                         [(1, 16 * k, k, "opencv") for k in range(3)])
+        self.assertEqual((cameras[-1].poses[0, 0, 0], len(cameras[1:]), cameras[[2, 0]].K[:, 3].tolist()), (32, 2, [2, 0]))
+        with self.assertRaises(IndexError):
+            cameras[3]
+
     def test_settings_have_the_names_of_python(self):
-        for values, setting in [({"filter_radius": -1}, "filter_radius"), ({"layers": "deepness"}, "aov"), ({"eye": (1, 2)}, "eye"),
+        for values, setting in [({"filter_radius": -1}, "filter_radius"), ({"layers": "deepness"}, "layers"), ({"aov": "deepness"}, "aov"), ({"transparent": 1}, "transparent"),
+                                ({"layers": "motion", "cameras": POSES}, "layers"), ({"aov": "motion", "cameras": POSES}, "aov"), ({"eye": (1, 2)}, "eye"),
                                 ({"camera_pose": range(5)}, "camera_pose"), ({"device": "cuda:99"}, "device"),
                                 ({"false_color_range": "1", "false_color": "luminance"}, "false_color_range")]:
             with self.subTest(values):
@@ -126,13 +176,28 @@ class Errors(unittest.TestCase):
     def test_parts_of_scenes_that_are_no_dictionaries_or_not_finite_are_named(self):
         mesh = {"vertices": numpy.eye(3), "faces": [[0, 1, 2]]}
         good = {"meshes": {"m": mesh}, "instances": {"i": {"mesh": "m"}}}
+        error = self.refused(pertev.InputError, "instances/i/mesh", lambda: pertev.Scene(**{**good, "instances": {"i": {"mesh": "n"}}}))
+        self.assertTrue(str(error).startswith("instances/i/mesh='n'"), error)
         error = self.refused(pertev.InputError, "meshes/m", lambda: pertev.Scene(**{**good, "meshes": {"m": numpy.eye(3)}}))
         self.assertIn("faces", str(error))
         for name, change in [("instances/i", {"instances": {"i": "m"}}), ("instances/i/transform", {"instances": {"i": {"mesh": "m", "transform": numpy.full((4, 4), numpy.inf)}}}),
                              ("cameras/c/eye", {"cameras": {"c": {"eye": (0, numpy.nan, 0), "target": (0, 0, 0)}}}),
-                             ("materials/a/roughness", {"materials": {"a": {"roughness": numpy.nan}}}), ("lights/l/range", {"lights": {"l": {"range": numpy.nan}}})]:
+                             ("materials/a/roughness", {"materials": {"a": {"roughness": numpy.nan}}}), ("lights/l/range", {"lights": {"l": {"range": numpy.nan}}}),
+                             ("lights/l/intensity", {"lights": {"l": {"intensity": (1, -1, 1)}}}), ("lights/l/outer_cone", {"lights": {"l": {"kind": "spot", "outer_cone": 181}}}), ("lights/l/inner_cone", {"lights": {"l": {"kind": "spot", "inner_cone": 50, "outer_cone": 20}}}),
+                             ("lights/l/direction", {"lights": {"l": {"kind": "spot", "direction": (0, 0, 0)}}}), ("cameras/c/view_height", {"cameras": {"c": {"projection": "orthographic", "view_height": 0}}}),
+                             ("cameras/c/aperture", {"cameras": {"c": {"aperture": -1}}}), ("cameras/c/aspect", {"cameras": {"c": {"aspect": -1}}}),
+                             ("materials/a/roughness", {"materials": {"a": {"roughness": 2}}}), ("materials/a/base_color", {"materials": {"a": {"base_color": (1, 2, 1)}}}),
+                             ("materials/a/base_color_texture", {"materials": {"a": {"base_color_texture": numpy.full((2, 2, 3), 255, numpy.int32)}}}),
+                             ("materials/a/roughness_texture", {"materials": {"a": {"roughness_texture": numpy.full((2, 2), 255, numpy.uint16)}}}),
+                             ("meshes/m/colors", {"meshes": {"m": {**mesh, "colors": numpy.full((3, 4), 255, numpy.int32)}}}), ("environment", {"environment": numpy.full((2, 4, 3), 255, numpy.uint8)})]:
             with self.subTest(name):
                 self.refused(pertev.InputError, name, lambda: pertev.Scene(**{**good, **change}))
+        error = self.refused(pertev.InputError, "cameras/c/fov", lambda: pertev.Scene(**good, cameras={"c": {"fov": 190}}))
+        self.assertIn("190", str(error))  # degrees, as it was given
+        view = {"eye": (0.3, 0.3, 2), "target": (0.3, 0.3, 0), "environment": (1, 1, 1), "ground": "off", **SMALL}
+        hashes = {pertev.render(pertev.Scene(**{**good, "meshes": {"m": {**mesh, "colors": colors}}}), **view).hash
+                  for colors in (numpy.full((3, 4), 51, numpy.uint8), numpy.full((3, 4), numpy.float32(51) / 255))}
+        self.assertEqual(len(hashes), 1)  # uint8 counts from 0 to 255
 
     def test_what_is_no_scene_is_a_type_error_that_says_what_is_one(self):
         for call in (lambda: pertev.render(None), lambda: pertev.render(3, **SMALL), lambda: pertev.load(None), lambda: pertev.Session(None),
@@ -161,11 +226,13 @@ class Errors(unittest.TestCase):
             self.assertEqual(error.value, "color")
         self.refused(pertev.InputError, "out", lambda: pertev.render(self.scene, **SMALL, out={"depth": read_only}))
 
-    def test_objects_that_cannot_be_pickled_raise_an_error(self):
+    def test_results_have_their_layers_and_say_why_they_are_not_pickled(self):
         result = pertev.render(self.scene, **SMALL)
         for thing in (result, pertev.Session(self.scene, **SMALL), pertev.render(self.scene, cameras=POSES, **SMALL)):
-            with self.assertRaises(TypeError):
+            with self.assertRaisesRegex(TypeError, "is not pickled; "):
                 pickle.dumps(thing)
+        layers = pertev.render(self.scene, **SMALL, layers=["uv", "motion"])
+        self.assertEqual((layers.uv.shape, layers.motion.shape), ((6, 8, 2), (6, 8, 2)))
         cameras = pickle.loads(pickle.dumps(pertev.Cameras(POSES, [8, 8, 4, 3], convention="opencv")))
         self.assertEqual((cameras.poses == POSES).all() and cameras.settings["convention"], "opencv")
 

@@ -2,9 +2,12 @@
 
 import json
 import pathlib
+import signal
 import subprocess
 import sys
 import tempfile
+import threading
+import time
 import unittest
 
 import numpy
@@ -75,6 +78,11 @@ class Images(unittest.TestCase):
         (self.folder / "a.png").write_bytes(png)
         self.assertEqual(pertev.read(self.folder / "a.png").shape, (16, 24, 3))
 
+    def setting_of(self, call):
+        with self.assertRaises(pertev.InputError) as caught:
+            call()
+        return caught.exception.setting
+
     def test_wrong_arguments_are_refused(self):
         with self.assertRaises(pertev.InputError) as caught:
             pertev.tone_map(self.picture, curve="none")
@@ -84,8 +92,59 @@ class Images(unittest.TestCase):
         self.assertEqual(caught.exception.setting, "picture")
         with self.assertRaises(pertev.InputError):
             pertev.compare(self.picture, numpy.zeros((2, 2, 3)))
+        picture = numpy.zeros((2, 2, 3))
+        for shape in ((0, 4, 3), (4, 0, 3), (0, 4), (4, 0, 4)):
+            empty = numpy.zeros(shape)
+            for call in (lambda: pertev.compare(empty, empty), lambda: pertev.compare(empty, picture), lambda: pertev.tone_map(empty),
+                         *(lambda file=self.folder / f"a.{kind}": pertev.write(file, empty) for kind in ("png", "exr", "hdr", "jpg"))):
+                self.assertEqual(self.setting_of(call), "picture")
+        for shape in ((2, 2), (2, 2, 1), (2, 2, 2)):
+            self.assertEqual(self.setting_of(lambda: pertev.compare(numpy.zeros(shape), picture)), "picture")
+            self.assertEqual(self.setting_of(lambda: pertev.compare(picture, numpy.zeros(shape))), "reference")
+        self.assertEqual(self.setting_of(lambda: pertev.compare(None, picture)), "picture")
+        self.assertEqual(self.setting_of(lambda: pertev.tone_map(None)), "picture")
+        self.assertEqual(self.setting_of(lambda: pertev.write(self.folder / "a.exr", None)), "picture")
+        self.assertEqual(self.setting_of(lambda: pertev.tone_map(picture, exposure=float("nan"))), "exposure")
+        self.assertEqual(self.setting_of(lambda: pertev.compare(picture, picture, blocks=-1)), "blocks")
+        self.assertEqual(self.setting_of(lambda: pertev.read("\udcff.exr")), "path")
+        for name, call in (("exposure", lambda: pertev.write(self.folder / "a.exr", picture, exposure="a")), ("curve", lambda: pertev.tone_map(picture, curve=3)),
+                           ("blocks", lambda: pertev.compare(picture, picture, blocks="a")), ("path", lambda: pertev.write(3, picture))):
+            with self.assertRaisesRegex(TypeError, f"^{name}: "):
+                call()
         with self.assertRaises(pertev.InputError):
             pertev.read(self.folder / "none.exr")
+
+
+class Threads(unittest.TestCase):
+    def test_other_threads_work_meanwhile_and_compare_is_interrupted(self):
+        """The main thread's work takes 0.1 s and more, in which another thread notes the time again and again."""
+        picture = numpy.random.default_rng(1).random((900, 1200, 3)).astype(numpy.float32)
+        times, done = [], threading.Event()
+
+        def note():
+            while not done.is_set():
+                times.append(time.monotonic())
+                time.sleep(0.002)
+
+        thread = threading.Thread(target=note)
+        thread.start()
+        try:
+            for work in (lambda: pertev.tone_map(picture), lambda: pertev.write("/dev/null/none.png", picture)):
+                begun = time.monotonic()
+                try:
+                    work()
+                except pertev.WriteError:
+                    pass
+                ended = time.monotonic()
+                noted = [begun, *(at for at in times if begun < at < ended), ended]
+                self.assertLess(max(b - a for a, b in zip(noted, noted[1:])), 0.5 * (ended - begun) + 0.05)
+        finally:
+            done.set()
+            thread.join()
+        timer = threading.Timer(0.1, lambda: signal.raise_signal(signal.SIGINT))
+        timer.start()
+        with self.assertRaises(KeyboardInterrupt):
+            pertev.compare(picture, picture[::-1])
 
 
 class Out(unittest.TestCase):

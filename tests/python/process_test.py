@@ -1,5 +1,6 @@
 """Tests processes: forks, workers, pickled scenes and the viewer."""
 
+import gc
 import multiprocessing
 import os
 import pathlib
@@ -8,6 +9,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 import unittest.mock
 import urllib.request
@@ -119,10 +121,42 @@ class Viewer(unittest.TestCase):
                 settings = self.command_of(viewer)[1]
                 self.assertEqual((settings["environment"], "environment_rotation" in settings), ("1,1,1", False))
 
-    def test_a_missing_scene_is_an_error(self):
+    def test_errors_are_those_of_render(self):
         with unittest.mock.patch.dict(os.environ, {"PERTEV_PROGRAM": PROGRAM}):
-            with self.assertRaises(pertev.Error):
-                pertev.view("none.glb")
+            for kind, setting, value, call in ((pertev.MissingFileError, "", "", lambda: pertev.view("none.glb")),
+                                               (pertev.InputError, "max_depth", "deep", lambda: pertev.view("cornell-box", max_depth="deep"))):
+                with self.assertRaises(kind) as caught:
+                    call()
+                self.assertEqual((caught.exception.setting, caught.exception.value), (setting, value))
+                self.assertNotIn("--", str(caught.exception))
+            with self.assertRaisesRegex(TypeError, "^denoise is a setting of render"):
+                pertev.view("cornell-box", denoise="oidn")
+
+    def test_view_has_the_settings_of_the_program(self):
+        with tempfile.NamedTemporaryFile("w") as file, unittest.mock.patch.dict(os.environ, {"PERTEV_PROGRAM": PROGRAM}):
+            os.chmod(file.name, 0o600)
+            file.write("0123456789abcdef0123456789abcdef")
+            file.flush()
+            with pertev.view("cornell-box", device="cpu", size=(16, 12), restir="di", host="localhost", token_file=file.name) as viewer:
+                settings = self.command_of(viewer)[1]
+                self.assertEqual((settings["restir"], settings["host"], settings["token_file"]), ("di", "localhost", file.name))
+                self.assertTrue(viewer.url.startswith("http://localhost:"))
+
+    def test_a_viewer_ends_with_its_last_reference_and_with_python(self):
+        with unittest.mock.patch.dict(os.environ, {"PERTEV_PROGRAM": PROGRAM}):
+            viewer = pertev.view("cornell-box", device="cpu", size=(16, 12))
+            process = viewer._process
+            del viewer
+            gc.collect()
+            self.assertIsNotNone(process.poll())
+            for end in ("", "os._exit(0)", "os.kill(os.getpid(), 9)"):  # the last ones run no code of Python's
+                with self.subTest(end):
+                    done = run_python("import os, pertev\nv = pertev.view('cornell-box', device='cpu', size=(16, 12))\n"
+                                      f"print(v._process.pid, flush=True)\n{end}\n")
+                    begun, command = time.monotonic(), pathlib.Path(f"/proc/{done.stdout.strip()}/cmdline")
+                    while command.exists() and command.read_bytes() and time.monotonic() - begun < 20:
+                        time.sleep(0.02)
+                    self.assertFalse(command.exists() and command.read_bytes(), done.stderr)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import unittest
 
 import pertev
@@ -138,6 +139,30 @@ class Sessions(unittest.TestCase):
             pertev.render(scene, spp=spp, integrator="direct", **SMALL)
         session.reset()
         self.assertEqual([next(session).hash for _ in range(3)], frames)
+
+    def test_threads_take_turns(self):
+        session = pertev.Session("cornell-box", **SMALL)
+        expected = [next(session).hash for _ in range(16)]
+        session.reset()
+        found, begun = [], threading.Barrier(3)
+
+        def take(count):
+            begun.wait()
+            for _ in range(count):
+                found.append(next(session).hash)
+
+        def change():
+            begun.wait()
+            for _ in range(50):
+                session.set(spp=None, eye=None)
+                self.assertLessEqual(session.frame or 0, 16)
+
+        threads = [threading.Thread(target=take, args=(8,)), threading.Thread(target=take, args=(8,)), threading.Thread(target=change)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(sorted(found), sorted(expected))
 
     def test_wrong_settings_are_refused(self):
         with self.assertRaises(TypeError):

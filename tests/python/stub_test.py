@@ -40,11 +40,17 @@ class Stub(unittest.TestCase):
 
     def test_settings_have_their_types(self):
         types = types_of("render")
-        for name, expected in {"spp": "int | None", "transparent": "bool | None", "fov": "float | None",
-                               "size": "tuple[int, int] | str | None", "eye": "Sequence[float] | str | None",
+        for name, expected in {"spp": "_Int | None", "transparent": "bool | None", "fov": "_Float | None",
+                               "size": "_Size | None", "eye": "_Vector | str | None",
                                "ground": "Literal['on', 'off', 'auto'] | None"}.items():
             self.assertEqual(types[name], expected)
         self.assertIn("'bidirectional'", types["integrator"])
+
+    def test_the_type_of_a_render_follows_from_its_cameras(self):
+        overloads = [node for node in STUB.body if getattr(node, "name", "") == "render"]
+        found = [(ast.unparse(node.returns), *(ast.unparse(argument.annotation) for argument in node.args.kwonlyargs if argument.arg in ("cameras", "on_device")))
+                 for node in overloads]
+        self.assertEqual(found, [("Result", "None", "Literal[False]"), ("BatchResult", "Cameras | _Text | _Numbers", "bool"), ("BatchResult", "None", "Literal[True]")])
 
     def test_classes_have_their_members(self):
         for kind in (pertev.Result, pertev.Scene, pertev.Params, pertev.Session, pertev.Viewer, pertev.BatchResult,

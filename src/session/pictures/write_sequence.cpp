@@ -182,7 +182,7 @@ private:
             tally.invalid_samples += result.invalid_samples;
         }
         report(made);
-        if (!failures.empty()) throw Error(ErrorCode::FileWrite, failures);
+        refuse_faults(made.written, 0, false);
         done_.add(made.frame, made.hash);
     }
 

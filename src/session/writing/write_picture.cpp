@@ -106,8 +106,14 @@ std::string failures_of(const WrittenPicture& written) {
 }
 
 void refuse_faults(const WrittenPicture& written, uint64_t invalid_samples, bool strict) {
-    if (const std::string failures = failures_of(written); !failures.empty())
-        throw Error(ErrorCode::FileWrite, failures);
+    const auto has_failed = [](const WrittenFile& file) { return !file.failure.empty(); };
+    const auto failed = std::ranges::find_if(written.files, has_failed);
+    if (failed != written.files.end()) {
+        const std::string place = failed->path + ": "; // the failure begins with it
+        if (std::ranges::count_if(written.files, has_failed) == 1 && failed->failure.starts_with(place))
+            throw Error(ErrorCode::FileWrite, FileLocation{failed->path}, failed->failure.substr(place.size()));
+        throw Error(ErrorCode::FileWrite, failures_of(written));
+    }
     if (strict) refuse_invalid_samples(invalid_samples);
 }
 

@@ -25,7 +25,8 @@ struct WrittenPicture {
 
 /// Returns why files could not be written, in one text; empty if all were.
 std::string failures_of(const WrittenPicture& written);
-/// Throws Error(FileWrite) if a file could not be written, and, if `strict`, as refuse_invalid_samples().
+/// Throws Error(FileWrite), with the file's place if it is one, if a file could not be written, and, if `strict`, as
+/// refuse_invalid_samples().
 void refuse_faults(const WrittenPicture& written, uint64_t invalid_samples, bool strict);
 
 /// If a result has been denoised, files show that; EXR keeps the film's picture as the layer `noisy`.
