@@ -264,6 +264,9 @@ TEST_CASE("KHR_animation_pointer animates numbers of materials, within their ran
     CHECK(material.alpha == 0.25f);
     CHECK(material.emission == Rgb{2, 1, 4});
     CHECK(material.metallic == 1);
+    PosedScene coated(test::read_gltf_text(
+        document(channel("1/extensions/KHR_materials_clearcoat/clearcoatFactor", 0)), messages));
+    CHECK(coated.set_time(1).lights_changed); // light leaves an emitter through its coat
     CHECK(posed.set_time(1).is_empty());
     posed.set_time(0.5);
     CHECK(material.base_color == Rgb{0.5f, 0.75f, 1});

@@ -64,7 +64,7 @@ void set_textures(const AnimationChannel& channel, const std::vector<float>& v,
     for (const uint8_t slot : channel.numbers) {
         TextureTransform& now = textures.try_emplace(slot, channel.texture_at_rest).first->second;
         if (channel.part == AnimatedPart::TextureRotation) {
-            now.rotation = v[0];
+            if (is_finite(v[0])) now.rotation = v[0]; // a spline between finite numbers may be beyond them
         } else {
             Vec2& moved = channel.part == AnimatedPart::TextureOffset ? now.offset : now.scale;
             moved = {within(v[0]), within(v[1])};
@@ -80,6 +80,21 @@ void set_transforms(const std::map<uint8_t, TextureTransform>& textures, Materia
 }
 
 std::array<float, 6> matrix_of(const TextureRef& t) { return {t.m00, t.m01, t.m02, t.m10, t.m11, t.m12}; }
+
+/// Returns whether emitters of two materials are the same lights (shading/build_light_set.cpp): also beneath their
+/// coat.
+bool shines_alike(const MaterialParameters& a, const MaterialParameters& b) {
+    const auto numbers_of = [](const MaterialParameters& m) {
+        return std::array{m.emission.r,   m.emission.g,   m.emission.b,   m.coat_weight, m.coat_roughness,
+                          m.coat_color.r, m.coat_color.g, m.coat_color.b, m.coat_ior};
+    };
+    const auto matrices_of = [](const MaterialParameters& m) {
+        return std::array{matrix_of(m.emission_texture), matrix_of(m.coat_texture),
+                          matrix_of(m.coat_roughness_texture)};
+    };
+    if (!a.is_emissive() && !b.is_emissive()) return true;
+    return same_bits(numbers_of(a), numbers_of(b)) && same_bits(matrices_of(a), matrices_of(b));
+}
 
 } // namespace
 
@@ -269,10 +284,6 @@ PosedScene::MovingMaterial* PosedScene::material_at(uint32_t index) {
 void PosedScene::update_materials() {
     for (const MovingMaterial& material : materials_) {
         MaterialParameters& shown = scene_.materials[material.index];
-        if (!same_bits(shown.emission, material.now.emission) ||
-            !same_bits(matrix_of(shown.emission_texture), matrix_of(material.now.emission_texture))) {
-            lights_changed_ = true;
-        }
         const auto numbers_in = [](const MaterialParameters& parameters) {
             std::vector<float> numbers;
             visit_parameters(
@@ -285,6 +296,7 @@ void PosedScene::update_materials() {
         };
         const std::vector<float> now = numbers_in(material.now), before = numbers_in(shown);
         if (std::memcmp(now.data(), before.data(), now.size() * sizeof(float)) == 0) continue;
+        if (!shines_alike(shown, material.now)) lights_changed_ = true;
         shown = material.now;
         materials_changed_ = true;
     }
