@@ -442,4 +442,15 @@ TEST_CASE("external assets that show themselves, are damaged, missing or in othe
     left_out(shows("parts/outside.gltf", "../chair.gltf"));
     left_out(test::write_text(at / "e.gltf", room_with_assets("", R"({"externalAsset":0})")));
     left_out(test::write_text(at / "f.gltf", room_with_assets("", R"({"externalAsset":5})")));
+
+    // A file that is missing is looked for once, and does not count for those that are there.
+    test::write_text(at / "parts/chair.gltf", chair_asset());
+    std::string nodes;
+    for (int i = 0; i < 5000; ++i) nodes += R"({"externalAsset":0},)";
+    const std::filesystem::path many =
+        test::write_text(at / "many.gltf", room_with_assets(R"({"uri":"none.gltf"},{"uri":"parts/chair.gltf"})",
+                                                            nodes + R"({"externalAsset":1})"));
+    Messages messages;
+    CHECK(read_assets(many, messages).instances.size() == 2);
+    CHECK(messages.left_out().size() == 1);
 }

@@ -133,21 +133,35 @@ Scene copy_objects(const Scene& part, const NodeTransform& base) {
     return copy;
 }
 
-uint64_t bytes_of_objects(const Scene& scene) {
-    uint64_t bytes = scene.nodes.size() * sizeof(Node) + scene.instances.size() * sizeof(Instance) +
-                     scene.lights.size() * sizeof(Light) + scene.cameras.size() * sizeof(Camera);
-    for (const Animation& animation : scene.animations) {
-        for (const AnimationChannel& channel : animation.channels)
-            bytes += sizeof channel + (channel.times.size() + channel.values.size()) * sizeof(float);
+template <class T>
+uint64_t bytes_of(const std::vector<T>& objects) {
+    uint64_t bytes = objects.size() * sizeof(T);
+    if constexpr (requires(const T& object) { object.name.size(); }) {
+        for (const T& object : objects) bytes += object.name.size();
+    }
+    if constexpr (requires(const T& object) { object.origin.size(); }) {
+        for (const T& object : objects) bytes += object.origin.size();
     }
     return bytes;
 }
 
-uint64_t bytes_of_meshes(const Scene& scene) {
-    uint64_t bytes = 0;
-    for (const Mesh& mesh : scene.meshes) {
-        bytes += mesh.positions.size() * (2 * sizeof(Vec3) + sizeof(Vec2)) + mesh.indices.size() * sizeof(uint32_t);
+/// Returns the memory of a part, but for what animations and skins share with no other.
+uint64_t bytes_of(const Scene& scene) {
+    uint64_t bytes = sizeof(Scene) + bytes_of(scene.nodes) + bytes_of(scene.instances) + bytes_of(scene.lights) +
+                     bytes_of(scene.cameras) + bytes_of(scene.skins) + bytes_of(scene.shapes) + bytes_of(scene.meshes) +
+                     bytes_of(scene.materials) + bytes_of(scene.animations);
+    for (const Animation& animation : scene.animations) {
+        for (const AnimationChannel& channel : animation.channels)
+            bytes += sizeof channel + (channel.times.size() + channel.values.size()) * sizeof(float);
     }
+    for (const Skin& skin : scene.skins) bytes += skin.joints.size() * (sizeof(uint32_t) + sizeof(Transform));
+    for (const Mesh& mesh : scene.meshes) {
+        bytes += bytes_of(mesh.positions) + bytes_of(mesh.normals) + bytes_of(mesh.tangents) + bytes_of(mesh.colors) +
+                 bytes_of(mesh.indices);
+        for (const std::vector<Vec2>& uv : mesh.uv) bytes += bytes_of(uv);
+    }
+    for (const TextureImage& image : scene.images)
+        bytes += bytes_of(image.rgba8.pixels) + bytes_of(image.rgba_float.pixels);
     return bytes;
 }
 
@@ -172,38 +186,55 @@ void ExternalAssets::read(const JsonValue& node, uint32_t index) {
     const uint32_t number = document_.index_into("files", of_file);
     const JsonValue& file = document_.table("files")[number];
     if (file.find("aliases")) sink_.leave_out({file.location(), "the aliases of the file are left out"});
-    const NodeTransform& base = nodes_.transform(index);
+    if (failed_.contains(number)) return; // said for the first node
+    try {
+        const uint64_t before = place_.budget.scene_bytes;
+        Part part = {make_part(number, nodes_.transform(index)), index, number};
+        charge(part.scene, before, file);
+        parts_.push_back(std::move(part));
+    } catch (const Error&) {
+        failed_.insert(number);
+        throw;
+    }
+}
+
+Scene ExternalAssets::make_part(uint32_t number, const NodeTransform& base) {
+    const JsonValue& file = document_.table("files")[number];
     const auto first = std::ranges::find(parts_, number, &Part::file);
-    if (first == parts_.end()) {
-        parts_.push_back({read_file_of(file, base), index, number});
-        if (parts_.back().scene.environment)
-            sink_.leave_out({file.location(), "the environment of a file that another one shows is left out"});
-        return;
+    if (first != parts_.end() && can_be_copied(first->scene, nodes_.transform(first->node)))
+        return copy_objects(first->scene, base);
+    Scene scene = read_file_of(file, base);
+    if (first != parts_.end()) {
+        scene.images.clear();
+        scene.materials.clear();
+        if (scene.shapes.empty()) scene.meshes.clear();
+    } else if (scene.environment || scene.clips.size() > 1 || !scene.variants.empty()) {
+        sink_.leave_out({file.location(), "the environment, the variants, and all animations but the first of a file "
+                                          "that another one shows are left out"});
     }
-    Part part = {{}, index, number};
-    if (can_be_copied(first->scene, nodes_.transform(first->node))) {
-        buffers_.charge(bytes_of_objects(first->scene), *reference);
-        part.scene = copy_objects(first->scene, base);
-    } else {
-        part.scene = read_file_of(file, base);
-        buffers_.charge(bytes_of_objects(part.scene) + bytes_of_meshes(part.scene), *reference);
-        part.scene.images.clear();
-        part.scene.materials.clear();
-        if (part.scene.shapes.empty()) part.scene.meshes.clear();
-    }
-    parts_.push_back(std::move(part));
+    return scene;
+}
+
+/// Counts a part, which holds what it shows itself, in place of what was counted since the sum was `before`.
+void ExternalAssets::charge(const Scene& part, uint64_t before, const JsonValue& file) {
+    uint64_t& sum = place_.budget.scene_bytes;
+    sum = before + bytes_of(part);
+    const uint64_t limit = justified_bytes(kFreeMeshBytes + kFreeImageBytes, place_.budget.file_bytes);
+    if (sum <= limit) return;
+    sum = before;
+    throw file.error(fmt::format("the files that others show take more than {} MB of memory", limit >> 20));
 }
 
 Scene ExternalAssets::read_file_of(const JsonValue& file, const NodeTransform& base) {
     std::size_t depth = 0;
     for (const AssetPlace* outer = &place_; outer != nullptr; outer = outer->outer) ++depth;
-    if (++place_.read > kMostAssets || depth > kMostNested) {
+    if (++place_.budget.reads > kMostAssets || depth > kMostNested) {
         throw file.error(fmt::format("files show more than {} others, or {} in each other", kMostAssets, kMostNested));
     }
     ReadOptions options;
     options.geometry_only = options_.geometry_only;
     options.max_texture_size = options_.max_texture_size;
-    AssetPlace inner = {.file = {}, .read = place_.read, .outer = &place_, .base = base};
+    AssetPlace inner = {.file = {}, .budget = place_.budget, .outer = &place_, .base = base};
     const std::optional<JsonValue> uri = file.find("uri");
     if (!uri || is_data_uri(uri->to_string())) {
         std::vector<std::byte> owned;

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "formats/files/read_options.h"
@@ -18,10 +19,16 @@
 
 namespace pertev::gltf {
 
+/// What a file and all that it shows have taken so far.
+struct AssetBudget {
+    uint32_t reads = 0; // of shown files
+    uint64_t file_bytes = 0, scene_bytes = 0;
+};
+
 /// The place of a file among those that show it.
 struct AssetPlace {
     std::filesystem::path file;          // canonical; empty if it is inside another file
-    uint32_t& read;                      // number of files read so far, of all
+    AssetBudget& budget;                 // one for all files
     const AssetPlace* outer = nullptr;   // place of the file that shows it
     std::optional<NodeTransform> base{}; // transform of the node that shows it
 };
@@ -48,7 +55,9 @@ private:
         uint32_t node, file; // the node that shows it, and its index in `files`
     };
     void read(const JsonValue& node, uint32_t index);
+    Scene make_part(uint32_t number, const NodeTransform& base);
     Scene read_file_of(const JsonValue& file, const NodeTransform& base);
+    void charge(const Scene& part, uint64_t before, const JsonValue& file);
 
     const Document& document_;
     Buffers& buffers_;
@@ -58,6 +67,7 @@ private:
     const AssetPlace& place_;
     Sink& sink_;
     std::vector<Part> parts_;
+    std::set<uint32_t> failed_; // files that cannot be read
 };
 
 } // namespace pertev::gltf

@@ -70,6 +70,7 @@ Scene read_asset(const std::filesystem::path& path, std::vector<std::byte> bytes
     Scene scene;
     const Document document(path, std::move(bytes), sink);
     Buffers buffers(document, access, sink);
+    place.budget.file_bytes += buffers.file_bytes();
     choose(document, buffers, options, scene, sink);
     choose_variant(document, buffers, options, scene, sink);
     read_credits(document, scene, sink);
@@ -104,8 +105,8 @@ Scene read_gltf(const std::filesystem::path& path, const FileAccess& access, con
 Scene read_gltf(const std::filesystem::path& path, std::vector<std::byte> bytes, const FileAccess& access,
                 const ReadOptions& options, Sink& sink) {
     std::error_code none;
-    uint32_t read = 0;
-    const gltf::AssetPlace place = {.file = std::filesystem::weakly_canonical(path, none), .read = read};
+    gltf::AssetBudget budget;
+    const gltf::AssetPlace place = {.file = std::filesystem::weakly_canonical(path, none), .budget = budget};
     Scene scene = gltf::read_asset(path, std::move(bytes), access, options, place, sink);
     subtract_centre(scene);
     return scene;
