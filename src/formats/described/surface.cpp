@@ -174,6 +174,12 @@ void finish_images(const std::vector<const Surface*>& surfaces, std::vector<Text
     const auto first_made = static_cast<int32_t>(scene.images.size());
     for (TextureImage& image : made) scene.images.push_back(std::move(image));
     std::map<std::tuple<int32_t, bool, ImageChange>, int32_t> numbers;
+    std::map<int32_t, bool> with_alpha, with_colors; // by image: many materials may use one
+    const auto known = [&](std::map<int32_t, bool>& answers, int32_t image, bool (*asks)(const TextureImage&)) {
+        const auto [answer, is_new] = answers.try_emplace(image, false);
+        if (is_new) answer->second = asks(scene.images[static_cast<std::size_t>(image)]);
+        return answer->second;
+    };
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         for (const SlotImage& use : surfaces[i]->images) {
             TextureRef& ref = scene.materials[i].*use.slot;
@@ -182,8 +188,8 @@ void finish_images(const std::vector<const Surface*>& surfaces, std::vector<Text
             const TextureImage& image = scene.images[static_cast<std::size_t>(ref.image)];
             ImageChange change = use.change;
             if (image.rgba8.pixels.empty()) change.decodes = false;
-            if (change.is_alpha) change.is_alpha = has_alpha(image);
-            if (change.is_alpha || (change.grey_of != GreyOf::Channels && !has_colors(image)))
+            if (change.is_alpha) change.is_alpha = known(with_alpha, ref.image, has_alpha);
+            if (change.is_alpha || (change.grey_of != GreyOf::Channels && !known(with_colors, ref.image, has_colors)))
                 change.grey_of = GreyOf::Channels;
             if (change.is_alpha) {
                 change.decodes = false;
@@ -194,7 +200,8 @@ void finish_images(const std::vector<const Surface*>& surfaces, std::vector<Text
             }
             // The colour's alpha would count as an opacity.
             change.is_opaque = use.slot == &MaterialParameters::base_color_texture &&
-                               scene.materials[i].alpha_mode != AlphaMode::Opaque && has_alpha(image);
+                               scene.materials[i].alpha_mode != AlphaMode::Opaque &&
+                               known(with_alpha, ref.image, has_alpha);
             if (change.is_identity()) continue;
             const auto [number, is_new] = numbers.try_emplace({ref.image, ref.is_srgb, change}, kNoImage);
             if (is_new) {
