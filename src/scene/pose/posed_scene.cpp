@@ -83,7 +83,7 @@ std::array<float, 6> matrix_of(const TextureRef& t) { return {t.m00, t.m01, t.m0
 
 /// Returns whether emitters of two materials are the same lights (shading/build_light_set.cpp): also beneath their
 /// coat.
-bool shines_alike(const MaterialParameters& a, const MaterialParameters& b) {
+bool are_same_lights(const MaterialParameters& a, const MaterialParameters& b) {
     const auto numbers_of = [](const MaterialParameters& m) {
         return std::array{m.emission.r,   m.emission.g,   m.emission.b,   m.coat_weight, m.coat_roughness,
                           m.coat_color.r, m.coat_color.g, m.coat_color.b, m.coat_ior};
@@ -296,7 +296,7 @@ void PosedScene::update_materials() {
         };
         const std::vector<float> now = numbers_in(material.now), before = numbers_in(shown);
         if (std::memcmp(now.data(), before.data(), now.size() * sizeof(float)) == 0) continue;
-        if (!shines_alike(shown, material.now)) lights_changed_ = true;
+        if (!are_same_lights(shown, material.now)) lights_changed_ = true;
         shown = material.now;
         materials_changed_ = true;
     }
