@@ -19,7 +19,7 @@
 
 namespace pertev::gltf {
 
-/// What a file and all that it shows have taken so far.
+/// The files and memory that a file and all that it shows have taken so far.
 struct AssetBudget {
     uint32_t reads = 0; // files shown by others
     uint64_t file_bytes = 0, scene_bytes = 0;
