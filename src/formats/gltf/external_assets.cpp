@@ -145,7 +145,7 @@ uint64_t bytes_of(const std::vector<T>& objects) {
     return bytes;
 }
 
-/// Returns the memory of a part, but for what animations and skins share with no other.
+/// Returns the memory of a part.
 uint64_t bytes_of(const Scene& scene) {
     uint64_t bytes = sizeof(Scene) + bytes_of(scene.nodes) + bytes_of(scene.instances) + bytes_of(scene.lights) +
                      bytes_of(scene.cameras) + bytes_of(scene.skins) + bytes_of(scene.shapes) + bytes_of(scene.meshes) +
