@@ -45,7 +45,7 @@ std::string chair_asset() {
     builder.add("SCALAR", std::vector<float>{0, 1});
     builder.add("VEC3", std::vector<float>{0, 0, 0, 0, 0, 5});
     builder.add("VEC2", std::vector<float>{0, 0, 1, 0, 0, 1});
-    return builder.json(
+    std::string text = builder.json(
         R"("images":[{"uri":"data:image/png;base64,)" + kRedPixel +
         R"("}],"textures":[{"source":0}],"materials":[{},{"name":"seat",)"
         R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}],"cameras":[{"type":"perspective","perspective":{"yfov":1}}],)"
@@ -54,6 +54,8 @@ std::string chair_asset() {
         R"("nodes":[{"name":"legs","children":[1],"translation":[1,0,0],"camera":0,"extensions":{"KHR_lights_punctual":{"light":0}}},)"
         R"({"name":"seat","mesh":0}],"scenes":[{"nodes":[0]}],"animations":[{"name":"swing","samplers":[{"input":1,"output":2}],)"
         R"("channels":[{"sampler":0,"target":{"node":1,"path":"translation"}}]}])");
+    const std::string version = R"("2.0")";
+    return text.replace(text.find(version), version.size(), version + R"(,"extras":{"author":"Ada"})");
 }
 
 std::string room_with_assets(const std::string& files, const std::string& nodes) {
@@ -376,6 +378,8 @@ TEST_CASE("an external asset is shown by nodes, with its own materials, textures
     CHECK(messages.left_out().empty());
     CHECK(scene.meshes.size() == 2); // both copies have one
     CHECK(scene.images.size() == 1);
+    REQUIRE(scene.suggested.size() == 1);
+    CHECK(scene.suggested[0].text == "Ada");
     CHECK(scene.nodes.size() == 4 + 2 * 3);
     REQUIRE(scene.instances.size() == 3);
     CHECK(scene.instances[0].name.empty());

@@ -1,5 +1,6 @@
 #include "formats/gltf/credits.h"
 
+#include <algorithm>
 #include <initializer_list>
 #include <string>
 
@@ -79,6 +80,17 @@ void read_credits(const Document& document, Scene& scene, Sink& sink) {
     };
     suggest("author", author);
     suggest("license", license);
+}
+
+void add_credits(const Scene& part, Scene& scene) {
+    for (const SuggestedSetting& credit : part.suggested) {
+        const auto known = std::ranges::find(scene.suggested, credit.name, &SuggestedSetting::name);
+        if (known == scene.suggested.end()) {
+            scene.suggested.push_back(credit);
+        } else if (known->text.find(credit.text) == std::string::npos) {
+            known->text = shortened(known->text + "; " + credit.text);
+        }
+    }
 }
 
 } // namespace pertev::gltf

@@ -11,6 +11,7 @@
 #include "base/message_text.h"
 #include "base/read_file.h"
 #include "formats/gltf/attached_bytes.h"
+#include "formats/gltf/credits.h"
 #include "formats/gltf/leave_out.h"
 #include "formats/gltf/light.h"
 #include "formats/gltf/uri.h"
@@ -260,6 +261,7 @@ void ExternalAssets::append_to(Scene& scene) {
         const auto [first, is_new] = known.try_emplace(part.file, at);
         if (is_new) {
             append_materials(part.scene, at.images, scene);
+            add_credits(part.scene, scene);
         } else {
             at.materials = first->second.materials;
         }
