@@ -32,7 +32,8 @@ struct CamerasArgument {
     RenderSettings settings_of(RenderSettings settings) const;
 };
 
-/// Several threads may use one. Whatever render() changes they read in turn, by wait_for_turn().
+/// Several threads may use one: render() waits for its turn, and the caller of every other function has the turn of
+/// wait_for_turn().
 class PythonBatch {
 public:
     /// Renders with the settings and the device of `session`, which is that of `opened`. `record` and `options` are
@@ -56,7 +57,7 @@ public:
     /// Returns a copy of a picture in the memory of the host. It has no colour if there is none.
     PythonResult picture(std::size_t picture) const;
     bool has_color() const { return color_channels_ > 0; }
-    uint32_t samples() const { return made_by_.settings_of(record_->settings).samples; }
+    uint32_t samples() const { return record_ ? made_by_.settings_of(record_->settings).samples : 0; }
     bool is_denoised() const { return !arrays_.noisy_hashes.empty(); }
 
     uint64_t invalid_samples() const { return invalid_samples_; }

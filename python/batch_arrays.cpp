@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
@@ -43,18 +44,25 @@ auto in_turn(const PythonBatch& batch, const auto& work) {
     });
 }
 
-std::vector<std::size_t> shape_of(const PythonBatch& batch, const PythonBatch::Array& array) {
-    std::vector<std::size_t> shape = batch.shape();
-    if (array.channels > 1) shape.push_back(array.channels);
-    return shape;
+/// The arrays of a batch at one time.
+struct Arrays {
+    std::vector<PythonBatch::Array> all;
+    std::vector<std::size_t> shape; // each array of one channel has it
+    std::optional<int> cuda_device; // none: they are in the memory of the host
+};
+
+Arrays arrays_in_turn(const PythonBatch& batch) {
+    return in_turn(batch, [&] {
+        Arrays arrays = {batch.arrays(), batch.shape(), std::nullopt};
+        if (!batch.is_empty() && batch.queue().is_cuda()) arrays.cuda_device = batch.queue().device_index();
+        return arrays;
+    });
 }
 
-nb::object array_of(const PythonBatch::Array& array, nb::handle self) {
-    const PythonBatch& batch = nb::cast<const PythonBatch&>(self);
-    const std::vector<std::size_t> shape = shape_of(batch, array);
-    if (batch.queue().is_cuda()) {
-        return nb::cast(DeviceArray{nb::borrow(self), shape, array, batch.queue().device_index()});
-    }
+nb::object array_of(const Arrays& of, const PythonBatch::Array& array, nb::handle self) {
+    std::vector<std::size_t> shape = of.shape;
+    if (array.channels > 1) shape.push_back(array.channels);
+    if (of.cuda_device) return nb::cast(DeviceArray{nb::borrow(self), shape, array, *of.cuda_device});
     if (array.is_float) {
         return nb::cast(
             nb::ndarray<nb::numpy, float>(static_cast<float*>(array.values), shape.size(), shape.data(), self));
@@ -63,57 +71,66 @@ nb::object array_of(const PythonBatch::Array& array, nb::handle self) {
         nb::ndarray<nb::numpy, uint32_t>(static_cast<uint32_t*>(array.values), shape.size(), shape.data(), self));
 }
 
-nb::object array_named(nb::handle self, const std::string& name) {
-    const PythonBatch& batch = nb::cast<const PythonBatch&>(self);
-    for (const PythonBatch::Array& array : in_turn(batch, [&] { return batch.arrays(); })) {
-        if (array.name == name) return array_of(array, self);
+nb::object array_named(nb::handle self, const Arrays& of, const std::string& name) {
+    for (const PythonBatch::Array& array : of.all) {
+        if (array.name == name) return array_of(of, array, self);
     }
     throw nb::attribute_error(fmt::format("there is no array '{}'; request it by layers=['{}']", name, name).c_str());
 }
 
+/// A value of each picture.
+template <class Value>
+struct OfPictures {
+    bool is_single;
+    std::vector<Value> all;
+};
+
 /// Returns what `of` gives for each picture, all of them of one call.
 auto of_all(const PythonBatch& batch, const auto& of) {
     return in_turn(batch, [&] {
-        std::vector<decltype(of(0))> all;
-        for (std::size_t k = 0; k < batch.count(); ++k) all.push_back(of(k));
-        return all;
+        OfPictures<decltype(of(0))> values = {batch.is_single(), {}};
+        for (std::size_t k = 0; k < batch.count(); ++k) values.all.push_back(of(k));
+        return values;
     });
 }
 
 /// Returns the object that `made` makes of the single picture's value, or a list of those of all pictures.
-nb::object of_pictures(const PythonBatch& batch, const auto& values, const auto& made) {
-    if (batch.is_single()) return made(values.front());
+nb::object of_pictures(const auto& values, const auto& made) {
+    if (values.is_single) return made(values.all.front());
     nb::list all;
-    for (const auto& value : values) all.append(made(value));
+    for (const auto& value : values.all) all.append(made(value));
     return all;
 }
 
 nb::object hashes_of(const PythonBatch& batch) {
-    if (!batch.has_color()) throw nb::attribute_error("a hash is that of `color`, which was not requested");
-    const auto hashes = of_all(batch, [&](std::size_t k) { return batch.hash(k).value_or(""); });
-    return of_pictures(batch, hashes, [](const std::string& hash) -> nb::object { return nb::str(hash.c_str()); });
+    const auto hashes = of_all(batch, [&](std::size_t k) {
+        if (const auto hash = batch.hash(k)) return *hash;
+        throw nb::attribute_error("a hash is that of `color`, which was not requested");
+    });
+    return of_pictures(hashes, [](const std::string& hash) -> nb::object { return nb::str(hash.c_str()); });
 }
 
 nb::object infos_of(const PythonBatch& batch) {
     const auto metadata = of_all(batch, [&](std::size_t k) { return batch.metadata(k); });
-    return of_pictures(batch, metadata, [](const ExrMetadata& of) -> nb::object { return info_of_metadata(of); });
+    return of_pictures(metadata, [](const ExrMetadata& of) -> nb::object { return info_of_metadata(of); });
 }
 
 /// Returns an array of float64 of what `of` gives for the record of each picture, with `rows` rows.
 nb::object of_records(const PythonBatch& batch, std::size_t rows, const auto& of) {
+    const auto records = of_all(batch, [&](std::size_t k) { return batch.record_of(k); });
     std::vector<double> values;
-    for (const PictureRecord& record : of_all(batch, [&](std::size_t k) { return batch.record_of(k); })) {
+    for (const PictureRecord& record : records.all) {
         const std::vector<double> own = of(record);
         values.insert(values.end(), own.begin(), own.end());
     }
-    if (batch.is_single()) return owned_array(std::move(values), {rows, rows});
-    return owned_array(std::move(values), {batch.count(), rows, rows});
+    if (records.is_single) return owned_array(std::move(values), {rows, rows});
+    return owned_array(std::move(values), {records.all.size(), rows, rows});
 }
 
 /// Returns the first pictures as PNG for notebooks, at most 16; none without colour.
 nb::object png_of_batch(const PythonBatch& batch) {
-    if (!batch.has_color()) return nb::none();
     const std::vector<std::byte> png = in_turn(batch, [&] {
+        if (!batch.has_color()) return std::vector<std::byte>();
         std::vector<Image> pictures;
         for (std::size_t k = 0; k < std::min<std::size_t>(batch.count(), 16); ++k) {
             RenderResult result = batch.picture(k).result;
@@ -122,29 +139,31 @@ nb::object png_of_batch(const PythonBatch& batch) {
         const auto columns = static_cast<uint32_t>(std::ceil(std::sqrt(static_cast<double>(pictures.size()))));
         return png_of(pictures, columns);
     });
+    if (png.empty()) return nb::none();
     return nb::bytes(reinterpret_cast<const char*>(png.data()), png.size());
 }
 
 /// Returns the array of means of samples, denoised or not.
 nb::object noisy_of(nb::handle self) {
-    const PythonBatch& batch = nb::cast<const PythonBatch&>(self);
-    return array_named(self, in_turn(batch, [&] { return batch.is_denoised(); }) ? "noisy" : "color");
+    const Arrays of = arrays_in_turn(nb::cast<const PythonBatch&>(self));
+    const bool is_denoised = std::ranges::find(of.all, "noisy", &PythonBatch::Array::name) != of.all.end();
+    return array_named(self, of, is_denoised ? "noisy" : "color");
 }
 
 PythonResult picture_of(const PythonBatch& batch, int64_t number) {
-    const auto count = static_cast<int64_t>(batch.count());
-    if (number < -count || number >= count) throw nb::index_error(fmt::format("there are {} pictures", count).c_str());
-    if (!batch.has_color()) throw nb::attribute_error("a batch without colour has arrays alone");
-    return in_turn(batch,
-                   [&] { return batch.picture(static_cast<std::size_t>(number < 0 ? number + count : number)); });
+    return in_turn(batch, [&] {
+        const auto count = static_cast<int64_t>(batch.count());
+        if (number < -count || number >= count)
+            throw nb::index_error(fmt::format("there are {} pictures", count).c_str());
+        if (!batch.has_color()) throw nb::attribute_error("a batch without colour has arrays alone");
+        return batch.picture(static_cast<std::size_t>(number < 0 ? number + count : number));
+    });
 }
 
 nb::dict arrays_of(nb::handle self) {
     nb::dict arrays;
-    const PythonBatch& batch = nb::cast<const PythonBatch&>(self);
-    for (const PythonBatch::Array& array : in_turn(batch, [&] { return batch.arrays(); })) {
-        arrays[array.name.c_str()] = array_of(array, self);
-    }
+    const Arrays of = arrays_in_turn(nb::cast<const PythonBatch&>(self));
+    for (const PythonBatch::Array& array : of.all) arrays[array.name.c_str()] = array_of(of, array, self);
     return arrays;
 }
 
@@ -212,7 +231,11 @@ of them does. The first axis counts the cameras (a single picture has no such ax
           Named{"position", "float32 (N, height, width, 3): its position in the file's coordinates, metres"},
           Named{"ids", "uint32 (N, height, width, 3): its instance, primitive and material"}}) {
         batch.def_prop_ro(
-            named.name, [name = named.name](nb::handle self) { return array_named(self, name); }, named.text);
+            named.name,
+            [name = named.name](nb::handle self) {
+                return array_named(self, arrays_in_turn(nb::cast<const PythonBatch&>(self)), name);
+            },
+            named.text);
     }
     batch.def(nb::init<>())
         .def_prop_ro("arrays", &arrays_of, "All arrays by their names")
@@ -240,12 +263,16 @@ of them does. The first axis counts the cameras (a single picture has no such ax
              [](const PythonBatch&) -> nb::object {
                  throw nb::type_error("a BatchResult is not pickled; send copies of its arrays");
              })
-        .def_prop_ro("seconds", &PythonBatch::seconds, "Seconds of rendering alone")
-        .def("__len__", &PythonBatch::count)
+        .def_prop_ro(
+            "seconds", [](const PythonBatch& self) { return in_turn(self, [&] { return self.seconds(); }); },
+            "Seconds of rendering alone")
+        .def("__len__", [](const PythonBatch& self) { return in_turn(self, [&] { return self.count(); }); })
         .def("__repr__", [](const PythonBatch& self) {
-            const std::vector<std::size_t> shape = self.shape();
-            return fmt::format("<pertev.BatchResult of {} pictures {}x{}>", self.count(), shape.back(),
-                               shape[shape.size() - 2]);
+            return in_turn(self, [&] {
+                const std::vector<std::size_t> shape = self.shape();
+                return fmt::format("<pertev.BatchResult of {} pictures {}x{}>", self.count(), shape.back(),
+                                   shape[shape.size() - 2]);
+            });
         });
 }
 

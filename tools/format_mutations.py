@@ -30,6 +30,8 @@ MUTATIONS = [
     ("mitsuba: a clear principled body is tinted twice", "unit/read_mitsuba_materials", ("src/formats/mitsuba/principled_bsdf.cpp", "Curve::Root);", "Curve::None);")),
     ("mitsuba: an opacity dims emission", "unit/read_mitsuba", ("src/formats/mitsuba/world.cpp", "return 1 / material.alpha;", "return 1;")),
     ("mitsuba: unknown attributes are silent", "unit/read_mitsuba", ("src/formats/mitsuba/read_document.cpp", "!known.empty())\n            leave_out_unknown_attributes", "false)\n            leave_out_unknown_attributes")),
+    ("pbrt: names of options have one spelling", "unit/read_pbrt", ("src/formats/pbrt/typed_statements.cpp", "c == '_' || c == '-'", "c == '_'")),
+    ("pbrt: a file without numbers is a black spectrum", "unit/read_pbrt", ("src/formats/pbrt/colors.cpp", "if (pairs.size() < 2) return", "if (false) return")),
     ("pbrt: unknown types before the world are silent", "unit/read_pbrt", ("src/formats/pbrt/camera.cpp", "if (std::ranges::find(known, stated.type) != known.end()) return;", "if (!known.empty()) return;")),
     ("normal maps of Mitsuba's mirrored shapes turn over", "unit/read_mitsuba_shapes",
      ("src/formats/mitsuba/shapes.cpp", "needs.tangents && (determinant(to_world) < 0) != needs.mirrors;", "false;")),

@@ -13,6 +13,7 @@ OF_FRAMES = {**OF_PICTURES, **{row["name"]: row for row in _core.frame_settings(
 OF_PARTS = {row["name"]: row for row in _core.part_settings()}
 OF_STILLS = {**OF_PICTURES, **OF_PARTS}
 SEPARATORS = {"A:B": ":", "I/N": "/"}  # by the form of a value
+TOO_LARGE = "the number is too large"
 
 
 def file_name(value, name):
@@ -20,6 +21,13 @@ def file_name(value, name):
     if not isinstance(value, (str, bytes, os.PathLike)):
         raise TypeError(f"{name}: expected a file's name, not {type(value).__name__}")
     return _encodable(os.fsdecode(value), name)
+
+
+def text_of(value, name):
+    """Returns a text. Raises TypeError and InputError of the argument's name."""
+    if not isinstance(value, str):
+        raise TypeError(f"{name}: expected a text, not {type(value).__name__}")
+    return _encodable(value, name)
 
 
 def _encodable(text, name):
@@ -36,9 +44,13 @@ def number_of(value, name, whole=False):
     """Returns a finite number as Python's float or int. Raises TypeError and InputError of the argument's name."""
     try:
         number = operator.index(value) if whole else float(value)
+    except OverflowError:
+        raise input_error(name, TOO_LARGE) from None
     except (TypeError, ValueError):
         kind = "a whole number" if whole else "a number"
         raise TypeError(f"{name}: expected {kind}, not {value!r}"[:200]) from None
+    if whole and not -(2**63) <= number < 2**63:
+        raise input_error(name, TOO_LARGE)
     if not math.isfinite(number):
         raise input_error(name, f"expected a finite number, not {number}", str(number))
     return number
@@ -59,9 +71,9 @@ def _text(row, value):
         try:
             return str(operator.index(value))  # exact: integers of Python, NumPy or PyTorch
         except TypeError:
-            number = float(value)
-        if not math.isfinite(number):
-            raise input_error(row["name"], f"expected finite numbers, not {number}", str(value))
+            number = number_of(value, row["name"])
+        except ValueError:  # it has more digits than Python writes
+            raise input_error(row["name"], TOO_LARGE) from None
         return str(int(number)) if number.is_integer() and abs(number) < 2**53 else repr(number)
     elif hasattr(value, "__iter__"):
         return ("x" if row["type"] == "size" else SEPARATORS.get(row["form"], ",")).join(_text(row, item) for item in value)

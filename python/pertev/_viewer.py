@@ -10,7 +10,7 @@ import weakref
 import webbrowser
 
 from . import _core
-from ._settings import OF_FRAMES, OF_STILLS, file_name, number_of, texts_of
+from ._settings import OF_FRAMES, OF_STILLS, file_name, number_of, text_of, texts_of
 from .errors import Error
 
 
@@ -111,8 +111,8 @@ def view(scene, *, port=0, host=None, token_file=None, jpeg=None, browser=False,
     as render() if the viewer does not start.
     """
     folder, server = None, ["--port", str(number_of(port, "port", whole=True))]
-    for flag, value in (("--host", host), ("--jpeg", jpeg), ("--token-file", token_file)):
-        server += [] if value is None else [flag, file_name(value, flag[2:].replace("-", "_"))]
+    for name, value, checked in (("host", host, text_of), ("jpeg", jpeg, text_of), ("token_file", token_file, file_name)):
+        server += [] if value is None else ["--" + name.replace("_", "-"), checked(value, name)]
     try:
         if isinstance(scene, _core.Scene):
             of_scene = {name: texts for name, texts in scene._settings.items() if name in OF_VIEWS}

@@ -58,8 +58,8 @@ public:
 
     void set(const std::string& key, const std::string& value) {
         const auto* const other = std::ranges::find(kOfOpenPbr, key, &OpenPbrName::name);
-        if (other == std::end(kOfOpenPbr)) return set_own(key, value, 1);
-        set_own(std::string(other->own), value, other->factor);
+        if (other == std::end(kOfOpenPbr)) return set_own(key, key, value, 1);
+        set_own(std::string(other->own), key, value, other->factor);
         const bool shows_opacity = material_.alpha_mode != AlphaMode::Opaque || material_.alpha == 1;
         if (key == kOpacity && !shows_opacity) material_.alpha_mode = AlphaMode::Blend;
     }
@@ -72,7 +72,8 @@ public:
     }
 
 private:
-    void set_own(const std::string& key, const std::string& value, float factor) {
+    /// `given` is the name of `key` in the change.
+    void set_own(const std::string& key, const std::string& given, const std::string& value, float factor) {
         if (is_one_of(kOfReflection, key) && material_.kind == MaterialKind::Diffuse) {
             material_.kind = MaterialKind::MetallicRoughness;
         }
@@ -91,11 +92,11 @@ private:
         visit_flags(material_, [&](bool& flag, const char* name) {
             if (key != name) return;
             is_known = true;
-            if (value != "true" && value != "false") refuse(fmt::format("{} is true or false", key));
+            if (value != "true" && value != "false") refuse(fmt::format("{} is true or false", given));
             flag = value == "true";
             if (key == "is_clear_boundary" && !flag) refuse(fmt::format("{} can only be true", key));
         });
-        set_numbers(key, value, factor, is_known);
+        set_numbers(key, given, value, factor, is_known);
         if (!is_known) refuse(fmt::format("there is no {}; there are {}", key, fmt::join(known_names(), ", ")));
     }
 
@@ -116,7 +117,8 @@ private:
         material_.k = metal->k;
     }
 
-    void set_numbers(const std::string& key, const std::string& text, float factor, bool& is_known) {
+    void set_numbers(const std::string& key, const std::string& given, const std::string& text, float factor,
+                     bool& is_known) {
         std::vector<float*> channels;
         float least = 0, most = 0;
         visit_parameters(
@@ -140,15 +142,15 @@ private:
             std::optional<float> value = parse_whole_float(rest.substr(0, comma));
             if (value) *value *= factor;
             if (!value || !(*value >= least && *value <= most)) {
-                refuse(fmt::format("{} is {} from {} to {}", key, channels.size() > 1 ? "R,G,B, each" : "a number",
-                                   least, most));
+                refuse(fmt::format("{} is {} from {} to {}", given, channels.size() > 1 ? "R,G,B, each" : "a number",
+                                   least / factor, most / factor));
             }
             values.push_back(*value);
             if (comma == rest.size()) break;
             rest.remove_prefix(comma + 1);
         }
         if (values.size() == 1) values.resize(channels.size(), values[0]);
-        if (values.size() != channels.size()) refuse(fmt::format("{} has {} numbers", key, channels.size()));
+        if (values.size() != channels.size()) refuse(fmt::format("{} has {} numbers", given, channels.size()));
         for (std::size_t i = 0; i < values.size(); ++i) *channels[i] = values[i];
     }
 

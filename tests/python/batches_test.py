@@ -48,6 +48,14 @@ class Batches(unittest.TestCase):
         self.assertEqual(len(set(batch.hash)), 3)
 
     def test_a_thread_reads_what_another_fills_in_turn(self):
+        batch = pertev.BatchResult()
+        self.assertEqual((len(batch), batch.seconds, batch.samples, batch.hash, batch.arrays), (0, 0, 0, [], {}))
+        first = threading.Thread(target=lambda: pertev.render(self.scene, cameras=POSES, seeds=1, out=batch, size=(100, 80), spp=16))
+        first.start()
+        while first.is_alive():  # nothing of a batch is there before all of it
+            self.assertIn((len(batch), batch.seconds > 0), ((0, False), (3, True), (0, True)))
+            self.assertIn(repr(batch).split("of ")[1], ("0 pictures 0x0>", "3 pictures 100x80>"))
+        first.join()
         batch = pertev.render(self.scene, cameras=POSES, seeds=1, **SMALL)
         states = [pertev.render(self.scene, cameras=POSES, seeds=seed, **SMALL).hash for seed in (1, 2)]
         done = threading.Event()

@@ -2,6 +2,7 @@
 
 import ctypes
 import errno
+import fractions
 import pathlib
 import pickle
 import signal
@@ -105,6 +106,16 @@ class Errors(unittest.TestCase):
                            ("cameras", lambda: pertev.render_chunks(self.scene, 0 * POSES, **SMALL)), ("max_depth", lambda: pertev.render_chunks(self.scene, POSES, max_depth=-1))]:
             with self.subTest(name):
                 self.refused(pertev.InputError, name, call)
+        huge, picture = 10**400, numpy.zeros((2, 2, 3), numpy.float32)
+        for name, call in [("exposure", lambda: pertev.tone_map(picture, exposure=huge)), ("port", lambda: pertev.view(self.scene, port=huge)),
+                           ("chunk", lambda: pertev.render_chunks(self.scene, POSES, chunk=huge)), ("max_depth", lambda: pertev.render(self.scene, max_depth=10**5000)),
+                           ("exposure", lambda: pertev.view(self.scene, exposure=fractions.Fraction(huge)))]:
+            with self.subTest(name):
+                self.refused(pertev.InputError, name, call)
+        for name in ("host", "jpeg"):
+            for wrong in (True, pathlib.Path("a")):
+                with self.assertRaisesRegex(TypeError, f"^{name}: expected a text, not "):
+                    pertev.view(self.scene, **{name: wrong})
         for wrong in (3, None):
             with self.assertRaises(KeyError):
                 self.scene.params[wrong]

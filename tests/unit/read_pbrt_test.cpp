@@ -195,7 +195,8 @@ TEST_CASE("pbrt: unknown types and parameters of statements before the world are
     CHECK(left_out_at(messages, 3).find("\"rgb\"") != std::string::npos);
     CHECK(left_out_at(messages, 4).find("\"bvh\"") != std::string::npos);
     CHECK(left_out_at(messages, 5).find("\"seed\"") != std::string::npos);
-    (void)load_whole("Option \"integer seed\" 4\nOption \"bool disablepixeljitter\" true\n"
+    (void)load_whole("Option \"integer seed\" 4\nOption \"bool disablePixelJitter\" true\n"
+                     "Option \"bool disable-texture_filtering\" true\nColorSpace \"sRGB\"\n"
                      "Sampler \"stratified\" \"integer xsamples\" 4 \"integer ysamples\" 4 \"bool jitter\" true\n"
                      "Integrator \"mlt\" \"integer maxdepth\" 4 \"integer mutationsperpixel\" 9\n"
                      "Accelerator \"kdtree\" \"float emptybonus\" .2\nWorldBegin\n" +
@@ -215,6 +216,25 @@ TEST_CASE("pbrt: a light of a surface that is not there, a motion and an unknown
     CHECK(left_out_at(messages, 10).empty()); // once
     const Scene named = load_whole("WorldBegin\nMaterial \"dielectric\" \"spectrum eta\" \"glass-F11\"\n" + kFlat);
     CHECK(named.materials.at(named.instances.at(0).material).ior == 1.78472f);
+}
+
+TEST_CASE("pbrt: a spectrum is unknown only if no file and no list has its name, and is left out once") {
+    const fs::path folder = test::scratch_folder(), inner = folder / "inner";
+    fs::create_directories(inner);
+    test::write_text(inner / "words.spd", "no numbers");
+    test::write_text(folder / "outside.spd", "400 1 700 1");
+    const std::string reflectance = "\nMaterial \"diffuse\" \"spectrum reflectance\" ";
+    Messages messages;
+    (void)read_scene(test::write_text(inner / "scene.pbrt", "WorldBegin" + reflectance + "\"words.spd\"" + reflectance +
+                                                                "\"stdillum-D65\"" + reflectance +
+                                                                "\"../outside.spd\"" + reflectance +
+                                                                "\"stdillum-D66\"\n" + kFlat),
+                     {}, messages);
+    for (std::size_t line = 2; line <= 5; ++line) {
+        CHECK_FALSE(left_out_at(messages, line).empty());
+        CHECK((left_out_at(messages, line).find("there is no spectrum") != std::string::npos) == (line == 5));
+    }
+    CHECK(messages.left_out().size() == 4);
 }
 
 TEST_CASE("pbrt: faults of syntax cost their statement or parameter alone") {

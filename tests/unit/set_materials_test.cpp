@@ -98,7 +98,9 @@ TEST_CASE("names of OpenPBR set the parameters that have others here") {
     CHECK(leaf.alpha_mode == AlphaMode::Blend);
     change(scene, "gold leaf alpha_mode=mask geometry_opacity=0.25");
     CHECK(leaf.alpha_mode == AlphaMode::Mask);
-    CHECK(refuses_change("gold leaf specular_roughness=2", "from 0 to 1"));
+    CHECK(refuses_change("gold leaf specular_roughness=2", "specular_roughness is a number from 0 to 1"));
+    CHECK(refuses_change("gold leaf thin_film_thickness=2000", "thin_film_thickness is a number from 0 to 1048.57"));
+    CHECK(refuses_change("gold leaf geometry_thin_walled=2", "geometry_thin_walled is"));
 }
 
 TEST_CASE("measured metals reflect as published, and an unknown one is answered with the list") {

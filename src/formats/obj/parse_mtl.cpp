@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/lower_case.h"
 #include "base/message_text.h"
 #include "formats/obj/obj_text.h"
 #include "formats/obj/parse_mtl_texture.h"
@@ -56,14 +57,6 @@ auto find_key(const Keys& keys, std::string_view key) {
     const auto found =
         std::find_if(std::begin(keys), std::end(keys), [&](const auto& known) { return known.key == key; });
     return found == std::end(keys) ? nullptr : &*found;
-}
-
-std::string lower_case(std::string_view text) {
-    std::string lower(text);
-    for (char& c : lower) {
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    }
-    return lower;
 }
 
 class MtlParser {

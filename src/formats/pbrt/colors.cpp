@@ -1,6 +1,7 @@
 #include "formats/pbrt/colors.h"
 
 #include <cmath>
+#include <filesystem>
 #include <span>
 
 #include <fmt/format.h>
@@ -67,26 +68,21 @@ std::optional<Rgb> stated_color(const Parameters& parameters, const Parameter& p
     return std::nullopt;
 }
 
-/// Reads pairs of wavelength and value from a file of text, in which # begins a comment; nothing, with a warning, if
-/// there is no such file.
-std::optional<Spectrum> spectrum_of_file(const Parameters& parameters, const Parameter& parameter,
-                                         const Context& context) {
-    const auto path = context.access.find(base_of(context, parameters.location_of(parameter), parameter.texts.front()),
-                                          parameter.texts.front(), context.sink);
-    if (!path) return std::nullopt;
-    const std::vector<std::byte> bytes = read_file(*path);
+/// Reads pairs of wavelength and value from a file of text, in which # begins a comment; nothing if it has none.
+std::optional<Spectrum> read_spectrum(const std::filesystem::path& path) {
+    const std::vector<std::byte> bytes = read_file(path);
     Tokens tokens({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     std::vector<double> pairs;
     while (tokens.peek().kind == TokenKind::Word) {
         std::string_view word = tokens.next().text;
         if (const auto number = parse_float<double>(word)) pairs.push_back(*number);
     }
+    if (pairs.size() < 2) return std::nullopt;
     return make_spectrum(pairs);
 }
 
-/// Returns the spectrum of a parameter that has wavelengths, or a file, or is a black body; nothing for another.
-std::optional<Spectrum> stated_spectrum(const Parameters& parameters, const Parameter& parameter,
-                                        const Context& context) {
+/// Returns the spectrum of a parameter that has wavelengths or is a black body; nothing for another.
+std::optional<Spectrum> stated_spectrum(const Parameter& parameter) {
     if (parameter.type == ParameterType::Blackbody) {
         const double temperature = parameter.numbers.front();
         if (!(temperature > 0 && temperature < 1e9)) return std::nullopt;
@@ -99,37 +95,6 @@ std::optional<Spectrum> stated_spectrum(const Parameters& parameters, const Para
     if (parameter.type != ParameterType::Spectrum) return std::nullopt;
     if (parameter.numbers.size() == 1) return Spectrum{{550}, {parameter.numbers.front()}};
     if (!parameter.numbers.empty()) return make_spectrum(parameter.numbers);
-    try {
-        return spectrum_of_file(parameters, parameter, context);
-    } catch (const Error& error) {
-        if (error.code() != ErrorCode::BadInput) throw;
-        context.sink.leave_out(error.remark());
-        return std::nullopt;
-    }
-}
-
-/// Returns the colour of a parameter; `of_spectrum` converts spectra.
-template <class OfSpectrum>
-std::optional<Rgb> color_of(Parameters& parameters, std::string_view name, const Context& context,
-                            const OfSpectrum& of_spectrum) {
-    const Parameter* const found = parameters.find(name);
-    if (found == nullptr) return std::nullopt;
-    std::optional<Rgb> color = stated_color(parameters, *found);
-    if (!color) {
-        if (const auto spectrum = stated_spectrum(parameters, *found, context)) color = of_spectrum(*spectrum);
-    }
-    if (color && is_finite(*color)) return color;
-    if (found->type == ParameterType::Spectrum && !found->texts.empty()) {
-        const std::vector<std::string> names = names_of_spectra();
-        const std::string& name_there = found->texts.front();
-        leave_out_color(
-            parameters, *found,
-            fmt::format("there is no spectrum {}{}", shortened(name_there),
-                        did_you_mean(name_there, std::vector<std::string_view>(names.begin(), names.end()))),
-            context);
-        return std::nullopt;
-    }
-    leave_out_color(parameters, *found, "expected a colour, a \"blackbody\" or a spectrum", context);
     return std::nullopt;
 }
 
@@ -138,6 +103,62 @@ std::string metal_name(std::string text) {
     if (const std::size_t folder = text.find_last_of("/\\"); folder != std::string::npos) text.erase(0, folder + 1);
     if (text.starts_with("metal-")) text.erase(0, 6);
     return text.substr(0, text.find_first_of("-."));
+}
+
+bool is_name_of_spectrum(const std::string& name) {
+    if (name.starts_with("metal-")) return find_metal_index(metal_name(name)).has_value();
+    if (name.starts_with("glass-")) return find_glass(name.substr(6)).has_value();
+    return find_illuminant(name).has_value();
+}
+
+/// Says why no colour comes of a name without a file.
+std::string fault_of_name(const std::string& name) {
+    if (is_name_of_spectrum(name)) return fmt::format("the spectrum {} is for another kind of parameter", name);
+    const std::vector<std::string> names = names_of_spectra();
+    return fmt::format("there is no spectrum {}{}", shortened(name),
+                       did_you_mean(name, std::vector<std::string_view>(names.begin(), names.end())));
+}
+
+/// Returns the colour of a parameter that names a file with a spectrum. Otherwise it leaves the parameter out.
+template <class OfSpectrum>
+std::optional<Rgb> color_of_file(const Parameters& parameters, const Parameter& parameter, const Context& context,
+                                 const OfSpectrum& of_spectrum) {
+    const std::string& name = parameter.texts.front();
+    std::string fault;
+    try {
+        const auto path =
+            context.access.find(base_of(context, parameters.location_of(parameter), name), name, context.sink);
+        if (path) {
+            const auto spectrum = read_spectrum(*path);
+            const auto color = spectrum ? std::optional<Rgb>(of_spectrum(*spectrum)) : std::nullopt;
+            if (color && is_finite(*color)) return color;
+            fault = fmt::format("{} has no pairs of wavelength and value", shortened(name));
+        } else {
+            fault = fault_of_name(name);
+        }
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::BadInput) throw;
+        fault = error.location() == parameters.location_of(parameter) ? "it " + error.reason() : error.what();
+    }
+    leave_out_color(parameters, parameter, fault, context);
+    return std::nullopt;
+}
+
+/// Returns the colour of a parameter; `of_spectrum` converts spectra.
+template <class OfSpectrum>
+std::optional<Rgb> color_of(Parameters& parameters, std::string_view name, const Context& context,
+                            const OfSpectrum& of_spectrum) {
+    const Parameter* const found = parameters.find(name);
+    if (found == nullptr) return std::nullopt;
+    if (found->type == ParameterType::Spectrum && found->numbers.empty())
+        return color_of_file(parameters, *found, context, of_spectrum);
+    std::optional<Rgb> color = stated_color(parameters, *found);
+    if (!color) {
+        if (const auto spectrum = stated_spectrum(*found)) color = of_spectrum(*spectrum);
+    }
+    if (color && is_finite(*color)) return color;
+    leave_out_color(parameters, *found, "expected a colour, a \"blackbody\" or a spectrum", context);
+    return std::nullopt;
 }
 
 } // namespace

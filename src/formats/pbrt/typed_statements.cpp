@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "base/lower_case.h"
 #include "base/message_text.h"
 #include "formats/described/transforms.h"
 #include "formats/files/closest_name.h"
@@ -20,6 +21,18 @@ constexpr std::array<NamedSpace, 4> kSpaces = {
      {"dci-p3", {{0.68, 0.32}, {0.265, 0.69}, {0.15, 0.06}, {0.31271, 0.32902}}},
      {"rec2020", {{0.708, 0.292}, {0.17, 0.797}, {0.131, 0.046}, {0.3127, 0.329}}},
      {"aces2065-1", {{0.7347, 0.2653}, {0, 1}, {0.0001, -0.077}, {0.32168, 0.33767}}}}};
+
+const std::initializer_list<std::string_view> kOptions = {"disablepixeljitter",
+                                                          "disabletexturefiltering",
+                                                          "disablewavelengthjitter",
+                                                          "displacementedgescale",
+                                                          "forcediffuse",
+                                                          "msereferenceimage",
+                                                          "msereferenceout",
+                                                          "pixelstats",
+                                                          "rendercoordsys",
+                                                          "seed",
+                                                          "wavefront"};
 
 } // namespace
 
@@ -65,15 +78,18 @@ void Statements::accelerator(Tokens& tokens, const FileLocation& location) {
 
 void Statements::option(Tokens& tokens, const FileLocation& location) { // about how pbrt renders
     Parameters parameters = take_parameters(tokens, location, "an option");
-    parameters.ignore({"disablepixeljitter", "disabletexturefiltering", "disablewavelengthjitter",
-                       "displacementedgescale", "forcediffuse", "msereferenceimage", "msereferenceout", "pixelstats",
-                       "rendercoordsys", "seed", "wavefront"});
+    parameters.ignore(kOptions);
+    for (const Parameter& parameter : parameters.all()) { // pbrt-v4 compares without case, _ and -
+        std::string name = lower_case(parameter.name);
+        std::erase_if(name, [](char c) { return c == '_' || c == '-'; });
+        if (std::ranges::find(kOptions, name) != kOptions.end()) parameters.look_up(parameter.name);
+    }
     parameters.leave_out_unknown(context_.sink);
 }
 
 void Statements::color_space(Tokens& tokens, const FileLocation& location) {
     const std::string name = take_text(tokens, location);
-    const auto* const found = std::ranges::find(kSpaces, name, &NamedSpace::name);
+    const auto* const found = std::ranges::find(kSpaces, lower_case(name), &NamedSpace::name);
     if (found == kSpaces.end()) {
         std::vector<std::string_view> known;
         for (const NamedSpace& space : kSpaces) known.push_back(space.name);

@@ -3,17 +3,12 @@
 #include <algorithm>
 #include <string>
 
+#include "base/lower_case.h"
 #include "formats/spectra/spectrum.h"
 #include "scene/metals.h"
 
 namespace pertev {
 namespace {
-
-std::string lower_case(std::string_view text) {
-    std::string lower(text);
-    for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    return lower;
-}
 
 struct ShortName {
     std::string_view name, metal;

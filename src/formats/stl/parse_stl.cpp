@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/limits.h"
+#include "base/lower_case.h"
 #include "base/message_text.h"
 #include "formats/files/parse_number.h"
 #include "formats/mesh/triangulate_polygon.h"
@@ -43,7 +44,7 @@ public:
     StlData run() {
         for (std::string_view word = next_word(); !word.empty(); word = next_word()) {
             sink_.check_at(words_++);
-            statement(lower_case(word));
+            statement(lower_case(word.substr(0, 16)));
         }
         const bool is_cut_off = is_in_facet_ && facet_.size() < 3;
         if (!is_cut_off) end_facet();
@@ -54,14 +55,6 @@ public:
     }
 
 private:
-    static std::string lower_case(std::string_view word) {
-        std::string lower(word.substr(0, 16)); // longer than any keyword
-        for (char& c : lower) {
-            if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-        }
-        return lower;
-    }
-
     std::string_view next_word() {
         for (; at_ < text_.size() && is_stl_space(text_[at_]); ++at_) {
             line_ += text_[at_] == '\n' || (text_[at_] == '\r' && text_.substr(at_ + 1, 1) != "\n");
