@@ -47,4 +47,7 @@ done
 [[ $made == " cp311 abi3 " ]] || echo "make_wheel.sh: made only:$made(of cp311 and abi3, by the Pythons that are there)"
 du -h "$out"/*.whl
 large=$(find "$out" -name '*.whl' -size +80000000c)
-[[ -z $large ]] || echo "make_wheel.sh: larger than the 80 MB that were asked: $large" >&2
+if [[ -n $large ]]; then
+    echo "make_wheel.sh: larger than 80 MB: $large" >&2
+    exit 1
+fi

@@ -1,7 +1,9 @@
 """Tests the package's metadata: names, versions and the command that pip installs. No wheel is made here."""
 
+import os
 import pathlib
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -39,6 +41,27 @@ class Names(unittest.TestCase):
         files = PROJECT["tool"]["scikit-build"]["wheel"]
         for name in files["packages"] + files["license-files"]:
             self.assertTrue((ROOT / name).exists(), name)
+
+
+class Wheels(unittest.TestCase):
+    def test_a_wheel_over_80_megabytes_is_a_fault(self):
+        """The script runs without a Python, so that it makes no wheel, beside a wheel of that size."""
+        with tempfile.TemporaryDirectory() as folder:
+            tools = pathlib.Path(folder, "tools")
+            tools.mkdir()
+            for name in ("make_wheel.sh", "bundled_libraries.sh"):
+                shutil.copy(ROOT / "tools" / name, tools / name)
+            auditwheel = pathlib.Path(folder, "build", "wheel", "tools", "bin", "auditwheel")
+            auditwheel.parent.mkdir(parents=True)
+            auditwheel.symlink_to("/bin/true")
+            wheel = pathlib.Path(folder, "out", "pertev-0-cp311.whl")
+            wheel.parent.mkdir()
+            for size, status in ((80_000_000, 0), (80_000_001, 1)):
+                with wheel.open("wb") as file:
+                    file.truncate(size)
+                done = subprocess.run(["bash", tools / "make_wheel.sh", wheel.parent], env={"PATH": os.environ["PATH"], "PERTEV_PYTHONS": "no-python"},
+                                      capture_output=True, text=True, check=False)
+                self.assertEqual((done.returncode, wheel.name in done.stderr), (status, bool(status)), done.stderr)
 
 
 class Command(unittest.TestCase):
