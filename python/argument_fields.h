@@ -27,7 +27,15 @@ namespace pertev {
 
 inline std::string text_argument(nanobind::handle value, const std::string& path) {
     if (!nanobind::isinstance<nanobind::str>(value)) refuse_argument(path, "expected a text");
-    return nanobind::cast<nanobind::str>(value).c_str();
+    Py_ssize_t size = 0;
+    const char* const text = PyUnicode_AsUTF8AndSize(value.ptr(), &size);
+    if (text == nullptr) {
+        PyErr_Clear();
+        refuse_argument(path, "expected a text of Unicode");
+    }
+    const std::string_view whole(text, static_cast<std::size_t>(size));
+    if (whole.find('\0') != std::string_view::npos) refuse_argument(path, "the text has a null character");
+    return std::string(whole);
 }
 
 /// The fields of one object. Each is taken once, and what is left over is an error.

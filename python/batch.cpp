@@ -110,7 +110,10 @@ Error error_of_camera(const Error& error, std::size_t number) {
 }
 
 RenderSettings CamerasArgument::settings_of(RenderSettings settings) const {
-    if (!has_color) settings.samples = 0;
+    if (has_color) return settings;
+    if (settings.layers_at != LayersAt::Centre)
+        throw Error(ErrorCode::BadInput, "color", "", "only layers at centres are made without it; see `layers_at`");
+    settings.samples = 0;
     return settings;
 }
 

@@ -28,7 +28,7 @@ struct CamerasArgument {
 
     std::size_t count() const { return is_single ? 1 : poses.size(); }
 
-    /// Returns the settings of each picture.
+    /// Returns the settings of each picture. Throws Error(BadInput) if a picture without colour has no centres.
     RenderSettings settings_of(RenderSettings settings) const;
 };
 

@@ -23,9 +23,10 @@ namespace nb = nanobind;
 namespace pertev {
 namespace {
 
-/// Returns a picture of (height, width) or (height, width, channels) with 1 to 4 channels.
+/// Returns a picture of (height, width) or (height, width, channels) with 1 to 4 channels. Bytes of a display are none.
 Image image_of(nb::handle value, const std::string& name) {
     const ArrayArgument array(value, name);
+    if (array.is_whole()) array.fail("the array's dtype is no float; a picture is linear Rec. 709");
     const std::size_t channels = array.axes() == 2 ? 1 : array.axes() == 3 ? array.length(2) : 0;
     if (channels < 1 || channels > 4) {
         array.fail("expected the shape (height, width), or (height, width, channels) with 1 to 4 channels");

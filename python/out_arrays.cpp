@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "base/error.h"
+#include "python/argument_fields.h"
 
 namespace nb = nanobind;
 
@@ -50,7 +51,7 @@ std::vector<OutArray> out_arrays(const nb::dict& out) {
     arrays.reserve(out.size());
     for (const auto& [key, value] : out) {
         OutArray& made = arrays.emplace_back();
-        made.name = nb::str(key).c_str();
+        made.name = text_argument(key, "out");
         made.array = nb::borrow(value);
         nb::ndarray<nb::c_contig, nb::device::cpu> array;
         if (!nb::try_cast(value, array, false)) continue;

@@ -207,6 +207,7 @@ std::optional<Environment> environment_of(nb::handle value) {
     const ArrayArgument array(value, "environment");
     Environment environment;
     if (array.has_shape({3})) {
+        if (array.is_uint8()) array.fail("the array's dtype is no float; a radiance is");
         const std::vector<float> color = array.floats();
         environment.scale = {color[0], color[1], color[2]};
     } else {

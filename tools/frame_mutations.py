@@ -78,4 +78,10 @@ MUTATIONS = [
      ("python/scene_arrays.cpp", "} else if (array.is_whole()) {\n        array.fail", "} else if (array.axes() == 0) {\n        array.fail")),
     ("numbers of a scene of arrays have no range", "python/errors",
      ("python/scene_arrays.cpp", "if (parameter) check_parameter(", "if (parameter && scene.meshes.empty()) check_parameter(")),
+    ("bytes of a display are taken for linear pictures", "python/errors",
+     ("python/images.cpp", "if (array.is_whole()) array.fail", "if (array.axes() == 0) array.fail")),
+    ("names with a null character end there", "python/errors",
+     ("python/pertev/_settings.py", "if \"\\0\" in text:", "if \"\\0\\0\" in text:")),
+    ("a wheel of any size is made", "python/package",
+     ("tools/make_wheel.sh", "-size +80000000c", "-size +8000000000c")),
 ]

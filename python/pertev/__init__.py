@@ -15,7 +15,7 @@ from ._images import compare, read, tone_map, write
 from ._process import check_process
 from ._parts import merge, names_of
 from ._scene import Params, Scene, Session, load, scene, scene_of
-from ._settings import OF_PARTS, OF_STILLS, file_name, number_of, of_layers, texts_of, with_layers
+from ._settings import OF_PARTS, OF_STILLS, file_name, flag_of, number_of, of_layers, texts_of, with_layers
 from ._viewer import Viewer, view
 from .errors import (DeviceError, Error, InputError, InterruptedRender, LimitError, MemoryLimitError, MissingFileError, WriteError,
                      input_error)
@@ -57,7 +57,8 @@ def render(scene, *, cameras=None, seeds=None, color=True, layers=(), output=(),
     """
     check_process()
     used = scene_of(scene)
-    if cameras is not None or on_device:
+    color = flag_of(color, "color")
+    if flag_of(on_device, "on_device") or cameras is not None:
         for name in OF_PARTS.keys() & {name for name, value in values.items() if value is not None}:
             raise TypeError(f"{name} is of a single picture, not of many cameras or of arrays on the device")
         if output:
@@ -85,7 +86,7 @@ def render_chunks(scene, cameras, *, chunk=None, seeds=None, color=True, layers=
     """
     check_process()
     used = scene_of(scene)
-    cameras = cameras_of(cameras, values)
+    cameras, color = cameras_of(cameras, values), flag_of(color, "color")
     if cameras is None:
         raise TypeError("cameras: expected Cameras, an array of poses (N, 4, 4), or a file")
     if chunk is not None and (chunk := number_of(chunk, "chunk", whole=True)) < 1:

@@ -9,6 +9,9 @@ from ._settings import file_name, number_of, texts_of
 from .errors import InputError, input_error
 
 
+_OWN = ("convention", "intrinsics_size", "lens", "distortion")  # settings that Cameras may have
+
+
 def _numbers(value, name):
     """Returns an array of NumPy. Raises InputError of the argument's name."""
     import numpy  # not needed by `import pertev` itself
@@ -19,6 +22,13 @@ def _numbers(value, name):
         raise input_error(name, f"not an array of numbers: {error}") from None
     if array.dtype.kind not in "fiu" or array.ndim == 0:
         raise input_error(name, f"expected an array of numbers, not {array.dtype if array.ndim else type(value).__name__}")
+    return array
+
+
+def _of_shape(array, name, expected, *shapes):
+    """Returns the array. Raises InputError unless it has one of the shapes, each a number of axes and the last lengths."""
+    if not any(array.ndim == axes and array.shape[axes - len(last):] == last for axes, last in shapes):
+        raise input_error(name, f"the array's shape is {array.shape}; expected {expected}")
     return array
 
 
@@ -35,15 +45,18 @@ class Cameras:
     What is left out is that of the call, as its `convention` or `intrinsics`, and what differs from the call is an error.
 
     Arrays may be on a GPU. `names` are those of a file's cameras (read_cameras), and `size` is that of pictures for which the
-    call has none.
+    call has none. Raises InputError for arrays of other shapes.
     """
 
     names = size = None
 
     def __init__(self, poses, K=None, *, convention=None, intrinsics_size=None, lens=None, distortion=None):
-        self.poses = _numbers(poses, "cameras")
-        self.K = K if K is None else _numbers(K, "K")
-        self.settings = {"convention": convention, "intrinsics_size": intrinsics_size, "lens": lens, "distortion": distortion}
+        self.poses = _of_shape(_numbers(poses, "cameras"), "cameras", "(N, 4, 4) or (N, 3, 4)", (3, (4, 4)), (3, (3, 4)))
+        self.K = K if K is None else _of_shape(_numbers(K, "K"), "K", "(3, 3) or (N, 3, 3), or (4,) or (N, 4)",
+                                               (2, (3, 3)), (3, (3, 3)), (1, (4,)), (2, (4,)))
+        if not self._has_one_K() and len(self.K) not in (1, len(self.poses)):
+            raise input_error("K", f"expected one, or one for each of {len(self.poses)} cameras, not {len(self.K)}")
+        self.settings = dict(zip(_OWN, (convention, intrinsics_size, lens, distortion)))
 
     def __len__(self):
         return len(self.poses)
@@ -53,7 +66,7 @@ class Cameras:
         import numpy
 
         numbers = numpy.atleast_1d(numpy.arange(len(self))[part])
-        few = Cameras(self.poses[numbers], self.K if self._has_one_K() else self.K[numbers])
+        few = Cameras(self.poses[numbers], self.K if self._has_one_K() or len(self.K) == 1 else self.K[numbers])
         few.settings = self.settings
         few.names, few.size = self.names and [self.names[number] for number in numbers], self.size
         return few
@@ -106,7 +119,7 @@ def read_cameras(path, *, size=None, convention=None):
 
     width, height = _size_of(size)
     rows = _core.read_cameras(path := file_name(path, "path"), width, height)
-    others = {name for _, settings in rows for name in settings} - {"camera_pose", "intrinsics", "size", *Cameras([]).settings}
+    others = {name for _, settings in rows for name in settings} - {"camera_pose", "intrinsics", "size", *_OWN}
     if others:
         raise InputError(f"{path}: {', '.join(sorted(others))}: use `pertev render --cameras` for these settings")
 
@@ -123,7 +136,7 @@ def read_cameras(path, *, size=None, convention=None):
     if len(poses) != len(rows) or len(K) not in (0, len(rows)):
         raise InputError(f"{path}: each camera needs a camera_pose, and all or none have intrinsics")
     last = numpy.array([0, 0, 0, 1.0])
-    cameras = Cameras(numpy.array([numpy.append(pose[:12], last).reshape(4, 4) for pose in poses]),
+    cameras = Cameras(numpy.array([numpy.append(pose[:12], last) for pose in poses]).reshape(-1, 4, 4),
                       numpy.array([of if len(of) == 4 else of[[0, 4, 2, 5]] for of in K]) if K else None,
                       convention=of_all("convention", convention), intrinsics_size=of_all("intrinsics_size"),
                       lens=of_all("lens"), distortion=of_all("distortion"))

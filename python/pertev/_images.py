@@ -3,7 +3,7 @@
 import os
 
 from . import _core
-from ._settings import file_name, number_of
+from ._settings import file_name, number_of, text_of
 from .errors import input_error
 
 
@@ -21,31 +21,25 @@ def _array(picture, name="picture"):
     return picture.color if isinstance(picture, _core.Result) else picture
 
 
-def _curve(name):
-    if not isinstance(name, str):
-        raise TypeError(f"curve: expected the name of a curve, not {type(name).__name__}")
-    return name
-
-
 def read(path):
     """Returns the picture of a file (.exr .png .jpg .hdr) as float32 (height, width, 3 or 4), linear Rec. 709."""
     return _core.read(file_name(path, "path"))
 
 
 def write(path, picture, *, curve="srgb", exposure=0.0):
-    """Writes a Result, a BatchResult of one picture, or an array of (height, width) or with 1 to 4 channels, linear Rec. 709.
+    """Writes a Result, a BatchResult of one picture, or an array of (height, width) or with 1 to 4 channels, floats of linear Rec. 709.
 
     .exr and .hdr hold its values, .exr also a Result's layers and metadata; .png and .jpg show it by `curve` (as
     tone_map()) at `exposure` in stops.
     """
     picture = _one(picture)
     writer = _core.write_result if isinstance(picture, _core.Result) else _core.write
-    writer(file_name(path, "path"), picture, _curve(curve), number_of(exposure, "exposure"))
+    writer(file_name(path, "path"), picture, text_of(curve, "curve"), number_of(exposure, "exposure"))
 
 
 def tone_map(picture, *, curve="agx", exposure=0.0):
     """Returns uint8 (height, width, 4), sRGB: the picture times 2**exposure by a curve of the setting tone_map."""
-    return _core.tone_map(_array(picture), _curve(curve), number_of(exposure, "exposure"))
+    return _core.tone_map(_array(picture), text_of(curve, "curve"), number_of(exposure, "exposure"))
 
 
 def compare(picture, reference, *, blocks=1):

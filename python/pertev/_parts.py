@@ -4,7 +4,7 @@ import os
 
 from . import _core
 from ._process import check_process
-from ._settings import file_name, texts_of
+from ._settings import file_name, flag_of, texts_of
 
 
 def names_of(files, name):
@@ -26,4 +26,4 @@ def merge(files, *, output=(), partial=False, tone_map=None, exposure=None):
     """
     check_process()
     shown = texts_of({"tone_map": tone_map, "exposure": exposure})
-    return _core.merge(names_of(files, "files"), bool(partial), names_of(output, "output"), *("".join(shown.get(name, ())) for name in ("tone_map", "exposure")))
+    return _core.merge(names_of(files, "files"), flag_of(partial, "partial"), names_of(output, "output"), *("".join(shown.get(name, ())) for name in ("tone_map", "exposure")))

@@ -6,8 +6,12 @@ import os
 
 from . import _core
 from ._process import check_process
-from ._settings import OF_FRAMES, file_name, texts_of, with_layers
+from ._settings import OF_FRAMES, file_name, text_of, texts_of, with_layers
 from .errors import InputError, input_error
+
+
+def _is_path(path):
+    return isinstance(path, str) and path.encode(errors="ignore").decode() == path
 
 
 class Params(collections.abc.Mapping):
@@ -23,13 +27,13 @@ class Params(collections.abc.Mapping):
         self._scene = scene
 
     def __getitem__(self, path):
-        value = self._scene._value(path) if isinstance(path, str) else None
+        value = self._scene._value(path) if _is_path(path) else None
         if value is None:
             raise self._unknown(path)
         return value
 
     def __setitem__(self, path, value):
-        if not (isinstance(path, str) and self._scene._set_value(path, value)):
+        if not (_is_path(path) and self._scene._set_value(path, value)):
             raise self._unknown(path)
 
     def __iter__(self):
@@ -88,9 +92,7 @@ class Scene(_core.Scene):
         parts["environment"] = None if is_setting else environment
         if source is None and (meshes is None or instances is None):
             raise TypeError("a scene of arrays needs meshes and instances")
-        if not isinstance(name, str):
-            raise TypeError(f"name: expected a text, not {type(name).__name__}")
-        super().__init__(name if source is None else file_name(source, "source"), texts_of(values),
+        super().__init__(text_of(name, "name") if source is None else file_name(source, "source"), texts_of(values),
                          parts if source is None else None)
         self._is_of_arrays = source is None
 

@@ -14,6 +14,7 @@ OF_PARTS = {row["name"]: row for row in _core.part_settings()}
 OF_STILLS = {**OF_PICTURES, **OF_PARTS}
 SEPARATORS = {"A:B": ":", "I/N": "/"}  # by the form of a value
 TOO_LARGE = "the number is too large"
+BOOLS = ("bool", "bool_")  # names in Python and NumPy 2, and in NumPy 1
 
 
 def file_name(value, name):
@@ -30,7 +31,16 @@ def text_of(value, name):
     return _encodable(value, name)
 
 
+def flag_of(value, name):
+    """Returns True or False. Raises TypeError of the argument's name."""
+    if isinstance(value, bool) or type(value).__name__ in BOOLS:
+        return bool(value)
+    raise TypeError(f"{name}: expected True or False, not {value!r}"[:200])
+
+
 def _encodable(text, name):
+    if "\0" in text:  # the program's texts would end there
+        raise input_error(name, f"{ascii(text)} has a null character")
     if text.isascii():
         return text
     try:
@@ -62,7 +72,7 @@ def _text(row, value):
         return _encodable(value, row["name"])
     if isinstance(value, os.PathLike):
         return file_name(value, row["name"])
-    if isinstance(value, bool) or type(value).__name__ in ("bool", "bool_"):  # names in Python, NumPy 2 and 1
+    if isinstance(value, bool) or type(value).__name__ in BOOLS:
         if row["type"] == "bool":
             return "true" if value else "false"
     elif hasattr(value, "__float__") and getattr(value, "ndim", 0) == 0:

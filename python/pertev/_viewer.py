@@ -10,7 +10,7 @@ import weakref
 import webbrowser
 
 from . import _core
-from ._settings import OF_FRAMES, OF_STILLS, file_name, number_of, text_of, texts_of
+from ._settings import OF_FRAMES, OF_STILLS, file_name, flag_of, number_of, text_of, texts_of
 from .errors import Error
 
 
@@ -110,6 +110,7 @@ def view(scene, *, port=0, host=None, token_file=None, jpeg=None, browser=False,
     The viewer shows a scene of arrays, or with changed parameters, as save() writes it, with its environment. Raises Error
     as render() if the viewer does not start.
     """
+    opens_browser = flag_of(browser, "browser")
     folder, server = None, ["--port", str(number_of(port, "port", whole=True))]
     for name, value, checked in (("host", host, text_of), ("jpeg", jpeg, text_of), ("token_file", token_file, file_name)):
         server += [] if value is None else ["--" + name.replace("_", "-"), checked(value, name)]
@@ -130,6 +131,6 @@ def view(scene, *, port=0, host=None, token_file=None, jpeg=None, browser=False,
         if folder is not None:
             folder.cleanup()
         raise
-    if browser:
+    if opens_browser:
         webbrowser.open(viewer.url)
     return viewer

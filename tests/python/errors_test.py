@@ -96,10 +96,23 @@ class Errors(unittest.TestCase):
                            ("settings", lambda: pertev.render(self.scene, settings={"spp": 3})), ("cameras", lambda: pertev.render_chunks(self.scene, None)),
                            ("size", lambda: pertev.read_cameras("a.json", size=3)), ("chunk", lambda: pertev.render_chunks(self.scene, POSES, chunk="a")),
                            ("name", lambda: pertev.Scene(meshes={}, instances={}, name=3)), ("source", lambda: pertev.Scene(3)),
-                           ("path", lambda: pertev.read(None))]:
+                           ("path", lambda: pertev.read(None)), ("color", lambda: pertev.render(self.scene, cameras=POSES, color=None)),
+                           ("color", lambda: pertev.render_chunks(self.scene, POSES, color="a")), ("on_device", lambda: pertev.render(self.scene, on_device=1)),
+                           ("partial", lambda: pertev.merge("a.pvf", partial="a")), ("browser", lambda: pertev.view(self.scene, browser=1)),
+                           ("curve", lambda: pertev.tone_map(numpy.zeros((2, 2, 3)), curve=3))]:
             with self.subTest(name), self.assertRaises((TypeError, pertev.InputError)) as caught:
                 call()
             self.assertTrue(str(caught.exception).startswith(name + ": "), caught.exception)
+        mesh, array, null = {"vertices": numpy.eye(3), "faces": [[0, 1, 2]]}, numpy.zeros((6, 8, 3), numpy.float32), "a\0b"
+        for name, call in [("name", lambda: pertev.Scene(meshes={"m": mesh}, instances={"i": {"mesh": "m"}}, name=surrogate)),
+                           ("meshes", lambda: pertev.Scene(meshes={surrogate: mesh}, instances={})), ("instances/i/mesh", lambda: pertev.Scene(meshes={"m": mesh}, instances={"i": {"mesh": null}})),
+                           ("meshes/m", lambda: pertev.Scene(meshes={"m": {**mesh, surrogate: 1}}, instances={})), ("curve", lambda: pertev.tone_map(array, curve=surrogate)),
+                           ("out", lambda: pertev.render(self.scene, **SMALL, out={surrogate: array})), ("out", lambda: pertev.render(self.scene, **SMALL, out={3: array})),
+                           ("path", lambda: pertev.write(null + ".png", array)), ("environment", lambda: pertev.render(self.scene, environment=null, **SMALL)),
+                           ("color", lambda: pertev.render_chunks(self.scene, POSES, color=False, **SMALL)), ("cameras", lambda: pertev.Cameras(numpy.eye(4))),
+                           ("K", lambda: pertev.Cameras(POSES, numpy.eye(2))), ("K", lambda: pertev.Cameras(POSES, numpy.ones((3, 4))))]:
+            with self.subTest(name):
+                self.refused(pertev.InputError, name, call)
         for name, call in [("cameras", lambda: pertev.Cameras({})), ("path", lambda: pertev.read(surrogate)), ("source", lambda: pertev.load(surrogate)),
                            ("environment", lambda: pertev.render(self.scene, environment=surrogate, **SMALL)), ("path", lambda: self.scene.save("a.obj")),
                            ("chunk", lambda: pertev.render_chunks(self.scene, POSES, chunk=0)), ("seeds", lambda: pertev.render_chunks(self.scene, POSES, seeds=[0.5], **SMALL)),
@@ -116,9 +129,11 @@ class Errors(unittest.TestCase):
             for wrong in (True, pathlib.Path("a")):
                 with self.assertRaisesRegex(TypeError, f"^{name}: expected a text, not "):
                     pertev.view(self.scene, **{name: wrong})
-        for wrong in (3, None):
+        for wrong in (3, None, surrogate):
             with self.assertRaises(KeyError):
                 self.scene.params[wrong]
+            with self.assertRaises(KeyError):
+                self.scene.params[wrong] = 1
 
     def test_cameras_are_chosen_by_number(self):
         cameras = pertev.Cameras(numpy.arange(3 * 16).reshape(3, 4, 4), [[8, 8, 4, k] for k in range(3)], convention="opencv")
@@ -127,6 +142,8 @@ class Errors(unittest.TestCase):
         self.assertEqual((cameras[-1].poses[0, 0, 0], len(cameras[1:]), cameras[[2, 0]].K[:, 3].tolist()), (32, 2, [2, 0]))
         with self.assertRaises(IndexError):
             cameras[3]
+        one_K = pertev.Cameras(cameras.poses, [[8, 8, 4, 3]])[1:]
+        self.assertEqual((len(one_K), one_K.K.tolist()), (2, [[8, 8, 4, 3]]))
 
     def test_settings_have_the_names_of_python(self):
         for values, setting in [({"filter_radius": -1}, "filter_radius"), ({"layers": "deepness"}, "layers"), ({"aov": "deepness"}, "aov"), ({"transparent": 1}, "transparent"),
@@ -150,6 +167,8 @@ class Errors(unittest.TestCase):
         for name, call in [("meshes/m/vertices", scene_of(vertices=Elsewhere(numpy.eye(3)))), ("meshes/m/faces", scene_of(faces=numpy.eye(3))),
                            ("meshes/m/vertices", scene_of(vertices=numpy.eye(3, dtype=complex))), ("cameras", batch_of(POSES[:, :, :2])),
                            ("K", batch_of(POSES, numpy.eye(2))), ("seeds", batch_of(POSES, seeds=[0.5, 1.5])),
+                           *(("picture", lambda kind=kind, of=of: of((255 * picture).astype(kind))) for kind in (numpy.uint8, numpy.int32)
+                             for of in (pertev.tone_map, lambda whole: pertev.compare(whole, picture), lambda whole: pertev.write("a.png", whole))),
                            ("picture", lambda: pertev.tone_map(picture[None])), ("picture", lambda: pertev.tone_map(Elsewhere(picture)))]:
             with self.subTest(name):
                 self.refused(pertev.InputError, name, call)
@@ -200,7 +219,8 @@ class Errors(unittest.TestCase):
                              ("materials/a/roughness", {"materials": {"a": {"roughness": 2}}}), ("materials/a/base_color", {"materials": {"a": {"base_color": (1, 2, 1)}}}),
                              ("materials/a/base_color_texture", {"materials": {"a": {"base_color_texture": numpy.full((2, 2, 3), 255, numpy.int32)}}}),
                              ("materials/a/roughness_texture", {"materials": {"a": {"roughness_texture": numpy.full((2, 2), 255, numpy.uint16)}}}),
-                             ("meshes/m/colors", {"meshes": {"m": {**mesh, "colors": numpy.full((3, 4), 255, numpy.int32)}}}), ("environment", {"environment": numpy.full((2, 4, 3), 255, numpy.uint8)})]:
+                             ("meshes/m/colors", {"meshes": {"m": {**mesh, "colors": numpy.full((3, 4), 255, numpy.int32)}}}), ("environment", {"environment": numpy.full((2, 4, 3), 255, numpy.uint8)}),
+                             ("environment", {"environment": numpy.full(3, 255, numpy.uint8)})]:
             with self.subTest(name):
                 self.refused(pertev.InputError, name, lambda: pertev.Scene(**{**good, **change}))
         error = self.refused(pertev.InputError, "cameras/c/fov", lambda: pertev.Scene(**good, cameras={"c": {"fov": 190}}))

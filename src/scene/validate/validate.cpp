@@ -136,12 +136,12 @@ private:
             sink_.leave_out(text(repairs_.not_finite, "triangle", "with a vertex that is not finite", "left out"));
         }
         if (repairs_.too_far > 0) {
-            sink_.leave_out(text(repairs_.too_far, "triangle", "that reaches beyond 2^40 metres", "left out"));
+            sink_.leave_out(text(repairs_.too_far, "triangle", "with a vertex beyond 2^40 metres", "left out"));
         }
         warn(repairs_.without_area, "triangle", "without area", "left out");
         warn(repairs_.normals, "normal", "of length zero or not finite", "replaced by the geometric normal");
         warn(repairs_.tangents, "tangent", "of length zero or not finite", "replaced");
-        warn(repairs_.texture_coordinates, "texture coordinate", "that is not finite", "set to 0");
+        warn(repairs_.texture_coordinates, "texture coordinate", "without a finite value", "set to 0");
         warn(repairs_.colors, "vertex colour", "outside [0, 1]", "clamped");
     }
 
