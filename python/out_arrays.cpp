@@ -42,6 +42,28 @@ std::size_t bytes_of(const OutArray& array) {
     return bytes;
 }
 
+/// Reads a film in the host's memory, once for all means.
+void read_on_host(const Film& film, bool transparent, std::span<const OutArray> arrays) {
+    const uint32_t pixels = film.width() * film.height();
+    const auto floats_of = [](const OutArray& array) { return reinterpret_cast<float*>(array.memory); };
+    const OutArray* picture = nullptr;
+    std::vector<Film::LayerMemory> layers;
+    for (const OutArray& array : arrays) {
+        if (array.name == "ids") {
+            std::memcpy(array.memory, film.view().ids, bytes_of(array));
+        } else if (!is_picture(array.name)) {
+            layers.push_back({group_named(array.name)->bit, floats_of(array)});
+        } else if (picture == nullptr) {
+            picture = &array;
+        }
+    }
+    film.resolve_into(picture != nullptr ? floats_of(*picture) : nullptr, transparent, layers, pixels);
+    for (const OutArray& array : arrays) { // color and noisy are the same
+        if (is_picture(array.name) && array.memory != picture->memory)
+            std::memcpy(array.memory, picture->memory, bytes_of(array));
+    }
+}
+
 } // namespace
 
 bool is_picture(std::string_view name) { return name == "color" || name == "noisy"; }
@@ -135,25 +157,27 @@ bool FilmReader::reads(std::span<const OutArray> arrays, const RenderSettings& s
 void FilmReader::read(Session& session, const std::shared_ptr<Queue>& queue, std::span<const OutArray> arrays) {
     const Film& film = session.film();
     const uint32_t pixels = film.width() * film.height();
+    const bool transparent = session.settings().transparent;
     const UseThreads use(queue->threads());
     Queue& of_film = session.pictures().film_queue(); // one of the CPU if several devices have rendered
+    if (!of_film.is_cuda()) return read_on_host(film, transparent, arrays);
     for (const OutArray& array : arrays) {
         const std::size_t bytes = bytes_of(array);
-        if (of_film.is_cuda() && (queue_ != queue || on_device_.size() < bytes)) {
+        if (queue_ != queue || on_device_.size() < bytes) {
             on_device_ = {};
             queue_ = queue;
             on_device_ = {*queue, bytes, "arrays to be filled"};
         }
-        std::byte* const to = of_film.is_cuda() ? on_device_.data() : array.memory;
+        std::byte* const to = on_device_.data();
         if (is_picture(array.name)) {
-            film.resolve_into(reinterpret_cast<float*>(to), session.settings().transparent, {}, pixels);
+            film.resolve_into(reinterpret_cast<float*>(to), transparent, {}, pixels);
         } else if (array.name == "ids") {
             of_film.copy_on_device(to, film.view().ids, bytes);
         } else {
             const Film::LayerMemory layer = {group_named(array.name)->bit, reinterpret_cast<float*>(to)};
             film.resolve_into(nullptr, false, {&layer, 1}, pixels);
         }
-        if (of_film.is_cuda()) of_film.copy_to_host(array.memory, to, bytes);
+        of_film.copy_to_host(array.memory, to, bytes);
     }
 }
 

@@ -179,6 +179,9 @@ class Out(unittest.TestCase):
         self.compare({"color": numpy.empty((16, 24, 4), numpy.float32)}, [], transparent=True)
         self.compare({"noisy": numpy.empty((16, 24, 3), numpy.float32)}, [])
         self.compare({"depth": numpy.empty((16, 24), numpy.float32)}, ["depth"])
+        more = {"noisy": numpy.empty((16, 24, 3), numpy.float32), **self.arrays(), "normal": numpy.empty((16, 24, 3), numpy.float32)}
+        for layers_at in ("samples", "centre"):
+            self.compare(more, ["depth", "ids", "normal"], layers_at=layers_at)
 
     def test_arrays_of_quantities_without_a_film_are_filled(self):
         self.compare({"motion": numpy.empty((16, 24, 2), numpy.float32)}, ["motion"])
