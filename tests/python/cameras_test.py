@@ -213,6 +213,15 @@ class Cameras(unittest.TestCase):
             with self.assertRaises(TypeError):
                 pertev.render(self.scene, **arguments, **SMALL)
 
+    def test_rays_through_centres_give_the_layers_of_centres(self):
+        """These are the settings of docs/python.md for the highest rate, beside `layers_at`."""
+        fast = {"light_sampling": "nee", "max_depth": 1, "filter": "box", "filter_radius": 2**-20, "spp": 1, "size": (24, 16)}
+        own, centres = (pertev.render(self.scene, cameras=poses(2), layers=LAYERS, layers_at=layers_at, **fast) for layers_at in ("samples", "centre"))
+        self.assertEqual(host(own.color).tobytes(), host(centres.color).tobytes())
+        self.assertEqual(host(own.ids).tobytes(), host(centres.ids).tobytes())
+        for name in ("depth", "normal"):
+            numpy.testing.assert_allclose(host(getattr(own, name)), host(getattr(centres, name)), rtol=2e-6, atol=2e-6)
+
     def test_a_single_picture_stays_on_the_device(self):
         for more in ({}, {"layers_at": "centre", "seed": 3}, {"transparent": True}, {"integrator": "bidirectional"},
                      {"lens": "fisheye", "layers_at": "centre"}):
