@@ -104,11 +104,12 @@ class Errors(unittest.TestCase):
                 call()
             self.assertTrue(str(caught.exception).startswith(name + ": "), caught.exception)
         mesh, array, null = {"vertices": numpy.eye(3), "faces": [[0, 1, 2]]}, numpy.zeros((6, 8, 3), numpy.float32), "a\0b"
+        folder = self.enterContext(tempfile.TemporaryDirectory())
         for name, call in [("name", lambda: pertev.Scene(meshes={"m": mesh}, instances={"i": {"mesh": "m"}}, name=surrogate)),
                            ("meshes", lambda: pertev.Scene(meshes={surrogate: mesh}, instances={})), ("instances/i/mesh", lambda: pertev.Scene(meshes={"m": mesh}, instances={"i": {"mesh": null}})),
                            ("meshes/m", lambda: pertev.Scene(meshes={"m": {**mesh, surrogate: 1}}, instances={})), ("curve", lambda: pertev.tone_map(array, curve=surrogate)),
                            ("out", lambda: pertev.render(self.scene, **SMALL, out={surrogate: array})), ("out", lambda: pertev.render(self.scene, **SMALL, out={3: array})),
-                           ("path", lambda: pertev.write(null + ".png", array)), ("environment", lambda: pertev.render(self.scene, environment=null, **SMALL)),
+                           ("path", lambda: pertev.write(f"{folder}/{null}.png", array)), ("environment", lambda: pertev.render(self.scene, environment=null, **SMALL)),
                            ("color", lambda: pertev.render_chunks(self.scene, POSES, color=False, **SMALL)), ("cameras", lambda: pertev.Cameras(numpy.eye(4))),
                            ("K", lambda: pertev.Cameras(POSES, numpy.eye(2))), ("K", lambda: pertev.Cameras(POSES, numpy.ones((3, 4))))]:
             with self.subTest(name):
@@ -156,7 +157,7 @@ class Errors(unittest.TestCase):
 
     def test_arrays_of_wrong_shape_type_or_device_are_refused(self):
         mesh = {"vertices": numpy.eye(3), "faces": numpy.array([[0, 1, 2]])}
-        picture = numpy.zeros((4, 4, 3), numpy.float32)
+        picture, folder = numpy.zeros((4, 4, 3), numpy.float32), self.enterContext(tempfile.TemporaryDirectory())
 
         def scene_of(**changes):
             return lambda: pertev.Scene(meshes={"m": {**mesh, **changes}}, instances={"i": {"mesh": "m"}})
@@ -168,7 +169,7 @@ class Errors(unittest.TestCase):
                            ("meshes/m/vertices", scene_of(vertices=numpy.eye(3, dtype=complex))), ("cameras", batch_of(POSES[:, :, :2])),
                            ("K", batch_of(POSES, numpy.eye(2))), ("seeds", batch_of(POSES, seeds=[0.5, 1.5])),
                            *(("picture", lambda kind=kind, of=of: of((255 * picture).astype(kind))) for kind in (numpy.uint8, numpy.int32)
-                             for of in (pertev.tone_map, lambda whole: pertev.compare(whole, picture), lambda whole: pertev.write("a.png", whole))),
+                             for of in (pertev.tone_map, lambda whole: pertev.compare(whole, picture), lambda whole: pertev.write(f"{folder}/a.png", whole))),
                            ("picture", lambda: pertev.tone_map(picture[None])), ("picture", lambda: pertev.tone_map(Elsewhere(picture)))]:
             with self.subTest(name):
                 self.refused(pertev.InputError, name, call)
