@@ -67,7 +67,7 @@ private:
     const AssetPlace& place_;
     Sink& sink_;
     std::vector<Part> parts_;
-    std::set<uint32_t> failed_; // files that cannot be read
+    std::set<uint32_t> met_, failed_; // indices of files that nodes show, and of those that cannot be read
 };
 
 } // namespace pertev::gltf
