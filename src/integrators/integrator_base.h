@@ -55,7 +55,6 @@ protected:
     template <class Stage>
     void launch_for_pixels(const char* name, const Stage& stage) {
         const PixelWindow& window = stage.film.window;
-        if (window.picture_width == 0) return launch(queue_, name, window.count(), stage);
         launch(queue_, name, window.count(), InWindow<Stage>{stage, window});
     }
 
