@@ -2,7 +2,8 @@
 # Makes wheels for every glibc from 2.36 on, with the libraries in them: tools/make_wheel.sh [OUT], build/wheels if not
 # given. Run it on Debian 12. One wheel is for Python 3.11 and one for all from 3.12 on, by those of python3.11,
 # python3.12 and python3.13 on the path ($PERTEV_PYTHONS names others); each without CUDA and, where there is an nvcc,
-# also with it, for the GPUs of $CUDAARCHS (those of the preset `release`). What builds them comes from PyPI.
+# also with it, for the GPUs of $CUDAARCHS. If that is not given: code for each major architecture, which its later GPUs
+# run too (8.6 and 8.9 that of 8.0), and no PTX, so that a wheel has at most 80 MB. What builds them comes from PyPI.
 set -euo pipefail
 out=$(realpath -m "${1:-build/wheels}")
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -19,7 +20,7 @@ make_one() { # python kind
     if [[ $kind == cuda ]]; then
         export PERTEV_WHEEL_CUDA=true CUDAFLAGS="--compress-mode=size ${CUDAFLAGS:-}"
         options=(--config-settings=cmake.define.PERTEV_CUDA=ON --config-settings=cmake.define.PERTEV_WERROR=OFF # ptxas warns of bounds that some GPUs lack
-            "--config-settings=cmake.define.CMAKE_CUDA_ARCHITECTURES=${CUDAARCHS:-$(sed -n 's/.*"CMAKE_CUDA_ARCHITECTURES": "\(75.*\)"$/\1/p' CMakePresets.json)}")
+            "--config-settings=cmake.define.CMAKE_CUDA_ARCHITECTURES=${CUDAARCHS:-75-real;80-real;90-real;100-real;120-real}")
     fi
     rm -rf "$raw" "$work/env"
     "$python" -m venv "$work/env"
