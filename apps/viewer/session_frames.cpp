@@ -250,7 +250,8 @@ void SessionFrames::begin_exposed(const FrameRequest& request, float stops) {
     exposure_.set(stops);
 }
 
-/// `is_growing` means at rest before the samples: with all scatterings, and stopped if no client waits for it.
+/// Renders and reconstructs a frame. `is_growing`: the camera rests and no sample exists yet. All scatterings count,
+/// and the frame stops if no client waits for it.
 std::optional<ShownFrame> SessionFrames::reconstruct(const FrameRequest& request, float scale, bool is_growing) {
     const Stopwatch whole;
     const double update_s = std::exchange(update_s_, 0);

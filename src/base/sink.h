@@ -115,7 +115,7 @@ public:
     const Messages& messages() const override { return *this; }
 
     const std::vector<Message>& all() const { return all_; }
-    /// Returns those with these indices and above.
+    /// Returns the messages from index `first` on.
     Messages since(std::size_t first) const {
         Messages found;
         for (; first < all_.size(); ++first) found.receive(all_[first]);

@@ -22,7 +22,7 @@ public:
     /// another picture.
     bool set_camera(const Camera& camera);
     bool set_settings(const RenderSettings& settings);
-    /// Restarts the film; the second function is for a scene that has changed.
+    /// Restarts the film; restart_for_scene() is for a scene that has changed.
     void restart();
     void restart_for_scene();
 

@@ -147,7 +147,8 @@ struct alignas(8) Cluster {
     uint32_t name; // a leaf that names no other cluster
 };
 
-/// Merges two clusters with the given boxes and returns the new one. The node's number is the second's name.
+/// Merges two clusters, whose boxes are `left_box` and `right_box`, and returns the new one. The node's number is the
+/// second's name.
 HD inline Cluster join(const ClusterTree& tree, Cluster left, const Bounds3& left_box, Cluster right,
                        const Bounds3& right_box) {
     Bounds3 both = left_box;

@@ -19,7 +19,7 @@
 
 namespace pertev::glb {
 
-/// Text of a float that is read as the same one.
+/// Returns the shortest text that is read as the same float; 0 if it is not finite.
 std::string json_float(float value);
 std::string json_floats(std::span<const float> values);
 

@@ -39,7 +39,7 @@ public:
         done_ += pictures;
         changed_.notify_all();
     }
-    /// Gives a chunk back, if there is one, for another round without the device.
+    /// Queues `chunk`, if there is one, for another round without the device, and records why the device is lost.
     void lose(std::optional<uint32_t> chunk, std::size_t device, const Error& why) {
         const std::lock_guard lock(mutex_);
         if (chunk) lost_.push_back(*chunk);
@@ -149,7 +149,7 @@ private:
         run_.leave();
     }
 
-    /// `taken` is the first picture of the chunk that is being rendered.
+    /// Renders chunks until none is left. Keeps the first picture of the chunk that is being rendered in `taken`.
     void render_chunks(DeviceWorker& worker, std::optional<uint32_t>& taken) {
         stay_near(worker.queue());
         const UseThreads use(worker.queue().threads());

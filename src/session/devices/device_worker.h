@@ -23,7 +23,7 @@ inline constexpr double kFoldSeconds = 5;
 void stay_near(const Queue& queue);
 std::string name_of_device(const Queue& queue); // cuda:1, for people
 
-/// Called by the device's thread, for tests, which throw there what a device would.
+/// Hooks for tests. The device's thread calls them; a test throws in them what a failing device would.
 struct DeviceHooks {
     std::function<void(std::size_t device)> before_samples;
     std::function<void(std::size_t device, SampleRange slice)> after_slice;

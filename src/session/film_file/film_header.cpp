@@ -17,7 +17,7 @@ namespace {
 
 using gltf::JsonValue;
 
-/// All digits, also of a zero with a sign.
+/// Returns all digits of a number; a negative zero keeps its sign.
 std::string exact_number(double value) { return value == 0 && std::signbit(value) ? "-0.0" : fmt::format("{}", value); }
 std::string exact_number(float value) { return exact_number(static_cast<double>(value)); }
 

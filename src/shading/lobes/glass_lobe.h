@@ -153,7 +153,8 @@ private:
         const float chance = (1.0f / 3.0f) * (r.r + r.g + r.b);
         return {r, fresnel.cos_t, chance, chance < 1};
     }
-    /// `cosine` is that outside.
+    /// Returns the reflectance with the film, for the reflectance `plain` without it. `cosine` is that of the direction
+    /// outside.
     HD Rgb with_film(float plain, float cosine) const {
         if (!(film.weight > 0)) return grey(plain);
         return grey(plain) + film.weight * (film_reflectance(cosine, film, grey(max(ior, 1.0f))) - grey(plain));
