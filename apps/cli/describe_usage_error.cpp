@@ -167,7 +167,7 @@ std::string describe_repetition(const CLI::App& verb) {
 
 namespace {
 
-/// "--spp: why" as a remark about the setting `spp`, if that has this flag.
+/// Returns the text "--spp: why" as a remark about the setting `spp`, if that has this flag; else the text alone.
 Remark by_setting(const std::string& text) {
     const std::size_t end = std::min(text.find(": "), text.size());
     const std::string flag = text.substr(0, end);

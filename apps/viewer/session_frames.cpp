@@ -55,7 +55,7 @@ bool is_shown_as(const Display& as, const FrameRequest& request, const ShownFram
     return as.tone_map == request.view.display.tone_map && as.exposure_stops == exposed.exposure_stops;
 }
 
-/// `picture` is a Session, or its Reconstruction.
+/// Returns the displayed picture. `picture` is a Session, or its Reconstruction.
 template <class Picture>
 Rgba8Image shown_picture(Picture& picture, ToneMap tone_map, float exposure_stops) {
     picture.display(tone_map, exposure_stops);

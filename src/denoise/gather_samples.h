@@ -71,7 +71,7 @@ struct SampledSurfaces {
         }
         return f;
     }
-    /// Returns whether the sample's own pixel shows its surface, regardless of bumps.
+    /// Returns whether the sample's own pixel shows the sample's surface, regardless of bumps.
     HD bool shows_own(uint32_t pixel, const Found& f) const {
         return shows_surface(guide, camera, width, pixel, f.object, f.point, f.normal, 0.5f);
     }

@@ -113,7 +113,7 @@ struct MaterialParameters {
     HD bool has_coat() const { return coat_weight > 0; }
     HD bool has_fuzz() const { return fuzz_weight > 0 && max_component(fuzz_color) > 0; }
     HD bool transmits() const { return kind == MaterialKind::MetallicRoughness && transmission_weight > 0; }
-    /// Returns whether it is clear and the surface of a solid, which refracts light, not of a thin wall.
+    /// Returns whether the material is clear and the surface of a solid, which refracts light, not of a thin wall.
     HD bool is_solid() const { return kind == MaterialKind::Dielectric || (transmits() && !thin_walled); }
     HD bool is_unlit() const { return kind == MaterialKind::Unlit; }
     /// Returns whether the dielectric reflects otherwise than by its index.
@@ -159,8 +159,8 @@ struct MaterialParameters {
                 dispersion() > 0 || has_retroreflection());
     }
     bool is_emissive() const { return max_component(emission) > 0; }
-    /// Returns whether it is sampled as an emitter. An unlit one is not: rays from the camera or a surface that hit it
-    /// return its colour.
+    /// Returns whether the material is sampled as an emitter. An unlit one is not: rays from the camera or a surface
+    /// that hit it return its colour.
     bool is_emitter() const { return is_emissive() && !is_unlit(); }
 };
 

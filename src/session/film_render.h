@@ -61,7 +61,7 @@ public:
     }
     /// Returns the picture after the post steps; none if the settings request no step, or without samples.
     std::optional<Image> denoised();
-    /// The name of what denoised it (Denoiser::name).
+    /// Name of what denoised the picture (Denoiser::name); empty without denoising.
     std::string denoiser() const { return settings_.is_denoised() ? denoiser_ : ""; }
     std::vector<FilmLayer> layers() { return film().layers(); }
     /// Returns statistics, for which it reads two numbers from the device. The share of hidden backs is computed once

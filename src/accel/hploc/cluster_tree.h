@@ -97,7 +97,8 @@ HD inline Plans plans_of(const ClusterTree& tree, uint32_t node, float area) {
     return {load_fresh(tree.plans + (node - tree.count)), load_fresh(tree.sizes + (node - tree.count))};
 }
 
-/// Makes the same decisions as CollapsedTree, except that any triangles of a subtree may share a leaf.
+/// Returns the plans of an inner node, by the decisions of CollapsedTree, except that any triangles of a subtree may
+/// share a leaf.
 HD inline Plans plan_inner(const CollapseSettings& costs, float area, const Plans& left, const Plans& right) {
     Plans plans;
     plans.size.triangles = left.size.triangles + right.size.triangles;

@@ -24,7 +24,7 @@ public:
     /// the system's packages. Throws Error(BadInput) that names `setting` if no library fits. It is never unloaded.
     static std::shared_ptr<const OidnLibrary> find(const char* setting);
 
-    /// Returns its version, such as "2.5.1".
+    /// Returns the library's version, such as "2.5.1".
     std::string version() const;
 
     // The functions of these names. Devices and filters are opaque.

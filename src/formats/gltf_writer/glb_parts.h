@@ -28,7 +28,7 @@ class JsonMembers {
 public:
     /// Adds a member; `json` is its text.
     JsonMembers& add(const char* name, const std::string& json);
-    /// Adds a number unless it is the one that a reader takes without it.
+    /// Adds a number unless it is `usual`, which readers take if the member is missing.
     JsonMembers& add_number(const char* name, float value, float usual);
     bool is_empty() const { return text_.empty(); }
     std::string text() const { return '{' + text_ + '}'; }

@@ -176,7 +176,7 @@ private:
         result_.invalid_samples += of_device.invalid_samples();
     }
 
-    /// Goes on without the devices that failed in this round. Throws the error of the last device.
+    /// Removes the devices that failed in this round, with a warning. Throws the error if it is the last device's.
     void leave_out_lost(Sink& sink) {
         for (const auto& [number, error] : std::exchange(run_.losses, {})) {
             const auto lost = std::ranges::find(workers_, number, &DeviceWorker::number);

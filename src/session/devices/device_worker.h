@@ -19,7 +19,7 @@ namespace pertev {
 /// beside the rendering and delays none of it.
 inline constexpr double kFoldSeconds = 5;
 
-/// Lets the calling thread run near its GPU, if it has one.
+/// Lets the calling thread run near the queue's GPU; does nothing for a CPU's queue.
 void stay_near(const Queue& queue);
 std::string name_of_device(const Queue& queue); // cuda:1, for people
 

@@ -40,7 +40,7 @@ public:
     BlockFileBytes(const BlockFileKind& kind, std::string_view json);
     /// Adds a block whose elements have `stride` bytes.
     void add_block(std::span<const std::byte> elements, std::size_t stride) { add_packed(packed(elements, stride)); }
-    /// Adds all blocks of an array, which it packs beside each other.
+    /// Adds all blocks of an array, which are packed in parallel.
     void add_array(std::span<const std::byte> elements, std::size_t stride);
     /// Ends the file and returns it.
     std::vector<std::byte> take();

@@ -204,7 +204,7 @@ ExrPlace read_place(const JsonValue& root, uint32_t width, uint32_t height) {
     return place;
 }
 
-/// The targets as other readers need them.
+/// Returns name and size of each of the film's targets, for readers that do not know its settings.
 std::string json_of_targets(const FilmHeader& header) {
     Queue queue = Queue::make_dry_run(false);
     std::vector<std::string> targets;

@@ -122,7 +122,7 @@ private:
     HD static Rgb channel_alone(int channel) {
         return {channel == 0 ? 1.0f : 0.0f, channel == 1 ? 1.0f : 0.0f, channel == 2 ? 1.0f : 0.0f};
     }
-    /// draw_smooth() with dispersion. All channels mirror in one direction and refract in three.
+    /// Draws as draw_smooth(), with dispersion. All channels mirror in one direction and refract in three.
     HD LobeDraw draw_smooth_channel(int channel, Vec3 wo, float u, float reach) const {
         const GlassLobe one = of_channel(channel);
         const float cosine = min(abs(wo.z), 1.0f);
