@@ -45,7 +45,7 @@ protected:
     void check_window(const FilmView& film) const {
         PERTEV_CHECK(film.window.is_in(picture_.camera.width, picture_.camera.height));
     }
-    /// Throws std::logic_error, too, if `film` is a frame.
+    /// Throws std::logic_error unless `film` lies in the picture, and if it is a frame.
     void check_sums(const FilmView& film) const {
         PERTEV_CHECK(!film.frame.is_there());
         check_window(film);

@@ -36,7 +36,7 @@ std::string text_in(const JsonValue& value, int depth = 0) {
     return "";
 }
 
-/// Returns the text of the first of these members that has one.
+/// Returns the text of the first of the named members that has a text.
 std::string first_text(const std::optional<JsonValue>& object, std::initializer_list<const char*> keys) {
     if (!object || !object->to_json().starts_with('{')) return ""; // "extras" may be anything
     for (const char* key : keys) {
