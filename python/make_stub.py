@@ -23,10 +23,10 @@ from .errors import DeviceError as DeviceError, Error as Error, InputError as In
 from .errors import InterruptedRender as InterruptedRender, LimitError as LimitError
 from .errors import MemoryLimitError as MemoryLimitError, MissingFileError as MissingFileError, WriteError as WriteError
 
-class _Array(Protocol): # of NumPy, PyTorch and others
+class _Array(Protocol): # arrays of NumPy, PyTorch and others
     def __array__(self) -> Any: ...
 
-class _OnDevice(Protocol): # as CuPy's, which are not converted unasked
+class _OnDevice(Protocol): # arrays such as CuPy's, which are converted only on request
     def __dlpack__(self) -> Any: ...
 
 _Int: TypeAlias = int | SupportsIndex

@@ -27,7 +27,7 @@ std::vector<OutArray> out_arrays(const nanobind::dict& out);
 const OutArray* find_array(std::span<const OutArray> arrays, std::string_view name);
 /// Returns whether the name is that of a picture, denoised or not, and not of a layer.
 bool is_picture(std::string_view name);
-/// Throws Error(BadInput) if a picture of these settings does not have exactly such an array.
+/// Throws Error(BadInput) unless a picture of these settings has each of `arrays`, of the same shape and type.
 void check_arrays(std::span<const OutArray> arrays, const RenderSettings& settings);
 
 /// Copies what a picture has into the arrays.

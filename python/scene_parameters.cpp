@@ -120,7 +120,7 @@ Transform placed(const Light& light) {
     return world_from_light;
 }
 
-/// A number of things of a scene with a getter and a setter of the thing.
+/// A numeric property of a scene's objects, read and written through `Member`.
 template <auto Member>
 Property of_member(std::string_view name, double low,
                    std::function<bool(const Scene&, uint32_t)> is_there = is_anything, double high = 0x1p40) {

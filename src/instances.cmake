@@ -211,21 +211,17 @@ pertev_launches(integrators/bidirectional/camera_tree_stages.cu
     "ShadeCameraSubpaths<ShadingVariant::General, true, ChosenByTree>")
 pertev_launches(integrators/cast/shade_cast.cu
   integrators/cast/cast.h integrators/ray_tree/tree_stages.h
-  STAGES "ShadeTrees<Cast, MotionVariant::None, ShadingVariant::General>"
-    "ShadeTrees<Cast, MotionVariant::None, ShadingVariant::Unstacked>"
-    "ShadeTrees<Cast, MotionVariant::Perhaps, ShadingVariant::General>"
-    "ShadeTrees<Cast, MotionVariant::Perhaps, ShadingVariant::Unstacked>")
+  STAGES "ShadeTrees<Cast, ShadingVariant::General>"
+    "ShadeTrees<Cast, ShadingVariant::Unstacked>")
 # For lights that are selected by a tree.
 pertev_launches(integrators/distributed/shade_distributed_by_tree.cu
   integrators/distributed/distributed.h integrators/ray_tree/tree_stages.h
-  STAGES "ShadeTrees<Distributed, MotionVariant::Perhaps, ShadingVariant::General, ChosenByTree>"
-    "ShadeTrees<Distributed, MotionVariant::Perhaps, ShadingVariant::Unstacked, ChosenByTree>")
+  STAGES "ShadeTrees<Distributed, ShadingVariant::General, ChosenByTree>"
+    "ShadeTrees<Distributed, ShadingVariant::Unstacked, ChosenByTree>")
 pertev_launches(integrators/distributed/shade_distributed.cu
   integrators/distributed/distributed.h integrators/ray_tree/tree_stages.h
-  STAGES "ShadeTrees<Distributed, MotionVariant::None, ShadingVariant::General>"
-    "ShadeTrees<Distributed, MotionVariant::None, ShadingVariant::Unstacked>"
-    "ShadeTrees<Distributed, MotionVariant::Perhaps, ShadingVariant::General>"
-    "ShadeTrees<Distributed, MotionVariant::Perhaps, ShadingVariant::Unstacked>")
+  STAGES "ShadeTrees<Distributed, ShadingVariant::General>"
+    "ShadeTrees<Distributed, ShadingVariant::Unstacked>")
 pertev_launches(integrators/irradiance_cache/cache_stages.cu
   integrators/irradiance_cache/cache_stages.h integrators/irradiance_cache/hemisphere_stages.h
   integrators/irradiance_cache/lookup_stages.h integrators/irradiance_cache/overture_grid.h
@@ -347,15 +343,13 @@ pertev_launches(integrators/photon_map/photon_tree_stages.cu
     "ShadeGather<ShadingVariant::General, true, ChosenByTree>")
 pertev_launches(integrators/radiosity/shade_radiosity.cu
   integrators/radiosity/radiosity.h integrators/ray_tree/tree_stages.h
-  STAGES "ShadeTrees<Radiosity, MotionVariant::None, ShadingVariant::General>"
-    "ShadeTrees<Radiosity, MotionVariant::None, ShadingVariant::Unstacked>")
+  STAGES "ShadeTrees<Radiosity, ShadingVariant::General>"
+    "ShadeTrees<Radiosity, ShadingVariant::Unstacked>")
 pertev_launches(integrators/raster/scan_triangles.cu
   integrators/raster/scan_triangles.h integrators/raster/shade_pixels.h
   STAGES ScanTriangles
     ScanRows
     DrawEdges
-    "ShadePixels<ShadingVariant::General>"
-    "ShadePixels<ShadingVariant::Unstacked>"
     "InWindow<ShadePixels<ShadingVariant::General>>"
     "InWindow<ShadePixels<ShadingVariant::Unstacked>>")
 pertev_launches(integrators/ray_tree/tree_stages.cu
@@ -372,7 +366,6 @@ pertev_launches(integrators/reyes/split_stages.cu
     TakePieces
     "SplitPieces<HidingPass::FindNearest>"
     "SplitPieces<HidingPass::FindMicropolygon>"
-    ShadeSamples
     "InWindow<ShadeSamples>")
 pertev_launches(integrators/subpaths/particle_stages.cu
   integrators/subpaths/particle_stages.h
@@ -401,10 +394,8 @@ pertev_launches(integrators/subpaths/particle_tree_stages.cu
     "ShadeParticles<ShadingVariant::General, true, ChosenByTree>")
 pertev_launches(integrators/whitted/shade_whitted.cu
   integrators/ray_tree/tree_stages.h integrators/whitted/whitted.h
-  STAGES "ShadeTrees<Whitted, MotionVariant::None, ShadingVariant::General>"
-    "ShadeTrees<Whitted, MotionVariant::None, ShadingVariant::Unstacked>"
-    "ShadeTrees<Whitted, MotionVariant::Perhaps, ShadingVariant::General>"
-    "ShadeTrees<Whitted, MotionVariant::Perhaps, ShadingVariant::Unstacked>")
+  STAGES "ShadeTrees<Whitted, ShadingVariant::General>"
+    "ShadeTrees<Whitted, ShadingVariant::Unstacked>")
 
 # Stages of lab.
 pertev_launches(lab/brute_force_rays.cu

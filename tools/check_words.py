@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""Refuses comments that begin as a fragment, vague words in comments and in text for users, and commit subjects that are too long.
+"""Refuses comments and commit subjects that begin as a fragment, vague words in comments and in text for users, and subjects that are too long.
 
 A comment, docstring or trailing comment names a thing or is a sentence, and is understood without its neighbour. One that
 begins with a word of FRAGMENTS leans on another one, and the comment of a declaration that begins with one of CLAUSES is
-half a sentence; so is a trailing comment that begins with one of JOINTS. VAGUE are words with a plain or standard one: name who acts, say "emitter", "truncated", "except". Names
+half a sentence; so is a trailing comment that begins with one of JOINTS. Strings of make_* programs are searched for comments, too. VAGUE are words with a plain or standard one: name who acts, say "emitter", "truncated", "except". Names
 in backquotes and quotes of a comment are not checked.
 
 Text for users is checked for VAGUE, except for "lamp", which is their word: documents, string literals and templates of C++ and
 JavaScript, HTML, and tests' names. Strings of tests are often files or keys, so only names of tests are checked there, and strings
 without a space are keys everywhere. A comment behind a command in a document is no fragment either. Subjects are checked for the commits that follow the one that added
-this file; where there is no git or no history, they are not checked.
+the check; where there is no git or no history, they are not checked.
 
 `check_words.py [ROOT]` checks the tree, `--self-test` checks this tool on text that it must refuse or accept.
 """
@@ -115,6 +115,19 @@ def comments_of(file):
     return ()
 
 
+def comments_in_strings(file):
+    """Yields (line, text) of each comment in a string of a program that writes sources."""
+    strings = []
+    if file.name.startswith("make_") and file.suffix in (".py", ".cpp"):
+        text = file.read_text(encoding="utf-8")
+        strings = strings_of_c(text) if file.suffix == ".cpp" else (
+            (node.lineno, node.value) for node in ast.walk(ast.parse(text, str(file)))
+            if isinstance(node, ast.Constant) and isinstance(node.value, str))
+    for line, string in strings:
+        for first, comment in [*comments_of_c(string), *comments_of_script(string)]:
+            yield line + first - 1, comment
+
+
 def is_trailing(comment, line):
     """Returns whether something stands before a comment on its line. Docstrings, which have no sign, are no such comments."""
     return comment.startswith(("//", "/*", "#")) and line.split(comment.splitlines()[0])[0].strip() != ""
@@ -125,6 +138,9 @@ def comment_faults(root):
     for file in [*files, root / "CMakeLists.txt", *sorted(root.glob("*.sh"))]:
         if not file.exists():
             continue
+        for line, comment in comments_in_strings(file):
+            if FRAGMENTS.match(comment):
+                yield f"{file.relative_to(root)}:{line}: a comment is no fragment: {comment.splitlines()[0]}"
         for line, comment in comments_of(file):
             lines = file.read_text(encoding="utf-8").split("\n") if JOINTS.match(comment) else []
             is_joint = lines and is_trailing(comment, lines[line - 1])
@@ -213,16 +229,23 @@ def git(root, *arguments):
         return ""
 
 
+def commits_after(root, *change):
+    """Yields (name, subject) of the commits after the oldest one with a change of this file. In a shallow clone its oldest
+    commit counts as that one, so that later ones are checked."""
+    changed = git(root, "log", *change, "--format=%H", "--", "tools/check_words.py").split()
+    if changed:
+        following = f"{changed[-1]}..HEAD"
+        for commit in git(root, "log", "--ancestry-path", "--no-merges", "--format=%h %s", following).splitlines():
+            yield commit.split(" ", 1)
+
+
 def subject_faults(root):
-    """In a shallow clone the oldest commit counts as the one that added this file, so that later ones are checked."""
-    added = git(root, "log", "--diff-filter=A", "--format=%H", "--", "tools/check_words.py").split()
-    if not added:
-        return
-    following = f"{added[-1]}..HEAD"
-    for commit in git(root, "log", "--ancestry-path", "--no-merges", "--format=%h %s", following).splitlines():
-        name, subject = commit.split(" ", 1)
+    for name, subject in commits_after(root, "--diff-filter=A"):
         if len(subject) > LONGEST_SUBJECT:
             yield f"commit {name}: the subject has {len(subject)} characters, over {LONGEST_SUBJECT}: {subject}"
+    for name, subject in commits_after(root, "-S", "FRAGMENTS.match(subject)"):
+        if FRAGMENTS.match(subject):
+            yield f"commit {name}: a subject is no fragment: {subject}"
 
 
 # End of a file's name, text, and the line of the fault; 0 if there is none.
@@ -266,6 +289,10 @@ CASES = [
     (".cpp", 'auto a = "lamp";\n', 0),
     (".h", "int a; // the history begins anew\n", 1),
     (".h", "// Their order leaves\n// no trace.\nint a;\n", 1),
+    ("/make_a.py", "a = '''b\nclass C: # of d\n# A list\n# of e\n'''\n", 2),
+    ("/make_a.py", "a = f'{b} # those of c'\nd = 'e#of e'\n", 1),
+    ("/make_a.cpp", 'auto a = "int b; // of c\\n";\n', 1),
+    ("/a.cpp", 'auto a = "int b; // of c\\n";\n', 0),
 ]
 
 # A file's name, text, and the line of the fault in text for users; 0 if there is none.
@@ -319,10 +346,17 @@ def self_test():
             git(root, "add", "tools")
             for length in (79, 72, 73, 72):
                 git(root, *commit, "x" * length)
-            git(root, "clone", "--quiet", "--depth", "3", f"file://{root}", str(root.parent / "shallow"))
-            for clone in (root, root.parent / "shallow"):
+            git(root, *commit, "Of a commit before the check")
+            (root / "tools" / "check_words.py").write_text("FRAGMENTS.match(subject)\n")
+            git(root, "add", "tools")
+            for subject in ("What adds the check", "Offsets of rays are whole", "As before"):
+                git(root, *commit, subject)
+            git(root, "clone", "--quiet", "--depth", "7", f"file://{root}", str(root.parent / "shallow"))
+            git(root, "clone", "--quiet", "--depth", "2", f"file://{root}", str(root.parent / "shallowest"))
+            expected = ["has 73 characters", "no fragment: As before"]
+            for clone, parts in (root, expected), (root.parent / "shallow", expected), (root.parent / "shallowest", expected[1:]):
                 faults = list(subject_faults(clone))
-                if len(faults) != 1 or "has 73 characters" not in faults[0]:
+                if len(faults) != len(parts) or not all(part in fault for part, fault in zip(parts, faults)):
                     failures.append(f"{clone.name}: {faults}")
     return failures
 

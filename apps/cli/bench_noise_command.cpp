@@ -28,7 +28,7 @@ struct Pictures {
     uint64_t invalid_samples = 0;
 };
 
-/// `done` pictures of each sampler are finished.
+/// Renders the pictures of a sampler after `done` pictures of other samplers, which the progress counts.
 Pictures render_pictures(Session& session, SamplerKind sampler, const NoiseFlags& flags, uint32_t done,
                          Reporter& reporter) {
     Pictures pictures;

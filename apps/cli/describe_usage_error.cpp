@@ -69,14 +69,14 @@ std::string suggest_name(std::string_view name, std::span<const std::string> nam
     return best;
 }
 
-/// The app, its verb, the verb's own: as far as the line names them.
+/// Returns the app, its verb and that verb's own verbs, as far as the line names them.
 std::vector<const CLI::App*> verbs_of(const CLI::App& app) {
     std::vector<const CLI::App*> verbs = {&app};
     while (!verbs.back()->get_subcommands().empty()) verbs.push_back(verbs.back()->get_subcommands().front());
     return verbs;
 }
 
-/// "--output", "-o", ...: what `verb` takes.
+/// Returns the flags of `verb`, such as "--output" and "-o".
 std::vector<std::string> flags_of(const CLI::App& verb) {
     std::vector<std::string> names;
     for (const CLI::Option* option : verb.get_options()) {
@@ -98,12 +98,12 @@ std::string did_you_mean(const std::string& name) {
     return name.empty() ? "" : fmt::format(" (did you mean {}?)", name);
 }
 
-/// "-.5,1,2" is none.
+/// Returns whether a word is a flag; a number such as "-.5,1,2" is none.
 bool is_flag(const std::string& word) {
     return word.size() > 1 && word[0] == '-' && (word[1] == '-' || std::isalpha(static_cast<unsigned char>(word[1])));
 }
 
-/// A flag that the i-th of `verbs` does not have.
+/// Describes a flag that the i-th of `verbs` does not have.
 std::string describe_flag(const std::string& word, const std::vector<const CLI::App*>& verbs, std::size_t i) {
     const std::string flag = word.substr(0, word.find('='));
     for (std::size_t later = i + 1; later < verbs.size(); ++later) {
@@ -167,7 +167,7 @@ std::string describe_repetition(const CLI::App& verb) {
 
 namespace {
 
-/// "--spp: why" as a remark about the setting `spp`, if that has this flag.
+/// Returns the text "--spp: why" as a remark about the setting `spp`, if that has this flag; else the text alone.
 Remark by_setting(const std::string& text) {
     const std::size_t end = std::min(text.find(": "), text.size());
     const std::string flag = text.substr(0, end);

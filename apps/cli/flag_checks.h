@@ -32,7 +32,7 @@ CLI::Validator number_from_zero();
 /// Accepts a whole number in [low, high], in decimal digits.
 CLI::Validator whole_between(uint32_t low, uint32_t high);
 
-/// Adds a flag with such a number.
+/// Adds a flag with a whole number in [low, high].
 template <class Whole>
 CLI::Option* add_whole(CLI::App& verb, const std::string& name, Whole& value, const std::string& text, uint32_t low,
                        uint32_t high) {

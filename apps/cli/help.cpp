@@ -37,7 +37,7 @@ std::string wrapped(const std::string& text, std::size_t width, std::size_t inde
     return lines + line;
 }
 
-/// "-o,--output FILE"
+/// Returns an option's names and value as help shows them: "-o,--output FILE".
 std::string names_of(const CLI::Option& option) {
     std::string name = shown_names(option);
     const bool is_flag = option.get_items_expected_max() == 0;

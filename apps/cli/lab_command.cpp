@@ -67,7 +67,7 @@ std::vector<TraversalOptions> traversal_options(const LabFlags& flags) {
     return options;
 }
 
-/// "1-8" or "8": first and last.
+/// Returns first and last depth of "1-8" or "8", which are the same range.
 std::pair<int, int> parse_depths(const std::string& text) {
     const std::size_t dash = text.find('-');
     const auto last = parse_whole_number(dash == std::string::npos ? text : text.substr(dash + 1));
@@ -80,7 +80,7 @@ std::pair<int, int> parse_depths(const std::string& text) {
     return {static_cast<int>(*first), static_cast<int>(*last)};
 }
 
-/// All where nothing is named. Names are CLI11's to check.
+/// Returns the named kinds, or all if none is named. CLI11 has checked the names.
 template <class Kind>
 std::vector<Kind> chosen(const std::vector<std::string>& names) {
     std::vector<Kind> kinds;

@@ -46,9 +46,9 @@ public:
     /// Shows the completed share, in [0, 1], and a text after the bar. It is redrawn in place on a terminal;
     /// otherwise, or on a dumb one, there is a line every 10 s.
     void progress(double share, const std::string& detail);
-    /// Names the current work for these lines until there is a share.
+    /// Names the current work for the lines of progress() until there is a share.
     void set_work(const std::string& work) override;
-    /// Writes a JSON object ("{...}") of the given event; only with --json.
+    /// Writes the JSON object ("{...}") of an event; only with --json.
     void event(const std::string& object);
     /// Writes the event with a verb's result: `object` with the lists `made_up` and `left_out` of all messages before
     /// it.

@@ -65,7 +65,7 @@ bool wants_json(int argc, char** argv) {
     return json;
 }
 
-/// `help VERB` is `VERB --help`. Without such a verb it is a line that is not understood.
+/// Turns `help VERB` into `VERB --help`. Without a verb of this name the line is not understood.
 void spell_out_help(const CLI::App& app, std::vector<std::string>& words) {
     if (words.empty() || words[0] != "help") return;
     words.erase(words.begin());

@@ -21,7 +21,8 @@ std::string described(const Setting& setting) {
     return text;
 }
 
-/// "--traversal,--walk": help and documents show only the first name, and not the letter.
+/// Returns the letter and all names of a setting's flag, such as "--traversal,--walk". Help and documents show only the
+/// first name, and not the letter.
 std::string flag_names(const Setting& setting) {
     const std::string letter = *setting.letter != '\0' ? fmt::format("-{},", setting.letter) : "";
     return letter + flag_of(setting.name) + (*setting.old_name != '\0' ? "," + flag_of(setting.old_name) : "");

@@ -31,7 +31,7 @@ struct SolveFlags : PictureOptions {
     ReportFlags report;
 };
 
-/// "box.rad" for "box.png".
+/// Returns the solution's file name: "box.rad" for "box.png".
 std::string solution_name(const std::string& picture) {
     return std::filesystem::path(picture).replace_extension(".rad").string();
 }

@@ -70,11 +70,11 @@ struct ClientMessage {
 /// Parses a message; does not throw. Thread-safe.
 std::optional<ClientMessage> parse_client_message(std::string_view text);
 
-/// Returns whether it changes the view or the time, which makes the previous picture useless.
+/// Returns whether a message of this kind changes the view or the time, which makes the previous picture useless.
 bool moves_the_picture(MessageKind kind);
 
-/// Returns its meaning as the end of a sentence that begins with "viewer 2 would like to"; empty if it steers
-/// nothing.
+/// Returns the meaning of a message as the end of a sentence that begins with "viewer 2 would like to"; empty if it
+/// steers nothing.
 const char* request_of(MessageKind kind);
 
 } // namespace pertev

@@ -11,7 +11,7 @@
 namespace pertev {
 namespace {
 
-/// `color(i)` returns the pixel's three bytes.
+/// Returns a picture of which color(i) returns the three bytes of pixel i.
 template <class Color>
 Rgba8Image paint(uint32_t width, uint32_t height, const Color& color) {
     Rgba8Image shown = {width, height, std::vector<uint8_t>(std::size_t(width) * height * 4, 255)};

@@ -19,10 +19,10 @@ public:
     bool may_send(double now_s) const { return now_s >= may_send_at_s(); }
     bool is_idle() const { return in_flight_.empty(); }
 
-    /// `is_piece` means a piece of a still picture, whose time is not limited.
+    /// Records that a frame was sent. `is_piece` means a piece of a still picture, whose time is not limited.
     void sent(uint32_t frame, std::size_t bytes, double now_s, bool is_piece = false);
-    /// The client has drawn this frame. `client_s` is the time that it reports for decoding and drawing. Returns
-    /// false if no such frame is in flight.
+    /// Records that the client has drawn a frame. `client_s` is the time that it reports for decoding and drawing.
+    /// Returns false if this frame is not in flight.
     bool acknowledged(uint32_t frame, double now_s, double client_s);
 
     /// JPEG quality, 30 to 92.

@@ -28,7 +28,7 @@ public:
     /// Time and size of the last JPEG.
     double milliseconds() const { return milliseconds_; }
     std::size_t bytes() const { return bytes_; }
-    /// The encoder that made it.
+    /// The encoder that made the last JPEG.
     const char* encoder() const { return encoder_name_; }
 
 private:

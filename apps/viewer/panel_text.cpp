@@ -49,7 +49,8 @@ struct NumberRow {
     std::string (*describe)(const ViewState&, const ViewNumbers&);
 };
 
-/// `kind_s` is the time of this kind of rays; 0 if it was not measured, when the frame's total time is used.
+/// Returns the rate of one kind of rays. `kind_s` is their time; 0 if it was not measured, when the frame's total time
+/// is used.
 std::string rays_per_second(uint64_t rays, double kind_s, const ViewNumbers& numbers) {
     const double seconds = kind_s > 0 ? kind_s : numbers.frame->render_s;
     if (rays == 0 || !(seconds > 0)) return "";

@@ -30,7 +30,7 @@ struct ViewNumbers {
 };
 
 std::string state_text(const ViewState& view, const ViewNumbers& numbers);
-/// `kind` is "error" or "note".
+/// Returns the message of a notice; `kind` is "error" or "note".
 std::string notice_text(const char* kind, const std::string& text);
 /// Answer to a pick; null for the background.
 std::string picked_text(const Scene& scene, const PickedPoint* point, float x, float y);

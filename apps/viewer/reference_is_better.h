@@ -10,8 +10,8 @@
 
 namespace pertev {
 
-/// All three have the same display; `whole` and `half` have the same size. `reconstruction` is stretched to that size
-/// as on a page.
+/// Returns whether the picture `whole` is nearer to the converged picture than `reconstruction`. All three have the
+/// same display; `whole` and `half` have the same size. `reconstruction` is stretched to that size as on a page.
 bool reference_is_better(const Rgba8Image& whole, const Rgba8Image& half, const Rgba8Image& reconstruction);
 
 } // namespace pertev

@@ -199,7 +199,7 @@ void RenderLoop::advance_time() {
     if (time_runs()) clock_.advance(std::min(passed, kLongestStep));
 }
 
-/// `client` is the one that made the request; 0: all are informed.
+/// Informs a client of an error. `client` is the one that made the request; 0: all are informed.
 void RenderLoop::report_error(uint32_t client, const Error& error) {
     audience_.notify(client,
                      notice_text("error", without_folders(panel_phrase(error.remark()), start_.record.scene.scene)));

@@ -52,7 +52,7 @@ std::optional<std::string_view> query_value(std::string_view query, std::string_
 /// is partitioned, so that each of them has its own.
 std::string cookie_text(const ServerIdentity& server);
 
-/// Does not throw.
+/// Returns whether a request is answered, and why not. Does not throw.
 RequestVerdict check_request(const RequestText& request, const ServerIdentity& server);
 
 } // namespace pertev

@@ -55,7 +55,7 @@ bool is_shown_as(const Display& as, const FrameRequest& request, const ShownFram
     return as.tone_map == request.view.display.tone_map && as.exposure_stops == exposed.exposure_stops;
 }
 
-/// `picture` is a Session, or its Reconstruction.
+/// Returns the displayed picture. `picture` is a Session, or its Reconstruction.
 template <class Picture>
 Rgba8Image shown_picture(Picture& picture, ToneMap tone_map, float exposure_stops) {
     picture.display(tone_map, exposure_stops);
@@ -250,7 +250,8 @@ void SessionFrames::begin_exposed(const FrameRequest& request, float stops) {
     exposure_.set(stops);
 }
 
-/// `is_growing` means at rest before the samples: with all scatterings, and stopped if no client waits for it.
+/// Renders and reconstructs a frame. `is_growing`: the camera rests and no sample exists yet. All scatterings count,
+/// and the frame stops if no client waits for it.
 std::optional<ShownFrame> SessionFrames::reconstruct(const FrameRequest& request, float scale, bool is_growing) {
     const Stopwatch whole;
     const double update_s = std::exchange(update_s_, 0);

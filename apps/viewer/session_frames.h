@@ -70,7 +70,7 @@ private:
         ShownLayer layer = ShownLayer::Beauty;
         uint64_t scene_changes = 0;
         float scale = 0; // 0: none
-        /// Returns whether it is the view of this request, at any size.
+        /// Returns whether this is the view of `request`, at any size.
         bool is_of(const FrameRequest& request, uint64_t changes) const;
     };
     Seen grown_;       // the view of growth_

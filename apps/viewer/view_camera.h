@@ -41,13 +41,14 @@ public:
     /// The camera with this lens at its position.
     Camera camera(const Camera& lens) const;
     const Pose& pose() const { return pose_; }
-    /// Returns whether a user has moved it.
+    /// Returns whether a user has moved the camera.
     bool is_own() const { return is_own_; }
-    /// Returns whether text (eye, target, up) states its position to the bit.
+    /// Returns whether text (eye, target, up) states the camera's position to the bit.
     bool is_given_by_pose() const;
-    /// Returns whether it is the scene's camera name() at its own position, which text does not state to the bit.
+    /// Returns whether the camera is the scene's camera name() at its own position, which text does not state to the
+    /// bit.
     bool is_of_scene() const;
-    /// Returns whether time moves it.
+    /// Returns whether time moves the camera.
     bool moves_with_time() const;
     bool is_at_start() const { return guide_ == Guide::Start; }
     const std::string& name() const { return name_; }
@@ -55,9 +56,9 @@ public:
     // Functions that move the camera set the lens of its new guide; of a path all but the aperture.
 
     void return_to_start(std::optional<double> time_s, Camera& lens);
-    /// Returns false if there is no such camera.
+    /// Shows the scene's camera `index`. Returns false if there is none.
     bool use_scene_camera(uint32_t index, std::optional<double> time_s, Camera& lens);
-    /// Returns false if it has no keys.
+    /// Follows the recorded path. Returns false if the path has no keys.
     bool follow_path(std::optional<double> time_s, Camera& lens);
     /// Moves the guide to `time_s`. Changes of the lens by the user are kept.
     void seek(std::optional<double> time_s, Camera& lens);

@@ -145,7 +145,7 @@ def read_cameras(path, *, size=None, convention=None):
 
 
 def cameras_of(cameras, values):
-    """Returns Cameras, or None, for what render() takes as such; `values` are the settings of the call."""
+    """Returns the argument `cameras` of render() as Cameras; None stays None. `values` are the settings of the call."""
     if cameras is None or isinstance(cameras, Cameras):
         return cameras
     if isinstance(cameras, (str, os.PathLike)):

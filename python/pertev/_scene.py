@@ -153,7 +153,7 @@ def load(scene, **values):
 def scene(name, **values):
     """Opens a built-in scene by its name (builtin_scenes()), whatever files there are, and returns it as load() does.
 
-    Raises InputError for another name, and as load().
+    Raises InputError for an unknown name, and what load() raises.
     """
     if name not in _core.builtin_scenes():
         near = difflib.get_close_matches(str(name), _core.builtin_scenes(), 1)

@@ -16,7 +16,7 @@ namespace pertev {
 /// addresses and values; any thread may read them meanwhile. `sink` may end it.
 void use_huge_pages(std::span<const std::byte> bytes, Sink& sink = nobody());
 
-/// Lets the part of `bytes` that fills whole pages of 2 MB, and was not used yet, get such pages at its first use.
+/// Lets the part of `bytes` that fills whole pages of 2 MB, and was not used yet, get huge pages at its first use.
 void expect_huge_pages(std::span<const std::byte> bytes);
 
 /// Reserves memory of an empty array on huge pages.

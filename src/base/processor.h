@@ -11,7 +11,8 @@ namespace pertev {
 /// The most numbers that host code takes at once.
 inline constexpr uint32_t kMaxLanes = 16;
 
-/// Returns whether it has the instructions of x86-64-v4 (AVX-512), for code that takes sixteen floats at once.
+/// Returns whether the processor has the instructions of x86-64-v4 (AVX-512), for code that takes sixteen floats at
+/// once.
 inline bool has_sixteen_lanes() {
     return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
            __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&

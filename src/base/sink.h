@@ -57,7 +57,7 @@ public:
     virtual const Messages& messages() const;
     /// Called when something long begins, so that the messages so far can be shown.
     virtual void report_messages() {}
-    /// `work`, such as "building trees", begins.
+    /// Called when `work` begins, such as "building trees".
     virtual void set_work(const std::string& work) { static_cast<void>(work); }
     /// Called several times a second, by one thread at a time.
     virtual void progress(const Progress& now) { static_cast<void>(now); }
@@ -115,7 +115,7 @@ public:
     const Messages& messages() const override { return *this; }
 
     const std::vector<Message>& all() const { return all_; }
-    /// Returns those with these indices and above.
+    /// Returns the messages from index `first` on.
     Messages since(std::size_t first) const {
         Messages found;
         for (; first < all_.size(); ++first) found.receive(all_[first]);

@@ -128,7 +128,7 @@ private:
     /// Minimum cosine of normals of a flat mirror. Curved mirrors do not show objects at their distance.
     static constexpr float kFlat = 0.9999f;
 
-    /// `frames` have seen the background there.
+    /// Restarts the means of a pixel where `frames` have seen the background.
     HD void forget(uint32_t pixel, float frames) const {
         now.recent[pixel] = {0, 0, 0, 0};
         now.diffuse[pixel] = {0, 0, 0, frames};

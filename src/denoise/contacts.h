@@ -56,7 +56,7 @@ struct StoreContacts {
 /// Finds the contacts of a frame's pixels.
 class ContactFinder {
 public:
-    /// Makes it for frames of this size.
+    /// Makes a finder for frames of this size.
     ContactFinder(Queue& queue, uint32_t width, uint32_t height);
 
     /// Marks the pixels of `rows` of `frame` (contact_of), seen by `camera` in `scene`. `scale` is the size of its

@@ -31,23 +31,25 @@ public:
     virtual uint32_t feature_samples() const = 0;
     /// Adds the hits of a sample's camera rays. `frame` may have no light.
     virtual void add_features(const NoisyFrame& frame, const SceneView& scene) = 0;
-    /// Returns the arrays in which frames store mirrors (render/mirror_chain_view.h); empty if it does not need them.
+    /// Returns the arrays in which frames store mirrors (render/mirror_chain_view.h); empty if the denoiser does not
+    /// need them.
     virtual MirrorChainView mirrors() const { return {}; }
     /// Adds the mirrors of the rays that begin() got, or of a sample's camera rays after add_features(), with the lobe
-    /// that the frame's view states. Each is called for 0 and then for the largest number below 1.
+    /// that the frame's view states. Each of the two functions is called for the lobe 0 and then for the largest number
+    /// below 1.
     virtual void guide_mirrors(const NoisyFrame&) {}
     virtual void add_mirrors(const NoisyFrame&, const SceneView&) {}
     /// Adds the next sample of each pixel, with light; `sample` is its number.
     virtual void add(const NoisyFrame& frame, const SceneView& scene, uint32_t sample) = 0;
-    /// Returns what it has gathered of the window's pixels; those of others are missing.
+    /// Returns what the denoiser has gathered of the window's pixels; other pixels are missing.
     virtual DenoiserState state() const = 0;
     /// Forgets the samples since begin(), and keeps the features. Only states with sums (DenoiserStateSize) can.
     virtual void forget_samples() { PERTEV_CHECK(false); }
-    /// Replaces that, of all pixels, by the state of denoisers of the same picture and kind, whose windows may have
-    /// been others, as may their samples if the state has sums (DenoiserStateSize). Throws Error(BadInput) for words
-    /// that are no such state.
+    /// Replaces what the denoiser has gathered of all pixels by the state of denoisers of the same picture and kind.
+    /// Their windows may have been others, and so may their samples if the state has sums (DenoiserStateSize). Throws
+    /// Error(BadInput) for words that are no state of this denoiser.
     virtual void restore(const DenoiserState& state) = 0;
-    /// Returns `picture`, linear RGB or RGBA, after this step; alpha stays. It is that of the samples since begin(), of
+    /// Returns `picture`, linear RGB or RGBA, after this step; alpha stays. `picture` has the samples since begin(), of
     /// which there is at least one, after the steps before this one.
     virtual Image apply(Image picture) = 0;
     /// Names the library and device that make the picture, if it is outside the one-picture law; else empty.

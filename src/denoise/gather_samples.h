@@ -71,14 +71,14 @@ struct SampledSurfaces {
         }
         return f;
     }
-    /// Returns whether the sample's own pixel shows its surface, regardless of bumps.
+    /// Returns whether the sample's own pixel shows the sample's surface, regardless of bumps.
     HD bool shows_own(uint32_t pixel, const Found& f) const {
         return shows_surface(guide, camera, width, pixel, f.object, f.point, f.normal, 0.5f);
     }
     HD bool shows(uint32_t pixel, const Found& f) const {
         return shows_surface(guide, camera, width, pixel, f.object, f.point, f.normal, 0.8f);
     }
-    /// Slot of that surface among the additional ones of the pixel; kNeighbourSurfaces if it has none and all are
+    /// Slot of the surface of `f` among the additional ones of the pixel; kNeighbourSurfaces if it has none and all are
     /// taken. `is_free` means that the slot has no surface yet.
     HD int slot_of(uint32_t pixel, const Found& f, bool& is_free) const {
         is_free = false;
@@ -106,7 +106,8 @@ HD inline PixelStep step_around(int k) {
     const int dy = side == 0 ? -ring : side == 1 ? along : side == 2 ? ring : -along;
     return {dx, dy};
 }
-/// Returns the first of these pixels within the picture for which `is_wanted` is true; kNoHit: none.
+/// Returns the first pixel around `pixel`, in the order of PixelStep and within the picture, for which `is_wanted` is
+/// true; kNoHit: none.
 template <class IsWanted>
 HD inline uint32_t nearest_around(uint32_t pixel, uint32_t width, uint32_t height, const IsWanted& is_wanted) {
     const int w = static_cast<int>(width), h = static_cast<int>(height);

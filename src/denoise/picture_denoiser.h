@@ -34,7 +34,7 @@ public:
         const std::size_t sums = 2 * SampleSums::kArrays * pixels;
         return {DenoiserHead::kWords + pixels * kPixelWords + sums, sums};
     }
-    /// Replaces the colours by those of the samples that it got, so it can only be the first step.
+    /// Replaces the colours by those of the samples that the denoiser has gathered, so it can only be the first step.
     Image apply(Image picture) override;
 
 private:

@@ -42,7 +42,7 @@ public:
     void share(RowExchange* others) { others_ = others; }
     /// Arrays of the last frame that the next one needs; none after a cut.
     std::vector<RowArray> rows_of_history() const;
-    /// Goes on after a frame of another reconstruction, whose rows_of_history() the caller then fills in. `frame` is
+    /// Continues after a frame that another reconstruction made; the caller then fills rows_of_history(). `frame` is
     /// like its samples, and `light_camera` has seen them; `features` and `camera` are those of add_upsampled, else
     /// null.
     void begin_after(const NoisyFrame& frame, const CameraView& light_camera, const NoisyFrame* features,
@@ -76,15 +76,15 @@ public:
     Image picture() const { return image_of(shown()); }
     /// The last frame in shown_color.
     const Float4* shown() const;
-    /// Lets displays show `picture` (shown_color), which outlives that, in place of the last frame.
+    /// Lets displays show `picture` (shown_color), which must stay valid meanwhile, in place of the last frame.
     void show_instead(const Float4* picture) { instead_ = picture; }
-    /// Returns what displays show in its place; none without show_instead().
+    /// Returns the picture that displays show in place of the last frame; nothing without show_instead().
     std::optional<Image> shown_instead() const;
     /// Computes the last frame's picture for a display, times 2^exposure_stops, and starts its copy to the host.
     void display(ToneMap tone_map, float exposure_stops);
     /// The picture of the last display().
     Rgba8Image displayed() const;
-    /// Time of its copy to the host, in seconds, after everything before. Waits for it.
+    /// Time that the copy of displayed() to the host took, in seconds, after everything before. Waits for the copy.
     double copy_seconds() const { return copy_timer_.seconds(); }
     /// Tones of the last picture, which was made from `frame`; for an upsampled one `frame` is its features.
     FrameTones tones(const NoisyFrame& frame) const;

@@ -14,9 +14,8 @@ struct TemporalGradientsMemory {
     Float4* after;   // used until they are compared
     Float4* numbers; // used afterwards
 
-    /// Number of Float4 of each per pixel of the small pictures. `kNumbers`: guide; light as it was and as it is,
-    /// twice.
     static constexpr uint32_t kSide = 4; // pixels of the frame per one of a small picture, on each side
+    /// Float4s per pixel of a small picture; `numbers` holds the guide, and twice the light before and after.
     static constexpr std::size_t kPicture = NoisyFrame::arrays(true), kNumbers = 5;
     static constexpr uint32_t side(uint32_t of_frame) { return (of_frame + kSide - 1) / kSide; }
     static std::size_t pixels(uint32_t frame_width, uint32_t frame_height) {

@@ -28,7 +28,8 @@ void allow_copies(Queue& to, const Queue& from);
 /// Copies `bytes` from memory of one queue's device to that of another's, and returns when that is done. All work of
 /// `from` on these bytes must be done. Throws Error(DeviceFault, OutOfMemory).
 void copy_between(Queue& to, void* into, Queue& from, const void* source, std::size_t bytes);
-/// Does that, but may return before it is done: work that is queued on `to` afterwards sees the bytes.
+/// Copies as copy_between(), but may return before the copy is done: work that is queued on `to` afterwards sees the
+/// bytes.
 void start_copy_between(Queue& to, void* into, Queue& from, const void* source, std::size_t bytes);
 
 #if defined(PERTEV_HAS_CUDA)

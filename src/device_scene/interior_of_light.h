@@ -16,7 +16,7 @@ HD inline Vec3 point_before(const EmissiveTriangle& triangle) {
 }
 
 /// Returns the solids that hold the origin of a ray that leaves a light. Lights with a position are numbered as in
-/// NestingView::of_lights; kNoLight is one at infinity. `start` is the triangle of a light that is one.
+/// NestingView::of_lights; kNoLight is one at infinity. `start` is the light's triangle if the light is a triangle.
 HD inline InteriorList interior_of_light(const SceneView& scene, uint32_t light, TriangleId start, Vec3 origin,
                                          Vec3 direction) {
     if (light == kNoLight || scene.nesting.of_lights == nullptr) return {};

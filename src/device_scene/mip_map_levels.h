@@ -11,8 +11,8 @@ namespace pertev {
 
 class MipMapLevels {
 public:
-    /// Makes those of `images`, whose pixels are on the device; `are_srgb` says whose colours are sRGB-encoded, and
-    /// `linear_from_srgb` is on the device. Throws Error(OutOfMemory).
+    /// Makes the levels of `images`, whose pixels are on the device; `are_srgb` says whose colours are sRGB-encoded,
+    /// and `linear_from_srgb` is on the device. Throws Error(OutOfMemory).
     MipMapLevels(Queue& queue, std::vector<TextureImageView> images, const std::vector<bool>& are_srgb,
                  const float* linear_from_srgb);
 

@@ -43,7 +43,7 @@ public:
     NestedSolids(const Scene& scene, Vec3 centre);
 
     bool is_empty() const { return ranks_.empty(); }
-    /// [instance] its rank; 0: none. Empty without such solids.
+    /// [instance] its rank; 0: none. Empty without nested solids.
     const std::vector<uint16_t>& ranks() const { return ranks_; }
     /// [rank] its instance; the first is none.
     const std::vector<uint32_t>& instances() const { return instances_; }

@@ -40,14 +40,16 @@ HD_CALL inline float ior_within(const SceneView& scene, InteriorList list) {
     return ior;
 }
 
-/// Returns the transmittance of `distance` metres through what fills them; 1 if they do not end.
+/// Returns the transmittance of `distance` metres through what fills the solids of `list`; 1 outside of all solids, or
+/// if `distance` is infinite.
 HD_CALL inline Rgb transmittance_within(const SceneView& scene, InteriorList list, float distance) {
     if (list.top() == 0) return {1, 1, 1};
     const MaterialParameters& solid = scene.materials[material_of_solid(scene, list)];
     return solid.absorbs() ? transmittance_of_depth(solid, distance) : Rgb{1, 1, 1};
 }
 
-/// Returns that of the ray from `start` that found `hit`; what is no nested solid absorbs as without them.
+/// Returns the transmittance of the ray from `start` that found `hit`; a solid that is not nested absorbs as in a scene
+/// without nested solids.
 HD inline Rgb transmittance_to_surface(const SceneView& scene, InteriorList list, TriangleId start, Vec3 direction,
                                        const Hit& hit, float time) {
     if (list.top() != 0) return transmittance_within(scene, list, hit.t);

@@ -12,7 +12,8 @@ namespace {
 
 constexpr float kMaxWord = 65535.0f;
 
-/// Each returns false if the format has no such value. `channel` is 3 for alpha.
+/// Packs a value into a half float. Returns false if the format has no such value. The second argument is the channel,
+/// 3 for alpha.
 bool pack_half(float value, std::size_t, uint16_t& word) {
     const uint32_t bits = bits_of(value), sign = bits >> 16 & 0x8000u;
     const float size = abs(value);

@@ -44,8 +44,8 @@ HD_CALL inline Rgb transmittance_of_solid(const SceneView& scene, TriangleId sta
     return solid != nullptr ? transmittance_of_depth(*solid, distance) : Rgb{1, 1, 1};
 }
 
-/// Returns that of the ray that found `hit`, with a unit direction. Only scenes of the general variant have solids that
-/// absorb.
+/// Returns the transmittance of the ray that found `hit`, with a unit direction. Only scenes of the general variant
+/// have solids that absorb.
 template <ShadingVariant kVariant>
 HD inline Rgb transmittance_to_hit(const SceneView& scene, TriangleId start, Vec3 direction, const Hit& hit,
                                    float time = kAtRest) {

@@ -19,7 +19,7 @@ HD constexpr ValueRange any_value() { return {-kInfinity, kInfinity}; }
 
 HD inline ValueRange join(ValueRange a, ValueRange b) { return {min(a.least, b.least), max(a.most, b.most)}; }
 
-/// Range of a * b for any a, b in the ranges, with the rounding of such products.
+/// Range of a * b for any a, b in the ranges, with the rounding of float products.
 HD inline ValueRange multiply(ValueRange a, ValueRange b) {
     if (!(a.least > -kInfinity && b.least > -kInfinity && a.most < kInfinity && b.most < kInfinity)) return any_value();
     const float ll = a.least * b.least, lm = a.least * b.most, ml = a.most * b.least, mm = a.most * b.most;

@@ -26,7 +26,7 @@ struct DisplayTransform {
 
 /// Returns the picture for a display. Alpha is treated as tone_map_image does, which this is without a table.
 Rgba8Image display_image(const Image& linear, const DisplayTransform& transform, bool keep_alpha = true);
-/// Returns it with 16 bits a channel.
+/// Returns the picture of display_image() with 16 bits a channel.
 Rgba16Image display_image_16(const Image& linear, const DisplayTransform& transform, bool keep_alpha = true);
 
 } // namespace pertev

@@ -63,7 +63,7 @@ class Integrator {
 public:
     virtual ~Integrator() = default;
 
-    /// Allocates memory for work of this size, unless what it holds suffices. begin() calls it. A dry run
+    /// Allocates memory for work of this size, unless the integrator's memory suffices. begin() calls it. A dry run
     /// (Queue::make_dry_run) calls only this, to predict the memory of begin(). Throws Error(OutOfMemory).
     virtual void reserve(const WorkSize& size) = 0;
     /// Returns the bytes of the host's memory that reserve() has allocated besides the queue's.

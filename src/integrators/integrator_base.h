@@ -45,7 +45,7 @@ protected:
     void check_window(const FilmView& film) const {
         PERTEV_CHECK(film.window.is_in(picture_.camera.width, picture_.camera.height));
     }
-    /// Throws std::logic_error, too, if `film` is a frame.
+    /// Throws std::logic_error unless `film` lies in the picture, and if it is a frame.
     void check_sums(const FilmView& film) const {
         PERTEV_CHECK(!film.frame.is_there());
         check_window(film);
@@ -55,7 +55,6 @@ protected:
     template <class Stage>
     void launch_for_pixels(const char* name, const Stage& stage) {
         const PixelWindow& window = stage.film.window;
-        if (window.picture_width == 0) return launch(queue_, name, window.count(), stage);
         launch(queue_, name, window.count(), InWindow<Stage>{stage, window});
     }
 

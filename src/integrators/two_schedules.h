@@ -119,7 +119,7 @@ protected:
         capacity_ = capacity;
         memory_.grow(queue_, bytes_of(capacity), name);
     }
-    /// Points the arrays of `job` into that memory.
+    /// Points the arrays of `job` into the wavefront's memory.
     void lay_out_job(Job& job) const { lay_out(job, memory_.data(), capacity_); }
 
     /// The memory and the schedule of a thread of the loop.

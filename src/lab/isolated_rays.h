@@ -31,7 +31,7 @@ const Combination& tracer_of_pictures(const RaySet& set, const TracerChoice& cho
 std::vector<RaySet> make_isolated_sets(Queue& queue, const Scene& scene, const Camera& camera,
                                        const PreparedScene& prepared, uint32_t count, Sink& sink);
 
-/// Rays per second of each kind in isolation; 0 where there were no such rays.
+/// Rays per second of each kind in isolation; 0 for a kind without rays.
 struct IsolatedRates {
     double camera = 0, bounce = 0, shadow = 0;
 

@@ -56,7 +56,7 @@ public:
     virtual std::size_t stride() const = 0;
     /// Copies the contents from byte `first` on to the host. `first` and the size are multiples of stride().
     virtual void read(std::size_t first, std::span<std::byte> to) const = 0;
-    /// Adds such contents of another target, as add().
+    /// Adds contents that read() returned for another target, as add().
     virtual void add_bytes(std::size_t first, std::span<const std::byte> from) = 0;
 
     std::vector<std::byte> bytes() const {

@@ -22,7 +22,7 @@ struct PixelWindow {
 
     bool operator==(const PixelWindow&) const = default;
 
-    /// Returns whether it lies in a picture of this size.
+    /// Returns whether the window lies in a picture of this size.
     bool is_in(uint32_t picture_w, uint32_t picture_h) const {
         if (picture_width == 0) return width == picture_w && height == picture_h;
         return picture_width == picture_w && uint64_t(x) + width <= picture_w && uint64_t(y) + height <= picture_h;

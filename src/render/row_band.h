@@ -19,7 +19,8 @@ struct RowBand {
     bool operator==(const RowBand&) const = default;
     HD uint32_t count() const { return end - first; }
     bool is_empty() const { return end == first; }
-    /// Returns it with `rows` more on either side, within a picture of `height` rows. An empty band stays empty.
+    /// Returns the band with `rows` more rows on either side, within a picture of `height` rows. An empty band stays
+    /// empty.
     RowBand grown(uint32_t rows, uint32_t height) const {
         if (is_empty()) return *this;
         return {first - std::min(first, rows), end + std::min(height - end, rows)};

@@ -41,21 +41,21 @@ HD inline BsdfValue evaluate_surface(const Surface& surface, Vec3 wo, Vec3 wi, L
     assume_variant<kVariant>(surface.bsdf);
     return surface.evaluate(wo, wi, classes);
 }
-/// Surface::sample.
+/// Returns the sample of Surface::sample.
 template <ShadingVariant kVariant>
 HD inline BsdfSample sample_surface(const Surface& surface, Vec3 wo, float u_lobe, Vec2 u) {
     if constexpr (has_lobes(kVariant)) return scatter_call::sample<kVariant>(surface, wo, u_lobe, u);
     assume_variant<kVariant>(surface.bsdf);
     return surface.sample(wo, u_lobe, u);
 }
-/// evaluate_adjoint().
+/// Returns the value of evaluate_adjoint().
 template <ShadingVariant kVariant>
 HD inline BsdfValue evaluate_particle(const Surface& surface, Vec3 wi, Vec3 wo) {
     if constexpr (has_lobes(kVariant)) return scatter_call::evaluate_particle<kVariant>(surface, wi, wo);
     assume_variant<kVariant>(surface.bsdf);
     return evaluate_adjoint(surface, wi, wo);
 }
-/// sample_adjoint().
+/// Returns the sample of sample_adjoint().
 template <ShadingVariant kVariant>
 HD inline BsdfSample sample_particle(const Surface& surface, Vec3 wi, float u_lobe, Vec2 u) {
     if constexpr (has_lobes(kVariant)) return scatter_call::sample_particle<kVariant>(surface, wi, u_lobe, u);

@@ -75,7 +75,7 @@ HD inline float diffuse_transmittance(const SceneView& scene, const Hit& hit, Ve
     }
 }
 
-/// Holds what is the same for all receivers: a reservoir's point in the world, and the light that it sends.
+/// Holds what is the same for all receivers: a reservoir's point in the world, and the light that the point sends.
 struct PreparedBounce {
     Vec3 position, normal; // normal: cross product of its triangle's edges
     Rgb radiance;

@@ -17,7 +17,7 @@ struct Receiver {
 
     HD Vec3 position() const { return surface.position; }
     HD LightContext light_context() const { return surface.light_context(wo); }
-    /// Returns whether no light of a light's point is scattered.
+    /// Returns whether the surface scatters no light that comes from a point on a light.
     HD bool is_dark() const { return surface.is_unlit || surface.bsdf.has_delta_only(); }
     HD BsdfValue evaluate(Vec3 wi, LobeClasses classes = kAllLobeClasses) const {
         return evaluate_surface<kVariant>(surface, wo, wi, classes);
@@ -39,7 +39,7 @@ struct alignas(16) Receiver<ShadingVariant::Diffuse> {
     HD Vec3 position() const { return at; }
     HD LightContext light_context() const { return {at, normal, false, kAtRest}; }
     HD bool is_dark() const { return false; }
-    /// Returns what Surface::evaluate does.
+    /// Returns the value of Surface::evaluate for this surface.
     HD BsdfValue evaluate(Vec3 wi, LobeClasses = kAllLobeClasses) const {
         const float cosine = dot(wi, normal);
         if (!(cosine > 0 && dot(wi, geometric_normal) > 0)) return {};

@@ -44,10 +44,10 @@ public:
     void share(RowExchange* others) { others_ = others; }
     /// Arrays of the last frame that the next one needs; none after a cut.
     std::vector<RowArray> rows_of_history() const;
-    /// Returns whether such arrays, of the right sizes but of a file that anybody may have made, name no triangles that
-    /// the scene lacks. `triangle_counts` are those of its instances.
+    /// Returns whether `arrays`, of the right sizes but from an untrusted file, name only triangles of the scene.
+    /// `triangle_counts` are those of its instances.
     static bool are_of_scene(std::span<const std::vector<std::byte>> arrays, std::span<const uint32_t> triangle_counts);
-    /// Goes on after a frame of other reservoirs, whose rows_of_history() the caller then fills in.
+    /// Continues after a frame that other reservoirs made; the caller then fills rows_of_history().
     void begin_after(const CameraRays& camera, const SampleNumbers& numbers) {
         camera_before_ = camera, numbers_before_ = numbers, has_history_ = true;
     }
@@ -63,7 +63,7 @@ public:
 
     /// Number of rays that the last add() traced. Waits for it.
     uint64_t rays() const;
-    /// Returns whether it was made for such frames.
+    /// Returns whether this was made for frames of this size, this light and this shading variant.
     bool fits(uint32_t width, uint32_t height, RestirLight light, ShadingVariant variant) const {
         return width_ == width && height_ == height && light_ == light &&
                (receivers_.size() == 0) == has_lobes(variant);

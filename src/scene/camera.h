@@ -32,7 +32,7 @@ HD constexpr bool has_parallel_rays(Projection projection) {
     return true;
 }
 
-/// Returns whether it measures light and shows no picture.
+/// Returns whether a projection measures light instead of showing a picture.
 HD constexpr bool is_light_meter(Projection projection) {
     switch (projection) {
     case Projection::Perspective:

@@ -113,7 +113,7 @@ struct MaterialParameters {
     HD bool has_coat() const { return coat_weight > 0; }
     HD bool has_fuzz() const { return fuzz_weight > 0 && max_component(fuzz_color) > 0; }
     HD bool transmits() const { return kind == MaterialKind::MetallicRoughness && transmission_weight > 0; }
-    /// Returns whether it is clear and the surface of a solid, which refracts light, not of a thin wall.
+    /// Returns whether the material is clear and the surface of a solid, which refracts light, not of a thin wall.
     HD bool is_solid() const { return kind == MaterialKind::Dielectric || (transmits() && !thin_walled); }
     HD bool is_unlit() const { return kind == MaterialKind::Unlit; }
     /// Returns whether the dielectric reflects otherwise than by its index.
@@ -122,15 +122,15 @@ struct MaterialParameters {
                (specular_weight != 1 || !(specular_color == Rgb{1, 1, 1}) || specular_texture.has_image() ||
                 specular_color_texture.has_image());
     }
-    /// Returns whether it is a solid, which light enters, that absorbs by distance.
+    /// Returns whether the material is that of a solid, which light enters, that absorbs by distance.
     HD bool absorbs() const { return transmission_depth > 0 && is_solid(); }
-    /// Returns whether it is the surface of a body that light enters and that a medium may fill.
+    /// Returns whether the material is the surface of a body that light enters and that a medium may fill.
     HD bool encloses() const {
         return is_solid() || is_clear_boundary || (medium.is_there() && has_diffuse_transmission());
     }
     HD bool has_microfacets() const { return kind != MaterialKind::Diffuse && !is_unlit(); }
     HD bool has_anisotropy() const { return has_microfacets() && specular_roughness_anisotropy > 0; }
-    /// Returns whether its microfacets are not those that most materials have, which are faster.
+    /// Returns whether the material has other microfacets than most materials, for which there is faster code.
     HD bool has_other_microfacets() const {
         return has_microfacets() &&
                (microfacet_distribution != MicrofacetDistribution::Ggx || energy != MicrofacetEnergy::Compensated);
@@ -159,8 +159,8 @@ struct MaterialParameters {
                 dispersion() > 0 || has_retroreflection());
     }
     bool is_emissive() const { return max_component(emission) > 0; }
-    /// Returns whether it is sampled as an emitter. An unlit one is not: rays from the camera or a surface that hit it
-    /// return its colour.
+    /// Returns whether the material is sampled as an emitter. An unlit one is not: rays from the camera or a surface
+    /// that hit it return its colour.
     bool is_emitter() const { return is_emissive() && !is_unlit(); }
 };
 
@@ -277,7 +277,7 @@ void visit_textures(Parameters& m, const Texture& texture) {
 struct Material : MaterialParameters {
     std::string name, origin; // `origin` is its location in the file
 
-    /// Makes it the boundary of a medium that all light passes unchanged.
+    /// Makes the material the boundary of a medium that all light passes unchanged.
     void make_clear_boundary() {
         is_clear_boundary = true;
         alpha_mode = AlphaMode::Mask;

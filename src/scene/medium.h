@@ -19,7 +19,7 @@ struct MediumParameters {
     /// Returns the extinction, 1/m.
     HD Rgb sigma_t() const { return sigma_a + sigma_s; }
     HD bool scatters() const { return max_component(sigma_s) > 0; }
-    /// Returns whether it differs from a vacuum.
+    /// Returns whether the medium differs from a vacuum.
     HD bool is_there() const { return scatters() || max_component(sigma_a) > 0; }
     bool operator==(const MediumParameters&) const = default;
 };

@@ -58,7 +58,8 @@ NodeTransform compose(const NodeTransform& a, const NodeTransform& b);
 /// World-from-local transform relative to `origin`, which is subtracted in double.
 Transform world_from_node(const NodeTransform& transform, DoubleVec3 origin);
 
-/// Transform of each node in the coordinates of the file. `parents_first` is such an order of all nodes.
+/// Transform of each node in the coordinates of the file. `parents_first` is an order of all nodes with each after its
+/// parent.
 std::vector<NodeTransform> transforms_of(std::span<const Node> nodes, std::span<const uint32_t> parents_first);
 std::vector<Transform> world_from_nodes(std::span<const NodeTransform> transforms, DoubleVec3 origin);
 

@@ -18,7 +18,7 @@ public:
     /// Share of the way to the target per frame: 1 - exp(-1 / 16).
     static constexpr float kShare = 0.0605869f;
 
-    /// Sets the exposure from which it continues.
+    /// Sets the exposure from which the adaptation continues.
     void set(float stops) { stops_ = stops; }
     float stops() const { return stops_; }
     /// Adapts to a frame that `tone_map` will display, and returns the stops for it.

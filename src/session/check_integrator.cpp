@@ -42,7 +42,8 @@ bool has_any_light(const Scene& scene) {
     return has_punctual_light(scene) || has_emitter(scene) || is_all_unlit(scene) ||
            (scene.environment && emits_light(*scene.environment));
 }
-/// A list such as "no emitter, no point, spot or directional light, no environment".
+/// Returns the kinds of light that the scene lacks, such as "no emitter, no point, spot or directional light, no
+/// environment".
 std::string no_lights_of(const Scene& scene) {
     return fmt::format("no emitter, no point, spot or directional light, {}",
                        scene.environment ? "and the environment is black" : "no environment");
@@ -54,7 +55,8 @@ void refuse(bool is_wrong, const char* setting, std::string_view value, std::str
 
 void give(const char* setting, PictureOptions& options) { options.given.emplace(setting, SettingOrigin::Caller); }
 
-/// Returns the settings as options, of which those are given that the table has rules for.
+/// Returns the settings as options. Settings that differ from their defaults and have rules in the table count as
+/// given.
 PictureOptions options_of(const RenderSettings& settings) {
     PictureOptions options;
     options.render = settings;
@@ -84,7 +86,7 @@ bool has_own_ambient(const RenderSettings& settings, const Scene& scene) {
     return describe(settings.integrator).has_mean_ambient && scene.environment && emits_light(*scene.environment);
 }
 
-/// A phrase such as "this scene has only emitters".
+/// Returns what lights the scene has, such as "this scene has only emitters".
 std::string lights_of(const Scene& scene) {
     const bool has_environment = scene.environment && emits_light(*scene.environment);
     const std::string others =

@@ -16,7 +16,7 @@ namespace pertev {
 
 inline constexpr float kRadiansPerDegree = kPi / 180.0f;
 
-/// Returns degrees in (0, 360) that choose_camera() converts to `radians`, to the bit if there are such.
+/// Returns degrees in (0, 360) that choose_camera() converts to `radians`, to the bit if such degrees exist.
 inline float degrees_for(float radians) {
     const float near = radians * (180 / kPi);
     const auto bits = std::bit_cast<uint32_t>(near); // adding or subtracting one gives the adjacent floats

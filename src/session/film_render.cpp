@@ -97,7 +97,7 @@ AddTargets FilmRender::targets_of_films() {
     };
 }
 
-/// Returns `film`, made if it does not fit the settings, for their rows.
+/// Returns `film` for the rows of the settings. Replaces it by a new one if it does not fit them.
 Film& FilmRender::fit_part(std::optional<Film>& film) {
     Film& fit = fit_film(pictures_.film_queue(), film, settings_, targets_of_films());
     fit.set_rows(settings_.part().first_row, settings_.part().end_row);

@@ -22,7 +22,7 @@ public:
     /// another picture.
     bool set_camera(const Camera& camera);
     bool set_settings(const RenderSettings& settings);
-    /// Restarts the film; the second function is for a scene that has changed.
+    /// Restarts the film; restart_for_scene() is for a scene that has changed.
     void restart();
     void restart_for_scene();
 
@@ -61,7 +61,7 @@ public:
     }
     /// Returns the picture after the post steps; none if the settings request no step, or without samples.
     std::optional<Image> denoised();
-    /// The name of what denoised it (Denoiser::name).
+    /// Name of what denoised the picture (Denoiser::name); empty without denoising.
     std::string denoiser() const { return settings_.is_denoised() ? denoiser_ : ""; }
     std::vector<FilmLayer> layers() { return film().layers(); }
     /// Returns statistics, for which it reads two numbers from the device. The share of hidden backs is computed once

@@ -37,7 +37,7 @@ public:
     explicit Meter(PictureRenderer& pictures) : pictures_(pictures) {}
     /// Returns metered_light() for the view of `camera`. Throws Error(OutOfMemory, DeviceFault).
     Image light(const Camera& camera, const RenderSettings& settings);
-    /// Returns meter_exposure() for it. Throws as light().
+    /// Returns meter_exposure() for the view of `camera`. Throws as light().
     float stops(const Camera& camera, const RenderSettings& settings, ToneMap tone_map);
 
 private:

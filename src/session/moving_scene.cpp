@@ -137,7 +137,7 @@ uint32_t MovingScene::edit(const std::function<SceneUpdate(Scene&)>& edit, Sink&
     return parts;
 }
 
-/// Makes prepared() that of the scene after these changes.
+/// Brings prepared() up to date after `update`. Returns the parts that have changed.
 uint32_t MovingScene::apply(SceneUpdate update, bool prepares_anew, Sink& sink) {
     uint32_t parts = 0;
     if (prepares_anew) {

@@ -24,7 +24,7 @@ class SharedFrames; // session/shared_frames.h
 using AddTargets = std::function<void(Film&)>;
 
 Film make_film(Queue& queue, const RenderSettings& settings);
-/// Returns the bytes that such a film takes.
+/// Returns the bytes that a film of these settings takes.
 std::size_t predicted_film_bytes(const RenderSettings& settings);
 /// Returns `film` if it fits a picture of these settings, else replaces it by a new one without samples, for which
 /// `add` is called.
@@ -51,7 +51,7 @@ public:
     void share(SharedRender& sharing) { sharing_ = &sharing; }
     void stop_sharing() { sharing_ = nullptr; }        // films that were made before are of no use then
     SharedRender* sharing() const { return sharing_; } // null: this device renders alone
-    /// Does that for real-time frames, before the first one.
+    /// Lets real-time frames be rendered by other devices too. Must be called before the first frame.
     void share_frames(SharedFrames& sharing) { sharing_frames_ = &sharing; }
     SharedFrames* sharing_frames() const { return sharing_frames_; }
     Queue& film_queue();
@@ -61,7 +61,8 @@ public:
     /// stands for a picture whose samples are not continued. Throws Error(BadInput) if the camera or the shutter is
     /// incompatible with the settings, and Error(OutOfMemory, DeviceFault).
     Integrator& begin(const Camera& camera, const RenderSettings& settings, uint32_t samples, uint64_t number = 0);
-    /// Does that for a view that the caller has made and whose cameras it has checked: of a batch, for example.
+    /// Returns an integrator for a view that the caller has made and whose cameras the caller has checked, such as that
+    /// of a batch.
     Integrator& begin(const PictureView& picture, const RenderSettings& settings, uint32_t samples,
                       uint64_t number = 0);
     /// Finds the layers at the centres of pixels, if the film has any. Throws Error(OutOfMemory, DeviceFault).

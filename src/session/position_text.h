@@ -9,8 +9,8 @@
 
 namespace pertev {
 
-/// "X,Y,Z" in the syntax of settings. `digits` applies to a scene at the file's origin; a scene elsewhere has as many
-/// decimals as its own size would have.
+/// Returns a position as "X,Y,Z", in the syntax of settings. `digits` applies to a scene at the file's origin; a scene
+/// elsewhere has as many decimals as its own size would have.
 std::string position_text(const Scene& scene, Vec3 p, int digits);
 
 /// The position that position_text() states, in the coordinates of the file.

@@ -14,7 +14,7 @@ namespace pertev {
 
 /// Makes the steps that `settings` request. Throws Error(BadInput, OutOfMemory, DeviceFault).
 std::vector<std::unique_ptr<Denoiser>> make_denoisers(Queue& queue, const RenderSettings& settings);
-/// Returns the size of their Denoiser::state; 0 without any.
+/// Returns the size of Denoiser::state of the steps that `denoise` requests; 0 without steps.
 DenoiserStateSize denoiser_state_size(Denoise denoise, uint32_t width, uint32_t height);
 
 /// A picture after its steps, and Denoiser::name of what made it.

@@ -12,7 +12,7 @@
 
 namespace pertev {
 
-/// One of equal parts.
+/// The number of one of several equal parts.
 struct PartNumber {
     uint64_t index = 0, count = 1; // the index counts from 0
 
@@ -20,8 +20,8 @@ struct PartNumber {
     std::pair<uint64_t, uint64_t> of(uint64_t all) const { return {all * index / count, all * (index + 1) / count}; }
 };
 
-/// Returns the requested part; none if there is none. Throws Error(BadInput) for another text, and for a part that does
-/// not exist.
+/// Returns the requested part; nothing if none is requested. Throws Error(BadInput) for another text, and for a part
+/// that does not exist.
 std::optional<PartNumber> part_number(const PictureOptions& options);
 /// Returns whether several pictures are requested, which a part is one of.
 bool has_frames(const PictureOptions& options);

@@ -108,7 +108,7 @@ private:
         throw Error(ErrorCode::BadInput, "material", change_.text, why);
     }
 
-    /// Makes it a conductor with a measured metal's index.
+    /// Makes the material a conductor with a measured metal's index.
     void set_metal(const std::string& value) {
         const MeasuredMetal* const metal = find_metal(value);
         if (metal == nullptr) refuse("metal is one of " + names_of_metals());

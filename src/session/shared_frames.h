@@ -36,7 +36,7 @@ class SharedFrames {
 public:
     virtual ~SharedFrames() = default;
 
-    /// Replaces these parts (ScenePart) at the next frame; the scene must not change until then.
+    /// Replaces `parts` (ScenePart) of the scene at the next frame; the scene must not change until then.
     virtual void change_scene(const PreparedScene& scene, uint32_t parts) = 0;
     /// Gives the other devices the scene as it is now, because the next frame of `leader` has a history though they
     /// have made none. One that fails is left out, with a warning.

@@ -33,7 +33,7 @@ public:
 
     /// The queue of films to which samples are added. It is one of the host, which no failing device takes along.
     virtual Queue& film_queue() = 0;
-    /// Replaces these parts (ScenePart) at the next render(); the scene must not change until then.
+    /// Replaces `parts` (ScenePart) of the scene at the next render(); the scene must not change until then.
     virtual void change_scene(const PreparedScene& scene, uint32_t parts) = 0;
     /// Adds samples of the range to `into`, fewer when the time of the settings is over or `sink` stops; always whole
     /// samples of all pixels, from the first on. `before` is the number of samples that the film has. Throws what the

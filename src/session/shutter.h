@@ -8,12 +8,12 @@
 
 namespace pertev {
 
-/// Seconds at which it opens and closes, relative to the picture's time. open_s <= close_s.
+/// Seconds at which the shutter opens and closes, relative to the picture's time. open_s <= close_s.
 struct Shutter {
     double open_s = 0, close_s = 0;
     bool operator==(const Shutter&) const = default;
 
-    /// Time after `share` in [0, 1] of the time that it is open.
+    /// Time after `share` in [0, 1] of the time that the shutter is open.
     double time_at(double time_s, double share) const { return time_s + open_s + share * (close_s - open_s); }
 };
 

@@ -47,7 +47,7 @@ struct CameraChoice {
     std::string camera_from;           // an EXR with the metadata of a camera
     std::optional<float> fov_y;        // radians, of that camera; degrees need not give them to the bit
 
-    /// Returns whether it places the camera anywhere but where the scene's own is.
+    /// Returns whether the choice places the camera elsewhere than the scene's own.
     bool places_camera() const { return eye || !pose.empty() || !camera_from.empty(); }
 };
 

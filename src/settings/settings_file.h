@@ -28,9 +28,10 @@ bool is_written(const PictureOptions& options, const Setting& setting);
 std::string settings_json(const PictureOptions& options, const std::string& hash_of_scene,
                           std::span<const Setting> table = all_settings());
 
-/// Returns such an object of a picture that has `samples` per pixel; `json` as it is if it does not name them.
+/// Returns `json`, an object of settings_json(), for a picture that has `samples` per pixel; unchanged if `json` does
+/// not name the samples.
 std::string with_samples(const std::string& json, std::string_view samples);
-/// Returns it with the value that `options` have for a setting, which it may lack.
+/// Returns `json` with the value that `options` have for a setting, which `json` may lack.
 std::string with_setting(const std::string& json, const PictureOptions& options, std::string_view name);
 
 /// Returns the settings that determine a real-time frame besides those of its picture, as a JSON object: `options`,

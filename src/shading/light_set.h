@@ -52,7 +52,7 @@ struct EmissiveTriangle {
     float pmf = 0;                        // probability that sample_light selects it
 
     HD Vec3 middle() const { return a + (1.0f / 3.0f) * (ab + ac); }
-    /// Returns whether it emits against `wi`, a direction towards it. `normal` is cross(ab, ac).
+    /// Returns whether the triangle emits against `wi`, a direction towards it. `normal` is cross(ab, ac).
     HD bool emits_against(Vec3 wi, Vec3 normal) const {
         return is_two_sided != 0 || (dot(normal, wi) < 0) == (is_mirrored == 0);
     }
@@ -170,7 +170,8 @@ HD_CALL inline Rgb coat_transmittance(const LightSetView& view, const SurfaceEmi
     return passed * coat_tint(surface.coat_color, weight, 0.5f * length, albedo);
 }
 
-/// Radiance that leaves it at `uv` along or against the unit `direction`; `normal` is the geometric one, of any length.
+/// Radiance that leaves a surface of `material` at `uv` along or against the unit `direction`; `normal` is the
+/// geometric one, of any length.
 template <EmitterVariant kEmitters>
 HD inline Rgb emitted_radiance(const LightSetView& view, uint32_t material, Vec2 uv, [[maybe_unused]] Vec3 normal,
                                [[maybe_unused]] Vec3 direction) {

@@ -2,9 +2,11 @@
 """Renders four scenes with participating media by Pertev and by Mitsuba's volpath, and compares them by a z-test.
 
 Both read the same files, which this script makes. Each renders every scene some times with independent samples; Welch's
-test compares each channel of each pixel, Sidak corrected, and of the mean of the picture. Mitsuba comes from PyPI:
+test compares each channel of each pixel, Sidak corrected, and of the mean of the picture. The last column is Pertev's
+variance by --integrator over that by --beside. Mitsuba comes from PyPI:
 
-    tests/images/mitsuba_media.py build/bin/pertev [--runs 16] [--spp 64] [--size 32] [--integrator path] [--keep FOLDER]
+    tests/images/mitsuba_media.py build/bin/pertev [--runs 16] [--spp 64] [--size 32] [--integrator path] [--beside bidirectional] [--keep FOLDER]
+        [-o MEASUREMENT.json]
 """
 
 import argparse
@@ -15,6 +17,11 @@ import sys
 import tempfile
 
 import numpy
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
+from measurement import write_measurement  # noqa: E402
+
+COLUMNS = [("scene", "scene", None), ("z_of_the_mean", "z of the mean", None), ("largest_z", "largest z", None), ("ratio", "variance over bidirectional's", None)]
 
 FILM = """<film type="hdrfilm"><integer name="width" value="$size"/><integer name="height" value="$size"/>
 <rfilter type="box"/><string name="pixel_format" value="rgb"/></film><sampler type="independent"><integer name="sample_count" value="$spp"/></sampler>"""
@@ -162,27 +169,34 @@ def main():
     parser.add_argument("--depth", type=int, default=16)
     parser.add_argument("--scenes", default=",".join(SCENES))
     parser.add_argument("--integrator", default="path")
+    parser.add_argument("--beside", default="bidirectional")
     parser.add_argument("--keep")
+    parser.add_argument("-o", dest="output")
     options = parser.parse_args()
-    failed = False
+    failed, rows = False, []
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(options.keep or temporary)
         folder.mkdir(parents=True, exist_ok=True)
         write_ball(folder / "ball.ply")
-        print("| scene | mean of Pertev | of Mitsuba | z of the mean (R, G, B) | largest z of a block | p, Sidak |")
-        print("|---|---|---|---|---|---|")
+        print("| scene | mean of Pertev | of Mitsuba | z of the mean (R, G, B) | largest z of a block | p, Sidak | ratio of variances |")
+        print("|---|---|---|---|---|---|---|")
         for name in options.scenes.split(","):
             path = folder / f"{name}.xml"
             write_scene(path, SCENES[name], options.depth, options.size, options.spp)
             ours = by_pertev(options.program, path, options.runs, ["--integrator", options.integrator])
             theirs = by_mitsuba(path, options.runs)
+            others = by_pertev(options.program, path, options.runs, ["--integrator", options.beside])
+            ratio = numpy.var(ours, axis=0, ddof=1).mean() / numpy.var(others, axis=0, ddof=1).mean()
             blocks = lambda pictures: [p.reshape(options.size // 4, 4, options.size // 4, 4, 3).mean(axis=(1, 3)) for p in pictures]
             z_block, p_block = p_values(blocks(ours), blocks(theirs))
             z_mean, _ = p_values([p.mean(axis=(0, 1)) for p in ours], [p.mean(axis=(0, 1)) for p in theirs])
             p = 1 - (1 - p_block.min()) ** p_block.size
             means = [" ".join(f"{x:.4f}" for x in numpy.mean(p, axis=(0, 1, 2))) for p in (ours, theirs)]
-            print(f"| {name} | {means[0]} | {means[1]} | {' '.join(f'{z:+.2f}' for z in z_mean)} | {abs(z_block).max():.2f} | {p:.3f} |", flush=True)
+            print(f"| {name} | {means[0]} | {means[1]} | {' '.join(f'{z:+.2f}' for z in z_mean)} | {abs(z_block).max():.2f} | {p:.3f} | {ratio:.2f} |", flush=True)
+            rows.append([name, ", ".join(f"{z:.2f}" for z in z_mean), round(float(abs(z_block).max()), 2), round(float(ratio), 2)])
             failed = failed or p < 1e-3 or abs(z_mean).max() > 4
+    if options.output:
+        write_measurement(options.output, options.program, "Media against Mitsuba's volpath, and by bidirectional", COLUMNS, rows, "cpu", None)
     sys.exit(1 if failed else 0)
 
 

@@ -139,7 +139,7 @@ TEST_CASE("no ray leaves a closed sphere") {
         ClosedInstance instance(scene_of(sphere, {{}}), sphere, centre);
         REQUIRE(instance.prepared.tlas.root == kNoLink); // baked
         // Binary nodes take three times as long per ray on a CPU. Their triangle test is that of wide nodes.
-        const uint64_t count = effort(1'100'000, 7'000'000), count_of_binary = effort(300'000, 7'000'000);
+        const uint64_t count = effort(600'000, 7'000'000), count_of_binary = effort(150'000, 7'000'000);
         instance.check_tracer(default_tracers(instance.queue.is_cuda()).bounce, count, ++set_number);
         instance.check_tracer(kBinaryTracer, count_of_binary, ++set_number);
     }

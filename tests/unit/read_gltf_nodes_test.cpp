@@ -365,6 +365,28 @@ TEST_CASE("morph targets are added with the node's weights, or the mesh's if it 
     CHECK(scene.instances[0].mesh == scene.instances[2].mesh);
 }
 
+TEST_CASE("each author of files that others show is named once, and their aliases are left out once") {
+    const std::filesystem::path at = asset_folder();
+    const auto by = [](const char* author, std::string text) {
+        const std::string version = R"("2.0")";
+        return text.replace(text.find(version), version.size(),
+                            version + R"(,"extras":{"author":")" + author + R"("})");
+    };
+    const auto file = [](const char* name) {
+        return fmt::format(R"({{"uri":"{}","mimeType":"model/gltf+json","aliases":[]}})", name);
+    };
+    const std::string shown = R"({"externalAsset":0},{"externalAsset":1},{"externalAsset":1})";
+    for (const auto& [name, author] : {std::pair{"a.gltf", "Anna"}, {"b.gltf", "Ann"}, {"c.gltf", "Bob"}})
+        test::write_text(at / name, by(author, room_with_assets("", "{}")));
+    test::write_text(at / "inner.gltf", by("Bo", room_with_assets(file("a.gltf") + "," + file("b.gltf"), shown)));
+    test::write_text(at / "outer.gltf", by("Anna", room_with_assets(file("c.gltf") + "," + file("inner.gltf"), shown)));
+    Messages messages;
+    const Scene scene = read_assets(at / "outer.gltf", messages);
+    REQUIRE(scene.suggested.size() == 1);
+    CHECK(scene.suggested[0].text == "Anna; Bob; Bo; Ann");
+    CHECK(messages.left_out().size() == 4);
+}
+
 TEST_CASE("an external asset is shown by nodes, with its own materials, textures, lights, cameras and animations") {
     const std::filesystem::path at = asset_folder();
     test::write_text(at / "parts/chair.gltf", chair_asset());

@@ -61,7 +61,7 @@ inline int longest_axis(const Bounds3& box) {
     return size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
 }
 
-/// Throws Error(OverLimit) if one tree cannot hold so many references.
+/// Throws Error(OverLimit) if one tree cannot hold `count` references.
 void check_reference_count(uint64_t count);
 
 /// Rebuilds by object medians every part of the tree that is too deep, so that no path has more than max_depth inner

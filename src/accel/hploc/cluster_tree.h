@@ -97,7 +97,8 @@ HD inline Plans plans_of(const ClusterTree& tree, uint32_t node, float area) {
     return {load_fresh(tree.plans + (node - tree.count)), load_fresh(tree.sizes + (node - tree.count))};
 }
 
-/// Makes the same decisions as CollapsedTree, except that any triangles of a subtree may share a leaf.
+/// Returns the plans of an inner node, by the decisions of CollapsedTree, except that any triangles of a subtree may
+/// share a leaf.
 HD inline Plans plan_inner(const CollapseSettings& costs, float area, const Plans& left, const Plans& right) {
     Plans plans;
     plans.size.triangles = left.size.triangles + right.size.triangles;
@@ -147,7 +148,8 @@ struct alignas(8) Cluster {
     uint32_t name; // a leaf that names no other cluster
 };
 
-/// Merges two clusters with the given boxes and returns the new one. The node's number is the second's name.
+/// Merges two clusters, whose boxes are `left_box` and `right_box`, and returns the new one. The node's number is the
+/// second's name.
 HD inline Cluster join(const ClusterTree& tree, Cluster left, const Bounds3& left_box, Cluster right,
                        const Bounds3& right_box) {
     Bounds3 both = left_box;

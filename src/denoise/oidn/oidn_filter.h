@@ -21,8 +21,8 @@ enum class OidnQuality : uint8_t {
 
 class OidnFilter {
 public:
-    /// Throws Error(BadInput) of this setting if there is no library, and Error(OutOfMemory, DeviceFault). A dry run
-    /// needs none.
+    /// Makes the filter. Throws Error(BadInput) that names `setting` if there is no library (a dry run needs none), and
+    /// Error(OutOfMemory, DeviceFault).
     OidnFilter(Queue& queue, uint32_t width, uint32_t height, OidnQuality quality, const char* setting);
 
     // The queue's arrays of a picture, one element per pixel, of which w is not used.

@@ -92,7 +92,7 @@ std::vector<std::string> files_to_try(const std::string& given) {
 
 } // namespace
 
-/// Loads `file`. Returns why it is of no use; empty if it is.
+/// Loads `file`. Returns why the file cannot be used; empty if it can.
 std::string OidnLibrary::load(const std::string& file) {
     void* const library = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
     if (library == nullptr) return ::dlerror();

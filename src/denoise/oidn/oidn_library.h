@@ -21,10 +21,10 @@ public:
 
     /// Returns the library that $PERTEV_OIDN names, a file or its folder; else that of the system's loader, or that of
     /// the package pyoidn beside this program, in the environment of the first `python3` of $PATH, or in the user's or
-    /// the system's packages. Throws Error(BadInput) of this setting if there is none that fits. It is never unloaded.
+    /// the system's packages. Throws Error(BadInput) that names `setting` if no library fits. It is never unloaded.
     static std::shared_ptr<const OidnLibrary> find(const char* setting);
 
-    /// Returns its version, such as "2.5.1".
+    /// Returns the library's version, such as "2.5.1".
     std::string version() const;
 
     // The functions of these names. Devices and filters are opaque.

@@ -30,7 +30,7 @@ public:
     }
     double number_or(const char* key, double otherwise) const { return number(key).value_or(otherwise); }
 
-    /// A side of the picture, or what is given in its place; 0: none.
+    /// Returns a side of the picture, or `given` if the file does not state it; 0: none.
     uint32_t side(const char* key, uint32_t given) const {
         const auto value = find(key);
         if (!value) return given;

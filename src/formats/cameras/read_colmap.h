@@ -10,7 +10,7 @@ namespace pertev {
 /// Returns whether `path` is a folder or a file of COLMAP's, by its name.
 bool is_colmap(const std::filesystem::path& path);
 
-/// Reads the folder of `path`, or that it is in. Throws Error(BadInput) with the line of a text.
+/// Reads the folder `path`, or the folder that has the file `path`. Throws Error(BadInput) with the line of a text.
 std::vector<CameraOfFile> read_colmap(const std::filesystem::path& path);
 
 } // namespace pertev

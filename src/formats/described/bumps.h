@@ -27,8 +27,7 @@ public:
         : budget_(budget), made_(made), scene_(scene) {}
 
     /// Replaces the image of material.normal_texture, which has the heights, by their normals, and sets the strength
-    /// that they have on `mesh`. The image of `heights` is decoded there, or
-    /// one of those made.
+    /// that they have on `mesh`. The image of `heights` is decoded here, or is one of `made`.
     void set(const TextureValue& heights, const Mesh& mesh, const DoubleTransform& world_from_mesh, Material& material);
 
 private:

@@ -8,8 +8,8 @@
 
 namespace pertev::described {
 
-/// Gives shapes whose surface has such a colour a mesh with it. Copies of meshes that turn alike are shared. Beyond a
-/// limit for files of this size the even mixture is used, with a warning.
+/// Gives shapes whose surface has a NormalMix a mesh with its colours. Copies of meshes that turn alike are shared.
+/// Beyond a limit for files of this size the even mixture is used, with a warning.
 void color_by_normals(Parts& parts, uint64_t file_bytes, Sink& sink);
 
 } // namespace pertev::described

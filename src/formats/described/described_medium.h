@@ -22,7 +22,7 @@ MediumParameters usable_medium(MediumParameters medium, const FileLocation& loca
 /// one, so that it is isotropic.
 std::optional<MediumParameters> find_substance(std::string_view name);
 
-/// Returns the names of all such substances.
+/// Returns the names of all measured substances.
 std::vector<std::string_view> names_of_substances();
 
 /// Returns whether light enters the body of a shape with this surface.

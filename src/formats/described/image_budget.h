@@ -15,8 +15,8 @@ class ImageBudget {
 public:
     explicit ImageBudget(uint64_t bytes) : bytes_(bytes), left_(bytes) {}
 
-    /// Takes the bytes of a picture with float channels as large as `like`. Throws Error(OverLimit) if there are too
-    /// few.
+    /// Takes the bytes of a picture with float channels as large as `like`. Throws Error(OverLimit) if too few bytes
+    /// are left.
     void charge(const TextureImage& like) {
         const bool is_bytes = !like.rgba8.pixels.empty();
         const uint64_t size = (is_bytes ? like.rgba8.pixels.size() : like.rgba_float.pixels.size()) * sizeof(float);

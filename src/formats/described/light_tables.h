@@ -36,10 +36,10 @@ bool has_scale(const DoubleTransform& world_from_light);
 /// Warns that a transform does not scale all directions equally. Light that depends on the direction alone would bend.
 void leave_out_stretch(const DoubleTransform& world_from_light, const FileLocation& location, Sink& sink);
 
-/// Makes `light` Goniometric with this table, times its intensity, which becomes that where the table is 1.
+/// Makes `light` Goniometric with `table`. The light's intensity becomes its intensity where the table is 1.
 void set_table(IntensityTable table, Light& light);
 
-/// Sets the tangents of half the angles of view of a picture by that across it.
+/// Sets the tangents of half the angles of view of a picture; `half_width` is the tangent across it.
 void set_view(double half_width, IntensityTable& picture);
 
 /// The axes of a light's frame in its own coordinates (scene/intensity_table.h).

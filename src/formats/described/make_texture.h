@@ -9,8 +9,8 @@ namespace pertev::described {
 /// Returns a * b. If both vary from place to place, only `a` does.
 TextureValue product(const TextureValue& a, const TextureValue& b);
 
-/// Returns the number that a texture is where no colour is expected. Of colours without an image the mean counts, and
-/// of texels what `grey_of` says, unless `value` says it already.
+/// Returns a texture as a number, where no colour is expected. Of colours without an image the mean counts, and of
+/// texels what `grey_of` says, unless `value` says it already.
 TextureValue as_number(TextureValue value, GreyOf grey_of = GreyOf::Mean);
 
 /// Returns whether the channels of some texel differ.

@@ -65,7 +65,7 @@ TextureValue between(Rgb a, Rgb b, const TextureValue& weight) {
     return value;
 }
 
-/// A number in which a BSDF is linear if `holds` of its material.
+/// A number in which a BSDF is linear if holds(material) is true.
 struct LinearNumber {
     float M::*number;
     TextureSlot slot;
@@ -104,7 +104,7 @@ void agree_on_unused(Surface& surface, const Surface& other) {
     if (!m.has_diffuse_transmission()) m.diffuse_transmission_color = n.diffuse_transmission_color;
 }
 
-/// Returns whether it is a diffuse surface that may transmit, of which nothing is glossy.
+/// Returns whether a surface is diffuse, may transmit, and has nothing glossy.
 bool is_sheet(const Surface& surface) {
     const Material& m = surface.material;
     if (m.base_diffuse_roughness > 0 || m.has_coat() || m.has_fuzz()) return false;

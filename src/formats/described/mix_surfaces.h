@@ -23,7 +23,7 @@ struct MixedSurface {
     std::string_view reason;             // says why it is left out
 };
 /// Mixes two surfaces; `of_second` is the share of the second one. Where neither one block of parameters nor surfaces
-/// in one place are the mixture, it is the one with the larger share.
+/// in one place are the mixture, the result is the surface with the larger share.
 MixedSurface mix_surfaces(const Surface& first, const Surface& second, TextureValue of_second);
 
 /// Returns the mixture of two surfaces as one block of parameters; nothing if that cannot express it exactly.

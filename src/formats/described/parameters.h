@@ -50,12 +50,13 @@ public:
     Parameters() = default;
     Parameters(FileLocation location, std::string what) : location_(std::move(location)), what_(std::move(what)) {}
 
-    /// Adds one; of equal names the first counts.
+    /// Adds a parameter; of equal names the first counts.
     void add(Parameter parameter) { all_.push_back(std::move(parameter)); }
-    /// Adds those of `others` whose names are not there.
+    /// Adds the parameters of `others` whose names are not there.
     void add_missing(const Parameters& others);
 
-    /// Sets the matrix from the colour space of their colours to linear Rec. 709; none: they are.
+    /// Sets the matrix from the colour space of the parameters' colours to linear Rec. 709; none if they are in linear
+    /// Rec. 709.
     void set_color_space(std::optional<ColorMatrix> to_rec709) { to_rec709_ = std::move(to_rec709); }
     const std::optional<ColorMatrix>& color_space() const { return to_rec709_; }
 
@@ -69,12 +70,12 @@ public:
     /// Returns the parameter with this name, whatever its type; null if there is none.
     const Parameter* find(std::string_view name);
     bool has(std::string_view name) { return find(name) != nullptr; }
-    /// Looks up the name of one that is there, which find() cannot, because it keeps names that outlive it.
+    /// Marks the parameter `name` as looked up. find() cannot take a name that does not outlive this object.
     void look_up(std::string_view name) { looked_up_.emplace_back(name); }
     const std::vector<Parameter>& all() const { return all_; }
-    /// Returns whether there is one, without looking it up.
+    /// Returns whether there is a parameter with this name, without looking it up.
     bool contains(std::string_view name) const;
-    /// Returns what the values of all take.
+    /// Returns the bytes that the values of all parameters take.
     std::size_t bytes() const;
 
     // Values by name; `missing` if there is none. One of another type is left out with a warning.
@@ -82,7 +83,7 @@ public:
     int64_t integer(std::string_view name, int64_t missing, Sink& sink);
     bool truth(std::string_view name, bool missing, Sink& sink);
     std::string text(std::string_view name, const std::string& missing, Sink& sink);
-    /// Returns the numbers of a list, which has a multiple of `size` of them; empty without one.
+    /// Returns the numbers of a list, which has a multiple of `size` of them; empty without the list.
     std::span<const double> numbers(std::string_view name, std::size_t size, Sink& sink);
     /// Returns a point, vector or normal.
     std::optional<DoubleVec3> vector(std::string_view name, Sink& sink);

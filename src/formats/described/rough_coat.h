@@ -14,14 +14,14 @@ namespace pertev::described {
 
 enum class CoatModel { Mitsuba, Pbrt };
 
-/// Numbers with which the base beneath a coat reflects as it does there.
+/// Numbers with which the base beneath a coat reflects as it does in Mitsuba or pbrt.
 struct CoatedBase {
     float factor; // on the colour, if light that the coat sends back in is not dyed again
     float inside; // [0, 1), share of the diffuse light inside that the coat sends back in
 };
 
-/// Returns that of the coat of a surface: of its ior, roughness, microfacets and reflection's colour. Textures of these
-/// count as 1, and one of the roughness as a width of 0.1.
+/// Returns the numbers for the base beneath `coat`, of which ior, roughness, microfacets and the reflection's colour
+/// count. Textures of these count as 1, and one of the roughness as a width of 0.1.
 ///
 /// Source: Mitsuba 3's plugin roughplastic, whose base reflects
 ///   color T(i) T(o) / (n^2 pi (1 - inside)), with `nonlinear` 1 - color inside instead of 1 - inside,

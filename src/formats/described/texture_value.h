@@ -23,7 +23,7 @@ enum class Curve {
     BeneathCoat,         // the albedo of a diffuse surface beneath a smooth coat that reflects `amount` from inside
 };
 
-/// Returns `value` converted; those of roughness are Pertev's, the root of the width.
+/// Returns `value` converted. A converted roughness is Pertev's: the root of the width.
 float converted(Curve curve, float amount, float value);
 
 /// The number that a coloured texel stands for.

@@ -14,9 +14,9 @@ namespace pertev::described {
 
 /// Returns whether each channel is a finite number of at least 0, as that of a light.
 bool is_light(Rgb strength);
-/// Leaves out a light, `which` is "a point", whose strength is no light's.
+/// Leaves out a light whose strength is not usable, with a warning. `which` names it, such as "a point".
 void leave_out_strength(const std::string& which, const FileLocation& location, Sink& sink);
-/// Returns whether a light or a camera may be there.
+/// Returns whether a light or a camera may be at a position.
 bool is_near(Vec3 position);
 /// Returns why a camera is not usable; empty if it is.
 std::string fault_of(const Camera& camera);

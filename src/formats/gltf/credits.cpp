@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <initializer_list>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -34,7 +36,7 @@ std::string text_in(const JsonValue& value, int depth = 0) {
     return "";
 }
 
-/// Returns the text of the first of these members that has one.
+/// Returns the text of the first of the named members that has a text.
 std::string first_text(const std::optional<JsonValue>& object, std::initializer_list<const char*> keys) {
     if (!object || !object->to_json().starts_with('{')) return ""; // "extras" may be anything
     for (const char* key : keys) {
@@ -57,6 +59,19 @@ std::optional<JsonValue> packet_of(const Document& document, const JsonValue& as
         throw reference.error(fmt::format("{}; there are {} packets", index, packets.size()));
     }
     return packets[index];
+}
+
+constexpr std::string_view kBetweenCredits = "; ";
+
+/// The credits of each file in a text of those of several.
+std::vector<std::string> separate(std::string_view credits) {
+    std::vector<std::string> parts;
+    for (std::size_t begin = 0; begin <= credits.size();) {
+        const std::size_t end = std::min(credits.find(kBetweenCredits, begin), credits.size());
+        parts.emplace_back(credits.substr(begin, end - begin));
+        begin = end + kBetweenCredits.size();
+    }
+    return parts;
 }
 
 } // namespace
@@ -87,9 +102,13 @@ void add_credits(const Scene& part, Scene& scene) {
         const auto known = std::ranges::find(scene.suggested, credit.name, &SuggestedSetting::name);
         if (known == scene.suggested.end()) {
             scene.suggested.push_back(credit);
-        } else if (known->text.find(credit.text) == std::string::npos) {
-            known->text = shortened(known->text + "; " + credit.text);
+            continue;
         }
+        std::vector<std::string> parts = separate(known->text);
+        for (const std::string& other : separate(credit.text)) {
+            if (std::ranges::find(parts, other) == parts.end()) parts.push_back(other);
+        }
+        known->text = shortened(fmt::format("{}", fmt::join(parts, kBetweenCredits)));
     }
 }
 

@@ -186,7 +186,8 @@ void ExternalAssets::read(const JsonValue& node, uint32_t index) {
     const JsonValue of_file = document_.item("externalAssets", *reference).at("file");
     const uint32_t number = document_.index_into("files", of_file);
     const JsonValue& file = document_.table("files")[number];
-    if (file.find("aliases")) sink_.leave_out({file.location(), "the aliases of the file are left out"});
+    if (met_.insert(number).second && file.find("aliases"))
+        sink_.leave_out({file.location(), "the aliases of the file are left out"});
     if (failed_.contains(number)) return; // said for the first node
     try {
         const uint64_t before = place_.budget.scene_bytes;

@@ -41,7 +41,8 @@ Scene read_asset(const std::filesystem::path& path, std::vector<std::byte> bytes
 
 class ExternalAssets {
 public:
-    /// Reads those that visible nodes of the scene show; one that cannot be read, or that shows itself, is left out.
+    /// Reads the assets that visible nodes of the scene show; an asset that cannot be read, or that shows itself, is
+    /// left out.
     ExternalAssets(const Document& document, Buffers& buffers, const FileAccess& access, const NodeGraph& nodes,
                    const ReadOptions& options, const AssetPlace& place, Sink& sink);
 
@@ -67,7 +68,7 @@ private:
     const AssetPlace& place_;
     Sink& sink_;
     std::vector<Part> parts_;
-    std::set<uint32_t> failed_; // files that cannot be read
+    std::set<uint32_t> met_, failed_; // indices of files that nodes show, and of those that cannot be read
 };
 
 } // namespace pertev::gltf

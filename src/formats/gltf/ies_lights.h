@@ -12,7 +12,8 @@
 
 namespace pertev::gltf {
 
-/// Appends to scene.lights, in the order of the nodes. Anything unreadable is left out with a warning.
+/// Appends lights with IES profiles to scene.lights, in the order of the nodes. Anything unreadable is left out with a
+/// warning.
 void place_ies_lights(const Document& document, Buffers& buffers, const FileAccess& access, const NodeGraph& nodes,
                       Scene& scene, Sink& sink);
 

@@ -11,7 +11,8 @@
 
 namespace pertev::gltf {
 
-/// Sets scene.environment if the file's scene `scene.file_scene` has such a light. One that cannot be read is left out.
+/// Sets scene.environment if the file's scene `scene.file_scene` has an image-based light. A light that cannot be read
+/// is left out.
 void read_image_based_light(const Document& document, Buffers& buffers, const FileAccess& access, Scene& scene,
                             Sink& sink);
 

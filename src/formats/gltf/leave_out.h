@@ -28,7 +28,7 @@ template <class Read>
     }
 }
 
-/// Runs `read` in the same way for the value `json`.
+/// Runs `read`; messages name the pointer of `json`.
 template <class Read>
 bool read_or_leave_out(const JsonValue& json, Sink& sink, const Read& read) {
     return read_or_leave_out(json.pointer(), sink, read);

@@ -37,7 +37,7 @@ void read_cone(const JsonValue& spot, Light& light, Sink& sink) {
     set_cone(inner, outer, light);
 }
 
-/// Returns the number, or 0 with a warning if it is negative.
+/// Returns `number` as a float; 0, with a warning, if it is negative.
 float not_negative(const JsonValue& number, Sink& sink) {
     const float value = number.to_float();
     if (value < 0) sink.warn({number.location(), fmt::format("{}; expected at least 0, which is used", value)});

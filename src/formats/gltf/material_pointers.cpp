@@ -95,7 +95,7 @@ std::optional<JsonValue> member_at(const JsonValue& object, std::string_view pat
     return found;
 }
 
-/// Returns what a path beneath a material names of a texture's transform.
+/// Returns the part of a texture's transform that a path below a material names; nothing for another path.
 std::optional<MaterialPointer> find_texture(const JsonValue& material, std::string_view path) {
     const std::size_t end = path.rfind(kTransform);
     if (end == path.npos) return std::nullopt;

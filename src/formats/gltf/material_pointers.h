@@ -22,7 +22,7 @@ struct MaterialPointer {
     TextureTransform texture_at_rest;
 };
 
-/// Returns what a JSON pointer names; nothing if it is no such number.
+/// Returns the part of a material that a JSON pointer names; nothing for another pointer.
 std::optional<MaterialPointer> find_material_pointer(const Document& document, std::string_view pointer);
 
 } // namespace pertev::gltf

@@ -19,7 +19,7 @@
 
 namespace pertev::glb {
 
-/// Text of a float that is read as the same one.
+/// Returns the shortest text that is read as the same float; 0 if it is not finite.
 std::string json_float(float value);
 std::string json_floats(std::span<const float> values);
 
@@ -28,7 +28,7 @@ class JsonMembers {
 public:
     /// Adds a member; `json` is its text.
     JsonMembers& add(const char* name, const std::string& json);
-    /// Adds a number unless it is the one that a reader takes without it.
+    /// Adds a number unless it is `usual`, which readers take if the member is missing.
     JsonMembers& add_number(const char* name, float value, float usual);
     bool is_empty() const { return text_.empty(); }
     std::string text() const { return '{' + text_ + '}'; }

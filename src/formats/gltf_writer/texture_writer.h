@@ -30,9 +30,9 @@ public:
     /// image. `owner` names the material in messages.
     std::string info(const std::array<TextureChannel, 4>& channels, bool is_srgb, const std::string& owner,
                      JsonMembers more = {});
-    /// Does so for all channels of one texture.
+    /// Returns a textureInfo with all channels of one texture.
     std::string info(const TextureRef& texture, bool is_srgb, const std::string& owner, JsonMembers more = {});
-    /// Does so for the one channel that a texture's slot has, at channel `to`.
+    /// Returns a textureInfo with the one channel that a slot has, at channel `to`.
     std::string channel(const TextureRef& texture, uint8_t to, const std::string& owner);
 
 private:

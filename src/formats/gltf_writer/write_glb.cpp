@@ -24,7 +24,6 @@ namespace pertev {
 namespace glb {
 namespace {
 
-/// Returns an angle whose cosine is `cosine`, to the bit if a float near it has that.
 /// Returns whether a light is a spot with an edge of its own course, as pbrt's and Mitsuba's are.
 bool is_round_cone(const Light& light) {
     if (!parts_of(light.kind).table) return false;
@@ -45,6 +44,7 @@ Light spot_of(Light light) {
     return light;
 }
 
+/// Returns an angle whose cosine is `cosine`, to the bit if an angle near it has that cosine.
 float angle_of(float cosine) {
     const float near = acos(clamp(cosine, -1.0f, 1.0f));
     float below = near, above = near;

@@ -22,7 +22,7 @@ struct JsonFault {
 /// The first fault of `text`; nothing if it is valid JSON after mending.
 std::optional<JsonFault> find_json_fault(std::string_view text, RepairJson repair);
 
-/// "line 3, column 14", both from 1, columns in characters.
+/// Returns the place of a byte, such as "line 3, column 14": both from 1, columns in characters.
 std::string line_and_column(std::string_view text, std::size_t byte);
 
 } // namespace pertev::gltf

@@ -12,7 +12,7 @@
 namespace pertev {
 namespace {
 
-/// The view is valid as long as the bytes.
+/// Returns the bytes as text. The view is valid as long as the bytes.
 std::string_view as_text(const std::vector<std::byte>& bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }

@@ -12,7 +12,7 @@ namespace pertev::mitsuba {
 /// left out.
 bool set_spot(Object& emitter, const DoubleTransform& to_world, Reading& reading, Light& light);
 
-/// Completes a projector in the same way.
+/// Completes a projector by its picture and its transform. Returns false, with a warning, if it is left out.
 bool set_projector(Object& emitter, const DoubleTransform& to_world, Reading& reading, Light& light);
 
 } // namespace pertev::mitsuba

@@ -16,7 +16,7 @@ struct SunPosition {
 /// Source: Preetham, Shirley, Smits, "A Practical Analytic Model for Daylight", SIGGRAPH 1999, appendix A.6.
 SunPosition sun_position_at(Parameters& time, Sink& sink);
 
-/// Sets the sky of an emitter of one of these types, with a warning that it is another model.
+/// Sets the sky of an emitter that is a sky or a sun, with a warning that Pertev's model is another one.
 void set_sky(Object& emitter, Reading& reading, InfiniteLight& light);
 
 } // namespace pertev::mitsuba

@@ -17,8 +17,8 @@ namespace {
 /// GGX roughness (perceptual: alpha is its square) of a Phong exponent.
 float roughness_of(float exponent) { return sqrt(sqrt(2.0f / (max(exponent, 0.0f) + 2.0f))); }
 
-/// The stated index, 1 too, which bends no light; without one, or with one below 1, that of Blender's importer for
-/// glass.
+/// Returns the stated index if it is at least 1 (an index of 1 bends no light); else the index that Blender's importer
+/// sets for glass.
 float index_of(const MtlStatements& from) { return from.ni >= 1 ? from.ni : 1.5f; }
 
 /// Least index of glass. One below 1 is a bubble's over that of what is around it; that of no pair of substances is

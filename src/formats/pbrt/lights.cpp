@@ -34,7 +34,8 @@ Vec3 direction_of(Parameters& parameters, const DoubleTransform& world_from_ligh
     return normalize_safely(to_float(transform_direction(world_from_light, to - from)));
 }
 
-/// The colour `name` times `scale` and, if a power is stated, that over `unit_power`, of the light of intensity 1.
+/// Returns the colour `name` times `scale` and, if a power is stated, times that power over `unit_power`, which a light
+/// of intensity 1 has.
 Rgb strength_of(Parameters& parameters, std::string_view name, std::string_view power_name, double unit_power,
                 const Context& context) {
     Rgb strength = scale_of(parameters, context) * light_color(parameters, name, grey(1), context);

@@ -14,7 +14,7 @@
 
 namespace pertev::pbrt {
 
-/// Returns nothing, with a warning, for a type that is left out.
+/// Reads the light of a shape's surface. Returns nothing, with a warning, for a type that is left out.
 std::optional<AreaLight> read_area_light(const std::string& type, Parameters& parameters, Textures& textures,
                                          const Context& context);
 std::optional<InfiniteLight> read_infinite_light(Parameters& parameters, const DoubleTransform& world_from_light,

@@ -107,7 +107,8 @@ Surface mirror(const MaterialSource& source) {
     return surface;
 }
 
-/// Kd with a reflection Ks, mirrored Kr, straight transmission Kt and an opacity, of which a surface has most.
+/// Reads a material uber: Kd with a reflection Ks, mirrored Kr, straight transmission Kt and an opacity, most of which
+/// a surface can have.
 Surface uber(const MaterialSource& source) {
     Surface surface = make_surface(MaterialKind::MetallicRoughness);
     Parameters& parameters = source.parameters;

@@ -47,7 +47,7 @@ std::pair<std::string_view, std::string_view> split(std::string_view declaration
     return {declaration.substr(0, end), name};
 }
 
-/// Takes the value that `token` is. Returns whether it is one.
+/// Adds `token` to the values of `to`. Returns false if it is no value.
 bool take_value(const Token& token, Parameter& to) {
     const bool is_truth = to.type == ParameterType::Bool && token.kind == TokenKind::Word;
     if (token.kind == TokenKind::Quoted || is_truth) {

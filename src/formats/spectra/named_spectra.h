@@ -31,7 +31,7 @@ std::optional<GlassIndex> find_glass(std::string_view name);
 /// Returns the colour, of luminance 1, of an illuminant by pbrt's name, such as stdillum-D65; nothing for another.
 std::optional<Rgb> find_illuminant(std::string_view name);
 
-/// Returns pbrt's names of all of these, for an answer to an unknown one.
+/// Returns pbrt's names of all spectra above, for an answer to an unknown name.
 std::vector<std::string> names_of_spectra();
 
 } // namespace pertev

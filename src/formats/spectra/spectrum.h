@@ -30,7 +30,8 @@ Rgb color_of_light(const Spectrum& spectrum);
 Rgb color_of_unit_light(const Spectrum& spectrum);
 /// Returns the colour of a surface with this reflectance under D65, in [0, 1]: that of a constant 1 is (1, 1, 1).
 Rgb color_of_reflectance(const Spectrum& reflectance);
-/// Returns the same without limits, for numbers that are no reflectance; negative channels become 0.
+/// Returns the colour as color_of_reflectance(), but without limits, for numbers that are no reflectance; negative
+/// channels become 0.
 Rgb color_under_d65(const Spectrum& spectrum);
 /// Returns the mean of a spectrum as each channel of Rec. 709 sees it under D65, for indices of refraction: the
 /// negative parts of the channels' sensitivities are left out.

@@ -11,8 +11,8 @@
 
 namespace pertev {
 
-/// Instances have the names of their solids, or the file's. The result is not validated. Throws Error(BadInput) as
-/// parse_stl() does.
+/// Reads an STL file. Instances have the names of their solids, or the file's. The result is not validated. Throws
+/// Error(BadInput) as parse_stl() does.
 Scene read_stl(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options, Sink& sink);
 
 } // namespace pertev

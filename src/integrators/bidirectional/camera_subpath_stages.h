@@ -106,7 +106,8 @@ private:
         const float pdf = pdf_environment(lights, ray.origin, ray.direction);
         add_light(state, {pdf, pdf_disc(scene.world)}, environment_radiance(lights.environment, ray.direction));
     }
-    /// `before` is the context of the vertex before the hit.
+    /// Returns the densities of the light at a hit; 0 if only this subpath can find it. `before` is the context of the
+    /// vertex before the hit.
     HD LightDensities light_densities(const Hit& hit, Vec3 direction, const LightContext& before) const {
         const LightSetView& lights = scene.picture.scene.lights;
         const uint32_t light = light_of(lights, hit.instance, hit.primitive);
@@ -265,7 +266,7 @@ HD inline ConnectedEnd<kInMedia> connect_end(const SceneView& scene, const Verte
     return connect_vertex<kInMedia>(scene, SurfaceEnd<kVariant>{surface}, vertex, along, is_camera);
 }
 
-/// connect_end(), not inlined in device code.
+/// Calls connect_end(), but is not inlined in device code.
 template <ShadingVariant kVariant, bool kInMedia>
 HD_CALL inline ConnectedEnd<kInMedia>
 connect_end_by_call(const SceneView& scene, const VertexToConnect<kInMedia>& vertex, Vec3 along, bool is_camera) {

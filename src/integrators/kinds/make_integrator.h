@@ -78,11 +78,11 @@ struct MemoryUse {
 struct IntegratorDescriptor {
     IntegratorKind value;
     std::string_view name; // name as text (base/value_names.h)
-    /// The light that it finds, as light-path expressions (docs/transport.md): "all" if it finds all without bias. Then
-    /// the same for scenes that are not all diffuse, and for those in which point lights shine on mirrors or clear
-    /// glass, if it differs.
+    /// The light that the integrator finds, as light-path expressions (docs/transport.md): "all" if it finds all
+    /// without bias. `light_if_not_diffuse` is for scenes that are not all diffuse, `light_with_caustics` for scenes in
+    /// which point lights shine on mirrors or clear glass; empty if they do not differ.
     std::string_view light, light_if_not_diffuse = "", light_with_caustics = "";
-    /// The light that its pictures miss in the latter scenes; empty if they are no references at all.
+    /// The light that pictures miss in the scenes of `light_with_caustics`; empty if they are no references at all.
     std::string_view lacks = "";
     /// Names of the settings that only this integrator has, and others that name them too, between spaces.
     std::string_view settings = "";
@@ -123,7 +123,7 @@ struct IntegratorDescriptor {
     uint32_t (*samples_at_once)(uint64_t pixels) = [](uint64_t) { return 1u; };
     /// Throws Error(OverLimit) if the settings do not fit together.
     void (*check)(const IntegratorSettings&) = [](const IntegratorSettings&) {};
-    /// Null if its own memory never matters.
+    /// Returns what takes most memory, for messages; null if the integrator's own memory never matters.
     MemoryUse (*memory)(const IntegratorSettings&, const WorkSize&) = nullptr;
     std::unique_ptr<Integrator> (*make)(Queue&, const IntegratorSettings&) = nullptr;
     void (*change)(Integrator&, const IntegratorSettings&) = nullptr; // applies new settings to the integrator of

@@ -231,7 +231,8 @@ private:
     ShadowData shadow_data_ = {};
 };
 
-/// Plain is for scenes with diffuse lobes only. Reuse leaves light to ReSTIR.
+/// Listeners for frames. The types with Plain are for scenes with diffuse lobes only, those with Reuse leave light to
+/// ReSTIR.
 using FrameListeners = Listeners<FrameSurface, LightSplit, MirrorChain>;
 using PlainFrameListeners = Listeners<FrameSurface>;
 using ReuseListeners = Listeners<FrameSurface, LightSplit, MirrorChain, FirstBounce>;

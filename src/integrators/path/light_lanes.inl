@@ -32,7 +32,7 @@ struct LightOfLane {
     LightTable& to;
     uint32_t lane;
 
-    /// Enters what ChosenByPower draws.
+    /// Enters into the lane the light that ChosenByPower draws.
     void enter(Vec3 receiver, SampleBits u) const {
         const LightDraw draw = select_light(view, u);
         switch (draw.kind) {
@@ -43,7 +43,7 @@ struct LightOfLane {
             enter_source(receiver, draw.source, u);
         }
     }
-    /// Enters a source that is no triangle.
+    /// Enters into the lane a light that is no triangle.
     void enter_source(Vec3 receiver, const CdfDraw& source, SampleBits u) const {
         const float pmf = cdf_pmf(source.owned);
         switch (view.kind_of(source.index)) {
@@ -59,7 +59,7 @@ struct LightOfLane {
         if (at(receiver, sample, [&](const auto& to_sample) { return to_sample.environment(pmf, rest); }))
             enter(sample);
     }
-    /// Enters a light that a tree has selected, with its probability among all.
+    /// Enters into the lane a light that a tree has selected, with its probability among all lights.
     void enter_near(Vec3 receiver, const LightTreeDraw& draw, float pmf, SampleBits u) const {
         if (draw.light == LightTreeDraw::kNoLeaf) return;
         if (draw.light >= view.triangle_count) return enter_punctual(receiver, draw.light - view.triangle_count, pmf);
@@ -122,7 +122,7 @@ private:
     }
 };
 
-/// Does what draw_from_tree does, for lanes of receivers.
+/// Draws lights as draw_from_tree, for lanes of receivers.
 class TreeDraws {
 public:
     TreeDraws(const LightTreeView& tree, const LightReceiverOf<Floats>& to) : tree_(tree), to_(to) {}
@@ -202,7 +202,7 @@ private:
     unsigned going_ = 0;
 };
 
-/// Does what ChosenByTree::draw does, for the receivers of `lanes`.
+/// Enters the lights that ChosenByTree::draw draws, for the receivers of `lanes`.
 void enter_by_tree(const LightSetView& view, unsigned lanes, const LightReceiverOf<Floats>& to,
                    const SampleBitsOf<Words>& u, LightTable& drawn) {
     const uint32_t of_near = ChosenByTree::numbers_of_near(view);
@@ -229,7 +229,7 @@ void enter_by_tree(const LightSetView& view, unsigned lanes, const LightReceiver
     }
 }
 
-/// Does what sample_light does, for the receivers of `lanes`. `normal_of_context` is that of their contexts.
+/// Samples lights as sample_light, for the receivers of `lanes`. `normal_of_context` is that of their contexts.
 template <Features kFeatures>
 void sample_lights(const LightSetView& view, unsigned lanes, Vec3s position, Vec3s normal_of_context,
                    const SampleBitsOf<Words>& u, Lights& lights) {

@@ -339,7 +339,7 @@ void PathIntegrator::begin_paths(Wavefront& w, const Work& work, const Round& ro
     }
 }
 
-/// Launches a round's shadow rays, and adds the light of those that reach it.
+/// Launches a round's shadow rays, and adds the light of the rays that reach it.
 void PathIntegrator::launch_light(Wavefront& w, const Work& work, const Round& round) {
     const ShadowQueueView shadows = w.shadows();
     const WorkCount shadow_rays = {round.most, &round.counts->shadows};

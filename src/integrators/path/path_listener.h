@@ -49,7 +49,7 @@ struct SurfaceVertex {
     }
     /// Returns whether a ray along `wi` stays on the surface's side of `wo`.
     HD bool stays(Vec3 wi) const { return surface.same_side(wo, wi); }
-    /// Returns the triangle that its rays leave.
+    /// Returns the triangle that rays from the vertex leave.
     HD TriangleId triangle() const { return surface.triangle; }
 };
 

@@ -27,7 +27,7 @@ struct PixelRange {
 void render_pixels(const PathJob& job, const LoopTrees& trees, const BeginOrder& order, PixelRange range,
                    RayCounts& counts);
 #if defined(PERTEV_HAS_16_LANES)
-/// Does the same as render_pixels by code for processors with AVX-512 (base/processor.h).
+/// Renders as render_pixels, by code for processors with AVX-512 (base/processor.h).
 void render_pixels_by_avx_512(const PathJob& job, const LoopTrees& trees, const BeginOrder& order, PixelRange range,
                               RayCounts& counts);
 #endif

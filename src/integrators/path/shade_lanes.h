@@ -27,7 +27,7 @@ struct LaneResults {
     unsigned has_shadow_ray = 0; // has a shadow ray
 };
 
-/// A function that shades vertices, and how many it takes at a time.
+/// A function that shades vertices, and the number of vertices that it takes at a time.
 struct VertexShading {
     uint32_t lanes;
     /// Shades vertices of a job for which can_shade_lanes holds. Stores the shadow rays of lanes that need one, one
@@ -40,7 +40,7 @@ extern const VertexShading kShadingOf8;
 extern const VertexShading kShadingOf16;
 #endif
 
-/// The widest that this computer's processor has.
+/// Returns the function for the widest lanes that this computer's processor has.
 const VertexShading& vertex_shading();
 
 /// Returns whether `shade` may be called for the job.

@@ -210,7 +210,7 @@ Values evaluate_diffuse(Rgbs albedo, Floats wo_z, Floats wi_z) {
     return {pdf * albedo, pdf};
 }
 
-/// Surface::evaluate.
+/// Evaluates the BSDF as Surface::evaluate.
 Values evaluate(const Surfaces& s, Vec3s wo, Vec3s wo_local, Vec3s wi) {
     const Vec3s wi_local = s.frame.to_local(wi);
     const RaisedDirectionOf<Floats> from = lower_direction(wi_local, s.tilt);
@@ -234,7 +234,7 @@ struct Paths {
     Mask is_clamped; // scattered at least once before this vertex
 };
 
-/// sample_direct; returns the lanes that need a shadow ray.
+/// Samples direct light as sample_direct. Returns the lanes that need a shadow ray.
 unsigned sample_direct(const PathJob& job, unsigned lanes, const Paths& paths, const Surfaces& surfaces, Vec3s wo,
                        Vec3s wo_local, const LaneVertices& vertices, const SampleBitsOf<Words>& u, ShadowRay* shadows) {
     Lights lights;
@@ -289,7 +289,7 @@ unsigned lanes_at_depth(uint32_t depth, const LaneVertices& vertices) {
     return lanes;
 }
 
-/// sample_scattering; returns the lanes whose paths go on, and moves these.
+/// Samples directions as sample_scattering. Returns the lanes whose paths go on, and moves these paths.
 unsigned sample_scattering(const PathJob& job, unsigned lanes, const Paths& paths, const Surfaces& surfaces, Vec3s wo,
                            Vec3s wo_local, const LaneVertices& vertices, const VertexWords<Words>& words) {
     const PathSettings& settings = job.settings;

@@ -60,8 +60,8 @@ constexpr bool photons_fit(uint32_t photons, uint32_t max_depth) {
 /// noise. Its square is the product over i = 1 .. pass of (i + a) / (i + 1), a = 2/3. Source: Knaus, Zwicker,
 /// "Progressive Photon Mapping: A Probabilistic Approach", 2011, equation 15.
 float radius_of_pass(uint32_t pass);
-/// Returns that radius in media, where the cube of the radius is the product with a = 4/7. Then the squared errors by
-/// blur and by noise both fall with the passes to the power -4/7.
+/// Returns the radius of a pass in media, relative to the first one. Its cube is the product of radius_of_pass() with a
+/// = 4/7, so that the squared errors by blur and by noise both fall with the passes to the power -4/7.
 float radius_in_media_of_pass(uint32_t pass);
 
 } // namespace pertev

@@ -183,7 +183,7 @@ struct PhotonMapView {
     PointOctreeView octree;
 };
 
-/// The map's structure for this kind of search.
+/// Returns the map's structure for a kind of search.
 template <PhotonSearch kSearch>
 HD inline const auto& structure_of(const PhotonMapView& map) {
     if constexpr (kSearch == PhotonSearch::Grid) {

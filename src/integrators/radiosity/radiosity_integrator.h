@@ -19,7 +19,8 @@ public:
         : RayTreeIntegrator(queue, settings.trees, in_loop, batch), display_(settings.display) {}
 
     void reserve(const WorkSize& size) override;
-    /// Begins a picture. Throws Error(BadInput) too, if there is no solution or it belongs to another scene.
+    /// Begins a picture. Throws as Integrator::begin, and Error(BadInput) if there is no solution or it belongs to
+    /// another scene.
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
 
     /// Changes the settings at the next begin().

@@ -17,8 +17,8 @@ public:
     RasterIntegrator(Queue& queue, const RasterSettings& settings) : IntegratorBase(queue, settings) {}
 
     void reserve(const WorkSize& size) override;
-    /// Begins a picture whose camera has no lens (why_no_raster). Throws Error(OverLimit) too, for a scene with too
-    /// many triangles.
+    /// Begins a picture whose camera has no lens (why_no_raster). Throws as Integrator::begin, and Error(OverLimit) for
+    /// a scene with too many triangles.
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
     /// Adds samples without tracing rays.
     void render(uint32_t first, uint32_t count, const FilmView& film) override;

@@ -96,28 +96,21 @@ bool uses_light_tree(const RayTreeSettings& settings, uint32_t lights, bool has_
     return Algorithm::kSelectsLights && uses_light_tree(settings.light_choice, lights, has_times);
 }
 
-/// Runs ShadeTrees with the least code that the picture needs. The loop, and code for a light tree, have one variant of
-/// motion alone.
+/// Runs ShadeTrees with the least code that the materials need. One kernel serves open and closed shutters, because
+/// each of these is a megabyte of machine code.
 template <class Algorithm, class Schedule>
 void shade_trees(Schedule& schedule, const TreeJob& job, WorkCount rays, uint32_t round, uint32_t first, bool is_last) {
-    const auto shade_as = [&]<MotionVariant kMotion, class Choice = ChosenByPower>() {
+    const auto shade_by = [&]<class Choice>() {
         with_stacks(job.picture.scene.variant, [&]<ShadingVariant kVariant>() {
             schedule.run("shade_trees", rays,
-                         ShadeTrees<Algorithm, kMotion, kVariant, Choice>{job.picture, job.settings, job.film,
-                                                                          job.trees, round, first, is_last});
+                         ShadeTrees<Algorithm, kVariant, Choice>{job.picture, job.settings, job.film, job.trees, round,
+                                                                 first, is_last});
         });
     };
     if constexpr (Algorithm::kSelectsLights) {
-        if (job.trees.normals != nullptr) return shade_as.template operator()<MotionVariant::Perhaps, ChosenByTree>();
+        if (job.trees.normals != nullptr) return shade_by.template operator()<ChosenByTree>();
     }
-    if constexpr (Schedule::kIsLoop) {
-        shade_as.template operator()<MotionVariant::Perhaps>();
-    } else {
-        if constexpr (Algorithm::kHasShutter) {
-            if (job.picture.camera.is_open) return shade_as.template operator()<MotionVariant::Perhaps>();
-        }
-        shade_as.template operator()<MotionVariant::None>();
-    }
+    shade_by.template operator()<ChosenByPower>();
 }
 
 /// Renders samples [job.first, job.first + job.count) and adds them to the film.

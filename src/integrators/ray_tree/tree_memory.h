@@ -118,7 +118,8 @@ struct TreesView {
         weights[at] = {ray.weight.r, ray.weight.g, ray.weight.b, float_of(ray.start.instance)};
         primitives[at] = ray.start.primitive;
     }
-    /// load_ray and store_ray leave this and the normals out; code for solids calls it.
+    /// Loads the solids that hold the ray at `slot`. Only code for solids calls this: load_ray and store_ray leave
+    /// solids and normals out.
     HD InteriorList load_interior(uint32_t tree, uint32_t slot) const {
         return interiors != nullptr ? InteriorList::of_words(interiors[entry(tree, slot)]) : InteriorList{};
     }

@@ -50,10 +50,11 @@ HD_CALL inline void reach_nested_solid(const SceneView& scene, PendingRay& ray, 
 
 /// The stage that shades hits of the current rays. The vertex's shadow rays from `first_shadow` on are queued, at most
 /// kShadowsAtOnce; the stage runs again until all have been. The first run adds emission; the last one (`is_last`)
-/// pushes the continuation rays on the stack, in place of the ray that ended there. `kMotion` is None if no shutter is
-/// open; code for both cases would keep surfaces in memory. `Choice` selects lights (shading/light_set.h).
-template <class Algorithm, MotionVariant kMotion, ShadingVariant kVariant, class Choice = ChosenByPower>
+/// pushes the continuation rays on the stack, in place of the ray that ended there. `Choice` selects lights
+/// (shading/light_set.h).
+template <class Algorithm, ShadingVariant kVariant, class Choice = ChosenByPower>
 struct ShadeTrees {
+    static constexpr MotionVariant kMotion = Algorithm::kHasShutter ? MotionVariant::Perhaps : MotionVariant::None;
     PictureView picture;
     RayTreeSettings settings;
     FilmView film;

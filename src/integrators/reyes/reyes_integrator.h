@@ -21,11 +21,11 @@ public:
     /// Samples per pixel that are hidden together, so that surfaces are diced once for all of them.
     static uint32_t samples_at_once(uint64_t pixels);
     void reserve(const WorkSize& size) override;
-    /// Begins a picture whose camera has no lens (why_no_raster). Throws Error(OverLimit) too, for a scene with too
-    /// many triangles.
+    /// Begins a picture whose camera has no lens (why_no_raster). Throws as Integrator::begin, and Error(OverLimit) for
+    /// a scene with too many triangles.
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
-    /// Adds samples without tracing rays. Throws Error(OverLimit) too, if displaced surfaces make too much work
-    /// (kMaxWorkOfPixel).
+    /// Adds samples without tracing rays. Throws as Integrator::render, and Error(OverLimit) if displaced surfaces make
+    /// too much work (kMaxWorkOfPixel).
     void render(uint32_t first, uint32_t count, const FilmView& film) override;
     uint32_t render_while(uint32_t first, uint32_t count, const FilmView& film,
                           const std::function<bool()>& goes_on) override;

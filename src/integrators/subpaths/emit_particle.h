@@ -73,7 +73,7 @@ HD inline bool find_emission_point(const SceneView& scene, uint32_t light, Vec2 
     return true;
 }
 
-/// Makes the ray from that point, on the side of `normal`.
+/// Makes the ray from a point on an emitter, on the side of `normal`.
 HD inline void start_particle(const EmissiveTriangle& triangle, const EmissionPoint& emission, Vec3 normal,
                               Vec3 direction, Particle& particle) {
     particle.ray = {offset_ray_origin(emission.point, light_point_error(emission.point), normal, direction), 0,
@@ -156,7 +156,7 @@ struct LightDensities {
     float position = 0, direction = 0;
     float selection = 1; // density with which next-event estimation samples the point, over `position`
 
-    /// MIS weight sum of all techniques that find this light, except the subpath's own.
+    /// MIS weight sum of all techniques that find the light, except the subpath's own.
     HD float weight_sum(const MisSums& subpath) const {
         return squared_density(position) * min(subpath.weight_sum(direction), kMaxWeightSum);
     }

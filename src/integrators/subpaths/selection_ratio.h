@@ -25,7 +25,7 @@ HD inline float selection_ratio(const LightSetView& view, const LightContext& co
     return 1;
 }
 
-/// Ratio of these probabilities for a light that next-event estimation has sampled for `context`.
+/// Probability that next-event estimation selects the sampled light for `context`, over that of emission.
 template <class Choice>
 HD inline float selection_ratio(const LightSetView& view, const LightContext& context, const LightSample& light) {
     if constexpr (Choice::kReadsNormal) {

@@ -44,7 +44,8 @@ struct MediumEnd {
         return make_bsdf_sample(wi, scatter(wo, wi).camera, LobeClass::Diffuse);
     }
     HD BsdfSample sample_particle(Vec3 wi, const ScatterDraw& draw) const { return sample_camera(wi, draw); }
-    /// The flight's share of the throughput is the vertex's for Russian roulette.
+    /// Returns whether the subpath survives Russian roulette, for which the flight's share of the throughput is the
+    /// vertex's.
     HD bool survives(const SubpathSettings& settings, SampleKey key, uint32_t group, uint32_t vertex,
                      Rgb& weight) const {
         Rgb left = share * weight;

@@ -199,13 +199,14 @@ private:
                                 counted(dropped, "instance"), first_singular_)});
     }
 
-    /// Returns whether a transform removes all area of surfaces.
+    /// Returns whether a singular transform maps space to a plane, where surfaces keep some area, and not to a line or
+    /// a point.
     static bool is_flat(const Transform& m) {
         const Vec3 a = column(m, 0), b = column(m, 1), c = column(m, 2);
         return max_component(abs(cross(a, b)) + abs(cross(b, c)) + abs(cross(c, a))) > 0;
     }
 
-    /// Returns why an instance cannot be placed there; empty if it can.
+    /// Returns why an instance cannot be placed by its transform; empty if it can.
     static std::string fault_of_transform(const Instance& instance, const Bounds3& local) {
         const Transform& m = instance.world_from_local;
         if (!is_finite(m)) return "has a transform that is not finite";

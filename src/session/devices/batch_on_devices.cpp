@@ -39,7 +39,7 @@ public:
         done_ += pictures;
         changed_.notify_all();
     }
-    /// Gives a chunk back, if there is one, for another round without the device.
+    /// Queues `chunk`, if there is one, for another round without the device, and records why the device is lost.
     void lose(std::optional<uint32_t> chunk, std::size_t device, const Error& why) {
         const std::lock_guard lock(mutex_);
         if (chunk) lost_.push_back(*chunk);
@@ -149,7 +149,7 @@ private:
         run_.leave();
     }
 
-    /// `taken` is the first picture of the chunk that is being rendered.
+    /// Renders chunks until none is left. Keeps the first picture of the chunk that is being rendered in `taken`.
     void render_chunks(DeviceWorker& worker, std::optional<uint32_t>& taken) {
         stay_near(worker.queue());
         const UseThreads use(worker.queue().threads());
@@ -176,7 +176,7 @@ private:
         result_.invalid_samples += of_device.invalid_samples();
     }
 
-    /// Goes on without the devices that failed in this round. Throws the error of the last device.
+    /// Removes the devices that failed in this round, with a warning. Throws the error if it is the last device's.
     void leave_out_lost(Sink& sink) {
         for (const auto& [number, error] : std::exchange(run_.losses, {})) {
             const auto lost = std::ranges::find(workers_, number, &DeviceWorker::number);

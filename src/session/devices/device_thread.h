@@ -32,7 +32,7 @@ public:
         task_ = std::move(task);
         changed_.notify_all();
     }
-    /// Waits until it has done the last task.
+    /// Waits until the thread has done the last task.
     void wait() {
         std::unique_lock lock(mutex_);
         changed_.wait(lock, [&] { return !task_; });

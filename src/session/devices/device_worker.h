@@ -19,11 +19,11 @@ namespace pertev {
 /// beside the rendering and delays none of it.
 inline constexpr double kFoldSeconds = 5;
 
-/// Lets the calling thread run near its GPU, if it has one.
+/// Lets the calling thread run near the queue's GPU; does nothing for a CPU's queue.
 void stay_near(const Queue& queue);
 std::string name_of_device(const Queue& queue); // cuda:1, for people
 
-/// Called by the device's thread, for tests, which throw there what a device would.
+/// Hooks for tests. The device's thread calls them; a test throws in them what a failing device would.
 struct DeviceHooks {
     std::function<void(std::size_t device)> before_samples;
     std::function<void(std::size_t device, SampleRange slice)> after_slice;

@@ -20,7 +20,7 @@
 
 namespace pertev {
 
-/// Called by the device's thread, for tests, which throw there what a device would.
+/// Hooks for tests. The device's thread calls them; a test throws in them what a failing device would.
 struct FrameHooks {
     std::function<void(std::size_t device)> before_frame;
 };

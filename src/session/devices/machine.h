@@ -40,7 +40,8 @@ public:
     /// driver's library exists. Data made for a GPU may then turn out to be unused, and a named GPU may still be
     /// refused.
     bool may_be_cuda();
-    /// Waits for the queues of all devices; one of these must be called once. Throws Error(BadInput, DeviceFault).
+    /// Waits for the queues of all devices and returns them. This or take() must be called once. Throws Error(BadInput,
+    /// DeviceFault).
     std::vector<std::unique_ptr<Queue>> take_all();
     std::unique_ptr<Queue> take() { return std::move(take_all().front()); }
 

@@ -156,7 +156,7 @@ void RowTeam::end(std::span<const double> seconds) {
     for (double& share : shares_) share /= sum;
 }
 
-/// Waits until all threads are here. Returns whether any of them says so.
+/// Waits until all threads have called this. Returns whether any passed true.
 bool RowTeam::wait_at_barrier(bool here) {
     std::unique_lock lock(mutex_);
     if (is_abandoned_) throw FrameAbandoned();

@@ -40,7 +40,7 @@ public:
     BlockFileBytes(const BlockFileKind& kind, std::string_view json);
     /// Adds a block whose elements have `stride` bytes.
     void add_block(std::span<const std::byte> elements, std::size_t stride) { add_packed(packed(elements, stride)); }
-    /// Adds all blocks of an array, which it packs beside each other.
+    /// Adds all blocks of an array, which are packed in parallel.
     void add_array(std::span<const std::byte> elements, std::size_t stride);
     /// Ends the file and returns it.
     std::vector<std::byte> take();
@@ -60,7 +60,7 @@ private:
     Hasher hashes_;
 };
 
-/// Reads such a file, block by block. All functions throw Error(BadInput) with the file and the reason.
+/// Reads a block file, block by block. All functions throw Error(BadInput) with the file and the reason.
 class BlockFileReader {
 public:
     /// Opens the file and reads its header.
@@ -70,7 +70,7 @@ public:
     const std::string& json() const { return json_; }
     /// Hash of everything before the blocks.
     Hash128 header_hash() const { return header_hash_; }
-    /// Throws if the rest of the file is too short for blocks that take at least so many bytes.
+    /// Throws if the rest of the file is too short for blocks of `fewest_bytes` bytes and the file's hash.
     void check_size(uint64_t fewest_bytes) const;
     /// The fewest bytes that the blocks of an array take.
     static uint64_t fewest_bytes(uint64_t bytes, std::size_t stride);
@@ -78,7 +78,7 @@ public:
     void read_block(std::span<std::byte> elements, std::size_t stride);
     /// Reads all blocks of an array.
     void read_array(std::span<std::byte> elements, std::size_t stride);
-    /// Checks the end of the file, which must follow.
+    /// Checks the hash of the whole file, after which the file must end.
     void finish();
     Error error(const std::string& why) const { return {ErrorCode::BadInput, FileLocation{name_}, why}; }
 

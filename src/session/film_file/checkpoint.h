@@ -20,8 +20,7 @@ public:
     /// and takes those of the generation before. Throws Error(BadInput) if the file is of another picture, naming the
     /// first difference, or if no generation is whole.
     void restore(FilmRender& film, Sink& sink);
-    /// Throws Error(FileWrite) if two generations of such a film, and the next while it is written, may not fit on
-    /// the disk.
+    /// Throws Error(FileWrite) if two generations of `film`, and the next while it is written, may not fit on the disk.
     void check_space(const Film& film) const;
     /// Replaces the file by all samples of the film; the file so far becomes the generation before. `facts` are those
     /// of the picture. Throws Error(FileWrite) and leaves the old file unchanged.

@@ -4,7 +4,7 @@
 namespace pertev {
 namespace {
 
-/// The fewest bytes that the blocks of such a film take in a file.
+/// Returns the fewest bytes that the blocks of a film with this header take in a file.
 uint64_t fewest_bytes(const FilmHeader& header) {
     Queue queue = Queue::make_dry_run(false);
     const Film film = header.make_film(queue);

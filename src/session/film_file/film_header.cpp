@@ -17,7 +17,7 @@ namespace {
 
 using gltf::JsonValue;
 
-/// All digits, also of a zero with a sign.
+/// Returns all digits of a number; a negative zero keeps its sign.
 std::string exact_number(double value) { return value == 0 && std::signbit(value) ? "-0.0" : fmt::format("{}", value); }
 std::string exact_number(float value) { return exact_number(static_cast<double>(value)); }
 
@@ -204,7 +204,7 @@ ExrPlace read_place(const JsonValue& root, uint32_t width, uint32_t height) {
     return place;
 }
 
-/// The targets as other readers need them.
+/// Returns name and size of each of the film's targets, for readers that do not know its settings.
 std::string json_of_targets(const FilmHeader& header) {
     Queue queue = Queue::make_dry_run(false);
     std::vector<std::string> targets;

@@ -47,7 +47,7 @@ FilmHeader film_header(const PictureOptions& options, const PictureRecord& recor
 std::optional<SettingDifference> film_difference(const FilmHeader& before, const FilmHeader& after);
 
 std::string json_of(const FilmHeader& header);
-/// Throws Error(BadInput, OverLimit).
+/// Reads the header of a film file. Throws Error(BadInput, OverLimit).
 FilmHeader read_film_header(const gltf::JsonValue& root);
 
 } // namespace pertev

@@ -38,7 +38,7 @@ public:
     /// Replaces the file; the file so far becomes the generation before, unless it is damaged. Throws Error(FileWrite)
     /// and leaves the old file unchanged.
     void write(std::span<const std::byte> bytes);
-    /// Deletes both, as far as that is possible.
+    /// Deletes the file and the generation before, as far as that is possible.
     void remove() const;
 
 private:

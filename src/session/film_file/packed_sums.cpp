@@ -58,7 +58,7 @@ private:
 class BitReader {
 public:
     explicit BitReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
-    /// The bytes hold at least as many more bits.
+    /// Takes the next `count` bits, which the bytes must still hold.
     FixedSum take(uint32_t count) {
         FixedSum bits;
         for (uint32_t i = 0; i < count; i += 32) {

@@ -7,7 +7,7 @@
 namespace pertev {
 
 /// Adds the names of ids in the metadata `from` to those in `to`, as id_metadata() makes them for all pixels. Throws
-/// Error(BadInput) if they are no such names.
+/// Error(BadInput) if an entry has another form.
 void unite_id_names(const ExrMetadata& from, ExrMetadata& to);
 
 } // namespace pertev

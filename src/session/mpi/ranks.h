@@ -20,8 +20,8 @@ std::string gpu_of_rank(uint32_t number, uint32_t gpus);
 
 class Ranks {
 public:
-    /// Joins the others if mpirun started this process with others; otherwise returns null. Throws Error(BadInput) if
-    /// this build cannot.
+    /// Joins the other processes if mpirun started several; otherwise returns null. Throws Error(BadInput) if this
+    /// build cannot.
     static std::unique_ptr<Ranks> join();
     /// Leaves, together with the others, unless an exception ends this process; mpirun then ends the others.
     ~Ranks();

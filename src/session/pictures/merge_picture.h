@@ -19,9 +19,9 @@ struct MergedPicture {
 };
 
 /// Checks the names of the outputs, merges `files`, and writes the film files among the outputs; write_picture() writes
-/// the others. Samples may be missing if it `is_partial`: then each pixel is the mean of those of its row, and if rows
-/// have unequal numbers of them, a warning and the facts name these. `options` are those that the caller has given of
-/// `denoise`, which must be the films', `tone_map` and `exposure`; the others are the films'. Throws as check_outputs,
+/// the others. Samples may be missing if it `is_partial`: then each pixel is the mean of its row's samples, and if rows
+/// have unequal numbers of samples, a warning and the facts name these rows. `options` has the caller's display
+/// settings and `denoise`, which must be the films'; the other settings are the films'. Throws as check_outputs,
 /// FilmMerge and show_merged, and Error(BadInput) for films that lack what the denoiser needs.
 MergedPicture merge_picture(std::span<const std::string> files, bool is_partial, const PictureOptions& options,
                             std::span<const std::string> outputs, Sink& sink);

@@ -11,7 +11,7 @@ namespace pertev {
 /// if the camera looks through the backs of surfaces. Throws Error(Interrupted) if there was no time for a sample, and
 /// as Session::render.
 RenderResult render_samples(Session& session, Sink& sink);
-/// Does that for a caller that reads the session's film. Returns statistics alone.
+/// Adds samples as render_samples() for a caller that reads the session's film. Returns only statistics.
 RenderStats add_samples(Session& session, Sink& sink);
 
 // The end of such a render.

@@ -20,7 +20,7 @@ std::string& text_named(const std::string& name, ExrMetadata& metadata) {
     return std::get<std::string>(entry.second);
 }
 
-/// Lets the names of settings by their sources say that the caller has given one.
+/// Records in `origin` that the caller has given `setting`.
 void note_given(const std::string& setting, ExrMetadata& origin) {
     for (const char* source : {"pertev.by_caller", "pertev.by_default", "pertev.by_scene", "pertev.by_settings"}) {
         std::string& text = text_named(source, origin);

@@ -9,9 +9,9 @@
 
 namespace pertev {
 
-/// Changes the display of a merged picture to what one render with the given of `tone_map` and `exposure` has, and what
-/// its files say of it. `film` is one of its files. Throws Error(BadInput) if the light meter would have to see the
-/// scene.
+/// Changes a merged picture's display to the tone map, exposure and LUT that the caller gave, as one render with them
+/// would have, and its files' metadata with it. `film` is one of its files. Throws Error(BadInput) if the light meter
+/// would have to see the scene.
 void show_merged(const PictureOptions& options, const std::string& film, PictureFacts& facts);
 
 } // namespace pertev

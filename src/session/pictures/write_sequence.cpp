@@ -115,7 +115,7 @@ private:
         sink_.report_messages();
     }
 
-    /// `share` of the frame is finished.
+    /// Reports that `share` of the frame is finished.
     void report_progress(const FrameReport& made, double share) {
         const uint32_t number = made.frame - first(), count = own_.second - first();
         sink_.progress({.doing = fmt::format("frame {} ({} of {}){}", made.frame, number + 1, count,
@@ -127,7 +127,7 @@ private:
                         .share_of_step = share});
     }
 
-    /// Returns false if it was cancelled: then the frame is not whole, and not written.
+    /// Renders and writes a frame. Returns false if it was cancelled: then the frame is not whole, and not written.
     bool make(uint32_t frame, const std::function<void(const FrameReport&)>& report, SequenceTally& tally) {
         FrameReport made;
         made.frame = frame;

@@ -24,7 +24,7 @@ public:
     std::optional<std::vector<std::byte>> read() const;
     /// Writes the file atomically. Throws Error(FileWrite).
     void write(std::span<const std::byte> contents) const;
-    /// Returns the error of contents that are no such records.
+    /// Returns the error for a file whose contents are no records of this kind.
     Error damaged(const std::string& why) const;
 
 private:

@@ -11,7 +11,7 @@ namespace pertev {
 /// nothing if the box is empty. The scene has passed validate().
 void add_ground(Scene& scene);
 
-/// Returns whether the scene has such a ground.
+/// Returns whether add_ground() has added a ground to the scene.
 bool has_ground(const Scene& scene);
 
 } // namespace pertev

@@ -103,7 +103,7 @@ CameraSource source_of(const CameraChoice& choice, const Camera& camera, DoubleV
 /// Returns the settings that place this camera again: to the bit if its text placed it or it has none, else with the
 /// precision of the numbers.
 CameraChoice choice_of(const CameraSource& source);
-/// Returns entries of these settings, and its matrix, column by column.
+/// Returns entries of the settings that place a camera, and of its matrix, column by column.
 ExrMetadata camera_metadata(const CameraSource& source);
 
 /// Entries that determine the picture, except for the number of samples: version, scene as it was opened, camera,
@@ -129,7 +129,7 @@ struct PictureFacts {
     std::vector<std::string> objects,
         matte_materials; // names that layers of mattes may show
 };
-/// `ids` are those of the picture; none without a layer of ids.
+/// Returns the facts of a picture. `ids` are the picture's; empty without a layer of ids.
 PictureFacts facts_of(const PictureRecord& record, std::span<const PixelIds> ids);
 /// Returns PictureFacts::shown of a display.
 ExrMetadata display_metadata(const Display& display);

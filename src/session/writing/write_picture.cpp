@@ -87,7 +87,7 @@ ExrMetadata matte_entries(const PictureFacts& facts, std::span<const FilmLayer> 
     return metadata;
 }
 
-/// `mattes` are matte_entries() of the result's layers.
+/// Returns all metadata of a file. `mattes` are matte_entries() of the result's layers.
 ExrMetadata metadata_of(const PictureFacts& facts, const RenderResult& result, const ExrMetadata& mattes,
                         const std::string& hash) {
     ExrMetadata metadata = picture_metadata(facts, result, hash);

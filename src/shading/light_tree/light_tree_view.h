@@ -24,7 +24,7 @@ struct alignas(16) LightTreeNode {
     static constexpr uint32_t kLeaf = 0x80000000u, kInstance = 0x40000000u;
 
     HD bool is_leaf() const { return (next & kLeaf) != 0; }
-    /// Returns whether it stands for an instance of a shared subtree.
+    /// Returns whether the node stands for an instance of a shared subtree.
     HD bool is_instance() const { return (next & (kLeaf | kInstance)) == (kLeaf | kInstance); }
     HD uint32_t number() const { return next & ~(kLeaf | kInstance); }
 };

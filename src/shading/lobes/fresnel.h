@@ -102,7 +102,7 @@ HD inline float fresnel_f82(float cos_o, float f0, float tint) {
 HD inline Rgb fresnel_f82(float cos_o, Rgb f0, Rgb tint) {
     return {fresnel_f82(cos_o, f0.r, tint.r), fresnel_f82(cos_o, f0.g, tint.g), fresnel_f82(cos_o, f0.b, tint.b)};
 }
-/// Average of it over a cosine-weighted hemisphere. The clamp, which is left out, would only raise it.
+/// Average of fresnel_f82() over a cosine-weighted hemisphere. The clamp, which is left out, would only raise it.
 HD inline Rgb fresnel_f82_average(Rgb f0, Rgb tint) {
     const auto of = [](float at_normal, float factor) {
         return max(fresnel_schlick_average(at_normal) - (1.0f / 126.0f) * f82_drop(at_normal, factor), 0.0f);

@@ -122,7 +122,7 @@ private:
     HD static Rgb channel_alone(int channel) {
         return {channel == 0 ? 1.0f : 0.0f, channel == 1 ? 1.0f : 0.0f, channel == 2 ? 1.0f : 0.0f};
     }
-    /// draw_smooth() with dispersion. All channels mirror in one direction and refract in three.
+    /// Draws as draw_smooth(), with dispersion. All channels mirror in one direction and refract in three.
     HD LobeDraw draw_smooth_channel(int channel, Vec3 wo, float u, float reach) const {
         const GlassLobe one = of_channel(channel);
         const float cosine = min(abs(wo.z), 1.0f);
@@ -153,7 +153,8 @@ private:
         const float chance = (1.0f / 3.0f) * (r.r + r.g + r.b);
         return {r, fresnel.cos_t, chance, chance < 1};
     }
-    /// `cosine` is that outside.
+    /// Returns the reflectance with the film, for the reflectance `plain` without it. `cosine` is that of the direction
+    /// outside.
     HD Rgb with_film(float plain, float cosine) const {
         if (!(film.weight > 0)) return grey(plain);
         return grey(plain) + film.weight * (film_reflectance(cosine, film, grey(max(ior, 1.0f))) - grey(plain));

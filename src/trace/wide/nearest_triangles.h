@@ -27,11 +27,11 @@ struct TriangleList {
     uint32_t count;
 };
 
-/// A function that finds them, and how many rays it takes at a time.
+/// A function that finds the nearest triangles of rays, and the number of rays that it takes at a time.
 struct TriangleTests {
     uint32_t lanes;
-    /// `rays` are `lanes` rays whose directions have their largest component along axis `kz`; `active` has one bit for
-    /// each ray that is to be tested. `any` says that any triangle will do.
+    /// Tests the triangles of `list`. `rays` are `lanes` rays whose directions have their largest component along axis
+    /// `kz`; `active` has one bit for each ray that is to be tested. `any` says that any triangle will do.
     void (*find)(const TriangleList& list, const Ray* rays, int kz, unsigned active, bool any,
                  NearestTriangles& nearest);
 };
