@@ -286,7 +286,7 @@ find_python() {
         rm -rf "$tools"
         if ! { python3 -m venv --system-site-packages "$tools" &&
             { "$tools/bin/python" -c "$needs" ||
-                "$tools/bin/pip" -q install --no-compile --disable-pip-version-check --timeout 20 --retries 0 'nanobind>=2.4' numpy; }; } \
+                "$tools/bin/pip" -q install --disable-pip-version-check --timeout 20 --retries 0 'nanobind>=2.4' numpy; }; } \
             >"$build/fetch_nanobind.log" 2>&1; then
             rm -rf "$tools"
             return

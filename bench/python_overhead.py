@@ -44,6 +44,7 @@ def main():
     parser.add_argument("--threads", type=int, default=2, help="of a CPU")
     parser.add_argument("--seconds", type=float, default=4, help="for each figure")
     parser.add_argument("-o", "--output", help="a file for the measurement")
+    parser.add_argument("--note", action="append", default=[], help="what else its reader must know of the machine")
     given = parser.parse_args()
     scene = pertev.load("cornell-box", device=given.device, threads=given.threads)
     rows = [row_of(scene, size, given.seconds) for size in SIZES]
@@ -52,7 +53,7 @@ def main():
     if given.output:
         columns = [("picture", "picture", None), ("result", "a call adds", "ms"), ("out", "with `out=`", "ms"), ("layers", "with `out=` of depth and ids too", "ms")]
         write_measurement(given.output, given.program, "What a call from Python adds to its samples", columns, rows, given.device, given.threads,
-                          ["The least of all calls in some seconds, with one sample a pixel, minus Session::render. The machine was busy with other work."])
+                          ["The least of all calls in some seconds, with one sample a pixel, minus Session::render.", *given.note])
 
 
 if __name__ == "__main__":

@@ -23,7 +23,8 @@ namespace nb = nanobind;
 namespace pertev {
 namespace {
 
-/// Returns a picture of (height, width) or (height, width, channels) with 1 to 4 channels. Bytes of a display are none.
+/// Returns a picture of (height, width) or (height, width, channels) with 1 to 4 channels. Throws Error(BadInput) for
+/// integers.
 Image image_of(nb::handle value, const std::string& name) {
     const ArrayArgument array(value, name);
     if (array.is_whole()) array.fail("the array's dtype is no float; a picture is linear Rec. 709");

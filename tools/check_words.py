@@ -124,6 +124,7 @@ def comments_in_strings(file):
             (node.lineno, node.value) for node in ast.walk(ast.parse(text, str(file)))
             if isinstance(node, ast.Constant) and isinstance(node.value, str))
     for line, string in strings:
+        string = string.replace("\\n", "\n")
         for first, comment in [*comments_of_c(string), *comments_of_script(string)]:
             yield line + first - 1, comment
 

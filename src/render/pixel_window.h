@@ -42,8 +42,7 @@ struct PixelWindow {
     }
 };
 
-/// Runs a stage for the pixels of a window: one call per slot. Large stages run for whole pictures without it, because
-/// it takes registers.
+/// Runs a stage for the pixels of a window: one call per slot.
 template <class Stage>
 struct InWindow {
     Stage stage; // is called once per pixel

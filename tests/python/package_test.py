@@ -51,9 +51,10 @@ class Wheels(unittest.TestCase):
             tools.mkdir()
             for name in ("make_wheel.sh", "bundled_libraries.sh"):
                 shutil.copy(ROOT / "tools" / name, tools / name)
-            auditwheel = pathlib.Path(folder, "build", "wheel", "tools", "bin", "auditwheel")
-            auditwheel.parent.mkdir(parents=True)
-            auditwheel.symlink_to("/bin/true")
+            installed = pathlib.Path(folder, "build", "wheel", "tools", "bin")
+            installed.mkdir(parents=True)
+            for name, program in (("auditwheel", "true"), ("cmake", "true"), ("pip", "false")):  # nothing is fetched
+                (installed / name).symlink_to(f"/bin/{program}")
             wheel = pathlib.Path(folder, "out", "pertev-0-cp311.whl")
             wheel.parent.mkdir()
             for size, status in ((80_000_000, 0), (80_000_001, 1)):

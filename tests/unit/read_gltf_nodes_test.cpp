@@ -385,6 +385,7 @@ TEST_CASE("each author of files that others show is named once, and their aliase
     REQUIRE(scene.suggested.size() == 1);
     CHECK(scene.suggested[0].text == "Anna; Bob; Bo; Ann");
     CHECK(messages.left_out().size() == 4);
+    for (const Message& message : messages.all()) CHECK(message.times == 1);
 }
 
 TEST_CASE("an external asset is shown by nodes, with its own materials, textures, lights, cameras and animations") {

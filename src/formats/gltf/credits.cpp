@@ -63,7 +63,7 @@ std::optional<JsonValue> packet_of(const Document& document, const JsonValue& as
 
 constexpr std::string_view kBetweenCredits = "; ";
 
-/// The credits of each file in a text of those of several.
+/// Splits a text of several files' credits into single credits.
 std::vector<std::string> separate(std::string_view credits) {
     std::vector<std::string> parts;
     for (std::size_t begin = 0; begin <= credits.size();) {

@@ -82,7 +82,8 @@ struct IntegratorDescriptor {
     /// without bias. `light_if_not_diffuse` is for scenes that are not all diffuse, `light_with_caustics` for scenes in
     /// which point lights shine on mirrors or clear glass; empty if they do not differ.
     std::string_view light, light_if_not_diffuse = "", light_with_caustics = "";
-    /// The light that pictures miss in the scenes of `light_with_caustics`; empty if they are no references at all.
+    /// Light or sharpness that pictures lack in the scenes of `light_with_caustics`; empty if they are no references at
+    /// all.
     std::string_view lacks = "";
     /// Names of the settings that only this integrator has, and others that name them too, between spaces.
     std::string_view settings = "";

@@ -96,8 +96,8 @@ bool uses_light_tree(const RayTreeSettings& settings, uint32_t lights, bool has_
     return Algorithm::kSelectsLights && uses_light_tree(settings.light_choice, lights, has_times);
 }
 
-/// Runs ShadeTrees with the least code that the materials need. One kernel serves open and closed shutters, because
-/// each of these is a megabyte of machine code.
+/// Runs ShadeTrees with the least code that the materials need. One kernel serves open and closed shutters, because a
+/// kernel is a megabyte of machine code.
 template <class Algorithm, class Schedule>
 void shade_trees(Schedule& schedule, const TreeJob& job, WorkCount rays, uint32_t round, uint32_t first, bool is_last) {
     const auto shade_by = [&]<class Choice>() {
