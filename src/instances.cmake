@@ -266,6 +266,8 @@ pertev_launches(integrators/path/meter_light.cu
 pertev_launches(integrators/path/path_stages.cu
   integrators/path/path_stages.h
   STAGES PlanRound
+    CountGroups
+    OrderHits
     "GeneratePaths<false>"
     "GeneratePaths<true>"
     "AddLight<FilmListeners>"

@@ -1,7 +1,7 @@
 #pragma once
 
-// Sorts the indices of a block by small keys, so that the threads of a warp run the same code: a counting sort in
-// shared memory.
+// Counting sorts by small keys, so that the threads of a warp run the same code: of a block's indices in shared memory,
+// and of all indices of a launch.
 
 #include <cstdint>
 
@@ -10,7 +10,7 @@
 
 namespace pertev {
 
-/// Number of keys, [0, kBlockKeys), that sorted_in_block() sorts by.
+/// Number of keys, [0, kBlockKeys).
 inline constexpr uint32_t kBlockKeys = 32;
 
 /// Returns the index that the thread with index `i` takes if the indices of its block of kThreads threads are sorted by
@@ -40,6 +40,27 @@ HD inline uint32_t sorted_in_block(uint32_t i, [[maybe_unused]] uint32_t key) {
     return i - threadIdx.x + order[threadIdx.x];
 #else
     return i;
+#endif
+}
+
+/// Returns the slot of the thread's element in the list of its `key`, for a thread that `adds` one, and increases
+/// sizes[key]: a block makes one atomic addition for each of its keys. On the device all threads of the block must call
+/// it, at most once.
+HD inline uint32_t append_by_key(uint32_t* sizes, uint32_t key, bool adds) {
+#if PERTEV_ON_DEVICE
+    __shared__ uint32_t counts[kBlockKeys];
+    if (threadIdx.x < kBlockKeys) counts[threadIdx.x] = 0;
+    __syncthreads();
+    const uint32_t rank = adds ? atomicAdd(counts + key, 1u) : 0u;
+    __syncthreads();
+    if (threadIdx.x < kBlockKeys) {
+        const uint32_t count = counts[threadIdx.x];
+        counts[threadIdx.x] = count > 0 ? atomicAdd(sizes + threadIdx.x, count) : 0u;
+    }
+    __syncthreads();
+    return counts[key] + rank;
+#else
+    return adds ? atomic_add(sizes + key, 1u) : 0u;
 #endif
 }
 

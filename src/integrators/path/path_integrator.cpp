@@ -75,7 +75,7 @@ PathIntegrator::Wavefront::Wavefront(Queue& queue, uint32_t paths)
       shadow_starts(queue, paths, "shadow rays"), shadow_targets(queue, paths, "shadow rays"),
       path_keys(queue, paths, "path rays"), shadow_keys(queue, paths, "shadow rays"),
       contribution(queue, paths, "shadow rays"), hit_records(queue, paths, "hits"), hit_instances(queue, paths, "hits"),
-      counts(queue, 2, "path counts"), seen(queue) {}
+      order(queue, paths, "paths"), counts(queue, 2, "path counts"), seen(queue) {}
 
 void PathIntegrator::Wavefront::take(Queue& queue, const PathParts& parts) {
     if (parts.has_times && shadow_times.size() == 0) {
@@ -314,9 +314,15 @@ void PathIntegrator::launch_paths(Wavefront& w, const Work& work, const Round& r
         }
     }
     choose_shading(work.job, [&]<Features kFeatures, class Listener>() {
-        launch(queue_, "shade_hits", WorkCount{round.most, &round.counts->active},
+        const WorkCount active = {round.most, &round.counts->active};
+        if (orders_hits(kFeatures)) {
+            const RoundHits found = {hits, round.counts, last};
+            launch(queue_, "count_groups", active, CountGroups{picture_.scene, found, round.counts});
+            launch(queue_, "order_hits", active, OrderHits{picture_.scene, found, round.counts, w.order.data()});
+        }
+        launch(queue_, "shade_hits", active,
                Shade<kFeatures, Listener>{work.job, paths, next, hits, w.shadows(), w.listened(w.round), round.counts,
-                                          last});
+                                          last, w.order.data()});
     });
 }
 

@@ -116,6 +116,7 @@ private:
         Buffer<Float4> layer_diffuse;           // if there are layers
         Buffer<Uint4> layer_parts;              // if there are layers
         Buffer<uint32_t> hit_instances;
+        Buffer<uint32_t> order;     // a round's paths by shading group
         Buffer<RoundCounts> counts; // two rounds alternate
         Readback<HostCounts> seen;  // counts at the start of the last launched round
         uint32_t round = 0;

@@ -11,6 +11,7 @@
 #include <cstdint>
 
 #include "device/block_append.h"
+#include "device/block_order.h"
 #include "device_scene/ray_queue.h"
 #include "integrators/path/generate_path.h"
 #include "math/float4.h"
@@ -107,14 +108,16 @@ struct ShadowQueueView {
 
 /// Counts of one round, on their own cache lines because kernels of two rounds run concurrently.
 struct alignas(128) RoundCounts {
-    uint64_t first;       // number of the first new path's sample (BeginOrder::at)
-    uint32_t going_on;    // paths from the previous round, at the front
-    uint32_t fresh;       // new paths in this round, at the end
-    uint32_t active;      // sum of both
-    uint32_t shadows;     // shadow rays of its vertices
-    uint32_t next, ended; // active paths that continue after the round, and that end after their shadow ray
-    uint32_t all_begun;   // 1 if no path begins afterwards
-    uint32_t taken[3];    // rays that a tracer has taken from its pool, by RayKind
+    uint64_t first;                // number of the first new path's sample (BeginOrder::at)
+    uint32_t going_on;             // paths from the previous round, at the front
+    uint32_t fresh;                // new paths in this round, at the end
+    uint32_t active;               // sum of both
+    uint32_t shadows;              // shadow rays of its vertices
+    uint32_t next, ended;          // active paths that continue after the round, and that end after their shadow ray
+    uint32_t all_begun;            // 1 if no path begins afterwards
+    uint32_t taken[3];             // rays that a tracer has taken from its pool, by RayKind
+    uint32_t in_group[kBlockKeys]; // hits of each shading group, if orders_hits()
+    uint32_t ordered[kBlockKeys];  // hits of each group that have been sorted so far
 };
 
 /// The host's knowledge of a round.

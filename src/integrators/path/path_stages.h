@@ -3,15 +3,14 @@
 // Stages of a wavefront of paths, in the order in which path_integrator.cpp launches them. Each does for one index
 // what the CPU's loop does in one line, by the same functions.
 
-#include "device/block_order.h"
 #include "device/launch.h"
 #include "integrators/path/frame_listeners.h"
 #include "integrators/path/generate_path.h"
 #include "integrators/path/layer_listeners.h"
+#include "integrators/path/order_hits.h"
 #include "integrators/path/path_queues.h"
 #include "integrators/path/path_vertex.h"
 #include "render/begin_order.h"
-#include "shading/shading_groups.h"
 
 namespace pertev {
 
@@ -70,9 +69,12 @@ private:
     }
 };
 
+/// Returns whether the hits of a round are sorted by shading group before they are shaded. Code without stacked
+/// materials needs fewer fetches, and there each block sorts its own hits.
+constexpr bool orders_hits(Features features) { return (features & kStacked) != 0; }
+
 /// The stage that shades the hits of paths, with the least code that the features need, for `Listener`. Where
-/// surfaces have several kinds of lobes, a block's paths are sorted by what they hit (after the queues by material of
-/// Laine, Karras and Aila, "Megakernels Considered Harmful", HPG 2013, section 4).
+/// surfaces have several kinds of lobes, the paths are sorted by what they hit.
 template <Features kFeatures, class Listener>
 struct Shade {
     PathJob job;
@@ -81,20 +83,25 @@ struct Shade {
     ShadowQueueView shadows;
     ListenerQueues listened;
     RoundCounts* round;
-    uint32_t last; // slot of the first new path, and of the first one that ends after its shadow ray
+    uint32_t last;         // slot of the first new path, and of the first one that ends after its shadow ray
+    const uint32_t* order; // the round's paths by shading group, if orders_hits(kFeatures)
 
-    // Measured (docs/performance.md). For large code, warps that wait for each other fetch it together.
-    static constexpr BlockShape kShape = Listener::template has<LightPaths> ? BlockShape{128, 1}
-                                         : (kFeatures & kAllMaterials) == 0 ? BlockShape{128, 6}
-                                         : (kFeatures & kLayered) == 0      ? BlockShape{512, 2}
-                                         : Listener::template has<FrameSurface> || (kFeatures & kStacked) != 0
-                                             ? BlockShape{512, 1}
-                                             : BlockShape{384, 2};
+    // Measured (docs/performance.md). For large code, warps that wait for each other fetch it together, unless hits of
+    // one group follow each other.
+    static constexpr BlockShape kShape = Listener::template has<LightPaths>     ? BlockShape{128, 1}
+                                         : (kFeatures & kAllMaterials) == 0     ? BlockShape{128, 6}
+                                         : (kFeatures & kLayered) == 0          ? BlockShape{512, 2}
+                                         : orders_hits(kFeatures)               ? BlockShape{128, 4}
+                                         : Listener::template has<FrameSurface> ? BlockShape{512, 1}
+                                                                                : BlockShape{384, 2};
 
     HD INLINE_ON_DEVICE void operator()(uint32_t i, bool is_there) const {
         constexpr bool kMoves = (kFeatures & kMoving) != 0;
-        if constexpr ((kFeatures & kLayered) != 0) {
-            i = sorted_in_block<kShape.threads>(i, is_there ? group_of_hit(i) : kBlockKeys - 1);
+        const RoundHits found = {hits, round, last};
+        if constexpr (orders_hits(kFeatures)) {
+            if (is_there) i = order[i];
+        } else if constexpr ((kFeatures & kLayered) != 0) {
+            i = sorted_in_block<kShape.threads>(i, is_there ? found.group_of(job.picture.scene, i) : kBlockKeys - 1);
         }
         const RoundAppend lists;
         Listener listener(job);
@@ -104,7 +111,7 @@ struct Shade {
         bool goes_on = false, has_shadow_ray = false;
         if (is_there) {
             const bool begins = i >= round->going_on;
-            const uint32_t slot = slot_of(i);
+            const uint32_t slot = found.slot_of(i);
             path = begins ? paths.load_begun(slot, job.picture.camera) : paths.load(slot);
             const SampleKey of_sample = sample_key<kFeatures>(job, path.pixel, path.sample);
             if ((kFeatures & kStacked) != 0 && !begins) path.start = paths.start_of(slot);
@@ -150,15 +157,6 @@ struct Shade {
     }
 
 private:
-    /// Returns the shading group of the hit of the path at index i; 0 for a miss.
-    HD uint32_t group_of_hit(uint32_t i) const {
-        static_assert(kMaxShadingGroup < kBlockKeys - 1); // the last key is that of threads without a path
-        const SceneView& scene = job.picture.scene;
-        const uint32_t instance = hits.load_instance(slot_of(i));
-        return instance == kNoHit ? 0u : scene.shading_groups[scene.instances[instance].material];
-    }
-    /// Returns the slot of the path at index i: those that continue come first, and those that begin lie at the end.
-    HD uint32_t slot_of(uint32_t i) const { return i >= round->going_on ? last - (i - round->going_on) : i; }
     HD InteriorList interior_of(uint32_t pixel, uint32_t slot, bool begins) const {
         if (!begins) return paths.interiors != nullptr ? InteriorList::of_words(paths.interiors[slot]) : InteriorList{};
         const bool has_batch = (kFeatures & kBatched) != 0 && job.picture.batch.is_there();
