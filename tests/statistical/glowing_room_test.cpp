@@ -31,7 +31,7 @@ struct Seen {
     double mean, standard_error;
 };
 
-Seen look_around(float albedo, const PathSettings& path) {
+RenderResult look_around(const Scene& scene, const PathSettings& path) {
     RenderSettings settings;
     settings.width = settings.height = 24;
     settings.samples = static_cast<uint32_t>(test::effort(64, 4096));
@@ -41,12 +41,16 @@ Seen look_around(float albedo, const PathSettings& path) {
     camera.world_from_camera = look_at({0.3f, 0.2f, -0.5f}, {1, 0.4f, 0.1f}, {0, 1, 0});
     camera.fov_y = 2.0f;
     Queue queue = test::requested_queue();
-    const RenderResult result = test::render(queue, allocate(albedo), camera, settings);
+    RenderResult result = test::render(queue, scene, camera, settings);
     CHECK(result.invalid_samples == 0);
+    return result;
+}
+
+Seen statistics_of(const Image& picture) {
     double sum = 0, square_sum = 0;
     const double pixels = 24 * 24;
     for (uint32_t i = 0; i < 24 * 24; ++i) {
-        const auto value = static_cast<double>(result.picture.pixels[3 * i]);
+        const auto value = static_cast<double>(picture.pixels[3 * i]);
         sum += value;
         square_sum += value * value;
     }
@@ -57,7 +61,7 @@ Seen look_around(float albedo, const PathSettings& path) {
 /// Allows four standard errors, which must be under 0.5 %, plus a thousandth, because next-event estimation near edges
 /// of the wall has rare, very bright samples.
 void check_radiance(double wanted, float albedo, const PathSettings& path) {
-    const Seen seen = look_around(albedo, path);
+    const Seen seen = statistics_of(look_around(allocate(albedo), path).picture);
     CAPTURE(seen.mean);
     CAPTURE(seen.standard_error);
     CAPTURE(wanted);
@@ -106,4 +110,20 @@ TEST_CASE("direct light is emission and one scattering, and indirect light is th
     check_radiance(1.5, 0.5f, path);
     path.light = PathLight::Indirect;
     check_radiance(0.375, 0.5f, path);
+}
+
+TEST_CASE("light that mirrors hold without loss counts to the last bounce, by few long paths") {
+    Scene scene = allocate(1);
+    MaterialParameters& mirror = scene.materials[0];
+    mirror.kind = MaterialKind::MetallicRoughness;
+    mirror.metallic = 1;
+    mirror.roughness = 0;
+    PathSettings path;
+    path.max_depth = 200;
+    const RenderResult result = look_around(scene, path);
+    const Seen seen = statistics_of(result.picture);
+    CAPTURE(seen.mean);
+    CHECK(std::abs(seen.mean - 201) <= 4 * seen.standard_error + 1e-3 * 201);
+    CHECK(seen.standard_error < 0.01 * 201);
+    CHECK(result.rays.bounce < 125 * result.rays.camera); // 64 and, on average, 46 of the other 136
 }

@@ -186,7 +186,7 @@ private:
         const uint32_t choices = camera_group(state.depth(), kSubpathChoices);
         const ScatterDraw draw = end.draw(settings, key, camera_group(state.depth(), kSubpathScatter), choices);
         BsdfSample sample = end.sample_camera(wo, draw);
-        if (!(sample.pdf > 0) || !end.survives(settings, key, choices, state.depth() + 1, sample.weight)) return;
+        if (!(sample.pdf > 0) || !end.survives(settings, key, choices, state.depth() + 1, sample)) return;
         const Vec3 wi = sample.wi;
         if (sample.is_delta()) {
             state.mis.scatter_by_delta(end.density_factor(wi));

@@ -174,7 +174,7 @@ private:
         Rgb path_weight = sample.weight;
         if (!sample.is_delta() && vertex.is_cached) path_weight = others_share(vertex, sample, choices);
         const Rgb before = sample.weight;
-        if (!survives(settings, vertex.key, choices, state.depth() + 1, sample.weight)) return;
+        if (!survives(settings, vertex.key, choices, state.depth() + 1, sample)) return;
         const float made_up = max_component(before) > 0 ? max_component(sample.weight) / max_component(before) : 0.0f;
         // Records do not contain reflections of emitters in mirrors and smooth glass, so those count fully for the
         // path.

@@ -15,6 +15,7 @@
 #include "integrators/path/vertex_numbers.h"
 #include "shading/follow_channel.h"
 #include "shading/power_heuristic.h"
+#include "shading/survival.h"
 
 namespace pertev {
 
@@ -191,7 +192,8 @@ HD INLINE_ON_DEVICE bool sample_scattering(const PathSettings& settings, PathSta
     if (settings.light == PathLight::Direct && path.rough_depth > 1) return false; // nothing further would count
     const uint32_t depth = path.depth + 1;
     if (may_end_by_chance(settings, depth)) {
-        const float survival = survival_probability(settings.roulette, max_component(path.throughput));
+        float survival = survival_probability(settings.roulette, max_component(path.throughput));
+        if (sample.is_delta()) survival = survival_after_delta(depth - path.rough_depth, survival);
         if (survival < 1) {
             if (!(numbers.roulette(settings, path) < survival)) return false;
             path.throughput = (1.0f / survival) * path.throughput;

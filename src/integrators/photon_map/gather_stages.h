@@ -245,7 +245,7 @@ private:
         const uint32_t choices = camera_group(state.depth(), kSubpathChoices);
         const ScatterDraw draw = end.draw(settings, key, camera_group(state.depth(), kSubpathScatter), choices);
         BsdfSample sample = end.sample_camera(vertex.wo, draw);
-        if (!(sample.pdf > 0) || !end.survives(settings, key, choices, state.depth() + 1, sample.weight)) return;
+        if (!(sample.pdf > 0) || !end.survives(settings, key, choices, state.depth() + 1, sample)) return;
         gather.marks[subpath] = 1;
         state.throughput = state.throughput * sample.weight;
         store_light_normal<Choice>(subpaths, subpath, end, vertex.wo);
@@ -285,7 +285,7 @@ private:
         }
         if (is_black(sample.weight)) return;
         const Rgb before = sample.weight;
-        if (!survives(settings, vertex.key, choices, state.depth() + 1, sample.weight)) return;
+        if (!survives(settings, vertex.key, choices, state.depth() + 1, sample)) return;
         const float made_up = max_component(sample.weight) / max_component(before);
         const Vec3 wi = sample.wi;
         gather_state = {sample.is_delta() ? made_up * (gather_state.past_mirrors * past_mirrors)

@@ -253,7 +253,7 @@ private:
         const uint32_t choices = particle_group(state.depth(), kSubpathChoices);
         const ScatterDraw draw = end.draw(settings, key, particle_group(state.depth(), kSubpathScatter), choices);
         BsdfSample sample = end.sample_particle(wi, draw);
-        if (!(sample.pdf > 0) || !end.survives(settings, key, choices, state.depth() + 1, sample.weight)) return;
+        if (!(sample.pdf > 0) || !end.survives(settings, key, choices, state.depth() + 1, sample)) return;
         const Vec3 wo = sample.wi;
         if (scene.is_connected) {
             if (sample.is_delta()) {

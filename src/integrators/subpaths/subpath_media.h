@@ -47,10 +47,10 @@ struct MediumEnd {
     /// Returns whether the subpath survives Russian roulette, for which the flight's share of the throughput is the
     /// vertex's.
     HD bool survives(const SubpathSettings& settings, SampleKey key, uint32_t group, uint32_t vertex,
-                     Rgb& weight) const {
-        Rgb left = share * weight;
-        if (!(share > 0) || !pertev::survives(settings, key, group, vertex, left)) return false;
-        weight = (1.0f / share) * left;
+                     BsdfSample& sample) const {
+        sample.weight = share * sample.weight;
+        if (!(share > 0) || !pertev::survives(settings, key, group, vertex, sample)) return false;
+        sample.weight = (1.0f / share) * sample.weight;
         return true;
     }
     HD float squared_index_beyond(Vec3, float here) const { return here; }

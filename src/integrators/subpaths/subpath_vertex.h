@@ -9,6 +9,7 @@
 #include "render/picture_view.h"
 #include "render/scatter_calls.h"
 #include "shading/chosen_by_tree.h"
+#include "shading/survival.h"
 
 namespace pertev {
 
@@ -67,12 +68,14 @@ HD inline void arrive_through_solids(const SubpathScene& scene, const SubpathsVi
 /// Russian roulette from a subpath's vertex `vertex` (counted from 1) on: the survival probability is the square root
 /// of the vertex's throughput, by the same rule on both sides. The throughput compensates for it, so the mean is
 /// unbiased; MIS weights ignore it. Returns false if the subpath ends.
-HD inline bool survives(const SubpathSettings& settings, SampleKey key, uint32_t group, uint32_t vertex, Rgb& weight) {
+HD inline bool survives(const SubpathSettings& settings, SampleKey key, uint32_t group, uint32_t vertex,
+                        BsdfSample& sample) {
     if (vertex < settings.roulette_depth) return true;
-    const float chance = sqrt(max_component(weight));
+    float chance = sqrt(max_component(sample.weight));
+    if (sample.is_delta()) chance = survival_after_delta(vertex, chance);
     if (!(chance < 1)) return true;
     if (!(sample_1d(settings.sampler, key, group, kNumberOfRoulette) < chance)) return false;
-    weight = (1.0f / chance) * weight;
+    sample.weight = (1.0f / chance) * sample.weight;
     return true;
 }
 
@@ -122,8 +125,8 @@ struct SurfaceEnd {
         return pertev::sample_particle<kVariant>(surface, wi, draw.lobe, draw.u);
     }
     HD bool survives(const SubpathSettings& settings, SampleKey key, uint32_t group, uint32_t vertex,
-                     Rgb& weight) const {
-        return pertev::survives(settings, key, group, vertex, weight);
+                     BsdfSample& sample) const {
+        return pertev::survives(settings, key, group, vertex, sample);
     }
     HD float squared_index_beyond(Vec3 wi, float here) const { return pertev::squared_index_beyond(surface, wi, here); }
     HD float squared_index_along(Vec3 wi, Vec3 wo, float here) const {
