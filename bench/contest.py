@@ -15,6 +15,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "tests/images"), str(ROOT / "tests/support"), str(ROOT / "tools")]
 import make_corridor  # noqa: E402
 import make_material_balls  # noqa: E402
+import make_velvet_sofa  # noqa: E402
 from measurement import write_measurement  # noqa: E402
 from mitsuba_to_gltf import convert  # noqa: E402
 from reference_job import last_event  # noqa: E402
@@ -135,7 +136,19 @@ class MaterialBalls(SceneFile):
         make_material_balls.write(self.file)
 
 
-JOBS = [SponzaJob, Sponza, CornellBox, DeepCornellBox, Bunny, Corridor, VeachAjar, MaterialBalls]
+class VelvetSofa(SceneFile):
+    """The Khronos sample model. Mitsuba has the nearest of its sheen."""
+
+    name, stem, depth, peers = "GlamVelvetSofa, depth 8", "velvet-sofa", 8, ("Mitsuba",)
+    eye, target, fov, sky = make_velvet_sofa.EYE, make_velvet_sofa.TARGET, make_velvet_sofa.FOV, make_velvet_sofa.SKY
+    render_flags = Job.render_flags
+
+    def write(self, scenes):
+        self.file, self.xml = scenes / "gltf/GlamVelvetSofa/GlamVelvetSofa.glb", self.file.with_suffix(".xml")
+        make_velvet_sofa.write(self.file, self.xml)
+
+
+JOBS = [SponzaJob, Sponza, CornellBox, DeepCornellBox, Bunny, Corridor, VeachAjar, MaterialBalls, VelvetSofa]
 
 
 class Contest:
